@@ -1,0 +1,239 @@
+#include "api/fields.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/parameters.hpp"
+
+namespace vines::api {
+
+namespace {
+
+Field number(std::string name, std::string group, std::string unit, std::string symbol, std::string description, Json fallback,
+             std::string note, double minimum, double maximum) {
+    return {std::move(name), FieldType::number, std::move(group), std::move(unit), std::move(symbol), std::move(description),
+            std::move(fallback), std::move(note), minimum, maximum, {}};
+}
+
+/// A number whose range is the core's.
+Field core_number(const std::string& name, std::string group, std::string unit, std::string symbol, std::string description,
+                  Json fallback, std::string note = "") {
+    for (const ParameterRange& r : parameter_ranges())
+        if (r.name == name)
+            return number(name, std::move(group), std::move(unit), std::move(symbol), std::move(description), std::move(fallback),
+                          std::move(note), r.minimum, r.maximum);
+    throw std::logic_error("no core parameter " + name);
+}
+
+Field integer(std::string name, std::string description, long fallback, double minimum, double maximum) {
+    return {std::move(name), FieldType::integer, "output", "", "", std::move(description), fallback, "", minimum, maximum, {}};
+}
+
+std::vector<Field> make_simulate_fields() {
+    const Parameters p;
+    const SiParameters si;
+    const std::string one = "dimensionless", speed = "m per unit of tau";
+    const std::string reduced = "from the SI fields if any is given";
+    return {
+        {"preset", FieldType::choice, "system", "", "", "start from a figure or table of the paper (GET /v1/presets); other fields override it",
+         nullptr, "none", {}, {}, {}},  // any name: the reader of the request answers an unknown one with the list
+        core_number("b", "system", "m", "b", "half-width of the cavity in which the free mass moves", p.b),
+        number("R", "system", one, "R", "restitution coefficient of both walls; not together with R_plus or R_minus", p.R_plus, "", 0, 1),
+        core_number("R_plus", "system", one, "R+", "restitution coefficient of the wall met where x - y = +b", nullptr, "R"),
+        core_number("R_minus", "system", one, "R-", "restitution coefficient of the wall met where x - y = -b", nullptr, "R"),
+        {"damping", FieldType::choice, "system", "", "zeta",
+         "equation_of_motion: zeta = epsilon lambda/2, eqs. (1), (6), (17), what c1 means; closed_form: zeta = epsilon lambda, eqs. (8)-(11), "
+         "(19), (20), what the paper's numbers were computed with",
+         "equation_of_motion", "", {}, {}, {"equation_of_motion", "closed_form"}},
+        core_number("epsilon", "reduced", one, "epsilon", "mass ratio m2/m1", p.epsilon, reduced),
+        core_number("lambda", "reduced", one, "lambda", "damping c1/(m2 omega0)", p.lambda, reduced),
+        core_number("G", "reduced", "m", "G", "amplitude of the base over epsilon", p.G, reduced),
+        core_number("Omega", "reduced", one, "Omega", "forcing frequency over omega0", p.Omega, reduced),
+        number("m1", "SI", "kg", "m1", "mass of the linear oscillator; SI and reduced fields cannot be mixed", si.m1, "", 1e-9, 1e9),
+        number("c1", "SI", "N s/m", "c1", "damping of the linear oscillator", si.c1, "", 0, 1e12),
+        number("k1", "SI", "N/m", "k1", "stiffness of the linear oscillator", si.k1, "", 1e-9, 1e15),
+        number("m2", "SI", "kg", "m2", "mass of the absorber", si.m2, "", 1e-12, 1e9),
+        number("F", "SI", "m", "F", "amplitude of the base", nullptr, "0.02 m times m2/m1", 0, 1e3),
+        number("f", "SI", "Hz", "f", "forcing frequency", nullptr, "the oscillator's own, omega0/(2 pi)", 1e-9, 1e9),
+        core_number("x0", "start", "m", "x(0)", "displacement of the linear oscillator at tau = 0", 0),
+        core_number("x_dot0", "start", speed, "x'(0)", "its velocity", 0),
+        core_number("y0", "start", "m", "y(0)", "displacement of the free mass; |x0 - y0| <= b", nullptr, "0.95 b"),
+        core_number("y_dot0", "start", speed, "y'(0)", "its velocity", 0),
+        number("tau_end", "run", one, "tau", "how long to run; not together with cycles", 1709, "", 1e-6, 1e7),
+        number("cycles", "run", one, "", "how many forcing cycles of 2 pi/Omega to run", nullptr, "from tau_end", 1e-6, 1e6),
+        {"window", FieldType::interval, "run", one, "[tau_s, tau_e]",
+         "the exponents are taken from the first impact at or after tau_s to the last at or before tau_e", nullptr, "the whole run", {}, {}, {}},
+        {"include", FieldType::choices, "output", "", "", "parts of the answer", Json::array({"series", "impacts", "exponents"}), "", {}, {},
+         {"series", "impacts", "exponents"}},
+        {"exponents", FieldType::choices, "output", "", "", "estimators of the Lyapunov exponents: qr (Benettin), eigenvalues (33), raw_product "
+         "((33) unscaled in double precision, as in the paper)",
+         Json::array({"qr", "eigenvalues", "raw_product"}), "", {}, {}, {"qr", "eigenvalues", "raw_product"}},
+        number("samples_per_cycle", "output", one, "", "samples of the series per forcing cycle", 32, "", 1, 10000),
+        integer("max_points", "longest series and histories; a longer series gets a larger step, longer histories are thinned", 20000, 256, 1000000),
+        integer("max_impacts", "end the run after so many impacts", 100000, 1, 2000000),
+    };
+}
+
+const char* type_name(FieldType type) {
+    switch (type) {
+        case FieldType::number: return "number";
+        case FieldType::integer: return "integer";
+        case FieldType::choice: return "choice";
+        case FieldType::choices: return "choices";
+        case FieldType::interval: return "interval";
+    }
+    return "";
+}
+
+const Field* find(const std::vector<Field>& fields, const std::string& name) {
+    const auto it = std::find_if(fields.begin(), fields.end(), [&](const Field& f) { return f.name == name; });
+    return it == fields.end() ? nullptr : &*it;
+}
+
+/// Levenshtein distance, without regard to case: what a mistyped name was meant to be.
+std::size_t distance(const std::string& a, const std::string& b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        std::size_t diagonal = row[0]++;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const bool same = std::tolower(static_cast<unsigned char>(a[i - 1])) == std::tolower(static_cast<unsigned char>(b[j - 1]));
+            const std::size_t next = std::min({row[j] + 1, row[j - 1] + 1, diagonal + !same});
+            diagonal = std::exchange(row[j], next);
+        }
+    }
+    return row.back();
+}
+
+std::string unknown_field(const std::vector<Field>& fields, const std::string& name) {
+    std::string detail = "unknown field";
+    if (name.size() > 64) return detail;
+    const auto nearest = std::min_element(fields.begin(), fields.end(), [&](const Field& a, const Field& b) {
+        return distance(name, a.name) < distance(name, b.name);
+    });
+    if (distance(name, nearest->name) <= std::max<std::size_t>(1, name.size() / 3)) detail += "; did you mean " + nearest->name + "?";
+    return detail;
+}
+
+std::string pointer(const std::string& name) {
+    std::string escaped = "/";
+    for (char c : name) escaped += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
+    return escaped;
+}
+
+Json range_of(const Field& f) {
+    if (f.minimum) return Json::array({*f.minimum, *f.maximum});
+    if (!f.choices.empty()) return f.choices;
+    return nullptr;
+}
+
+std::string list(const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& w : words) text += (text.empty() ? "" : ", ") + w;
+    return text;
+}
+
+void check_field(const Field& f, const Json& value, std::vector<FieldError>& errors) {
+    auto fault = [&](const std::string& where, const Json& what, const std::string& detail) {
+        errors.push_back({pointer(f.name) + where, what, range_of(f), f.name + " " + detail});
+    };
+    auto range_text = [&] { return "must lie in [" + Json(*f.minimum).dump() + ", " + Json(*f.maximum).dump() + "]" +
+                                   (f.unit.empty() || f.unit == "dimensionless" ? "" : " " + f.unit); };
+    switch (f.type) {
+        case FieldType::number:
+        case FieldType::integer: {
+            if (!value.is_number()) return fault("", value, "must be a number");
+            const double v = value.get<double>();
+            if (!(v >= *f.minimum && v <= *f.maximum)) return fault("", value, range_text());
+            if (f.type == FieldType::integer && v != std::floor(v)) return fault("", value, "must be a whole number");
+            return;
+        }
+        case FieldType::choice:
+            if (!value.is_string()) return fault("", value, "must be a word");
+            if (!f.choices.empty() && std::find(f.choices.begin(), f.choices.end(), value.get<std::string>()) == f.choices.end())
+                fault("", value, "must be one of " + list(f.choices));
+            return;
+        case FieldType::choices:
+            if (!value.is_array()) return fault("", value, "must be an array of words");
+            for (std::size_t i = 0; i < value.size(); ++i)
+                if (!value[i].is_string() || std::find(f.choices.begin(), f.choices.end(), value[i].get<std::string>()) == f.choices.end())
+                    fault("/" + std::to_string(i), value[i], "may hold " + list(f.choices));
+            return;
+        case FieldType::interval:
+            if (!value.is_array() || value.size() != 2 || !value[0].is_number() || !value[1].is_number())
+                return fault("", value, "must be two numbers, [from, to]");
+            if (!(value[0].get<double>() >= 0)) fault("/0", value[0], "must not begin before 0");
+            if (!(value[0].get<double>() < value[1].get<double>())) fault("", value, "must begin before it ends");
+            return;
+    }
+}
+
+/// The number that the whole of a text stands for, or the text.
+Json number_or_text(const std::string& text) {
+    double value;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return text;
+    return value;
+}
+
+std::vector<std::string> split(const std::string& text) {
+    std::vector<std::string> parts;
+    for (std::size_t from = 0, comma; !text.empty(); from = comma + 1) {
+        comma = text.find(',', from);
+        parts.push_back(text.substr(from, comma - from));
+        if (comma == std::string::npos) break;
+    }
+    return parts;
+}
+
+}  // namespace
+
+const std::vector<Field>& simulate_fields() {
+    static const std::vector<Field> fields = make_simulate_fields();
+    return fields;
+}
+
+Json describe(const std::vector<Field>& fields) {
+    Json list = Json::array();
+    for (const Field& f : fields) {
+        Json entry = {{"name", f.name}, {"type", type_name(f.type)}, {"group", f.group}, {"unit", f.unit}, {"symbol", f.symbol},
+                      {"description", f.description}, {"default", f.fallback}};
+        if (!f.fallback_note.empty()) entry["default_note"] = f.fallback_note;
+        if (f.minimum) entry["minimum"] = *f.minimum, entry["maximum"] = *f.maximum;
+        if (!f.choices.empty()) entry["choices"] = f.choices;
+        list.push_back(std::move(entry));
+    }
+    return {{"fields", std::move(list)}};
+}
+
+Json from_query(const std::vector<Field>& fields, const std::vector<std::pair<std::string, std::string>>& query) {
+    Json object = Json::object();
+    for (const auto& [name, text] : query) {
+        if (object.contains(name)) throw Problem(400, "the name \"" + name + "\" comes twice in the query");
+        const Field* f = find(fields, name);
+        if (!f || f->type == FieldType::choice) {
+            object[name] = text;
+        } else if (f->type == FieldType::number || f->type == FieldType::integer) {
+            object[name] = number_or_text(text);
+        } else {
+            Json& array = object[name] = Json::array();
+            for (const std::string& part : split(text)) array.push_back(f->type == FieldType::interval ? number_or_text(part) : Json(part));
+        }
+    }
+    return object;
+}
+
+std::vector<FieldError> check(const std::vector<Field>& fields, const Json& object) {
+    std::vector<FieldError> errors;
+    for (const auto& [name, value] : object.items()) {
+        if (const Field* f = find(fields, name))
+            check_field(*f, value, errors);
+        else
+            errors.push_back({pointer(name), value, nullptr, unknown_field(fields, name)});
+    }
+    return errors;
+}
+
+}  // namespace vines::api

@@ -1,0 +1,43 @@
+// The one table of request fields. Parsing, validation, defaults, GET /v1/parameters and the page's form all follow from it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "api/problem.hpp"
+
+namespace vines::api {
+
+enum class FieldType {
+    number,
+    integer,
+    choice,   ///< one of the choices
+    choices,  ///< an array of them (in a query: separated by commas)
+    interval  ///< [from, to] (in a query: separated by a comma)
+};
+
+struct Field {
+    std::string name;
+    FieldType type;
+    std::string group, unit, symbol, description;
+    Json fallback;              ///< what holds when the field is left out; null where that follows from other fields
+    std::string fallback_note;  ///< and from which
+    std::optional<double> minimum, maximum;
+    std::vector<std::string> choices;
+};
+
+/// The fields of /v1/simulate, in the order in which a form shows them.
+const std::vector<Field>& simulate_fields();
+
+/// The answer of GET /v1/parameters.
+Json describe(const std::vector<Field>& fields);
+
+/// The object that a query string's pairs stand for, typed by the table; what cannot be read as its field's type stays text
+/// and is found by `check`. Problem 400 for a name that comes twice.
+Json from_query(const std::vector<Field>& fields, const std::vector<std::pair<std::string, std::string>>& query);
+
+/// Every fault that shows field by field: unknown names, wrong types, out of range, NaN.
+std::vector<FieldError> check(const std::vector<Field>& fields, const Json& object);
+
+}  // namespace vines::api

@@ -1,0 +1,39 @@
+// What is wrong with a request, as application/problem+json (RFC 9457), and the parsing of untrusted JSON.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vines::api {
+
+using Json = nlohmann::ordered_json;
+
+/// One field at fault: where (JSON Pointer), what was given, what may be given, and a sentence.
+struct FieldError {
+    std::string pointer;
+    Json value;
+    Json range;  ///< [minimum, maximum], a list of choices, or null
+    std::string detail;
+};
+
+/// Thrown on the way from bytes to a request; the HTTP layer answers with it.
+class Problem : public std::runtime_error {
+public:
+    Problem(int status, const std::string& detail, std::vector<FieldError> errors = {});
+
+    int status;
+    std::vector<FieldError> errors;
+    std::string body() const;  ///< the problem document; never throws, whatever bytes are in it
+};
+
+/// "Unprocessable Content" for 422, and so on.
+std::string_view reason_phrase(int status);
+
+/// An object from JSON text. Problem 400 for anything that is no JSON object, with the place; for nesting deeper than 16
+/// (deeper ones make the library overflow the stack) and for names that come twice (of which it would keep the last).
+Json parse_object(std::string_view text);
+
+}  // namespace vines::api

@@ -1,0 +1,88 @@
+// The motion between events: a harmonically forced linear oscillator, alone (free) or with the absorber's mass glued
+// to it (stuck), as a function of the time s since the last event.
+//
+// Instead of the closed form (8)-(11), which divides by omega_d and by the distance to resonance, the flow is kept as
+// the exponential of the matrix of (x, x', sin theta, cos theta): a table of it on a grid of s, and a Taylor series
+// within a cell. That is the same function, to the last ulp, for every zeta >= 0 and every Omega: undamped, at
+// resonance (secular growth), critically damped and overdamped need no case of their own. No absolute time enters;
+// the forcing phase is carried as the phasor (sin theta, cos theta), so it is reduced modulo 2 pi by construction.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/parameters.hpp"
+
+namespace vines {
+
+/// The linear oscillator's state and the phasor of the forcing phase theta = Omega tau + phi.
+struct Oscillation {
+    double x, x_dot;
+    double sin_theta, cos_theta;
+};
+
+/// The 2x2 block [a11 a12; a21 a22] of the transfer matrix J (19), in the order (x', x).
+struct Transfer {
+    double a11 = 1, a12 = 0, a21 = 0, a22 = 1;
+};
+
+/// x'' = -stiffness x - damping x' + forcing sin(theta), theta' = Omega.
+class Flow {
+public:
+    static constexpr int cells = 128;           ///< the grid reaches 3.2 periods of the faster of forcing and oscillator
+    static constexpr int degree = 12;           ///< of the Taylor series within a cell: its remainder is below 1e-20
+    using Series = std::array<double, degree + 1>;
+
+    Flow(double stiffness, double damping, double forcing, double Omega);
+
+    /// The oscillator of eq. (2), where the absorber's mass flies freely.
+    static Flow free(const Parameters& parameters);
+    /// Both masses as one: (1 + epsilon) x'' + 2 zeta x' + x = epsilon A sin(theta).
+    static Flow stuck(const Parameters& parameters);
+
+    double cell() const { return h_; }                     ///< width h of a cell
+    double reach() const { return h_ * cells; }            ///< longest time that one look at the grid can bridge
+
+    double acceleration(const Oscillation& o) const { return -stiffness_ * o.x - damping_ * o.x_dot + forcing_ * o.sin_theta; }
+    double jerk(const Oscillation& o) const { return -stiffness_ * o.x_dot - damping_ * acceleration(o) + forcing_ * Omega_ * o.cos_theta; }
+
+    /// x at grid time k h: four multiply-adds.
+    double x_at(const Oscillation& o, int k) const {
+        const Row& r = grid_[k];
+        return r.x_x * o.x + r.x_v * o.x_dot + r.x_s * o.sin_theta + r.x_c * o.cos_theta;
+    }
+    /// The whole state at grid time k h.
+    Oscillation at(const Oscillation& o, int k) const;
+    /// Taylor coefficients of x(s + d) in d.
+    Series series(const Oscillation& o) const;
+    /// The state that `series` (made at o) has after 0 <= d <= h.
+    Oscillation along(const Series& series, const Oscillation& o, double d) const;
+    /// The state after any s >= 0.
+    Oscillation after(Oscillation o, double s) const;
+    /// The transfer matrix over any s >= 0, eq. (19).
+    Transfer transfer(double s) const;
+
+    /// Upper bounds of |x|, |x''| and |x'''| over the reach, from the growth of the energy: sqrt(stiffness x^2 + x'^2)
+    /// rises no faster than the forcing, for any damping >= 0.
+    struct Bounds {
+        double x, x_ddot, x_dddot;
+    };
+    Bounds bounds(const Oscillation& o) const;
+
+private:
+    struct Row {
+        double x_x, x_v, x_s, x_c;  // x(k h) from x, x', sin theta, cos theta
+        double v_x, v_v, v_s, v_c;  // x'(k h)
+        double cos, sin;            // of Omega k h
+    };
+
+    double stiffness_, damping_, forcing_, Omega_, h_;
+    std::array<double, degree + 1> recurrence_;  // 1/((n+1)(n+2)) at n
+    std::array<double, degree + 1> forcing_term_;  // forcing Omega^n / (n+2)! at n
+    std::vector<Row> grid_;                      // cells + 1 rows
+};
+
+/// The phasor turned by an angle; any angle, renormalised so that its length stays 1 over millions of turns.
+Oscillation turned(const Oscillation& o, double cos_angle, double sin_angle);
+
+}  // namespace vines

@@ -1,0 +1,363 @@
+#include "core/lyapunov.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace vines {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr Exponents no_exponents = {nan, nan, nan, nan};
+
+/// A history that thins itself: when full it drops every second entry and from then on takes every second impact.
+class Thinned {
+public:
+    explicit Thinned(std::size_t capacity) : capacity_(std::max<std::size_t>(capacity, 256)) {}
+
+    bool wants_next() const { return seen_ % stride_ == 0; }
+    void skip() { ++seen_; }
+    void push(double tau, const Exponents& lambda) {
+        if (history_.tau.size() == capacity_) thin();
+        if (!wants_next()) return skip();
+        skip();
+        history_.tau.push_back(tau);
+        history_.lambda.push_back(lambda);
+    }
+    const ExponentHistory& history() const { return history_; }
+
+private:
+    void thin() {
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < history_.tau.size(); i += 2, ++kept) {
+            history_.tau[kept] = history_.tau[i];
+            history_.lambda[kept] = history_.lambda[i];
+        }
+        history_.tau.resize(kept);
+        history_.lambda.resize(kept);
+        stride_ *= 2;
+    }
+
+    std::size_t capacity_, seen_ = 0, stride_ = 1;
+    ExponentHistory history_;
+};
+
+/// logs / T, with -infinity beyond the rank.
+Exponents per_time(const Exponents& logs, int rank, double T) {
+    Exponents lambda;
+    for (int k = 0; k < 4; ++k) lambda[k] = k >= rank ? -infinity : T > 0 ? logs[k] / T : nan;
+    return lambda;
+}
+
+const ExponentHistory& none() {
+    static const ExponentHistory empty;
+    return empty;
+}
+
+/// Rows (and columns) of the k-th compound of a 4x4 matrix: the k-subsets of its indices.
+template <int k>
+constexpr auto subsets() {
+    if constexpr (k == 2) return std::array<std::array<int, 2>, 6>{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+    else return std::array<std::array<int, 3>, 4>{{{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}}};
+}
+
+template <int k>
+using Compound = Eigen::Matrix<double, k == 2 ? 6 : 4, k == 2 ? 6 : 4>;
+
+/// The matrix of all k x k minors: compound(A B) = compound(A) compound(B), and its eigenvalues are the products of k
+/// eigenvalues. `minor` gives the minor of the rows and columns given.
+template <int k, class Minor>
+Compound<k> compound(Minor minor) {
+    constexpr auto sets = subsets<k>();
+    Compound<k> c;
+    for (std::size_t i = 0; i < sets.size(); ++i)
+        for (std::size_t j = 0; j < sets.size(); ++j) c(i, j) = minor(sets[i], sets[j]);
+    return c;
+}
+
+template <int k>
+Compound<k> compound(const Matrix4& m) {
+    return compound<k>([&](auto rows, auto columns) {
+        Eigen::Matrix<double, k, k> part;
+        for (int i = 0; i < k; ++i)
+            for (int j = 0; j < k; ++j) part(i, j) = m(rows[i], columns[j]);
+        return part.determinant();
+    });
+}
+
+/// Minors of S + r g^T. A determinant is linear in each column and vanishes with two columns along r, so no product of two
+/// entries of r occurs: with those, entries of 1e8 near grazing would leave nothing but rounding.
+template <int k>
+Compound<k> compound(const Saltation& m) {
+    const Eigen::Vector4d g = gap_gradient();
+    return compound<k>([&](auto rows, auto columns) {
+        Eigen::Matrix<double, k, k> S;
+        Eigen::Matrix<double, k, 1> r;
+        for (int i = 0; i < k; ++i) {
+            r(i) = m.r(rows[i]);
+            for (int j = 0; j < k; ++j) S(i, j) = m.S(rows[i], columns[j]);
+        }
+        double minor = S.determinant();
+        for (int j = 0; j < k; ++j) {
+            Eigen::Matrix<double, k, k> replaced = S;
+            replaced.col(j) = r;
+            minor += g(columns[j]) * replaced.determinant();
+        }
+        return minor;
+    });
+}
+
+/// A product of matrices as a matrix of norm 1 and the logarithm of its scale.
+template <int n>
+struct ScaledProduct {
+    Eigen::Matrix<double, n, n> matrix = Eigen::Matrix<double, n, n>::Identity();
+    double log_scale = 0;
+
+    void apply(const Eigen::Matrix<double, n, n>& left) {
+        matrix = left * matrix;
+        const double norm = matrix.norm();
+        if (norm == 0) return;
+        matrix /= norm;
+        log_scale += std::log(norm);
+    }
+    /// ln of the largest modulus of an eigenvalue.
+    double log_radius() const {
+        if (!matrix.allFinite()) return nan;
+        const Eigen::EigenSolver<Eigen::Matrix<double, n, n>> solver(matrix, false);
+        if (solver.info() != Eigen::Success) return nan;
+        return log_scale + std::log(solver.eigenvalues().cwiseAbs().maxCoeff());
+    }
+};
+
+}  // namespace
+
+Status status_of(double exponent) {
+    return std::isnan(exponent) ? Status::not_converged : std::isinf(exponent) ? Status::minus_infinity : Status::ok;
+}
+
+double rounding_floor(double lambda1, double T) { return lambda1 + std::log(std::numeric_limits<double>::epsilon()) / T; }
+
+Exponents standard_error(const ExponentHistory& h, double start) {
+    // Blocks are longer than the memory of the motion for a run of some hundred impacts, and 20 of them give the error to 16 %.
+    const int blocks = std::min<int>(20, static_cast<int>(h.tau.size() / 4));
+    if (blocks < 8) return no_exponents;
+    const double length = (h.tau.back() - start) / blocks;
+    std::vector<Exponents> means;
+    double tau_before = start;
+    Exponents log_before{};
+    std::size_t i = 0;
+    for (int block = 1; block <= blocks; ++block) {
+        const double end = block == blocks ? h.tau.back() : start + block * length;
+        const std::size_t from = i;
+        while (i < h.tau.size() && h.tau[i] <= end) ++i;
+        if (i == from || h.tau[i - 1] <= tau_before) continue;
+        Exponents mean;
+        for (int k = 0; k < 4; ++k) {
+            const double log = h.lambda[i - 1][k] * (h.tau[i - 1] - start);
+            mean[k] = (log - log_before[k]) / (h.tau[i - 1] - tau_before);
+            log_before[k] = log;
+        }
+        tau_before = h.tau[i - 1];
+        means.push_back(mean);
+    }
+    if (means.size() < 8) return no_exponents;
+    const double n = static_cast<double>(means.size());
+    Exponents error;
+    for (int k = 0; k < 4; ++k) {
+        double sum = 0, squares = 0;
+        for (const Exponents& m : means) sum += m[k];
+        for (const Exponents& m : means) squares += (m[k] - sum / n) * (m[k] - sum / n);
+        error[k] = std::isfinite(sum) ? std::sqrt(squares / (n - 1) / n) : nan;
+    }
+    return error;
+}
+
+struct TransferProduct::Qr {
+    // Above this |r| (it is x''/(x'- - y'-)) the columns of M Q hide each other: a volume of them computed from the sums would
+    // have a relative error of |r|^2 ulp. Below, that error is under 1e-12.
+    static constexpr double steep = 100;
+
+    explicit Qr(std::size_t history) : thinned(history) {}
+
+    Matrix4 frame = Matrix4::Identity();
+    Exponents logs{};
+    Thinned thinned;
+
+    /// Gram-Schmidt on the first columns; adds the logarithms of their lengths.
+    void orthonormalise(int columns) {
+        for (int k = 0; k < columns; ++k) {
+            auto q = frame.col(k);
+            for (int j = 0; j < k; ++j) q -= frame.col(j).dot(q) * frame.col(j);
+            const double length = q.norm();
+            q /= length;
+            logs[k] += std::log(length);
+        }
+    }
+
+    void append(const Matrix4& J, const Saltation& M, double R, int rank) {
+        frame = J * frame;
+        if (M.r.cwiseAbs().maxCoeff() > steep && rank == 4 && R > 0) {
+            orthonormalise(4);
+            shear(M);
+            frame = M.S * frame;
+        } else {
+            frame = M.matrix() * frame;
+        }
+        orthonormalise(rank);
+    }
+
+    /// Replaces the orthonormal frame Q by the orthonormal factor of (1 + rho g^T) Q = Q (1 + p a^T), rho = S^-1 r, p = Q^T rho,
+    /// a = Q^T g. The Gram determinant of its first k columns is, written so that nothing cancels,
+    /// V_k^2 = (1 + sum_{j<=k} p_j a_j)^2 + (sum_{j<=k} a_j^2)(sum_{j>k} p_j^2): the lengths are V_k/V_{k-1}.
+    void shear(const Saltation& M) {
+        const Eigen::Vector4d p = frame.transpose() * (M.S.inverse() * M.r), a = frame.transpose() * gap_gradient();
+        double before = 1, dot = 1, head = 0;
+        for (int k = 0; k < 4; ++k) {
+            dot += p(k) * a(k);
+            head += a(k) * a(k);
+            const double volume = std::sqrt(dot * dot + head * p.tail(3 - k).squaredNorm());
+            logs[k] += std::log(volume / before);
+            before = volume;
+        }
+        const Eigen::HouseholderQR<Matrix4> factors(Matrix4::Identity() + p * a.transpose());
+        frame = frame * Matrix4(factors.householderQ());
+    }
+};
+
+struct TransferProduct::Compounds {
+    explicit Compounds(std::size_t history) : thinned(std::min<std::size_t>(history, 2048)) {}
+
+    ScaledProduct<4> first, third;
+    ScaledProduct<6> second;
+    double log_det = 0;
+    Thinned thinned;
+
+    void append(const Matrix4& J, const Saltation& M, double R, int rank) {
+        first.apply(M.matrix() * J);
+        second.apply(compound<2>(M) * compound<2>(J));
+        if (rank >= 3) third.apply(compound<3>(M) * compound<3>(J));
+        if (rank >= 4) log_det += std::log(std::abs(J.determinant())) + 2 * std::log(R);
+    }
+
+    Exponents exponents(int rank, double T) const {
+        const double one = first.log_radius(), two = second.log_radius(), three = rank >= 3 ? third.log_radius() : 0;
+        return per_time({one, two - one, three - two, log_det - three}, rank, T);
+    }
+};
+
+struct TransferProduct::Raw {
+    explicit Raw(std::size_t history) : thinned(history) {}
+
+    Matrix4 product = Matrix4::Identity();
+    Thinned thinned;
+
+    Exponents exponents(double T) const {
+        if (!(T > 0) || !product.allFinite()) return no_exponents;
+        const Eigen::EigenSolver<Matrix4> solver(product, false);
+        if (solver.info() != Eigen::Success) return no_exponents;
+        Exponents lambda;
+        for (int k = 0; k < 4; ++k) lambda[k] = std::log(std::abs(solver.eigenvalues()(k))) / T;
+        std::sort(lambda.begin(), lambda.end(), std::greater<>());
+        return lambda;
+    }
+};
+
+TransferProduct::TransferProduct(const ExponentOptions& o) {
+    if (o.qr) qr_ = std::make_unique<Qr>(o.history);
+    if (o.eigenvalues) compounds_ = std::make_unique<Compounds>(o.history);
+    if (o.raw_product) raw_ = std::make_unique<Raw>(o.history);
+}
+TransferProduct::~TransferProduct() = default;
+TransferProduct::TransferProduct(TransferProduct&&) noexcept = default;
+
+void TransferProduct::start(double tau) {
+    start_ = end_ = tau;
+    impacts_ = 1;
+}
+
+void TransferProduct::append(const Matrix4& J, int rank, const Saltation& M, double R, double tau) {
+    end_ = tau;
+    ++impacts_;
+    rank_ = std::min({rank_, rank, R > 0 ? 4 : 3});
+    log_det_impacts_ += 2 * std::log(R);
+    auto record = [&](auto& estimator, auto exponents) {
+        if (!estimator.thinned.wants_next()) return estimator.thinned.skip();
+        estimator.thinned.push(tau, exponents());
+    };
+    if (qr_) {
+        qr_->append(J, M, R, rank_);
+        record(*qr_, [&] { return qr(); });
+    }
+    if (compounds_) {
+        compounds_->append(J, M, R, rank_);
+        record(*compounds_, [&] { return eigenvalues(); });
+    }
+    if (raw_) {
+        raw_->product = M.matrix() * J * raw_->product;
+        record(*raw_, [&] { return raw_product(); });
+    }
+}
+
+Exponents TransferProduct::qr() const { return qr_ ? per_time(qr_->logs, rank_, end_ - start_) : no_exponents; }
+Exponents TransferProduct::eigenvalues() const { return compounds_ ? compounds_->exponents(rank_, end_ - start_) : no_exponents; }
+Exponents TransferProduct::raw_product() const { return raw_ ? raw_->exponents(end_ - start_) : no_exponents; }
+const ExponentHistory& TransferProduct::qr_history() const { return qr_ ? qr_->thinned.history() : none(); }
+const ExponentHistory& TransferProduct::eigenvalues_history() const { return compounds_ ? compounds_->thinned.history() : none(); }
+const ExponentHistory& TransferProduct::raw_product_history() const { return raw_ ? raw_->thinned.history() : none(); }
+
+double TransferProduct::sum_rule_residual(double zeta) const {
+    if (!qr_ || rank_ < 4 || impacts_ < 2) return nan;
+    const Exponents lambda = qr();
+    const double sum = lambda[0] + lambda[1] + lambda[2] + lambda[3];
+    return std::abs(sum + 2 * zeta - log_det_impacts_ / (end_ - start_));
+}
+
+Matrix4 free_transfer(const Transfer& t, double s) {
+    Matrix4 J;
+    J << t.a11, t.a12, 0, 0,
+         t.a21, t.a22, 0, 0,
+         0, 0, 1, 0,
+         0, 0, s, 1;
+    return J;
+}
+
+Matrix4 stuck_transfer(const Transfer& t, double epsilon) {
+    const double nu = 1 / (1 + epsilon), mu = epsilon * nu;
+    Eigen::Matrix2d A;
+    A << t.a11, t.a12, t.a21, t.a22;
+    Matrix4 K;
+    K << nu * A, mu * A,
+         nu * A, mu * A;
+    return K;
+}
+
+Lyapunov::Lyapunov(const Parameters& parameters, double tau_start, double tau_end, const ExponentOptions& options)
+    : parameters_(parameters), tau_start_(tau_start), tau_end_(tau_end), product_(options) {}
+
+void Lyapunov::on_stretch(const Stretch& stretch) {
+    if (product_.impacts() == 0) return;  // the window has not begun
+    const Transfer t = stretch.flow.transfer(stretch.duration);
+    if (stretch.stuck_side == 0) {
+        since_impact_ = free_transfer(t, stretch.duration) * since_impact_;
+    } else {
+        since_impact_ = stuck_transfer(t, parameters_.epsilon) * since_impact_;
+        rank_since_impact_ = 2;
+    }
+}
+
+void Lyapunov::on_impact(const Impact& impact) {
+    if (impact.tau < tau_start_ || impact.tau > tau_end_) return;
+    if (product_.impacts() == 0)
+        product_.start(impact.tau);
+    else
+        product_.append(since_impact_, rank_since_impact_, saltation(parameters_, impact), impact.R, impact.tau);
+    since_impact_.setIdentity();
+    rank_since_impact_ = 4;
+}
+
+}  // namespace vines

@@ -1,0 +1,22 @@
+#include "core/record.hpp"
+
+namespace vines {
+
+void SeriesRecord::add(double at, const State& s) {
+    tau.push_back(at);
+    x.push_back(s.x);
+    x_dot.push_back(s.x_dot);
+    y.push_back(s.y);
+    y_dot.push_back(s.y_dot);
+}
+
+void SeriesRecord::on_stretch(const Stretch& stretch) {
+    for (double at = next_ * step_; at < stretch.tau + stretch.duration; at = ++next_ * step_)
+        add(at, stretch.at(std::max(0.0, at - stretch.tau)));
+}
+
+void SeriesRecord::finish(const Outcome& outcome) {
+    if (tau.empty() || tau.back() < outcome.tau) add(outcome.tau, outcome.state);
+}
+
+}  // namespace vines

@@ -1,0 +1,55 @@
+// Observers that write down what a run does: the sampled motion, the impacts, the stuck phases.
+#pragma once
+
+#include <vector>
+
+#include "core/simulate.hpp"
+
+namespace vines {
+
+/// The motion at tau = 0, step, 2 step, ... and at the end of the run. Units as in State.
+class SeriesRecord : public Observer {
+public:
+    explicit SeriesRecord(double step) : step_(step) {}
+    void on_stretch(const Stretch&) override;
+    void finish(const Outcome& outcome);
+
+    std::vector<double> tau, x, x_dot, y, y_dot;
+
+private:
+    void add(double tau, const State& state);
+    double step_;
+    long next_ = 0;
+};
+
+class ImpactRecord : public Observer {
+public:
+    void on_impact(const Impact& impact) override { impacts.push_back(impact); }
+    std::vector<Impact> impacts;
+};
+
+class StickRecord : public Observer {
+public:
+    void on_stick(const StickStart& start) override { sticks.push_back({start, start.tau}); }
+    void on_release(double tau) override { sticks.back().tau_end = tau; }
+
+    struct Stick {
+        StickStart start;
+        double tau_end;
+    };
+    std::vector<Stick> sticks;
+};
+
+/// Tangent contacts without an impact.
+class TouchRecord : public Observer {
+public:
+    void on_touch(double tau, int side) override { touches.push_back({tau, side}); }
+
+    struct Touch {
+        double tau;
+        int side;
+    };
+    std::vector<Touch> touches;
+};
+
+}  // namespace vines

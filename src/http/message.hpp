@@ -1,0 +1,30 @@
+// A request and a response as the routes see them: no library type in sight.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace vines::http {
+
+struct Request {
+    std::string method, path;
+    std::vector<std::pair<std::string, std::string>> query;
+    std::string body;
+};
+
+struct Response {
+    int status = 200;
+    std::string content_type = "application/json";
+    std::string body;
+    std::vector<std::pair<std::string, std::string>> headers = {};
+};
+
+struct Route {
+    std::string method;  ///< GET (answers HEAD, too) or POST
+    std::string path;
+    std::function<Response(const Request&)> answer;
+};
+
+}  // namespace vines::http

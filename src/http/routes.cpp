@@ -1,0 +1,95 @@
+#include "http/routes.hpp"
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "api/presets.hpp"
+#include "api/simulate.hpp"
+#include "http/assets.hpp"
+
+namespace vines::http {
+
+namespace {
+
+using api::Json;
+using api::Problem;
+
+Response json_response(const Json& json) { return {200, "application/json", json.dump() + "\n"}; }
+
+Response problem_response(const Problem& problem) {
+    Response r{problem.status, "application/problem+json", problem.body()};
+    if (problem.status == 503) r.headers.emplace_back("Retry-After", "1");
+    return r;
+}
+
+// Everything from this server, nothing inline: the page's scripts and styles are files.
+const char* const page_policy =
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; base-uri 'none'; form-action 'none'; "
+    "frame-ancestors 'none'";
+
+Response page_file(std::string_view path, std::string content) {
+    Response r{200, std::string(content_type_of(path)), std::move(content)};
+    r.headers = {{"Content-Security-Policy", page_policy}, {"X-Content-Type-Options", "nosniff"}, {"Referrer-Policy", "no-referrer"}};
+    return r;
+}
+
+Response simulate(const Json& object, const RouteOptions& options, ComputeGate& gate) {
+    const api::SimulateRequest request = api::read_simulate_request(object);
+    const ComputeGate::Place place(gate);
+    if (!place) throw Problem(503, "as many requests as the server takes are waiting already; try again in a second");
+    using Clock = std::chrono::steady_clock;
+    const auto deadline = Clock::now() + std::chrono::duration<double>(options.deadline);
+    return json_response(api::simulate_answer(request, [deadline] { return Clock::now() > deadline; }));
+}
+
+/// A route whose answer may throw a Problem.
+Route route(std::string method, std::string path, std::function<Response(const Request&)> answer) {
+    return {std::move(method), std::move(path), [answer = std::move(answer)](const Request& request) {
+                try {
+                    return answer(request);
+                } catch (const Problem& problem) {
+                    return problem_response(problem);
+                }
+            }};
+}
+
+}  // namespace
+
+Response problem_response(int status, const std::string& detail) { return problem_response(Problem(status, detail)); }
+
+std::string_view content_type_of(std::string_view path) {
+    const std::string_view ending = path.substr(std::min(path.rfind('.'), path.size()));
+    if (ending == ".js" || ending == ".mjs") return "text/javascript; charset=utf-8";
+    if (ending == ".css") return "text/css; charset=utf-8";
+    if (ending == ".svg") return "image/svg+xml";
+    return "text/html; charset=utf-8";
+}
+
+std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate) {
+    std::vector<Route> routes;
+    routes.push_back(route("GET", "/v1/simulate", [options, &gate](const Request& r) {
+        return simulate(api::from_query(api::simulate_fields(), r.query), options, gate);
+    }));
+    routes.push_back(route("POST", "/v1/simulate", [options, &gate](const Request& r) {
+        if (!r.query.empty()) throw Problem(400, "a POST takes its fields from the body; the query must be empty");
+        return simulate(api::parse_object(r.body), options, gate);
+    }));
+    routes.push_back(route("GET", "/v1/presets", [](const Request&) { return json_response(api::describe_presets()); }));
+    routes.push_back(route("GET", "/v1/parameters", [](const Request&) { return json_response(api::describe(api::simulate_fields())); }));
+    routes.push_back(route("GET", "/healthz", [](const Request&) { return json_response({{"status", "ok"}}); }));
+    routes.push_back(route("GET", "/version", [](const Request&) { return json_response({{"name", "vines"}, {"version", api::version()}}); }));
+    for (const Asset& asset : assets()) {
+        routes.push_back(route("GET", std::string(asset.path), [asset, web_dir = options.web_dir](const Request&) {
+            if (web_dir.empty()) return page_file(asset.path, std::string(asset.content));
+            const std::string name = asset.path == "/" ? "/index.html" : std::string(asset.path);
+            std::ifstream file(web_dir + name, std::ios::binary);
+            if (!file) return page_file(asset.path, std::string(asset.content));  // uPlot's files lie elsewhere
+            return page_file(asset.path, {std::istreambuf_iterator<char>(file), {}});
+        }));
+    }
+    return routes;
+}
+
+}  // namespace vines::http

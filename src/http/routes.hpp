@@ -1,0 +1,25 @@
+// What the service answers to which path.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "http/compute_gate.hpp"
+#include "http/message.hpp"
+
+namespace vines::http {
+
+struct RouteOptions {
+    int compute_threads;      ///< computations at once
+    int compute_queue;        ///< and waiting for a place
+    double deadline;          ///< seconds of computing for one request
+    std::string web_dir;      ///< serve the page from this folder instead of the program; empty: do not
+};
+
+/// All routes. `gate` outlives them.
+std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate);
+
+/// A problem document as a response.
+Response problem_response(int status, const std::string& detail);
+
+}  // namespace vines::http
