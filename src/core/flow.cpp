@@ -8,73 +8,53 @@ namespace vines {
 
 namespace {
 
-// 40 cells a period (2 pi/h) keep the empty-cell proof of guard.cpp sharp: its margin M2 h^2/8 is .3 % of the amplitude.
+// 40 cells a period (2 pi/h) keep the empty-cell proof of guard.hpp sharp: its margin M2 h^2/8 is .3 % of the amplitude.
 constexpr double cells_per_period = 40;
-
-// cos and sin of 0 <= angle <= 2 pi/40: the first term left out is below 1e-18.
-struct Turn {
-    double cos, sin;
-};
-Turn small_turn(double a) {
-    const double q = a * a;
-    return {1 - q / 2 * (1 - q / 12 * (1 - q / 30 * (1 - q / 56 * (1 - q / 90 * (1 - q / 132))))),
-            a * (1 - q / 6 * (1 - q / 20 * (1 - q / 42 * (1 - q / 72 * (1 - q / 110)))))};
-}
 
 }  // namespace
 
-Oscillation turned(const Oscillation& o, double c, double s) {
-    Oscillation t = o;
-    t.sin_theta = o.sin_theta * c + o.cos_theta * s;
-    t.cos_theta = o.cos_theta * c - o.sin_theta * s;
-    const double shrink = 1.5 - 0.5 * (t.sin_theta * t.sin_theta + t.cos_theta * t.cos_theta);  // Newton step to length 1
-    t.sin_theta *= shrink;
-    t.cos_theta *= shrink;
-    return t;
-}
-
 Flow::Flow(double stiffness, double damping, double forcing, double Omega)
     : stiffness_(stiffness), damping_(damping), forcing_(forcing), Omega_(Omega),
-      h_(2 * std::numbers::pi / cells_per_period / std::max({1.0, Omega, damping})) {
-    double factor = 1;  // Omega^n / (n+2)!
-    for (int n = 0; n <= degree; ++n) {
-        recurrence_[n] = 1.0 / ((n + 1.0) * (n + 2.0));
-        factor *= n == 0 ? 0.5 : Omega / (n + 2);
-        forcing_term_[n] = forcing * factor;
-    }
-
-    // The exponential over one cell by its own series, then its powers, in extended precision: the table is right to
-    // the last ulp of double.
+      h_(2 * std::numbers::pi / cells_per_period / std::max({1.0, Omega, damping})), root_inverse_(1 / std::sqrt(stiffness)) {
+    // In extended precision: the tables are right to the last ulp of double.
     using Real = long double;
-    struct Column {
+    struct State4 {
         Real x, v, s, c;
     };
-    auto step = [&](const Column& z) {
-        Column sum = z, term = z;
-        for (int n = 1; n <= 24; ++n) {
-            term = {term.v / n,
-                    (-(Real)stiffness * term.x - (Real)damping * term.v + (Real)forcing * term.s) / n,
-                    (Real)Omega * term.c / n, -(Real)Omega * term.s / n};
-            for (auto& t : {&term.x, &term.v, &term.s, &term.c}) *t *= (Real)h_;
-            sum = {sum.x + term.x, sum.v + term.v, sum.s + term.s, sum.c + term.c};
-        }
-        return sum;
+    const State4 unit[4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+    // The n-th Taylor coefficient of the state from the one before.
+    auto next_term = [&](const State4& t, int n) -> State4 {
+        return {t.v / n, (-(Real)stiffness * t.x - (Real)damping * t.v + (Real)forcing * t.s) / n, (Real)Omega * t.c / n, -(Real)Omega * t.s / n};
     };
-    const Column unit[4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
-    Column over_cell[4], z[4];
-    for (int j = 0; j < 4; ++j) over_cell[j] = step(z[j] = unit[j]);
-    grid_.reserve(cells + 1);
-    for (int k = 0; k <= cells; ++k) {
-        grid_.push_back({(double)z[0].x, (double)z[1].x, (double)z[2].x, (double)z[3].x,
-                         (double)z[0].v, (double)z[1].v, (double)z[2].v, (double)z[3].v,
-                         (double)z[3].c, (double)z[3].s});
-        for (Column& c : z) {
-            const Column was = c;
-            c = {};
-            const Real part[4] = {was.x, was.v, was.s, was.c};
+
+    Series* const from[4] = {&from_x_, &from_x_dot_, &from_sin_, &from_cos_};
+    State4 over_cell[4];  // the exponential over one cell
+    for (int j = 0; j < 4; ++j) {
+        State4 term = unit[j];
+        Real power = 1;
+        over_cell[j] = unit[j];
+        (*from[j])(0) = (double)term.x;
+        for (int n = 1; n <= 26; ++n) {
+            term = next_term(term, n);
+            power *= h_;
+            over_cell[j] = {over_cell[j].x + term.x * power, over_cell[j].v + term.v * power, over_cell[j].s + term.s * power, over_cell[j].c + term.c * power};
+            if (n <= degree) (*from[j])(n) = (double)term.x;
+        }
+    }
+
+    const int rows = cells + block;  // so that a block may begin at the last cell
+    for (auto* column : {&x_x_, &x_v_, &x_s_, &x_c_, &v_x_, &v_v_, &v_s_, &v_c_, &time_, &cos_, &sin_}) column->reserve(rows);
+    State4 z[4] = {unit[0], unit[1], unit[2], unit[3]};
+    for (int k = 0; k < rows; ++k) {
+        x_x_.push_back((double)z[0].x), x_v_.push_back((double)z[1].x), x_s_.push_back((double)z[2].x), x_c_.push_back((double)z[3].x);
+        v_x_.push_back((double)z[0].v), v_v_.push_back((double)z[1].v), v_s_.push_back((double)z[2].v), v_c_.push_back((double)z[3].v);
+        time_.push_back(k * h_), cos_.push_back((double)z[3].c), sin_.push_back((double)z[3].s);
+        for (State4& column : z) {
+            const Real part[4] = {column.x, column.v, column.s, column.c};
+            column = {0, 0, 0, 0};
             for (int j = 0; j < 4; ++j)
-                c = {c.x + over_cell[j].x * part[j], c.v + over_cell[j].v * part[j],
-                     c.s + over_cell[j].s * part[j], c.c + over_cell[j].c * part[j]};
+                column = {column.x + over_cell[j].x * part[j], column.v + over_cell[j].v * part[j],
+                          column.s + over_cell[j].s * part[j], column.c + over_cell[j].c * part[j]};
         }
     }
 }
@@ -86,35 +66,60 @@ Flow Flow::stuck(const Parameters& p) {
     return Flow(1 / mass, 2 * p.zeta() / mass, p.epsilon * p.A() / mass, p.Omega);
 }
 
+namespace {
+
+/// The phasor turned by an angle. One Newton step keeps its length 1 over millions of turns.
+void turn(Oscillation& o, double c, double s) {
+    const double sin_theta = o.sin_theta * c + o.cos_theta * s, cos_theta = o.cos_theta * c - o.sin_theta * s;
+    const double shrink = 1.5 - 0.5 * (sin_theta * sin_theta + cos_theta * cos_theta);
+    o.sin_theta = sin_theta * shrink;
+    o.cos_theta = cos_theta * shrink;
+}
+
+}  // namespace
+
 Oscillation Flow::at(const Oscillation& o, int k) const {
-    const Row& r = grid_[k];
-    Oscillation next = turned(o, r.cos, r.sin);
-    next.x = x_at(o, k);
-    next.x_dot = r.v_x * o.x + r.v_v * o.x_dot + r.v_s * o.sin_theta + r.v_c * o.cos_theta;
+    Oscillation next = o;
+    turn(next, cos_[k], sin_[k]);
+    next.x = x_x_[k] * o.x + x_v_[k] * o.x_dot + x_s_[k] * o.sin_theta + x_c_[k] * o.cos_theta;
+    next.x_dot = v_x_[k] * o.x + v_v_[k] * o.x_dot + v_s_[k] * o.sin_theta + v_c_[k] * o.cos_theta;
     return next;
 }
 
-Flow::Series Flow::series(const Oscillation& o) const {
-    // (n+1)(n+2) c[n+2] = -stiffness c[n] - damping (n+1) c[n+1] + forcing Omega^n/n! d^n(sin theta)
-    const double cycle[4] = {o.sin_theta, o.cos_theta, -o.sin_theta, -o.cos_theta};
-    Series c;
-    c[0] = o.x;
-    c[1] = o.x_dot;
-    for (int n = 0; n + 2 <= degree; ++n)
-        c[n + 2] = forcing_term_[n] * cycle[n % 4] - recurrence_[n] * (stiffness_ * c[n] + damping_ * (n + 1) * c[n + 1]);
-    return c;
+Oscillation Flow::turned(const Oscillation& o, double d) const {
+    // cos and sin of 0 <= a <= 2 pi/40 by their series: the first terms left out are below 1e-18.
+    const double a = Omega_ * d, q = a * a;
+    const double cos = 1 + q * (-1.0 / 2 + q * (1.0 / 24 + q * (-1.0 / 720 + q * (1.0 / 40320 + q * (-1.0 / 3628800)))));
+    const double sin = a * (1 + q * (-1.0 / 6 + q * (1.0 / 120 + q * (-1.0 / 5040 + q * (1.0 / 362880 + q * (-1.0 / 39916800))))));
+    Oscillation next = o;
+    turn(next, cos, sin);
+    return next;
+}
+
+SeriesValue value_at(const Flow::Series& c, double d) {
+    // Even and odd coefficients apart: two short chains of operations for each value instead of a long one.
+    static_assert(Flow::degree % 2 == 1);
+    const double q = d * d;
+    constexpr int n = Flow::degree;
+    double x[2] = {c[n - 1], c[n]}, v[2] = {n * c[n], (n - 1) * c[n - 1]}, a[2] = {0, n * (n - 1) / 2 * c[n]};
+    for (int k = n - 3; k >= 0; k -= 2) {
+        x[0] = x[0] * q + c[k];
+        x[1] = x[1] * q + c[k + 1];
+        v[0] = v[0] * q + (k + 1) * c[k + 1];
+        a[0] = a[0] * q + (k + 2) * (k + 1) / 2 * c[k + 2];
+        if (k > 0) {
+            v[1] = v[1] * q + k * c[k];
+            a[1] = a[1] * q + (k + 1) * k / 2 * c[k + 1];
+        }
+    }
+    return {x[0] + d * x[1], v[0] + d * v[1], a[0] + d * a[1]};
 }
 
 Oscillation Flow::along(const Series& c, const Oscillation& o, double d) const {
-    double x = c[degree], v = 0;
-    for (int n = degree - 1; n >= 0; --n) {
-        v = v * d + x;
-        x = x * d + c[n];
-    }
-    const Turn t = small_turn(Omega_ * d);
-    Oscillation next = turned(o, t.cos, t.sin);
-    next.x = x;
-    next.x_dot = v;
+    Oscillation next = turned(o, d);
+    const SeriesValue value = value_at(c, d);
+    next.x = value.x;
+    next.x_dot = value.x_dot;
     return next;
 }
 
@@ -131,32 +136,22 @@ Transfer Flow::transfer(double s) const {
         j = {t.a11 * j.a11 + t.a12 * j.a21, t.a11 * j.a12 + t.a12 * j.a22,
              t.a21 * j.a11 + t.a22 * j.a21, t.a21 * j.a12 + t.a22 * j.a22};
     };
-    auto row = [&](int k) { return Transfer{grid_[k].v_v, grid_[k].v_x, grid_[k].x_v, grid_[k].x_x}; };
+    auto row = [&](int k) { return Transfer{v_v_[k], v_x_[k], x_v_[k], x_x_[k]}; };
     for (; s >= reach(); s -= reach()) then(row(cells));
     const int k = static_cast<int>(s / h_);
     const double d = std::max(0.0, s - k * h_);
     then(row(k));
 
-    // Within a cell: x from (x', x) = (1, 0) by the unforced series, and the rest from the equation of motion:
-    // x(d) = x0 (u' + damping u) + x'0 u with u that solution.
-    double term = 1, before = 0, u = 0, u_dot = 0, power = 1;
-    for (int n = 1; n <= degree; ++n) {  // term = coefficient of d^n, before = of d^(n-1)
-        u_dot += n * term * power;
-        power *= d;
-        u += term * power;
-        const double next = -(stiffness_ * before + damping_ * n * term) * recurrence_[n - 1];
-        before = term;
-        term = next;
-    }
-    then({u_dot, -stiffness_ * u, u, u_dot + damping_ * u});
+    // Within a cell: with u the unforced motion from (x', x) = (1, 0), that from (0, 1) is u' + damping u.
+    const SeriesValue u = value_at(from_x_dot_, d);
+    then({u.x_dot, -stiffness_ * u.x, u.x, u.x_dot + damping_ * u.x});
     return j;
 }
 
 Flow::Bounds Flow::bounds(const Oscillation& o) const {
     // d/ds (stiffness x^2 + x'^2)/2 = x' (forcing sin theta - damping x') <= |x'| |forcing|
-    const double root = std::sqrt(stiffness_);
-    const double speed = std::hypot(root * o.x, o.x_dot) + std::abs(forcing_) * reach();
-    const double x = speed / root;
+    const double speed = std::sqrt(stiffness_ * o.x * o.x + o.x_dot * o.x_dot) + std::abs(forcing_) * reach();
+    const double x = speed * root_inverse_;
     const double x_ddot = stiffness_ * x + damping_ * speed + std::abs(forcing_);
     return {x, x_ddot, stiffness_ * speed + damping_ * x_ddot + std::abs(forcing_) * Omega_};
 }

@@ -8,7 +8,7 @@
 // the forcing phase is carried as the phasor (sin theta, cos theta), so it is reduced modulo 2 pi by construction.
 #pragma once
 
-#include <array>
+#include <Eigen/Core>
 #include <vector>
 
 #include "core/parameters.hpp"
@@ -29,9 +29,11 @@ struct Transfer {
 /// x'' = -stiffness x - damping x' + forcing sin(theta), theta' = Omega.
 class Flow {
 public:
-    static constexpr int cells = 128;           ///< the grid reaches 3.2 periods of the faster of forcing and oscillator
-    static constexpr int degree = 12;           ///< of the Taylor series within a cell: its remainder is below 1e-20
-    using Series = std::array<double, degree + 1>;
+    static constexpr int cells = 128;    ///< the grid reaches 3.2 periods of the faster of forcing and oscillator
+    static constexpr int degree = 13;    ///< of the Taylor series within a cell: its remainder is below 1e-20 of the motion
+    static constexpr int block = 4;      ///< grid points that gaps() evaluates at once
+    using Series = Eigen::Array<double, degree + 1, 1>;
+    using Block = Eigen::Array<double, block, 1>;
 
     Flow(double stiffness, double damping, double forcing, double Omega);
 
@@ -46,15 +48,19 @@ public:
     double acceleration(const Oscillation& o) const { return -stiffness_ * o.x - damping_ * o.x_dot + forcing_ * o.sin_theta; }
     double jerk(const Oscillation& o) const { return -stiffness_ * o.x_dot - damping_ * acceleration(o) + forcing_ * Omega_ * o.cos_theta; }
 
-    /// x at grid time k h: four multiply-adds.
-    double x_at(const Oscillation& o, int k) const {
-        const Row& r = grid_[k];
-        return r.x_x * o.x + r.x_v * o.x_dot + r.x_s * o.sin_theta + r.x_c * o.cos_theta;
+    /// x - y at the grid times k h, ..., (k + block - 1) h, for y = y0 + y_dot s: five multiply-adds each. k <= cells.
+    Block gaps(const Oscillation& o, double y0, double y_dot, int k) const {
+        const auto from = [k](const std::vector<double>& column) { return Eigen::Map<const Block>(column.data() + k); };
+        return from(x_x_) * o.x + from(x_v_) * o.x_dot + from(x_s_) * o.sin_theta + from(x_c_) * o.cos_theta - (y0 + from(time_) * y_dot);
     }
     /// The whole state at grid time k h.
     Oscillation at(const Oscillation& o, int k) const;
     /// Taylor coefficients of x(s + d) in d.
-    Series series(const Oscillation& o) const;
+    Series series(const Oscillation& o) const {
+        return from_x_ * o.x + from_x_dot_ * o.x_dot + from_sin_ * o.sin_theta + from_cos_ * o.cos_theta;
+    }
+    /// The state with its phasor turned by 0 <= d <= h; x and x' stay.
+    Oscillation turned(const Oscillation& o, double d) const;
     /// The state that `series` (made at o) has after 0 <= d <= h.
     Oscillation along(const Series& series, const Oscillation& o, double d) const;
     /// The state after any s >= 0.
@@ -70,19 +76,17 @@ public:
     Bounds bounds(const Oscillation& o) const;
 
 private:
-    struct Row {
-        double x_x, x_v, x_s, x_c;  // x(k h) from x, x', sin theta, cos theta
-        double v_x, v_v, v_s, v_c;  // x'(k h)
-        double cos, sin;            // of Omega k h
-    };
-
     double stiffness_, damping_, forcing_, Omega_, h_;
-    std::array<double, degree + 1> recurrence_;  // 1/((n+1)(n+2)) at n
-    std::array<double, degree + 1> forcing_term_;  // forcing Omega^n / (n+2)! at n
-    std::vector<Row> grid_;                      // cells + 1 rows
+    double root_inverse_;  // of the stiffness
+    // x(k h) and x'(k h) from x, x', sin theta, cos theta at 0; k h; cos and sin of Omega k h: each a column over k.
+    std::vector<double> x_x_, x_v_, x_s_, x_c_, v_x_, v_v_, v_s_, v_c_, time_, cos_, sin_;
+    Series from_x_, from_x_dot_, from_sin_, from_cos_;  // Taylor coefficients of x from each part of the state
 };
 
-/// The phasor turned by an angle; any angle, renormalised so that its length stays 1 over millions of turns.
-Oscillation turned(const Oscillation& o, double cos_angle, double sin_angle);
+/// x, x' and x''/2 of a Taylor series at d.
+struct SeriesValue {
+    double x, x_dot, half_x_ddot;
+};
+SeriesValue value_at(const Flow::Series& series, double d);
 
 }  // namespace vines

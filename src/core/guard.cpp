@@ -1,6 +1,7 @@
 #include "core/guard.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -110,52 +111,133 @@ std::optional<double> first_crossing(std::span<const double> c, int zeros, doubl
     return CrossingSearch(c, h, zeros > 0 ? 0 : noise, tangent).search();
 }
 
-std::optional<Contact> next_contact(const Flow& flow, const FlightStart& start, double b, double limit, std::optional<Touch>& touch) {
-    const double h = flow.cell();
-    const auto bounds = flow.bounds(start.lo);
-    const double eta = 16 * ulp * (bounds.x + b + std::abs(start.y));                      // rounding of g on the grid
-    const double inside = b - bounds.x_ddot * h * h / 8 - eta;                             // property 1
-    const double leaving = -bounds.x_dddot * h * h / 24 - eta / h;                         // property 2
-    const int side = start.side;
-    auto gap_at = [&](int k) { return flow.x_at(start.lo, k) - start.y - start.y_dot * (k * h); };
+namespace {
 
-    // The contact in cell k, if there is one: property 3.
-    auto search = [&](int k) -> std::optional<Contact> {
-        const bool first = k == 0 && side != 0;
-        const Oscillation lo = k == 0 ? start.lo : flow.at(start.lo, k);
+/// What one flight's search knows.
+struct Search {
+    const Flow& flow;
+    const FlightStart& start;
+    double b, limit;
+    double h;
+    double eta;         // rounding of g on the grid
+    double M2;          // >= |g''|
+    std::optional<Touch>& touch;
+
+    double y_at(int k) const { return start.y + start.y_dot * (k * h); }
+
+    /// Property 4's commonest case: g' cannot vanish within cell k, and g at its end is beyond the wall that it heads for.
+    std::optional<Contact> straight(int k, const Oscillation& lo, double next_gap) const {
+        const double speed = lo.x_dot - start.y_dot;
+        if (std::abs(speed) <= M2 * h) return {};
+        const int wall = speed > 0 ? 1 : -1;
+        const double y = y_at(k), f0 = wall * (lo.x - y) - b, fh = wall * next_gap - b;
+        if (f0 >= 0 || fh < 0) return {};
+
+        // f = wall g - b on the cell: its quartic at the left end, and a fifth term so that it meets f(h). One Halley step from
+        // the chord's root leaves an error below 1e-6 h, a second one, on the whole series, below an ulp.
+        const Flow::Series c = flow.series(lo);
+        const double f1 = wall * speed, f2 = wall * c[2], f3 = wall * c[3], f4 = wall * c[4];
+        const double inverse_h = 1 / h;
+        const double f5 = ((((fh - f0) * inverse_h - f1) * inverse_h - f2) * inverse_h - f3) * inverse_h * inverse_h - f4 * inverse_h;
+        auto halley = [](double f, double first, double half_second) { return -f * first / (first * first - f * half_second); };
+        double d = -f0 * h / (fh - f0);
+        d += halley(f0 + d * (f1 + d * (f2 + d * (f3 + d * (f4 + d * f5)))), f1 + d * (2 * f2 + d * (3 * f3 + d * (4 * f4 + d * 5 * f5))),
+                    f2 + d * (3 * f3 + d * (6 * f4 + d * 10 * f5)));
+        d = std::clamp(d, 0.0, h);
+
+        SeriesValue v;
+        double step;
+        for (int i = 0; i < 50; ++i) {
+            v = value_at(c, d);
+            step = halley(wall * (v.x - (y + start.y_dot * d)) - b, wall * (v.x_dot - start.y_dot), wall * v.half_x_ddot);
+            if (std::abs(step) <= 1e-6 * h) break;
+            d += step;
+        }
+        // The state a last, tiny step further, by its Taylor polynomial: its next term is below 1e-18.
+        d += step;
+        Oscillation at = flow.turned(lo, d);
+        at.x = v.x + step * (v.x_dot + step * v.half_x_ddot);
+        at.x_dot = v.x_dot + step * 2 * v.half_x_ddot;
+        return Contact{k * h + d, wall, at, at.x_dot - start.y_dot};
+    }
+
+    /// The next contact of a chatter. The flight left its wall with relative speed -w, and a = side x'' > 0 presses it back.
+    /// f = side g - b is s phi(s) with phi(0) = -w, phi'(0) = a/2 and |phi''| <= M3/3. Let D = 4 w/a. If M3 D < a, then phi rises
+    /// on [0, D] (phi' >= a/2 - M3 D/3 > 0) and phi(D) >= -w + a D/2 - M3 D^2/6 > w - a D/6 > 0: there is one contact in
+    /// (0, D], the first one, if the other wall is out of reach.
+    std::optional<Contact> chatter(double M3) const {
+        const double w = -start.side * start.relative_speed, a = start.side * flow.acceleration(start.lo);
+        if (!(start.zeros == 1 && a > 0 && 4 * w <= a * h)) return {};
+        const double D = 4 * w / a;
+        if (M3 * D >= a || D * (w + M2 * D) >= b) return {};
+        const Flow::Series x = flow.series(start.lo);
+        Flow::Series phi;
+        phi[0] = -w;
+        for (int n = 1; n < Flow::degree; ++n) phi[n] = start.side * x[n + 1];
+        phi[Flow::degree] = 0;
+        double d = 2 * w / a, rate = 0;
+        for (int i = 0; i < 50; ++i) {
+            const SeriesValue v = value_at(phi, d);
+            rate = v.x_dot;
+            const double step = -v.x * v.x_dot / (v.x_dot * v.x_dot - v.x * v.half_x_ddot);  // Halley's
+            d = std::clamp(d + step, 0.5 * w / a, D);
+            if (std::abs(step) <= 1e-6 * d) break;
+        }
+        return Contact{d, start.side, flow.along(x, start.lo, d), start.side * d * rate};  // f' = phi + s phi'
+    }
+
+    /// The contact in cell k, if there is one: properties 3 and 4.
+    std::optional<Contact> in_cell(int k, const Oscillation& lo) const {
+        const bool first = k == 0 && start.side != 0;
         const Flow::Series x = flow.series(lo);
         std::optional<Contact> found;
         for (int wall : {1, -1}) {
-            Flow::Series f;  // wall (x - y) - b, which is negative inside the cavity
-            for (std::size_t n = 0; n < f.size(); ++n) f[n] = wall * x[n];
-            f[0] = first && wall != side ? -2 * b : wall * (lo.x - start.y - start.y_dot * (k * h)) - b;
+            Flow::Series f = wall * x;  // wall (x - y) - b, which is negative inside the cavity
+            f[0] = first && wall != start.side ? -2 * b : wall * (lo.x - y_at(k)) - b;
             f[1] = first ? wall * start.relative_speed : wall * (lo.x_dot - start.y_dot);
+            const int zeros = first && wall == start.side ? start.zeros : 0;
             std::optional<double> tangent;
-            const auto d = first_crossing(f, first && wall == side ? start.zeros : 0, h, eta, tangent);
+            const auto d = first_crossing({f.data(), static_cast<std::size_t>(f.size())}, zeros, h, eta, tangent);
             if (tangent && k * h + *tangent <= limit) touch = Touch{k * h + *tangent, wall};
             if (!d || (found && found->s <= k * h + *d)) continue;
-            double speed = 0;
-            for (int n = Flow::degree; n >= 1; --n) {
-                const bool known_zero = first && wall == side && n < start.zeros;
-                speed = speed * *d + (known_zero ? 0 : n * f[n]);
-            }
-            found = Contact{k * h + *d, wall, flow.along(x, lo, *d), wall * std::max(0.0, speed)};
+            for (int n = 0; n < zeros; ++n) f[n] = 0;
+            found = Contact{k * h + *d, wall, flow.along(x, lo, *d), wall * std::max(0.0, value_at(f, *d).x_dot)};
         }
         return found;
-    };
+    }
 
-    double gap = side != 0 ? side * b : gap_at(0);
-    for (int k = 0; k < Flow::cells && k * h < limit; ++k) {
-        const double next_gap = gap_at(k + 1);
-        bool empty;
-        if (k == 0 && side != 0)
-            empty = start.zeros == 1 && side * start.relative_speed < leaving && (side * next_gap - b) / h < leaving &&
-                    -side * next_gap < inside;
-        else
-            empty = std::abs(gap) < inside && std::abs(next_gap) < inside;
-        if (!empty)
-            if (auto contact = search(k)) return contact->s <= limit ? contact : std::nullopt;
-        gap = next_gap;
+    /// Whether properties 1 and 2 prove the flight's first cell empty when it has just left a wall.
+    bool first_cell_empty(double next_gap, double M3) const {
+        const double leaving = -M3 * h * h / 24 - eta / h;
+        return start.zeros == 1 && start.side * start.relative_speed < leaving && (start.side * next_gap - b) / h < leaving &&
+               -start.side * next_gap < b - M2 * h * h / 8 - eta;
+    }
+};
+
+}  // namespace
+
+std::optional<Contact> next_contact(const Flow& flow, const FlightStart& start, double b, double limit, std::optional<Touch>& touch) {
+    const auto bounds = flow.bounds(start.lo);
+    const double h = flow.cell(), eta = 16 * ulp * (bounds.x + b + std::abs(start.y));
+    const Search search{flow, start, b, limit, h, eta, bounds.x_ddot, touch};
+    const double inside = b - bounds.x_ddot * h * h / 8 - eta;  // property 1
+
+    double gap = start.side != 0 ? start.side * b : start.lo.x - start.y;
+    for (int from = 0; from < Flow::cells && from * h < limit; from += Flow::block) {
+        const Flow::Block next = flow.gaps(start.lo, start.y, start.y_dot, from + 1);
+        if (std::abs(gap) < inside && next.abs().maxCoeff() < inside) {  // the whole block at once
+            gap = next[Flow::block - 1];
+            continue;
+        }
+        for (int i = 0; i < Flow::block && (from + i) * h < limit; gap = next[i++]) {
+            const int k = from + i;
+            const bool leaving = k == 0 && start.side != 0;
+            if (leaving ? search.first_cell_empty(next[i], bounds.x_dddot) : std::abs(gap) < inside && std::abs(next[i]) < inside) continue;
+            const Oscillation lo = k == 0 ? start.lo : flow.at(start.lo, k);
+            std::optional<Contact> contact = leaving ? search.chatter(bounds.x_dddot) : search.straight(k, lo, next[i]);
+            if (!contact) contact = search.in_cell(k, lo);
+            if (contact) return contact->s <= limit ? contact : std::nullopt;
+        }
     }
     return {};
 }

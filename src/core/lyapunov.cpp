@@ -185,17 +185,31 @@ struct TransferProduct::Qr {
     explicit Qr(std::size_t history) : thinned(history) {}
 
     Matrix4 frame = Matrix4::Identity();
+    Exponents growth = {1, 1, 1, 1};  // lengths since the last logarithm was taken
     Exponents logs{};
     Thinned thinned;
 
-    /// Gram-Schmidt on the first columns; adds the logarithms of their lengths.
+    void grow(int k, double length) {
+        growth[k] *= length;
+        if (!(growth[k] > 1e-100 && growth[k] < 1e100)) take_logarithm(k);
+    }
+    void take_logarithm(int k) {
+        logs[k] += std::log(growth[k]);
+        growth[k] = 1;
+    }
+    const Exponents& logarithms() {
+        for (int k = 0; k < 4; ++k) take_logarithm(k);
+        return logs;
+    }
+
+    /// Gram-Schmidt on the first columns; the exponents grow by their lengths.
     void orthonormalise(int columns) {
         for (int k = 0; k < columns; ++k) {
-            auto q = frame.col(k);
+            Eigen::Vector4d q = frame.col(k);
             for (int j = 0; j < k; ++j) q -= frame.col(j).dot(q) * frame.col(j);
             const double length = q.norm();
-            q /= length;
-            logs[k] += std::log(length);
+            frame.col(k) = q * (1 / length);
+            grow(k, length);
         }
     }
 
@@ -221,7 +235,7 @@ struct TransferProduct::Qr {
             dot += p(k) * a(k);
             head += a(k) * a(k);
             const double volume = std::sqrt(dot * dot + head * p.tail(3 - k).squaredNorm());
-            logs[k] += std::log(volume / before);
+            grow(k, volume / before);
             before = volume;
         }
         const Eigen::HouseholderQR<Matrix4> factors(Matrix4::Identity() + p * a.transpose());
@@ -303,7 +317,7 @@ void TransferProduct::append(const Matrix4& J, int rank, const Saltation& M, dou
     }
 }
 
-Exponents TransferProduct::qr() const { return qr_ ? per_time(qr_->logs, rank_, end_ - start_) : no_exponents; }
+Exponents TransferProduct::qr() const { return qr_ ? per_time(qr_->logarithms(), rank_, end_ - start_) : no_exponents; }
 Exponents TransferProduct::eigenvalues() const { return compounds_ ? compounds_->exponents(rank_, end_ - start_) : no_exponents; }
 Exponents TransferProduct::raw_product() const { return raw_ ? raw_->exponents(end_ - start_) : no_exponents; }
 const ExponentHistory& TransferProduct::qr_history() const { return qr_ ? qr_->thinned.history() : none(); }
