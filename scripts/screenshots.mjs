@@ -1,6 +1,7 @@
 #!/usr/bin/env -S node
 // scripts/screenshots FOLDER [QUERY]: pictures of the page, wide and narrow, light and dark.
-import {startBrowser, startService, open} from "../tests/page/browser.mjs";
+import {startBrowser, open} from "../tests/page/browser.mjs";
+import {startService} from "../tests/service.mjs";
 
 const [folder = ".", query = ""] = process.argv.slice(2);
 const service = await startService();

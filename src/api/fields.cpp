@@ -118,8 +118,12 @@ std::string unknown_field(const std::vector<Field>& fields, const std::string& n
 }
 
 std::string pointer(const std::string& name) {
-    std::string escaped = "/";
-    for (char c : name) escaped += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
+    std::string escaped(1, '/');
+    for (char c : name) {
+        if (c == '~') escaped += "~0";
+        else if (c == '/') escaped += "~1";
+        else escaped += c;
+    }
     return escaped;
 }
 
@@ -159,7 +163,7 @@ void check_field(const Field& f, const Json& value, std::vector<FieldError>& err
             if (!value.is_array()) return fault("", value, "must be an array of words");
             for (std::size_t i = 0; i < value.size(); ++i)
                 if (!value[i].is_string() || std::find(f.choices.begin(), f.choices.end(), value[i].get<std::string>()) == f.choices.end())
-                    fault("/" + std::to_string(i), value[i], "may hold " + list(f.choices));
+                    fault(pointer(std::to_string(i)), value[i], "may hold " + list(f.choices));
             return;
         case FieldType::interval:
             if (!value.is_array() || value.size() != 2 || !value[0].is_number() || !value[1].is_number())

@@ -11,6 +11,9 @@ namespace {
 
 constexpr double ulp = std::numeric_limits<double>::epsilon();
 
+/// Halley's step towards the root of a function of value f, with its derivative and half its second one.
+double halley(double f, double first, double half_second) { return -f * first / (first * first - f * half_second); }
+
 /// A polynomial with its bound of the third derivative on [0, h].
 class CrossingSearch {
 public:
@@ -83,13 +86,10 @@ private:
             const Value v = at(d);
             if (v.f == 0) return d;
             (v.f < 0 ? low : high) = d;
-            const double denominator = v.f1 * v.f1 - v.f * v.f2;
-            double next = d - v.f * v.f1 / denominator;
-            if (!(next > low && next < high)) next = 0.5 * (low + high);
-            const double change = std::abs(next - d);
-            d = next;
+            const double step = halley(v.f, v.f1, v.f2);
             // Halley's error shrinks with the cube of the step: after one below 1e-6 of d the next is below an ulp.
-            if (change <= 1e-6 * d && v.f1 > 0 && change * std::abs(v.f2) <= 1e-6 * v.f1) break;
+            if (std::abs(step) <= 1e-6 * d && v.f1 > 0 && std::abs(step * v.f2) <= 1e-6 * v.f1) return std::clamp(d + step, low, high);
+            d = d + step > low && d + step < high ? d + step : 0.5 * (low + high);
             if (high - low <= ulp * d) break;
         }
         return d;
@@ -121,7 +121,7 @@ struct Search {
     double h;
     double eta;         // rounding of g on the grid
     double M2;          // >= |g''|
-    std::optional<Touch>& touch;
+    std::vector<Touch>& touches;
 
     double y_at(int k) const { return start.y + start.y_dot * (k * h); }
 
@@ -139,7 +139,6 @@ struct Search {
         const double f1 = wall * speed, f2 = wall * c[2], f3 = wall * c[3], f4 = wall * c[4];
         const double inverse_h = 1 / h;
         const double f5 = ((((fh - f0) * inverse_h - f1) * inverse_h - f2) * inverse_h - f3) * inverse_h * inverse_h - f4 * inverse_h;
-        auto halley = [](double f, double first, double half_second) { return -f * first / (first * first - f * half_second); };
         double d = -f0 * h / (fh - f0);
         d += halley(f0 + d * (f1 + d * (f2 + d * (f3 + d * (f4 + d * f5)))), f1 + d * (2 * f2 + d * (3 * f3 + d * (4 * f4 + d * 5 * f5))),
                     f2 + d * (3 * f3 + d * (6 * f4 + d * 10 * f5)));
@@ -150,10 +149,10 @@ struct Search {
         for (int i = 0; i < 50; ++i) {
             v = value_at(c, d);
             step = halley(wall * (v.x - (y + start.y_dot * d)) - b, wall * (v.x_dot - start.y_dot), wall * v.half_x_ddot);
-            if (std::abs(step) <= 1e-6 * h) break;
+            if (std::abs(step) <= 1e-7 * h) break;
             d += step;
         }
-        // The state a last, tiny step further, by its Taylor polynomial: its next term is below 1e-18.
+        // The state a last, tiny step further, by its Taylor polynomial: what that leaves out is below 1e-18.
         d += step;
         Oscillation at = flow.turned(lo, d);
         at.x = v.x + step * (v.x_dot + step * v.half_x_ddot);
@@ -178,10 +177,10 @@ struct Search {
         double d = 2 * w / a, rate = 0;
         for (int i = 0; i < 50; ++i) {
             const SeriesValue v = value_at(phi, d);
-            rate = v.x_dot;
-            const double step = -v.x * v.x_dot / (v.x_dot * v.x_dot - v.x * v.half_x_ddot);  // Halley's
+            const double step = halley(v.x, v.x_dot, v.half_x_ddot);
             d = std::clamp(d + step, 0.5 * w / a, D);
-            if (std::abs(step) <= 1e-6 * d) break;
+            rate = v.x_dot + step * 2 * v.half_x_ddot;
+            if (std::abs(step) <= 1e-8 * d) break;
         }
         return Contact{d, start.side, flow.along(x, start.lo, d), start.side * d * rate};  // f' = phi + s phi'
     }
@@ -198,7 +197,7 @@ struct Search {
             const int zeros = first && wall == start.side ? start.zeros : 0;
             std::optional<double> tangent;
             const auto d = first_crossing({f.data(), static_cast<std::size_t>(f.size())}, zeros, h, eta, tangent);
-            if (tangent && k * h + *tangent <= limit) touch = Touch{k * h + *tangent, wall};
+            if (tangent && k * h + *tangent <= limit) touches.push_back({k * h + *tangent, wall});
             if (!d || (found && found->s <= k * h + *d)) continue;
             for (int n = 0; n < zeros; ++n) f[n] = 0;
             found = Contact{k * h + *d, wall, flow.along(x, lo, *d), wall * std::max(0.0, value_at(f, *d).x_dot)};
@@ -216,10 +215,10 @@ struct Search {
 
 }  // namespace
 
-std::optional<Contact> next_contact(const Flow& flow, const FlightStart& start, double b, double limit, std::optional<Touch>& touch) {
+std::optional<Contact> next_contact(const Flow& flow, const FlightStart& start, double b, double limit, std::vector<Touch>& touches) {
     const auto bounds = flow.bounds(start.lo);
     const double h = flow.cell(), eta = 16 * ulp * (bounds.x + b + std::abs(start.y));
-    const Search search{flow, start, b, limit, h, eta, bounds.x_ddot, touch};
+    const Search search{flow, start, b, limit, h, eta, bounds.x_ddot, touches};
     const double inside = b - bounds.x_ddot * h * h / 8 - eta;  // property 1
 
     double gap = start.side != 0 ? start.side * b : start.lo.x - start.y;

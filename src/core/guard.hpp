@@ -19,6 +19,7 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "core/flow.hpp"
 
@@ -47,8 +48,8 @@ struct Touch {
     int side;
 };
 
-/// The first contact in (0, limit], limit <= flow.reach(). Tangent contacts passed on the way go to `touch` (the last one).
-std::optional<Contact> next_contact(const Flow& flow, const FlightStart& start, double b, double limit, std::optional<Touch>& touch);
+/// The first contact in (0, limit], limit <= flow.reach(). Tangent contacts passed on the way are added to `touches`.
+std::optional<Contact> next_contact(const Flow& flow, const FlightStart& start, double b, double limit, std::vector<Touch>& touches);
 
 /// The first s in (0, limit] where the acceleration of the stuck motion stops pressing (side x'' > 0) the mass against
 /// its wall; limit <= flow.reach(). `zeros` is 1 if x'' = 0 at the start, else 0.

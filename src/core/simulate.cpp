@@ -39,6 +39,7 @@ public:
         : p_(p), limits_(limits), observers_(observers), free_(Flow::free(p)),
           lo_{start.x, start.x_dot, std::sin(p.phi()), std::cos(p.phi())}, y_(start.y), y_dot_(start.y_dot) {
         side_ = wall_of(start, p.b);
+        end_rounding_ = 0.5 * (limits.tau_end - std::nextafter(limits.tau_end, 0));
         relative_speed_ = start.x_dot - start.y_dot;
     }
 
@@ -71,12 +72,12 @@ private:
     }
 
     void fly() {
-        const double rest = clock_.until(limits_.tau_end);
-        const double limit = std::min(rest, free_.reach());
+        const double rest = clock_.until(limits_.tau_end), limit = std::min(rest, free_.reach());
         const FlightStart start{lo_, y_, y_dot_, side_, relative_speed_, zeros_};
-        std::optional<Touch> touch;
-        const auto contact = next_contact(free_, start, p_.b, limit, touch);
-        if (touch) tell(&Observer::on_touch, clock_.tau() + touch->s, touch->side);
+        touches_.clear();
+        // A contact whose tau rounds to tau_end belongs to the run.
+        const auto contact = next_contact(free_, start, p_.b, std::min(rest + end_rounding_, free_.reach()), touches_);
+        for (const Touch& t : touches_) tell(&Observer::on_touch, clock_.tau() + t.s, t.side);
         pass(free_, contact ? contact->s : limit, 0);
         if (contact) {
             lo_ = contact->lo;
@@ -156,10 +157,12 @@ private:
     Clock clock_;
     Oscillation lo_;
     double y_, y_dot_;
+    double end_rounding_;
     int side_ = 0;                // the wall that the mass is at, 0 in flight
     double relative_speed_ = 0;   // x' - y' at that wall
     int zeros_ = 1;               // see FlightStart
     int last_side_ = 0, chatter_ = 0;  // side and length of the current run of impacts on one side
+    std::vector<Touch> touches_;       // of the flight at hand
     long impacts_ = 0;
     std::optional<End> end_;
 };

@@ -1,5 +1,4 @@
-// A running service and a real Chromium for the page's tests.
-import {spawn} from "node:child_process";
+// A real Chromium for the page's tests.
 import {mkdtemp, rm} from "node:fs/promises";
 import {tmpdir} from "node:os";
 import {join} from "node:path";
@@ -7,22 +6,6 @@ import {createRequire} from "node:module";
 
 const require = createRequire(new URL("../../web/package.json", import.meta.url));
 const {chromium} = require("playwright-core");
-
-/** Starts the program given by VINES on a free port; resolves to {url, stop}. */
-export async function startService() {
-  const program = process.env.VINES ?? new URL("../../build/release/vines", import.meta.url).pathname;
-  const child = spawn(program, ["serve", "--port", "0"], {stdio: ["ignore", "pipe", "ignore"]});
-  const url = await new Promise((resolve, reject) => {
-    let text = "";
-    child.stdout.on("data", (data) => {
-      text += data;
-      const found = text.match(/listens on (\S+)/);
-      if (found) resolve(found[1]);
-    });
-    child.on("exit", (code) => reject(new Error(`${program} ended with ${code}: ${text}`)));
-  });
-  return {url, stop: () => new Promise((resolve) => { child.removeAllListeners("exit"); child.on("exit", resolve); child.kill("SIGTERM"); })};
-}
 
 /** Chromium with a profile of its own; what its pages write to the console as errors, and what they refuse to load, is collected. */
 export async function startBrowser() {

@@ -1,0 +1,35 @@
+FROM debian:bookworm-slim AS build
+RUN apt-get update \
+    && DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends \
+        g++ cmake ninja-build pkg-config ca-certificates npm \
+        libeigen3-dev libcpp-httplib-dev nlohmann-json3-dev libspdlog-dev libcli11-dev zlib1g-dev libssl-dev \
+    && rm -rf /var/lib/apt/lists/*
+WORKDIR /vines
+
+# uPlot as the checkout already has it, if it is there in the right version (so the build works without npm's registry);
+# else by the lock file.
+COPY web web
+RUN cd web && { npm ls --omit=dev >/dev/null 2>&1 || npm ci --omit=dev --no-audit --no-fund; }
+
+COPY CMakeLists.txt ./
+COPY src src
+RUN cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DVINES_TESTS=OFF \
+    && cmake --build build --target vines \
+    && strip build/vines
+
+# The program and the libraries it loads, each at the path where the loader looks for it: Debian has no static archive
+# for some of them.
+RUN mkdir /image \
+    && cp build/vines /image/ \
+    && ldd build/vines >/tmp/libraries && ! grep 'not found' /tmp/libraries \
+    && grep -o '/[^ ]*' /tmp/libraries | xargs cp -L --parents -t /image
+
+# Nothing but the program: no shell or package manager to attack or to update.
+FROM scratch
+COPY --from=build /image /
+USER 65532:65532
+ENV VINES_HOST=0.0.0.0
+EXPOSE 8080
+HEALTHCHECK --interval=30s --timeout=5s CMD ["/vines", "healthcheck"]
+ENTRYPOINT ["/vines"]
+CMD ["serve"]

@@ -1,0 +1,169 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <set>
+
+#include "api/presets.hpp"
+#include "api/simulate.hpp"
+
+using namespace vines;
+using namespace vines::api;
+
+namespace {
+
+Json answer(const char* text) { return simulate_answer(read_simulate_request(parse_object(text)), {}); }
+
+/// The problem that a request is refused with.
+Problem refused(const std::string& text) {
+    try {
+        read_simulate_request(parse_object(text));
+    } catch (const Problem& p) {
+        return p;
+    }
+    FAIL("not refused: " << text);
+    throw;
+}
+
+std::set<std::string> pointers(const Problem& p) {
+    std::set<std::string> set;
+    for (const FieldError& e : p.errors) set.insert(e.pointer);
+    return set;
+}
+
+}  // namespace
+
+TEST_CASE("an empty object is Table 1 from rest, with series, impacts and exponents") {
+    const Json a = answer("{}");
+    CHECK(a["parameters"]["b"] == 0.022);
+    CHECK(a["parameters"]["damping"] == "equation_of_motion");
+    CHECK(a["parameters"]["y0"] == 0.95 * 0.022);
+    CHECK(a["status"]["reason"] == "tau_end");
+    CHECK(a["series"]["tau"].size() == a["series"]["y_dot"].size());
+    CHECK(a["impacts"]["tau"].size() == a["impacts"]["grazing"].size());
+    CHECK(a["exponents"]["qr"]["final"].size() == 4);
+}
+
+TEST_CASE("the worked example of the paper: first impact, one positive exponent, four in raw_product") {
+    const Json a = answer(R"({"b":0.022,"damping":"closed_form","tau_end":1709})");
+    CHECK(std::abs(a["impacts"]["tau"][0].get<double>() - 18.141025487377) < 1e-11);
+    int positive = 0, raw = 0;
+    for (const Json& v : a["exponents"]["qr"]["final"]) positive += v.is_number() && v > 0;
+    for (const Json& v : a["exponents"]["raw_product"]["final"]) raw += v.is_number() && v > 0;
+    CHECK(positive == 1);
+    CHECK(raw == 4);
+    CHECK(std::abs(a["exponents"]["qr"]["final"][0].get<double>() - 0.11) < 0.03);
+    CHECK(a["exponents"]["window"][0] == a["impacts"]["tau"][0]);
+    CHECK(a["exponents"]["window"][1] == a["impacts"]["tau"].back());
+}
+
+TEST_CASE("the answer holds no number that JSON cannot hold, and none that reads back differently") {
+    const Json a = answer(R"({"b":0.015,"damping":"closed_form"})");  // has a stick: two exponents are minus infinity
+    CHECK(a["exponents"]["qr"]["final"][3].is_null());
+    CHECK(a["exponents"]["qr"]["status"] == Json({"ok", "ok", "minus_infinity", "minus_infinity"}));
+    CHECK(a["exponents"]["sum_rule_residual"].is_null());
+    CHECK(a["sticking"]["side"] == Json({1}));
+    CHECK(Json::parse(a.dump()) == a);
+}
+
+TEST_CASE("SI fields are reduced by the paper's definitions, and the rest of them is Table 1") {
+    const Json a = answer(R"({"m1":4.168,"c1":3.02,"k1":11470,"m2":0.032,"include":[]})");
+    CHECK(a["parameters"]["epsilon"].get<double>() == doctest::Approx(0.00768).epsilon(1e-3));
+    CHECK(a["parameters"]["lambda"].get<double>() == doctest::Approx(1.80).epsilon(1e-3));
+    CHECK(a["parameters"]["Omega"] == 1);
+    CHECK(a["parameters"]["G"].get<double>() == doctest::Approx(0.02));
+    CHECK(a["parameters"]["derived"]["f0"].get<double>() == doctest::Approx(8.349).epsilon(1e-3));
+    CHECK_FALSE(a.contains("series"));
+}
+
+TEST_CASE("every field at fault is named with its pointer, value and range, unknown ones included") {
+    const Problem p = refused(R"({"b":-1,"Omga":2,"R":"x","samples_per_cycle":0,"max_impacts":1.5,"include":["series","plots"],"window":[5,1],"damping":"none"})");
+    CHECK(p.status == 422);
+    CHECK(pointers(p) == std::set<std::string>{"/b", "/Omga", "/R", "/samples_per_cycle", "/max_impacts", "/include/1", "/window", "/damping"});
+    CHECK(p.errors[0].value == -1);
+    CHECK(p.errors[0].range == Json({1e-9, 1000.0}));
+    CHECK(p.errors[1].detail == "unknown field; did you mean Omega?");
+    const Json document = Json::parse(p.body());
+    CHECK(document["status"] == 422);
+    CHECK(document["title"] == "Unprocessable Content");
+    CHECK(document["errors"].size() == 8);
+}
+
+TEST_CASE("fields that exclude each other are refused") {
+    CHECK(pointers(refused(R"({"epsilon":0.01,"m1":4})")) == std::set<std::string>{"/m1"});
+    CHECK(pointers(refused(R"({"R":0.5,"R_plus":0.6})")) == std::set<std::string>{"/R_plus"});
+    CHECK(pointers(refused(R"({"tau_end":5,"cycles":6})")) == std::set<std::string>{"/cycles"});
+}
+
+TEST_CASE("what only the whole of the fields can tell is refused at the field to change") {
+    CHECK(pointers(refused(R"({"b":0.01,"y0":0.02})")) == std::set<std::string>{"/y0"});
+    CHECK(pointers(refused(R"({"epsilon":1,"lambda":100})")) == std::set<std::string>{"/lambda"});
+    CHECK(pointers(refused(R"({"m2":3000,"m1":1})")).count("/m2") == 1);
+    CHECK(pointers(refused(R"({"tau_end":100,"window":[200,300]})")) == std::set<std::string>{"/window/0"});
+    CHECK(pointers(refused(R"({"preset":"fig99"})")) == std::set<std::string>{"/preset"});
+}
+
+TEST_CASE("text that is no JSON object of plain depth is refused with the place") {
+    for (const char* text : {"", "  ", "[1]", "3", "{\"b\":}", "{\"b\":1", "nonsense", "{\"b\":1}x", "{\"b\":1e999}", "{\"b\":NaN}"}) {
+        CAPTURE(text);
+        CHECK(refused(text).status == 400);
+    }
+    CHECK(std::string(refused("{\"b\":}").what()).find("column") != std::string::npos);
+    CHECK(refused(std::string(100000, '[')).status == 400);
+    CHECK(std::string(refused("{\"b\":1,\"b\":2}").what()) == "the name \"b\" comes twice in the same JSON object");
+    CHECK(refused("{\"b\xff\":1}").status == 400);
+}
+
+TEST_CASE("a query is read by the same table") {
+    const auto& fields = simulate_fields();
+    const Json q = from_query(fields, {{"b", "0.015"}, {"window", "10,20"}, {"include", "impacts,exponents"}, {"damping", "closed_form"}});
+    CHECK(q["b"] == 0.015);
+    CHECK(q["window"] == Json({10.0, 20.0}));
+    CHECK(q["include"] == Json({"impacts", "exponents"}));
+    CHECK(check(fields, q).empty());
+    for (const char* text : {"nan", "inf", "1e999", "0x1", "1.0.0", "", " 1", "1 "}) {
+        CAPTURE(text);
+        CHECK(check(fields, from_query(fields, {{"b", text}})).size() == 1);
+    }
+    CHECK_THROWS_AS(from_query(fields, {{"b", "1"}, {"b", "2"}}), Problem);
+}
+
+TEST_CASE("every preset runs, names its figure or table, and the request overrides it") {
+    std::set<std::string> sources;
+    for (const Preset& p : presets()) {
+        CAPTURE(p.name);
+        const Json a = simulate_answer(read_simulate_request({{"preset", p.name}, {"include", {"exponents"}}, {"exponents", {"qr"}}}), {});
+        CHECK(a["status"]["reason"] == "tau_end");
+        CHECK(a["exponents"]["impacts"] > 50);
+        sources.insert(p.source.substr(0, p.source.find(',')));
+    }
+    for (int figure = 3; figure <= 24; ++figure) CHECK(sources.count("Fig. " + std::to_string(figure)) == 1);
+    for (int table = 1; table <= 4; ++table) CHECK(sources.count("Table " + std::to_string(table)) == 1);
+    const Json over = answer(R"({"preset":"fig15","b":0.012,"R_plus":0.7,"tau_end":50,"include":[]})");
+    CHECK(over["parameters"]["b"] == 0.012);
+    CHECK(over["parameters"]["R_plus"] == 0.7);
+    CHECK(over["parameters"]["R_minus"] == 0.6);
+    CHECK(over["parameters"]["tau_end"] == 50);
+    CHECK(answer(R"({"preset":"fig15","epsilon":0.01,"include":[]})")["parameters"]["lambda"].get<double>() == Parameters().lambda);
+}
+
+TEST_CASE("the field table describes exactly what a request takes") {
+    const Json table = describe(simulate_fields());
+    for (const Json& f : table["fields"]) {
+        CAPTURE(f["name"].get<std::string>());
+        CHECK(!f["description"].get<std::string>().empty());
+        if (f["default"].is_null()) CHECK((f.contains("default_note")));
+        else CHECK(check(simulate_fields(), {{f["name"], f["default"]}}).empty());
+    }
+}
+
+TEST_CASE("caps end a run as a result that says so") {
+    Json a = answer(R"({"max_impacts":10,"include":["impacts"]})");
+    CHECK(a["status"]["reason"] == "max_impacts");
+    CHECK(a["status"]["tau"] == a["impacts"]["tau"].back());
+    CHECK(a["warnings"].size() == 1);
+    a = answer(R"({"samples_per_cycle":10000,"max_points":500,"include":["series"]})");
+    CHECK(a["series"]["tau"].size() <= 501);
+    CHECK(a["warnings"].size() == 1);
+    a = simulate_answer(read_simulate_request({{"tau_end", 1e7}, {"max_impacts", 2000000}, {"include", Json::array()}}), [] { return true; });
+    CHECK(a["status"]["reason"] == "deadline");
+}

@@ -1,0 +1,52 @@
+// What several test files need: reference trajectories, recorded runs, random systems.
+#pragma once
+
+#include <random>
+#include <string>
+#include <vector>
+
+#include "core/lyapunov.hpp"
+#include "core/record.hpp"
+
+namespace vines::test {
+
+struct ReferenceImpact {
+    double tau;
+    int side;
+    double x, x_dot_before, y_dot_before, x_dot_after, y_dot_after;
+};
+
+struct ReferenceStick {
+    int side;
+    double start, end;
+};
+
+/// One file of reference/: a trajectory in 250-digit arithmetic from Table 1's initial state to tau = 1709.
+struct Reference {
+    Parameters parameters;
+    std::vector<ReferenceImpact> impacts;
+    std::vector<ReferenceStick> sticks;
+    Exponents qr, eigenvalues;
+};
+Reference read_reference(const std::string& name);
+
+struct Record {
+    Outcome outcome;
+    std::vector<Impact> impacts;
+    std::vector<StickRecord::Stick> sticks;
+    std::vector<TouchRecord::Touch> touches;
+};
+Record record(const Parameters& parameters, const State& start, double tau_end, long max_impacts = 1000000, std::vector<Observer*> more = {});
+
+Parameters table1(double b, Damping damping);
+
+/// A system and a start that validate, over the ranges that people study and well beyond; reproducible from the engine's seed.
+struct System {
+    Parameters parameters;
+    State start;
+};
+System random_system(std::mt19937_64& engine);
+
+double uniform(std::mt19937_64& engine, double from, double to);
+
+}  // namespace vines::test

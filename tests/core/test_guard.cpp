@@ -1,0 +1,105 @@
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+
+#include "support.hpp"
+
+using namespace vines;
+using namespace vines::test;
+
+namespace {
+
+std::optional<double> crossing(std::vector<double> c, int zeros = 0, double h = 1, double noise = 0) {
+    std::optional<double> tangent;
+    return first_crossing(c, zeros, h, noise, tangent);
+}
+
+}  // namespace
+
+TEST_CASE("first_crossing finds the first of several roots") {
+    // (d - .2)(d - .3)(d - .9) rises through zero at .2; two crossings hide between equal signs at .1 and .5
+    const auto d = crossing({-0.054, 0.51, -1.4, 1});
+    REQUIRE(d);
+    CHECK(*d == doctest::Approx(0.2).epsilon(1e-15));
+}
+
+TEST_CASE("first_crossing counts a root at the very end and none behind it") {
+    CHECK(*crossing({-1, 1}) == 1);
+    CHECK_FALSE(crossing({-1 - 1e-15, 1}));
+}
+
+TEST_CASE("first_crossing divides out the contact at the start") {
+    // d (d - .5): leaves zero downwards, comes back at .5
+    CHECK(*crossing({0, -0.5, 1}, 1) == doctest::Approx(0.5).epsilon(1e-15));
+    // d^2 (d - .5) and d^3 (d - .5)
+    CHECK(*crossing({0, 0, -0.5, 1}, 2) == doctest::Approx(0.5).epsilon(1e-15));
+    CHECK(*crossing({0, 0, 0, -0.5, 1}, 3) == doctest::Approx(0.5).epsilon(1e-15));
+    // a chatter's next contact keeps its relative accuracy however close it is
+    CHECK(*crossing({0, -1e-12, 0.5}, 1) == doctest::Approx(2e-12).epsilon(1e-15));
+    CHECK(*crossing({0, -1e-100, 0.5}, 1) == doctest::Approx(2e-100).epsilon(1e-15));
+}
+
+TEST_CASE("first_crossing tells a tangent contact from a crossing") {
+    std::optional<double> tangent;
+    const std::vector<double> below = {-0.25 - 1e-15, 1, -1}, above = {-0.25 + 1e-12, 1, -1};  // -(d - .5)^2 and a little
+    CHECK_FALSE(first_crossing(below, 0, 1, 1e-14, tangent));
+    REQUIRE(tangent);
+    CHECK(*tangent == doctest::Approx(0.5));
+    tangent.reset();
+    const auto d = first_crossing(above, 0, 1, 1e-14, tangent);
+    REQUIRE(d);
+    CHECK(*d == doctest::Approx(0.5 - 1e-6).epsilon(1e-9));
+    CHECK_FALSE(tangent);
+}
+
+TEST_CASE("no contact of a random flight is missed or early") {
+    // The second method: the flow itself at 4000 points of the flight, and Newton's steps on it. Two crossings can only hide
+    // between two of the points if g turns there, and then it stays within reach of the wall by less than the tolerance.
+    std::mt19937_64 engine(11);
+    int contacts = 0;
+    for (int n = 0; n < 3000; ++n) {
+        const System s = random_system(engine);
+        const Flow flow = Flow::free(s.parameters);
+        const double b = s.parameters.b;
+        const Oscillation lo{s.start.x, s.start.x_dot, std::sin(n), std::cos(n)};
+        FlightStart start{lo, s.start.y, s.start.y_dot, 0, 0, 0};
+        if (n % 2) {  // from a wall, moving away from it
+            start.side = engine() % 4 < 2 ? 1 : -1;
+            start.y = lo.x - start.side * b;
+            start.relative_speed = -start.side * std::abs(s.start.x_dot - s.start.y_dot) * (n % 3 ? 1 : 1e-3) - start.side * 1e-9;
+            start.y_dot = lo.x_dot - start.relative_speed;
+            start.zeros = 1;
+        } else if (wall_of(s.start, b) != 0) {
+            continue;
+        }
+        std::vector<Touch> touch;
+        const auto found = next_contact(flow, start, b, flow.reach(), touch);
+        const double until = found ? found->s : flow.reach();
+        auto gap = [&](double t) { return flow.after(lo, t).x - start.y - start.y_dot * t; };
+        const int points = 4000;
+        for (int k = 1; k < points; ++k) {
+            const double at = until * k / points;
+            if (std::abs(gap(at)) <= b + 1e-13) continue;
+            FAIL_CHECK("a contact before " << until << " at " << at << " in flight " << n);
+            break;
+        }
+        if (!found) continue;
+        ++contacts;
+        CHECK(std::abs(gap(found->s) - found->side * b) < 1e-13);
+        CHECK(found->side * found->relative_speed >= 0);
+        CHECK(std::abs(found->relative_speed - (found->lo.x_dot - start.y_dot)) < 1e-13);
+    }
+    CHECK(contacts > 1500);
+}
+
+TEST_CASE("a contact at the very end of the interval belongs to it, one just behind does not") {
+    const Parameters p = table1(0.022, Damping::closed_form);
+    const Flow flow = Flow::free(p);
+    const FlightStart start{{0, 0.03, std::sin(p.phi()), std::cos(p.phi())}, 0, 0, 0, 0, 0};
+    std::vector<Touch> touch;
+    const auto contact = next_contact(flow, start, p.b, 5, touch);
+    REQUIRE(contact);
+    CHECK(next_contact(flow, start, p.b, contact->s, touch));
+    CHECK_FALSE(next_contact(flow, start, p.b, std::nextafter(contact->s, 0), touch));
+}

@@ -1,0 +1,73 @@
+#include <doctest/doctest.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "support.hpp"
+
+using namespace vines;
+using namespace vines::test;
+
+namespace {
+
+Impact random_impact(std::mt19937_64& engine, Parameters& p) {
+    p = random_system(engine).parameters;
+    p.R_plus = p.R_minus = uniform(engine, 0.1, 1);
+    Contact c{1, engine() % 2 ? 1 : -1, {uniform(engine, -.01, .01), uniform(engine, -.01, .01), std::sin(1.0), std::cos(1.0)}, 0};
+    c.relative_speed = c.side * uniform(engine, 1e-4, 0.02);
+    return impact_at(p, c, Flow::free(p).acceleration(c.lo), 1);
+}
+
+}  // namespace
+
+TEST_CASE("an impact keeps momentum and reverses the relative velocity with factor R") {
+    std::mt19937_64 engine(3);
+    for (int n = 0; n < 1000; ++n) {
+        Parameters p;
+        const Impact i = random_impact(engine, p);
+        CHECK(std::abs(i.x_dot_after + p.epsilon * i.y_dot_after - i.x_dot_before - p.epsilon * i.y_dot_before) < 1e-17);
+        CHECK(std::abs(i.x_dot_after - i.y_dot_after + i.R * (i.x_dot_before - i.y_dot_before)) < 1e-17);
+        CHECK(i.impulse(p.epsilon) == doctest::Approx(i.x_dot_before - i.x_dot_after).epsilon(1e-9));
+    }
+}
+
+TEST_CASE("the saltation matrix is eq. (27) with f from the flow") {
+    std::mt19937_64 engine(4);
+    for (int n = 0; n < 1000; ++n) {
+        Parameters p;
+        const Impact i = random_impact(engine, p);
+        const Saltation m = saltation(p, i);
+        const double x_ddot_after = i.x_ddot_before - 2 * p.zeta() * (i.x_dot_after - i.x_dot_before);
+        const Eigen::Vector4d before(i.x_ddot_before, i.x_dot_before, 0, i.y_dot_before), after(x_ddot_after, i.x_dot_after, 0, i.y_dot_after);
+        Matrix4 S;
+        const double e = p.epsilon, R = i.R;
+        S << (1 - R * e) / (1 + e), 0, (e + R * e) / (1 + e), 0, 0, 1, 0, 0, (1 + R) / (1 + e), 0, (e - R) / (1 + e), 0, 0, 0, 0, 1;
+        const Matrix4 M = S - (S * before - after) * gap_gradient().transpose() / gap_gradient().dot(before);
+        CHECK((m.matrix() - M).norm() < 1e-12 * M.norm());
+        CHECK((M * before - after).norm() < 1e-14);  // the flow's own direction goes over into itself
+    }
+}
+
+TEST_CASE("|det M| = R^2 and the moduli of its eigenvalues are 1, 1, R, R") {
+    std::mt19937_64 engine(5);
+    for (int n = 0; n < 1000; ++n) {
+        Parameters p;
+        const Impact i = random_impact(engine, p);
+        const Matrix4 M = saltation(p, i).matrix();
+        CHECK(std::abs(M.determinant()) == doctest::Approx(i.R * i.R).epsilon(1e-9));
+        Eigen::Vector4d moduli = Eigen::EigenSolver<Matrix4>(M, false).eigenvalues().cwiseAbs();
+        std::sort(moduli.begin(), moduli.end());
+        const Eigen::Vector4d expected(i.R, i.R, 1, 1);
+        CHECK((moduli - expected).cwiseAbs().maxCoeff() < 1e-5 * M.norm());  // double eigenvalues: the root of the rounding
+    }
+}
+
+TEST_CASE("a nearly tangent impact is flagged, one that the wall presses towards is not") {
+    const Parameters p = table1(0.022, Damping::closed_form);
+    const Oscillation lo{0.004, 0.001, 0, 1};
+    CHECK(impact_at(p, {0, 1, lo, 1e-8}, -0.004, 0).grazing);
+    CHECK_FALSE(impact_at(p, {0, 1, lo, 1e-8}, 0.004, 0).grazing);
+    CHECK_FALSE(impact_at(p, {0, 1, lo, 1e-3}, -0.004, 0).grazing);
+}

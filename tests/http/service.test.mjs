@@ -1,0 +1,166 @@
+// The running service, over real sockets.
+import {after, before, test} from "node:test";
+import assert from "node:assert/strict";
+import {spawn} from "node:child_process";
+import net from "node:net";
+import {gunzipSync} from "node:zlib";
+import {request as httpRequest} from "node:http";
+import {startService, program} from "../service.mjs";
+
+let service, host, port;
+before(async () => { service = await startService(); ({hostname: host, port} = new URL(service.url)); });
+after(() => service.stop());
+
+const post = (body, headers = {}) => fetch(`${service.url}/v1/simulate`, {method: "POST", body, headers});
+
+/** Sends bytes as they are and returns all that comes back until the server or the deadline ends it. */
+const raw = (text, milliseconds = 1500) => new Promise((resolve) => {
+  const socket = net.connect(Number(port), host);
+  let answer = "";
+  socket.on("data", (data) => answer += data);
+  socket.on("close", () => resolve(answer));
+  socket.on("error", () => resolve(answer));
+  socket.write(text);
+  setTimeout(() => socket.destroy(), milliseconds);
+});
+
+const problem = async (response, status) => {
+  assert.equal(response.status, status);
+  assert.equal(response.headers.get("content-type"), "application/problem+json");
+  const document = await response.json();
+  assert.equal(document.status, status);
+  return document;
+};
+
+test("curl's own content type is read as JSON, at any size", async () => {
+  const padded = `{"b":0.022,"damping":"closed_form","tau_end":1709}${" ".repeat(20000)}`;
+  const response = await post(padded, {"Content-Type": "application/x-www-form-urlencoded"});
+  assert.equal(response.status, 200);
+  assert.equal(response.headers.get("content-type"), "application/json");
+  assert.ok(Math.abs((await response.json()).impacts.tau[0] - 18.141025487377) < 1e-11);
+});
+
+test("GET takes the same fields in its query and has an ETag", async () => {
+  const url = `${service.url}/v1/simulate?b=0.022&damping=closed_form&tau_end=100&include=impacts`;
+  const first = await fetch(url);
+  const body = await first.text();
+  const posted = await (await post('{"b":0.022,"damping":"closed_form","tau_end":100,"include":["impacts"]}')).text();
+  assert.equal(body, posted);
+  const again = await fetch(url, {headers: {"If-None-Match": first.headers.get("etag")}});
+  assert.equal(again.status, 304);
+});
+
+test("presets, parameters, health and version answer", async () => {
+  assert.ok((await (await fetch(`${service.url}/v1/presets`)).json()).presets.length > 20);
+  assert.ok((await (await fetch(`${service.url}/v1/parameters`)).json()).fields.some((f) => f.name === "Omega"));
+  assert.equal((await fetch(`${service.url}/healthz`)).status, 200);
+  assert.match((await (await fetch(`${service.url}/version`)).json()).version, /^\d+\.\d+\.\d+$/);
+});
+
+test("errors are problem documents that name field, value and range", async () => {
+  const document = await problem(await post('{"b":-1,"Omega":1000}'), 422);
+  assert.deepEqual(document.errors.map((e) => [e.pointer, e.value, e.range]), [["/b", -1, [1e-9, 1000]], ["/Omega", 1000, [0.001, 100]]]);
+  await problem(await post("{"), 400);
+  await problem(await fetch(`${service.url}/nothing`), 404);
+  await problem(await fetch(`${service.url}/v1/simulate?b=x`), 422);
+  await problem(await fetch(`${service.url}/v1/simulate?b=1`, {method: "POST", body: "{}"}), 400);
+  const wrong = await fetch(`${service.url}/v1/presets`, {method: "DELETE"});
+  assert.equal(wrong.headers.get("allow"), "GET, HEAD");
+  await problem(wrong, 405);
+});
+
+test("bodies that the service does not take are refused before they are read", async () => {
+  await problem(await post("x".repeat((1 << 20) + 1)), 413);
+  assert.match(await raw("POST /v1/simulate HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\n2\r\n{}\r\n0\r\n\r\n"), /^HTTP\/1.1 411/);
+  await problem(await post("{}", {"Content-Encoding": "gzip"}), 415);
+  await problem(await post("{}", {"Content-Type": "multipart/form-data; boundary=x"}), 415);
+  await problem(await fetch(`${service.url}/v1/presets`, {headers: {Range: "bytes=0-1,0-1"}}), 416);
+});
+
+test("an unread body is not taken for the next request", async () => {
+  const smuggled = "GET /version HTTP/1.1\r\nHost: x\r\n\r\n";
+  const answer = await raw(`POST /nothing HTTP/1.1\r\nHost: x\r\nContent-Length: ${smuggled.length}\r\n\r\n${smuggled}`);
+  assert.equal(answer.match(/HTTP\/1\.1 /g).length, 1);
+});
+
+test("malformed requests get an answer and leave the service well", async () => {
+  for (const text of ["nonsense\r\n\r\n", "GET\r\n\r\n", `GET /${"a".repeat(20000)} HTTP/1.1\r\n\r\n`, "\0\0\0\r\n\r\n", `GET / HTTP/1.1\r\n${"A: b\r\n".repeat(2000)}\r\n`])
+    await raw(text, 300);
+  await problem(await post(`${"[".repeat(100000)}`), 400);
+  assert.equal((await fetch(`${service.url}/healthz`)).status, 200);
+});
+
+test("large answers are compressed by gzip when asked for, small ones are not", async () => {
+  const get = (path) => new Promise((resolve) => httpRequest(`${service.url}${path}`, {headers: {"Accept-Encoding": "br, gzip"}}, (response) => {
+    const parts = [];
+    response.on("data", (d) => parts.push(d));
+    response.on("end", () => resolve([response.headers, Buffer.concat(parts)]));
+  }).end());
+  const [headers, bytes] = await get("/v1/simulate");
+  assert.equal(headers["content-encoding"], "gzip");
+  assert.ok(JSON.parse(gunzipSync(bytes)).series.tau.length > 1000);
+  assert.equal((await get("/version"))[0]["content-encoding"], undefined);
+});
+
+test("four hundred clients at once are all answered", async () => {
+  const all = await Promise.all(Array.from({length: 400}, () => raw("GET /healthz HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n", 15000)));
+  assert.equal(all.filter((a) => a.startsWith("HTTP/1.1 200")).length, 400);
+});
+
+test("the queue for computing is bounded: beyond it 503 with Retry-After", async () => {
+  const small = await startService(["--compute-threads", "1", "--compute-queue", "1"]);
+  const long = JSON.stringify({R: 1, tau_end: 1e7, max_impacts: 2000000, include: []});
+  const answers = await Promise.all(Array.from({length: 6}, () => fetch(`${small.url}/v1/simulate`, {method: "POST", body: long})));
+  const refused = answers.filter((a) => a.status === 503);
+  assert.ok(refused.length >= 3, `${refused.length} refused`);
+  assert.equal(refused[0].headers.get("retry-after"), "1");
+  await small.stop();
+});
+
+test("a request that computes too long ends with what it has", async () => {
+  const hasty = await startService(["--deadline", "0.05"]);
+  const started = Date.now();
+  const answer = await (await fetch(`${hasty.url}/v1/simulate`, {method: "POST", body: JSON.stringify({R: 1, tau_end: 1e7, max_impacts: 2000000, include: []})})).json();
+  assert.equal(answer.status.reason, "deadline");
+  assert.ok(answer.status.tau > 0 && answer.status.tau < 1e7);
+  assert.ok(Date.now() - started < 2000);
+  await hasty.stop();
+});
+
+test("SIGTERM ends the service with 0, at once, with an idle connection open", async () => {
+  const other = await startService();
+  const idle = net.connect(Number(new URL(other.url).port), host);
+  idle.on("error", () => {});
+  idle.write("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n");
+  await new Promise((resolve) => idle.once("data", resolve));
+  const started = Date.now();
+  assert.equal(await other.stop(), 0);
+  assert.ok(Date.now() - started < 2000);
+  idle.destroy();
+});
+
+const run = (args, env = {}) => new Promise((resolve) => {
+  const child = spawn(program, args, {env: {...process.env, ...env}});
+  let text = "";
+  child.stdout.on("data", (d) => text += d);
+  child.stderr.on("data", (d) => text += d);
+  child.on("exit", (code) => resolve([code, text]));
+});
+
+test("a flag beats the environment, which beats the default; bad ones are refused", async () => {
+  const fromEnvironment = await startService([], {VINES_PORT: "0"}, false);
+  assert.notEqual(new URL(fromEnvironment.url).port, "8080");
+  await fromEnvironment.stop();
+  const [code, text] = await run(["serve", "--port", port]);  // taken
+  assert.equal(code, 1);
+  assert.match(text, new RegExp(`cannot listen on 127.0.0.1:${port}`));
+  assert.notEqual((await run(["serve", "--port", "99999"]))[0], 0);
+  assert.notEqual((await run(["serve"], {VINES_PORT: "x"}))[0], 0);
+  assert.equal((await run(["--version"]))[0], 0);
+  assert.match((await run(["serve", "--help"]))[1], /VINES_PORT/);
+});
+
+test("healthcheck tells a running service from none", async () => {
+  assert.equal((await run(["healthcheck", "--port", port]))[0], 0);
+  assert.equal((await run(["healthcheck", "--port", "1"]))[0], 1);
+});
