@@ -39,14 +39,16 @@ Windows windows(double b, int count, double length, double start) {
 
 TEST_CASE("lambda1 over 100 windows of 1700 is the known one of each response") {
     const std::pair<double, double> chaotic[] = {{0.034, 0.149}, {0.025, 0.120}, {0.017, 0.049}, {0.003, 0.189}};
-    for (const auto& [b, lambda1] : chaotic) {
+    for (const auto& known : chaotic) {
+        const double b = known.first, lambda1 = known.second;
         CAPTURE(b);
         const Windows w = windows(b, 100, 1700, 1700);
         CHECK(std::abs(w.mean - lambda1) < 4 * w.standard_error);
         CHECK(w.standard_error < 0.003);
     }
     const std::pair<double, double> periodic[] = {{0.015, -0.0178}, {0.008, -0.0132}};
-    for (const auto& [b, lambda1] : periodic) {
+    for (const auto& known : periodic) {
+        const double b = known.first, lambda1 = known.second;
         CAPTURE(b);
         CHECK(std::abs(windows(b, 100, 1700, 1700).mean - lambda1) < 1e-4);
     }

@@ -35,7 +35,9 @@ TEST_CASE("impacts follow the reference to the end where the motion is regular")
 TEST_CASE("impacts follow the reference until chaos has magnified the rounding of the input") {
     // The relative rounding of b alone, 1e-16, grows to 1e-9 over these times.
     const std::pair<const char*, double> cases[] = {{"closed_b0.003", 110}, {"closed_b0.018", 180}, {"closed_b0.022", 100}, {"eom_b0.022", 240}};
-    for (const auto& [name, until] : cases) {
+    for (const auto& known : cases) {
+        const char* const name = known.first;
+        const double until = known.second;
         CAPTURE(name);
         const Reference reference = read_reference(name);
         CHECK(agreement(reference, record(reference.parameters, default_state(reference.parameters), 1709)) > until);
