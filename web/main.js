@@ -56,7 +56,7 @@ function drawExponents(exponents) {
     const keys = ["lambda1", "lambda2", "lambda3", "lambda4", ...(estimator?.history.rounding_floor ? ["rounding_floor"] : [])];
     const data = estimator ? ascending(estimator.history, keys) : [[], ...keys.map(() => [])];
     const series = keys.map((k, i) => k === "rounding_floor" ? {label: "floor", colour: "soft", dash: [5, 4]} : {label: `λ${i + 1}`, colour: `c${i + 1}`, width: 1.5});
-    plots[name].draw({series, data, range, walls: [0]});
+    plots[name].draw({series, data, range, zero: true});
   }
 }
 

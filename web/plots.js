@@ -17,7 +17,6 @@ function zoomAll(source) {
 }
 
 export class LinePlot {
-  /** series: [{label, colour, dash}]; marks(): vertical lines and shaded intervals in tau, horizontal lines in y. */
   constructor(container, {synced = false} = {}) {
     this.container = container;
     this.synced = synced;
@@ -35,8 +34,9 @@ export class LinePlot {
     return this.plot?.root.querySelector(".u-legend")?.offsetHeight ?? 0;
   }
 
-  draw({series, data, range, walls = [], lines = [], bands = []}) {
-    this.last = {series, data, range, walls, lines, bands};
+  /** series: [{label, colour, dash, width}]; range: of y; walls: levels of y; lines: moments of tau; bands: intervals of tau; zero: a line at y = 0. */
+  draw({series, data, range, walls = [], lines = [], bands = [], zero = false}) {
+    this.last = {series, data, range, walls, lines, bands, zero};
     if (this.plot) {
       together.delete(this.plot);
       this.plot.destroy();
@@ -52,7 +52,7 @@ export class LinePlot {
       legend: {live: true},
       hooks: {
         drawClear: [(u) => this.shade(u, bands)],
-        draw: [(u) => this.rule(u, walls, lines)],
+        draw: [(u) => this.rule(u, walls, lines, zero)],
         setScale: [(u, key) => { if (this.synced && key === "x") zoomAll(u); }],
       },
     };
@@ -71,17 +71,19 @@ export class LinePlot {
     u.ctx.restore();
   }
 
-  rule(u, walls, lines) {
+  rule(u, walls, lines, zero) {
     u.ctx.save();
     u.ctx.beginPath();
     u.ctx.rect(u.bbox.left, u.bbox.top, u.bbox.width, u.bbox.height);
     u.ctx.clip();
-    u.ctx.strokeStyle = colour("wall");
     u.ctx.lineWidth = devicePixelRatio;
-    for (const y of walls) {
+    u.ctx.setLineDash([]);
+    u.ctx.strokeStyle = colour(zero ? "soft" : "wall");
+    for (const y of zero ? [0] : walls) {
       const at = u.valToPos(y, "y", true);
       u.ctx.beginPath(); u.ctx.moveTo(u.bbox.left, at); u.ctx.lineTo(u.bbox.left + u.bbox.width, at); u.ctx.stroke();
     }
+    u.ctx.strokeStyle = colour("wall");
     u.ctx.setLineDash([6 * devicePixelRatio, 4 * devicePixelRatio]);
     for (const x of lines) {
       const at = u.valToPos(x, "x", true);
