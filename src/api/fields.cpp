@@ -61,7 +61,7 @@ std::vector<Field> make_simulate_fields() {
         core_number("x_dot0", "start", speed, "x'(0)", "its velocity", 0),
         core_number("y0", "start", "m", "y(0)", "displacement of the free mass; |x0 - y0| <= b", nullptr, "0.95 b"),
         core_number("y_dot0", "start", speed, "y'(0)", "its velocity", 0),
-        number("tau_end", "run", one, "tau", "how long to run; not together with cycles", 1709, "", 1e-6, 1e7),
+        number("tau_end", "run", one, "tau", "how long to run; not together with cycles", 1709, "", 1e-6, longest_run),
         number("cycles", "run", one, "", "how many forcing cycles of 2 pi/Omega to run", nullptr, "from tau_end", 1e-6, 1e6),
         {"window", FieldType::interval, "run", one, "[tau_s, tau_e]",
          "the exponents are taken from the first impact at or after tau_s to the last at or before tau_e", nullptr, "the whole run", {}, {}, {}},
@@ -161,7 +161,7 @@ void check_field(const Field& f, const Json& value, std::vector<FieldError>& err
             return;
         case FieldType::choices:
             if (!value.is_array()) return fault("", value, "must be an array of words");
-            for (std::size_t i = 0; i < value.size(); ++i)
+            for (std::size_t i = 0; i < value.size() && errors.size() < most_errors; ++i)
                 if (!value[i].is_string() || std::find(f.choices.begin(), f.choices.end(), value[i].get<std::string>()) == f.choices.end())
                     fault(pointer(std::to_string(i)), value[i], "may hold " + list(f.choices));
             return;
@@ -232,6 +232,7 @@ Json from_query(const std::vector<Field>& fields, const std::vector<std::pair<st
 std::vector<FieldError> check(const std::vector<Field>& fields, const Json& object) {
     std::vector<FieldError> errors;
     for (const auto& [name, value] : object.items()) {
+        if (errors.size() >= most_errors) break;
         if (const Field* f = find(fields, name))
             check_field(*f, value, errors);
         else

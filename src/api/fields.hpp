@@ -27,6 +27,9 @@ struct Field {
     std::vector<std::string> choices;
 };
 
+/// The longest run, in tau.
+inline constexpr double longest_run = 1e7;
+
 /// The fields of /v1/simulate, in the order in which a form shows them.
 const std::vector<Field>& simulate_fields();
 
@@ -37,7 +40,7 @@ Json describe(const std::vector<Field>& fields);
 /// and is found by `check`. Problem 400 for a name that comes twice.
 Json from_query(const std::vector<Field>& fields, const std::vector<std::pair<std::string, std::string>>& query);
 
-/// Every fault that shows field by field: unknown names, wrong types, out of range, NaN.
+/// The faults that show field by field, up to most_errors: unknown names, wrong types, out of range, NaN.
 std::vector<FieldError> check(const std::vector<Field>& fields, const Json& object);
 
 }  // namespace vines::api

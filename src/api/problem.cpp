@@ -8,6 +8,17 @@ namespace {
 
 constexpr int deepest = 16;
 
+constexpr std::size_t longest_echo = 200;
+
+std::string shortened(const std::string& text) { return text.size() <= longest_echo ? text : text.substr(0, longest_echo) + "..."; }
+
+Json shortened(const Json& value) {
+    if (value.is_string()) return shortened(value.get<std::string>());
+    if (!value.is_structured()) return value;
+    const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return text.size() <= longest_echo ? value : Json(shortened(text));
+}
+
 std::string quoted(const std::string& name) { return "\"" + name + "\""; }
 
 }  // namespace
@@ -20,7 +31,7 @@ std::string Problem::body() const {
     if (!errors.empty()) {
         Json& list = document["errors"] = Json::array();
         for (const FieldError& e : errors)
-            list.push_back({{"pointer", e.pointer}, {"value", e.value}, {"range", e.range}, {"detail", e.detail}});
+            list.push_back({{"pointer", shortened(e.pointer)}, {"value", shortened(e.value)}, {"range", e.range}, {"detail", e.detail}});
     }
     return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -56,6 +67,8 @@ Json parse_object(std::string_view text) {
         }
         return true;
     };
+    if (text.find('\0') != std::string_view::npos)  // the library would take it for the end of the text
+        throw Problem(400, "the body is not valid JSON: it holds a NUL byte");
     if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
         throw Problem(400, "the body is empty; send a JSON object of parameters, {} for the defaults");
     try {

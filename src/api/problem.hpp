@@ -19,6 +19,9 @@ struct FieldError {
     std::string detail;
 };
 
+/// More faults of one request than this are counted, not listed: an answer must not be larger than what it answers.
+inline constexpr std::size_t most_errors = 20;
+
 /// Thrown on the way from bytes to a request; the HTTP layer answers with it.
 class Problem : public std::runtime_error {
 public:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "api/presets.hpp"
@@ -13,6 +14,9 @@ namespace {
 
 const std::vector<std::string> reduced_names = {"epsilon", "lambda", "G", "Omega"};
 const std::vector<std::string> si_names = {"m1", "c1", "k1", "m2", "F", "f"};
+// Which SI fields each reduced one follows from.
+const std::map<std::string, std::vector<std::string>> si_origin = {
+    {"epsilon", {"m2", "m1"}}, {"lambda", {"c1", "k1", "m1", "m2"}}, {"G", {"F", "m1", "m2"}}, {"Omega", {"f", "k1", "m1"}}};
 
 /// Fields that exclude each other: giving one of each side is a fault, and one of the request's own removes the preset's.
 struct Alternative {
@@ -35,14 +39,17 @@ std::vector<std::string> present(const Json& object, const std::vector<std::stri
 }
 
 [[noreturn]] void refuse(std::vector<FieldError> errors) {
-    const std::string detail = errors.size() == 1 ? errors[0].detail : std::to_string(errors.size()) + " fields are at fault";
+    const std::string detail = errors.size() == 1             ? errors[0].detail
+                               : errors.size() >= most_errors ? "the first " + std::to_string(errors.size()) + " faults are listed"
+                                                              : std::to_string(errors.size()) + " fields are at fault";
     throw Problem(422, detail, std::move(errors));
 }
 
 void check_alternatives(const Json& object, std::vector<FieldError>& errors) {
     for (const Alternative& a : alternatives()) {
-        if (present(object, a.one).empty()) continue;
-        for (const std::string& name : present(object, a.other)) errors.push_back({"/" + name, object[name], nullptr, a.detail});
+        if (present(object, a.one).empty() || present(object, a.other).empty()) continue;
+        for (const auto& names : {a.one, a.other})
+            for (const std::string& name : present(object, names)) errors.push_back({"/" + name, object[name], nullptr, a.detail});
     }
 }
 
@@ -94,13 +101,13 @@ private:
 std::vector<FieldError> field_errors(const std::vector<Fault>& faults, const std::optional<SiParameters>& si, const Json& given) {
     std::vector<FieldError> errors;
     for (const Fault& f : faults) {
-        std::string field = f.field, detail = f.message;
-        if (si && std::find(reduced_names.begin(), reduced_names.end(), field) != reduced_names.end()) {
-            detail = field + " follows from the SI fields; " + detail;
-            field = field == "epsilon" ? "m2" : field == "lambda" ? "c1" : field == "G" ? "F" : "f";
+        const auto origin = si ? si_origin.find(f.field) : si_origin.end();
+        if (origin == si_origin.end()) {
+            errors.push_back({"/" + f.field, given.contains(f.field) ? given[f.field] : Json(f.value), Json::array({f.minimum, f.maximum}), f.message});
+            continue;
         }
-        errors.push_back({"/" + field, given.contains(field) ? given[field] : Json(f.value),
-                          field == f.field ? Json::array({f.minimum, f.maximum}) : Json(nullptr), detail});
+        for (const std::string& name : present(given, origin->second))
+            errors.push_back({"/" + name, given[name], nullptr, f.field + " = " + Json(f.value).dump() + " follows from the SI fields; " + f.message});
     }
     return errors;
 }
@@ -228,7 +235,7 @@ Json describe_status(const Outcome& outcome, const SimulateRequest& r) {
             return {{"reason", "tau_end"}, {"tau", outcome.tau}, {"message", "the run is complete"}};
         case End::max_impacts:
             return {{"reason", "max_impacts"}, {"tau", outcome.tau},
-                    {"message", "ended after max_impacts = " + std::to_string(r.max_impacts) + " impacts, before tau_end"}};
+                    {"message", "ended after max_impacts = " + std::to_string(r.max_impacts) + " impacts (or as many sticks and touches), before tau_end"}};
         case End::stopped:
             return {{"reason", "deadline"}, {"tau", outcome.tau}, {"message", "ended by the server's time limit for one request, before tau_end"}};
     }
@@ -270,6 +277,10 @@ SimulateRequest read_simulate_request(const Json& given) {
 
     errors = field_errors(validate(p, r.start), r.si, object);
     r.tau_end = v.has("cycles") ? v.number("cycles") * 2 * std::numbers::pi / p.Omega : v.number("tau_end");
+    if (r.tau_end > longest_run) {
+        const double most = longest_run * p.Omega / (2 * std::numbers::pi);
+        errors.push_back({"/cycles", object["cycles"], Json::array({1e-6, most}), "cycles of 2 pi/Omega must not make a run longer than tau = 1e7: at most " + Json(most).dump()});
+    }
     r.window_start = v.has("window") ? object["window"][0].get<double>() : 0;
     r.window_end = v.has("window") ? object["window"][1].get<double>() : r.tau_end;
     if (r.window_start >= r.tau_end)
@@ -315,7 +326,7 @@ Json simulate_answer(const SimulateRequest& r, const std::function<bool()>& stop
     }
     if (r.impacts) answer["impacts"] = describe_impacts(impacts.impacts, r.parameters.epsilon);
     answer["sticking"] = describe_sticks(sticks.sticks);
-    if (!touches.touches.empty()) {
+    if (r.impacts && !touches.touches.empty()) {
         answer["touches"] = describe_touches(touches.touches);
         warnings.push_back("the mass touches a wall without an impact (tangent contact): neighbouring trajectories go different ways there");
     }

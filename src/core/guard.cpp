@@ -106,7 +106,7 @@ std::optional<double> first_crossing(std::span<const double> c, int zeros, doubl
     c = c.subspan(zeros);
     if (zeros > 0)
         while (!c.empty() && c[0] == 0) c = c.subspan(1);
-    if (c.empty()) return {};
+    if (std::all_of(c.begin(), c.end(), [](double v) { return v == 0; })) return {};  // rests at zero
     if (c[0] >= 0) return 0;
     return CrossingSearch(c, h, zeros > 0 ? 0 : noise, tangent).search();
 }

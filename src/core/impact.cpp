@@ -1,6 +1,5 @@
 #include "core/impact.hpp"
 
-#include <Eigen/LU>
 #include <cmath>
 #include <numbers>
 
@@ -36,11 +35,16 @@ Eigen::Vector4d gap_gradient() { return {0, 1, 0, -1}; }
 
 Matrix4 Saltation::matrix() const { return S + r * gap_gradient().transpose(); }
 
-Saltation Saltation::inverse() const {
-    // Sherman and Morrison: S^-1 - S^-1 r g^T S^-1 / (1 + g^T S^-1 r). S leaves positions alone, so g^T S^-1 = g^T, and
-    // the denominator is 1 + r(1) - r(3) = -R.
-    const Matrix4 inverse_S = S.inverse();
-    return {inverse_S, inverse_S * r / -(1 + r(1) - r(3))};
+Matrix4 Saltation::times(const Matrix4& d) const {
+    Matrix4 out;
+    for (int k = 0; k < 4; ++k) {
+        const double gap = d(1, k) - d(3, k);
+        out(0, k) = S(0, 0) * d(0, k) + S(0, 2) * d(2, k) + r(0) * gap;
+        out(1, k) = d(1, k) + r(1) * gap;
+        out(2, k) = S(2, 0) * d(0, k) + S(2, 2) * d(2, k) + r(2) * gap;
+        out(3, k) = d(3, k) + r(3) * gap;
+    }
+    return out;
 }
 
 Saltation saltation(const Parameters& p, const Impact& i) {

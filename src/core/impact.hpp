@@ -40,7 +40,7 @@ struct Saltation {
     Eigen::Vector4d r;  ///< entries 0 and 2 hold x''/(x'- - y'-)
 
     Matrix4 matrix() const;
-    Saltation inverse() const;  ///< of the same form; R = 0 has none
+    Matrix4 times(const Matrix4& deviations) const;  ///< matrix() * deviations, with a third of the multiplications
 };
 
 /// The vector g of eq. (23): d(x - y)/dPhi.

@@ -220,19 +220,20 @@ struct TransferProduct::Qr {
             shear(M);
             frame = M.S * frame;
         } else {
-            frame = M.matrix() * frame;
+            frame = M.times(frame);
         }
         orthonormalise(rank);
     }
 
     /// Replaces the orthonormal frame Q by the orthonormal factor of (1 + rho g^T) Q = Q (1 + p a^T), rho = S^-1 r, p = Q^T rho,
     /// a = Q^T g. The Gram determinant of its first k columns is, written so that nothing cancels,
-    /// V_k^2 = (1 + sum_{j<=k} p_j a_j)^2 + (sum_{j<=k} a_j^2)(sum_{j>k} p_j^2): the lengths are V_k/V_{k-1}.
+    /// V_k^2 = (1 + sum_{j<=k} p_j a_j)^2 + (sum_{j<=k} a_j^2)(sum_{j>k} p_j^2): the lengths are V_k/V_{k-1}. The whole sum,
+    /// p^T a = rho^T g, does not depend on Q: it is r_2 - r_4, where no large entry is left to cancel.
     void shear(const Saltation& M) {
         const Eigen::Vector4d p = frame.transpose() * (M.S.inverse() * M.r), a = frame.transpose() * gap_gradient();
         double before = 1, dot = 1, head = 0;
         for (int k = 0; k < 4; ++k) {
-            dot += p(k) * a(k);
+            dot = k < 3 ? dot + p(k) * a(k) : 1 + M.r(1) - M.r(3);
             head += a(k) * a(k);
             const double volume = std::sqrt(dot * dot + head * p.tail(3 - k).squaredNorm());
             grow(k, volume / before);
@@ -252,7 +253,7 @@ struct TransferProduct::Compounds {
     Thinned thinned;
 
     void append(const Matrix4& J, const Saltation& M, double R, int rank) {
-        first.apply(M.matrix() * J);
+        first.apply(M.times(J));
         second.apply(compound<2>(M) * compound<2>(J));
         if (rank >= 3) third.apply(compound<3>(M) * compound<3>(J));
         if (rank >= 4) log_det += std::log(std::abs(J.determinant())) + 2 * std::log(R);
@@ -356,12 +357,9 @@ Lyapunov::Lyapunov(const Parameters& parameters, double tau_start, double tau_en
 void Lyapunov::on_stretch(const Stretch& stretch) {
     if (product_.impacts() == 0) return;  // the window has not begun
     const Transfer t = stretch.flow.transfer(stretch.duration);
-    if (stretch.stuck_side == 0) {
-        since_impact_ = free_transfer(t, stretch.duration) * since_impact_;
-    } else {
-        since_impact_ = stuck_transfer(t, parameters_.epsilon) * since_impact_;
-        rank_since_impact_ = 2;
-    }
+    const Matrix4 over = stretch.stuck_side == 0 ? free_transfer(t, stretch.duration) : stuck_transfer(t, parameters_.epsilon);
+    since_impact_ = stretches_++ == 0 ? over : over * since_impact_;
+    if (stretch.stuck_side != 0) rank_since_impact_ = 2;
 }
 
 void Lyapunov::on_impact(const Impact& impact) {
@@ -371,6 +369,7 @@ void Lyapunov::on_impact(const Impact& impact) {
     else
         product_.append(since_impact_, rank_since_impact_, saltation(parameters_, impact), impact.R, impact.tau);
     since_impact_.setIdentity();
+    stretches_ = 0;
     rank_since_impact_ = 4;
 }
 

@@ -107,6 +107,7 @@ private:
     const Parameters parameters_;
     const double tau_start_, tau_end_;
     Matrix4 since_impact_ = Matrix4::Identity();
+    int stretches_ = 0;  // since the impact
     int rank_since_impact_ = 4;
     TransferProduct product_;
 };

@@ -46,7 +46,7 @@ public:
     Outcome run() {
         if (side_ != 0) meet_wall_at_start();
         for (long events = 0; !end_; ++events) {
-            if (impacts_ >= limits_.max_impacts) end_ = End::max_impacts;
+            if (std::max(impacts_, others_) >= limits_.max_impacts) end_ = End::max_impacts;
             else if (limits_.stop && events % events_per_look == 0 && limits_.stop()) end_ = End::stopped;
             else fly();
         }
@@ -77,7 +77,7 @@ private:
         touches_.clear();
         // A contact whose tau rounds to tau_end belongs to the run.
         const auto contact = next_contact(free_, start, p_.b, std::min(rest + end_rounding_, free_.reach()), touches_);
-        for (const Touch& t : touches_) tell(&Observer::on_touch, clock_.tau() + t.s, t.side);
+        for (const Touch& t : touches_) touch(clock_.tau() + t.s, t.side);
         pass(free_, contact ? contact->s : limit, 0);
         if (contact) {
             lo_ = contact->lo;
@@ -85,7 +85,7 @@ private:
             side_ = contact->side;
             if (contact->relative_speed != 0) return strike(*contact);
             // The approach has lost its speed to rounding: tangent.
-            tell(&Observer::on_touch, clock_.tau(), side_);
+            touch(clock_.tau(), side_);
             relative_speed_ = 0;
             return leave_or_stick();
         }
@@ -93,6 +93,11 @@ private:
         y_ += y_dot_ * limit;
         lo_ = limit == free_.reach() ? free_.at(lo_, Flow::cells) : free_.after(lo_, limit);
         side_ = 0;
+    }
+
+    void touch(double tau, int side) {
+        ++others_;
+        tell(&Observer::on_touch, tau, side);
     }
 
     void strike(const Contact& contact) {
@@ -115,7 +120,7 @@ private:
             const double R = p_.restitution(side_);
             const double rest = 2 * std::abs(relative_speed_) / (press * (1 - R));  // geometric series of 2 w/press
             if (press > 0 && R < 1 && rest < chatter_rest && std::abs(press_rate) * rest < chatter_drift * press) stick(rest, 0);
-        } else if (press > 0 || (press == 0 && press_rate > 0)) {
+        } else if (press > 0 || (press == 0 && press_rate >= 0)) {  // all three zero: at rest together, for good
             stick(0, press == 0);
         } else {
             zeros_ = press < 0 ? 2 : 3;
@@ -125,6 +130,7 @@ private:
     /// The stuck phase up to its release. What is left of the chatter passes as a part of it: the centre of mass
     /// moves by the same law. `zeros` as in next_release.
     void stick(double chatter_left, int zeros) {
+        ++others_;
         if (!stuck_) stuck_ = Flow::stuck(p_);
         lo_.x_dot -= p_.epsilon / (1 + p_.epsilon) * relative_speed_;  // the velocity of the centre of mass
         tell(&Observer::on_stick, {std::min(clock_.tau() + chatter_left, limits_.tau_end), side_, relative_speed_ == 0 && last_side_ != side_ ? 0 : chatter_});
@@ -163,7 +169,7 @@ private:
     int zeros_ = 1;               // see FlightStart
     int last_side_ = 0, chatter_ = 0;  // side and length of the current run of impacts on one side
     std::vector<Touch> touches_;       // of the flight at hand
-    long impacts_ = 0;
+    long impacts_ = 0, others_ = 0;    // others: sticks and touches
     std::optional<End> end_;
 };
 

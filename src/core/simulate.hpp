@@ -44,7 +44,7 @@ public:
 /// What ends a run. Reaching any of them is a result, not an error.
 struct Limits {
     double tau_end = 1709;             ///< contacts at tau_end itself belong to the run
-    long max_impacts = 100000;
+    long max_impacts = 100000;         ///< and as many sticks and touches together
     std::function<bool()> stop;        ///< asked every few events; true ends the run
 };
 

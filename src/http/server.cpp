@@ -6,6 +6,7 @@
 #include <zlib.h>
 
 #include <atomic>
+#include <cctype>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
@@ -88,6 +89,38 @@ void send(const httplib::Request& request, httplib::Response& out, Response resp
     });
 }
 
+/// A percent-encoded part of a query.
+std::string decoded(std::string_view text) {
+    std::string out;
+    auto digit = [&](std::size_t i) { return i < text.size() && std::isxdigit(static_cast<unsigned char>(text[i])); };
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '%' && digit(i + 1) && digit(i + 2)) {
+            out += static_cast<char>(std::stoi(std::string(text.substr(i + 1, 2)), nullptr, 16));
+            i += 2;
+        } else {
+            out += text[i] == '+' ? ' ' : text[i];
+        }
+    }
+    return out;
+}
+
+/// The pairs of a query, each split at its first "="; the library splits at the last and would read b=1=2 as b = 2.
+std::vector<std::pair<std::string, std::string>> query_of(std::string_view target) {
+    std::vector<std::pair<std::string, std::string>> pairs;
+    const std::size_t mark = target.find('?');
+    if (mark == std::string_view::npos) return pairs;
+    std::string_view rest = target.substr(mark + 1);
+    rest = rest.substr(0, rest.find('#'));
+    while (!rest.empty()) {
+        const std::string_view part = rest.substr(0, rest.find('&'));
+        rest.remove_prefix(std::min(rest.size(), part.size() + 1));
+        if (part.empty()) continue;
+        const std::size_t equals = std::min(part.find('='), part.size());
+        pairs.emplace_back(decoded(part.substr(0, equals)), decoded(part.substr(std::min(part.size(), equals + 1))));
+    }
+    return pairs;
+}
+
 /// httplib keeps its listening socket to itself and its subclasses.
 class ListeningServer : public httplib::Server {
 public:
@@ -126,7 +159,7 @@ struct Server::Implementation {
     }
 
     static Request to_request(const httplib::Request& in, std::string body) {
-        return {in.method, in.path, {in.params.begin(), in.params.end()}, std::move(body)};
+        return {in.method, in.path, query_of(in.target), std::move(body)};
     }
 
     /// What must be refused before its body is read, or an empty status.
@@ -141,8 +174,11 @@ struct Server::Implementation {
         if (in.has_header("Transfer-Encoding")) return problem_response(411, "send the body with a Content-Length, not in chunks");
         if (in.has_header("Content-Encoding")) return problem_response(415, "send the body uncompressed");
         if (type.rfind("multipart/", 0) == 0) return problem_response(415, "send the JSON object as the body itself, not as multipart/form-data");
+        const std::string length = in.get_header_value("Content-Length");
+        if (in.get_header_value_count("Content-Length") > 1 || length.find_first_not_of("0123456789") != std::string::npos)
+            return problem_response(400, "the Content-Length must be one whole number");
         if (in.method == "POST" && !in.has_header("Content-Length")) return problem_response(411, "send a body with its Content-Length");
-        if (std::strtoull(in.get_header_value("Content-Length").c_str(), nullptr, 10) > options.payload_limit)
+        if (std::strtoull(length.c_str(), nullptr, 10) > options.payload_limit)
             return problem_response(413, "the body is larger than " + std::to_string(options.payload_limit) + " bytes");
         return Response{0, "", ""};
     }

@@ -164,11 +164,13 @@ TEST_CASE("a start on a wall: into it is an impact at once, away from it is a fl
     CHECK(run.impacts.empty());
 }
 
-TEST_CASE("a system at rest on its wall stays there without an event") {
+TEST_CASE("a system at rest on its wall stays there, as one stick without an impact") {
     Parameters p = table1(0.01, Damping::closed_form);
     p.G = 0;
     const Record run = record(p, {0, 0, 0, 0.01}, 1000);
     CHECK(run.impacts.empty());
+    CHECK(run.touches.empty());
+    CHECK(run.sticks.size() == 1);
     CHECK(run.outcome.state.y == doctest::Approx(0.01));
     CHECK(run.outcome.reason == End::tau_end);
 }

@@ -50,6 +50,11 @@ test("GET takes the same fields in its query and has an ETag", async () => {
   assert.equal(again.status, 304);
 });
 
+test("a query's value begins at its first = and is decoded", async () => {
+  for (const query of ["b=0.02=0.03", "b=0.02;tau_end=5", "damping=zz=closed_form", "b=", "=1"]) await problem(await fetch(`${service.url}/v1/simulate?${query}`), 422);
+  assert.equal((await (await fetch(`${service.url}/v1/simulate?b=%30.02&include=impacts%2Cexponents&tau_end=50`)).json()).parameters.b, 0.02);
+});
+
 test("presets, parameters, health and version answer", async () => {
   assert.ok((await (await fetch(`${service.url}/v1/presets`)).json()).presets.length > 20);
   assert.ok((await (await fetch(`${service.url}/v1/parameters`)).json()).fields.some((f) => f.name === "Omega"));
@@ -75,6 +80,11 @@ test("bodies that the service does not take are refused before they are read", a
   await problem(await post("{}", {"Content-Encoding": "gzip"}), 415);
   await problem(await post("{}", {"Content-Type": "multipart/form-data; boundary=x"}), 415);
   await problem(await fetch(`${service.url}/v1/presets`, {headers: {Range: "bytes=0-1,0-1"}}), 416);
+});
+
+test("a request's length must be one number", async () => {
+  assert.match(await raw("POST /v1/simulate HTTP/1.1\r\nHost: x\r\nContent-Length: 2\r\nContent-Length: 30\r\n\r\n{}", 500), /^HTTP\/1.1 400/);
+  assert.match(await raw("POST /v1/simulate HTTP/1.1\r\nHost: x\r\nContent-Length: abc\r\n\r\n{}", 500), /^HTTP\/1.1 400/);
 });
 
 test("an unread body is not taken for the next request", async () => {
