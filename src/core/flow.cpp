@@ -8,8 +8,8 @@ namespace vines {
 
 namespace {
 
-// 40 cells a period (2 pi/h) keep the empty-cell proof of guard.hpp sharp: its margin M2 h^2/8 is .3 % of the amplitude.
-constexpr double cells_per_period = 40;
+// 42 cells a period (2 pi/h) keep the empty-cell proof of guard.hpp sharp: its margin M2 h^2/8 is .3 % of the amplitude.
+constexpr double cells_per_period = 42;
 
 }  // namespace
 
@@ -87,7 +87,7 @@ Oscillation Flow::at(const Oscillation& o, int k) const {
 }
 
 Oscillation Flow::turned(const Oscillation& o, double d) const {
-    // cos and sin of 0 <= a <= 2 pi/40 by their series: the first terms left out are below 1e-18.
+    // cos and sin of 0 <= a <= 2 pi/42 by their series: the first terms left out are below 1e-18.
     const double a = Omega_ * d, q = a * a;
     const double cos = 1 + q * (-1.0 / 2 + q * (1.0 / 24 + q * (-1.0 / 720 + q * (1.0 / 40320 + q * (-1.0 / 3628800)))));
     const double sin = a * (1 + q * (-1.0 / 6 + q * (1.0 / 120 + q * (-1.0 / 5040 + q * (1.0 / 362880 + q * (-1.0 / 39916800))))));

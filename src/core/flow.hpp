@@ -29,7 +29,7 @@ struct Transfer {
 /// x'' = -stiffness x - damping x' + forcing sin(theta), theta' = Omega.
 class Flow {
 public:
-    static constexpr int cells = 128;    ///< the grid reaches 3.2 periods of the faster of forcing and oscillator
+    static constexpr int cells = 128;    ///< the grid reaches 3 periods of the faster of forcing and oscillator
     static constexpr int degree = 13;    ///< of the Taylor series within a cell: its remainder is below 1e-20 of the motion
     static constexpr int block = 4;      ///< grid points that gaps() evaluates at once
     using Series = Eigen::Array<double, degree + 1, 1>;

@@ -23,16 +23,19 @@ Windows windows(double b, int count, double length, double start) {
     const double from = lyapunov.product().start_tau();
     double sum = 0, squares = 0, log_before = 0, tau_before = from;
     std::size_t i = 0;
+    int n = 0;
     for (int k = 1; k <= count; ++k) {
         while (i + 1 < h.tau.size() && h.tau[i + 1] <= from + k * length) ++i;
+        if (h.tau[i] <= tau_before) continue;  // a sparse response may fly through a whole window: it joins the next one
+        ++n;
         const double log = h.lambda[i][0] * (h.tau[i] - from), mean = (log - log_before) / (h.tau[i] - tau_before);
         log_before = log;
         tau_before = h.tau[i];
         sum += mean;
         squares += mean * mean;
     }
-    const double mean = sum / count, deviation = std::sqrt(squares / count - mean * mean);
-    return {mean, deviation, deviation / std::sqrt(count)};
+    const double mean = sum / n, deviation = std::sqrt(squares / n - mean * mean);
+    return {mean, deviation, deviation / std::sqrt(n)};
 }
 
 }  // namespace
