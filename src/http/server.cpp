@@ -162,6 +162,8 @@ struct Server::Implementation {
         return {in.method, in.path, query_of(in.target), std::move(body)};
     }
 
+    Response too_large() const { return problem_response(413, "the body is larger than " + std::to_string(options.payload_limit) + " bytes"); }
+
     /// What must be refused before its body is read, or an empty status.
     Response refusal(const httplib::Request& in) const {
         const std::string type = in.get_header_value("Content-Type");
@@ -178,8 +180,9 @@ struct Server::Implementation {
         if (in.get_header_value_count("Content-Length") > 1 || length.find_first_not_of("0123456789") != std::string::npos)
             return problem_response(400, "the Content-Length must be one whole number");
         if (in.method == "POST" && !in.has_header("Content-Length")) return problem_response(411, "send a body with its Content-Length");
-        if (std::strtoull(length.c_str(), nullptr, 10) > options.payload_limit)
-            return problem_response(413, "the body is larger than " + std::to_string(options.payload_limit) + " bytes");
+        // One that is moderately too large is read and dropped first (post): closing on it at once would reset the connection,
+        // and some clients would never see the answer.
+        if (std::strtoull(length.c_str(), nullptr, 10) > 64 * options.payload_limit) return too_large();
         return Response{0, "", ""};
     }
 
@@ -212,6 +215,7 @@ struct Server::Implementation {
             body.append(data, size);
             return true;
         });
+        if (out.status == 413) return send(in, out, too_large(), true);
         if (!complete) return send(in, out, problem_response(400, "the body ended before its Content-Length"), true);
         send(in, out, find("POST", in.path)->answer(to_request(in, std::move(body))));
     }
