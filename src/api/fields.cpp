@@ -64,9 +64,12 @@ std::vector<Field> make_simulate_fields() {
         number("tau_end", "run", one, "tau", "how long to run; not together with cycles", 1709, "", 1e-6, longest_run),
         number("cycles", "run", one, "", "how many forcing cycles of 2 pi/Omega to run", nullptr, "from tau_end", 1e-6, 1e6),
         {"window", FieldType::interval, "run", one, "[tau_s, tau_e]",
-         "the exponents are taken from the first impact at or after tau_s to the last at or before tau_e", nullptr, "the whole run", {}, {}, {}},
+         "the exponents are taken from the first impact at or after tau_s to the last at or before tau_e; regime, energy, section, eigenvalues and "
+         "manifold are those of the window, too", nullptr, "the whole run", {}, {}, {}},
+        {"windows", FieldType::intervals, "run", one, "[[tau_s, tau_e], ...]", "more windows, for which the exponents are given without histories",
+         Json::array(), "", {}, {}, {}},
         {"include", FieldType::choices, "output", "", "", "parts of the answer", Json::array({"series", "impacts", "exponents"}), "", {}, {},
-         {"series", "impacts", "exponents"}},
+         {"series", "impacts", "exponents", "eigenvalues", "matrices", "section", "energy", "regime", "manifold"}},
         {"exponents", FieldType::choices, "output", "", "", "estimators of the Lyapunov exponents: qr (Benettin), eigenvalues (33), raw_product "
          "((33) unscaled in double precision, as in the paper)",
          Json::array({"qr", "eigenvalues", "raw_product"}), "", {}, {}, {"qr", "eigenvalues", "raw_product"}},
@@ -76,6 +79,18 @@ std::vector<Field> make_simulate_fields() {
     };
 }
 
+std::vector<Field> make_manifold_fields() {
+    std::vector<Field> fields;
+    for (const Field& f : simulate_fields())
+        if (f.group == "system" || f.group == "reduced" || f.group == "SI") fields.push_back(f);
+    fields.push_back(number("V_max", "output", "m per unit of tau", "V", "largest speed of the free mass on the unstable branch beyond the symmetry breaking",
+                            nullptr, "twice the speed of the symmetry breaking", 1e-12, 1e6));
+    fields.push_back(integer("points", "points of each branch", 200, 2, 100000));
+    return fields;
+}
+
+constexpr std::size_t most_windows = 1000;
+
 const char* type_name(FieldType type) {
     switch (type) {
         case FieldType::number: return "number";
@@ -83,6 +98,7 @@ const char* type_name(FieldType type) {
         case FieldType::choice: return "choice";
         case FieldType::choices: return "choices";
         case FieldType::interval: return "interval";
+        case FieldType::intervals: return "intervals";
     }
     return "";
 }
@@ -145,6 +161,11 @@ void check_field(const Field& f, const Json& value, std::vector<FieldError>& err
     };
     auto range_text = [&] { return "must lie in [" + Json(*f.minimum).dump() + ", " + Json(*f.maximum).dump() + "]" +
                                    (f.unit.empty() || f.unit == "dimensionless" ? "" : " " + f.unit); };
+    auto check_interval = [&](const std::string& where, const Json& v) {
+        if (!v.is_array() || v.size() != 2 || !v[0].is_number() || !v[1].is_number()) return fault(where, v, "must be two numbers, [from, to]");
+        if (!(v[0].get<double>() >= 0)) fault(where + "/0", v[0], "must not begin before 0");
+        if (!(v[0].get<double>() < v[1].get<double>())) fault(where, v, "must begin before it ends");
+    };
     switch (f.type) {
         case FieldType::number:
         case FieldType::integer: {
@@ -166,37 +187,13 @@ void check_field(const Field& f, const Json& value, std::vector<FieldError>& err
                     fault(pointer(std::to_string(i)), value[i], "may hold " + list(f.choices));
             return;
         case FieldType::interval:
-            if (!value.is_array() || value.size() != 2 || !value[0].is_number() || !value[1].is_number())
-                return fault("", value, "must be two numbers, [from, to]");
-            if (!(value[0].get<double>() >= 0)) fault("/0", value[0], "must not begin before 0");
-            if (!(value[0].get<double>() < value[1].get<double>())) fault("", value, "must begin before it ends");
+            return check_interval("", value);
+        case FieldType::intervals:
+            if (!value.is_array()) return fault("", value, "must be an array of intervals, [[from, to], ...]");
+            if (value.size() > most_windows) return fault("", value.size(), "may hold " + std::to_string(most_windows) + " intervals");
+            for (std::size_t i = 0; i < value.size() && errors.size() < most_errors; ++i) check_interval(pointer(std::to_string(i)), value[i]);
             return;
     }
-}
-
-/// The number that the whole of a text stands for, or the text.
-Json number_or_text(const std::string& text) {
-    double value;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return text;
-    return value;
-}
-
-std::vector<std::string> split(const std::string& text) {
-    std::vector<std::string> parts;
-    for (std::size_t from = 0, comma; !text.empty(); from = comma + 1) {
-        comma = text.find(',', from);
-        parts.push_back(text.substr(from, comma - from));
-        if (comma == std::string::npos) break;
-    }
-    return parts;
-}
-
-}  // namespace
-
-const std::vector<Field>& simulate_fields() {
-    static const std::vector<Field> fields = make_simulate_fields();
-    return fields;
 }
 
 Json describe(const std::vector<Field>& fields) {
@@ -209,22 +206,67 @@ Json describe(const std::vector<Field>& fields) {
         if (!f.choices.empty()) entry["choices"] = f.choices;
         list.push_back(std::move(entry));
     }
-    return {{"fields", std::move(list)}};
+    return list;
 }
+
+/// The number that the whole of a text stands for, or the text.
+Json number_or_text(const std::string& text) {
+    double value;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return text;
+    return value;
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+    std::vector<std::string> parts;
+    for (std::size_t from = 0, at; !text.empty(); from = at + 1) {
+        at = text.find(separator, from);
+        parts.push_back(text.substr(from, at - from));
+        if (at == std::string::npos) break;
+    }
+    return parts;
+}
+
+/// The value that a query's text stands for, by the type of its field.
+Json from_text(FieldType type, const std::string& text) {
+    Json array = Json::array();
+    switch (type) {
+        case FieldType::number:
+        case FieldType::integer: return number_or_text(text);
+        case FieldType::choice: return text;
+        case FieldType::choices:
+            for (const std::string& part : split(text, ',')) array.push_back(part);
+            return array;
+        case FieldType::interval:
+            for (const std::string& part : split(text, ',')) array.push_back(number_or_text(part));
+            return array;
+        case FieldType::intervals:
+            for (const std::string& part : split(text, ';')) array.push_back(from_text(FieldType::interval, part));
+            return array;
+    }
+    return nullptr;
+}
+
+}  // namespace
+
+const std::vector<Field>& simulate_fields() {
+    static const std::vector<Field> fields = make_simulate_fields();
+    return fields;
+}
+
+const std::vector<Field>& manifold_fields() {
+    static const std::vector<Field> fields = make_manifold_fields();
+    return fields;
+}
+
+Json describe_fields() { return {{"fields", describe(simulate_fields())}, {"manifold_fields", describe(manifold_fields())}}; }
 
 Json from_query(const std::vector<Field>& fields, const std::vector<std::pair<std::string, std::string>>& query) {
     Json object = Json::object();
     for (const auto& [name, text] : query) {
         if (object.contains(name)) throw Problem(400, "the name \"" + name + "\" comes twice in the query");
         const Field* f = find(fields, name);
-        if (!f || f->type == FieldType::choice) {
-            object[name] = text;
-        } else if (f->type == FieldType::number || f->type == FieldType::integer) {
-            object[name] = number_or_text(text);
-        } else {
-            Json& array = object[name] = Json::array();
-            for (const std::string& part : split(text)) array.push_back(f->type == FieldType::interval ? number_or_text(part) : Json(part));
-        }
+        object[name] = f ? from_text(f->type, text) : Json(text);
     }
     return object;
 }

@@ -14,7 +14,8 @@ enum class FieldType {
     integer,
     choice,   ///< one of the choices
     choices,  ///< an array of them (in a query: separated by commas)
-    interval  ///< [from, to] (in a query: separated by a comma)
+    interval, ///< [from, to] (in a query: separated by a comma)
+    intervals ///< an array of them (in a query: separated by semicolons)
 };
 
 struct Field {
@@ -33,8 +34,11 @@ inline constexpr double longest_run = 1e7;
 /// The fields of /v1/simulate, in the order in which a form shows them.
 const std::vector<Field>& simulate_fields();
 
-/// The answer of GET /v1/parameters.
-Json describe(const std::vector<Field>& fields);
+/// The fields of /v1/manifold.
+const std::vector<Field>& manifold_fields();
+
+/// The answer of GET /v1/parameters: the fields of /v1/simulate, and those of the other routes.
+Json describe_fields();
 
 /// The object that a query string's pairs stand for, typed by the table; what cannot be read as its field's type stays text
 /// and is found by `check`. Problem 400 for a name that comes twice.

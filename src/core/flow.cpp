@@ -156,4 +156,47 @@ Flow::Bounds Flow::bounds(const Oscillation& o) const {
     return {x, x_ddot, stiffness_ * speed + damping_ * x_ddot + std::abs(forcing_) * Omega_};
 }
 
+namespace {
+
+/// Where x' = 0 in (0, d), between two states of opposite x': Newton's method on the series, kept inside.
+double turning_point(const Flow::Series& series, double d, double x_dot, double x_dot_end) {
+    double s = d * x_dot / (x_dot - x_dot_end);
+    for (int step = 0; step < 3; ++step) {
+        const SeriesValue at = value_at(series, s);
+        if (at.half_x_ddot != 0) s = std::clamp(s - at.x_dot / (2 * at.half_x_ddot), 0.0, d);
+    }
+    return s;
+}
+
+}  // namespace
+
+Excursion excursion(const Flow& flow, Oscillation o, double duration) {
+    Excursion e{std::abs(o.x), 0};
+    double last = o.x;
+    auto visit = [&](double x) {
+        e.peak = std::max(e.peak, std::abs(x));
+        e.path += std::abs(x - last);
+        last = x;
+    };
+    // Within a cell x' changes its sign once, or so little that rounding cannot tell.
+    while (duration > 0) {
+        const double part = std::min(duration, flow.reach());
+        const int cells = std::min(static_cast<int>(part / flow.cell()), Flow::cells);
+        Oscillation left = o;
+        for (int k = 1; k <= cells + 1; ++k) {
+            const double d = k <= cells ? flow.cell() : std::max(0.0, part - cells * flow.cell());
+            const Oscillation right = k <= cells ? flow.at(o, k) : flow.along(flow.series(left), left, d);
+            if (left.x_dot * right.x_dot < 0) {
+                const Flow::Series series = flow.series(left);
+                visit(value_at(series, turning_point(series, d, left.x_dot, right.x_dot)).x);
+            }
+            left = right;
+        }
+        visit(left.x);
+        o = left;
+        duration -= part;
+    }
+    return e;
+}
+
 }  // namespace vines

@@ -89,4 +89,10 @@ struct SeriesValue {
 };
 SeriesValue value_at(const Flow::Series& series, double d);
 
+/// How far x goes over 0 <= s <= duration: its largest modulus, and the length of its path up and down.
+struct Excursion {
+    double peak = 0, path = 0;
+};
+Excursion excursion(const Flow& flow, Oscillation start, double duration);
+
 }  // namespace vines

@@ -1,6 +1,8 @@
 #include "core/impact.hpp"
 
+#include <Eigen/LU>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace vines {
@@ -45,6 +47,14 @@ Matrix4 Saltation::times(const Matrix4& d) const {
         out(3, k) = d(3, k) + r(3) * gap;
     }
     return out;
+}
+
+double Saltation::condition(double R) const {
+    // M^-1 = S^-1 - S^-1 r g^T S^-1/(1 + g^T S^-1 r). S leaves positions alone and g sees nothing else, so that
+    // g^T S^-1 = g^T and 1 + g^T r = -R: no large entry of r is left to cancel.
+    if (R == 0) return std::numeric_limits<double>::infinity();
+    const Matrix4 S_inverse = S.inverse();
+    return matrix().norm() * (S_inverse + S_inverse * r * gap_gradient().transpose() / R).norm();
 }
 
 Saltation saltation(const Parameters& p, const Impact& i) {

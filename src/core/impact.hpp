@@ -41,6 +41,9 @@ struct Saltation {
 
     Matrix4 matrix() const;
     Matrix4 times(const Matrix4& deviations) const;  ///< matrix() * deviations, with a third of the multiplications
+    /// Condition number in the Frobenius norm: by how much M may magnify a relative error. It grows as
+    /// (x''/(x'- - y'-))^2 towards grazing; infinite for R = 0.
+    double condition(double R) const;
 };
 
 /// The vector g of eq. (23): d(x - y)/dPhi.

@@ -1,11 +1,11 @@
 #include "core/lyapunov.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "core/compound.hpp"
 
 namespace vines {
 
@@ -59,81 +59,6 @@ const ExponentHistory& none() {
     return empty;
 }
 
-/// Rows (and columns) of the k-th compound of a 4x4 matrix: the k-subsets of its indices.
-template <int k>
-constexpr auto subsets() {
-    if constexpr (k == 2) return std::array<std::array<int, 2>, 6>{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
-    else return std::array<std::array<int, 3>, 4>{{{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}}};
-}
-
-template <int k>
-using Compound = Eigen::Matrix<double, k == 2 ? 6 : 4, k == 2 ? 6 : 4>;
-
-/// The matrix of all k x k minors: compound(A B) = compound(A) compound(B), and its eigenvalues are the products of k
-/// eigenvalues. `minor` gives the minor of the rows and columns given.
-template <int k, class Minor>
-Compound<k> compound(Minor minor) {
-    constexpr auto sets = subsets<k>();
-    Compound<k> c;
-    for (std::size_t i = 0; i < sets.size(); ++i)
-        for (std::size_t j = 0; j < sets.size(); ++j) c(i, j) = minor(sets[i], sets[j]);
-    return c;
-}
-
-template <int k>
-Compound<k> compound(const Matrix4& m) {
-    return compound<k>([&](auto rows, auto columns) {
-        Eigen::Matrix<double, k, k> part;
-        for (int i = 0; i < k; ++i)
-            for (int j = 0; j < k; ++j) part(i, j) = m(rows[i], columns[j]);
-        return part.determinant();
-    });
-}
-
-/// Minors of S + r g^T. A determinant is linear in each column and vanishes with two columns along r, so no product of two
-/// entries of r occurs: with those, entries of 1e8 near grazing would leave nothing but rounding.
-template <int k>
-Compound<k> compound(const Saltation& m) {
-    const Eigen::Vector4d g = gap_gradient();
-    return compound<k>([&](auto rows, auto columns) {
-        Eigen::Matrix<double, k, k> S;
-        Eigen::Matrix<double, k, 1> r;
-        for (int i = 0; i < k; ++i) {
-            r(i) = m.r(rows[i]);
-            for (int j = 0; j < k; ++j) S(i, j) = m.S(rows[i], columns[j]);
-        }
-        double minor = S.determinant();
-        for (int j = 0; j < k; ++j) {
-            Eigen::Matrix<double, k, k> replaced = S;
-            replaced.col(j) = r;
-            minor += g(columns[j]) * replaced.determinant();
-        }
-        return minor;
-    });
-}
-
-/// A product of matrices as a matrix of norm 1 and the logarithm of its scale.
-template <int n>
-struct ScaledProduct {
-    Eigen::Matrix<double, n, n> matrix = Eigen::Matrix<double, n, n>::Identity();
-    double log_scale = 0;
-
-    void apply(const Eigen::Matrix<double, n, n>& left) {
-        matrix = left * matrix;
-        const double norm = matrix.norm();
-        if (norm == 0) return;
-        matrix /= norm;
-        log_scale += std::log(norm);
-    }
-    /// ln of the largest modulus of an eigenvalue.
-    double log_radius() const {
-        if (!matrix.allFinite()) return nan;
-        const Eigen::EigenSolver<Eigen::Matrix<double, n, n>> solver(matrix, false);
-        if (solver.info() != Eigen::Success) return nan;
-        return log_scale + std::log(solver.eigenvalues().cwiseAbs().maxCoeff());
-    }
-};
-
 }  // namespace
 
 Status status_of(double exponent) {
@@ -175,6 +100,12 @@ Exponents standard_error(const ExponentHistory& h, double start) {
         error[k] = std::isfinite(sum) ? std::sqrt(squares / (n - 1) / n) : nan;
     }
     return error;
+}
+
+Verdict verdict_of(double lambda1, double error) {
+    if (lambda1 > verdict_sigmas * error) return Verdict::chaotic;
+    if (lambda1 < -verdict_sigmas * error) return Verdict::regular;
+    return Verdict::not_decided;
 }
 
 struct TransferProduct::Qr {
@@ -247,22 +178,8 @@ struct TransferProduct::Qr {
 struct TransferProduct::Compounds {
     explicit Compounds(std::size_t history) : thinned(std::min<std::size_t>(history, 2048)) {}
 
-    ScaledProduct<4> first, third;
-    ScaledProduct<6> second;
-    double log_det = 0;
+    CompoundProduct product;
     Thinned thinned;
-
-    void append(const Matrix4& J, const Saltation& M, double R, int rank) {
-        first.apply(M.times(J));
-        second.apply(compound<2>(M) * compound<2>(J));
-        if (rank >= 3) third.apply(compound<3>(M) * compound<3>(J));
-        if (rank >= 4) log_det += std::log(std::abs(J.determinant())) + 2 * std::log(R);
-    }
-
-    Exponents exponents(int rank, double T) const {
-        const double one = first.log_radius(), two = second.log_radius(), three = rank >= 3 ? third.log_radius() : 0;
-        return per_time({one, two - one, three - two, log_det - three}, rank, T);
-    }
 };
 
 struct TransferProduct::Raw {
@@ -309,7 +226,7 @@ void TransferProduct::append(const Matrix4& J, int rank, const Saltation& M, dou
         record(*qr_, [&] { return qr(); });
     }
     if (compounds_) {
-        compounds_->append(J, M, R, rank_);
+        compounds_->product.append(J, M, R, rank_);
         record(*compounds_, [&] { return eigenvalues(); });
     }
     if (raw_) {
@@ -319,7 +236,7 @@ void TransferProduct::append(const Matrix4& J, int rank, const Saltation& M, dou
 }
 
 Exponents TransferProduct::qr() const { return qr_ ? per_time(qr_->logarithms(), rank_, end_ - start_) : no_exponents; }
-Exponents TransferProduct::eigenvalues() const { return compounds_ ? compounds_->exponents(rank_, end_ - start_) : no_exponents; }
+Exponents TransferProduct::eigenvalues() const { return compounds_ ? per_time(compounds_->product.log_moduli(rank_), rank_, end_ - start_) : no_exponents; }
 Exponents TransferProduct::raw_product() const { return raw_ ? raw_->exponents(end_ - start_) : no_exponents; }
 const ExponentHistory& TransferProduct::qr_history() const { return qr_ ? qr_->thinned.history() : none(); }
 const ExponentHistory& TransferProduct::eigenvalues_history() const { return compounds_ ? compounds_->thinned.history() : none(); }
@@ -332,34 +249,11 @@ double TransferProduct::sum_rule_residual(double zeta) const {
     return std::abs(sum + 2 * zeta - log_det_impacts_ / (end_ - start_));
 }
 
-Matrix4 free_transfer(const Transfer& t, double s) {
-    Matrix4 J;
-    J << t.a11, t.a12, 0, 0,
-         t.a21, t.a22, 0, 0,
-         0, 0, 1, 0,
-         0, 0, s, 1;
-    return J;
-}
-
-Matrix4 stuck_transfer(const Transfer& t, double epsilon) {
-    const double nu = 1 / (1 + epsilon), mu = epsilon * nu;
-    Eigen::Matrix2d A;
-    A << t.a11, t.a12, t.a21, t.a22;
-    Matrix4 K;
-    K << nu * A, mu * A,
-         nu * A, mu * A;
-    return K;
-}
-
 Lyapunov::Lyapunov(const Parameters& parameters, double tau_start, double tau_end, const ExponentOptions& options)
     : parameters_(parameters), tau_start_(tau_start), tau_end_(tau_end), product_(options) {}
 
 void Lyapunov::on_stretch(const Stretch& stretch) {
-    if (product_.impacts() == 0) return;  // the window has not begun
-    const Transfer t = stretch.flow.transfer(stretch.duration);
-    const Matrix4 over = stretch.stuck_side == 0 ? free_transfer(t, stretch.duration) : stuck_transfer(t, parameters_.epsilon);
-    since_impact_ = stretches_++ == 0 ? over : over * since_impact_;
-    if (stretch.stuck_side != 0) rank_since_impact_ = 2;
+    if (product_.impacts() > 0) since_impact_.extend(stretch, parameters_.epsilon);  // the window has begun
 }
 
 void Lyapunov::on_impact(const Impact& impact) {
@@ -367,10 +261,8 @@ void Lyapunov::on_impact(const Impact& impact) {
     if (product_.impacts() == 0)
         product_.start(impact.tau);
     else
-        product_.append(since_impact_, rank_since_impact_, saltation(parameters_, impact), impact.R, impact.tau);
-    since_impact_.setIdentity();
-    stretches_ = 0;
-    rank_since_impact_ = 4;
+        product_.append(since_impact_.matrix(), since_impact_.rank(), saltation(parameters_, impact), impact.R, impact.tau);
+    since_impact_.reset();
 }
 
 }  // namespace vines

@@ -20,7 +20,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/simulate.hpp"
+#include "core/transfer.hpp"
 
 namespace vines {
 
@@ -39,6 +39,12 @@ struct ExponentHistory {
 /// Standard errors of the four exponents from the means of up to 20 blocks of equal length; NaN with fewer than 8 blocks of
 /// at least 4 entries of the history each, and where there is no number.
 Exponents standard_error(const ExponentHistory& history, double start);
+
+/// What a finite run says about the sign of lambda1. chaotic or regular: at least `verdict_sigmas` standard errors from zero.
+enum class Verdict { chaotic, regular, not_decided };
+inline constexpr double verdict_sigmas = 3;
+/// `error` as of standard_error(); NaN: not decided.
+Verdict verdict_of(double lambda1, double error);
 
 /// Which estimators to run, and how many entries their histories may have (at least 256). Longer ones are thinned to
 /// every second, fourth, ... impact; `eigenvalues` keeps at most 2048, for each costs three eigenvalue problems.
@@ -88,11 +94,6 @@ private:
 /// The exponent that rounding puts in place of a smaller one in raw_product: lambda1 - ln(1/2.2e-16)/T.
 double rounding_floor(double lambda1, double T);
 
-/// J of eq. (19) as a 4x4 matrix.
-Matrix4 free_transfer(const Transfer& transfer, double duration);
-/// The projection onto the centre of mass, and its motion while both masses stick together.
-Matrix4 stuck_transfer(const Transfer& transfer, double epsilon);
-
 /// Feeds the matrices of a run into a product, from the first impact at or after tau_start to the last at or before tau_end.
 class Lyapunov : public Observer {
 public:
@@ -106,9 +107,7 @@ public:
 private:
     const Parameters parameters_;
     const double tau_start_, tau_end_;
-    Matrix4 since_impact_ = Matrix4::Identity();
-    int stretches_ = 0;  // since the impact
-    int rank_since_impact_ = 4;
+    Passage since_impact_;
     TransferProduct product_;
 };
 

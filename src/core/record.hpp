@@ -1,6 +1,7 @@
 // Observers that write down what a run does: the sampled motion, the impacts, the stuck phases.
 #pragma once
 
+#include <numbers>
 #include <vector>
 
 #include "core/simulate.hpp"
@@ -20,6 +21,20 @@ private:
     void add(double tau, const State& state);
     double step_;
     long next_ = 0;
+};
+
+/// The states at one phase of the forcing: at tau = first, first + 1, ... times 2 pi/Omega (theta = phi).
+class StroboscopicRecord : public Observer {
+public:
+    explicit StroboscopicRecord(const Parameters& parameters, long first = 0) : cycle_(2 * std::numbers::pi / parameters.Omega), first_(first) {}
+    void on_stretch(const Stretch&) override;
+
+    double tau(std::size_t k) const { return (first_ + static_cast<long>(k)) * cycle_; }
+    std::vector<State> states;  ///< the k-th at tau(k)
+
+private:
+    const double cycle_;
+    const long first_;
 };
 
 class ImpactRecord : public Observer {

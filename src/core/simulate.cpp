@@ -21,6 +21,7 @@ constexpr long events_per_look = 64;
 /// Time as a sum of two doubles, so that adding a million small steps loses nothing.
 class Clock {
 public:
+    explicit Clock(double tau) : high_(tau) {}
     double tau() const { return high_ + low_; }
     double until(double end) const { return (end - high_) - low_; }
     void advance(double s) {
@@ -30,14 +31,15 @@ public:
     }
 
 private:
-    double high_ = 0, low_ = 0;
+    double high_, low_ = 0;
 };
 
 class Run {
 public:
     Run(const Parameters& p, const State& start, const Limits& limits, std::span<Observer* const> observers)
-        : p_(p), limits_(limits), observers_(observers), free_(Flow::free(p)),
-          lo_{start.x, start.x_dot, std::sin(p.phi()), std::cos(p.phi())}, y_(start.y), y_dot_(start.y_dot) {
+        : p_(p), limits_(limits), observers_(observers), free_(Flow::free(p)), clock_(limits.tau_start), y_(start.y), y_dot_(start.y_dot) {
+        const double theta = p.Omega * limits.tau_start + p.phi();
+        lo_ = {start.x, start.x_dot, std::sin(theta), std::cos(theta)};
         side_ = wall_of(start, p.b);
         end_rounding_ = 0.5 * (limits.tau_end - std::nextafter(limits.tau_end, 0));
         relative_speed_ = start.x_dot - start.y_dot;

@@ -46,6 +46,7 @@ struct Limits {
     double tau_end = 1709;             ///< contacts at tau_end itself belong to the run
     long max_impacts = 100000;         ///< and as many sticks and touches together
     std::function<bool()> stop;        ///< asked every few events; true ends the run
+    double tau_start = 0;              ///< moment of the start: it sets the phase of the forcing
 };
 
 enum class End { tau_end, max_impacts, stopped };

@@ -44,6 +44,13 @@ Response simulate(const Json& object, const RouteOptions& options, ComputeGate& 
     return json_response(api::simulate_answer(request, [deadline] { return Clock::now() > deadline; }));
 }
 
+Response manifold(const Json& object) { return json_response(api::manifold_answer(api::read_manifold_request(object))); }
+
+Json body_of(const Request& r) {
+    if (!r.query.empty()) throw Problem(400, "a POST takes its fields from the body; the query must be empty");
+    return api::parse_object(r.body);
+}
+
 /// A route whose answer may throw a Problem.
 Route route(std::string method, std::string path, std::function<Response(const Request&)> answer) {
     return {std::move(method), std::move(path), [answer = std::move(answer)](const Request& request) {
@@ -73,11 +80,12 @@ std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate) {
         return simulate(api::from_query(api::simulate_fields(), r.query), options, gate);
     }));
     routes.push_back(route("POST", "/v1/simulate", [options, &gate](const Request& r) {
-        if (!r.query.empty()) throw Problem(400, "a POST takes its fields from the body; the query must be empty");
-        return simulate(api::parse_object(r.body), options, gate);
+        return simulate(body_of(r), options, gate);
     }));
+    routes.push_back(route("GET", "/v1/manifold", [](const Request& r) { return manifold(api::from_query(api::manifold_fields(), r.query)); }));
+    routes.push_back(route("POST", "/v1/manifold", [](const Request& r) { return manifold(body_of(r)); }));
     routes.push_back(route("GET", "/v1/presets", [](const Request&) { return json_response(api::describe_presets()); }));
-    routes.push_back(route("GET", "/v1/parameters", [](const Request&) { return json_response(api::describe(api::simulate_fields())); }));
+    routes.push_back(route("GET", "/v1/parameters", [](const Request&) { return json_response(api::describe_fields()); }));
     routes.push_back(route("GET", "/healthz", [](const Request&) { return json_response({{"status", "ok"}}); }));
     routes.push_back(route("GET", "/version", [](const Request&) { return json_response({{"name", "vines"}, {"version", api::version()}}); }));
     for (const Asset& asset : assets()) {

@@ -1,0 +1,42 @@
+// Results of the core as the parts of an answer: columns, and null with a word beside it for a number that does not exist.
+#pragma once
+
+#include "api/request.hpp"
+#include "core/energy.hpp"
+#include "core/manifold.hpp"
+#include "core/regime.hpp"
+
+namespace vines::api {
+
+using Warnings = std::vector<std::string>;
+
+Json finite_or_null(double value);
+
+/// The resolved parameters of a system without what belongs to a run, and what follows from them.
+Json describe_system(const System& system);
+Json describe_derived(const System& system);
+
+Json describe_series(SeriesRecord&& series);
+/// `typical_speed`: what relative_speed_ratio is measured by.
+Json describe_impacts(const std::vector<Impact>& impacts, double epsilon, double typical_speed);
+Json describe_sticks(const std::vector<StickRecord::Stick>& sticks);
+Json describe_touches(const std::vector<TouchRecord::Touch>& touches);
+
+/// The exponents of one window. `histories` adds those of each estimator, and warnings are about it then.
+Json describe_exponents(const TransferProduct& product, const ExponentOptions& estimators, double zeta, bool histories, Warnings& warnings);
+
+/// Moduli of the eigenvalues of J, M, T at each impact, and the matrices themselves.
+Json describe_eigenvalues(const std::vector<ImpactTransfer>& transfers);
+Json describe_matrices(const std::vector<ImpactTransfer>& transfers);
+
+/// Sections at impact and at whole forcing cycles, of what lies in the window.
+Json describe_section(const std::vector<Impact>& impacts, const StroboscopicRecord& stroboscopic, const Interval& window);
+
+/// `window`: what of it the run has reached.
+Json describe_energy(const Parameters& parameters, const State& start, const Energy& energy, const Decay& decay, const Interval& window);
+Json describe_regime(const Regime& regime, Warnings& warnings);
+
+/// The manifold with `points` points on each branch, up to V_max (0: twice the speed of the symmetry breaking).
+Json describe_manifold(const Parameters& parameters, double V_max, std::size_t points);
+
+}  // namespace vines::api

@@ -1,0 +1,207 @@
+#include "api/request.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numbers>
+
+#include "api/presets.hpp"
+
+namespace vines::api {
+
+namespace {
+
+const std::vector<std::string> reduced_names = {"epsilon", "lambda", "G", "Omega"};
+const std::vector<std::string> si_names = {"m1", "c1", "k1", "m2", "F", "f"};
+// Which SI fields each reduced one follows from.
+const std::map<std::string, std::vector<std::string>> si_origin = {
+    {"epsilon", {"m2", "m1"}}, {"lambda", {"c1", "k1", "m1", "m2"}}, {"G", {"F", "m1", "m2"}}, {"Omega", {"f", "k1", "m1"}}};
+
+/// Fields that exclude each other: giving one of each side is a fault, and one of the request's own removes the preset's.
+struct Alternative {
+    std::vector<std::string> one, other;
+    std::string detail;
+};
+const std::vector<Alternative>& alternatives() {
+    static const std::vector<Alternative> list = {
+        {reduced_names, si_names, "reduced (epsilon, lambda, G, Omega) and SI (m1, c1, k1, m2, F, f) fields cannot be mixed"},
+        {{"R"}, {"R_plus", "R_minus"}, "R stands for both walls and cannot be mixed with R_plus or R_minus"},
+        {{"tau_end"}, {"cycles"}, "tau_end and cycles both say how long to run; give one of them"},
+    };
+    return list;
+}
+
+std::vector<std::string> present(const Json& object, const std::vector<std::string>& names) {
+    std::vector<std::string> found;
+    std::copy_if(names.begin(), names.end(), std::back_inserter(found), [&](const std::string& n) { return object.contains(n); });
+    return found;
+}
+
+[[noreturn]] void refuse(std::vector<FieldError> errors) {
+    const std::string detail = errors.size() == 1             ? errors[0].detail
+                               : errors.size() >= most_errors ? "the first " + std::to_string(errors.size()) + " faults are listed"
+                                                              : std::to_string(errors.size()) + " fields are at fault";
+    throw Problem(422, detail, std::move(errors));
+}
+
+void check_alternatives(const Json& object, std::vector<FieldError>& errors) {
+    for (const Alternative& a : alternatives()) {
+        if (present(object, a.one).empty() || present(object, a.other).empty()) continue;
+        for (const auto& names : {a.one, a.other})
+            for (const std::string& name : present(object, names)) errors.push_back({"/" + name, object[name], nullptr, a.detail});
+    }
+}
+
+/// The request's fields over those of its preset, of which only those that the table has are taken.
+Json over_preset(const std::vector<Field>& fields, const Json& object) {
+    if (!object.contains("preset")) return object;
+    const std::string name = object["preset"];
+    const auto preset = std::find_if(presets().begin(), presets().end(), [&](const Preset& p) { return p.name == name; });
+    if (preset == presets().end()) {
+        Json names = Json::array();
+        for (const Preset& p : presets()) names.push_back(p.name);
+        refuse({{"/preset", name, names, "there is no preset of this name; GET /v1/presets lists them"}});
+    }
+    Json merged = preset->parameters;
+    for (const Alternative& a : alternatives())
+        for (const auto& [own, others] : {std::pair(a.one, a.other), std::pair(a.other, a.one)})
+            if (!present(object, own).empty())
+                for (const std::string& other : others) merged.erase(other);
+    // A window that was left to the preset makes no sense in a run of another length.
+    if (object.contains("tau_end") || object.contains("cycles")) merged.erase("window");
+    for (auto it = merged.begin(); it != merged.end();)
+        it = std::any_of(fields.begin(), fields.end(), [&](const Field& f) { return f.name == it.key(); }) ? std::next(it) : merged.erase(it);
+    merged.update(object);
+    merged.erase("preset");
+    return merged;
+}
+
+/// Values by name: the request's, else the table's default.
+class Values {
+public:
+    Values(const std::vector<Field>& fields, const Json& object) : fields_(fields), object_(object) {}
+    bool has(const std::string& name) const { return object_.contains(name); }
+    double number(const std::string& name) const { return value(name).get<double>(); }
+    double number(const std::string& name, double fallback) const { return has(name) ? object_[name].get<double>() : fallback; }
+    std::string word(const std::string& name) const { return value(name).get<std::string>(); }
+    std::set<std::string> words(const std::string& name) const { return value(name).get<std::set<std::string>>(); }
+    bool holds(const std::string& name, const std::string& word) const { return words(name).contains(word); }
+    Interval interval(const std::string& name) const { return interval_of(value(name)); }
+    std::vector<Interval> intervals(const std::string& name) const {
+        std::vector<Interval> list;
+        for (const Json& v : value(name)) list.push_back(interval_of(v));
+        return list;
+    }
+
+private:
+    static Interval interval_of(const Json& v) { return {v[0].get<double>(), v[1].get<double>()}; }
+    const Json& value(const std::string& name) const {
+        if (has(name)) return object_[name];
+        return std::find_if(fields_.begin(), fields_.end(), [&](const Field& f) { return f.name == name; })->fallback;
+    }
+    const std::vector<Field>& fields_;
+    const Json& object_;
+};
+
+/// A core fault is about a reduced field; where that follows from SI fields, it is they that are at fault.
+std::vector<FieldError> field_errors(const std::vector<Fault>& faults, const std::optional<SiParameters>& si, const Json& given) {
+    std::vector<FieldError> errors;
+    for (const Fault& f : faults) {
+        const auto origin = si ? si_origin.find(f.field) : si_origin.end();
+        if (origin == si_origin.end()) {
+            errors.push_back({"/" + f.field, given.contains(f.field) ? given[f.field] : Json(f.value), Json::array({f.minimum, f.maximum}), f.message});
+            continue;
+        }
+        for (const std::string& name : present(given, origin->second))
+            errors.push_back({"/" + name, given[name], nullptr, f.field + " = " + Json(f.value).dump() + " follows from the SI fields; " + f.message});
+    }
+    return errors;
+}
+
+/// The fields of a request that each can stand alone, over its preset. Problem 422 where one cannot.
+Json checked(const std::vector<Field>& fields, const Json& given) {
+    std::vector<FieldError> errors = check(fields, given);
+    check_alternatives(given, errors);
+    if (!errors.empty()) refuse(std::move(errors));
+    return over_preset(fields, given);
+}
+
+System read_system(const Values& v, const Json& object) {
+    System system;
+    Parameters& p = system.parameters;
+    if (!present(object, si_names).empty()) {
+        SiParameters si{v.number("m1"), v.number("c1"), v.number("k1"), v.number("m2"), 0, 0};
+        si.F = v.number("F", 0.02 * si.epsilon());
+        si.f = v.number("f", si.omega0() / (2 * std::numbers::pi));
+        p.epsilon = si.epsilon();
+        p.lambda = si.lambda();
+        p.G = si.G();
+        p.Omega = v.has("f") ? si.Omega() : 1;
+        system.si = si;
+    } else {
+        p.epsilon = v.number("epsilon");
+        p.lambda = v.number("lambda");
+        p.G = v.number("G");
+        p.Omega = v.number("Omega");
+    }
+    p.b = v.number("b");
+    p.R_plus = v.number("R_plus", v.number("R"));
+    p.R_minus = v.number("R_minus", v.number("R"));
+    p.damping = v.word("damping") == "closed_form" ? Damping::closed_form : Damping::equation_of_motion;
+    return system;
+}
+
+/// A window must begin within the run.
+void check_window(const std::string& where, const Interval& window, double tau_end, std::vector<FieldError>& errors) {
+    if (window.from >= tau_end)
+        errors.push_back({where + "/0", window.from, Json::array({0, tau_end}), "the window begins after the run's end, tau_end = " + Json(tau_end).dump()});
+}
+
+}  // namespace
+
+SimulateRequest read_simulate_request(const Json& given) {
+    const Json object = checked(simulate_fields(), given);
+    const Values v(simulate_fields(), object);
+
+    SimulateRequest r;
+    r.system = read_system(v, object);
+    const Parameters& p = r.system.parameters;
+    const State start = default_state(p);
+    r.start = {v.number("x_dot0"), v.number("x0"), v.number("y_dot0"), v.number("y0", start.y)};
+
+    std::vector<FieldError> errors = field_errors(validate(p, r.start), r.system.si, object);
+    r.tau_end = v.has("cycles") ? v.number("cycles") * 2 * std::numbers::pi / p.Omega : v.number("tau_end");
+    if (r.tau_end > longest_run) {
+        const double most = longest_run * p.Omega / (2 * std::numbers::pi);
+        errors.push_back({"/cycles", object["cycles"], Json::array({1e-6, most}), "cycles of 2 pi/Omega must not make a run longer than tau = 1e7: at most " + Json(most).dump()});
+    }
+    r.window = v.has("window") ? v.interval("window") : Interval{0, r.tau_end};
+    check_window("/window", r.window, r.tau_end, errors);
+    r.windows = v.intervals("windows");
+    for (std::size_t i = 0; i < r.windows.size(); ++i) check_window("/windows/" + std::to_string(i), r.windows[i], r.tau_end, errors);
+    if (!errors.empty()) refuse(std::move(errors));
+
+    r.samples_per_cycle = v.number("samples_per_cycle");
+    r.max_points = static_cast<std::size_t>(v.number("max_points"));
+    r.max_impacts = static_cast<long>(v.number("max_impacts"));
+    r.include = v.words("include");
+    r.estimators = {v.holds("exponents", "qr"), v.holds("exponents", "eigenvalues"), v.holds("exponents", "raw_product"), r.max_points};
+    return r;
+}
+
+ManifoldRequest read_manifold_request(const Json& given) {
+    const Json object = checked(manifold_fields(), given);
+    const Values v(manifold_fields(), object);
+    ManifoldRequest r;
+    r.system = read_system(v, object);
+    const Parameters& p = r.system.parameters;
+    std::vector<FieldError> errors = field_errors(validate(p, default_state(p)), r.system.si, object);
+    if (p.R_plus != p.R_minus)
+        errors.push_back({"/R_minus", p.R_minus, Json::array({p.R_plus, p.R_plus}),
+                          "the manifold of two symmetric impacts needs the same restitution coefficient at both walls, here R_plus = " + Json(p.R_plus).dump()});
+    if (!errors.empty()) refuse(std::move(errors));
+    r.V_max = v.number("V_max", 0);
+    r.points = static_cast<std::size_t>(v.number("points"));
+    return r;
+}
+
+}  // namespace vines::api

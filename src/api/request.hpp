@@ -1,0 +1,49 @@
+// From the JSON of a request to the structs that it stands for.
+#pragma once
+
+#include <optional>
+#include <set>
+
+#include "api/fields.hpp"
+#include "core/lyapunov.hpp"
+
+namespace vines::api {
+
+/// The parameters of a request. `si` where it gave SI fields: the reduced ones follow from these.
+struct System {
+    Parameters parameters;
+    std::optional<SiParameters> si;
+};
+
+struct Interval {
+    double from, to;  ///< tau
+};
+
+struct SimulateRequest {
+    System system;
+    State start;
+    double tau_end;
+    Interval window;
+    std::vector<Interval> windows;
+    double samples_per_cycle;
+    std::size_t max_points;
+    long max_impacts;
+    std::set<std::string> include;
+    ExponentOptions estimators;
+
+    bool includes(const char* part) const { return include.contains(part); }
+};
+
+/// Problem 422 with every field at fault.
+SimulateRequest read_simulate_request(const Json& object);
+
+struct ManifoldRequest {
+    System system;
+    double V_max;  ///< 0: not given
+    std::size_t points;
+};
+
+/// Problem 422 with every field at fault; also for walls with different restitution coefficients.
+ManifoldRequest read_manifold_request(const Json& object);
+
+}  // namespace vines::api

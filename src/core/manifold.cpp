@@ -1,0 +1,72 @@
+#include "core/manifold.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace vines {
+
+namespace {
+
+constexpr double quarter_turn = std::numbers::pi / 2;
+
+double k_of(double R) { return (1 - R) / (1 + R); }
+
+}  // namespace
+
+double manifold_C(double R, double Omega, double b, double V) {
+    const double W = V / Omega;
+    return std::hypot(quarter_turn * W - b, k_of(R) * W);
+}
+
+ManifoldPoint manifold_fold(double R, double Omega, double b) {
+    const double k = k_of(R), norm = quarter_turn * quarter_turn + k * k;
+    return {b * k / std::sqrt(norm), Omega * quarter_turn * b / norm};
+}
+
+ManifoldPoint manifold_symmetry_breaking(double R, double Omega, double b) {
+    const double V = Omega * quarter_turn * b / (quarter_turn * quarter_turn - 1);
+    return {manifold_C(R, Omega, b, V), V};
+}
+
+double manifold_b(double R, double C) {
+    const double k = k_of(R);
+    return k > 0 ? C * std::sqrt(quarter_turn * quarter_turn + k * k) / k : 0;
+}
+
+std::vector<ManifoldPoint> manifold_branch(double R, double Omega, double b, double from, double to, std::size_t count) {
+    std::vector<ManifoldPoint> points;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double V = from + (to - from) * static_cast<double>(i) / static_cast<double>(count - 1);
+        points.push_back({manifold_C(R, Omega, b, V), V});
+    }
+    return points;
+}
+
+HalfCycles::HalfCycles(const Parameters& p, double tau_start, double tau_end)
+    : half_cycle_(std::numbers::pi / p.Omega), tau_end_(tau_end), next_(static_cast<long>(std::ceil(tau_start / half_cycle_)) + 1),
+      begun_((next_ - 1) * half_cycle_) {}
+
+void HalfCycles::on_stretch(const Stretch& stretch) {
+    for (double from = std::max(0.0, begun_ - stretch.tau); from < stretch.duration;) {
+        const double end = next_ * half_cycle_ - stretch.tau;
+        pass(stretch, from, std::min(end, stretch.duration));
+        if (end > stretch.duration) return;
+        if (next_ * half_cycle_ <= tau_end_ * (1 + 1e-12)) {
+            tau.push_back(next_ * half_cycle_);
+            points.push_back({peak_, path_ / half_cycle_});
+        }
+        peak_ = path_ = 0;
+        ++next_;
+        from = std::max(end, 0.0);
+    }
+}
+
+void HalfCycles::pass(const Stretch& stretch, double from, double to) {
+    if (!(from < to)) return;
+    const Excursion x = excursion(stretch.flow, stretch.flow.after(stretch.start, from), to - from);
+    peak_ = std::max(peak_, x.peak);
+    path_ += stretch.stuck_side == 0 ? std::abs(stretch.y_dot) * (to - from) : x.path;
+}
+
+}  // namespace vines

@@ -1,0 +1,55 @@
+// The slow invariant manifold: two symmetric impacts per forcing cycle in the limit epsilon -> 0.
+//
+// The oscillator then moves as x = C sin(Omega tau + ...) and the free mass flies with speed V from wall to wall, one half
+// period pi/Omega each. From the flight, 2 (b - x_i) = V pi/Omega at the impact; from the restitution, x'_i = k V with
+// k = (1 - R)/(1 + R). So, with W = V/Omega,
+//
+//     C^2 = (pi W/2 - b)^2 + k^2 W^2,
+//
+// which for Omega = 1 is the manifold of Gourc et al. (2015). Linearised, half a cycle followed by the mirroring (x, y) ->
+// (-x, -y) has the determinant R^2 and the trace 2 R + (1 + R)^2 (pi b/(2 W) - pi^2/4). An eigenvalue is 1 at the fold
+// and -1, where the two impacts lose their symmetry, at W = (pi/2) b/(pi^2/4 - 1), for every R. The manifold is stable
+// between the two.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/simulate.hpp"
+
+namespace vines {
+
+/// C in m, V in m per unit of tau.
+struct ManifoldPoint {
+    double C, V;
+};
+
+/// C on the manifold for a speed V >= 0 of the free mass.
+double manifold_C(double R, double Omega, double b, double V);
+/// Where C is smallest: below this amplitude the absorber cannot be activated, C = b k/sqrt(pi^2/4 + k^2).
+ManifoldPoint manifold_fold(double R, double Omega, double b);
+/// Where the symmetric impacts become unstable to asymmetric ones.
+ManifoldPoint manifold_symmetry_breaking(double R, double Omega, double b);
+/// The b whose fold lies at amplitude C; 0 for R = 1, where the fold is at C = 0 for every b.
+double manifold_b(double R, double C);
+
+/// `count` points from V_from to V_to, evenly spaced in V.
+std::vector<ManifoldPoint> manifold_branch(double R, double Omega, double b, double V_from, double V_to, std::size_t count);
+
+/// What a run has in place of (C, V): in each half cycle of the forcing, the largest |x| and the mean of |y'|.
+class HalfCycles : public Observer {
+public:
+    HalfCycles(const Parameters& parameters, double tau_start, double tau_end);
+    void on_stretch(const Stretch&) override;
+
+    std::vector<double> tau;  ///< end of the half cycle
+    std::vector<ManifoldPoint> points;
+
+private:
+    void pass(const Stretch& stretch, double from, double to);
+    const double half_cycle_, tau_end_;
+    long next_;  // the half cycle at hand ends at next_ half_cycle_
+    double peak_ = 0, path_ = 0, begun_;
+};
+
+}  // namespace vines

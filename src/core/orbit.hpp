@@ -1,0 +1,45 @@
+// Periodic orbits of the forced system: found by Newton's method on the return of the state after whole forcing cycles.
+//
+// The derivative of the return map is the transfer matrix over the period (the monodromy matrix), the same matrices as the
+// exponents are made of. Its eigenvalues are the Floquet multipliers: the orbit attracts if all lie inside the unit circle.
+#pragma once
+
+#include <array>
+#include <complex>
+#include <optional>
+
+#include "core/lyapunov.hpp"
+
+namespace vines {
+
+/// What the components of a state are measured by: about the largest that each one takes.
+State scale_of(const Parameters& parameters, std::span<const State> states);
+/// The largest difference of a component, in units of its scale.
+double distance(const State& a, const State& b, const State& scale);
+
+struct PeriodicOrbit {
+    int cycles;           ///< period in forcing cycles, the smallest
+    double tau;           ///< a moment of it, inside a flight, 0 <= tau < 2 pi/Omega
+    State state;          ///< there
+    double closure;       ///< distance of the state and its return
+    long contacts;        ///< impacts per period, those of a chatter that ends in a stick counted as one
+    long impacts, sticks; ///< all of them
+    bool symmetric;       ///< x(tau + half the period) = -x(tau), and y alike
+    std::array<std::complex<double>, 4> multipliers;  ///< by descending modulus
+
+    bool stable() const { return std::abs(multipliers[0]) < 1; }
+    /// ln|multiplier| / period: the exponents of every motion that the orbit attracts; -infinity for a multiplier of 0.
+    Exponents exponents(const Parameters& parameters) const;
+};
+
+/// The orbit of a period of so many cycles (or of a divisor of it) next to the state at a whole cycle, if Newton's
+/// method finds one within `reach` of it.
+std::optional<PeriodicOrbit> find_orbit(const Parameters& parameters, const State& at_whole_cycle, int cycles, const State& scale, double reach);
+
+/// Whether the motion from a state at a whole cycle comes closer and closer to a stable orbit: the proof is to follow it.
+bool attracts(const Parameters& parameters, const PeriodicOrbit& orbit, const State& at_whole_cycle, const State& scale);
+
+/// The orbit's states at the next whole cycles 1, ..., orbit.cycles after its moment `tau`.
+std::vector<State> whole_cycle_states(const Parameters& parameters, const PeriodicOrbit& orbit);
+
+}  // namespace vines

@@ -1,0 +1,191 @@
+#include "core/regime.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace vines {
+
+namespace {
+
+// Fig. 9's synchronised parts: at b = 34 and 40 mm there are none, at 31 mm and below there are (shared border of Types I
+// and II); the border does not move between 10 and 20 %.
+constexpr double synchrony_tolerance = 0.15;
+// Two impacts per cycle over two cycles: a shorter alternation happens by chance.
+constexpr long shortest_stretch = 4;
+constexpr int moving_cycles = 10;
+// A period that the run may have closed: in cycles.
+constexpr int longest_period = 64;
+// States that differ by less, in units of their scale, may be a return; Newton's method decides.
+constexpr double near_return = 0.1;
+constexpr int most_attempts = 8;
+// A run has been captured once it stays this close to the orbit.
+constexpr double captured_within = 0.1;
+
+std::vector<Contacts> within(const std::vector<Contacts>& all, double from, double to) {
+    const auto before = [](const Contacts& c, double tau) { return c.tau < tau; };
+    const auto first = std::lower_bound(all.begin(), all.end(), from, before);
+    return {first, std::lower_bound(first, all.end(), std::nextafter(to, std::numeric_limits<double>::infinity()), before)};
+}
+
+/// A phase of the forcing cycle that contacts stay away from, as a share of the cycle: there cycles are cut for counting.
+double quiet_phase(const std::vector<Contacts>& contacts, double cycle) {
+    constexpr int bins = 64;
+    std::array<long, bins> count{};
+    for (const Contacts& c : contacts) ++count[std::min(bins - 1, static_cast<int>((c.tau / cycle - std::floor(c.tau / cycle)) * bins))];
+    // The middle of the longest run of bins with the fewest contacts (a run may go over the end).
+    const long fewest = *std::min_element(count.begin(), count.end());
+    int best = 0, best_length = 0;
+    for (int from = 0; from < bins; ++from) {
+        int length = 0;
+        while (length < bins && count[(from + length) % bins] == fewest) ++length;
+        if (length > best_length) best = from, best_length = length;
+    }
+    return (best + 0.5 * best_length) / bins;
+}
+
+void count_cycles(Regime& r, const std::vector<Contacts>& contacts, double cycle, double from, double to) {
+    const double cut = contacts.empty() ? 0 : quiet_phase(contacts, cycle);
+    const long first = static_cast<long>(std::ceil(from / cycle - cut)), last = static_cast<long>(std::floor(to / cycle - cut));
+    if (last <= first) return;
+    std::vector<int> per_cycle(last - first, 0);
+    for (const Contacts& c : contacts) {
+        const double k = std::floor(c.tau / cycle - cut) - first;
+        if (k >= 0 && k < per_cycle.size()) ++per_cycle[static_cast<std::size_t>(k)];
+    }
+    r.cycles_with.assign(*std::max_element(per_cycle.begin(), per_cycle.end()) + 1, 0);
+    for (int n : per_cycle) ++r.cycles_with[n];
+    for (double& share : r.cycles_with) share /= static_cast<double>(per_cycle.size());
+    long sum = 0;
+    for (std::size_t k = 0; k < per_cycle.size(); ++k) {
+        sum += per_cycle[k] - (k >= moving_cycles ? per_cycle[k - moving_cycles] : 0);
+        if (k + 1 < moving_cycles) continue;
+        r.moving_tau.push_back((first + static_cast<long>(k) + 1 + cut - 0.5 * moving_cycles) * cycle);
+        r.moving_z.push_back(static_cast<double>(sum) / moving_cycles);
+    }
+}
+
+void find_stretches(Regime& r, const std::vector<Contacts>& c, double half_cycle) {
+    const std::size_t n = c.size();
+    auto in_step = [&](std::size_t i) {
+        return c[i + 1].side != c[i].side && std::abs(c[i + 1].tau - c[i].tau - half_cycle) < synchrony_tolerance * half_cycle;
+    };
+    std::size_t free_from = 0;  // the first contact that no stretch has yet
+    long in_stretches = 0;
+    auto desynchronised = [&](std::size_t to) {
+        if (to > free_from) r.stretches.push_back({c[free_from].tau, c[to].tau, false, static_cast<long>(to - free_from) + 1});
+    };
+    for (std::size_t i = 0; i + 1 < n;) {
+        std::size_t end = i;
+        while (end + 1 < n && in_step(end)) ++end;
+        const long half_cycles = static_cast<long>(end - i);
+        r.longest_synchronised = std::max(r.longest_synchronised, half_cycles);
+        if (half_cycles >= shortest_stretch) {
+            desynchronised(i);
+            r.stretches.push_back({c[i].tau, c[end].tau, true, half_cycles + 1});
+            in_stretches += half_cycles + 1;
+            free_from = end;
+        }
+        i = std::max(end, i + 1);
+    }
+    if (n > 0) {
+        desynchronised(n - 1);
+        r.synchronised = static_cast<double>(in_stretches) / static_cast<double>(n);
+    }
+}
+
+/// The attracting periodic orbit that the last of the states is next to, with the smallest period.
+std::optional<PeriodicOrbit> orbit_at_end(const Parameters& p, std::span<const State> states, const State& scale) {
+    const std::size_t last = states.size() - 1;
+    int attempts = 0;
+    for (int cycles = 1; cycles <= longest_period && static_cast<std::size_t>(cycles) < states.size() && attempts < most_attempts; ++cycles) {
+        const std::size_t back = last - cycles;
+        if (distance(states[last], states[back], scale) > near_return) continue;
+        if (back > 0 && distance(states[last - 1], states[back - 1], scale) > 2 * near_return) continue;
+        ++attempts;
+        const auto orbit = find_orbit(p, states[last], cycles, scale, 5 * near_return);
+        if (orbit && attracts(p, *orbit, states[last], scale)) return orbit;
+    }
+    return std::nullopt;
+}
+
+/// The first whole cycle from which on the run stays next to the orbit.
+std::size_t captured_from(const Parameters& p, const PeriodicOrbit& orbit, std::span<const State> states, const State& scale) {
+    const std::vector<State> along = whole_cycle_states(p, orbit);  // the last of them belongs to the last of the states
+    std::size_t k = states.size();
+    while (k > 0 && distance(states[k - 1], along[along.size() - 1 - (states.size() - k) % along.size()], scale) < captured_within) --k;
+    return std::min(k, states.size() - 1);
+}
+
+RegimeType type_of(const Regime& r) {
+    if (!r.forced) return RegimeType::none;
+    if (r.orbit) {
+        if (r.orbit->contacts == 0) return RegimeType::none;
+        if (r.orbit->contacts != 2 * r.orbit->cycles) return RegimeType::V;
+        if (r.orbit->cycles == 1 && r.orbit->symmetric) return RegimeType::III;
+        return RegimeType::IV;
+    }
+    if (r.contacts == 0) return RegimeType::none;
+    if (r.z > 2) return RegimeType::VI;
+    return r.longest_synchronised >= shortest_stretch ? RegimeType::II : RegimeType::I;
+}
+
+}  // namespace
+
+void ContactRecord::on_impact(const Impact& impact) {
+    ++impacts;
+    contacts.push_back({impact.tau, impact.side});
+}
+
+void ContactRecord::on_stick(const StickStart& start) {
+    sticks.push_back({start.tau, start.tau});
+    if (start.impacts > 1) contacts.resize(contacts.size() - static_cast<std::size_t>(start.impacts - 1));
+}
+
+const char* name_of(RegimeType type) {
+    constexpr const char* names[] = {"none", "I", "II", "III", "IV", "V", "VI"};
+    return names[static_cast<int>(type)];
+}
+
+Regime regime_of(const Parameters& p, const State& start, const RegimeEvidence& e) {
+    Regime r;
+    r.forced = p.G > 0;
+    const double cycle = 2 * std::numbers::pi / p.Omega;
+    const std::vector<Contacts> contacts = within(e.contacts.contacts, e.tau_start, e.tau_end);
+    r.contacts = static_cast<long>(contacts.size());
+    if (r.contacts > 1)
+        r.z_overall = static_cast<double>(r.contacts - 1) * cycle / (contacts.back().tau - contacts.front().tau);
+    else if (e.tau_end > e.tau_start)
+        r.z_overall = static_cast<double>(r.contacts) * cycle / (e.tau_end - e.tau_start);
+    r.z = r.z_overall;
+    count_cycles(r, contacts, cycle, contacts.empty() ? e.tau_start : contacts.front().tau - cycle, e.tau_end);
+    find_stretches(r, contacts, 0.5 * cycle);
+
+    // The states at whole cycles in the window.
+    const auto& all = e.stroboscopic.states;
+    std::size_t first = 0, end = all.size();
+    while (first < end && e.stroboscopic.tau(first) < e.tau_start) ++first;
+    while (end > first && e.stroboscopic.tau(end - 1) > e.tau_end) --end;
+    const std::span<const State> states = std::span(all).subspan(first, end - first);
+    if (r.forced && states.size() > 1) {
+        // Of the last part: a transient may have been larger.
+        const State scale = scale_of(p, states.last(std::min<std::size_t>(states.size(), longest_period)));
+        r.orbit = orbit_at_end(p, states, scale);
+        if (r.orbit) {
+            r.z = static_cast<double>(r.orbit->contacts) / r.orbit->cycles;
+            Capture capture{e.stroboscopic.tau(first + captured_from(p, *r.orbit, states, scale)), {}, r.orbit->exponents(p), false};
+            Lyapunov before(p, e.tau_start, capture.tau, {true, false, false, 256});
+            Observer* const observers[] = {&before};
+            simulate(p, start, {capture.tau, std::numeric_limits<long>::max(), {}}, observers);
+            capture.before = before.product().qr();
+            const auto error = standard_error(before.product().qr_history(), before.product().start_tau());
+            capture.chaotic_before = verdict_of(capture.before[0], error[0]) == Verdict::chaotic;
+            r.capture = capture;
+        }
+    }
+    r.type = type_of(r);
+    return r;
+}
+
+}  // namespace vines

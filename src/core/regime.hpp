@@ -1,0 +1,81 @@
+// Response regimes I to VI (section 4 of the paper) with the evidence for each.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "core/orbit.hpp"
+#include "core/record.hpp"
+
+namespace vines {
+
+/// An impact, or a whole chatter that ended in a stick: one meeting of the two masses.
+struct Contacts {
+    double tau;
+    int side;
+};
+
+class ContactRecord : public Observer {
+public:
+    struct Stick {
+        double tau_start, tau_end;
+    };
+
+    void on_impact(const Impact& impact) override;
+    void on_stick(const StickStart& start) override;
+    void on_release(double tau) override { sticks.back().tau_end = tau; }
+
+    std::vector<Contacts> contacts;
+    std::vector<Stick> sticks;
+    long impacts = 0;
+};
+
+/// none: no impact at all, or no forcing. I: sparse, irregular. II: strongly modulated, stretches of two impacts per cycle between others.
+/// III: two symmetric impacts per cycle, periodic. IV: two asymmetric ones, periodic. V: any other periodic response. VI: any
+/// other irregular response.
+enum class RegimeType { none, I, II, III, IV, V, VI };
+
+/// A stretch of contacts that alternate sides at intervals within 15 % of half a forcing period (synchronised: the paper's
+/// "area2" in Fig. 9), or what lies between two of them.
+struct SynchronyStretch {
+    double tau_start, tau_end;
+    bool synchronised;
+    long contacts;
+};
+
+/// The moment from which on a run stays next to the periodic orbit that attracts it.
+struct Capture {
+    double tau;
+    Exponents before;  ///< qr, from the first impact of the window to tau; NaN where there is too little
+    Exponents after;   ///< from the Floquet multipliers
+    bool chaotic_before;  ///< by verdict_of(): the run was chaotic and then captured, not just settling
+};
+
+struct Regime {
+    RegimeType type = RegimeType::none;
+    bool forced = true;                  ///< false for a free decay (G = 0), which is none of the regimes
+    long contacts = 0, impacts = 0;      ///< in the window
+    double z = 0;                        ///< contacts per forcing cycle: of the orbit if periodic, else from the first to the last
+    double z_overall = 0;                ///< from the first to the last, in any case
+    std::vector<double> moving_tau, moving_z;  ///< over 10 cycles around tau
+    std::vector<double> cycles_with;     ///< share of cycles with 0, 1, 2, ... contacts
+    std::vector<SynchronyStretch> stretches;
+    double synchronised = 0;             ///< share of the contacts in synchronised stretches
+    long longest_synchronised = 0;       ///< half cycles of the longest
+    std::optional<PeriodicOrbit> orbit;  ///< the stable orbit that the run has come to
+    std::optional<Capture> capture;      ///< with it
+};
+
+/// What a run must have been observed by.
+struct RegimeEvidence {
+    const ContactRecord& contacts;
+    const StroboscopicRecord& stroboscopic;  ///< from tau = 0 on
+    double tau_start, tau_end;               ///< the window to be judged; tau_end within the run
+};
+
+Regime regime_of(const Parameters& parameters, const State& start, const RegimeEvidence& evidence);
+
+const char* name_of(RegimeType type);
+
+}  // namespace vines
