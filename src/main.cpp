@@ -10,6 +10,7 @@
 #include "api/simulate.hpp"
 #include "http/routes.hpp"
 #include "http/server.hpp"
+#include "report/reproduce.hpp"
 
 namespace {
 
@@ -54,6 +55,14 @@ int serve(const ServeOptions& options, const sigset_t& signals) {
     for (;;) pause();  // stop() was called: the other thread ends the process
 }
 
+int reproduce(const std::string& folder) {
+    const vines::report::Reproduction result = vines::report::reproduce(folder);
+    std::fputs(result.table().c_str(), stdout);
+    if (!folder.empty()) std::fprintf(stderr, "vines: wrote %s/report.md and its plots\n", folder.c_str());
+    if (!result.holds()) std::fprintf(stderr, "vines: a number has left its band\n");
+    return result.holds() ? 0 : 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -77,8 +86,13 @@ int main(int argc, char** argv) {
     health_command->add_option("--host", url_host, "its address")->capture_default_str();
     health_command->add_option("--port", url_port, "its port")->envname("VINES_PORT")->capture_default_str();
 
+    std::string report_folder;
+    CLI::App* reproduce_command = app.add_subcommand("reproduce", "recompute the paper's Figs. 3 to 14 and Tables 1 to 3 and compare: exit code 0 if every number lies in its band, else 1");
+    reproduce_command->add_option("--output", report_folder, "folder for report.md and its SVG plots; without it only the table is printed");
+
     CLI11_PARSE(app, argc, argv);
     try {
+        if (*reproduce_command) return reproduce(report_folder);
         if (*health_command) return vines::http::get_status(url_host, url_port, "/healthz") == 200 ? 0 : 1;
         return serve(options, signals);
     } catch (const std::exception& e) {

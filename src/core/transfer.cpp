@@ -38,17 +38,13 @@ void Passage::strike(const Saltation& M) {
     empty_ = false;
 }
 
-namespace {
-
-Moduli moduli_of(const Matrix4& m) {
+Moduli eigenvalue_moduli(const Matrix4& m) {
     const Eigen::EigenSolver<Matrix4> solver(m, false);
     Moduli moduli;
     for (int k = 0; k < 4; ++k) moduli[k] = std::abs(solver.eigenvalues()(k));
     std::sort(moduli.begin(), moduli.end(), std::greater<>());
     return moduli;
 }
-
-}  // namespace
 
 Moduli ImpactTransfer::J_moduli() const {
     if (rank == 4) {  // two blocks; that of the free mass is a Jordan block, which an eigenvalue solver would split
@@ -59,7 +55,7 @@ Moduli ImpactTransfer::J_moduli() const {
         std::sort(moduli.begin(), moduli.end(), std::greater<>());
         return moduli;
     }
-    Moduli moduli = moduli_of(J);
+    Moduli moduli = eigenvalue_moduli(J);
     moduli[2] = moduli[3] = 0;
     return moduli;
 }

@@ -31,6 +31,7 @@ private:
 
 /// Moduli of four eigenvalues, descending, dimensionless.
 using Moduli = std::array<double, 4>;
+Moduli eigenvalue_moduli(const Matrix4& m);
 
 /// The three matrices of one impact: J from the impact before it, its own M, and T = M J.
 struct ImpactTransfer {

@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -168,6 +169,110 @@ TEST_CASE("the field table describes exactly what a request takes") {
         if (f["default"].is_null()) CHECK((f.contains("default_note")));
         else CHECK(check(simulate_fields(), {{f["name"], f["default"]}}).empty());
     }
+}
+
+TEST_CASE("every part that can be asked for is there, its columns of one length") {
+    const Json a = answer(R"({"damping":"closed_form","tau_end":400,"include":["series","impacts","exponents","eigenvalues","matrices","section","energy","regime","manifold"]})");
+    const std::size_t impacts = a["impacts"]["tau"].size();
+    for (const char* name : {"tau", "J", "M", "T", "M_condition"}) CHECK(a["eigenvalues"][name].size() == impacts - 1);
+    for (const char* name : {"tau", "J", "M", "T"}) CHECK(a["matrices"][name].size() == impacts - 1);
+    CHECK(a["eigenvalues"]["T"][0].size() == 4);
+    CHECK(a["matrices"]["T"][0].size() == 4);
+    CHECK(a["matrices"]["T"][0][0].size() == 4);
+    for (const auto& [name, column] : a["section"]["impact"].items()) CHECK(column.size() == impacts);
+    for (const auto& [name, column] : a["section"]["stroboscopic"].items()) CHECK(column.size() == 64);
+    CHECK(a["section"]["impact"]["time_difference"][0].is_null());
+    CHECK(a["section"]["impact"]["time_difference"][1] == a["impacts"]["tau"][1].get<double>() - a["impacts"]["tau"][0].get<double>());
+    CHECK(a["manifold"]["points"]["C"].size() == a["manifold"]["points"]["V"].size());
+    CHECK(a["manifold"]["points"]["tau"].size() == 127);
+    const Json& e = a["energy"];
+    CHECK(std::abs(e["residual"].get<double>()) < 1e-12 * e["input"].get<double>());
+    CHECK(e["input"].get<double>() == doctest::Approx(e["damper"].get<double>() + e["impacts"].get<double>() + e["stored"].get<double>()));
+    CHECK(a["regime"]["type"] == "II");
+    CHECK(Json::parse(a.dump()) == a);
+}
+
+TEST_CASE("the window holds for sections, matrices, energy and regime, too") {
+    const Json a = answer(R"({"damping":"closed_form","tau_end":400,"window":[100,200],"include":["impacts","eigenvalues","section","energy","regime","manifold"]})");
+    for (const Json& tau : a["section"]["impact"]["tau"]) CHECK((tau >= 100 && tau <= 200));
+    for (const Json& tau : a["eigenvalues"]["tau"]) CHECK((tau >= 100 && tau <= 200));
+    for (const Json& tau : a["section"]["stroboscopic"]["tau"]) CHECK((tau >= 100 && tau <= 200));
+    CHECK(a["regime"]["contacts"] == a["section"]["impact"]["tau"].size());
+    CHECK(a["energy"]["window"] == Json({100.0, 200.0}));
+    CHECK(a["manifold"]["points"]["tau"].size() == 31);
+}
+
+TEST_CASE("several windows at once are those of one request each, with a verdict") {
+    const Json all = answer(R"({"preset":"table2_1","windows":[[18.13,1708.9],[1708.9,3652.7],[3652.7,5521.3]],"include":[],"exponents":["qr"]})");
+    REQUIRE(all["windows"].size() == 3);
+    for (const Json& w : all["windows"]) {
+        const Json one = simulate_answer(read_simulate_request({{"preset", "table2_1"}, {"window", w["asked"]}, {"include", {"exponents"}}, {"exponents", {"qr"}}}), {});
+        CHECK(one["exponents"]["qr"]["final"] == w["qr"]["final"]);
+        CHECK(w["verdict"] == "chaotic");
+        CHECK(w["verdict_sigmas"] > 3);
+        CHECK_FALSE(w["qr"].contains("history"));
+    }
+    CHECK(pointers(refused(R"({"windows":[[1,2],[3,2],[5,6,7],"x",[1,2000]],"tau_end":100})")) == std::set<std::string>{"/windows/1", "/windows/2", "/windows/3"});
+    CHECK(pointers(refused(R"({"windows":[[1,2],[200,300]],"tau_end":100})")) == std::set<std::string>{"/windows/1/0"});
+    const Json q = from_query(simulate_fields(), {{"windows", "1,2;3,4.5"}});
+    CHECK(q["windows"] == Json::parse("[[1.0,2.0],[3.0,4.5]]"));
+}
+
+TEST_CASE("a periodic response tells its period, symmetry, multipliers and where it was captured") {
+    const Json r = answer(R"({"preset":"fig11","include":["regime"]})")["regime"];
+    CHECK(r["type"] == "III");
+    CHECK(r["periodic"] == true);
+    CHECK(r["period_cycles"] == 1);
+    CHECK(r["impacts_per_period"] == 2);
+    CHECK(r["symmetric"] == true);
+    CHECK(r["multipliers"]["modulus"][0].get<double>() < 1);
+    CHECK(r["capture"]["exponents_after"]["final"][0].get<double>() == doctest::Approx(-0.0178).epsilon(0.01));
+    const Json chaotic = answer(R"({"preset":"fig3","include":["regime"]})")["regime"];
+    CHECK(chaotic["periodic"] == false);
+    for (const char* name : {"period_cycles", "impacts_per_period", "symmetric", "multipliers", "capture"}) CHECK(chaotic[name].is_null());
+}
+
+TEST_CASE("a free decay tells when half and a tenth of the energy are left and what the absorber took") {
+    const Json e = answer(R"({"G":0,"x0":0.02,"y0":0.005,"include":["energy"]})")["energy"];
+    CHECK(e["input"] == 0);
+    CHECK(e["decay"]["tau_half"] < e["decay"]["tau_tenth"]);
+    CHECK(e["share_impacts"].get<double>() > 0.1);
+    CHECK(answer(R"({"G":0,"x0":0.02,"tau_end":5,"include":["energy"]})")["energy"]["decay"]["tau_half"].is_null());
+    CHECK_FALSE(answer(R"({"include":["energy"],"tau_end":50})")["energy"].contains("decay"));
+}
+
+TEST_CASE("an impact next to a tangent contact is warned of") {
+    // The gap opens at 1e-4 and is turned back by x'' = -.02, 5e-12 behind the wall.
+    const Json a = answer(R"({"G":0,"x0":0.02,"x_dot0":1e-4,"y0":-0.00199975002,"tau_end":60,"include":["impacts","eigenvalues"]})");
+    REQUIRE(a["warnings"].size() == 1);
+    CHECK(a["warnings"][0].get<std::string>().find("ill-conditioned") != std::string::npos);
+    CHECK(a["warnings"][0].get<std::string>().find("at 1 nearly tangent impact(s)") != std::string::npos);
+    // How near each impact of an ordinary run is to grazing: its relative speed over the median.
+    std::vector<double> ratios = answer(R"({"damping":"closed_form","include":["impacts"]})")["impacts"]["relative_speed_ratio"];
+    std::sort(ratios.begin(), ratios.end());
+    CHECK(ratios[ratios.size() / 2] == 1);
+    CHECK(ratios.front() < 0.5);
+}
+
+TEST_CASE("the manifold has its fold, its branches and a hint for b, by itself and with a run's half cycles") {
+    const Json m = manifold_answer(read_manifold_request(parse_object(R"({"preset":"fig11","points":50})")))["manifold"];
+    CHECK(m["fold"]["C"].get<double>() == doctest::Approx(0.157 * 0.015).epsilon(0.01));
+    CHECK(m["activation_amplitude"] == m["fold"]["C"]);
+    for (const char* branch : {"stable", "unstable", "asymmetric"}) CHECK(m[branch]["C"].size() == 50);
+    CHECK(m["stable"]["V"][0] == m["fold"]["V"]);
+    const double b = m["b_at_free_amplitude"].get<double>();
+    const Json at_b = manifold_answer(read_manifold_request({{"b", b}, {"damping", "closed_form"}}))["manifold"];
+    CHECK(at_b["fold"]["C"].get<double>() == doctest::Approx(m["free_amplitude"].get<double>()).epsilon(1e-12));
+    try {
+        read_manifold_request(parse_object(R"({"R_plus":0.5,"R_minus":0.6})"));
+        FAIL("not refused");
+    } catch (const Problem& p) {
+        CHECK(pointers(p) == std::set<std::string>{"/R_minus"});
+    }
+    const Json run = answer(R"({"R_plus":0.5,"R_minus":0.6,"tau_end":50,"include":["manifold"]})");
+    CHECK(run["manifold"].contains("points"));
+    CHECK_FALSE(run["manifold"].contains("fold"));
+    CHECK(run["warnings"].size() == 1);
 }
 
 TEST_CASE("caps end a run as a result that says so") {

@@ -5,6 +5,9 @@ import {spawn} from "node:child_process";
 import net from "node:net";
 import {gunzipSync} from "node:zlib";
 import {request as httpRequest} from "node:http";
+import {mkdtemp, readFile, rm} from "node:fs/promises";
+import {tmpdir} from "node:os";
+import {join} from "node:path";
 import {startService, program} from "../service.mjs";
 
 let service, host, port;
@@ -22,6 +25,15 @@ const raw = (text, milliseconds = 1500) => new Promise((resolve) => {
   socket.on("error", () => resolve(answer));
   socket.write(text);
   setTimeout(() => socket.destroy(), milliseconds);
+});
+
+/** Runs the program to its end: [exit code, what it wrote]. */
+const run = (args, env = {}) => new Promise((resolve) => {
+  const child = spawn(program, args, {env: {...process.env, ...env}});
+  let out = "", errors = "";
+  child.stdout.on("data", (d) => out += d);
+  child.stderr.on("data", (d) => errors += d);
+  child.on("close", (code) => resolve([code, out + errors]));
 });
 
 const problem = async (response, status) => {
@@ -60,6 +72,30 @@ test("presets, parameters, health and version answer", async () => {
   assert.ok((await (await fetch(`${service.url}/v1/parameters`)).json()).fields.some((f) => f.name === "Omega"));
   assert.equal((await fetch(`${service.url}/healthz`)).status, 200);
   assert.match((await (await fetch(`${service.url}/version`)).json()).version, /^\d+\.\d+\.\d+$/);
+});
+
+test("the manifold is a route of its own, by GET and POST", async () => {
+  const got = await (await fetch(`${service.url}/v1/manifold?b=0.015&points=10`)).json();
+  const posted = await (await fetch(`${service.url}/v1/manifold`, {method: "POST", body: '{"b":0.015,"points":10}'})).json();
+  assert.deepEqual(got, posted);
+  assert.equal(got.manifold.stable.C.length, 10);
+  await problem(await fetch(`${service.url}/v1/manifold?R_plus=0.5&R_minus=0.6`), 422);
+  await problem(await fetch(`${service.url}/v1/manifold?tau_end=3`), 422);
+});
+
+test("a folder of the report on the paper can be written anywhere, and one that cannot be is an error", async () => {
+  const folder = await mkdtemp(join(tmpdir(), "vines-report-"));
+  const [code, table] = await run(["reproduce", "--output", join(folder, "new")]);
+  assert.equal(code, 0);
+  assert.doesNotMatch(table, /OUT OF BAND/);
+  const report = await readFile(join(folder, "new", "report.md"), "utf8");
+  for (const [, picture] of report.matchAll(/\]\(([^)]+\.svg)\)/g)) assert.match(await readFile(join(folder, "new", picture), "utf8"), /^<svg /);
+  for (const item of ["Table 1", "Table 2", "Table 3", ...Array.from({length: 12}, (_, i) => `Fig. ${i + 3}`)]) assert.ok(table.includes(`| ${item}`), item);
+  const readme = await readFile(new URL("../../README.md", import.meta.url), "utf8");
+  const verdicts = (text) => text.split("\n").filter((line) => /^\| (Fig|Table)/.test(line)).map((line) => line.split("|").slice(1, 4).concat(line.split("|")[5]).join("|"));
+  assert.deepEqual(verdicts(readme), verdicts(table));  // what the README shows is what comes out
+  assert.equal((await run(["reproduce", "--output", "/proc/nowhere"]))[0], 1);
+  await rm(folder, {recursive: true});
 });
 
 test("errors are problem documents that name field, value and range", async () => {
@@ -147,14 +183,6 @@ test("SIGTERM ends the service with 0, at once, with an idle connection open", a
   assert.equal(await other.stop(), 0);
   assert.ok(Date.now() - started < 2000);
   idle.destroy();
-});
-
-const run = (args, env = {}) => new Promise((resolve) => {
-  const child = spawn(program, args, {env: {...process.env, ...env}});
-  let text = "";
-  child.stdout.on("data", (d) => text += d);
-  child.stderr.on("data", (d) => text += d);
-  child.on("exit", (code) => resolve([code, text]));
 });
 
 test("a flag beats the environment, which beats the default; bad ones are refused", async () => {

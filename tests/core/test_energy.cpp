@@ -1,0 +1,98 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/energy.hpp"
+#include "support.hpp"
+
+using namespace vines;
+using namespace vines::test;
+
+TEST_CASE("the energy balance closes to rounding, whatever the system and the window") {
+    std::mt19937_64 engine(31);
+    double worst = 0;
+    for (int i = 0; i < 300; ++i) {
+        const System s = random_system(engine);
+        const double from = uniform(engine, 0, 40), to = from + uniform(engine, 1, 100);
+        Energy energy(s.parameters, from, to);
+        record(s.parameters, s.start, 150, 5000, {&energy});
+        const double turnover = std::abs(energy.input()) + energy.damper() + energy.impacts() + energy.at_start() + energy.at_end();
+        if (turnover > 0) worst = std::max(worst, std::abs(energy.residual()) / turnover);
+    }
+    CHECK(worst < 1e-12);
+}
+
+TEST_CASE("the residual of Table 1 is below 1e-9 of the input, with a stick in the run, too") {
+    for (double b : {0.015, 0.022, 0.004}) {
+        const Parameters p = table1(b, Damping::closed_form);
+        Energy energy(p, 0, 1709);
+        record(p, default_state(p), 1709, 1000000, {&energy});
+        CHECK(energy.input() > 0);
+        CHECK(std::abs(energy.residual()) < 1e-12 * energy.input());
+    }
+}
+
+TEST_CASE("rms and peak of x are those of dense samples") {
+    const Parameters p = table1(0.022, Damping::equation_of_motion);
+    Energy energy(p, 100, 400);
+    SeriesRecord series(1e-3);
+    record(p, default_state(p), 400, 1000000, {&energy, &series});
+    double squares = 0, peak = 0;
+    long n = 0;
+    for (std::size_t i = 0; i < series.tau.size(); ++i) {
+        if (series.tau[i] < 100) continue;
+        squares += series.x[i] * series.x[i];
+        peak = std::max(peak, std::abs(series.x[i]));
+        ++n;
+    }
+    CHECK(energy.duration() == doctest::Approx(300));
+    CHECK(energy.rms() == doctest::Approx(std::sqrt(squares / static_cast<double>(n))).epsilon(1e-5));
+    CHECK(energy.peak() >= peak);
+    CHECK(energy.peak() == doctest::Approx(peak).epsilon(1e-6));
+}
+
+TEST_CASE("an excursion's path is the way up and down between its turning points") {
+    const Flow undamped(1, 0, 0, 1);
+    const Excursion e = excursion(undamped, {0, 1, 0, 1}, 10 * 2 * std::numbers::pi + 1);
+    CHECK(e.peak == doctest::Approx(1).epsilon(1e-14));
+    CHECK(e.path == doctest::Approx(40 + std::sin(1)).epsilon(1e-13));
+}
+
+TEST_CASE("without the absorber the oscillator comes to its steady amplitude") {
+    for (double Omega : {0.4, 1.0, 2.3}) {
+        Parameters p = table1(0.022, Damping::closed_form);
+        p.Omega = Omega;
+        const Unattached u = unattached(p, {}, 5000, 6000);
+        REQUIRE(u.amplitude);
+        CHECK(u.peak == doctest::Approx(*u.amplitude).epsilon(1e-9));
+        CHECK(u.rms == doctest::Approx(*u.amplitude / std::sqrt(2)).epsilon(1e-2));
+    }
+    Parameters undamped = table1(0.022, Damping::closed_form);
+    undamped.lambda = 0;
+    CHECK_FALSE(unattached(undamped, {}, 0, 10).amplitude);
+}
+
+TEST_CASE("a free decay passes half and a tenth of its energy at the moments reported") {
+    Parameters p = table1(0.022, Damping::equation_of_motion);
+    p.G = 0;
+    const State start{0, 0.02, 0, 0.005};
+    Decay decay(p, start, {0.5, 0.1, 1e-30});
+    record(p, start, 1000, 1000000, {&decay});
+    REQUIRE(decay.tau[0]);
+    REQUIRE(decay.tau[1]);
+    CHECK_FALSE(decay.tau[2]);
+    for (int k = 0; k < 2; ++k) {
+        // Just before it, the energy is above; at it, at or below (an impact may carry it past).
+        const double tau = *decay.tau[k], level = (k == 0 ? 0.5 : 0.1) * energy_of(p, start);
+        CHECK(energy_of(p, simulate(p, start, {tau - 1e-9, 1000000, {}}, {}).state) > level);
+        CHECK(energy_of(p, simulate(p, start, {tau + 1e-9, 1000000, {}}, {}).state) <= level);
+    }
+    // Alone, the oscillator needs longer.
+    Parameters alone = p;
+    alone.b = 10;
+    Decay slow(alone, start, {0.5, 0.1});
+    record(alone, start, 1000, 1000000, {&slow});
+    CHECK(*slow.tau[0] > *decay.tau[0]);
+    CHECK(*slow.tau[0] == doctest::Approx(std::log(2) / (2 * p.zeta())).epsilon(0.01));
+}
