@@ -1,19 +1,20 @@
 // The form, built from the field table of /v1/parameters. An empty input stands for the default that its placeholder shows.
+import {element} from "./dom.js";
 
 const groups = {
   system: ["System", true], reduced: ["Reduced parameters", false], SI: ["SI parameters", false],
   start: ["Initial state", false], run: ["Run", true], output: ["Output", false],
 };
 const hidden = new Set(["preset", "include"]);  // the preset has its own menu; the page needs every part that it draws
-const wide = new Set(["choice", "choices"]);
+const wide = new Set(["choice", "choices", "intervals"]);
 
-const element = (tag, properties = {}, ...children) => {
-  const node = Object.assign(document.createElement(tag), properties);
-  node.append(...children);
-  return node;
-};
+const show = (value) => !Array.isArray(value) ? String(value) : Array.isArray(value[0]) ? value.map(show).join("; ") : value.join(", ");
 
-const show = (value) => Array.isArray(value) ? value.join(", ") : String(value);
+/** A text as JSON wants it; what cannot be a number is sent as text, for the service to refuse. */
+const number = (text) => text.trim() !== "" && Number.isFinite(Number(text)) ? Number(text) : text.trim();
+const interval = (text) => text.split(",").map(number);
+const intervals = (text) => text.split(";").filter((part) => part.trim()).map(interval);
+const readers = {interval, intervals};
 
 export class Form {
   constructor(container, fields) {
@@ -40,7 +41,8 @@ export class Form {
       input = element("div", {className: "checks"}, ...field.choices.map((c) =>
         element("label", {}, element("input", {type: "checkbox", value: c, checked: field.default.includes(c)}), c)));
     } else {
-      input = element("input", {type: "text", inputMode: "decimal", placeholder: field.default_note || show(field.default ?? "")});
+      const placeholder = field.default_note || show(field.default ?? "") || (field.type === "intervals" ? "none; as a,b; c,d" : "");
+      input = element("input", {type: "text", inputMode: readers[field.type] ? "text" : "decimal", placeholder});
     }
     input.setAttribute("aria-describedby", error.id);
     const range = field.minimum === undefined ? "" : ` [${field.minimum} to ${field.maximum}]`;
@@ -50,10 +52,9 @@ export class Form {
     return element("div", {className: `field${wide.has(field.type) ? " wide" : ""}`}, label, error);
   }
 
-  /** The fields that differ from their defaults, typed for JSON; what cannot be a number is sent as text, for the service to refuse. */
+  /** The fields that differ from their defaults, typed for JSON. */
   values() {
     const values = {};
-    const number = (text) => text.trim() !== "" && Number.isFinite(Number(text)) ? Number(text) : text.trim();
     for (const field of this.fields) {
       const input = this.inputs.get(field.name);
       if (field.type === "choice") {
@@ -62,7 +63,7 @@ export class Form {
         const chosen = [...input.querySelectorAll("input:checked")].map((box) => box.value);
         if (chosen.length !== field.default.length) values[field.name] = chosen;
       } else if (input.value.trim() !== "") {
-        values[field.name] = field.type === "interval" ? input.value.split(",").map(number) : number(input.value);
+        values[field.name] = (readers[field.type] ?? number)(input.value);
       }
     }
     return values;

@@ -1,9 +1,10 @@
-// Line plots over tau (uPlot) and scatter plots at impacts (a canvas). Colours come from the style sheet, so that they
-// follow the colour scheme.
+// Line plots over tau (uPlot) and scatter plots (a canvas). Colours come from the style sheet, so that they follow the
+// colour scheme. A plot that has no width, as in a closed part of the page in some browsers, is drawn when it gets one.
 import uPlot from "./uPlot.esm.js";
 
 const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
-const short = (value) => value == null ? "–" : Math.abs(value) >= 1e5 || (value !== 0 && Math.abs(value) < 1e-3) ? value.toExponential(2) : Number(value.toPrecision(5)).toString();
+const plain = (value) => Math.abs(value) >= 1e5 || (value !== 0 && Math.abs(value) < 1e-3) ? value.toExponential(2).replace(/\.?0+e\+?/, "e") : Number(value.toPrecision(5)).toString();
+const short = (value) => value == null ? "–" : plain(value).replace("-", "−");
 
 // Plots over tau zoom and point together.
 const together = new Set();
@@ -16,6 +17,14 @@ function zoomAll(source) {
   zooming = false;
 }
 
+/** The labels of a logarithmic axis: powers of ten (not all, if there are many), and 2 and 5 between them if there are few. */
+function logTicks(min, max) {
+  const from = Math.floor(Math.log10(min)), to = Math.ceil(Math.log10(max)), step = Math.ceil((to - from) / 8);
+  const list = [];
+  for (let k = from; k <= to; k += step) for (const m of to - from < 4 ? [1, 2, 5] : [1]) list.push(m * 10 ** k);
+  return list.filter((v) => v >= min && v <= max);
+}
+
 export class LinePlot {
   constructor(container, {synced = false} = {}) {
     this.container = container;
@@ -25,34 +34,46 @@ export class LinePlot {
   }
 
   resize() {
-    if (!this.plot) return;
     const {clientWidth: width, clientHeight: height} = this.container;
-    if (width > 0) this.plot.setSize({width, height: height - this.legendHeight()});
+    if (!width) return;
+    if (this.plot) this.plot.setSize({width, height: height - this.legendHeight()});
+    else this.redraw();
   }
 
   legendHeight() {
     return this.plot?.root.querySelector(".u-legend")?.offsetHeight ?? 0;
   }
 
-  /** series: [{label, colour, dash, width}]; range: of y; walls: levels of y; lines: moments of tau; bands: intervals of tau; zero: a line at y = 0. */
-  draw({series, data, range, walls = [], lines = [], bands = [], zero = false}) {
-    this.last = {series, data, range, walls, lines, bands, zero};
+  /**
+   * series: [{label, colour, dash, width, dots}], dots: their size, and no line unless there is a width; range: of y; log: of y;
+   * levels: of y, in the colour levelColour; lines: moments of tau; bands: intervals of tau, calm: those of the other shade.
+   */
+  draw(options) {
+    this.last = options;
     if (this.plot) {
       together.delete(this.plot);
       this.plot.destroy();
+      this.plot = null;
     }
-    const axis = {stroke: colour("soft"), grid: {stroke: colour("grid"), width: 1}, ticks: {stroke: colour("line"), width: 1}, font: "12px system-ui"};
+    if (this.container.clientWidth) this.create(options);
+  }
+
+  create({series, data, range, label, log = false, levels = [], levelColour = "soft", lines = [], bands = [], calm = []}) {
+    const axis = {stroke: colour("soft"), grid: {stroke: colour("grid"), width: 1}, ticks: {stroke: colour("line"), width: 1, size: 5}, font: "12px system-ui", labelFont: "12px system-ui", labelGap: 0};
+    const logAxis = log ? {splits: (u) => logTicks(u.scales.y.min, u.scales.y.max), filter: (_, splits) => splits} : {};
+    const values = (_, ticks) => ticks.map(short);
     const options = {
-      width: Math.max(this.container.clientWidth, 50), height: Math.max(this.container.clientHeight - 28, 80),
-      scales: {x: {time: false}, y: range ? {range: () => range} : {}},
-      axes: [{...axis, size: 34}, {...axis, size: 56, values: (_, ticks) => ticks.map(short)}],
+      padding: [8, 12, 0, 0], width: this.container.clientWidth, height: Math.max(this.container.clientHeight - 28, 80),
+      scales: {x: {time: false}, y: {...(range ? {range: () => range} : {}), ...(log ? {distr: 3} : {})}},
+      axes: [{...axis, size: 24, gap: 2, label: "τ", labelSize: 16, values}, {...axis, size: 52, gap: 3, label, labelSize: 18, values, ...logAxis}],
       series: [{label: "τ", value: (_, v) => short(v)},
-        ...series.map((s) => ({label: s.label, stroke: colour(s.colour), width: s.width ?? 1, dash: s.dash, points: {show: false}, value: (_, v) => short(v), spanGaps: false}))],
+        ...series.map((s) => ({label: s.label, stroke: colour(s.colour), width: s.width ?? 1, dash: s.dash, points: {show: false}, value: (_, v) => short(v), spanGaps: false,
+          ...(s.dots && !s.width ? {paths: () => null} : {})}))],
       cursor: {sync: this.synced ? {key: "tau"} : undefined, drag: {x: true, y: false}, points: {size: 5}},
       legend: {live: true},
       hooks: {
-        drawClear: [(u) => this.shade(u, bands)],
-        draw: [(u) => this.rule(u, walls, lines, zero)],
+        drawClear: [(u) => { this.shade(u, calm, "calm"); this.shade(u, bands, "shade"); }],
+        draw: [(u) => { this.rule(u, levels, levelColour, lines); series.forEach((s, i) => { if (s.dots) this.dot(u, s, i + 1); }); }],
         setScale: [(u, key) => { if (this.synced && key === "x") zoomAll(u); }],
       },
     };
@@ -61,25 +82,32 @@ export class LinePlot {
     if (this.synced) together.add(this.plot);
   }
 
-  shade(u, bands) {
+  /** One path, filled once: bands that share a pixel do not darken it. */
+  shade(u, bands, name) {
     u.ctx.save();
-    u.ctx.fillStyle = colour("shade");
+    u.ctx.fillStyle = colour(name);
+    u.ctx.beginPath();
     for (const [from, to] of bands) {
       const left = Math.max(u.valToPos(from, "x", true), u.bbox.left), right = Math.min(u.valToPos(to, "x", true), u.bbox.left + u.bbox.width);
-      if (right > u.bbox.left && left < u.bbox.left + u.bbox.width) u.ctx.fillRect(left, u.bbox.top, Math.max(right - left, 1), u.bbox.height);
+      if (right > u.bbox.left && left < u.bbox.left + u.bbox.width) u.ctx.rect(left, u.bbox.top, Math.max(right - left, 1), u.bbox.height);
     }
+    u.ctx.fill();
     u.ctx.restore();
   }
 
-  rule(u, walls, lines, zero) {
+  clip(u) {
     u.ctx.save();
     u.ctx.beginPath();
     u.ctx.rect(u.bbox.left, u.bbox.top, u.bbox.width, u.bbox.height);
     u.ctx.clip();
+  }
+
+  rule(u, levels, levelColour, lines) {
+    this.clip(u);
     u.ctx.lineWidth = devicePixelRatio;
     u.ctx.setLineDash([]);
-    u.ctx.strokeStyle = colour(zero ? "soft" : "wall");
-    for (const y of zero ? [0] : walls) {
+    u.ctx.strokeStyle = colour(levelColour);
+    for (const y of levels) {
       const at = u.valToPos(y, "y", true);
       u.ctx.beginPath(); u.ctx.moveTo(u.bbox.left, at); u.ctx.lineTo(u.bbox.left + u.bbox.width, at); u.ctx.stroke();
     }
@@ -88,6 +116,23 @@ export class LinePlot {
     for (const x of lines) {
       const at = u.valToPos(x, "x", true);
       u.ctx.beginPath(); u.ctx.moveTo(at, u.bbox.top); u.ctx.lineTo(at, u.bbox.top + u.bbox.height); u.ctx.stroke();
+    }
+    u.ctx.restore();
+  }
+
+  /** The values as dots, smaller where there are many; those that would fall on the last one drawn are left out. */
+  dot(u, {colour: name, dots}, index) {
+    if (!u.series[index].show) return;
+    const tau = u.data[0], values = u.data[index], [from, to] = u.series[0].idxs ?? [0, tau.length - 1];
+    const size = Math.max(dots * Math.min(1, Math.sqrt(2 * this.container.clientWidth / (to - from + 1))), 1.5) * devicePixelRatio;
+    this.clip(u);
+    u.ctx.fillStyle = colour(name);
+    let lastX = NaN, lastY = NaN;
+    for (let i = from; i <= to; ++i) {
+      if (values[i] == null) continue;
+      const x = Math.round(u.valToPos(tau[i], "x", true) - size / 2), y = Math.round(u.valToPos(values[i], "y", true) - size / 2);
+      if (x === lastX && y === lastY) continue;
+      u.ctx.fillRect(lastX = x, lastY = y, size, size);
     }
     u.ctx.restore();
   }
@@ -104,15 +149,28 @@ function ticks(min, max, count) {
   return list;
 }
 
+/** The range of the groups' values and a margin. */
+function extentOf(groups, key) {
+  let min = Infinity, max = -Infinity;
+  for (const group of groups) for (const v of group[key]) { if (v < min) min = v; if (v > max) max = v; }
+  if (!(min <= max)) return null;
+  const margin = (max - min) * 0.06 || Math.abs(max) * 0.06 || 1;
+  return [min - margin, max + margin];
+}
+
 export class ScatterPlot {
   constructor(canvas) {
     this.canvas = canvas;
     new ResizeObserver(() => this.redraw()).observe(canvas);
   }
 
-  /** groups: [{x, y, colour}] */
-  draw(groups, xLabel, yLabel) {
-    this.last = [groups, xLabel, yLabel];
+  /**
+   * groups: [{x, y, colour, size, alpha}]; curves: [{x, y, colour, dash}]; levels: [{y, colour, label}]; extent: {x, y}, else that of the groups;
+   * equal: the same scale on both axes; xLabel, yLabel; empty: what to say if there are no points.
+   */
+  draw(options) {
+    this.last = options;
+    const {groups, curves = [], levels = [], xLabel, yLabel, equal = false, empty = "no impacts"} = options;
     const {canvas} = this, ratio = devicePixelRatio, width = canvas.clientWidth, height = canvas.clientHeight;
     if (!width) return;
     canvas.width = width * ratio;
@@ -121,44 +179,78 @@ export class ScatterPlot {
     c.scale(ratio, ratio);
     c.font = "12px system-ui";
     c.fillStyle = colour("soft");
-    const box = {left: 56, top: 8, right: width - 10, bottom: height - 36};
-    const extent = (key) => {
-      let min = Infinity, max = -Infinity;
-      for (const group of groups) for (const v of group[key]) { if (v < min) min = v; if (v > max) max = v; }
-      if (!(min <= max)) return null;
-      const margin = (max - min) * 0.06 || Math.abs(max) * 0.06 || 1;
-      return [min - margin, max + margin];
-    };
-    const ex = extent("x"), ey = extent("y");
-    if (!ex) {
+    const box = {left: 58, top: 8, right: width - 10, bottom: height - 38};
+    let ex = options.extent?.x ?? extentOf(groups, "x"), ey = options.extent?.y ?? extentOf(groups, "y");
+    if (!ex || !ey) {
       c.textAlign = "center";
-      c.fillText("no impacts", width / 2, height / 2);
+      c.fillText(empty, width / 2, height / 2);
       return;
     }
+    if (equal) [ex, ey] = sameScale(ex, ey, box);
     const px = (v) => box.left + (v - ex[0]) / (ex[1] - ex[0]) * (box.right - box.left);
     const py = (v) => box.bottom - (v - ey[0]) / (ey[1] - ey[0]) * (box.bottom - box.top);
+    this.axes(c, box, ex, ey, px, py, xLabel, yLabel);
+    c.save();
+    c.beginPath();
+    c.rect(box.left, box.top, box.right - box.left, box.bottom - box.top);
+    c.clip();
+    for (const group of groups) this.dots(c, group, px, py);
+    for (const curve of curves) this.curve(c, curve, px, py);
+    for (const level of levels) this.level(c, level, box, py);
+    c.restore();
+  }
+
+  axes(c, box, ex, ey, px, py, xLabel, yLabel) {
+    const line = (x0, y0, x1, y1) => { c.beginPath(); c.moveTo(x0, y0); c.lineTo(x1, y1); c.stroke(); };
     c.strokeStyle = colour("grid");
     c.textAlign = "center";
     c.textBaseline = "top";
-    for (const t of ticks(...ex, 6)) { c.beginPath(); c.moveTo(px(t), box.top); c.lineTo(px(t), box.bottom); c.stroke(); c.fillText(short(t), px(t), box.bottom + 4); }
-    c.fillText(xLabel, (box.left + box.right) / 2, box.bottom + 19);
+    for (const t of ticks(...ex, Math.min(6, (box.right - box.left) / 55))) { line(px(t), box.top, px(t), box.bottom); c.fillText(short(t), px(t), box.bottom + 4); }
+    c.fillText(xLabel, (box.left + box.right) / 2, box.bottom + 21);
     c.textAlign = "right";
     c.textBaseline = "middle";
-    for (const t of ticks(...ey, 6)) { c.beginPath(); c.moveTo(box.left, py(t)); c.lineTo(box.right, py(t)); c.stroke(); c.fillText(short(t), box.left - 5, py(t)); }
+    for (const t of ticks(...ey, 6)) { line(box.left, py(t), box.right, py(t)); c.fillText(short(t), box.left - 5, py(t)); }
     c.save();
-    c.translate(10, (box.top + box.bottom) / 2);
+    c.translate(9, (box.top + box.bottom) / 2);
     c.rotate(-Math.PI / 2);
     c.textAlign = "center";
     c.fillText(yLabel, 0, 0);
     c.restore();
-    c.globalAlpha = 0.75;
-    for (const group of groups) {
-      const size = group.x.length > 20000 ? 1 : 2.4;
-      c.fillStyle = colour(group.colour);
-      for (let i = 0; i < group.x.length; ++i) c.fillRect(px(group.x[i]) - size / 2, py(group.y[i]) - size / 2, size, size);
-    }
+  }
+
+  dots(c, {x, y, colour: name, size: asked = 2.4, alpha = 0.75}, px, py) {
+    const size = x.length > 20000 ? 1 : asked;
+    c.globalAlpha = alpha;
+    c.fillStyle = colour(name);
+    for (let i = 0; i < x.length; ++i) c.fillRect(px(x[i]) - size / 2, py(y[i]) - size / 2, size, size);
     c.globalAlpha = 1;
   }
 
-  redraw() { if (this.last) this.draw(...this.last); }
+  curve(c, {x, y, colour: name, dash = []}, px, py) {
+    c.strokeStyle = colour(name);
+    c.lineWidth = 1.6;
+    c.setLineDash(dash);
+    c.beginPath();
+    for (let i = 0; i < x.length; ++i) c.lineTo(px(x[i]), py(y[i]));
+    c.stroke();
+  }
+
+  level(c, {y, colour: name, label = ""}, box, py) {
+    c.strokeStyle = c.fillStyle = colour(name);
+    c.lineWidth = 1;
+    c.setLineDash([]);
+    c.beginPath(); c.moveTo(box.left, py(y)); c.lineTo(box.right, py(y)); c.stroke();
+    c.textAlign = "right";
+    c.textBaseline = "bottom";
+    c.fillText(label, box.right - 4, py(y) - 2);
+  }
+
+  redraw() { if (this.last) this.draw(this.last); }
+}
+
+/** The ranges widened so that a unit is as long on both axes. */
+function sameScale(ex, ey, box) {
+  const unit = Math.min((box.right - box.left) / (ex[1] - ex[0]), (box.bottom - box.top) / (ey[1] - ey[0]));
+  const around = ([min, max], pixels) => [(min + max) / 2 - pixels / unit / 2, (min + max) / 2 + pixels / unit / 2];
+  return [around(ex, box.right - box.left), around(ey, box.bottom - box.top)];
 }

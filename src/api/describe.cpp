@@ -36,12 +36,6 @@ const char* word(Verdict verdict) {
     return "";
 }
 
-std::string digits(const char* format, double value) {
-    char text[64];
-    std::snprintf(text, sizeof text, format, value);
-    return text;
-}
-
 Json four(const Exponents& values) { return column(values, finite_or_null); }
 
 Json with_status(const Exponents& values) {
@@ -56,15 +50,19 @@ Json describe_history(const ExponentHistory& history) {
 }
 
 /// The sign of lambda1, and how sure it is.
-void add_verdict(Json& j, double lambda1, double error) {
-    const Verdict verdict = verdict_of(lambda1, error);
+void add_verdict(Json& j, double lambda1, double error, const Regime& regime, double tau_start) {
+    const Verdict verdict = verdict_of(lambda1, error, regime, tau_start), by_errors = verdict_of(lambda1, error);
     const double sigmas = lambda1 / error;
     j["verdict"] = word(verdict);
     j["verdict_sigmas"] = finite_or_null(sigmas);
-    j["verdict_reason"] = std::isfinite(sigmas)
-                              ? "lambda1 = " + digits("%.3g", lambda1) + " lies " + digits("%.1f", std::abs(sigmas)) + " standard errors " + (lambda1 > 0 ? "above" : "below") +
-                                    " zero; " + (verdict == Verdict::not_decided ? "less than " : "at least ") + digits("%.0f", verdict_sigmas) + " decide"
-                              : "too few impacts for a standard error of lambda1";
+    if (verdict == Verdict::regular && regime.orbit)
+        j["verdict_reason"] = "the motion ends on a stable periodic orbit, whose largest multiplier has the modulus " + digits("%.4g", std::abs(regime.orbit->multipliers[0]));
+    else if (std::isfinite(sigmas))
+        j["verdict_reason"] = "lambda1 = " + digits("%.3g", lambda1) + " lies " + digits("%.1f", std::abs(sigmas)) + " standard errors " + (lambda1 > 0 ? "above" : "below") +
+                              " zero; " + (by_errors == Verdict::not_decided ? "less than " : "at least ") + digits("%.0f", verdict_sigmas) + " decide" +
+                              (regime.capture ? ", up to the capture by a periodic orbit at tau = " + digits("%.1f", regime.capture->tau) : "");
+    else
+        j["verdict_reason"] = "too few impacts for a standard error of lambda1";
 }
 
 /// A period's multipliers, by descending modulus.
@@ -94,6 +92,12 @@ Json describe_matrix(const Matrix4& m) {
 }
 
 }  // namespace
+
+std::string digits(const char* format, double value) {
+    char text[64];
+    std::snprintf(text, sizeof text, format, value);
+    return text;
+}
 
 Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -149,13 +153,13 @@ Json describe_touches(const std::vector<TouchRecord::Touch>& touches) {
     return {{"tau", column(touches, [](const auto& t) { return t.tau; })}, {"side", column(touches, [](const auto& t) { return t.side; })}};
 }
 
-Json describe_exponents(const TransferProduct& product, const ExponentOptions& estimators, double zeta, bool histories, Warnings& warnings) {
+Json describe_exponents(const TransferProduct& product, const ExponentOptions& estimators, double zeta, const Regime& regime, bool histories, Warnings& warnings) {
     const double start = product.start_tau(), T = product.end_tau() - start;
     Json j = {{"window", product.impacts() > 0 ? Json::array({start, product.end_tau()}) : Json(nullptr)}, {"impacts", product.impacts()},
               {"sum_rule_residual", finite_or_null(product.sum_rule_residual(zeta))}};
     if (estimators.qr) {
         const Exponents error = standard_error(product.qr_history(), start);
-        add_verdict(j, product.qr()[0], error[0]);
+        add_verdict(j, product.qr()[0], error[0], regime, start);
         Json qr = with_status(product.qr());
         qr["standard_error"] = four(error);
         if (histories) qr["history"] = describe_history(product.qr_history());

@@ -11,6 +11,8 @@ namespace vines::api {
 using Warnings = std::vector<std::string>;
 
 Json finite_or_null(double value);
+/// A number for people: with printf's format.
+std::string digits(const char* format, double value);
 
 /// The resolved parameters of a system without what belongs to a run, and what follows from them.
 Json describe_system(const System& system);
@@ -22,8 +24,8 @@ Json describe_impacts(const std::vector<Impact>& impacts, double epsilon, double
 Json describe_sticks(const std::vector<StickRecord::Stick>& sticks);
 Json describe_touches(const std::vector<TouchRecord::Touch>& touches);
 
-/// The exponents of one window. `histories` adds those of each estimator, and warnings are about it then.
-Json describe_exponents(const TransferProduct& product, const ExponentOptions& estimators, double zeta, bool histories, Warnings& warnings);
+/// The exponents of one window of a run of this regime. `histories` adds those of each estimator, and warnings are about it then.
+Json describe_exponents(const TransferProduct& product, const ExponentOptions& estimators, double zeta, const Regime& regime, bool histories, Warnings& warnings);
 
 /// Moduli of the eigenvalues of J, M, T at each impact, and the matrices themselves.
 Json describe_eigenvalues(const std::vector<ImpactTransfer>& transfers);

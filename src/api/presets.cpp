@@ -59,10 +59,17 @@ std::vector<Preset> make_presets() {
          "The paper varies b. Its numbers come from zeta = epsilon lambda (closed_form); its equation of motion has half of that.", closed_form(0.022)},
     };
     const double windows[3][2] = {{18.13, 1708.9}, {1708.9, 3652.7}, {3652.7, 5521.3}};
+    Json rows = Json::array();
+    for (const auto& [from, to] : windows) rows.push_back({from, to});
+    auto of_table2 = [&](int row) {
+        Json p = windowed(closed_form(0.022, 5521.3), windows[row][0], windows[row][1]);
+        p["windows"] = rows;
+        return p;
+    };
     for (int i = 0; i < 3; ++i)
         list.push_back({"table2_" + std::to_string(i + 1), "Table 2, row " + std::to_string(i + 1), smr + ", b = 22 mm: window of the exponents",
                         "The printed lambda3 is lambda1 - ln(1/2.2e-16)/T: rounding. It is negative (qr).",
-                        windowed(closed_form(0.022, 5521.3), windows[i][0], windows[i][1])});
+                        of_table2(i)});
     for (const char* b : {"0.040", "0.034", "0.031", "0.028", "0.025", "0.022", "0.020", "0.018", "0.017", "0.0165"})
         list.push_back({"table3_b" + std::string(b), "Table 3", std::string(std::stod(b) > 0.032 ? "Type I" : smr) + ", b = " + Json(std::stod(b) * 1000).dump() + " mm",
                         "The printed lambda3 is lambda1 - ln(1/2.2e-16)/T: rounding. One window knows lambda1 to about 10 %.", closed_form(std::stod(b))});

@@ -67,7 +67,7 @@ Json over_preset(const std::vector<Field>& fields, const Json& object) {
             if (!present(object, own).empty())
                 for (const std::string& other : others) merged.erase(other);
     // A window that was left to the preset makes no sense in a run of another length.
-    if (object.contains("tau_end") || object.contains("cycles")) merged.erase("window");
+    if (object.contains("tau_end") || object.contains("cycles")) merged.erase("window"), merged.erase("windows");
     for (auto it = merged.begin(); it != merged.end();)
         it = std::any_of(fields.begin(), fields.end(), [&](const Field& f) { return f.name == it.key(); }) ? std::next(it) : merged.erase(it);
     merged.update(object);

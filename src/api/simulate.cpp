@@ -56,17 +56,17 @@ void warn_of_grazing(const std::vector<Impact>& impacts, const SimulateRequest& 
         if (!nearest || std::abs(i.relative_speed_before) < std::abs(nearest->relative_speed_before)) nearest = &i;
     }
     if (count > 0)
-        warnings.push_back("M is ill-conditioned (above " + Json(ill_conditioned).dump() + ") at " + std::to_string(count) + " nearly tangent impact(s), most at tau = " +
-                           Json(nearest->tau).dump() + ", whose relative speed is " + Json(std::abs(nearest->relative_speed_before) / typical_speed).dump() +
+        warnings.push_back("M is ill-conditioned (above " + digits("%.2g", ill_conditioned) + ") at " + std::to_string(count) + " nearly tangent impact(s), most at tau = " +
+                           digits("%.6g", nearest->tau) + ", whose relative speed is " + digits("%.2g", std::abs(nearest->relative_speed_before) / typical_speed) +
                            " of the median: there the motion is next to one without this impact");
 }
 
-Json describe_windows(const SimulateRequest& r, const std::vector<Lyapunov>& windows) {
+Json describe_windows(const SimulateRequest& r, const std::vector<Lyapunov>& windows, const Regime& regime) {
     Json list = Json::array();
     Warnings none;
     for (std::size_t i = 0; i < windows.size(); ++i) {
         Json entry = {{"asked", {r.windows[i].from, r.windows[i].to}}};
-        entry.update(describe_exponents(windows[i].product(), r.estimators, r.system.parameters.zeta(), false, none));
+        entry.update(describe_exponents(windows[i].product(), r.estimators, r.system.parameters.zeta(), regime, false, none));
         list.push_back(std::move(entry));
     }
     return list;
@@ -102,9 +102,10 @@ Json simulate_answer(const SimulateRequest& r, const std::function<bool()>& stop
     observe(r.includes("exponents"), lyapunov);
     for (Lyapunov& w : windows) observe(true, w);
     observe(r.includes("eigenvalues") || r.includes("matrices"), transfers);
-    observe(r.includes("section") || r.includes("regime"), stroboscopic);
+    const bool judged = r.includes("regime") || r.includes("exponents") || !windows.empty();  // the verdict on exponents rests on the regime, too
+    observe(r.includes("section") || judged, stroboscopic);
     observe(r.includes("energy"), energy, decay);
-    observe(r.includes("regime"), contacts);
+    observe(judged, contacts);
     observe(r.includes("manifold"), half_cycles);
 
     const Outcome outcome = simulate(p, r.start, {r.tau_end, r.max_impacts, stop}, observers);
@@ -117,7 +118,7 @@ Json simulate_answer(const SimulateRequest& r, const std::function<bool()>& stop
     if (r.includes("series")) {
         series.finish(outcome);
         if (step > asked_step)
-            warnings.push_back("the series has " + Json(cycle / step).dump() + " samples per cycle instead of " + Json(r.samples_per_cycle).dump() +
+            warnings.push_back("the series has " + digits("%.4g", cycle / step) + " samples per cycle instead of " + digits("%.4g", r.samples_per_cycle) +
                                ", so that it holds no more than max_points = " + std::to_string(r.max_points));
         answer["series"] = describe_series(std::move(series));
     }
@@ -128,14 +129,15 @@ Json simulate_answer(const SimulateRequest& r, const std::function<bool()>& stop
         answer["touches"] = describe_touches(touches.touches);
         warnings.push_back("the mass touches a wall without an impact (tangent contact): neighbouring trajectories go different ways there");
     }
-    if (r.includes("exponents")) answer["exponents"] = describe_exponents(lyapunov.product(), r.estimators, p.zeta(), true, warnings);
-    if (!windows.empty()) answer["windows"] = describe_windows(r, windows);
+    const Regime regime = judged ? regime_of(p, r.start, {contacts, stroboscopic, reached.from, reached.to}) : Regime{};
+    if (r.includes("exponents")) answer["exponents"] = describe_exponents(lyapunov.product(), r.estimators, p.zeta(), regime, true, warnings);
+    if (!windows.empty()) answer["windows"] = describe_windows(r, windows, regime);
     warn_of_grazing(impacts.impacts, r, typical_speed, warnings);
     if (r.includes("eigenvalues")) answer["eigenvalues"] = describe_eigenvalues(transfers.transfers);
     if (r.includes("matrices")) answer["matrices"] = describe_matrices(transfers.transfers);
     if (r.includes("section")) answer["section"] = describe_section(impacts.impacts, stroboscopic, r.window);
     if (r.includes("energy")) answer["energy"] = describe_energy(p, r.start, energy, decay, reached);
-    if (r.includes("regime")) answer["regime"] = describe_regime(regime_of(p, r.start, {contacts, stroboscopic, reached.from, reached.to}), warnings);
+    if (r.includes("regime")) answer["regime"] = describe_regime(regime, warnings);
     if (r.includes("manifold")) {
         if (p.R_plus == p.R_minus) {
             answer["manifold"] = describe_manifold(p, 0, 200);
@@ -162,7 +164,7 @@ Json manifold_answer(const ManifoldRequest& r) {
     const auto free = free_amplitude(r.system.parameters);
     const double activation = manifold_fold(r.system.parameters.R_plus, r.system.parameters.Omega, r.system.parameters.b).C;
     if (free && *free < activation)
-        warnings.push_back("without the absorber the oscillator reaches " + Json(*free).dump() + " m, less than the activation amplitude " + Json(activation).dump() +
+        warnings.push_back("without the absorber the oscillator reaches " + digits("%.4g", *free) + " m, less than the activation amplitude " + digits("%.4g", activation) +
                            " m: two impacts per cycle cannot come about; b_at_free_amplitude is the largest b for which they can");
     return {{"version", version()}, {"parameters", std::move(parameters)}, {"warnings", warnings}, {"manifold", describe_manifold(r.system.parameters, r.V_max, r.points)}};
 }

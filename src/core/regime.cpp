@@ -148,7 +148,7 @@ const char* name_of(RegimeType type) {
     return names[static_cast<int>(type)];
 }
 
-Regime regime_of(const Parameters& p, const State& start, const RegimeEvidence& e) {
+Regime regime_of(const Parameters& p, const State& start, const RegimeEvidence& e, bool exponents_before) {
     Regime r;
     r.forced = p.G > 0;
     const double cycle = 2 * std::numbers::pi / p.Omega;
@@ -174,18 +174,26 @@ Regime regime_of(const Parameters& p, const State& start, const RegimeEvidence& 
         r.orbit = orbit_at_end(p, states, scale);
         if (r.orbit) {
             r.z = static_cast<double>(r.orbit->contacts) / r.orbit->cycles;
-            Capture capture{e.stroboscopic.tau(first + captured_from(p, *r.orbit, states, scale)), {}, r.orbit->exponents(p), false};
-            Lyapunov before(p, e.tau_start, capture.tau, {true, false, false, 256});
-            Observer* const observers[] = {&before};
-            simulate(p, start, {capture.tau, std::numeric_limits<long>::max(), {}}, observers);
-            capture.before = before.product().qr();
-            const auto error = standard_error(before.product().qr_history(), before.product().start_tau());
-            capture.chaotic_before = verdict_of(capture.before[0], error[0]) == Verdict::chaotic;
+            constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+            Capture capture{e.stroboscopic.tau(first + captured_from(p, *r.orbit, states, scale)), {nan, nan, nan, nan}, r.orbit->exponents(p), false};
+            if (exponents_before) {
+                Lyapunov before(p, e.tau_start, capture.tau, {true, false, false, 256});
+                Observer* const observers[] = {&before};
+                simulate(p, start, {capture.tau, std::numeric_limits<long>::max(), {}}, observers);
+                capture.before = before.product().qr();
+                const auto error = standard_error(before.product().qr_history(), before.product().start_tau());
+                capture.chaotic_before = verdict_of(capture.before[0], error[0]) == Verdict::chaotic;
+            }
             r.capture = capture;
         }
     }
     r.type = type_of(r);
     return r;
+}
+
+Verdict verdict_of(double lambda1, double error, const Regime& r, double tau_start) {
+    if (r.capture && (!r.capture->chaotic_before || tau_start >= r.capture->tau)) return Verdict::regular;
+    return verdict_of(lambda1, error);
 }
 
 }  // namespace vines

@@ -74,7 +74,12 @@ struct RegimeEvidence {
     double tau_start, tau_end;               ///< the window to be judged; tau_end within the run
 };
 
-Regime regime_of(const Parameters& parameters, const State& start, const RegimeEvidence& evidence);
+/// `exponents_before`: also those before a capture, for which the run is repeated up to there; else they are NaN.
+Regime regime_of(const Parameters& parameters, const State& start, const RegimeEvidence& evidence, bool exponents_before = true);
+
+/// verdict_of() the exponents of a window from tau_start on, unless the run has come to a stable orbit: then the window is
+/// regular if it begins on the orbit or if what came before was mere settling.
+Verdict verdict_of(double lambda1, double error, const Regime& regime, double tau_start);
 
 const char* name_of(RegimeType type);
 

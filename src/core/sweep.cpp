@@ -1,0 +1,111 @@
+#include "core/sweep.hpp"
+
+#include <atomic>
+#include <cmath>
+#include <exception>
+#include <mutex>
+#include <numbers>
+#include <thread>
+
+#include "core/energy.hpp"
+
+namespace vines {
+
+namespace {
+
+/// The last points of a section at impact.
+class ImpactSection : public Observer {
+public:
+    explicit ImpactSection(std::size_t most) : most_(most) {}
+    void on_impact(const Impact& i) override {
+        if (most_ > 0) {
+            if (points_.size() < most_) points_.emplace_back();
+            points_[count_ % most_] = {i.side, i.phase(), i.x, i.x_dot_after, i.x - i.side * b, i.y_dot_after, i.tau - tau_before_};
+        }
+        tau_before_ = i.tau;
+        ++count_;
+    }
+    /// In order of time.
+    std::vector<SectionPoint> take() {
+        if (points_.size() == most_ && most_ > 0) std::rotate(points_.begin(), points_.begin() + static_cast<std::ptrdiff_t>(count_ % most_), points_.end());
+        return std::move(points_);
+    }
+    double b = 0;
+
+private:
+    const std::size_t most_;
+    std::size_t count_ = 0;
+    double tau_before_ = std::nan("");
+    std::vector<SectionPoint> points_;
+};
+
+std::vector<SectionPoint> stroboscopic_section(const StroboscopicRecord& record, double phi, std::size_t most) {
+    std::vector<SectionPoint> points;
+    const auto& states = record.states;
+    for (std::size_t k = states.size() - std::min(states.size(), most); k < states.size(); ++k)
+        points.push_back({0, phi, states[k].x, states[k].x_dot, states[k].y, states[k].y_dot, std::nan("")});
+    return points;
+}
+
+}  // namespace
+
+PointResult measure(const Parameters& p, const State& start, const PointOptions& o, const std::function<bool()>& stop) {
+    const double cycle = 2 * std::numbers::pi / p.Omega, tau_end = o.cycles * cycle;
+    State begin = start;
+    if (o.transient_cycles > 0) begin = simulate(p, start, {std::round(o.transient_cycles) * cycle, o.max_impacts, stop}, {}).state;
+
+    Lyapunov lyapunov(p, 0, tau_end, {true, false, false, 256});
+    ContactRecord contacts;
+    StroboscopicRecord stroboscopic(p);
+    Energy energy(p, 0, tau_end);
+    ImpactSection section(o.section == Section::impact ? o.section_points : 0);
+    section.b = p.b;
+    std::vector<Observer*> observers = {&lyapunov, &contacts, &stroboscopic, &energy};
+    if (o.section == Section::impact) observers.push_back(&section);
+    PointResult r;
+    r.outcome = simulate(p, begin, {tau_end, o.max_impacts, stop}, observers);
+
+    const TransferProduct& product = lyapunov.product();
+    r.lambda = product.qr();
+    r.standard_error = standard_error(product.qr_history(), product.start_tau());
+    r.verdict = verdict_of(r.lambda[0], r.standard_error[0]);
+    r.regime = regime_of(p, begin, {contacts, stroboscopic, 0, r.outcome.tau}, false);
+    r.x_max = energy.peak();
+    r.x_rms = energy.rms();
+    r.x_rms_ratio = r.x_rms / unattached(p, begin, 0, r.outcome.tau).rms;
+    r.share_impacts = energy.impacts() / (energy.impacts() + energy.damper());
+    r.impacts = contacts.impacts;
+    r.sticks = static_cast<long>(contacts.sticks.size());
+    if (o.section == Section::impact) r.section = section.take();
+    if (o.section == Section::stroboscopic) r.section = stroboscopic_section(stroboscopic, p.phi(), o.section_points);
+    return r;
+}
+
+State carried(const State& s, const Parameters& from, const Parameters& to) {
+    State next = s;
+    next.y = s.x + (s.y - s.x) * (to.b / from.b);
+    return next;
+}
+
+void parallel(std::size_t count, int threads, const std::function<void(std::size_t)>& task) {
+    std::atomic<std::size_t> next = 0;
+    std::exception_ptr failure;
+    std::mutex failing;
+    const auto work = [&] {
+        try {
+            for (std::size_t i; (i = next++) < count;) task(i);
+        } catch (...) {
+            next = count;
+            const std::lock_guard lock(failing);
+            if (!failure) failure = std::current_exception();
+        }
+    };
+    std::vector<std::thread> others;
+    const std::size_t wanted = std::min(count, static_cast<std::size_t>(std::max(threads, 1)));
+    for (std::size_t t = 1; t < wanted; ++t) others.emplace_back(work);
+    work();
+    for (std::thread& t : others) t.join();
+    if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace vines

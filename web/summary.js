@@ -1,0 +1,91 @@
+// What a run came to, in words and numbers: the cards above the plots, the windows' table and where the energy went.
+import {$, element} from "./dom.js";
+
+const minus = (text) => text.replace("-", "−");
+const digits = (value, n = 4) => value == null ? "–" : minus(Math.abs(value) < 1e-3 && value !== 0 ? value.toExponential(2) : value.toFixed(n));
+const percent = (value) => value == null ? "–" : `${(value * 100).toFixed(value < 0.1 && value >= 0.0005 ? 1 : 0)} %`;
+const count = (n, noun) => `${n} ${noun}${n === 1 ? "" : "s"}`;
+const positives = (estimator) => !estimator || estimator.final[0] == null ? null : estimator.final.filter((v) => v > 0).length;
+const verdicts = {chaotic: "chaotic", regular: "regular", not_decided: "not decided"};
+
+/** An exponent in a word where it has no value. */
+const exponent = ({final, status}, k) => status[k] === "minus_infinity" ? "−∞" : digits(final[k]);
+
+function regimeCards(r) {
+  const captured = r.capture?.chaotic_before ? `; captured at τ = ${r.capture.tau.toFixed(1)} after a chaotic transient` : "";
+  const chatter = r.chatter_impacts_per_period ? `, ${r.chatter_impacts_per_period} of chatter` : "";
+  const sticks = r.sticks_per_period ? `, ${count(r.sticks_per_period, "stick")}` : "";
+  const rhythm = !r.contacts ? "" : r.periodic
+    ? `period ${count(r.period_cycles, "cycle")}: ${count(r.impacts_per_period, "impact")}${chatter}${sticks}, ${r.symmetric ? "symmetric" : "asymmetric"}${r.stable ? "" : ", unstable"}`
+    : `${percent(r.synchronised.share)} of the contacts synchronised`;
+  return [["regime", r.type === "none" ? "none" : `Type ${r.type}`, r.description + captured], ["impacts per cycle, z", digits(r.z, 3), rhythm]];
+}
+
+function verdictCards(e, r) {
+  const error = e.qr?.standard_error[0], exact = positives(e.qr), raw = positives(e.raw_product);
+  const orbit = r.periodic && r.contacts && e.verdict === "not_decided" ? `; the motion ends on a ${r.stable ? "stable" : "unstable"} periodic orbit` : "";
+  return [
+    ["verdict", verdicts[e.verdict] ?? "–", (e.verdict_reason?.replace("lambda1", "λ₁").replace("= -", "= −") ?? "needs the estimator qr") + orbit],
+    ["λ₁ (qr)", e.qr ? digits(e.qr.final[0]) : "–", error == null ? "" : `± ${digits(error)}`],
+    ["positive exponents (qr)", String(exact ?? "–"), raw == null ? "" : raw === exact ? "raw_product agrees" : `raw_product shows ${raw}, as the paper counted`],
+    ["sum rule residual", e.sum_rule_residual == null ? "–" : minus(e.sum_rule_residual.toExponential(1)), e.qr && e.sum_rule_residual == null && e.impacts > 1 ? "not defined after a stick" : ""],
+    ["window", e.window ? `${e.window[0].toFixed(1)} to ${e.window[1].toFixed(1)}` : "–", count(e.impacts, "impact")],
+  ];
+}
+
+export function summarise({exponents, regime, energy, impacts, sticking, parameters, warnings}, milliseconds) {
+  const [type, z] = regimeCards(regime), [verdict, lambda, positive, residual, window] = verdictCards(exponents, regime);
+  const entries = [
+    type, z, verdict, lambda,
+    ["taken by the impacts", percent(energy.share_impacts), "of the energy that is dissipated"],
+    ["rms of x", percent(energy.rms_ratio), "of that without absorber"],
+    ["impacts", String(impacts.tau.length), "chatter included"],
+    ["stuck phases", String(sticking.side.length), sticking.side.length ? "shaded in the plots" : ""],
+    positive, residual, window,
+    ["answered in", `${milliseconds.toFixed(0)} ms`, `damping ζ = ${digits(parameters.derived.zeta, 5)}`],
+  ];
+  $("summary").replaceChildren(...entries.map(([term, value, small]) => element("div", {},
+    element("dt", {textContent: term}), element("dd", {}, value, element("small", {textContent: small ? ` ${small}` : ""})))));
+  $("warnings").replaceChildren(...warnings.map((w) => element("li", {textContent: w})));
+}
+
+/** The exponents of each window asked for. */
+export function tabulate(windows = []) {
+  $("figure-windows").hidden = !windows.length;
+  const row = (tag, cells) => element("tr", {}, ...cells.map((textContent) => element(tag, {textContent})));
+  const head = row("th", ["τ from", "to", "impacts", "λ₁", "λ₂", "λ₃", "λ₄", "verdict"]);
+  const rows = windows.map((w) => {
+    const lambda = [0, 1, 2, 3].map((k) => w.qr ? exponent(w.qr, k) : "–"), error = w.qr?.standard_error[0];
+    return row("td", [...w.asked.map((t) => String(t)), String(w.impacts), error == null ? lambda[0] : `${lambda[0]} ± ${digits(error)}`, ...lambda.slice(1), verdicts[w.verdict] ?? "–"]);
+  });
+  $("windows").replaceChildren(element("thead", {}, head), element("tbody", {}, ...rows));
+}
+
+/** A bar as long as its share of the whole. */
+function bar(share, className) {
+  const node = element("span", {className});
+  node.style.width = `${Math.min(Math.max(share, 0), 1) * 100}%`;
+  return node;
+}
+
+/** One amount beside another, as bars of one scale. */
+function compare(term, withAbsorber, without) {
+  const whole = Math.max(withAbsorber, without) || 1;
+  const line = (name, value, className) => [element("span", {className: "name", textContent: name}), element("span", {className: "track"}, bar(value / whole, className)), element("span", {className: "amount", textContent: `${digits(value * 1000, 2)} mm`})];
+  return element("div", {className: "compare"}, element("b", {textContent: term}), ...line("with absorber", withAbsorber, "with"), ...line("without", without, "without"));
+}
+
+/** What was supplied (by the base, or there at the start) went into the damper, the impacts, or is still there. */
+export function accountEnergy({input, at_start, damper, impacts, at_end, rms, peak, without_absorber, decay}) {
+  const supplied = damper + impacts + at_end || 1;
+  const parts = [["damper", damper], ["impacts", impacts], ["left", at_end]];
+  const names = {damper: "damper", impacts: "impacts", left: "left at the end"};
+  const mm2 = (value) => `${value !== 0 && Math.abs(value) < 1e-9 ? digits(value * 1e6) : minus(Number((value * 1e6).toPrecision(3)).toString())} mm²`;
+  const stack = element("div", {className: "stack"}, ...parts.map(([name, value]) => bar(value / supplied, name)));
+  const legend = element("ul", {className: "parts"}, ...parts.map(([name, value]) => element("li", {},
+    element("span", {className: `key ${name}`, textContent: names[name]}), element("b", {textContent: percent(value / supplied)}), element("small", {textContent: mm2(value)}))));
+  const source = [input && `${mm2(input)} from the base`, at_start && `${mm2(at_start)} there at the start`].filter(Boolean).join(", ");
+  const moments = decay ? [["half", decay.tau_half], ["a tenth", decay.tau_tenth]].filter(([, tau]) => tau != null).map(([what, tau]) => `${what} is left at τ = ${tau.toFixed(1)}`) : [];
+  $("energy").replaceChildren(stack, legend, element("p", {className: "note", textContent: [source, ...moments].filter(Boolean).join("; ")}),
+    compare("rms of x", rms, without_absorber.rms), compare("peak of |x|", peak, without_absorber.peak));
+}
