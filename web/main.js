@@ -43,7 +43,7 @@ async function run(lead = false) {
     leavePreset(request);
     remember(request);
     const figures = present(answer, performance.now() - started);
-    say(answer.status.reason === "tau_end" ? "" : answer.status.message);
+    say("");  // what ended the run early is among the warnings
     if (lead) show(figures);
     $("results").dataset.done = String(Number($("results").dataset.done ?? 0) + 1);
   } catch (error) {
