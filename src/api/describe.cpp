@@ -18,24 +18,6 @@ Json column(const Elements& elements, Value value) {
     return values;
 }
 
-const char* word(Status status) {
-    switch (status) {
-        case Status::ok: return "ok";
-        case Status::minus_infinity: return "minus_infinity";
-        case Status::not_converged: return "not_converged";
-    }
-    return "";
-}
-
-const char* word(Verdict verdict) {
-    switch (verdict) {
-        case Verdict::chaotic: return "chaotic";
-        case Verdict::regular: return "regular";
-        case Verdict::not_decided: return "not_decided";
-    }
-    return "";
-}
-
 Json four(const Exponents& values) { return column(values, finite_or_null); }
 
 Json with_status(const Exponents& values) {
@@ -92,6 +74,24 @@ Json describe_matrix(const Matrix4& m) {
 }
 
 }  // namespace
+
+const char* word(Status status) {
+    switch (status) {
+        case Status::ok: return "ok";
+        case Status::minus_infinity: return "minus_infinity";
+        case Status::not_converged: return "not_converged";
+    }
+    return "";
+}
+
+const char* word(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::chaotic: return "chaotic";
+        case Verdict::regular: return "regular";
+        case Verdict::not_decided: return "not_decided";
+    }
+    return "";
+}
 
 std::string digits(const char* format, double value) {
     char text[64];

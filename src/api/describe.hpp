@@ -11,6 +11,9 @@ namespace vines::api {
 using Warnings = std::vector<std::string>;
 
 Json finite_or_null(double value);
+/// The words of the answers.
+const char* word(Status status);
+const char* word(Verdict verdict);
 /// A number for people: with printf's format.
 std::string digits(const char* format, double value);
 

@@ -91,6 +91,52 @@ std::vector<Field> make_manifold_fields() {
 
 constexpr std::size_t most_windows = 1000;
 
+std::vector<Field> of_groups(const std::vector<std::string>& groups) {
+    std::vector<Field> fields;
+    for (const Field& f : simulate_fields())
+        if (std::find(groups.begin(), groups.end(), f.group) != groups.end() || f.name == "max_impacts") fields.push_back(f);
+    return fields;
+}
+
+Field structured(FieldType type, std::string name, std::string description, Json fallback, std::string note = "") {
+    return {std::move(name), type, "sweep", "", "", std::move(description), std::move(fallback), std::move(note), {}, {}, {}};
+}
+
+std::vector<Field> make_sweep_fields() {
+    const std::string one = "dimensionless";
+    Field cycles = integer("cycles", "forcing cycles that are measured at each point", 1000, 1, 1e6);
+    Field transient = integer("transient_cycles", "forcing cycles run before them", 200, 0, 1e6);
+    Field section_points = integer("section_points", "the last so many points of the section are given at each point", 100, 1, 100000);
+    for (Field* f : {&cycles, &transient, &section_points}) f->group = "sweep", f->unit = one;
+    return {
+        structured(FieldType::object, "base", "fields of /v1/simulate that all points share: system, reduced or SI, start, preset, max_impacts", Json::object()),
+        structured(FieldType::objects, "axes", "one or two: {parameter, from, to, count, scale} or {parameter, values}; the index of a point counts along the first axis fastest",
+                   nullptr, "required"),
+        structured(FieldType::objects, "starts", "initial states {x0, x_dot0, y0, y_dot0}, each run at every point, to show coexisting attractors", Json::array(), ""),
+        std::move(cycles),
+        std::move(transient),
+        {"carry_state", FieldType::choice, "sweep", "", "", "none: each point starts afresh; up, down: from the last state of its neighbour on the first axis, in ascending or descending order of the axis' entries",
+         "none", "", {}, {}, {"none", "up", "down"}},
+        {"section", FieldType::choice, "sweep", "", "", "points for a bifurcation diagram: at impact or at whole forcing cycles", "none", "", {}, {}, {"none", "impact", "stroboscopic"}},
+        std::move(section_points),
+        structured(FieldType::integers, "indices", "only these points: those that a broken stream did not bring", nullptr, "all"),
+    };
+}
+
+std::vector<Field> make_axis_fields() {
+    Field count = integer("count", "number of values", 2, 1, 1e6);
+    count.group = "axis";
+    Field values = structured(FieldType::objects, "values", "the values themselves, in place of from, to, count, scale", nullptr, "from, to, count");
+    return {
+        {"parameter", FieldType::choice, "axis", "", "", "any number of system, reduced, SI or start", nullptr, "required", {}, {}, {}},
+        number("from", "axis", "", "", "first value", nullptr, "required without values", -1e300, 1e300),
+        number("to", "axis", "", "", "last value", nullptr, "required without values", -1e300, 1e300),
+        std::move(count),
+        {"scale", FieldType::choice, "axis", "", "", "spacing", "linear", "", {}, {}, {"linear", "log"}},
+        std::move(values),
+    };
+}
+
 const char* type_name(FieldType type) {
     switch (type) {
         case FieldType::number: return "number";
@@ -99,6 +145,9 @@ const char* type_name(FieldType type) {
         case FieldType::choices: return "choices";
         case FieldType::interval: return "interval";
         case FieldType::intervals: return "intervals";
+        case FieldType::integers: return "integers";
+        case FieldType::object: return "object";
+        case FieldType::objects: return "objects";
     }
     return "";
 }
@@ -193,6 +242,17 @@ void check_field(const Field& f, const Json& value, std::vector<FieldError>& err
             if (value.size() > most_windows) return fault("", value.size(), "may hold " + std::to_string(most_windows) + " intervals");
             for (std::size_t i = 0; i < value.size() && errors.size() < most_errors; ++i) check_interval(pointer(std::to_string(i)), value[i]);
             return;
+        case FieldType::integers:
+            if (!value.is_array()) return fault("", value, "must be an array of whole numbers");
+            for (std::size_t i = 0; i < value.size() && errors.size() < most_errors; ++i)
+                if (!value[i].is_number_integer() || value[i] < 0) fault(pointer(std::to_string(i)), value[i], "must hold whole numbers from 0 on");
+            return;
+        case FieldType::object:
+            if (!value.is_object()) fault("", value, "must be an object");
+            return;
+        case FieldType::objects:
+            if (!value.is_array()) fault("", value, "must be an array");
+            return;
     }
 }
 
@@ -243,6 +303,9 @@ Json from_text(FieldType type, const std::string& text) {
         case FieldType::intervals:
             for (const std::string& part : split(text, ';')) array.push_back(from_text(FieldType::interval, part));
             return array;
+        case FieldType::integers:
+        case FieldType::object:
+        case FieldType::objects: return text;  // of routes that take no query
     }
     return nullptr;
 }
@@ -254,12 +317,37 @@ const std::vector<Field>& simulate_fields() {
     return fields;
 }
 
+const std::vector<Field>& sweep_fields() {
+    static const std::vector<Field> fields = make_sweep_fields();
+    return fields;
+}
+
+const std::vector<Field>& sweep_base_fields() {
+    static const std::vector<Field> fields = of_groups({"system", "reduced", "SI", "start"});
+    return fields;
+}
+
+const std::vector<Field>& axis_fields() {
+    static const std::vector<Field> fields = make_axis_fields();
+    return fields;
+}
+
+const std::vector<Field>& start_fields() {
+    static const std::vector<Field> fields = [] {
+        std::vector<Field> list = of_groups({"start"});
+        std::erase_if(list, [](const Field& f) { return f.name == "max_impacts"; });
+        return list;
+    }();
+    return fields;
+}
+
 const std::vector<Field>& manifold_fields() {
     static const std::vector<Field> fields = make_manifold_fields();
     return fields;
 }
 
-Json describe_fields() { return {{"fields", describe(simulate_fields())}, {"manifold_fields", describe(manifold_fields())}}; }
+Json describe_fields() { return {{"fields", describe(simulate_fields())}, {"manifold_fields", describe(manifold_fields())}, {"sweep_fields", describe(sweep_fields())},
+                                  {"axis_fields", describe(axis_fields())}}; }
 
 Json from_query(const std::vector<Field>& fields, const std::vector<std::pair<std::string, std::string>>& query) {
     Json object = Json::object();

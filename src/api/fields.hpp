@@ -15,7 +15,10 @@ enum class FieldType {
     choice,   ///< one of the choices
     choices,  ///< an array of them (in a query: separated by commas)
     interval, ///< [from, to] (in a query: separated by a comma)
-    intervals ///< an array of them (in a query: separated by semicolons)
+    intervals, ///< an array of them (in a query: separated by semicolons)
+    integers, ///< an array of whole numbers
+    object,   ///< fields of their own
+    objects   ///< an array of such
 };
 
 struct Field {
@@ -33,6 +36,12 @@ inline constexpr double longest_run = 1e7;
 
 /// The fields of /v1/simulate, in the order in which a form shows them.
 const std::vector<Field>& simulate_fields();
+
+/// The fields of /v1/sweep; those of its `base`; those of an entry of `axes`; those of an entry of `starts`.
+const std::vector<Field>& sweep_fields();
+const std::vector<Field>& sweep_base_fields();
+const std::vector<Field>& axis_fields();
+const std::vector<Field>& start_fields();
 
 /// The fields of /v1/manifold.
 const std::vector<Field>& manifold_fields();

@@ -8,6 +8,13 @@
 
 namespace vines::api {
 
+void refuse(std::vector<FieldError> errors) {
+    const std::string detail = errors.size() == 1             ? errors[0].detail
+                               : errors.size() >= most_errors ? "the first " + std::to_string(errors.size()) + " faults are listed"
+                                                              : std::to_string(errors.size()) + " fields are at fault";
+    throw Problem(422, detail, std::move(errors));
+}
+
 namespace {
 
 const std::vector<std::string> reduced_names = {"epsilon", "lambda", "G", "Omega"};
@@ -34,13 +41,6 @@ std::vector<std::string> present(const Json& object, const std::vector<std::stri
     std::vector<std::string> found;
     std::copy_if(names.begin(), names.end(), std::back_inserter(found), [&](const std::string& n) { return object.contains(n); });
     return found;
-}
-
-[[noreturn]] void refuse(std::vector<FieldError> errors) {
-    const std::string detail = errors.size() == 1             ? errors[0].detail
-                               : errors.size() >= most_errors ? "the first " + std::to_string(errors.size()) + " faults are listed"
-                                                              : std::to_string(errors.size()) + " fields are at fault";
-    throw Problem(422, detail, std::move(errors));
 }
 
 void check_alternatives(const Json& object, std::vector<FieldError>& errors) {
@@ -150,6 +150,10 @@ System read_system(const Values& v, const Json& object) {
     return system;
 }
 
+State read_start(const Values& v, const Parameters& p) {
+    return {v.number("x_dot0"), v.number("x0"), v.number("y_dot0"), v.number("y0", default_state(p).y)};
+}
+
 /// A window must begin within the run.
 void check_window(const std::string& where, const Interval& window, double tau_end, std::vector<FieldError>& errors) {
     if (window.from >= tau_end)
@@ -165,8 +169,7 @@ SimulateRequest read_simulate_request(const Json& given) {
     SimulateRequest r;
     r.system = read_system(v, object);
     const Parameters& p = r.system.parameters;
-    const State start = default_state(p);
-    r.start = {v.number("x_dot0"), v.number("x0"), v.number("y_dot0"), v.number("y0", start.y)};
+    r.start = read_start(v, p);
 
     std::vector<FieldError> errors = field_errors(validate(p, r.start), r.system.si, object);
     r.tau_end = v.has("cycles") ? v.number("cycles") * 2 * std::numbers::pi / p.Omega : v.number("tau_end");
@@ -186,6 +189,18 @@ SimulateRequest read_simulate_request(const Json& given) {
     r.include = v.words("include");
     r.estimators = {v.holds("exponents", "qr"), v.holds("exponents", "eigenvalues"), v.holds("exponents", "raw_product"), r.max_points};
     return r;
+}
+
+StartedSystem read_started_system(const Json& given) {
+    const Json object = checked(sweep_base_fields(), given);
+    const Values v(sweep_base_fields(), object);
+    StartedSystem s;
+    s.system = read_system(v, object);
+    s.start = read_start(v, s.system.parameters);
+    s.max_impacts = static_cast<long>(v.number("max_impacts"));
+    const std::vector<FieldError> errors = field_errors(validate(s.system.parameters, s.start), s.system.si, object);
+    if (!errors.empty()) refuse(errors);
+    return s;
 }
 
 ManifoldRequest read_manifold_request(const Json& given) {

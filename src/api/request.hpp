@@ -37,6 +37,18 @@ struct SimulateRequest {
 /// Problem 422 with every field at fault.
 SimulateRequest read_simulate_request(const Json& object);
 
+/// A system with its initial state: what the points of a sweep are.
+struct StartedSystem {
+    System system;
+    State start;
+    long max_impacts;
+};
+/// Of sweep_base_fields(). Problem 422 with every field at fault.
+StartedSystem read_started_system(const Json& object);
+
+/// Throws a Problem 422 that lists the errors.
+[[noreturn]] void refuse(std::vector<FieldError> errors);
+
 struct ManifoldRequest {
     System system;
     double V_max;  ///< 0: not given

@@ -22,7 +22,7 @@ Json describe_parameters(const SimulateRequest& r) {
     return j;
 }
 
-Json describe_status(const Outcome& outcome, const SimulateRequest& r) {
+Json describe_status(const Outcome& outcome, const SimulateRequest& r, const Stop& stop) {
     switch (outcome.reason) {
         case End::tau_end:
             return {{"reason", "tau_end"}, {"tau", outcome.tau}, {"message", "the run is complete"}};
@@ -30,7 +30,7 @@ Json describe_status(const Outcome& outcome, const SimulateRequest& r) {
             return {{"reason", "max_impacts"}, {"tau", outcome.tau},
                     {"message", "ended after max_impacts = " + std::to_string(r.max_impacts) + " impacts (or as many sticks and touches), before tau_end"}};
         case End::stopped:
-            return {{"reason", "deadline"}, {"tau", outcome.tau}, {"message", "ended by the server's time limit for one request, before tau_end"}};
+            return {{"reason", stop.reason}, {"tau", outcome.tau}, {"message", stop.message}};
     }
     return nullptr;
 }
@@ -74,7 +74,7 @@ Json describe_windows(const SimulateRequest& r, const std::vector<Lyapunov>& win
 
 }  // namespace
 
-Json simulate_answer(const SimulateRequest& r, const std::function<bool()>& stop) {
+Json simulate_answer(const SimulateRequest& r, const Stop& stop) {
     const Parameters& p = r.system.parameters;
     const double cycle = 2 * std::numbers::pi / p.Omega, asked_step = cycle / r.samples_per_cycle;
     const double step = std::max(asked_step, r.tau_end / static_cast<double>(r.max_points - 1));
@@ -108,12 +108,12 @@ Json simulate_answer(const SimulateRequest& r, const std::function<bool()>& stop
     observe(judged, contacts);
     observe(r.includes("manifold"), half_cycles);
 
-    const Outcome outcome = simulate(p, r.start, {r.tau_end, r.max_impacts, stop}, observers);
+    const Outcome outcome = simulate(p, r.start, {r.tau_end, r.max_impacts, stop.asked}, observers);
 
     const Interval reached = {std::min(from, outcome.tau), std::min(to, outcome.tau)};
 
     Warnings warnings;
-    Json answer = {{"version", version()}, {"parameters", describe_parameters(r)}, {"status", describe_status(outcome, r)}, {"warnings", nullptr}};
+    Json answer = {{"version", version()}, {"parameters", describe_parameters(r)}, {"status", describe_status(outcome, r, stop)}, {"warnings", nullptr}};
     if (outcome.reason != End::tau_end) warnings.push_back(answer["status"]["message"]);
     if (r.includes("series")) {
         series.finish(outcome);

@@ -7,9 +7,15 @@
 
 namespace vines::api {
 
-/// Runs it. `stop` is asked every few events; once it says true, the answer is what was found until then, with
-/// status.reason "deadline".
-Json simulate_answer(const SimulateRequest& request, const std::function<bool()>& stop);
+/// What may end a run from outside: asked every few events; once it says true, the answer is what was found until then, and
+/// status has this reason and message.
+struct Stop {
+    std::function<bool()> asked = {};
+    std::string reason = "deadline";
+    std::string message = "ended by the server's time limit for one request, before tau_end";
+};
+
+Json simulate_answer(const SimulateRequest& request, const Stop& stop);
 
 Json manifold_answer(const ManifoldRequest& request);
 

@@ -14,11 +14,20 @@ struct Request {
     std::string body;
 };
 
+/// The connection of an answer that is sent bit by bit.
+class Writer {
+public:
+    virtual ~Writer() = default;
+    virtual bool write(const std::string& text) = 0;  ///< false: the client is gone
+    virtual bool present() = 0;                       ///< whether it still is there
+};
+
 struct Response {
     int status = 200;
     std::string content_type = "application/json";
     std::string body;
     std::vector<std::pair<std::string, std::string>> headers = {};
+    std::function<void(Writer&)> stream = {};  ///< in place of a body: writes it and returns at its end
 };
 
 struct Route {

@@ -8,6 +8,7 @@
 #include "api/presets.hpp"
 #include "api/simulate.hpp"
 #include "http/assets.hpp"
+#include "http/sweep_stream.hpp"
 
 namespace vines::http {
 
@@ -41,7 +42,7 @@ Response simulate(const Json& object, const RouteOptions& options, ComputeGate& 
     if (!place) throw Problem(503, "as many requests as the server takes are waiting already; try again in a second");
     using Clock = std::chrono::steady_clock;
     const auto deadline = Clock::now() + std::chrono::duration<double>(options.deadline);
-    return json_response(api::simulate_answer(request, [deadline] { return Clock::now() > deadline; }));
+    return json_response(api::simulate_answer(request, {[deadline] { return Clock::now() > deadline; }}));
 }
 
 Response manifold(const Json& object) { return json_response(api::manifold_answer(api::read_manifold_request(object))); }
@@ -84,9 +85,15 @@ std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate) {
     }));
     routes.push_back(route("GET", "/v1/manifold", [](const Request& r) { return manifold(api::from_query(api::manifold_fields(), r.query)); }));
     routes.push_back(route("POST", "/v1/manifold", [](const Request& r) { return manifold(body_of(r)); }));
+    routes.push_back(route("POST", "/v1/sweep", [options, &gate](const Request& r) { return stream_sweep(api::read_sweep_request(body_of(r), options.sweep_points), gate); }));
     routes.push_back(route("GET", "/v1/presets", [](const Request&) { return json_response(api::describe_presets()); }));
     routes.push_back(route("GET", "/v1/parameters", [](const Request&) { return json_response(api::describe_fields()); }));
-    routes.push_back(route("GET", "/healthz", [](const Request&) { return json_response({{"status", "ok"}}); }));
+    // Alive: the process answers. Ready: it takes work; a proxy stops sending it some once it is about to stop.
+    for (const char* path : {"/healthz", "/livez"}) routes.push_back(route("GET", path, [](const Request&) { return json_response({{"status", "ok"}}); }));
+    routes.push_back(route("GET", "/readyz", [&gate](const Request&) {
+        if (gate.closing()) throw Problem(503, "the server is stopping");
+        return json_response({{"status", "ok"}});
+    }));
     routes.push_back(route("GET", "/version", [](const Request&) { return json_response({{"name", "vines"}, {"version", api::version()}}); }));
     for (const Asset& asset : assets()) {
         routes.push_back(route("GET", std::string(asset.path), [asset, web_dir = options.web_dir](const Request&) {

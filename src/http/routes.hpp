@@ -10,9 +10,8 @@
 namespace vines::http {
 
 struct RouteOptions {
-    int compute_threads;      ///< computations at once
-    int compute_queue;        ///< and waiting for a place
     double deadline;          ///< seconds of computing for one request
+    std::size_t sweep_points; ///< of one sweep, at most
     std::string web_dir;      ///< serve the page from this folder instead of the program; empty: do not
 };
 

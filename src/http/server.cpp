@@ -89,6 +89,27 @@ void send(const httplib::Request& request, httplib::Response& out, Response resp
     });
 }
 
+class SinkWriter : public Writer {
+public:
+    explicit SinkWriter(httplib::DataSink& sink) : sink_(sink) {}
+    bool write(const std::string& text) override { return sink_.write(text.data(), text.size()); }
+    bool present() override { return sink_.is_writable(); }
+
+private:
+    httplib::DataSink& sink_;
+};
+
+void send_stream(httplib::Response& out, Response response) {
+    out.status = response.status;
+    for (const auto& [name, value] : response.headers) out.set_header(name, value);
+    out.set_chunked_content_provider(response.content_type, [stream = std::move(response.stream)](std::size_t, httplib::DataSink& sink) {
+        SinkWriter writer(sink);
+        stream(writer);
+        sink.done();
+        return true;
+    });
+}
+
 /// A percent-encoded part of a query.
 std::string decoded(std::string_view text) {
     std::string out;
@@ -217,7 +238,9 @@ struct Server::Implementation {
         });
         if (out.status == 413) return send(in, out, too_large(), true);
         if (!complete) return send(in, out, problem_response(400, "the body ended before its Content-Length"), true);
-        send(in, out, find("POST", in.path)->answer(to_request(in, std::move(body))));
+        Response response = find("POST", in.path)->answer(to_request(in, std::move(body)));
+        if (response.stream) return send_stream(out, std::move(response));
+        send(in, out, std::move(response));
     }
 
     /// Answers that the library makes itself (a malformed request line, headers too long) have no body of ours yet.

@@ -283,6 +283,6 @@ TEST_CASE("caps end a run as a result that says so") {
     a = answer(R"({"samples_per_cycle":10000,"max_points":500,"include":["series"]})");
     CHECK(a["series"]["tau"].size() <= 501);
     CHECK(a["warnings"].size() == 1);
-    a = simulate_answer(read_simulate_request({{"tau_end", 1e7}, {"max_impacts", 2000000}, {"include", Json::array()}}), [] { return true; });
+    a = simulate_answer(read_simulate_request({{"tau_end", 1e7}, {"max_impacts", 2000000}, {"include", Json::array()}}), {[] { return true; }});
     CHECK(a["status"]["reason"] == "deadline");
 }
