@@ -208,7 +208,7 @@ Json describe_matrices(const std::vector<ImpactTransfer>& transfers) {
             {"T", column(transfers, [](const ImpactTransfer& t) { return describe_matrix(t.T()); })}};
 }
 
-Json describe_section(const std::vector<Impact>& all, const StroboscopicRecord& stroboscopic, const Interval& window) {
+Json describe_section(const std::vector<Impact>& all, const StroboscopicRecord& stroboscopic, const Interval& window, std::size_t most, Warnings& warnings) {
     std::vector<Impact> impacts;
     Json difference = Json::array();
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -223,6 +223,12 @@ Json describe_section(const std::vector<Impact>& all, const StroboscopicRecord& 
         tau.push_back(stroboscopic.tau(k));
         states.push_back(stroboscopic.states[k]);
     }
+    if (std::max(impacts.size(), tau.size()) > most)
+        warnings.push_back("the sections hold their last " + std::to_string(most) + " points (max_points), of " + std::to_string(impacts.size()) + " impacts and " + std::to_string(tau.size()) + " cycles");
+    trim_to_last(impacts, most);
+    trim_to_last(difference.get_ref<Json::array_t&>(), most);
+    trim_to_last(tau, most);
+    trim_to_last(states, most);
     return {{"impact",
              {{"tau", column(impacts, [](const Impact& i) { return i.tau; })},
               {"side", column(impacts, [](const Impact& i) { return i.side; })},
@@ -255,7 +261,15 @@ Json describe_energy(const Parameters& p, const State& start, const Energy& e, c
     return j;
 }
 
-Json describe_regime(const Regime& r, Warnings& warnings) {
+Json describe_regime(Regime r, std::size_t most, Warnings& warnings) {
+    const std::size_t every = r.moving_tau.size() / most + 1;
+    for (auto* column : {&r.moving_tau, &r.moving_z}) {
+        for (std::size_t k = 0; k * every < column->size(); ++k) (*column)[k] = (*column)[k * every];
+        column->resize((column->size() + every - 1) / every);
+    }
+    if (r.stretches.size() > most) warnings.push_back("of " + std::to_string(r.stretches.size()) + " stretches the last " + std::to_string(most) + " are listed (max_points)");
+    trim_to_last(r.stretches, most);
+    if (r.search_stopped) warnings.push_back("the search for a periodic orbit was ended by the time limit: periodic is not decided");
     Json j = {{"type", name_of(r.type)}, {"description", describe_type(r)}, {"z", r.z}, {"z_overall", r.z_overall},
               {"contacts", r.contacts}, {"periodic", r.orbit.has_value()}};
     auto of_orbit = [&](const char* name, auto value) { j[name] = r.orbit ? Json(value(*r.orbit)) : Json(nullptr); };

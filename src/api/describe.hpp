@@ -34,12 +34,13 @@ Json describe_exponents(const TransferProduct& product, const ExponentOptions& e
 Json describe_eigenvalues(const std::vector<ImpactTransfer>& transfers);
 Json describe_matrices(const std::vector<ImpactTransfer>& transfers);
 
-/// Sections at impact and at whole forcing cycles, of what lies in the window.
-Json describe_section(const std::vector<Impact>& impacts, const StroboscopicRecord& stroboscopic, const Interval& window);
+/// Sections at impact and at whole forcing cycles: the last `most` points of each that lie in the window.
+Json describe_section(const std::vector<Impact>& impacts, const StroboscopicRecord& stroboscopic, const Interval& window, std::size_t most, Warnings& warnings);
 
 /// `window`: what of it the run has reached.
 Json describe_energy(const Parameters& parameters, const State& start, const Energy& energy, const Decay& decay, const Interval& window);
-Json describe_regime(const Regime& regime, Warnings& warnings);
+/// Its moving z thinned to `most` entries, and the last `most` stretches.
+Json describe_regime(Regime regime, std::size_t most, Warnings& warnings);
 
 /// The manifold with `points` points on each branch, up to V_max (0: twice the speed of the symmetry breaking).
 Json describe_manifold(const Parameters& parameters, double V_max, std::size_t points);

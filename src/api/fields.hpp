@@ -31,8 +31,9 @@ struct Field {
     std::vector<std::string> choices;
 };
 
-/// The longest run, in tau.
+/// The longest run, in tau and in forcing cycles: what is kept of each cycle must fit into memory.
 inline constexpr double longest_run = 1e7;
+inline constexpr double most_cycles = 2e6;
 
 /// The fields of /v1/simulate, in the order in which a form shows them.
 const std::vector<Field>& simulate_fields();

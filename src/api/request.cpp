@@ -173,9 +173,12 @@ SimulateRequest read_simulate_request(const Json& given) {
 
     std::vector<FieldError> errors = field_errors(validate(p, r.start), r.system.si, object);
     r.tau_end = v.has("cycles") ? v.number("cycles") * 2 * std::numbers::pi / p.Omega : v.number("tau_end");
-    if (r.tau_end > longest_run) {
-        const double most = longest_run * p.Omega / (2 * std::numbers::pi);
-        errors.push_back({"/cycles", object["cycles"], Json::array({1e-6, most}), "cycles of 2 pi/Omega must not make a run longer than tau = 1e7: at most " + Json(most).dump()});
+    const double cycle = 2 * std::numbers::pi / p.Omega, longest = std::min(longest_run, most_cycles * cycle);
+    if (r.tau_end > longest) {
+        const bool by_cycles = v.has("cycles");
+        const double most = by_cycles ? longest / cycle : longest;
+        errors.push_back({by_cycles ? "/cycles" : "/tau_end", by_cycles ? object["cycles"] : Json(r.tau_end), Json::array({1e-6, most}),
+                          "a run may be as long as tau = 1e7 and 2e6 cycles of 2 pi/Omega: here at most " + Json(most).dump()});
     }
     r.window = v.has("window") ? v.interval("window") : Interval{0, r.tau_end};
     check_window("/window", r.window, r.tau_end, errors);

@@ -88,7 +88,7 @@ Json simulate_answer(const SimulateRequest& r, const Stop& stop) {
     Lyapunov lyapunov(p, from, to, r.estimators);
     std::vector<Lyapunov> windows;
     for (const Interval& w : r.windows) windows.emplace_back(p, w.from, w.to, ExponentOptions{r.estimators.qr, r.estimators.eigenvalues, r.estimators.raw_product, 2048});
-    TransferRecord transfers(p, from, to);
+    TransferRecord transfers(p, from, to, r.max_points);
     StroboscopicRecord stroboscopic(p);
     Energy energy(p, from, to);
     Decay decay(p, r.start, {0.5, 0.1});
@@ -115,6 +115,7 @@ Json simulate_answer(const SimulateRequest& r, const Stop& stop) {
     Warnings warnings;
     Json answer = {{"version", version()}, {"parameters", describe_parameters(r)}, {"status", describe_status(outcome, r, stop)}, {"warnings", nullptr}};
     if (outcome.reason != End::tau_end) warnings.push_back(answer["status"]["message"]);
+    if (outcome.tau <= from) warnings.push_back("the run ended before its window began at tau = " + digits("%.6g", from));
     if (r.includes("series")) {
         series.finish(outcome);
         if (step > asked_step)
@@ -129,15 +130,20 @@ Json simulate_answer(const SimulateRequest& r, const Stop& stop) {
         answer["touches"] = describe_touches(touches.touches);
         warnings.push_back("the mass touches a wall without an impact (tangent contact): neighbouring trajectories go different ways there");
     }
-    const Regime regime = judged ? regime_of(p, r.start, {contacts, stroboscopic, reached.from, reached.to}) : Regime{};
+    const double lambda1 = lyapunov.product().qr()[0];
+    const Verdict by_exponents = verdict_of(lambda1, standard_error(lyapunov.product().qr_history(), lyapunov.product().start_tau())[0]);
+    const Regime regime = judged ? regime_of(p, r.start, {contacts, stroboscopic, reached.from, reached.to, by_exponents, stop.asked}) : Regime{};
     if (r.includes("exponents")) answer["exponents"] = describe_exponents(lyapunov.product(), r.estimators, p.zeta(), regime, true, warnings);
     if (!windows.empty()) answer["windows"] = describe_windows(r, windows, regime);
     warn_of_grazing(impacts.impacts, r, typical_speed, warnings);
+    trim_to_last(transfers.transfers, r.max_points);
+    if (transfers.seen > static_cast<long>(transfers.transfers.size()))
+        warnings.push_back("eigenvalues and matrices are those of the last " + std::to_string(r.max_points) + " impacts (max_points) of " + std::to_string(transfers.seen));
     if (r.includes("eigenvalues")) answer["eigenvalues"] = describe_eigenvalues(transfers.transfers);
     if (r.includes("matrices")) answer["matrices"] = describe_matrices(transfers.transfers);
-    if (r.includes("section")) answer["section"] = describe_section(impacts.impacts, stroboscopic, r.window);
+    if (r.includes("section")) answer["section"] = describe_section(impacts.impacts, stroboscopic, r.window, r.max_points, warnings);
     if (r.includes("energy")) answer["energy"] = describe_energy(p, r.start, energy, decay, reached);
-    if (r.includes("regime")) answer["regime"] = describe_regime(regime, warnings);
+    if (r.includes("regime")) answer["regime"] = describe_regime(regime, r.max_points, warnings);
     if (r.includes("manifold")) {
         if (p.R_plus == p.R_minus) {
             answer["manifold"] = describe_manifold(p, 0, 200);
@@ -145,13 +151,14 @@ Json simulate_answer(const SimulateRequest& r, const Stop& stop) {
             answer["manifold"] = Json::object();
             warnings.push_back("the manifold of two symmetric impacts needs the same R at both walls: only the run's points are given");
         }
-        Json tau = Json::array(), C = Json::array(), V = Json::array();
-        for (std::size_t i = 0; i < half_cycles.points.size(); ++i) {
-            tau.push_back(half_cycles.tau[i]);
-            C.push_back(half_cycles.points[i].C);
-            V.push_back(half_cycles.points[i].V);
+        trim_to_last(half_cycles.tau, r.max_points);
+        trim_to_last(half_cycles.points, r.max_points);
+        Json C = Json::array(), V = Json::array();
+        for (const ManifoldPoint& point : half_cycles.points) {
+            C.push_back(point.C);
+            V.push_back(point.V);
         }
-        answer["manifold"]["points"] = {{"tau", std::move(tau)}, {"C", std::move(C)}, {"V", std::move(V)}};
+        answer["manifold"]["points"] = {{"tau", half_cycles.tau}, {"C", std::move(C)}, {"V", std::move(V)}};
     }
     answer["warnings"] = warnings;
     return answer;

@@ -102,10 +102,13 @@ void Energy::on_stretch(const Stretch& stretch) {
 }
 
 void Energy::on_impact(const Impact& i) {
-    if (i.tau < tau_start_ || i.tau > tau_end_) return;
+    if (i.tau > tau_end_) return;
+    if (i.tau <= tau_start_) {  // belongs to what was before, as does the rounding of a stretch that ended a trifle later
+        integrals_ = {};
+        duration_ = peak_ = 0;
+        return;
+    }
     const double w = i.relative_speed_before, loss = (1 - i.R * i.R) * w * w * parameters_.epsilon / (2 * (1 + parameters_.epsilon));
-    // An impact at the very start is behind `start`, one at the very end not yet in `end`.
-    if (duration_ == 0) return;
     impacts_ += loss;
     end_ -= loss;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/compound.hpp"
 #include "core/record.hpp"
 #include "core/regime.hpp"
 
@@ -22,82 +23,92 @@ double cycle_of(const Parameters& p) { return 2 * std::numbers::pi / p.Omega; }
 Eigen::Vector4d vector(const State& s) { return {s.x_dot, s.x, s.y_dot, s.y}; }
 State state(const Eigen::Vector4d& v) { return {v(0), v(1), v(2), v(3)}; }
 
-/// The product of all transfer matrices of a run.
+/// The product of all transfer matrices of a run, as a matrix and by its compounds.
 class Monodromy : public Observer {
 public:
     explicit Monodromy(const Parameters& p) : p_(p) {}
-    void on_stretch(const Stretch& stretch) override { passage_.extend(stretch, p_.epsilon); }
-    void on_impact(const Impact& impact) override { passage_.strike(saltation(p_, impact)); }
-    const Matrix4& matrix() const { return passage_.matrix(); }
+    void on_stretch(const Stretch& stretch) override {
+        whole_.extend(stretch, p_.epsilon);
+        since_impact_.extend(stretch, p_.epsilon);
+    }
+    void on_impact(const Impact& impact) override {
+        const Saltation M = saltation(p_, impact);
+        whole_.strike(M);
+        if (impact.R == 0) rank_ = std::min(rank_, 3);
+        append(M, impact.R);
+    }
+    const Matrix4& matrix() const { return whole_.matrix(); }
+    /// Eigenvalues by descending modulus. The solver's error is one of the largest: small ones get their moduli from the
+    /// compound matrices.
+    std::array<std::complex<double>, 4> multipliers() {
+        append({Matrix4::Identity(), Eigen::Vector4d::Zero()}, 1);
+        const Eigen::EigenSolver<Matrix4> solver(matrix(), false);
+        std::array<std::complex<double>, 4> values;
+        for (int k = 0; k < 4; ++k) values[k] = solver.eigenvalues()(k);
+        std::stable_sort(values.begin(), values.end(), [](auto a, auto b) { return std::abs(a) > std::abs(b); });
+        const auto logs = product_.log_moduli(rank_);
+        for (int k = 0; k < 4; ++k) {
+            const double modulus = std::abs(values[k]);
+            if (k >= rank_ || modulus == 0) values[k] = 0;
+            else if (modulus < 1e-6 * std::abs(values[0])) values[k] *= std::exp(logs[k]) / modulus;
+        }
+        return values;
+    }
 
 private:
+    void append(const Saltation& M, double R) {
+        rank_ = std::min(rank_, since_impact_.rank());
+        product_.append(since_impact_.matrix(), M, R, rank_);
+        since_impact_.reset();
+    }
     const Parameters& p_;
-    Passage passage_;
+    Passage whole_, since_impact_;
+    CompoundProduct product_;
+    int rank_ = 4;
 };
 
-/// The state after a time, or none where that takes too many impacts.
-std::optional<State> follow(const Parameters& p, const State& start, double tau, double duration, std::span<Observer* const> observers = {}) {
-    const Outcome outcome = simulate(p, start, {tau + duration, most_impacts, {}, tau}, observers);
-    if (outcome.reason != End::tau_end) return std::nullopt;
-    return outcome.state;
-}
+using Stop = std::function<bool()>;
 
 /// The middle of the longest flight within one cycle from a state at a whole cycle: a moment with no event nearby.
-double quiet_moment(const Parameters& p, const State& start) {
-    ContactRecord contacts;
-    Observer* const observers[] = {&contacts};
+double quiet_moment(const Parameters& p, const State& start, const Stop& stop) {
+    ImpactRecord impacts;
+    StickRecord sticks;
+    Observer* const observers[] = {&impacts, &sticks};
     const double cycle = cycle_of(p);
-    follow(p, start, 0, cycle, observers);
+    follow(p, start, 0, cycle, stop, observers);
     double from = 0, length = 0, middle = 0.5 * cycle;
-    auto flight_to = [&](double tau) {
-        if (tau - from > length) length = tau - from, middle = 0.5 * (from + tau);
-        from = tau;
-    };
-    // A stuck phase is no flight: it is passed by.
     std::size_t stick = 0;
-    auto sticks_until = [&](double tau) {
-        for (; stick < contacts.sticks.size() && contacts.sticks[stick].tau_start <= tau; ++stick) {
-            flight_to(contacts.sticks[stick].tau_start);
-            from = contacts.sticks[stick].tau_end;
-        }
+    auto flight_to = [&](double tau) {
+        // What is left of a chatter, and the stuck phase behind it, are no flight.
+        for (; stick < sticks.sticks.size() && sticks.sticks[stick].start.tau <= tau; ++stick) from = std::max(from, sticks.sticks[stick].tau_end);
+        if (tau - from > length) length = tau - from, middle = 0.5 * (from + tau);
+        from = std::max(from, tau);
     };
-    for (const Contacts& c : contacts.contacts) {
-        sticks_until(c.tau);
-        flight_to(c.tau);
-    }
-    sticks_until(cycle);
+    for (const Impact& i : impacts.impacts) flight_to(i.tau);
     flight_to(cycle);
     return middle;
 }
 
-std::array<std::complex<double>, 4> eigenvalues(const Matrix4& m) {
-    const Eigen::EigenSolver<Matrix4> solver(m, false);
-    std::array<std::complex<double>, 4> values;
-    for (int k = 0; k < 4; ++k) values[k] = solver.eigenvalues()(k);
-    std::stable_sort(values.begin(), values.end(), [](auto a, auto b) { return std::abs(a) > std::abs(b); });
-    return values;
-}
-
 struct Return {
     State state;
-    Matrix4 monodromy;
+    Monodromy monodromy;
 };
-std::optional<Return> after_period(const Parameters& p, const State& s, double tau, int cycles) {
+std::optional<Return> after_period(const Parameters& p, const State& s, double tau, int cycles, const Stop& stop) {
     if (std::abs(s.x - s.y) > p.b) return std::nullopt;
     Monodromy monodromy(p);
     Observer* const observers[] = {&monodromy};
-    const auto end = follow(p, s, tau, cycles * cycle_of(p), observers);
+    const auto end = follow(p, s, tau, cycles * cycle_of(p), stop, observers);
     if (!end) return std::nullopt;
-    return Return{*end, monodromy.matrix()};
+    return Return{*end, monodromy};
 }
 
 /// Newton's method, in coordinates scaled to order one.
-std::optional<State> close(const Parameters& p, State s, double tau, int cycles, const State& scale, double reach) {
+std::optional<State> close(const Parameters& p, State s, double tau, int cycles, const State& scale, double reach, const Stop& stop) {
     const State guess = s;
     const Eigen::Vector4d unit = vector(scale);
     double miss_before = std::numeric_limits<double>::infinity();
     for (int step = 0; step < 25; ++step) {
-        const auto back = after_period(p, s, tau, cycles);
+        const auto back = after_period(p, s, tau, cycles, stop);
         if (!back) return std::nullopt;
         const Eigen::Vector4d miss = (vector(back->state) - vector(s)).cwiseQuotient(unit);
         const double size = miss.cwiseAbs().maxCoeff();
@@ -105,7 +116,7 @@ std::optional<State> close(const Parameters& p, State s, double tau, int cycles,
         if (size < 1e-14 || (size < closed && size > 0.1 * miss_before)) return s;
         if (step > 8 && size > miss_before) return std::nullopt;
         miss_before = size;
-        const Matrix4 D = unit.asDiagonal().inverse() * (back->monodromy - Matrix4::Identity()) * unit.asDiagonal();
+        const Matrix4 D = unit.asDiagonal().inverse() * (back->monodromy.matrix() - Matrix4::Identity()) * unit.asDiagonal();
         // Neutral directions (a mass at rest that is never hit) are left as they are: the smallest step solves.
         Eigen::CompleteOrthogonalDecomposition<Matrix4> solver;
         solver.setThreshold(1e-10);
@@ -144,11 +155,17 @@ Exponents PeriodicOrbit::exponents(const Parameters& p) const {
     return lambda;
 }
 
-std::optional<PeriodicOrbit> find_orbit(const Parameters& p, const State& at_whole_cycle, int cycles, const State& scale, double reach) {
-    const double tau = quiet_moment(p, at_whole_cycle), cycle = cycle_of(p);
-    const auto guess = follow(p, at_whole_cycle, 0, tau);
+std::optional<State> follow(const Parameters& p, const State& start, double tau, double duration, const Stop& stop, std::span<Observer* const> observers) {
+    const Outcome outcome = simulate(p, start, {tau + duration, most_impacts, stop, tau}, observers);
+    if (outcome.reason != End::tau_end) return std::nullopt;
+    return outcome.state;
+}
+
+std::optional<PeriodicOrbit> find_orbit(const Parameters& p, const State& at_whole_cycle, int cycles, const State& scale, double reach, const Stop& stop) {
+    const double tau = quiet_moment(p, at_whole_cycle, stop), cycle = cycle_of(p);
+    const auto guess = follow(p, at_whole_cycle, 0, tau, stop);
     if (!guess) return std::nullopt;
-    const auto found = close(p, *guess, tau, cycles, scale, reach);
+    const auto found = close(p, *guess, tau, cycles, scale, reach, stop);
     if (!found) return std::nullopt;
 
     PeriodicOrbit orbit{};
@@ -157,50 +174,69 @@ std::optional<PeriodicOrbit> find_orbit(const Parameters& p, const State& at_who
     // The smallest period: a divisor after which the state is back.
     for (int divisor = 1; divisor <= cycles; ++divisor) {
         if (cycles % divisor != 0) continue;
-        const auto back = after_period(p, *found, tau, divisor);
+        auto back = after_period(p, *found, tau, divisor, stop);
         if (!back) return std::nullopt;
         orbit.closure = distance(back->state, *found, scale);
         if (divisor < cycles && orbit.closure > 1e3 * closed) continue;
         orbit.cycles = divisor;
-        orbit.multipliers = eigenvalues(back->monodromy);
+        orbit.monodromy = back->monodromy.matrix();
+        orbit.multipliers = back->monodromy.multipliers();
         break;
     }
 
+    // Three periods, of which one is counted from the first contact after a release: a chatter must not be cut in two.
     ContactRecord contacts;
-    Observer* const observers[] = {&contacts};
-    follow(p, *found, tau, orbit.cycles * cycle, observers);
-    orbit.contacts = static_cast<long>(contacts.contacts.size());
-    orbit.impacts = contacts.impacts;
-    orbit.sticks = static_cast<long>(contacts.sticks.size());
-    // A stick, or R = 0, makes multipliers exactly zero; what the eigenvalue solver leaves of them is rounding.
-    const int rank = orbit.sticks > 0 ? 2 : orbit.impacts > 0 && std::min(p.R_plus, p.R_minus) == 0 ? 3 : 4;
-    for (int k = rank; k < 4; ++k) orbit.multipliers[k] = 0;
+    ImpactRecord impacts;
+    Observer* const observers[] = {&contacts, &impacts};
+    const double period = orbit.cycles * cycle;
+    if (!follow(p, *found, tau, 3 * period, stop, observers)) return std::nullopt;
+    double from = contacts.sticks.empty() ? tau : contacts.sticks[0].tau_end;
+    for (const Contacts& c : contacts.contacts)
+        if (c.tau >= from) {
+            from = c.tau;
+            break;
+        }
+    // The rounding of a contact's tau must not count it twice.
+    const double to = from + period * (1 - 1e-9);
+    const auto within = [&](double t) { return t >= from && t < to; };
+    orbit.contacts = std::count_if(contacts.contacts.begin(), contacts.contacts.end(), [&](const Contacts& c) { return within(c.tau); });
+    orbit.impacts = std::count_if(impacts.impacts.begin(), impacts.impacts.end(), [&](const Impact& i) { return within(i.tau); });
+    orbit.sticks = std::count_if(contacts.sticks.begin(), contacts.sticks.end(), [&](const auto& s) { return within(s.tau_start); });
     // Half a period on, the forcing has the opposite sign only where the period is an odd number of cycles.
     if (orbit.cycles % 2 == 1) {
-        const auto half = follow(p, *found, tau, 0.5 * orbit.cycles * cycle);
+        const auto half = follow(p, *found, tau, 0.5 * orbit.cycles * cycle, stop);
         orbit.symmetric = half && distance(state(-vector(*half)), *found, scale) < 1e-6;
     }
     return orbit;
 }
 
-bool attracts(const Parameters& p, const PeriodicOrbit& orbit, const State& at_whole_cycle, const State& scale) {
-    const auto begin = follow(p, at_whole_cycle, 0, orbit.tau);
+bool attracts(const Parameters& p, const PeriodicOrbit& orbit, const State& at_whole_cycle, const State& scale, const Stop& stop) {
+    // Without an impact nothing pulls the free mass back: its two multipliers are 1, and it is the oscillator that converges.
+    const bool untouched = orbit.contacts == 0 && orbit.state.y_dot == 0;
+    const Eigen::Matrix2d oscillator = orbit.monodromy.topLeftCorner<2, 2>();
+    const double per_period = -std::log(untouched ? oscillator.eigenvalues().cwiseAbs().maxCoeff() : std::abs(orbit.multipliers[0]));
+    if (!(per_period > 1e-9)) return false;  // nothing contracts, but for rounding
+    const auto begin = follow(p, at_whole_cycle, 0, orbit.tau, stop);
     if (!begin) return false;
     State s = *begin;
     const double first = distance(s, orbit.state, scale);
-    // Without an impact nothing pulls the free mass back: its two multipliers are 1, and it is the oscillator that converges.
-    const bool untouched = orbit.contacts == 0 && orbit.state.y_dot == 0;
-    if (!orbit.stable() && !untouched) return false;
     constexpr double there = 1e-8;
     if (first < there) return true;
-    // So many periods as should bring it a hundred times closer, three times over.
-    const double per_period = -std::log(std::abs(orbit.multipliers[untouched ? 2 : 0]));
+    // So many periods as should bring it a hundred times closer, three times over, but not for ever.
     const int periods = static_cast<int>(std::clamp(3 * std::log(100.0) / per_period, 10.0, 3000.0 / orbit.cycles + 10));
-    for (int k = 0; k < periods; ++k) {
-        const auto next = follow(p, s, orbit.tau, orbit.cycles * cycle_of(p));
+    Eigen::Vector4d linear = vector(s) - vector(orbit.state);
+    for (int k = 1; k <= periods; ++k) {
+        const auto next = follow(p, s, orbit.tau, orbit.cycles * cycle_of(p), stop);
         if (!next) return false;
         s = *next;
-        if (distance(s, orbit.state, scale) < std::max(0.01 * first, there)) return true;
+        linear = orbit.monodromy * linear;
+        const double now = distance(s, orbit.state, scale);
+        if (now < std::max(0.01 * first, there)) return true;
+        // A slow one: what it differs by from the linear map's contraction is less than half of that contraction. Neither is
+        // by chance after so many cycles.
+        const State predicted = state(vector(orbit.state) + linear);
+        const double contraction = first - distance(predicted, orbit.state, scale);
+        if (k * orbit.cycles >= 100 && contraction > 0 && now < first && distance(s, predicted, scale) < 0.5 * contraction) return true;
     }
     return false;
 }
@@ -208,7 +244,7 @@ bool attracts(const Parameters& p, const PeriodicOrbit& orbit, const State& at_w
 std::vector<State> whole_cycle_states(const Parameters& p, const PeriodicOrbit& orbit) {
     StroboscopicRecord record(p, 1);
     Observer* const observers[] = {&record};
-    follow(p, orbit.state, orbit.tau, (orbit.cycles + 0.5) * cycle_of(p), observers);
+    follow(p, orbit.state, orbit.tau, (orbit.cycles + 0.5) * cycle_of(p), {}, observers);
     record.states.resize(orbit.cycles);
     return record.states;
 }

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <complex>
+#include <functional>
 #include <optional>
 
 #include "core/lyapunov.hpp"
@@ -27,17 +28,25 @@ struct PeriodicOrbit {
     bool symmetric;       ///< x(tau + half the period) = -x(tau), and y alike
     std::array<std::complex<double>, 4> multipliers;  ///< by descending modulus
 
+    Eigen::Matrix4d monodromy;  ///< derivative of the return map there
+
     bool stable() const { return std::abs(multipliers[0]) < 1; }
     /// ln|multiplier| / period: the exponents of every motion that the orbit attracts; -infinity for a multiplier of 0.
     Exponents exponents(const Parameters& parameters) const;
 };
 
-/// The orbit of a period of so many cycles (or of a divisor of it) next to the state at a whole cycle, if Newton's
-/// method finds one within `reach` of it.
-std::optional<PeriodicOrbit> find_orbit(const Parameters& parameters, const State& at_whole_cycle, int cycles, const State& scale, double reach);
+/// The state at tau + duration of a motion that starts at tau, or none where that takes too many impacts or was stopped.
+std::optional<State> follow(const Parameters& parameters, const State& start, double tau, double duration, const std::function<bool()>& stop,
+                            std::span<Observer* const> observers = {});
 
-/// Whether the motion from a state at a whole cycle comes closer and closer to a stable orbit: the proof is to follow it.
-bool attracts(const Parameters& parameters, const PeriodicOrbit& orbit, const State& at_whole_cycle, const State& scale);
+/// The orbit of a period of so many cycles (or of a divisor of it) next to the state at a whole cycle, if Newton's
+/// method finds one within `reach` of it before it is stopped.
+std::optional<PeriodicOrbit> find_orbit(const Parameters& parameters, const State& at_whole_cycle, int cycles, const State& scale, double reach,
+                                        const std::function<bool()>& stop);
+
+/// Whether a stable orbit attracts the motion from a state at a whole cycle. The proof is to follow it: it comes a hundred
+/// times closer, or it contracts as the orbit's own linear map says.
+bool attracts(const Parameters& parameters, const PeriodicOrbit& orbit, const State& at_whole_cycle, const State& scale, const std::function<bool()>& stop);
 
 /// The orbit's states at the next whole cycles 1, ..., orbit.cycles after its moment `tau`.
 std::vector<State> whole_cycle_states(const Parameters& parameters, const PeriodicOrbit& orbit);

@@ -8,6 +8,17 @@
 
 namespace vines {
 
+/// Cuts a growing record down to its last `most` entries, at half of them more: each entry is moved once at most.
+template <class Entries>
+void keep_last(Entries& entries, std::size_t most) {
+    if (entries.size() >= most + most / 2 + 1) entries.erase(entries.begin(), entries.end() - static_cast<std::ptrdiff_t>(most));
+}
+/// The same at the end of the run.
+template <class Entries>
+void trim_to_last(Entries& entries, std::size_t most) {
+    if (entries.size() > most) entries.erase(entries.begin(), entries.end() - static_cast<std::ptrdiff_t>(most));
+}
+
 /// The motion at tau = 0, step, 2 step, ... and at the end of the run. Units as in State.
 class SeriesRecord : public Observer {
 public:

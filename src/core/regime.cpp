@@ -20,6 +20,10 @@ constexpr int longest_period = 64;
 // States that differ by less, in units of their scale, may be a return; Newton's method decides.
 constexpr double near_return = 0.1;
 constexpr int most_attempts = 8;
+// Of an irregular response z is a mean over a finite run.
+constexpr double irregular_margin = 0.02;
+// How far a run that is near a return but not on an orbit is followed further.
+constexpr int follow_cycles = 150, follow_rounds = 3;
 // A run has been captured once it stays this close to the orbit.
 constexpr double captured_within = 0.1;
 
@@ -95,8 +99,9 @@ void find_stretches(Regime& r, const std::vector<Contacts>& c, double half_cycle
     }
 }
 
-/// The attracting periodic orbit that the last of the states is next to, with the smallest period.
-std::optional<PeriodicOrbit> orbit_at_end(const Parameters& p, std::span<const State> states, const State& scale) {
+/// The attracting periodic orbit that the last of the states is next to, with the smallest period. `near` tells whether a
+/// return came close, so that there may be an orbit.
+std::optional<PeriodicOrbit> orbit_at_end(const Parameters& p, std::span<const State> states, const State& scale, const std::function<bool()>& stop, bool& near) {
     const std::size_t last = states.size() - 1;
     int attempts = 0;
     for (int cycles = 1; cycles <= longest_period && static_cast<std::size_t>(cycles) < states.size() && attempts < most_attempts; ++cycles) {
@@ -104,17 +109,49 @@ std::optional<PeriodicOrbit> orbit_at_end(const Parameters& p, std::span<const S
         if (distance(states[last], states[back], scale) > near_return) continue;
         if (back > 0 && distance(states[last - 1], states[back - 1], scale) > 2 * near_return) continue;
         ++attempts;
-        const auto orbit = find_orbit(p, states[last], cycles, scale, 5 * near_return);
-        if (orbit && attracts(p, *orbit, states[last], scale)) return orbit;
+        near = true;
+        const auto orbit = find_orbit(p, states[last], cycles, scale, 5 * near_return, stop);
+        if (orbit && attracts(p, *orbit, states[last], scale, stop)) return orbit;
+    }
+    return std::nullopt;
+}
+
+/// Which of the orbit's states at whole cycles is next to a state.
+std::size_t phase_of(const State& s, std::span<const State> along, const State& scale) {
+    std::size_t best = 0;
+    for (std::size_t k = 1; k < along.size(); ++k)
+        if (distance(s, along[k], scale) < distance(s, along[best], scale)) best = k;
+    return best;
+}
+
+/// As orbit_at_end(). A run may end while it slowly leaves an unstable orbit for a stable one nearby, to which Newton's method
+/// does not go from there: then the motion is followed on, and an orbit found later counts if the run's end was next to it already.
+std::optional<PeriodicOrbit> orbit_of(const Parameters& p, std::span<const State> states, const State& scale, const RegimeEvidence& e) {
+    bool near = false;
+    if (auto orbit = orbit_at_end(p, states, scale, e.stop, near)) return orbit;
+    const double cycle = 2 * std::numbers::pi / p.Omega;
+    State s = states.back();
+    for (int round = 0; round < follow_rounds && near && e.by_exponents != Verdict::chaotic; ++round) {
+        StroboscopicRecord on(p);
+        Observer* const observers[] = {&on};
+        if (!follow(p, s, 0, follow_cycles * cycle * (1 + 1e-12), e.stop, observers)) return std::nullopt;
+        s = on.states.back();
+        near = false;
+        const auto orbit = orbit_at_end(p, on.states, scale, e.stop, near);
+        if (!orbit) continue;
+        const auto along = whole_cycle_states(p, *orbit);
+        if (distance(states.back(), along[phase_of(states.back(), along, scale)], scale) < 2 * captured_within) return orbit;
+        return std::nullopt;
     }
     return std::nullopt;
 }
 
 /// The first whole cycle from which on the run stays next to the orbit.
 std::size_t captured_from(const Parameters& p, const PeriodicOrbit& orbit, std::span<const State> states, const State& scale) {
-    const std::vector<State> along = whole_cycle_states(p, orbit);  // the last of them belongs to the last of the states
+    const std::vector<State> along = whole_cycle_states(p, orbit);
+    const std::size_t n = along.size(), end = phase_of(states.back(), along, scale);
     std::size_t k = states.size();
-    while (k > 0 && distance(states[k - 1], along[along.size() - 1 - (states.size() - k) % along.size()], scale) < captured_within) --k;
+    while (k > 0 && distance(states[k - 1], along[(end + n - (states.size() - k) % n) % n], scale) < captured_within) --k;
     return std::min(k, states.size() - 1);
 }
 
@@ -127,7 +164,7 @@ RegimeType type_of(const Regime& r) {
         return RegimeType::IV;
     }
     if (r.contacts == 0) return RegimeType::none;
-    if (r.z > 2) return RegimeType::VI;
+    if (r.z > 2 * (1 + irregular_margin)) return RegimeType::VI;
     return r.longest_synchronised >= shortest_stretch ? RegimeType::II : RegimeType::I;
 }
 
@@ -171,7 +208,8 @@ Regime regime_of(const Parameters& p, const State& start, const RegimeEvidence& 
     if (r.forced && states.size() > 1) {
         // Of the last part: a transient may have been larger.
         const State scale = scale_of(p, states.last(std::min<std::size_t>(states.size(), longest_period)));
-        r.orbit = orbit_at_end(p, states, scale);
+        r.orbit = orbit_of(p, states, scale, e);
+        r.search_stopped = !r.orbit && e.stop && e.stop();
         if (r.orbit) {
             r.z = static_cast<double>(r.orbit->contacts) / r.orbit->cycles;
             constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -179,7 +217,7 @@ Regime regime_of(const Parameters& p, const State& start, const RegimeEvidence& 
             if (exponents_before) {
                 Lyapunov before(p, e.tau_start, capture.tau, {true, false, false, 256});
                 Observer* const observers[] = {&before};
-                simulate(p, start, {capture.tau, std::numeric_limits<long>::max(), {}}, observers);
+                simulate(p, start, {capture.tau, std::numeric_limits<long>::max(), e.stop}, observers);
                 capture.before = before.product().qr();
                 const auto error = standard_error(before.product().qr_history(), before.product().start_tau());
                 capture.chaotic_before = verdict_of(capture.before[0], error[0]) == Verdict::chaotic;

@@ -65,6 +65,7 @@ struct Regime {
     long longest_synchronised = 0;       ///< half cycles of the longest
     std::optional<PeriodicOrbit> orbit;  ///< the stable orbit that the run has come to
     std::optional<Capture> capture;      ///< with it
+    bool search_stopped = false;         ///< the search for an orbit was ended by RegimeEvidence::stop
 };
 
 /// What a run must have been observed by.
@@ -72,6 +73,8 @@ struct RegimeEvidence {
     const ContactRecord& contacts;
     const StroboscopicRecord& stroboscopic;  ///< from tau = 0 on
     double tau_start, tau_end;               ///< the window to be judged; tau_end within the run
+    Verdict by_exponents = Verdict::not_decided;  ///< chaotic: a run that is not periodic yet is not followed further
+    std::function<bool()> stop = {};         ///< as in Limits: ends the search for an orbit
 };
 
 /// `exponents_before`: also those before a capture, for which the run is repeated up to there; else they are NaN.

@@ -69,7 +69,7 @@ PointResult measure(const Parameters& p, const State& start, const PointOptions&
     const TransferProduct& product = lyapunov.product();
     r.lambda = product.qr();
     r.standard_error = standard_error(product.qr_history(), product.start_tau());
-    r.regime = regime_of(p, begin, {contacts, stroboscopic, 0, r.outcome.tau}, false);
+    r.regime = regime_of(p, begin, {contacts, stroboscopic, 0, r.outcome.tau, verdict_of(r.lambda[0], r.standard_error[0]), stop}, false);
     r.verdict = verdict_of(r.lambda[0], r.standard_error[0], r.regime, 0);
     r.x_max = energy.peak();
     r.x_rms = energy.rms();

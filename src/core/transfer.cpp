@@ -71,7 +71,11 @@ Moduli ImpactTransfer::T_moduli() const {
 
 void TransferRecord::on_impact(const Impact& impact) {
     if (impact.tau < tau_start_ || impact.tau > tau_end_) return;
-    if (begun_) transfers.push_back({impact.tau, impact.R, passage_.matrix(), saltation(parameters_, impact), passage_.rank()});
+    if (begun_) {
+        transfers.push_back({impact.tau, impact.R, passage_.matrix(), saltation(parameters_, impact), passage_.rank()});
+        keep_last(transfers, most_);
+        ++seen;
+    }
     begun_ = true;
     passage_.reset();
 }

@@ -1,9 +1,10 @@
 // Transfer matrices of the deviations: J over flights (19), projections over stuck phases, M at impacts (27), T = M J (30).
 #pragma once
 
+#include <limits>
 #include <vector>
 
-#include "core/simulate.hpp"
+#include "core/record.hpp"
 
 namespace vines {
 
@@ -49,19 +50,21 @@ struct ImpactTransfer {
     Moduli T_moduli() const;
 };
 
-/// The matrices of all impacts in [tau_start, tau_end], from the second one on.
+/// The matrices of the impacts in [tau_start, tau_end], from the second one on; up to half more than the last `most` of them.
 class TransferRecord : public Observer {
 public:
-    TransferRecord(const Parameters& parameters, double tau_start, double tau_end)
-        : parameters_(parameters), tau_start_(tau_start), tau_end_(tau_end) {}
+    TransferRecord(const Parameters& parameters, double tau_start, double tau_end, std::size_t most = std::numeric_limits<std::size_t>::max() / 2)
+        : parameters_(parameters), tau_start_(tau_start), tau_end_(tau_end), most_(most) {}
     void on_stretch(const Stretch& stretch) override { passage_.extend(stretch, parameters_.epsilon); }
     void on_impact(const Impact& impact) override;
 
     std::vector<ImpactTransfer> transfers;
+    long seen = 0;  ///< all of them, kept or not
 
 private:
     const Parameters parameters_;
     const double tau_start_, tau_end_;
+    const std::size_t most_;
     Passage passage_;
     bool begun_ = false;
 };

@@ -275,6 +275,23 @@ TEST_CASE("the manifold has its fold, its branches and a hint for b, by itself a
     CHECK(run["warnings"].size() == 1);
 }
 
+TEST_CASE("what a long run would fill memory with is cut to its last max_points, and said to be") {
+    CHECK(pointers(refused(R"({"Omega":100,"tau_end":1e6})")) == std::set<std::string>{"/tau_end"});
+    const Json a = answer(R"({"b":0.003,"tau_end":4000,"max_points":256,"include":["eigenvalues","matrices","section","regime","manifold","impacts"]})");
+    CHECK(a["eigenvalues"]["tau"].size() == 256);
+    CHECK(a["matrices"]["T"].size() == 256);
+    CHECK(a["eigenvalues"]["tau"].back() == a["impacts"]["tau"].back());
+    CHECK(a["section"]["impact"]["x"].size() == 256);
+    CHECK(a["section"]["impact"]["time_difference"].size() == 256);
+    CHECK(a["section"]["stroboscopic"]["y"].size() == 256);
+    CHECK(a["manifold"]["points"]["tau"].size() == 256);
+    CHECK(a["manifold"]["points"]["C"].size() == 256);
+    CHECK(a["regime"]["z_moving"]["tau"].size() <= 256);
+    CHECK(a["warnings"].size() >= 2);
+    const Json early = answer(R"({"b":0.015,"max_impacts":5,"window":[1000,1709],"include":["regime","energy"]})");
+    CHECK(early["warnings"].dump().find("before its window") != std::string::npos);
+}
+
 TEST_CASE("caps end a run as a result that says so") {
     Json a = answer(R"({"max_impacts":10,"include":["impacts"]})");
     CHECK(a["status"]["reason"] == "max_impacts");

@@ -33,6 +33,21 @@ TEST_CASE("the residual of Table 1 is below 1e-9 of the input, with a stick in t
     }
 }
 
+TEST_CASE("an impact at the border of two windows belongs to the first alone") {
+    Parameters p;
+    p.b = 0.0088, p.G = 0.0284, p.R_plus = p.R_minus = 0.367, p.Omega = 0.98, p.epsilon = 0.03356, p.lambda = 2.064;
+    Energy whole(p, 0, 100);
+    const Record run = record(p, default_state(p), 100, 1000000, {&whole});
+    REQUIRE(run.impacts.size() > 20);
+    for (const Impact& i : run.impacts) {
+        Energy before(p, 0, i.tau), after(p, i.tau, 100);
+        record(p, default_state(p), 100, 1000000, {&before, &after});
+        CHECK(before.impacts() + after.impacts() == doctest::Approx(whole.impacts()).epsilon(1e-12));
+        CHECK(before.input() + after.input() == doctest::Approx(whole.input()).epsilon(1e-10));
+        CHECK(std::abs(after.residual()) < 1e-12 * whole.input());
+    }
+}
+
 TEST_CASE("rms and peak of x are those of dense samples") {
     const Parameters p = table1(0.022, Damping::equation_of_motion);
     Energy energy(p, 100, 400);

@@ -152,6 +152,81 @@ TEST_CASE("a chaotic transient that a sticking orbit captures is reported with i
     CHECK(std::abs(r.orbit->multipliers[1]) == doctest::Approx(differences[1]).epsilon(1e-3));
 }
 
+namespace {
+
+struct Known {
+    double b, G, R_plus, R_minus, Omega, epsilon, lambda;
+    Damping damping;
+    double cycles;
+    const char* type;
+    int period;
+    long contacts;
+};
+
+void check(const Known& k) {
+    CAPTURE(k.b);
+    CAPTURE(k.cycles);
+    Parameters p;
+    p.b = k.b, p.G = k.G, p.R_plus = k.R_plus, p.R_minus = k.R_minus, p.Omega = k.Omega, p.epsilon = k.epsilon, p.lambda = k.lambda, p.damping = k.damping;
+    const Regime r = judge(p, default_state(p), k.cycles * 2 * std::numbers::pi / p.Omega);
+    CHECK(std::string(name_of(r.type)) == k.type);
+    REQUIRE(r.orbit);
+    CHECK(r.orbit->cycles == k.period);
+    CHECK(r.orbit->contacts == k.contacts);
+    CHECK((!r.orbit->symmetric || r.orbit->contacts % 2 == 0));
+}
+
+constexpr Damping closed = Damping::closed_form, eom = Damping::equation_of_motion;
+
+}  // namespace
+
+TEST_CASE("an orbit that attracts very slowly is found however far the run still is from it") {
+    for (double cycles : {200., 1000., 5000.}) check({0.00455, 0.01686, 0.105, 0.105, 1, 0.0344, 1.218, closed, cycles, "III", 1, 2});
+    for (double cycles : {1000., 8000.}) check({0.015, 0.02, 0.6, 0.6, 1, 0.0005, 0.5, eom, cycles, "III", 1, 2});
+}
+
+TEST_CASE("a chatter is one contact of a sticking orbit, wherever the period is cut") {
+    check({0.00871, 0.0264, 0.774, 0.405, 1.003, 0.01502, 0.821, eom, 272, "IV", 1, 2});
+    check({0.00399, 0.02502, 0.896, 0.431, 1, 0.02779, 1.603, closed, 300, "IV", 1, 2});
+    for (double cycles : {300., 301., 302., 303.}) check({0.01898, 0.01037, 0.158, 0.158, 1, 0.00729, 0.766, closed, cycles, "V", 3, 2});
+    check({0.0045, 0.0292, 0.947, 0.325, 1, 0.0044, 2.367, eom, 300, "IV", 1, 2});
+    check({0.00302, 0.0278, 0.423, 0.416, 1, 0.01054, 1.317, eom, 2000, "IV", 1, 2});
+    check({0.00682, 0.0278, 0.829, 0.521, 1, 0.00224, 1.499, eom, 272, "IV", 1, 2});
+}
+
+TEST_CASE("the verdict does not flip while a run slowly leaves an unstable orbit for the stable one beside it") {
+    for (double cycles : {290., 300., 310., 320.}) check({0.00608, 0.01456, 0.51, 0.51, 1, 0.01346, 0.637, eom, cycles, "V", 6, 16});
+    for (double cycles : {200., 261., 284.}) check({0.00601, 0.00806, 0.298, 0.298, 0.9618, 0.00764, 1.709, closed, cycles, "V", 3, 2});
+    for (double cycles : {100., 272., 500.}) check({0.00368, 0.0276, 0.624, 0.624, 1.019, 0.00823, 2.286, eom, cycles, "V", 2, 6});
+    for (double cycles : {60., 90., 110., 300.}) check({0.00367, 0.02221, 0.238, 0.466, 1.0016, 0.01012, 0.93, closed, cycles, "V", 4, 21});
+    check({0.009, 0.02032, 0.74, 0.74, 0.9651, 0.01516, 1.526, eom, 50, "IV", 1, 2});
+}
+
+TEST_CASE("an orbit that is barely unstable is not taken for a stable one") {
+    // Period 1 has the multiplier -1.00007 here, found with other arithmetic in 2e5 cycles.
+    Parameters p;
+    p.b = 0.00412, p.G = 0.022, p.R_plus = 0.355, p.R_minus = 0.711, p.Omega = 1.012, p.epsilon = 0.00567, p.lambda = 1.433;
+    const Regime r = judge(p, default_state(p));
+    CHECK((!r.orbit || r.orbit->cycles == 2));
+}
+
+TEST_CASE("nothing attracts without damping and with R = 1") {
+    Parameters p = table1(0.015, Damping::closed_form);
+    p.lambda = 0, p.R_plus = p.R_minus = 1, p.Omega = 1.3;
+    CHECK_FALSE(judge(p, default_state(p)).orbit);
+}
+
+TEST_CASE("the smallest multipliers keep their accuracy where the moduli are far apart") {
+    Parameters p;
+    p.b = 0.00303, p.G = 0.01332, p.epsilon = 0.02598, p.lambda = 1.16, p.R_plus = p.R_minus = 0.315;
+    const Regime r = judge(p, default_state(p));
+    REQUIRE(r.orbit);
+    double log_product = 0;
+    for (const auto& m : r.orbit->multipliers) log_product += std::log(std::abs(m));
+    const double period = r.orbit->cycles * 2 * std::numbers::pi;
+    CHECK(log_product == doctest::Approx(-2 * p.zeta() * period + 2 * static_cast<double>(r.orbit->impacts) * std::log(0.315)).epsilon(1e-9));
+}
+
 TEST_CASE("a response without impacts is a fixed point, of no type") {
     const Regime r = judge(0.5, Damping::equation_of_motion);
     CHECK(r.type == RegimeType::none);

@@ -83,6 +83,76 @@ test("the manifold is a route of its own, by GET and POST", async () => {
   await problem(await fetch(`${service.url}/v1/manifold?tau_end=3`), 422);
 });
 
+const sweep = {base: {damping: "closed_form"}, axes: [{parameter: "b", from: 0.008, to: 0.03, count: 30}], cycles: 60};
+const longSweep = {...sweep, axes: [{...sweep.axes[0], count: 20000}], cycles: 2000};
+const postSweep = (request, options = {}, url = service.url) => fetch(`${url}/v1/sweep`, {method: "POST", body: JSON.stringify(request), ...options});
+const linesOf = async (response) => (await response.text()).trim().split("\n").map((line) => JSON.parse(line));
+const median = (values) => values.toSorted((a, b) => a - b)[Math.floor(values.length / 2)];
+
+test("a sweep is a stream of lines: start, points, progress, done; the points that are missing can be asked for alone", async () => {
+  const response = await postSweep(sweep);
+  assert.equal(response.headers.get("content-type"), "application/x-ndjson");
+  const lines = await linesOf(response);
+  assert.equal(lines[0].type, "start");
+  assert.equal(lines[0].points, 30);
+  assert.deepEqual(lines.at(-1), {type: "done", points: 30});
+  const points = lines.filter((l) => l.type === "point");
+  assert.deepEqual(points.map((p) => p.index).sort((a, b) => a - b), Array.from({length: 30}, (_, i) => i));
+  assert.ok(lines.some((l) => l.type === "progress" && l.done === 30 && l.of === 30));
+  const missing = (await linesOf(await postSweep({...sweep, indices: [3, 17]}))).filter((l) => l.type === "point");
+  for (const point of missing) assert.deepEqual(point, points.find((p) => p.index === point.index));
+  assert.equal(missing.length, 2);
+  const faults = await problem(await postSweep({...sweep, axes: [{parameter: "b", from: -1, to: 0.03, count: 3}]}), 422);
+  assert.equal(faults.errors[0].pointer, "/axes/0");
+});
+
+test("points come while the sweep runs, and a client that leaves stops it within a fifth of a second", async () => {
+  const one = await startService(["--sweeps", "1"]);
+  const leaving = new AbortController();
+  const reader = (await postSweep(longSweep, {signal: leaving.signal}, one.url)).body.getReader();
+  for (let text = ""; !text.includes('"point"');) text += new TextDecoder().decode((await reader.read()).value);
+  assert.equal((await postSweep(sweep, {}, one.url)).status, 503);  // there is room for one
+  leaving.abort();
+  await new Promise((resolve) => setTimeout(resolve, 200));
+  assert.equal((await linesOf(await postSweep(sweep, {}, one.url))).at(-1).type, "done");
+  await one.stop();
+});
+
+test("a sweep makes a simulation wait no longer than twice its own time", async () => {
+  const timed = async () => {
+    const started = performance.now();
+    assert.equal((await (await post('{"b":0.022,"damping":"closed_form","tau_end":20000,"include":["exponents"]}')).json()).status.reason, "tau_end");
+    return performance.now() - started;
+  };
+  const several = async () => { const times = []; for (let i = 0; i < 7; ++i) times.push(await timed()); return median(times); };
+  await timed();
+  const alone = await several();
+  const leaving = new AbortController();
+  const reader = (await postSweep(longSweep, {signal: leaving.signal})).body.getReader();
+  await reader.read();
+  const beside = await several();
+  leaving.abort();
+  assert.ok(beside < 3 * alone, `${beside} ms beside a sweep, ${alone} ms alone`);
+});
+
+test("a service that is told to end says so in a sweep's stream and on /readyz, and takes requests until its drain is over", async () => {
+  const draining = await startService(["--drain", "0.5"]);
+  const response = postSweep(longSweep, {}, draining.url);
+  const reader = (await response).body.getReader();
+  await reader.read();
+  assert.equal((await fetch(`${draining.url}/readyz`)).status, 200);
+  const ended = draining.stop();
+  let text = "";
+  for (let part; !(part = await reader.read()).done;) text += new TextDecoder().decode(part.value);
+  const last = JSON.parse(text.trim().split("\n").at(-1));
+  assert.equal(last.type, "error");
+  assert.match(last.detail, /ask again for the indices that are missing/);
+  assert.equal((await fetch(`${draining.url}/readyz`)).status, 503);
+  assert.equal((await fetch(`${draining.url}/livez`)).status, 200);
+  assert.equal((await fetch(`${draining.url}/v1/simulate?tau_end=10`)).status, 200);
+  assert.equal(await ended, 0);
+});
+
 test("a folder of the report on the paper can be written anywhere, and one that cannot be is an error", async () => {
   const folder = await mkdtemp(join(tmpdir(), "vines-report-"));
   const [code, table] = await run(["reproduce", "--output", join(folder, "new")]);

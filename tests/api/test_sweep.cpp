@@ -1,0 +1,144 @@
+#include <doctest/doctest.h>
+
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "api/sweep.hpp"
+
+using namespace vines;
+using namespace vines::api;
+
+namespace {
+
+SweepRequest request(const std::string& text) { return read_sweep_request(parse_object(text), 100000); }
+
+std::set<std::string> refused(const std::string& text) {
+    try {
+        request(text);
+    } catch (const Problem& p) {
+        CHECK(p.status == 422);
+        std::set<std::string> pointers;
+        for (const FieldError& e : p.errors) pointers.insert(e.pointer);
+        return pointers;
+    }
+    FAIL("not refused: " << text);
+    return {};
+}
+
+std::map<std::size_t, Json> run(const SweepRequest& r, int threads = 2) {
+    std::map<std::size_t, Json> lines;
+    Pace pace;
+    run_sweep(r, threads, pace, [&](std::size_t index, const Json& line) {
+        CHECK(line["index"] == index);
+        CHECK_FALSE(lines.contains(index));
+        lines[index] = line;
+    });
+    return lines;
+}
+
+const char* const plane = R"({"base":{"damping":"closed_form"},"axes":[{"parameter":"b","from":0.008,"to":0.02,"count":5},{"parameter":"R","values":[0.5,0.6]}],
+    "cycles":60,"transient_cycles":20,"section":"impact","section_points":5)";
+
+}  // namespace
+
+TEST_CASE("a point's line depends on the request and its index alone: not on threads, order, shards or what else is asked for") {
+    for (const char* more : {"}", R"(,"carry_state":"up"})", R"(,"carry_state":"down"})", R"(,"starts":[{},{"x_dot0":0.01}]})", R"(,"carry_state":"up","starts":[{},{"x_dot0":0.01}]})"}) {
+        CAPTURE(more);
+        const SweepRequest r = request(std::string(plane) + more);
+        const auto all = run(r);
+        CHECK(all.size() == r.points);
+        CHECK(run(r, 1) == all);
+        std::map<std::size_t, Json> united;
+        for (std::size_t shard = 0; shard < 3; ++shard) {
+            SweepRequest part = r;
+            part.indices = shard_of(r, shard, 3);
+            united.merge(run(part, 3));
+        }
+        CHECK(united == all);
+        SweepRequest some = r;
+        some.indices = {1, 3, 8};
+        const auto few = run(some);
+        CHECK(few.size() == 3);
+        for (const auto& [index, line] : few) CHECK(line == all.at(index));
+    }
+}
+
+TEST_CASE("a point tells its place, exponents, regime, amplitude, energy and section") {
+    const auto lines = run(request(std::string(plane) + "}"));
+    const Json& line = lines.at(6);  // the second b at the second R
+    CHECK(line["type"] == "point");
+    CHECK(line["b"] == 0.011);
+    CHECK(line["R"] == 0.6);
+    CHECK(line["regime"] == "III");
+    CHECK(line["z"] == 2);
+    CHECK(line["lambda"].size() == 4);
+    CHECK(line["lambda"][0] < 0);
+    CHECK(line["verdict"] == "regular");
+    for (const char* name : {"standard_error", "x_max", "x_rms", "x_rms_ratio", "share_impacts", "impacts", "sticks", "periodic", "period_cycles", "symmetric", "multiplier"}) CHECK(line.contains(name));
+    CHECK(line["section"]["x"].size() == 5);
+    CHECK(Json::parse(line.dump()) == line);
+}
+
+TEST_CASE("continuation follows a branch that a fresh start does not find") {
+    // Down from 15 mm two symmetric impacts per cycle stay, wherever a fresh start goes; what is carried is the state, cavity and all.
+    const std::string text = R"({"base":{"damping":"closed_form"},"axes":[{"parameter":"b","values":[0.0072,0.01,0.015]}],"cycles":200)";
+    const auto down = run(request(text + R"(,"carry_state":"down"})"));
+    for (const auto& [index, line] : down) CHECK(line["regime"] == "III");
+    CHECK(run(request(text + R"(,"carry_state":"up"})")).at(0) == run(request(text + "}")).at(0));  // the first of a chain starts afresh
+    CHECK(down.at(1)["x_max"] != run(request(text + "}")).at(1)["x_max"]);
+}
+
+TEST_CASE("several starts at each point show coexisting attractors") {
+    // A mass at rest in the middle of a wide cavity is never hit; one with a push is.
+    const auto lines = run(request(R"({"base":{"damping":"closed_form"},"axes":[{"parameter":"b","values":[0.03]}],"starts":[{"y0":0},{"y0":0,"y_dot0":0.02}],"cycles":200})"));
+    CHECK(lines.at(0)["start"] == 0);
+    CHECK(lines.at(0)["regime"] == "none");
+    CHECK(lines.at(1)["regime"] != "none");
+}
+
+TEST_CASE("axes are linear or logarithmic with exact ends, or a list") {
+    CHECK(request(R"({"axes":[{"parameter":"b","from":0.003,"to":0.04,"count":38}]})").axes[0].values[1] == doctest::Approx(0.004));
+    const Axis log = request(R"({"axes":[{"parameter":"epsilon","from":0.001,"to":0.1,"count":3,"scale":"log"}]})").axes[0];
+    REQUIRE(log.values.size() == 3);
+    CHECK(log.values[0] == 0.001);
+    CHECK(log.values[1] == doctest::Approx(0.01));
+    CHECK(log.values[2] == 0.1);
+    CHECK(request(R"({"axes":[{"parameter":"f","values":[8,9,10.5]}],"base":{"m1":4}})").axes[0].values == std::vector<double>{8, 9, 10.5});
+    CHECK(request(R"({"axes":[{"parameter":"x0","from":0,"to":0.01,"count":1}]})").points == 1);
+}
+
+TEST_CASE("what is wrong with a sweep is named at its place") {
+    CHECK(refused("{}") == std::set<std::string>{"/axes"});
+    CHECK(refused(R"({"axes":[]})") == std::set<std::string>{"/axes"});
+    CHECK(refused(R"({"axes":[{"parameter":"bb","from":1,"to":2,"count":5}]})") == std::set<std::string>{"/axes/0/parameter"});
+    CHECK(refused(R"({"axes":[{"parameter":"b","from":1,"count":0}]})") == std::set<std::string>{"/axes/0/to", "/axes/0/count"});
+    CHECK(refused(R"({"axes":[{"parameter":"b","values":[1,"x"]}]})") == std::set<std::string>{"/axes/0/values/1"});
+    CHECK(refused(R"({"axes":[{"parameter":"b","values":[1],"from":1}]})") == std::set<std::string>{"/axes/0/from"});
+    CHECK(refused(R"({"axes":[{"parameter":"b","from":-1,"to":2,"count":5,"scale":"log"}]})") == std::set<std::string>{"/axes/0/from"});
+    CHECK(refused(R"({"axes":[{"parameter":"b","from":-1,"to":2,"count":5}]})") == std::set<std::string>{"/axes/0"});
+    CHECK(refused(R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5},{"parameter":"b","values":[1]}]})") == std::set<std::string>{"/axes/1/parameter"});
+    CHECK(refused(R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"base":{"b":0.01}})") == std::set<std::string>{"/base/b"});
+    CHECK(refused(R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"base":{"R":3,"tau_end":5}})") == std::set<std::string>{"/base/R", "/base/tau_end"});
+    CHECK(refused(R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"starts":[{"x0":0.5,"y0":0},{"z":1}]})") == std::set<std::string>{"/starts/1/z"});
+    CHECK(refused(R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"starts":[{"x0":0.5,"y0":0}]})") == std::set<std::string>{"/starts/0/y0"});
+    CHECK(refused(R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"indices":[0,5]})") == std::set<std::string>{"/indices"});
+    CHECK(refused(R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":1000},{"parameter":"R","from":0,"to":1,"count":1000}]})") == std::set<std::string>{"/axes"});
+    CHECK(refused(R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"cycles":0,"carry_state":"sideways"})") == std::set<std::string>{"/cycles", "/carry_state"});
+}
+
+TEST_CASE("a sweep that is stopped hands out no point that is not complete") {
+    class Impatient : public Pace {
+    public:
+        bool stop_or_yield() override { return ++asked > 300; }
+        std::atomic<long> asked = 0;
+    } pace;
+    const SweepRequest r = request(R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":50}],"cycles":300})");
+    const auto all = run(r);
+    std::size_t n = 0;
+    run_sweep(r, 2, pace, [&](std::size_t index, const Json& line) {
+        ++n;
+        CHECK(line == all.at(index));
+    });
+    CHECK(n < 50);
+}

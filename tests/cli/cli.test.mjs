@@ -1,0 +1,118 @@
+// The subcommands, as a terminal and a batch system use them.
+import {after, before, test} from "node:test";
+import assert from "node:assert/strict";
+import {spawn} from "node:child_process";
+import {mkdtemp, readFile, rm, writeFile, appendFile} from "node:fs/promises";
+import {tmpdir} from "node:os";
+import {join} from "node:path";
+import {program, startService} from "../service.mjs";
+
+let folder;
+before(async () => { folder = await mkdtemp(join(tmpdir(), "vines-cli-")); });
+after(() => rm(folder, {recursive: true}));
+const at = (name) => join(folder, name);
+
+/** Runs the program to its end, or sends it a signal once `until` says so: {code, out, errors}. */
+const run = (args, {input = "", env = {}, signal, until} = {}) => new Promise((resolve) => {
+  const child = spawn(program, args, {env: {...process.env, ...env}});
+  let out = "", errors = "";
+  child.stdout.on("data", (d) => out += d);
+  child.stderr.on("data", (d) => errors += d);
+  child.on("close", (code) => resolve({code, out, errors}));
+  child.stdin.on("error", () => {});
+  child.stdin.end(input);
+  if (!signal) return;
+  const look = setInterval(async () => {
+    if (child.exitCode !== null) return clearInterval(look);
+    if (await until()) { clearInterval(look); child.kill(signal); }
+  }, 5);
+});
+
+const sweep = JSON.stringify({base: {damping: "closed_form"}, axes: [{parameter: "b", from: 0.008, to: 0.03, count: 40}], cycles: 60, section: "impact", section_points: 5});
+const long = JSON.stringify({...JSON.parse(sweep), cycles: 20000});
+const lines = async (name) => (await readFile(at(name), "utf8").catch(() => "")).split("\n").length - 1;
+
+test("simulate answers as the service does, from a file or stdin to a file or stdout", async () => {
+  const service = await startService();
+  const body = '{"b":0.015,"tau_end":100,"include":["impacts"]}';
+  const answer = await (await fetch(`${service.url}/v1/simulate`, {method: "POST", body})).text();
+  await service.stop();
+  assert.deepEqual(await run(["simulate"], {input: body}), {code: 0, out: answer, errors: ""});
+  await writeFile(at("request.json"), body);
+  assert.equal((await run(["simulate", at("request.json"), "-o", at("answer.json")])).code, 0);
+  assert.equal(await readFile(at("answer.json"), "utf8"), answer);
+});
+
+test("a request at fault is a problem document on stderr and exit code 2, a file that is not there is 1", async () => {
+  for (const [command, input] of [["simulate", '{"b":-1}'], ["sweep", '{"axes":[{"parameter":"q","values":[1]}]}'], ["simulate", "{"]]) {
+    const {code, out, errors} = await run([command], {input});
+    assert.equal(code, 2);
+    assert.equal(out, "");
+    assert.ok(JSON.parse(errors).status >= 400);
+  }
+  assert.equal((await run(["simulate", at("nowhere.json")])).code, 1);
+  assert.equal((await run(["sweep", "-o", "/proc/nowhere/x"], {input: sweep})).code, 1);
+  assert.equal((await run(["sweep", "--shard", "3/3"], {input: sweep})).code, 2);
+  assert.equal((await run(["sweep", "--shard", "auto"], {input: sweep})).code, 2);
+});
+
+test("an interrupted simulation answers with what it has and exit code 3", async () => {
+  const started = Date.now();
+  const {code, out} = await run(["simulate"], {input: '{"R":1,"tau_end":1e7,"max_impacts":2000000,"include":[]}', signal: "SIGINT", until: () => Date.now() - started > 100});
+  assert.equal(code, 3);
+  assert.equal(JSON.parse(out).status.reason, "interrupted");
+});
+
+test("a sweep's file has its points in order, the same on stdout and on any number of threads", async () => {
+  assert.equal((await run(["sweep", "-o", at("whole.ndjson")], {input: sweep})).code, 0);
+  const whole = await readFile(at("whole.ndjson"), "utf8");
+  assert.equal((await run(["sweep", "--threads", "1"], {input: sweep})).out, whole);
+  assert.equal((await run(["sweep", "--threads", "5"], {input: sweep})).out, whole);
+  const parsed = whole.trim().split("\n").map((line) => JSON.parse(line));
+  assert.deepEqual(parsed.map((l) => l.type), ["start", ...Array(40).fill("point"), "done"]);
+  assert.deepEqual(parsed.slice(1, -1).map((l) => l.index), Array.from({length: 40}, (_, i) => i));
+});
+
+test("shards put together are the whole, byte for byte; a missing one is named", async () => {
+  const whole = await readFile(at("whole.ndjson"), "utf8");
+  const parts = [];
+  for (let i = 0; i < 3; ++i) {
+    parts.push(at(`part${i}`));
+    const env = i === 0 ? {} : i === 1 ? {SLURM_ARRAY_TASK_ID: "11", SLURM_ARRAY_TASK_MIN: "10", SLURM_ARRAY_TASK_COUNT: "3"} : {JOB_COMPLETION_INDEX: "2", VINES_SHARDS: "3"};
+    assert.equal((await run(["sweep", "--shard", i === 0 ? "0/3" : "auto", "-o", parts[i]], {input: sweep, env})).code, 0);
+  }
+  assert.equal((await run(["merge", ...parts])).out, whole);
+  assert.equal((await run(["merge", ...parts, "-o", at("merged")])).code, 0);
+  assert.equal(await readFile(at("merged"), "utf8"), whole);
+  const missing = await run(["merge", parts[0], parts[2]]);
+  assert.equal(missing.code, 3);
+  assert.match(missing.errors, /13 of 40 points are missing, the first is 1:/);
+  await run(["sweep", "-o", at("other")], {input: sweep.replace("60", "61")});
+  const mixed = await run(["merge", parts[0], at("other")]);
+  assert.equal(mixed.code, 1);
+  assert.match(mixed.errors, /another sweep/);
+});
+
+test("a file that is there is not overwritten; --resume completes one that was cut anywhere", async () => {
+  const whole = await readFile(at("whole.ndjson"), "utf8");
+  assert.equal((await run(["sweep", "-o", at("whole.ndjson")], {input: sweep})).code, 1);
+  for (const cut of [0, 10, whole.indexOf("\n") + 1, Math.floor(whole.length / 2), whole.length - 3, whole.length]) {
+    await writeFile(at("cut"), whole.slice(0, cut));
+    assert.equal((await run(["sweep", "--resume", "-o", at("cut")], {input: sweep})).code, 0, `cut at ${cut}`);
+    assert.equal(await readFile(at("cut"), "utf8"), whole);
+  }
+  await appendFile(at("cut"), "nonsense\n");
+  assert.match((await run(["sweep", "--resume", "-o", at("cut")], {input: sweep})).errors, /line 43: not a line of a sweep/);
+  assert.equal((await run(["sweep", "--resume", "-o", at("whole.ndjson")], {input: sweep.replace("60", "61")})).code, 1);
+});
+
+test("a killed sweep loses the points in work at most, and one that is interrupted ends with exit code 3", async () => {
+  const killed = await run(["sweep", "-o", at("killed")], {input: long, signal: "SIGKILL", until: async () => await lines("killed") > 4});
+  assert.equal(killed.code, null);
+  const kept = await lines("killed");
+  assert.ok(kept > 4);
+  const interrupted = await run(["sweep", "--resume", "-o", at("killed")], {input: long, signal: "SIGINT", until: async () => await lines("killed") > kept + 3});
+  assert.equal(interrupted.code, 3);
+  assert.match(interrupted.errors, /--resume completes the file/);
+  assert.ok(await lines("killed") > kept + 3);
+});
