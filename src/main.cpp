@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <thread>
 
+#include "api/openapi.hpp"
 #include "api/simulate.hpp"
 #include "cli/commands.hpp"
 #include "http/routes.hpp"
@@ -121,12 +122,15 @@ int main(int argc, char** argv) {
     merge_command->add_option("--output,-o", merged, "file for the whole; - or nothing: stdout");
     merge_command->footer(exit_codes);
 
+    CLI::App* openapi_command = app.add_subcommand("openapi", "write the OpenAPI document to stdout");
+
     std::string report_folder;
     CLI::App* reproduce_command = app.add_subcommand("reproduce", "recompute the paper's Figs. 3 to 14 and Tables 1 to 3 and compare: exit code 0 if every number lies in its band, else 1");
     reproduce_command->add_option("--output", report_folder, "folder for report.md and its SVG plots; without it only the table is printed");
 
     CLI11_PARSE(app, argc, argv);
     try {
+        if (*openapi_command) return std::puts(vines::api::openapi().dump(2).c_str()) < 0;
         if (*reproduce_command) return reproduce(report_folder);
         if (*simulate_command || *sweep_command || *merge_command) {
             vines::cli::stop_on_signals();

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "api/openapi.hpp"
 #include "api/presets.hpp"
 #include "api/simulate.hpp"
 #include "http/assets.hpp"
@@ -88,6 +89,7 @@ std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate) {
     routes.push_back(route("POST", "/v1/sweep", [options, &gate](const Request& r) { return stream_sweep(api::read_sweep_request(body_of(r), options.sweep_points), gate); }));
     routes.push_back(route("GET", "/v1/presets", [](const Request&) { return json_response(api::describe_presets()); }));
     routes.push_back(route("GET", "/v1/parameters", [](const Request&) { return json_response(api::describe_fields()); }));
+    routes.push_back(route("GET", "/v1/openapi.json", [](const Request&) { return json_response(api::openapi()); }));
     // Alive: the process answers. Ready: it takes work; a proxy stops sending it some once it is about to stop.
     for (const char* path : {"/healthz", "/livez"}) routes.push_back(route("GET", path, [](const Request&) { return json_response({{"status", "ok"}}); }));
     routes.push_back(route("GET", "/readyz", [&gate](const Request&) {

@@ -168,6 +168,23 @@ test("a folder of the report on the paper can be written anywhere, and one that 
   await rm(folder, {recursive: true});
 });
 
+test("the OpenAPI document names every route and every field, and so does the README", async () => {
+  const document = await (await fetch(`${service.url}/v1/openapi.json`)).json();
+  assert.deepEqual(JSON.parse((await run(["openapi"]))[1]), document);
+  const readme = await readFile(new URL("../../README.md", import.meta.url), "utf8");
+  for (const [path, methods] of Object.entries(document.paths)) {
+    assert.ok(readme.includes(path), `${path} is in the README`);
+    for (const method of Object.keys(methods)) {
+      const {status} = await fetch(`${service.url}${path}`, {method: method.toUpperCase(), body: method === "post" ? "{}" : undefined});
+      assert.ok(status === 200 || (path === "/v1/sweep" && status === 422), `${method} ${path}: ${status}`);
+    }
+  }
+  const {fields, sweep_fields, axis_fields} = await (await fetch(`${service.url}/v1/parameters`)).json();
+  assert.deepEqual(Object.keys(document.components.schemas.SimulateRequest.properties), fields.map((f) => f.name));
+  for (const {name} of [...fields, ...sweep_fields, ...axis_fields]) assert.match(readme, new RegExp(`\\b${name}\\b`), `${name} is in the README`);
+  for (const [reference] of JSON.stringify(document).matchAll(/#\/components\/schemas\/(\w+)/g)) assert.ok(reference.split("/").at(-1) in document.components.schemas);
+});
+
 test("errors are problem documents that name field, value and range", async () => {
   const document = await problem(await post('{"b":-1,"Omega":1000}'), 422);
   assert.deepEqual(document.errors.map((e) => [e.pointer, e.value, e.range]), [["/b", -1, [1e-9, 1000]], ["/Omega", 1000, [0.001, 100]]]);
