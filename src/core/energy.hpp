@@ -71,6 +71,8 @@ struct Unattached {
     std::optional<double> amplitude;  ///< epsilon A/sqrt((1 - Omega^2)^2 + 4 zeta^2 Omega^2) once it is steady, m; none undamped at resonance
 };
 Unattached unattached(const Parameters& parameters, const State& start, double tau_start, double tau_end);
+/// Its rms alone, from tau = 0 on: the cheaper part.
+double unattached_rms(const Parameters& parameters, const State& start, double duration);
 std::optional<double> free_amplitude(const Parameters& parameters);
 
 /// When the energy of a free decay (G = 0) first falls to a share of what it was at the start of the run.

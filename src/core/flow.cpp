@@ -179,21 +179,29 @@ Excursion excursion(const Flow& flow, Oscillation o, double duration) {
         last = x;
     };
     // Within a cell x' changes its sign once, or so little that rounding cannot tell.
+    auto cell = [&](const Oscillation& left, double d, double x_dot, double x_dot_end) {
+        if (x_dot * x_dot_end < 0) {
+            const Flow::Series series = flow.series(left);
+            visit(value_at(series, turning_point(series, d, x_dot, x_dot_end)).x);
+        }
+    };
     while (duration > 0) {
         const double part = std::min(duration, flow.reach());
         const int cells = std::min(static_cast<int>(part / flow.cell()), Flow::cells);
-        Oscillation left = o;
-        for (int k = 1; k <= cells + 1; ++k) {
-            const double d = k <= cells ? flow.cell() : std::max(0.0, part - cells * flow.cell());
-            const Oscillation right = k <= cells ? flow.at(o, k) : flow.along(flow.series(left), left, d);
-            if (left.x_dot * right.x_dot < 0) {
-                const Flow::Series series = flow.series(left);
-                visit(value_at(series, turning_point(series, d, left.x_dot, right.x_dot)).x);
+        double before = o.x_dot;
+        for (int from = 1; from <= cells; from += Flow::block) {
+            const Flow::Block speeds = flow.speeds(o, from);
+            for (int k = from; k < from + Flow::block && k <= cells; ++k) {
+                const double now = speeds[k - from];
+                if (before * now < 0) cell(flow.at(o, k - 1), flow.cell(), before, now);
+                before = now;
             }
-            left = right;
         }
-        visit(left.x);
-        o = left;
+        const Oscillation left = flow.at(o, cells);
+        const double d = std::max(0.0, part - cells * flow.cell());
+        o = flow.along(flow.series(left), left, d);
+        cell(left, d, before, o.x_dot);
+        visit(o.x);
         duration -= part;
     }
     return e;

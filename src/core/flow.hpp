@@ -53,6 +53,11 @@ public:
         const auto from = [k](const std::vector<double>& column) { return Eigen::Map<const Block>(column.data() + k); };
         return from(x_x_) * o.x + from(x_v_) * o.x_dot + from(x_s_) * o.sin_theta + from(x_c_) * o.cos_theta - (y0 + from(time_) * y_dot);
     }
+    /// x' at the same grid times.
+    Block speeds(const Oscillation& o, int k) const {
+        const auto from = [k](const std::vector<double>& column) { return Eigen::Map<const Block>(column.data() + k); };
+        return from(v_x_) * o.x + from(v_v_) * o.x_dot + from(v_s_) * o.sin_theta + from(v_c_) * o.cos_theta;
+    }
     /// The whole state at grid time k h.
     Oscillation at(const Oscillation& o, int k) const;
     /// Taylor coefficients of x(s + d) in d.

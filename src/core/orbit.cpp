@@ -107,14 +107,14 @@ std::optional<State> close(const Parameters& p, State s, double tau, int cycles,
     const State guess = s;
     const Eigen::Vector4d unit = vector(scale);
     double miss_before = std::numeric_limits<double>::infinity();
-    for (int step = 0; step < 25; ++step) {
+    for (int step = 0, worse = 0; step < 25; ++step) {
         const auto back = after_period(p, s, tau, cycles, stop);
         if (!back) return std::nullopt;
         const Eigen::Vector4d miss = (vector(back->state) - vector(s)).cwiseQuotient(unit);
         const double size = miss.cwiseAbs().maxCoeff();
         // Near the orbit each step squares the miss, until rounding stops it.
         if (size < 1e-14 || (size < closed && size > 0.1 * miss_before)) return s;
-        if (step > 8 && size > miss_before) return std::nullopt;
+        if (size > miss_before && ++worse > 2) return std::nullopt;
         miss_before = size;
         const Matrix4 D = unit.asDiagonal().inverse() * (back->monodromy.matrix() - Matrix4::Identity()) * unit.asDiagonal();
         // Neutral directions (a mass at rest that is never hit) are left as they are: the smallest step solves.

@@ -73,7 +73,7 @@ PointResult measure(const Parameters& p, const State& start, const PointOptions&
     r.verdict = verdict_of(r.lambda[0], r.standard_error[0], r.regime, 0);
     r.x_max = energy.peak();
     r.x_rms = energy.rms();
-    r.x_rms_ratio = r.x_rms / unattached(p, begin, 0, r.outcome.tau).rms;
+    r.x_rms_ratio = r.x_rms / unattached_rms(p, begin, r.outcome.tau);
     r.share_impacts = energy.impacts() / (energy.impacts() + energy.damper());
     r.impacts = contacts.impacts;
     r.sticks = static_cast<long>(contacts.sticks.size());
