@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/lyapunov.hpp"
+#include "core/sweep.hpp"
 
 using namespace vines;
 
@@ -69,6 +70,29 @@ double median(std::vector<double> v) {
     return v[v.size() / 2];
 }
 
+/// Points per second of the sweep of Table 3's range on one and on two threads, taken in turn.
+void bench_sweep() {
+    constexpr std::size_t points = 200;
+    const auto run = [&](int threads) {
+        const auto start = std::chrono::steady_clock::now();
+        parallel(points, threads, [&](std::size_t i) {
+            Parameters p;
+            p.b = 0.003 + 0.037 * static_cast<double>(i) / (points - 1);
+            p.damping = Damping::closed_form;
+            measure(p, default_state(p), {}, {});
+        });
+        return points / std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    std::vector<double> one, two, efficiency;
+    for (int k = 0; k < 9; ++k) {
+        one.push_back(run(1));
+        two.push_back(run(2));
+        efficiency.push_back(two.back() / one.back() / 2);
+    }
+    std::printf("\nsweep of b from 3 to 40 mm, 200 + 1000 cycles a point, exponents, regime and energy; median of 9\n");
+    std::printf("points per second: %.0f on one thread, %.0f on two; parallel efficiency %.0f %%\n", median(one), median(two), 100 * median(efficiency));
+}
+
 }  // namespace
 
 int main() {
@@ -98,4 +122,5 @@ int main() {
         }
         std::printf("%-36s %12.0f %12.0f %12.0f %8.1f\n", c.name, median(trajectory), median(spectrum), median(scan), median(scan) / median(spectrum));
     }
+    bench_sweep();
 }
