@@ -19,7 +19,7 @@ namespace {
 
 struct ServeOptions {
     vines::http::ServerOptions server;
-    vines::http::RouteOptions routes{30, 100000, ""};
+    vines::http::RouteOptions routes{30, 100000, 64u << 20, ""};
     int compute_threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     int compute_queue = 64;
     int sweeps = 4;
@@ -38,6 +38,7 @@ void add_serve_options(CLI::App& serve, ServeOptions& o) {
     serve.add_option("--drain", o.drain, "seconds from SIGTERM on during which /readyz says 503 and requests are still taken, so that a proxy notices")->envname("VINES_DRAIN")->check(CLI::Range(0.0, 3600.0))->capture_default_str();
     serve.add_option("--deadline", o.routes.deadline, "seconds of computing for one request; then it ends with what it has")->envname("VINES_DEADLINE")->check(CLI::Range(0.001, 86400.0))->capture_default_str();
     serve.add_option("--payload-limit", o.server.payload_limit, "bytes of a request's body")->envname("VINES_PAYLOAD_LIMIT")->check(CLI::Range(1, 1 << 30))->capture_default_str();
+    serve.add_option("--record-limit", o.routes.record_limit, "bytes of a measurement sent to /v1/identify")->envname("VINES_RECORD_LIMIT")->check(CLI::Range(1, 1 << 30))->capture_default_str();
     serve.add_option("--web-dir", o.routes.web_dir, "serve the page from this folder instead of the program (while developing it)")->envname("VINES_WEB_DIR")->check(CLI::ExistingDirectory);
 }
 
@@ -104,9 +105,13 @@ int main(int argc, char** argv) {
 
     vines::cli::Files files;
     CLI::App* simulate_command = app.add_subcommand("simulate", "one run: the JSON of POST /v1/simulate in, its answer out");
+    vines::cli::Files identify_files;
+    std::string identify_query;
+    CLI::App* identify_command = app.add_subcommand("identify", "exponents from a measurement: a CSV file with --query, or the JSON of POST /v1/identify");
+    identify_command->add_option("--query,-q", identify_query, "fields for a CSV file, as in a URL: preset=fig20&b=0.015");
     vines::cli::SweepOptions sweep_options;
     CLI::App* sweep_command = app.add_subcommand("sweep", "a sweep: the JSON of POST /v1/sweep in, its points as lines of JSON out");
-    for (auto& [command, f] : {std::pair(simulate_command, &files), std::pair(sweep_command, &sweep_options.files)}) {
+    for (auto& [command, f] : {std::pair(simulate_command, &files), std::pair(identify_command, &identify_files), std::pair(sweep_command, &sweep_options.files)}) {
         command->add_option("request", f->input, "file with the request; - or nothing: stdin");
         command->add_option("--output,-o", f->output, "file for the answer; - or nothing: stdout");
         command->footer(exit_codes);
@@ -132,8 +137,9 @@ int main(int argc, char** argv) {
     try {
         if (*openapi_command) return std::puts(vines::api::openapi().dump(2).c_str()) < 0;
         if (*reproduce_command) return reproduce(report_folder);
-        if (*simulate_command || *sweep_command || *merge_command) {
+        if (*simulate_command || *identify_command || *sweep_command || *merge_command) {
             vines::cli::stop_on_signals();
+            if (*identify_command) return vines::cli::identify(identify_files, identify_query);
             return *simulate_command ? vines::cli::simulate(files) : *sweep_command ? vines::cli::sweep(sweep_options) : vines::cli::merge(parts, merged);
         }
         if (*health_command) return vines::http::get_status(url_host, url_port, "/healthz") == 200 ? 0 : 1;

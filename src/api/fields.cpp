@@ -91,6 +91,32 @@ std::vector<Field> make_manifold_fields() {
 
 constexpr std::size_t most_windows = 1000;
 
+std::vector<Field> make_identify_fields() {
+    std::vector<Field> fields;
+    for (Field f : simulate_fields()) {
+        if (f.group != "system" && f.group != "reduced" && f.group != "SI" && f.name != "exponents" && f.name != "max_points") continue;
+        if (f.name == "F" || f.name == "G") f.description += "; of a record it is fitted";
+        if (f.name == "R") f.fallback = nullptr, f.fallback_note = "estimated, each wall's from its impacts";
+        if (f.name == "m1" || f.name == "k1") f.fallback = nullptr, f.fallback_note = "required for a record, or a preset: they give omega0, by which time is scaled";
+        fields.push_back(std::move(f));
+    }
+    auto column = [](std::string name, std::string description, std::string note) { return Field{std::move(name), FieldType::choice, "record", "", "", std::move(description), nullptr, std::move(note), {}, {}, {}}; };
+    auto unit = [](std::string name, std::string description, std::vector<std::string> choices) {
+        const std::string first = choices[0];
+        return Field{std::move(name), FieldType::choice, "record", "", "", std::move(description), first, "", {}, {}, std::move(choices)};
+    };
+    fields.push_back(column("time_column", "name of the column of time", "time_s, or one that begins with time or t"));
+    fields.push_back(column("displacement_column", "name of the column of displacement", "displacement_m, or one that begins with displacement or x"));
+    fields.push_back(column("acceleration_column", "name of the column of acceleration", "acceleration_m_s2, or one that begins with acceleration or a"));
+    fields.push_back(unit("time_unit", "unit of time", {"s", "ms"}));
+    fields.push_back(unit("displacement_unit", "unit of displacement", {"m", "mm", "um"}));
+    fields.push_back(unit("acceleration_unit", "unit of acceleration", {"m/s2", "g"}));
+    fields.push_back(number("threshold", "record", "standard deviations of the noise", "", "height from which on a spike of the acceleration is an impact", 6, "", 3, 1000));
+    Field times{"impact_times_s", FieldType::numbers, "record", "s", "", "moments of the impacts, from an edited list: then they are not searched for", nullptr, "found from the spikes", {}, {}, {}};
+    fields.push_back(std::move(times));
+    return fields;
+}
+
 std::vector<Field> of_groups(const std::vector<std::string>& groups) {
     std::vector<Field> fields;
     for (const Field& f : simulate_fields())
@@ -126,7 +152,7 @@ std::vector<Field> make_sweep_fields() {
 std::vector<Field> make_axis_fields() {
     Field count = integer("count", "number of values", 2, 1, 1e6);
     count.group = "axis";
-    Field values = structured(FieldType::objects, "values", "the values themselves, in place of from, to, count, scale", nullptr, "from, to, count");
+    Field values = structured(FieldType::numbers, "values", "the values themselves, in place of from, to, count, scale", nullptr, "from, to, count");
     return {
         {"parameter", FieldType::choice, "axis", "", "", "any number of system, reduced, SI or start", nullptr, "required", {}, {}, {}},
         number("from", "axis", "", "", "first value", nullptr, "required without values", -1e300, 1e300),
@@ -146,6 +172,7 @@ const char* type_name(FieldType type) {
         case FieldType::interval: return "interval";
         case FieldType::intervals: return "intervals";
         case FieldType::integers: return "integers";
+        case FieldType::numbers: return "numbers";
         case FieldType::object: return "object";
         case FieldType::objects: return "objects";
     }
@@ -247,6 +274,11 @@ void check_field(const Field& f, const Json& value, std::vector<FieldError>& err
             for (std::size_t i = 0; i < value.size() && errors.size() < most_errors; ++i)
                 if (!value[i].is_number_integer() || value[i] < 0) fault(pointer(std::to_string(i)), value[i], "must hold whole numbers from 0 on");
             return;
+        case FieldType::numbers:
+            if (!value.is_array()) return fault("", value, "must be an array of numbers");
+            for (std::size_t i = 0; i < value.size() && errors.size() < most_errors; ++i)
+                if (!value[i].is_number()) fault(pointer(std::to_string(i)), value[i], "must hold numbers");
+            return;
         case FieldType::object:
             if (!value.is_object()) fault("", value, "must be an object");
             return;
@@ -303,6 +335,9 @@ Json from_text(FieldType type, const std::string& text) {
         case FieldType::intervals:
             for (const std::string& part : split(text, ';')) array.push_back(from_text(FieldType::interval, part));
             return array;
+        case FieldType::numbers:
+            for (const std::string& part : split(text, ',')) array.push_back(number_or_text(part));
+            return array;
         case FieldType::integers:
         case FieldType::object:
         case FieldType::objects: return text;  // of routes that take no query
@@ -341,13 +376,18 @@ const std::vector<Field>& start_fields() {
     return fields;
 }
 
+const std::vector<Field>& identify_fields() {
+    static const std::vector<Field> fields = make_identify_fields();
+    return fields;
+}
+
 const std::vector<Field>& manifold_fields() {
     static const std::vector<Field> fields = make_manifold_fields();
     return fields;
 }
 
 Json describe_fields() { return {{"fields", describe(simulate_fields())}, {"manifold_fields", describe(manifold_fields())}, {"sweep_fields", describe(sweep_fields())},
-                                  {"axis_fields", describe(axis_fields())}}; }
+                                  {"axis_fields", describe(axis_fields())}, {"identify_fields", describe(identify_fields())}}; }
 
 Json from_query(const std::vector<Field>& fields, const std::vector<std::pair<std::string, std::string>>& query) {
     Json object = Json::object();

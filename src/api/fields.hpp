@@ -17,6 +17,7 @@ enum class FieldType {
     interval, ///< [from, to] (in a query: separated by a comma)
     intervals, ///< an array of them (in a query: separated by semicolons)
     integers, ///< an array of whole numbers
+    numbers,  ///< an array of numbers (in a query: separated by commas)
     object,   ///< fields of their own
     objects   ///< an array of such
 };
@@ -43,6 +44,9 @@ const std::vector<Field>& sweep_fields();
 const std::vector<Field>& sweep_base_fields();
 const std::vector<Field>& axis_fields();
 const std::vector<Field>& start_fields();
+
+/// The fields of /v1/identify, beside the record itself.
+const std::vector<Field>& identify_fields();
 
 /// The fields of /v1/manifold.
 const std::vector<Field>& manifold_fields();

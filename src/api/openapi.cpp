@@ -21,8 +21,9 @@ Json schema_of(const Field& f) {
         case FieldType::interval: s = interval; break;
         case FieldType::intervals: s = {{"type", "array"}, {"items", interval}}; break;
         case FieldType::integers: s = {{"type", "array"}, {"items", {{"type", "integer"}, {"minimum", 0}}}}; break;
+        case FieldType::numbers: s = {{"type", "array"}, {"items", number}}; break;
         case FieldType::object: s = reference("SweepBase"); break;
-        case FieldType::objects: s = {{"type", "array"}, {"items", f.name == "values" ? number : reference(f.name == "axes" ? "Axis" : "Start")}}; break;
+        case FieldType::objects: s = {{"type", "array"}, {"items", reference(f.name == "axes" ? "Axis" : "Start")}}; break;
     }
     if (f.type == FieldType::choice && !f.choices.empty()) s["enum"] = f.choices;
     if (f.minimum) s["minimum"] = *f.minimum, s["maximum"] = *f.maximum;
@@ -80,6 +81,24 @@ Json parts(std::initializer_list<std::pair<const char*, const char*>> list) {
     return {{"type", "object"}, {"properties", std::move(properties)}};
 }
 
+/// JSON with all in the body, or CSV with the fields in the query.
+Json identify_operation() {
+    const Json identified = {{"200", answer("impacts, restitution, exponents, verdict", "application/json",
+                                            parts({{"parameters", "with the identified R"}, {"signal", "noise, pulse length, forcing"}, {"impacts", "columns, with a status each"}, {"restitution", "of each wall"},
+                                                   {"b_fitted", "that fits the momentum"}, {"exponents", "of the sequence"}, {"slope", "with its 90 % interval"}, {"verdict", "chaotic, regular or not_decided"},
+                                                   {"forward", "a run of the identified system"}, {"warnings", "sentences"}}))}};
+    Json op = with_query(operation("identify", "exponents from a measurement of the oscillator, or from a list of impacts", identified), identify_fields());
+    op["requestBody"] = {{"required", true}, {"content", {{"text/csv", {{"schema", {{"type", "string"}}}}}, {"application/json", {{"schema", reference("IdentifyRequest")}}}}}};
+    return op;
+}
+
+Json identify_request() {
+    Json s = schema_of(identify_fields());
+    s["properties"]["record"] = {{"type", "object"}, {"description", "columns: time_s, displacement_m, acceleration_m_s2"}};
+    s["properties"]["impacts"] = {{"type", "object"}, {"description", "columns as in the answer of /v1/simulate, in place of a record"}};
+    return s;
+}
+
 Json plain(const std::string& id, const std::string& summary) {
     return {{"get", {{"operationId", id}, {"summary", summary}, {"responses", {{"200", answer(summary, "application/json", {{"type", "object"}})}}}}}};
 }
@@ -94,6 +113,7 @@ Json openapi() {
         {"/v1/simulate",
          {{"get", with_query(operation("simulate_by_query", "one run", simulated), simulate_fields())}, {"post", with_body(operation("simulate", "one run", simulated), "SimulateRequest")}}},
         {"/v1/sweep", {{"post", with_body(operation("sweep", "many runs over one or two parameters, as a stream", swept), "SweepRequest")}}},
+        {"/v1/identify", {{"post", identify_operation()}}},
         {"/v1/manifold",
          {{"get", with_query(operation("manifold_by_query", "the slow invariant manifold", manifold), manifold_fields())},
           {"post", with_body(operation("manifold", "the slow invariant manifold", manifold), "ManifoldRequest")}}},
@@ -108,6 +128,7 @@ Json openapi() {
     Json schemas = {
         {"SimulateRequest", schema_of(simulate_fields())},
         {"ManifoldRequest", schema_of(manifold_fields())},
+        {"IdentifyRequest", identify_request()},
         {"SweepRequest", schema_of(sweep_fields(), {"axes"})},
         {"SweepBase", schema_of(sweep_base_fields())},
         {"Axis", schema_of(axis_fields(), {"parameter"})},

@@ -96,7 +96,10 @@ private:
     static Interval interval_of(const Json& v) { return {v[0].get<double>(), v[1].get<double>()}; }
     const Json& value(const std::string& name) const {
         if (has(name)) return object_[name];
-        return std::find_if(fields_.begin(), fields_.end(), [&](const Field& f) { return f.name == name; })->fallback;
+        const auto has_it = [&](const Field& f) { return f.name == name; };
+        const auto own = std::find_if(fields_.begin(), fields_.end(), has_it);
+        if (own != fields_.end() && !own->fallback.is_null()) return own->fallback;
+        return std::find_if(simulate_fields().begin(), simulate_fields().end(), has_it)->fallback;
     }
     const std::vector<Field>& fields_;
     const Json& object_;
@@ -115,14 +118,6 @@ std::vector<FieldError> field_errors(const std::vector<Fault>& faults, const std
             errors.push_back({"/" + name, given[name], nullptr, f.field + " = " + Json(f.value).dump() + " follows from the SI fields; " + f.message});
     }
     return errors;
-}
-
-/// The fields of a request that each can stand alone, over its preset. Problem 422 where one cannot.
-Json checked(const std::vector<Field>& fields, const Json& given) {
-    std::vector<FieldError> errors = check(fields, given);
-    check_alternatives(given, errors);
-    if (!errors.empty()) refuse(std::move(errors));
-    return over_preset(fields, given);
 }
 
 System read_system(const Values& v, const Json& object) {
@@ -161,6 +156,20 @@ void check_window(const std::string& where, const Interval& window, double tau_e
 }
 
 }  // namespace
+
+Json checked(const std::vector<Field>& fields, const Json& given) {
+    std::vector<FieldError> errors = check(fields, given);
+    check_alternatives(given, errors);
+    if (!errors.empty()) refuse(std::move(errors));
+    return over_preset(fields, given);
+}
+
+System read_checked_system(const std::vector<Field>& fields, const Json& object) {
+    const System system = read_system(Values(fields, object), object);
+    const std::vector<FieldError> errors = field_errors(validate(system.parameters, default_state(system.parameters)), system.si, object);
+    if (!errors.empty()) refuse(errors);
+    return system;
+}
 
 SimulateRequest read_simulate_request(const Json& given) {
     const Json object = checked(simulate_fields(), given);

@@ -49,6 +49,11 @@ StartedSystem read_started_system(const Json& object);
 /// Throws a Problem 422 that lists the errors.
 [[noreturn]] void refuse(std::vector<FieldError> errors);
 
+/// The fields of a table over those of the request's preset, each checked by itself. Problem 422 where one is at fault.
+Json checked(const std::vector<Field>& fields, const Json& given);
+/// The system of fields that are checked. Problem 422 where they make none together.
+System read_checked_system(const std::vector<Field>& fields, const Json& object);
+
 struct ManifoldRequest {
     System system;
     double V_max;  ///< 0: not given

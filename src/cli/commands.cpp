@@ -16,6 +16,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "api/identify.hpp"
 #include "api/simulate.hpp"
 #include "api/sweep.hpp"
 #include "cli/sweep_file.hpp"
@@ -206,6 +207,23 @@ int simulate(const Files& files) {
         const api::SimulateRequest request = api::read_simulate_request(api::parse_object(read_all(files.input)));
         write_all(files.output, api::simulate_answer(request, {[] { return stopped.load(); }, "interrupted", "ended by a signal, before tau_end"}).dump() + "\n");
         return stopped ? incomplete : complete;
+    });
+}
+
+int identify(const Files& files, const std::string& query) {
+    return guarded([&] {
+        const std::string text = read_all(files.input);
+        std::vector<std::pair<std::string, std::string>> pairs;
+        for (std::size_t from = 0; from < query.size();) {
+            const std::size_t end = std::min(query.find('&', from), query.size()), equals = std::min(query.find('=', from), end);
+            if (end > from) pairs.emplace_back(query.substr(from, equals - from), query.substr(std::min(equals + 1, end), end - std::min(equals + 1, end)));
+            from = end + 1;
+        }
+        const std::size_t first = text.find_first_not_of(" \t\r\n");
+        const bool json = first != std::string::npos && text[first] == '{';
+        const api::IdentifyRequest request = json ? api::read_identify_request(api::parse_object(text)) : api::read_identify_request(api::from_query(api::identify_fields(), pairs), text);
+        write_all(files.output, api::identify_answer(request).dump() + "\n");
+        return complete;
     });
 }
 

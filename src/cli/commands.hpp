@@ -20,6 +20,8 @@ struct Files {
 };
 
 int simulate(const Files& files);
+/// The input is JSON if it begins with "{", else CSV, for which `query` holds the fields as in a URL.
+int identify(const Files& files, const std::string& query);
 
 struct SweepOptions {
     Files files;

@@ -11,6 +11,7 @@ namespace vines::http {
 struct Request {
     std::string method, path;
     std::vector<std::pair<std::string, std::string>> query;
+    std::string content_type;
     std::string body;
 };
 
@@ -34,6 +35,7 @@ struct Route {
     std::string method;  ///< GET (answers HEAD, too) or POST
     std::string path;
     std::function<Response(const Request&)> answer;
+    std::size_t body_limit = 0;  ///< bytes, where it is larger than the server's own
 };
 
 }  // namespace vines::http

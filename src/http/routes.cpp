@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "api/identify.hpp"
 #include "api/openapi.hpp"
 #include "api/presets.hpp"
 #include "api/simulate.hpp"
@@ -37,10 +38,17 @@ Response page_file(std::string_view path, std::string content) {
     return r;
 }
 
+/// A place to compute in, or Problem 503.
+struct Entered {
+    explicit Entered(ComputeGate& gate) : place(gate) {
+        if (!place) throw Problem(503, "as many requests as the server takes are waiting already; try again in a second");
+    }
+    const ComputeGate::Place place;
+};
+
 Response simulate(const Json& object, const RouteOptions& options, ComputeGate& gate) {
     const api::SimulateRequest request = api::read_simulate_request(object);
-    const ComputeGate::Place place(gate);
-    if (!place) throw Problem(503, "as many requests as the server takes are waiting already; try again in a second");
+    const Entered entered(gate);
     using Clock = std::chrono::steady_clock;
     const auto deadline = Clock::now() + std::chrono::duration<double>(options.deadline);
     return json_response(api::simulate_answer(request, {[deadline] { return Clock::now() > deadline; }}));
@@ -51,6 +59,14 @@ Response manifold(const Json& object) { return json_response(api::manifold_answe
 Json body_of(const Request& r) {
     if (!r.query.empty()) throw Problem(400, "a POST takes its fields from the body; the query must be empty");
     return api::parse_object(r.body);
+}
+
+/// A CSV file with the fields in the query, or JSON with all in the body.
+Response identify(const Request& r, ComputeGate& gate) {
+    const bool csv = r.content_type.rfind("text/csv", 0) == 0 || r.content_type.rfind("text/plain", 0) == 0;
+    const api::IdentifyRequest request = csv ? api::read_identify_request(api::from_query(api::identify_fields(), r.query), r.body) : api::read_identify_request(body_of(r));
+    const Entered entered(gate);
+    return json_response(api::identify_answer(request));
 }
 
 /// A route whose answer may throw a Problem.
@@ -87,6 +103,8 @@ std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate) {
     routes.push_back(route("GET", "/v1/manifold", [](const Request& r) { return manifold(api::from_query(api::manifold_fields(), r.query)); }));
     routes.push_back(route("POST", "/v1/manifold", [](const Request& r) { return manifold(body_of(r)); }));
     routes.push_back(route("POST", "/v1/sweep", [options, &gate](const Request& r) { return stream_sweep(api::read_sweep_request(body_of(r), options.sweep_points), gate); }));
+    routes.push_back(route("POST", "/v1/identify", [&gate](const Request& r) { return identify(r, gate); }));
+    routes.back().body_limit = options.record_limit;
     routes.push_back(route("GET", "/v1/presets", [](const Request&) { return json_response(api::describe_presets()); }));
     routes.push_back(route("GET", "/v1/parameters", [](const Request&) { return json_response(api::describe_fields()); }));
     routes.push_back(route("GET", "/v1/openapi.json", [](const Request&) { return json_response(api::openapi()); }));

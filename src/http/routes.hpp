@@ -12,6 +12,7 @@ namespace vines::http {
 struct RouteOptions {
     double deadline;          ///< seconds of computing for one request
     std::size_t sweep_points; ///< of one sweep, at most
+    std::size_t record_limit; ///< bytes of a measurement sent to /v1/identify
     std::string web_dir;      ///< serve the page from this folder instead of the program; empty: do not
 };
 

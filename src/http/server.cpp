@@ -180,10 +180,14 @@ struct Server::Implementation {
     }
 
     static Request to_request(const httplib::Request& in, std::string body) {
-        return {in.method, in.path, query_of(in.target), std::move(body)};
+        return {in.method, in.path, query_of(in.target), in.get_header_value("Content-Type"), std::move(body)};
     }
 
-    Response too_large() const { return problem_response(413, "the body is larger than " + std::to_string(options.payload_limit) + " bytes"); }
+    std::size_t limit_of(const httplib::Request& in) const {
+        const Route* route = find(in.method, in.path);
+        return std::max(options.payload_limit, route ? route->body_limit : 0);
+    }
+    Response too_large(const httplib::Request& in) const { return problem_response(413, "the body is larger than " + std::to_string(limit_of(in)) + " bytes"); }
 
     /// What must be refused before its body is read, or an empty status.
     Response refusal(const httplib::Request& in) const {
@@ -203,7 +207,7 @@ struct Server::Implementation {
         if (in.method == "POST" && !in.has_header("Content-Length")) return problem_response(411, "send a body with its Content-Length");
         // One that is moderately too large is read and dropped first (post): closing on it at once would reset the connection,
         // and some clients would never see the answer.
-        if (std::strtoull(length.c_str(), nullptr, 10) > 64 * options.payload_limit) return too_large();
+        if (std::strtoull(length.c_str(), nullptr, 10) > 64 * limit_of(in)) return too_large(in);
         return Response{0, "", ""};
     }
 
@@ -231,12 +235,15 @@ struct Server::Implementation {
     /// refused above 8 kB.
     void post(const httplib::Request& in, httplib::Response& out, const httplib::ContentReader& read) {
         std::string body;
+        const std::size_t limit = limit_of(in);
+        bool too_long = false;
         const bool complete = read([&](const char* data, std::size_t size) {
-            if (body.size() + size > options.payload_limit) return false;
-            body.append(data, size);
+            // What is too large is read to its end, so that the client gets to read the answer.
+            too_long = too_long || body.size() + size > limit;
+            if (!too_long) body.append(data, size);
             return true;
         });
-        if (out.status == 413) return send(in, out, too_large(), true);
+        if (out.status == 413 || too_long) return send(in, out, too_large(in), true);
         if (!complete) return send(in, out, problem_response(400, "the body ended before its Content-Length"), true);
         Response response = find("POST", in.path)->answer(to_request(in, std::move(body)));
         if (response.stream) return send_stream(out, std::move(response));
@@ -285,7 +292,9 @@ Server::Server(const ServerOptions& options, std::vector<Route> routes) : implem
     http.set_keep_alive_timeout(5);
     http.set_read_timeout(10);
     http.set_write_timeout(30);
-    http.set_payload_max_length(options.payload_limit);
+    std::size_t largest = options.payload_limit;
+    for (const Route& route : self.routes) largest = std::max(largest, route.body_limit);
+    http.set_payload_max_length(largest);
     http.set_pre_routing_handler([&self](const auto& in, auto& out) { return self.before_routing(in, out); });
     for (const Route& route : self.routes)
         if (route.method == "POST") {

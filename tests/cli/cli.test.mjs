@@ -43,6 +43,17 @@ test("simulate answers as the service does, from a file or stdin to a file or st
   assert.equal(await readFile(at("answer.json"), "utf8"), answer);
 });
 
+test("identify takes a CSV file with its fields as a query, or the service's JSON", async () => {
+  const simulated = JSON.parse((await run(["simulate"], {input: '{"preset":"fig20","include":["impacts","exponents"],"exponents":["qr"]}'})).out);
+  const {code, out} = await run(["identify"], {input: JSON.stringify({preset: "fig20", impacts: simulated.impacts, exponents: ["qr"]})});
+  assert.equal(code, 0);
+  assert.ok(Math.abs(JSON.parse(out).exponents.qr.final[0] - simulated.exponents.qr.final[0]) < 1e-9);
+  await writeFile(at("record.csv"), "time_s,x_m,a\n0,1,2\n0.001,1,x\n");
+  const refused = await run(["identify", at("record.csv"), "-q", "preset=fig20&b=0.015"]);
+  assert.equal(refused.code, 2);
+  assert.equal(JSON.parse(refused.errors).detail, 'line 3, column a: "x" is no number');
+});
+
 test("a request at fault is a problem document on stderr and exit code 2, a file that is not there is 1", async () => {
   for (const [command, input] of [["simulate", '{"b":-1}'], ["sweep", '{"axes":[{"parameter":"q","values":[1]}]}'], ["simulate", "{"]]) {
     const {code, out, errors} = await run([command], {input});

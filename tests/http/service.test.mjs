@@ -74,6 +74,18 @@ test("presets, parameters, health and version answer", async () => {
   assert.match((await (await fetch(`${service.url}/version`)).json()).version, /^\d+\.\d+\.\d+$/);
 });
 
+test("a measurement is sent as CSV with its fields in the query, and may be larger than other bodies", async () => {
+  const csv = (n) => `time_s,displacement_m,acceleration_m_s2\n${Array.from({length: n}, (_, k) => `${(k / 2048).toFixed(6)},${(1e-3 * Math.sin(k * 0.0256)).toExponential(7)},${(-2.75 * Math.sin(k * 0.0256)).toExponential(5)}`).join("\n")}\n`;
+  const send = (body, query = "preset=fig15") => fetch(`${service.url}/v1/identify?${query}`, {method: "POST", body, headers: {"Content-Type": "text/csv"}});
+  const quiet = await problem(await send(csv(60000)), 422);  // 2 MB
+  assert.match(quiet.detail, /nothing in the acceleration looks like impacts/);
+  assert.equal((await problem(await send(csv(200).replace("0.000488", "oops")), 422)).detail, 'line 3, column time_s: "oops" is no number');
+  assert.equal((await problem(await send(csv(200), "preset=fig15&q=1"), 422)).errors[0].pointer, "/q");
+  const small = await startService(["--record-limit", "10000", "--payload-limit", "10000"]);
+  await problem(await fetch(`${small.url}/v1/identify?preset=fig15`, {method: "POST", body: csv(2000), headers: {"Content-Type": "text/csv"}}), 413);
+  await small.stop();
+});
+
 test("the manifold is a route of its own, by GET and POST", async () => {
   const got = await (await fetch(`${service.url}/v1/manifold?b=0.015&points=10`)).json();
   const posted = await (await fetch(`${service.url}/v1/manifold`, {method: "POST", body: '{"b":0.015,"points":10}'})).json();
@@ -176,12 +188,12 @@ test("the OpenAPI document names every route and every field, and so does the RE
     assert.ok(readme.includes(path), `${path} is in the README`);
     for (const method of Object.keys(methods)) {
       const {status} = await fetch(`${service.url}${path}`, {method: method.toUpperCase(), body: method === "post" ? "{}" : undefined});
-      assert.ok(status === 200 || (path === "/v1/sweep" && status === 422), `${method} ${path}: ${status}`);
+      assert.ok(status === 200 || (["/v1/sweep", "/v1/identify"].includes(path) && status === 422), `${method} ${path}: ${status}`);
     }
   }
-  const {fields, sweep_fields, axis_fields} = await (await fetch(`${service.url}/v1/parameters`)).json();
+  const {fields, sweep_fields, axis_fields, identify_fields} = await (await fetch(`${service.url}/v1/parameters`)).json();
   assert.deepEqual(Object.keys(document.components.schemas.SimulateRequest.properties), fields.map((f) => f.name));
-  for (const {name} of [...fields, ...sweep_fields, ...axis_fields]) assert.match(readme, new RegExp(`\\b${name}\\b`), `${name} is in the README`);
+  for (const {name} of [...fields, ...sweep_fields, ...axis_fields, ...identify_fields]) assert.match(readme, new RegExp(`\\b${name}\\b`), `${name} is in the README`);
   for (const [reference] of JSON.stringify(document).matchAll(/#\/components\/schemas\/(\w+)/g)) assert.ok(reference.split("/").at(-1) in document.components.schemas);
 });
 

@@ -1,0 +1,320 @@
+#include "api/identify.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "api/csv.hpp"
+#include "api/describe.hpp"
+#include "api/simulate.hpp"
+
+namespace vines::api {
+
+namespace {
+
+constexpr double gravity = 9.80665;  // m/s^2, the standard value
+constexpr std::size_t fewest_samples = 100;
+
+using Columns = std::vector<CsvColumn>;
+
+std::string lower(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+    return text;
+}
+
+/// A column by the name that the request gives, by its default name, or by how its name begins; null where there is none.
+const CsvColumn* find_column(const Columns& columns, const Json& fields, const std::string& field, const std::string& name, const std::vector<std::string>& beginnings, bool required) {
+    std::vector<std::string> names;
+    for (const CsvColumn& c : columns) names.push_back(c.name);
+    auto named = [&](auto fits) -> const CsvColumn* {
+        const auto it = std::find_if(columns.begin(), columns.end(), [&](const CsvColumn& c) { return fits(lower(c.name)); });
+        return it == columns.end() ? nullptr : &*it;
+    };
+    if (fields.contains(field)) {
+        const std::string wanted = fields[field];
+        if (const CsvColumn* c = named([&](const std::string& n) { return n == lower(wanted); })) return c;
+        refuse({{"/" + field, wanted, names, "the record has no column of this name"}});
+    }
+    if (const CsvColumn* c = named([&](const std::string& n) { return n == name; })) return c;
+    for (const std::string& beginning : beginnings)
+        if (const CsvColumn* c = named([&](const std::string& n) { return n == beginning || n.rfind(beginning + "_", 0) == 0 || n.rfind(beginning + " ", 0) == 0 || n.rfind(beginning + "(", 0) == 0; })) return c;
+    if (required) refuse({{"/record", names, nullptr, "the record has no column " + name + "; name it in " + field}});
+    return nullptr;
+}
+
+std::string unit_of(const Json& fields, const char* name, const char* fallback) { return fields.contains(name) ? fields[name].get<std::string>() : fallback; }
+
+/// What would make every later step wrong without a word: line numbers count the header.
+void check_record(const std::vector<double>& time, const MeasuredRecord& r, std::vector<std::string>& notes) {
+    const std::size_t n = time.size();
+    if (n < fewest_samples) refuse({{"/record", n, Json::array({fewest_samples, 1000000}), "the record has " + std::to_string(n) + " samples; at least " + std::to_string(fewest_samples) + " are needed"}});
+    for (std::size_t i = 1; i < n; ++i)
+        if (!(time[i] > time[i - 1]))
+            refuse({{"/record/time_s/" + std::to_string(i), time[i], nullptr, "line " + std::to_string(i + 2) + ", column of time: time must increase, but " + Json(time[i]).dump() + " follows " + Json(time[i - 1]).dump()}});
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < n; ++i) steps.push_back(time[i] - time[i - 1]);
+    std::vector<double> sorted = steps;
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+    const double typical = sorted[sorted.size() / 2];
+    std::size_t gaps = 0, first = 0;
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        if (steps[i] > 3 * typical && gaps++ == 0) first = i;
+    if (gaps > 0)
+        notes.push_back("the record has " + std::to_string(gaps) + " gap(s), the first of " + digits("%.4g", steps[first]) + " s after line " + std::to_string(first + 2) + ": an impact in one is not seen");
+    // A clipped signal repeats its extreme value.
+    for (const auto& [name, column] : {std::pair("displacement", &r.x), std::pair("acceleration", &r.x_ddot)}) {
+        if (column->empty()) continue;
+        const auto [low, high] = std::minmax_element(column->begin(), column->end());
+        for (double extreme : {*low, *high}) {
+            const auto times = std::count(column->begin(), column->end(), extreme);
+            if (times > 3) notes.push_back(std::string("the ") + name + " reaches its extreme " + Json(extreme).dump() + " exactly " + std::to_string(times) + " times: is it clipped?");
+        }
+    }
+}
+
+IdentifyRequest read_fields(const Json& given, bool with_record) {
+    IdentifyRequest r;
+    const Json object = checked(identify_fields(), given);
+    r.system = read_checked_system(identify_fields(), object);
+    if (with_record && !r.system.si)
+        refuse({{"/m1", nullptr, nullptr, "a record in seconds needs the oscillator's own frequency: give m1 and k1 (and c1, m2), or a preset"},
+                {"/k1", nullptr, nullptr, "a record in seconds needs the oscillator's own frequency: give m1 and k1 (and c1, m2), or a preset"}});
+    r.R_given = given.contains("R") || (given.contains("R_plus") && given.contains("R_minus"));
+    r.threshold = object.contains("threshold") ? object["threshold"].get<double>() : 6;
+    if (object.contains("impact_times_s")) {
+        for (const Json& t : object["impact_times_s"]) r.moments.push_back(t.get<double>() * r.system.si->omega0());
+        std::sort(r.moments.begin(), r.moments.end());
+    }
+    std::set<std::string> estimators = {"qr", "eigenvalues", "raw_product"};
+    if (object.contains("exponents")) estimators = object["exponents"].get<std::set<std::string>>();
+    r.estimators = {true, estimators.contains("eigenvalues"), estimators.contains("raw_product"), object.contains("max_points") ? static_cast<std::size_t>(object["max_points"].get<double>()) : 20000};
+    return r;
+}
+
+void read_record(IdentifyRequest& r, const Json& fields, const Columns& columns) {
+    const CsvColumn* time = find_column(columns, fields, "time_column", "time_s", {"time", "t"}, true);
+    const CsvColumn* x = find_column(columns, fields, "displacement_column", "displacement_m", {"displacement", "x"}, false);
+    const CsvColumn* a = find_column(columns, fields, "acceleration_column", "acceleration_m_s2", {"acceleration", "a"}, false);
+    if (!x && !a) {
+        std::vector<std::string> names;
+        for (const CsvColumn& c : columns) names.push_back(c.name);
+        refuse({{"/record", names, nullptr, "the record has neither a displacement nor an acceleration; name them in displacement_column and acceleration_column"}});
+    }
+    if (!a && r.moments.empty())
+        refuse({{"/record", nullptr, nullptr, "impacts are found from the spikes of the acceleration, and the record has none: give their moments in impact_times_s"}});
+    const double omega0 = r.system.si->omega0(), second = unit_of(fields, "time_unit", "s") == "ms" ? 1e-3 : 1;
+    const std::string length = unit_of(fields, "displacement_unit", "m");
+    const double metre = length == "mm" ? 1e-3 : length == "um" ? 1e-6 : 1, rate = unit_of(fields, "acceleration_unit", "m/s2") == "g" ? gravity : 1;
+    std::vector<double> seconds;
+    for (double t : time->values) seconds.push_back(t * second);
+    for (double t : seconds) r.record.tau.push_back(t * omega0);
+    if (x) for (double v : x->values) r.record.x.push_back(v * metre);
+    if (a) for (double v : a->values) r.record.x_ddot.push_back(v * rate / (omega0 * omega0));
+    check_record(seconds, r.record, r.notes);
+    if (!x) r.notes.push_back("without a displacement, x at the impacts rests on the acceleration alone, whose errors add up: y' and R are less certain");
+    if (!a) r.notes.push_back("without an acceleration the moments of the impacts are taken as given");
+    for (double tau : r.moments)
+        if (!(tau > r.record.tau.front() && tau < r.record.tau.back()))
+            refuse({{"/impact_times_s", tau / omega0, Json::array({r.record.tau.front() / omega0, r.record.tau.back() / omega0}), "an impact lies outside the record"}});
+}
+
+/// Columns of impacts with their states, as /v1/simulate gives them.
+void read_impacts(IdentifyRequest& r, const Json& columns) {
+    const Parameters& p = r.system.parameters;
+    std::vector<FieldError> errors;
+    std::map<std::string, std::vector<double>> values;
+    if (!columns.is_object()) refuse({{"/impacts", nullptr, nullptr, "impacts is an object of columns, as in the answer of /v1/simulate"}});
+    const std::size_t n = columns.contains("side") && columns["side"].is_array() ? columns["side"].size() : 0;
+    for (const char* name : {"tau", "side", "phase", "x", "x_dot_before", "x_dot_after", "y_dot_before", "y_dot_after"}) {
+        const std::string where = std::string("/impacts/") + name;
+        if (!columns.contains(name) || !columns[name].is_array()) errors.push_back({where, nullptr, nullptr, std::string(name) + " is missing"});
+        else if (columns[name].size() != n) errors.push_back({where, columns[name].size(), nullptr, std::string(name) + " has another length than side"});
+        else
+            for (std::size_t i = 0; i < n; ++i) {
+                if (columns[name][i].is_number()) values[name].push_back(columns[name][i].get<double>());
+                else errors.push_back({where + "/" + std::to_string(i), columns[name][i], nullptr, "must be a number"});
+                if (errors.size() >= most_errors) break;
+            }
+    }
+    if (!errors.empty()) refuse(std::move(errors));
+    if (n < 2) refuse({{"/impacts", n, nullptr, "exponents need at least two impacts"}});
+    for (std::size_t i = 0; i < n; ++i) {
+        const auto v = [&](const char* name) { return values[name][i]; };
+        if (i > 0 && !(v("tau") > values["tau"][i - 1])) errors.push_back({"/impacts/tau/" + std::to_string(i), v("tau"), nullptr, "the impacts must follow each other in time"});
+        if (std::abs(v("side")) != 1) errors.push_back({"/impacts/side/" + std::to_string(i), v("side"), Json::array({-1, 1}), "a side is 1 or -1"});
+        const double x_ddot = -v("x") - 2 * p.zeta() * v("x_dot_before") + p.epsilon * p.A() * std::sin(v("phase"));
+        IdentifiedImpact impact{v("tau"), static_cast<int>(v("side")), v("x"), v("x_dot_before"), v("x_dot_after"), x_ddot, v("y_dot_before"), v("y_dot_after"), 0, 0, ""};
+        const double before = impact.x_dot_before - impact.y_dot_before;
+        impact.R = -(impact.x_dot_after - impact.y_dot_after) / before;
+        impact.momentum_error = (impact.x_dot_after - impact.x_dot_before + p.epsilon * (impact.y_dot_after - impact.y_dot_before)) / std::abs(impact.x_dot_after - impact.x_dot_before);
+        if (!(impact.side * before > 0)) impact.fault = "the mass would move away from the wall that it meets";
+        r.impacts.push_back(std::move(impact));
+        if (errors.size() >= most_errors) break;
+    }
+    if (!errors.empty()) refuse(std::move(errors));
+}
+
+Json describe_restitution(const Restitution& r) { return {{"R", finite_or_null(r.R)}, {"standard_error", finite_or_null(r.error)}, {"impacts", r.impacts}}; }
+
+Json describe_identified(const std::vector<IdentifiedImpact>& impacts, double omega0) {
+    auto column = [&](auto value) {
+        Json values = Json::array();
+        for (const IdentifiedImpact& i : impacts) values.push_back(value(i));
+        return values;
+    };
+    auto number = [&](double IdentifiedImpact::*member) { return column([member](const IdentifiedImpact& i) { return finite_or_null(i.*member); }); };
+    Json j = Json::object();
+    if (omega0 > 0) j["time_s"] = column([&](const IdentifiedImpact& i) { return i.tau / omega0; });
+    j.update({{"tau", number(&IdentifiedImpact::tau)}, {"side", column([](const auto& i) { return i.side; })}, {"x", number(&IdentifiedImpact::x)},
+              {"x_dot_before", number(&IdentifiedImpact::x_dot_before)}, {"x_dot_after", number(&IdentifiedImpact::x_dot_after)}, {"x_ddot_before", number(&IdentifiedImpact::x_ddot_before)},
+              {"y_dot_before", number(&IdentifiedImpact::y_dot_before)}, {"y_dot_after", number(&IdentifiedImpact::y_dot_after)}, {"R", number(&IdentifiedImpact::R)},
+              {"momentum_error", number(&IdentifiedImpact::momentum_error)},
+              {"status", column([](const auto& i) { return i.fault.empty() ? (std::isnan(i.R) ? "R is not known" : "ok") : i.fault; })}});
+    return j;
+}
+
+/// The run of the identified system from the state after the first impact whose state is known, over the record's time.
+Json forward_run(const Parameters& p, const Identification& found, const FittedMotion& motion, double tau_end) {
+    for (const IdentifiedImpact& i : found.impacts) {
+        if (!i.fault.empty() || std::isnan(i.y_dot_after)) continue;
+        // simulate() measures the phase of the forcing from that of eq. (3); the record has its own.
+        const double phase = std::atan2(motion.force_cos, motion.force_sin), start = std::fmod(i.tau + (phase - p.phi()) / p.Omega, 2 * std::numbers::pi / p.Omega);
+        const State state{i.x_dot_after, i.x, i.y_dot_after, i.x - i.side * p.b};
+        ImpactRecord impacts;
+        Lyapunov lyapunov(p, 0, std::numeric_limits<double>::infinity(), {true, false, false, 256});
+        Observer* const observers[] = {&impacts, &lyapunov};
+        simulate(p, state, {start + tau_end - i.tau, 100000, {}, start}, observers);
+        Json tau = Json::array(), side = Json::array(), x = Json::array();
+        for (const Impact& impact : impacts.impacts) {
+            tau.push_back(impact.tau - start + i.tau);
+            side.push_back(impact.side);
+            x.push_back(impact.x);
+        }
+        const Exponents lambda = lyapunov.product().qr();
+        Json exponents = Json::array();
+        for (double v : lambda) exponents.push_back(finite_or_null(v));
+        return {{"start", i.tau}, {"impacts", {{"tau", std::move(tau)}, {"side", std::move(side)}, {"x", std::move(x)}}}, {"lambda", std::move(exponents)}};
+    }
+    return nullptr;
+}
+
+const char* reason_of(const IdentifiedExponents& e) {
+    switch (e.verdict) {
+        case Verdict::chaotic: return "the slope's 90 % interval lies above the oscillator's own damping zeta";
+        case Verdict::regular: return "the slope's 90 % interval lies below the oscillator's own damping zeta";
+        case Verdict::not_decided: return "the record is too short to say: the slope's 90 % interval holds the oscillator's own damping zeta, or there are fewer than 20 impacts";
+    }
+    return "";
+}
+
+}  // namespace
+
+IdentifyRequest read_identify_request(const Json& object) {
+    Json fields = object;
+    const bool has_record = object.contains("record"), has_impacts = object.contains("impacts");
+    fields.erase("record");
+    fields.erase("impacts");
+    if (has_record == has_impacts) refuse({{"/record", nullptr, nullptr, "give either record: {time_s, displacement_m, acceleration_m_s2} or impacts, with their states"}});
+    IdentifyRequest r = read_fields(fields, has_record);
+    if (has_impacts) {
+        read_impacts(r, object["impacts"]);
+        return r;
+    }
+    const Json& record = object["record"];
+    Columns columns;
+    if (!record.is_object()) refuse({{"/record", nullptr, nullptr, "record is an object of columns"}});
+    for (const auto& [name, values] : record.items()) {
+        CsvColumn column{name, {}};
+        if (!values.is_array()) refuse({{"/record/" + name, nullptr, nullptr, "a column is an array of numbers"}});
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            if (!values[i].is_number()) refuse({{"/record/" + name + "/" + std::to_string(i), values[i], nullptr, "must be a number"}});
+            column.values.push_back(values[i].get<double>());
+        }
+        if (!columns.empty() && column.values.size() != columns[0].values.size())
+            refuse({{"/record/" + name, column.values.size(), nullptr, "has another length than " + columns[0].name + " (" + std::to_string(columns[0].values.size()) + ")"}});
+        columns.push_back(std::move(column));
+    }
+    read_record(r, fields, columns);
+    return r;
+}
+
+IdentifyRequest read_identify_request(const Json& fields, std::string_view csv) {
+    IdentifyRequest r = read_fields(fields, true);
+    read_record(r, fields, parse_csv(csv));
+    return r;
+}
+
+Json identify_answer(const IdentifyRequest& r) {
+    Parameters p = r.system.parameters;
+    const double omega0 = r.system.si ? r.system.si->omega0() : 0;
+    Warnings warnings = r.notes;
+    Identification found;
+    RefinedImpacts refined;
+    Json signal;
+    if (r.impacts.empty()) {
+        const double step = (r.record.tau.back() - r.record.tau.front()) / static_cast<double>(r.record.tau.size() - 1);
+        Spikes spikes{{}, std::nan("")};
+        if (!r.record.x_ddot.empty()) spikes = find_spikes(r.record, r.threshold);
+        if (!r.moments.empty()) {
+            std::vector<Spike> given;
+            for (double tau : r.moments) {
+                const auto near = std::min_element(spikes.spikes.begin(), spikes.spikes.end(), [&](const Spike& a, const Spike& b) { return std::abs(a.tau - tau) < std::abs(b.tau - tau); });
+                Spike s{tau, 0, 0, 0};
+                if (near != spikes.spikes.end() && std::abs(near->tau - tau) < 3 * step) s = *near;
+                s.tau = tau;
+                given.push_back(s);
+            }
+            spikes.spikes = std::move(given);
+        }
+        if (spikes.spikes.size() < 2)
+            throw Problem(422, "nothing in the acceleration looks like impacts: " + std::to_string(spikes.spikes.size()) + " spike(s) rise above threshold = " + digits("%.3g", r.threshold) +
+                                   " standard deviations of the noise (" + digits("%.3g", spikes.noise * omega0 * omega0) + " m/s^2)",
+                          {{"/threshold", r.threshold, Json::array({3, 1000}), "lower it, or give impact_times_s"}});
+        refined = refine_impacts(p, r.record, spikes.spikes, r.moments.empty() ? r.threshold : 0);
+        found = identify_impacts(p, refined.motion, refined.side, refined.pulse);
+        if (!refined.dropped.empty()) warnings.push_back(std::to_string(refined.dropped.size()) + " spike(s) without a jump of the velocity were dropped, the first at " + digits("%.6g", refined.dropped[0].tau / omega0) + " s");
+        if (!r.record.x_ddot.empty() && refined.pulse < 1.5 * step)
+            warnings.push_back("the impacts' pulses last about " + digits("%.3g", 1000 * refined.pulse / omega0) + " ms, the samples are " + digits("%.3g", 1000 * step / omega0) +
+                               " ms apart: pulses may fall between samples; sample at " + digits("%.4g", std::ceil(2 * omega0 / refined.pulse)) + " Hz or more");
+        signal = {{"samples", r.record.tau.size()}, {"sampling_rate", omega0 / step}, {"noise_displacement", finite_or_null(refined.motion.noise_x)},
+                  {"noise_acceleration", finite_or_null(refined.motion.noise_x_ddot * omega0 * omega0)}, {"pulse_s", refined.pulse / omega0},
+                  {"G", std::hypot(refined.motion.force_sin, refined.motion.force_cos) / p.epsilon / std::hypot(1.0, p.lambda * p.epsilon * p.Omega)},
+                  {"force_sin", refined.motion.force_sin}, {"force_cos", refined.motion.force_cos}};
+        p.G = signal["G"];
+        if (std::isfinite(found.b_fitted) && std::abs(found.b_fitted - p.b) > std::max(0.03 * p.b, 5 * found.b_error))
+            warnings.push_back("the impacts' momentum fits b = " + digits("%.4g", found.b_fitted) + " m, not the given " + digits("%.4g", p.b) + " m");
+    } else {
+        found.impacts = r.impacts;
+        found.b_fitted = found.b_error = std::nan("");
+        found.plus = restitution_of(r.impacts, 1);
+        found.minus = restitution_of(r.impacts, -1);
+    }
+    if (!r.R_given) {
+        if (std::isfinite(found.plus.R)) p.R_plus = std::clamp(found.plus.R, 0.0, 1.0);
+        if (std::isfinite(found.minus.R)) p.R_minus = std::clamp(found.minus.R, 0.0, 1.0);
+    }
+    const auto faults = std::count_if(found.impacts.begin(), found.impacts.end(), [](const auto& i) { return !i.fault.empty(); });
+    if (faults > 0) warnings.push_back(std::to_string(faults) + " of " + std::to_string(found.impacts.size()) + " impacts are inconsistent and left out; impacts.status says why");
+
+    TransferProduct product(r.estimators);
+    append_identified(p, found, product);
+    const IdentifiedExponents judged = judge_exponents(p, product.qr_history(), product.start_tau());
+    System used = r.system;
+    used.parameters = p;
+    Json answer = {{"version", version()}, {"parameters", describe_system(used)}};
+    answer["parameters"]["derived"] = describe_derived(used);
+    if (!signal.is_null()) answer["signal"] = std::move(signal);
+    answer["impacts"] = describe_identified(found.impacts, omega0);
+    answer["restitution"] = {{"plus", describe_restitution(found.plus)}, {"minus", describe_restitution(found.minus)}};
+    answer["b_fitted"] = {{"b", finite_or_null(found.b_fitted)}, {"standard_error", finite_or_null(found.b_error)}};
+    answer["exponents"] = describe_exponents(product, r.estimators, p.zeta(), Regime{}, true, warnings);
+    answer["slope"] = {{"lambda1", finite_or_null(judged.slope)}, {"low", finite_or_null(judged.low)}, {"high", finite_or_null(judged.high)}};
+    answer["verdict"] = word(judged.verdict);
+    answer["verdict_reason"] = reason_of(judged);
+    if (r.impacts.empty()) answer["forward"] = forward_run(p, found, refined.motion, r.record.tau.back());
+    answer["warnings"] = warnings;
+    return answer;
+}
+
+}  // namespace vines::api

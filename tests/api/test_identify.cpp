@@ -1,0 +1,159 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+#include "api/csv.hpp"
+#include "api/identify.hpp"
+#include "api/simulate.hpp"
+
+using namespace vines;
+using namespace vines::api;
+
+namespace {
+
+/// A measurement of the preset's oscillator: what /v1/simulate says, sampled, each impact as a half sine of the acceleration.
+std::string measured(const char* preset, double seconds, char separator = ',') {
+    const Json a = simulate_answer(read_simulate_request({{"preset", preset}, {"include", {"series", "impacts"}}, {"samples_per_cycle", 245}, {"cycles", seconds * 8.35}, {"max_points", 100000}}), {});
+    const Json& p = a["parameters"];
+    const double omega0 = p["derived"]["omega0"], zeta = p["derived"]["zeta"], force = p["epsilon"].get<double>() * p["derived"]["A"].get<double>(), phi = p["derived"]["phi"], pulse = 0.8e-3 * omega0;
+    std::string csv = std::string("time_s") + separator + "displacement_m" + separator + "acceleration_m_s2\n";
+    std::size_t next = 0;
+    unsigned noise = 1;
+    for (std::size_t k = 0; k < a["series"]["tau"].size(); ++k) {
+        const double tau = a["series"]["tau"][k], x = a["series"]["x"][k], x_dot = a["series"]["x_dot"][k];
+        double x_ddot = -x - 2 * zeta * x_dot + force * std::sin(tau + phi);
+        const Json &times = a["impacts"]["tau"], &before = a["impacts"]["x_dot_before"], &after = a["impacts"]["x_dot_after"];
+        while (next < times.size() && times[next].get<double>() < tau - pulse) ++next;
+        for (std::size_t i = next; i < times.size() && times[i].get<double>() < tau + pulse; ++i) {
+            const double s = tau - times[i].get<double>();
+            if (std::abs(s) < 0.5 * pulse) x_ddot += (after[i].get<double>() - before[i].get<double>()) * 1.5707963 / pulse * std::cos(3.14159265 * s / pulse);
+        }
+        noise = noise * 1664525 + 1013904223;
+        char line[96];
+        std::snprintf(line, sizeof line, "%.7f%c%.8e%c%.5e\n", tau / omega0, separator, x + 2e-6 * (noise / 2147483648.0 - 1), separator, x_ddot * omega0 * omega0 + 0.05 * (noise / 2147483648.0 - 1));
+        csv += line;
+    }
+    return csv;
+}
+
+Problem refused(const Json& fields, const std::string& csv) {
+    try {
+        identify_answer(read_identify_request(fields, csv));
+    } catch (const Problem& p) {
+        return p;
+    }
+    FAIL("not refused: " << csv.substr(0, 100));
+    throw;
+}
+
+const std::string header = "time_s,displacement_m,acceleration_m_s2\n";
+
+std::string replaced_line(const std::string& csv, int line, const std::string& by) {
+    std::size_t from = 0;
+    for (int k = 1; k < line; ++k) from = csv.find('\n', from) + 1;
+    return csv.substr(0, from) + by + csv.substr(csv.find('\n', from));
+}
+
+}  // namespace
+
+TEST_CASE("a CSV file and the same record as JSON give the impacts, the restitution and the exponents of the motion") {
+    const std::string csv = measured("fig15", 12);
+    const Json a = identify_answer(read_identify_request({{"preset", "fig15"}}, csv));
+    CHECK(a["verdict"] == "regular");
+    CHECK(a["restitution"]["plus"]["R"].get<double>() == doctest::Approx(0.85).epsilon(0.02));
+    CHECK(a["signal"]["G"].get<double>() == doctest::Approx(0.01).epsilon(0.01));
+    CHECK(a["exponents"]["qr"]["history"]["tau"].size() + 1 == a["impacts"]["tau"].size());
+    CHECK(a["slope"]["low"] < a["slope"]["high"]);
+    CHECK(a["forward"]["impacts"]["tau"].size() > 100);
+    CHECK(Json::parse(a.dump()) == a);
+    Json record = Json::object();
+    for (const CsvColumn& c : parse_csv(csv)) record[c.name] = c.values;
+    CHECK(identify_answer(read_identify_request({{"preset", "fig15"}, {"record", record}})) == a);
+    // Other names, separators and units say the same.
+    std::string german = measured("fig15", 12, ';');
+    std::replace(german.begin(), german.end(), '.', ',');
+    german.replace(0, german.find('\n'), "Zeit;weg;\"acceleration (g)\"");
+    const Json b = identify_answer(read_identify_request({{"preset", "fig15"}, {"time_column", "Zeit"}, {"displacement_column", "weg"}, {"acceleration_column", "acceleration (g)"}}, german));
+    CHECK(b["impacts"]["tau"] == a["impacts"]["tau"]);
+}
+
+TEST_CASE("an edited list of moments is taken as it is") {
+    const std::string csv = measured("fig15", 6);
+    const Json a = identify_answer(read_identify_request({{"preset", "fig15"}}, csv));
+    std::vector<double> times = a["impacts"]["time_s"];
+    const Json same = identify_answer(read_identify_request({{"preset", "fig15"}, {"impact_times_s", times}}, csv));
+    CHECK(same["impacts"]["tau"].size() == times.size());
+    CHECK(same["impacts"]["side"] == a["impacts"]["side"]);
+    times.erase(times.begin() + 30);
+    const Json without = identify_answer(read_identify_request({{"preset", "fig15"}, {"impact_times_s", times}}, csv));
+    CHECK(without["impacts"]["tau"].size() == times.size());
+    CHECK(without["impacts"]["status"][30].get<std::string>().find("missing") != std::string::npos);
+    CHECK(without["warnings"].dump().find("inconsistent") != std::string::npos);
+}
+
+TEST_CASE("impacts with their states give the exponents of the simulation that they come from") {
+    const Json a = simulate_answer(read_simulate_request(parse_object(R"({"preset":"fig20","include":["impacts","exponents"]})")), {});
+    const Json b = identify_answer(read_identify_request({{"preset", "fig20"}, {"impacts", a["impacts"]}}));
+    for (int k = 0; k < 4; ++k) CHECK(b["exponents"]["qr"]["final"][k].get<double>() == doctest::Approx(a["exponents"]["qr"]["final"][k].get<double>()).epsilon(1e-9));
+    Json broken = a["impacts"];
+    broken.erase("phase");
+    broken["tau"][3] = 0;
+    broken["x"][2] = "a";
+    try {
+        read_identify_request({{"preset", "fig20"}, {"impacts", broken}});
+        FAIL("not refused");
+    } catch (const Problem& p) {
+        CHECK(p.errors.size() == 2);
+        CHECK(p.errors[0].pointer == "/impacts/phase");
+        CHECK(p.errors[1].pointer == "/impacts/x/2");
+    }
+}
+
+TEST_CASE("what is wrong with a record is named with its line and column") {
+    const std::string csv = measured("fig15", 3);
+    const Json fields = {{"preset", "fig15"}};
+    auto detail = [&](const std::string& text) { return std::string(refused(fields, text).what()); };
+    CHECK(detail(replaced_line(csv, 7, "0.003,abc,1")) == "line 7, column displacement_m: \"abc\" is no number");
+    CHECK(detail(replaced_line(csv, 7, "0.003,nan,1")) == "line 7, column displacement_m: the number is not finite");
+    CHECK(detail(replaced_line(csv, 7, "0.003,1")) == "line 7: has 2 columns, the header has 3");
+    CHECK(detail(replaced_line(csv, 7, "0.003,,1")) == "line 7, column displacement_m: there is no number");
+    CHECK(detail(replaced_line(csv, 7, "0.0001,1e-3,1")).find("line 7, column of time: time must increase") == 0);
+    CHECK(detail(csv.substr(header.size())).find("line 1: the first line must name the columns") == 0);
+    CHECK(detail("") == "the record is empty: it needs a header and lines of numbers");
+    CHECK(detail(header + "0,0,0\n1,0,0\n").find("at least 100") != std::string::npos);
+    CHECK(detail("time_s,temperature\n0,1\n").find("neither a displacement nor an acceleration") != std::string::npos);
+    CHECK(detail("speed,x\n0,1\n").find("no column time_s") != std::string::npos);
+    CHECK(refused({{"preset", "fig15"}, {"displacement_column", "weg"}}, csv).errors[0].pointer == "/displacement_column");
+    CHECK(refused({{"b", 0.009}}, csv).errors[0].pointer == "/m1");
+    CHECK(refused({{"preset", "fig15"}, {"tau_end", 3}}, csv).errors[0].pointer == "/tau_end");
+}
+
+TEST_CASE("a quiet record, a clipped one, gaps, slow sampling and a wrong b are noticed") {
+    std::string quiet = header;
+    for (int k = 0; k < 5000; ++k) {
+        char line[80];
+        std::snprintf(line, sizeof line, "%.6f,%.7e,%.5e\n", k / 2048.0, 1e-3 * std::sin(k * 0.0256), -2.75 * std::sin(k * 0.0256) + 0.01 * std::sin(k * 1.7));
+        quiet += line;
+    }
+    CHECK(std::string(refused({{"preset", "fig15"}}, quiet).what()).find("nothing in the acceleration looks like impacts") == 0);
+
+    const std::string csv = measured("fig15", 6);
+    auto warnings = [&](const Json& fields, const std::string& text) { return identify_answer(read_identify_request(fields, text))["warnings"].dump(); };
+    CHECK(warnings({{"preset", "fig15"}}, csv) == "[]");
+    CHECK(warnings({{"preset", "fig15"}, {"b", 0.011}}, csv).find("momentum fits b = 0.0090") != std::string::npos);
+    std::string gap = header, slow = header, clipped = header;
+    std::size_t number = 0;
+    for (std::size_t from = header.size(), end; (end = csv.find('\n', from)) != std::string::npos; from = end + 1, ++number) {
+        const std::string line = csv.substr(from, end - from + 1);
+        if (number < 3000 || number > 3040) gap += line;
+        if (number % 4 == 0) slow += line;
+        const std::size_t comma = line.rfind(',');
+        clipped += line.substr(0, comma + 1) + std::to_string(std::min(std::stod(line.substr(comma + 1)), 3.0)) + "\n";
+    }
+    CHECK(warnings({{"preset", "fig15"}}, gap).find("1 gap(s)") != std::string::npos);
+    CHECK(warnings({{"preset", "fig15"}}, clipped).find("clipped") != std::string::npos);
+    CHECK(warnings({{"preset", "fig15"}}, slow).find("ms apart") != std::string::npos);
+}
