@@ -4,17 +4,29 @@
 export class Problem extends Error {
   constructor(document) {
     super(document.detail ?? document.title);
+    this.status = document.status;
     this.errors = document.errors ?? [];
   }
 }
 
 async function read(response) {
   const body = await response.json().catch(() => ({title: `the server answered ${response.status} without JSON`}));
-  if (!response.ok) throw new Problem(body);
+  if (!response.ok) throw new Problem({status: response.status, ...body});
   return body;
 }
 
 export const get = async (path) => read(await fetch(path));
 
-export const simulate = async (fields, signal) =>
-  read(await fetch("v1/simulate", {method: "POST", headers: {"Content-Type": "application/json"}, body: JSON.stringify(fields), signal}));
+const post = (path, fields, signal) => fetch(path, {method: "POST", headers: {"Content-Type": "application/json"}, body: JSON.stringify(fields), signal});
+
+export const simulate = async (fields, signal) => read(await post("v1/simulate", fields, signal));
+
+/** A sweep's answer, a stream of lines. */
+export async function sweep(request, signal) {
+  const response = await post("v1/sweep", request, signal);
+  return response.ok ? response.body : read(response);
+}
+
+/** A request for a terminal. */
+export const asCurl = (path, fields, flags = "-s") =>
+  `curl ${flags} ${new URL(path, location.href.split("?")[0])} -d '${JSON.stringify(fields).replaceAll("'", "'\\''")}'`;

@@ -2,9 +2,9 @@
 // colour scheme. A plot that has no width, as in a closed part of the page in some browsers, is drawn when it gets one.
 import uPlot from "./uPlot.esm.js";
 
-const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+export const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 const plain = (value) => Math.abs(value) >= 1e5 || (value !== 0 && Math.abs(value) < 1e-3) ? value.toExponential(2).replace(/\.?0+e\+?/, "e") : Number(value.toPrecision(5)).toString();
-const short = (value) => value == null ? "–" : plain(value).replace("-", "−");
+export const short = (value) => value == null ? "–" : plain(value).replace("-", "−");
 
 // Plots over tau zoom and point together.
 const together = new Set();
@@ -18,12 +18,15 @@ function zoomAll(source) {
 }
 
 /** The labels of a logarithmic axis: powers of ten (not all, if there are many), and 2 and 5 between them if there are few. */
-function logTicks(min, max) {
+export function logTicks(min, max) {
   const from = Math.floor(Math.log10(min)), to = Math.ceil(Math.log10(max)), step = Math.ceil((to - from) / 8);
   const list = [];
   for (let k = from; k <= to; k += step) for (const m of to - from < 4 ? [1, 2, 5] : [1]) list.push(m * 10 ** k);
   return list.filter((v) => v >= min && v <= max);
 }
+
+export const axisStyle = () => ({stroke: colour("soft"), grid: {stroke: colour("grid"), width: 1}, ticks: {stroke: colour("line"), width: 1, size: 5},
+  font: "12px system-ui", labelFont: "12px system-ui", labelGap: 0});
 
 export class LinePlot {
   constructor(container, {synced = false} = {}) {
@@ -59,7 +62,7 @@ export class LinePlot {
   }
 
   create({series, data, range, label, log = false, levels = [], levelColour = "soft", lines = [], bands = [], calm = []}) {
-    const axis = {stroke: colour("soft"), grid: {stroke: colour("grid"), width: 1}, ticks: {stroke: colour("line"), width: 1, size: 5}, font: "12px system-ui", labelFont: "12px system-ui", labelGap: 0};
+    const axis = axisStyle();
     const logAxis = log ? {splits: (u) => logTicks(u.scales.y.min, u.scales.y.max), filter: (_, splits) => splits} : {};
     const values = (_, ticks) => ticks.map(short);
     const options = {
@@ -141,7 +144,7 @@ export class LinePlot {
 }
 
 /** Round steps for an axis: 1, 2 or 5 times a power of ten, about `count` of them. */
-function ticks(min, max, count) {
+export function ticks(min, max, count) {
   const raw = (max - min) / count, power = 10 ** Math.floor(Math.log10(raw));
   const step = power * [1, 2, 5, 10].find((m) => m * power >= raw);
   const list = [];

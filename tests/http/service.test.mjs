@@ -99,7 +99,6 @@ const sweep = {base: {damping: "closed_form"}, axes: [{parameter: "b", from: 0.0
 const longSweep = {...sweep, axes: [{...sweep.axes[0], count: 20000}], cycles: 2000};
 const postSweep = (request, options = {}, url = service.url) => fetch(`${url}/v1/sweep`, {method: "POST", body: JSON.stringify(request), ...options});
 const linesOf = async (response) => (await response.text()).trim().split("\n").map((line) => JSON.parse(line));
-const median = (values) => values.toSorted((a, b) => a - b)[Math.floor(values.length / 2)];
 
 test("a sweep is a stream of lines: start, points, progress, done; the points that are missing can be asked for alone", async () => {
   const response = await postSweep(sweep);
@@ -136,7 +135,8 @@ test("a sweep makes a simulation wait no longer than twice its own time", async 
     assert.equal((await (await post('{"b":0.022,"damping":"closed_form","tau_end":20000,"include":["exponents"]}')).json()).status.reason, "tau_end");
     return performance.now() - started;
   };
-  const several = async () => { const times = []; for (let i = 0; i < 7; ++i) times.push(await timed()); return median(times); };
+  // The least of several: what else the machine does only adds.
+  const several = async () => { let least = Infinity; for (let i = 0; i < 15; ++i) least = Math.min(least, await timed()); return least; };
   await timed();
   const alone = await several();
   const leaving = new AbortController();
@@ -144,7 +144,7 @@ test("a sweep makes a simulation wait no longer than twice its own time", async 
   await reader.read();
   const beside = await several();
   leaving.abort();
-  assert.ok(beside < 3 * alone, `${beside} ms beside a sweep, ${alone} ms alone`);
+  assert.ok(beside < 2 * alone, `${beside} ms beside a sweep, ${alone} ms alone`);
 });
 
 test("a service that is told to end says so in a sweep's stream and on /readyz, and takes requests until its drain is over", async () => {

@@ -7,6 +7,9 @@ import {createRequire} from "node:module";
 const require = createRequire(new URL("../../web/package.json", import.meta.url));
 const {chromium} = require("playwright-core");
 
+/** Chromium now and then calls a request aborted whose stream a script has read to its end. */
+const readAsStream = (request) => request.url().endsWith("/v1/sweep") && request.failure().errorText === "net::ERR_ABORTED";
+
 /** Chromium with a profile of its own; what its pages write to the console as errors, and what they refuse to load, is collected. */
 export async function startBrowser() {
   const profile = await mkdtemp(join(tmpdir(), "vines-page-"));
@@ -18,19 +21,21 @@ export async function startBrowser() {
   context.on("page", (page) => {
     page.on("console", (message) => { if (message.type() === "error" || message.type() === "warning") complaints.push(message.text()); });
     page.on("pageerror", (error) => complaints.push(String(error)));
-    page.on("requestfailed", (request) => complaints.push(`${request.url()}: ${request.failure().errorText}`));
+    page.on("requestfailed", (request) => { if (!readAsStream(request)) complaints.push(`${request.url()}: ${request.failure().errorText}`); });
   });
   return {context, complaints, stop: async () => { await context.close(); await rm(profile, {recursive: true, force: true}); }};
 }
 
-/** Opens a page and waits until its n-th answer is drawn. */
+/** Opens a page and waits until its first answer is drawn: of a simulation, or of a whole sweep. */
 export async function open(context, url, options = {}) {
   const page = await context.newPage();
   if (options.viewport) await page.setViewportSize(options.viewport);
   if (options.colorScheme) await page.emulateMedia({colorScheme: options.colorScheme});
   await page.goto(url);
-  await drawn(page, 1);
+  await (url.includes("tab=sweep") ? swept : drawn)(page, 1);
   return page;
 }
 
-export const drawn = (page, n) => page.waitForFunction((n) => Number(document.getElementById("results").dataset.done ?? 0) >= n, n, {timeout: 20000});
+const done = (id) => (page, n, timeout = 20000) => page.waitForFunction(([id, n]) => Number(document.getElementById(id).dataset.done ?? 0) >= n, [id, n], {timeout});
+export const drawn = done("results");
+export const swept = done("sweep-results");

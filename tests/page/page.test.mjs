@@ -1,38 +1,40 @@
 // The page in real Chromium, as a visitor uses it.
 import {after, before, test} from "node:test";
 import assert from "node:assert/strict";
-import {startBrowser, open, drawn} from "./browser.mjs";
+import {readFile} from "node:fs/promises";
+import {startBrowser, open, drawn, swept} from "./browser.mjs";
 import {startService} from "../service.mjs";
 
 let service, browser;
 before(async () => { service = await startService(); browser = await startBrowser(); });
 after(async () => { await browser.stop(); await service.stop(); });
 
-/** A canvas as numbers, a pixel each; read from a copy, because Chromium complains of canvases that are read. */
-const image = async (page, selector) => new Uint32Array(await page.evaluate((selector) => {
-  const {width, height} = document.querySelector(selector);
-  const copy = new OffscreenCanvas(width, height).getContext("2d", {willReadFrequently: true});
-  copy.drawImage(document.querySelector(selector), 0, 0);
-  return [...new Uint32Array(copy.getImageData(0, 0, width, height).data.buffer)];
-}, selector));
+/** Of a canvas: how many colours it shows (an empty one has one), how many pixels have exactly the one that the style sheet names so, and a hash of all.
+    It is counted in the page, where the pixels are, and of a copy, because Chromium complains of canvases that are read. */
+const survey = (page, selector, name = "text") => page.evaluate(([selector, name]) => {
+  const read = (width, height, draw) => {
+    const context = new OffscreenCanvas(width, height).getContext("2d", {willReadFrequently: true});
+    draw(context);
+    return new Uint32Array(context.getImageData(0, 0, width, height).data.buffer);
+  };
+  const [wanted] = read(1, 1, (c) => { c.fillStyle = getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim(); c.fillRect(0, 0, 1, 1); });
+  const canvas = document.querySelector(selector), seen = new Set();
+  let pixels = 0, hash = 0;
+  for (const pixel of read(canvas.width, canvas.height, (c) => c.drawImage(canvas, 0, 0))) {
+    seen.add(pixel);
+    pixels += pixel === wanted;
+    hash = Math.imul(hash ^ pixel, 0x01000193);
+  }
+  return {colours: seen.size, pixels, hash};
+}, [selector, name]);
 
-/** How many different colours a canvas shows: an empty one has one. */
-const colours = async (page, selector) => new Set(await image(page, selector)).size;
+const colours = async (page, selector) => (await survey(page, selector)).colours;
+const pixels = async (page, selector, name) => (await survey(page, selector, name)).pixels;
+const hash = async (page, selector) => (await survey(page, selector)).hash;
 
 const lines = ["x", "largest", "relative", "z", "qr", "eigenvalues", "raw_product", "J", "M", "T", "differences"].map((name) => `#plot-${name} canvas`);
 const scatters = ["portrait", "section", "velocities", "stroboscopic", "manifold"].map((name) => `#plot-${name}`);
 const canvases = [...lines, ...scatters];
-
-/** How many pixels of a canvas have exactly the colour that the style sheet names so. */
-async function pixels(page, selector, name) {
-  const colour = await page.evaluate((name) => {
-    const c = new OffscreenCanvas(1, 1).getContext("2d", {willReadFrequently: true});
-    c.fillStyle = getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
-    c.fillRect(0, 0, 1, 1);
-    return new Uint32Array(c.getImageData(0, 0, 1, 1).data.buffer)[0];
-  }, name);
-  return (await image(page, selector)).filter((pixel) => pixel === colour).length;
-}
 
 const marked = (page) => page.$$eval("figure.about", (figures) => figures.map((f) => [f.id, f.querySelector(".tag").textContent]));
 
@@ -65,7 +67,7 @@ test("a preset fills the form and draws", async () => {
   const page = await open(browser.context, service.url);
   await page.selectOption("#preset", "fig11");
   await drawn(page, 2);
-  assert.equal(await page.inputValue("label:has-text('b, m') input"), "0.015");
+  assert.equal(await page.inputValue("#fields label:has-text('b, m') input"), "0.015");
   assert.match(await page.textContent("#summary"), /stuck phases1/);
   assert.match(page.url(), /preset=fig11/);
   await page.close();
@@ -73,7 +75,7 @@ test("a preset fills the form and draws", async () => {
 
 test("a fault is shown at its field, and mending it draws again", async () => {
   const page = await open(browser.context, `${service.url}/?b=0.015&tau_end=300`);
-  const b = page.locator("label:has-text('b, m') input");
+  const b = page.locator("#fields label:has-text('b, m') input");
   await b.fill("-1");
   await page.click("#run");
   await page.waitForSelector("#error-b:not(:empty)");
@@ -105,9 +107,9 @@ test("Fig. 9 is marked at the displacement and at the largest modulus of T, and 
 
 test("an emptied field of a preset is not filled again by a link", async () => {
   const page = await open(browser.context, `${service.url}/?preset=fig3&tau_end=600&window=100,500`);
-  assert.equal(await page.inputValue("label:has-text('b, m') input"), "0.022");
+  assert.equal(await page.inputValue("#fields label:has-text('b, m') input"), "0.022");
   assert.match(page.url(), /preset=fig3/);
-  await page.fill("label[title*='exponents are taken'] input", "");
+  await page.fill("#fields label[title*='exponents are taken'] input", "");
   await page.click("#run");
   await drawn(page, 2);
   assert.doesNotMatch(page.url(), /preset|window/);
@@ -132,7 +134,7 @@ test("a plot without a width is drawn when it gets one", async () => {
 
 test("windows are listed with their exponents and verdicts, and the link holds them", async () => {
   const page = await open(browser.context, `${service.url}/?b=0.022&damping=closed_form&tau_end=1709`);
-  await page.fill("label:has-text('windows') input", "18.13, 800; 800,1700;");
+  await page.fill("#fields label:has-text('windows') input", "18.13, 800; 800,1700;");
   await page.click("#run");
   await drawn(page, 2);
   assert.match(page.url(), /windows=18\.13%2C800%3B800%2C1700/);
@@ -145,14 +147,14 @@ test("windows are listed with their exponents and verdicts, and the link holds t
   assert.match(first[1][7], /chaotic|not decided/);
   const again = await open(browser.context, page.url());
   assert.deepEqual(await rows(again), first);
-  assert.equal(await again.inputValue("label:has-text('windows') input"), "18.13, 800; 800, 1700");
+  assert.equal(await again.inputValue("#fields label:has-text('windows') input"), "18.13, 800; 800, 1700");
   await page.close();
   await again.close();
 });
 
 test("a faulty list of windows is shown at its field", async () => {
   const page = await open(browser.context, `${service.url}/?tau_end=300`);
-  await page.fill("label:has-text('windows') input", "18; 20,abc");
+  await page.fill("#fields label:has-text('windows') input", "18; 20,abc");
   await page.click("#run");
   await page.waitForSelector("#error-windows:not(:empty)");
   browser.complaints.length = 0;  // Chromium notes each 422 in its console
@@ -241,6 +243,230 @@ for (const query of ["", "?preset=fig11", "?b=0.022&tau_end=900&windows=18,400;4
     const page = await open(browser.context, `${service.url}/${query}`, {viewport: {width: 390, height: 800}});
     assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
     const beyond = await page.$$eval("figure :is(canvas, .stack, .compare, .u-legend)", (nodes) => nodes.filter((n) => n.offsetWidth && n.getBoundingClientRect().right > innerWidth).map((n) => n.closest("figure").id));
+    assert.deepEqual(beyond, []);
+    await page.close();
+  });
+
+// Sweeps.
+
+const small = "tab=sweep&axis1=b,0.003,0.04,24&cycles=60&transient_cycles=30&section=impact&damping=closed_form";
+const long = "tab=sweep&axis1=b,0.02,0.04,300&cycles=20000&damping=closed_form";
+const stacked = ["section", "lambda", "other"].map((name) => `#plot-sweep-${name} canvas`);
+
+/** The place on the screen of the point at share t of a plot's width. */
+async function hoverAt(page, plot, x, y = 0.5) {
+  const box = await page.locator(`${plot} .u-over`).boundingBox();
+  await page.locator(`${plot} .u-over`).hover({position: {x: box.width * x, y: box.height * y}});
+}
+
+/** Clicks there. */
+async function clickAt(page, plot, x, y) {
+  const over = page.locator(`${plot} .u-over`);
+  await over.scrollIntoViewIfNeeded();
+  const box = await over.boundingBox();
+  await page.mouse.click(box.x + box.width * x, box.y + box.height * y);
+}
+
+/** The input of a sweep's field, by the place of its error. */
+const field = (id) => `#panel-sweep [aria-describedby='${id}']`;
+
+const tip = (page) => page.textContent(".stacked:not([hidden]) .tip");
+
+test("the tabs are chosen by click and by arrow keys; the first sweep is Table 3's range, and Back leads back", async () => {
+  const page = await open(browser.context, `${service.url}/?b=0.015&tau_end=100`);
+  await page.click("#tab-sweep");
+  await swept(page, 1);
+  assert.equal(await page.inputValue("#sweep-example"), "0");
+  assert.match(page.url(), /tab=sweep&axis1=b%2C0\.003%2C0\.04%2C400&cycles=1000&section=impact&damping=closed_form/);
+  assert.equal(await page.isVisible("#panel-simulation"), false);
+  for (const canvas of stacked) assert.ok(await colours(page, canvas) > 3, canvas);
+  for (const [regime, least, most] of [["VI", 5, 30], ["V", 8, 30], ["IV", 10, 30], ["III", 85, 110], ["II", 120, 190], ["I", 70, 120]]) {
+    const n = Number(await page.textContent(`#sweep-regime-${regime}`));
+    assert.ok(n >= least && n <= most, `${regime}: ${n} points`);
+    assert.ok(await pixels(page, "#plot-sweep-other canvas", `regime-${regime}`) > 20, regime);
+  }
+  await page.focus("#tab-sweep");
+  await page.keyboard.press("ArrowLeft");
+  assert.equal(await page.getAttribute("#tab-simulation", "aria-selected"), "true");
+  assert.ok(await page.isVisible("#plot-x canvas"));
+  assert.match(page.url(), /\?b=0\.015&tau_end=100/);
+  await page.goBack();
+  await page.waitForSelector("#plot-sweep-section canvas");
+  assert.equal(await page.getAttribute("#sweep-results", "data-done"), "1", "the sweep is still there");
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("a sweep fills its diagrams, counts what has come, and a link shows the same", async () => {
+  const page = await open(browser.context, `${service.url}/?${small}`);
+  assert.match(await page.textContent("#sweep-rate"), /24 of 24 points · \d+ per second$/);
+  for (const canvas of stacked) assert.ok(await colours(page, canvas) > 3, canvas);
+  await hoverAt(page, "#plot-sweep-lambda", 0.3);
+  assert.match(await tip(page), /b0\.01\d+ mregimeIII, two symmetric.*z2.*λ₁−0\.\d+ ± .*regular.*Click: simulate it$/);
+  await page.selectOption("#sweep-coordinate", "y_dot_after");
+  await page.selectOption("#sweep-quantity", "share_impacts");
+  await page.fill(field("sweep-axis1-error-count"), "12");
+  await page.click("#sweep-run");
+  await swept(page, 2);
+  assert.match(await page.textContent("#sweep-rate"), /12 of 12/);
+  const again = await open(browser.context, page.url());
+  assert.equal(await again.inputValue("#sweep-coordinate"), "y_dot_after");
+  assert.equal(await again.inputValue("#sweep-quantity"), "share_impacts");
+  for (const canvas of stacked) assert.equal(await hash(again, canvas), await hash(page, canvas), canvas);
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+  await again.close();
+});
+
+test("zooming into one diagram of a sweep zooms the others", async () => {
+  const page = await open(browser.context, `${service.url}/?${small}`);
+  const box = await page.locator("#plot-sweep-lambda .u-over").boundingBox();
+  await page.mouse.move(box.x + box.width * 0.4, box.y + 40);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width * 0.6, box.y + 40, {steps: 5});
+  await page.mouse.up();
+  await page.waitForTimeout(400);
+  assert.match(page.url(), /tab=sweep/, "the end of a drag is no click");
+  for (const name of ["section", "other"]) {
+    await hoverAt(page, `#plot-sweep-${name}`, 0.02);
+    const b = Number((await tip(page)).match(/^b(0\.\d+)/)[1]);
+    assert.ok(b > 0.016 && b < 0.02, `b at the left edge of ${name}: ${b}`);
+  }
+  await page.close();
+});
+
+test("a click on a point simulates it, and Back leads to the sweep", async () => {
+  const page = await open(browser.context, `${service.url}/?${small}`);
+  await clickAt(page, "#plot-sweep-other", 0.5, 0.2);
+  await drawn(page, 1);
+  assert.match(page.url(), /\?b=0\.0\d+&damping=closed_form&cycles=272$/);
+  assert.equal(await page.inputValue("#fields [aria-describedby='error-cycles']"), "272");
+  assert.match(await page.textContent("#summary"), /regimeType II/);
+  await page.goBack();
+  await page.waitForSelector("#sweep-stack:visible");
+  assert.equal(await page.getAttribute("#sweep-results", "data-done"), "1");
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("the keyboard goes from point to point and simulates one", async () => {
+  const page = await open(browser.context, `${service.url}/?${small}&carry_state=up`);
+  await page.focus("#sweep-stack");
+  for (const key of ["Home", "ArrowRight", "ArrowRight"]) await page.keyboard.press(key);
+  assert.match(await tip(page), /^b0\.0062/);
+  await page.keyboard.press("Enter");
+  await drawn(page, 1);
+  assert.match(page.url(), /\?b=0\.0062/);
+  await page.close();
+});
+
+test("cancelling a sweep keeps its points, frees the service, and what is missing can be asked for", async (t) => {
+  const one = await startService(["--sweeps", "1"]);
+  t.after(() => one.stop());
+  const page = await browser.context.newPage();
+  await page.goto(`${one.url}/?${long}`);
+  await page.waitForFunction(() => document.getElementById("sweep-bar").value > 2);
+  const other = () => fetch(`${one.url}/v1/sweep`, {method: "POST", body: JSON.stringify({axes: [{parameter: "b", values: [0.02]}], cycles: 10})});
+  assert.equal((await other()).status, 503, "the one sweep that the service takes is running");
+  assert.match(await page.textContent("#sweep-rate"), /\d+ of 300 points · .* per second · .* left/);
+  await page.click("#sweep-cancel");
+  await page.waitForFunction(() => document.getElementById("sweep-message").textContent === "cancelled");
+  const began = Date.now();
+  while ((await other()).status !== 200) assert.ok(Date.now() - began < 3000, "idle soon");
+  const kept = await page.evaluate(() => document.getElementById("sweep-bar").value);
+  assert.ok(kept > 2 && kept < 300);
+  let asked;
+  page.on("request", (request) => { if (request.url().endsWith("/v1/sweep")) asked = JSON.parse(request.postData()); });
+  await page.click("#sweep-resume");
+  await page.waitForFunction((kept) => document.getElementById("sweep-bar").value > kept, kept);
+  assert.equal(asked.indices.length, 300 - kept);
+  await page.close();
+});
+
+test("a stream that breaks is asked again for what it did not bring", async () => {
+  const page = await browser.context.newPage();
+  const asked = [];
+  await page.route("**/v1/sweep", async (route) => {
+    const request = route.request().postDataJSON();
+    asked.push(request.indices?.length);
+    if (asked.length > 2) return route.continue();
+    const response = await route.fetch(), text = await response.text();
+    // Half an answer, cut within a line; then none.
+    return asked.length === 1 ? route.fulfill({response, body: text.slice(0, text.length / 2)}) : route.abort("connectionreset");
+  });
+  await page.goto(`${service.url}/?${small}`);
+  await swept(page, 1);
+  assert.equal(asked.length, 3);
+  assert.equal(asked[0], undefined);
+  assert.ok(asked[1] > 3 && asked[1] < 21, `${asked[1]} were missing`);
+  assert.equal(asked[2], asked[1]);
+  assert.match(await page.textContent("#sweep-rate"), /24 of 24/);
+  assert.equal(await page.textContent("#sweep-message"), "");
+  const [download] = await Promise.all([page.waitForEvent("download"), page.click("#sweep-download")]);
+  const lines = (await readFile(await download.path(), "utf8")).trim().split("\n").map(JSON.parse);
+  assert.equal(download.suggestedFilename(), "sweep-b.ndjson");
+  assert.equal(lines[0].type, "start");
+  assert.deepEqual(lines.slice(1).map((line) => line.index).sort((a, b) => a - b), Array.from({length: 24}, (_, i) => i));
+  browser.complaints.length = 0;  // Chromium notes the connection that was reset
+  await page.close();
+});
+
+test("faults of a sweep are shown at their fields", async () => {
+  const page = await open(browser.context, `${service.url}/?${small}`);
+  const fault = async (id, value, text) => {
+    const before = await page.inputValue(field(id));
+    await page.fill(field(id), value);
+    await page.click("#sweep-run");
+    await page.waitForFunction(([id, text]) => document.getElementById(id).textContent.includes(text), [id, text]);
+    assert.equal(await page.getAttribute(field(id), "aria-invalid"), "true");
+    await page.fill(field(id), before);
+  };
+  await fault("sweep-axis1-error-count", "0", "must lie in");
+  await fault("sweep-axis1-error-from", "-1", "must lie in");
+  await fault("sweep-error-cycles", "-1", "must lie in");
+  await fault("sweep-base-error-R", "7", "must lie in");
+  await fault("sweep-error-starts", "x0=0; x9=1", "unknown field");
+  await fault("sweep-axis1-error-count", "1000000", "at most");
+  await page.selectOption(field("sweep-axis2-error-parameter"), "b");
+  await page.click("#sweep-run");
+  await page.waitForFunction(() => document.getElementById("sweep-axis2-error-from").textContent.includes("needs from"));
+  assert.match(await page.textContent("#sweep-rate"), /24 of 24/, "the last sweep is still there");
+  browser.complaints.length = 0;  // Chromium notes each 422 in its console
+  await page.close();
+});
+
+test("two axes make a map, in colours or of regimes; a click on a cell simulates it", async () => {
+  const page = await open(browser.context, `${service.url}/?tab=sweep&axis1=b,0.005,0.035,12&axis2=R,0.4,0.8,8&cycles=60&transient_cycles=30&damping=closed_form`);
+  assert.ok(await colours(page, "#plot-sweep-map canvas") > 40);
+  await page.selectOption("#sweep-mapped", "regime");
+  await page.waitForTimeout(100);
+  for (const regime of ["III", "II"]) assert.ok(await pixels(page, "#plot-sweep-map canvas", `regime-${regime}`) > 1000, regime);
+  assert.match(page.url(), /map=regime/);
+  await hoverAt(page, "#plot-sweep-map", 0.3, 0.06);
+  assert.match(await tip(page), /^b0\.013\d+ mR0\.8regimeIII/);
+  await clickAt(page, "#plot-sweep-map", 0.3, 0.06);
+  await drawn(page, 1);
+  assert.match(page.url(), /\?b=0\.013\d+&R=0\.8&damping=closed_form&cycles=272$/);
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("several starts over a logarithmic axis have symbols of their own", async () => {
+  const page = await open(browser.context, `${service.url}/?tab=sweep&axis1=b,0.003,0.04,20,log&starts=x0=0;y_dot0=0.02&cycles=40&section=stroboscopic&coordinate=gap`);
+  assert.equal(await page.inputValue("#sweep-coordinate"), "gap");
+  assert.match(await page.textContent("#sweep-starts"), /1: x\(0\) = 02: y′\(0\) = 0\.02/);
+  for (const name of ["c1", "before"]) assert.ok(await pixels(page, "#plot-sweep-lambda canvas", name) > 20, name);
+  await hoverAt(page, "#plot-sweep-section", 0.5);
+  assert.match(await tip(page), /^b0\.01[01]\d* mstart 1regime.*start 2regime/);
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+for (const query of [small, "tab=sweep&axis1=b,0.005,0.035,8&axis2=R,0.4,0.8,6&cycles=30"])
+  test(`on a narrow screen no sweep is wider than the screen: ${query}`, async () => {
+    const page = await open(browser.context, `${service.url}/?${query}`, {viewport: {width: 390, height: 800}});
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+    const beyond = await page.$$eval("#panel-sweep :is(canvas, select, figure)", (nodes) => nodes.filter((n) => n.offsetWidth && n.getBoundingClientRect().right > innerWidth).map((n) => n.id || n.parentNode.id));
     assert.deepEqual(beyond, []);
     await page.close();
   });
