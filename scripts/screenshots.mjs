@@ -11,15 +11,18 @@ const views = query !== undefined ? {"": query} : {
 };
 const service = await startService();
 const browser = await startBrowser();
-for (const [view, address] of Object.entries(views))
-  for (const colorScheme of ["light", "dark"])
-    for (const [name, width, height] of [["wide", 1400, 1250], ["narrow", 390, 844]]) {
-      const page = await open(browser.context, `${service.url}/${address}`, {viewport: {width, height}, colorScheme});
-      await page.waitForTimeout(300);  // the legends have their final height
-      await page.screenshot({path: `${folder}/${view}${name}-${colorScheme}.png`});
-      await page.screenshot({path: `${folder}/${view}${name}-${colorScheme}-whole.png`, fullPage: true});
-      await page.close();
-    }
-if (browser.complaints.length) console.error(browser.complaints.join("\n"));
-await browser.stop();
-await service.stop();
+try {
+  for (const [view, address] of Object.entries(views))
+    for (const colorScheme of ["light", "dark"])
+      for (const [name, width, height] of [["wide", 1400, 1250], ["narrow", 390, 844]]) {
+        const page = await open(browser.context, `${service.url}/${address}`, {viewport: {width, height}, colorScheme});
+        await page.waitForTimeout(300);  // the legends have their final height
+        await page.screenshot({path: `${folder}/${view}${name}-${colorScheme}.png`});
+        await page.screenshot({path: `${folder}/${view}${name}-${colorScheme}-whole.png`, fullPage: true});
+        await page.close();
+      }
+  if (browser.complaints.length) console.error(browser.complaints.join("\n"));
+} finally {
+  await browser.stop();
+  await service.stop();
+}

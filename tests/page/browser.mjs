@@ -36,6 +36,6 @@ export async function open(context, url, options = {}) {
   return page;
 }
 
-const done = (id) => (page, n, timeout = 20000) => page.waitForFunction(([id, n]) => Number(document.getElementById(id).dataset.done ?? 0) >= n, [id, n], {timeout});
-export const drawn = done("results");
-export const swept = done("sweep-results");
+const done = (id, timeout) => (page, n) => page.waitForFunction(([id, n]) => Number(document.getElementById(id).dataset.done ?? 0) >= n, [id, n], {timeout});
+export const drawn = done("results", 20000);
+export const swept = done("sweep-results", 90000);

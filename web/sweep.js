@@ -1,0 +1,222 @@
+// The tab of a sweep: form in, a stream of points out, drawn as they come. Its query is the request and what the menus show.
+import {asCurl, Problem} from "./api.js";
+import {$, element} from "./dom.js";
+import {HeatMap} from "./heatmap.js";
+import {besideLambda, coordinates, overTwoAxes, quantities, regimes} from "./quantities.js";
+import {SweepData} from "./sweep_data.js";
+import {SweepForm, examples} from "./sweep_form.js";
+import {SweepPlots, startKeys} from "./sweep_plots.js";
+import {follow} from "./sweep_stream.js";
+
+const cyclesOfPoint = 272;  // of the simulation of a point: the paper's tau of 1709
+
+let form, plots, map, data = null, running = null, shown = null, changed = () => {};
+
+function say(text, fault = false) {
+  $("sweep-message").textContent = text;
+  $("sweep-message").classList.toggle("fault", fault);
+}
+
+// The menus, by their name in the query. Their first entry needs no mention there.
+const menus = {coordinate: "sweep-coordinate", beside: "sweep-quantity", map: "sweep-mapped"};
+const choice = () => ({coordinate: $("sweep-coordinate").value, quantity: $("sweep-quantity").value, map: $("sweep-mapped").value, start: Number($("sweep-start").value)});
+
+function fillMenu(id, entries, wanted) {
+  $(id).replaceChildren(...entries.map(([value, text]) => new Option(text, value)));
+  if (entries.some(([value]) => value === wanted)) $(id).value = wanted;
+}
+
+/** The query of the sweep that is shown, or null before the first. */
+export function query() {
+  if (shown === null) return null;
+  const menu = Object.entries(menus).filter(([, id]) => $(id).selectedIndex > 0).map(([name, id]) => `${name}=${$(id).value}`);
+  return [shown, ...menu].join("&");
+}
+
+const grouped = (n) => String(n).replace(/\B(?=(\d{3})+$)/g, " ");
+
+function showSize() {
+  const {counts, starts, points, cycles} = form.size();
+  const product = [...counts, ...(starts > 1 ? [`${starts} starts`] : [])].join(" × ");
+  $("sweep-size").textContent = Number.isFinite(points) ? `${counts.length + (starts > 1) > 1 ? `${product} = ` : ""}${grouped(points)} points, ${grouped(cycles)} cycles` : "";
+}
+
+const time = (seconds) => seconds < 1 ? "less than a second" : seconds < 90 ? `${seconds.toFixed(0)} s` : seconds < 5400 ? `${(seconds / 60).toFixed(0)} min` : `${(seconds / 3600).toFixed(1)} h`;
+
+function progress({per_second: rate, seconds_left: left}) {
+  if (left == null) return showCount();
+  showCount(` · ${rate < 10 ? rate.toFixed(1) : rate.toFixed(0)} per second${data.complete ? "" : ` · ${time(left)} left`}`);
+}
+
+function showCount(more = "") {
+  $("sweep-bar").max = data.total || 1;
+  $("sweep-bar").value = data.received;
+  $("sweep-rate").textContent = `${grouped(data.received)} of ${grouped(data.total)} points${more}`;
+}
+
+// At most ten drawings a second, and no more than a fifth of the time.
+let waiting = 0, cost = 0;
+function drawSoon() { waiting ||= setTimeout(draw, Math.max(100, 4 * cost)); }
+
+function draw() {
+  clearTimeout(waiting);
+  waiting = 0;
+  if (!data?.axes) return;
+  const began = performance.now();
+  (data.axes.length > 1 ? map : plots).refresh();
+  countRegimes();
+  setTimeout(() => { cost = performance.now() - began; });  // uPlot paints after this function
+}
+
+function countRegimes() {
+  const counts = {};
+  for (const p of data.points) if (p?.regime) counts[p.regime] = (counts[p.regime] ?? 0) + 1;
+  for (const regime of Object.keys(regimes)) {
+    $(`sweep-regime-${regime}`).textContent = counts[regime] ?? "";
+    $(`sweep-regime-${regime}`).closest("li").classList.toggle("absent", !counts[regime]);
+    $(`sweep-regime-${regime}`).closest("li").hidden = regime === "none" && !counts.none;
+  }
+}
+
+/** The plots of a sweep that has just begun, still empty. */
+function present(fresh) {
+  data = fresh;
+  shown = String(SweepForm.toQuery(data.request));
+  const over2 = data.axes.length > 1, section = data.section, starts = data.request.starts ?? [];
+  $("sweep-stack").hidden = over2;
+  $("sweep-map").hidden = !over2;
+  $("figure-sweep-section").hidden = section === "none";
+  $("sweep-where").textContent = section === "impact" ? "at impact:" : "once a cycle:";
+  fillMenu("sweep-coordinate", Object.entries(coordinates[section] ?? {}).map(([name, {title}]) => [name, title]), $("sweep-coordinate").value || $("sweep-coordinate").dataset.wanted);
+  fillMenu("sweep-start", (starts.length ? starts : [0]).map((_, s) => [String(s), String(s + 1)]), $("sweep-start").value);
+  $("sweep-start-of").hidden = starts.length < 2;
+  $("sweep-starts").hidden = starts.length < 2;
+  $("sweep-verdicts").hidden = starts.length > 1;  // the colours are those of the starts, then
+  $("sweep-starts").replaceChildren(...startKeys(starts).map((key) => element("li", {}, key)));
+  $("sweep-keys").hidden = false;
+  $("sweep-download").hidden = false;
+  plots.show(data, choice());
+  map.show(data, choice());
+  changed();
+}
+
+function busy(is) {
+  $("sweep-run").disabled = is;
+  $("sweep-cancel").hidden = !is;
+  $("sweep-resume").hidden = is || !data?.axes || data.complete;
+  $("sweep-bar").hidden = !is && (!data || data.complete);
+}
+
+/** What is worth saying of a complete sweep. */
+function remarks() {
+  const faults = [...data.faults].map(([fault, n]) => `${grouped(n)} points failed: ${fault}`);
+  return [...faults, ...(data.early ? [`${grouped(data.early)} points ended early, at max_impacts`] : [])].join("; ");
+}
+
+/** The points that `into` still lacks. */
+async function receive(into) {
+  running?.abort();
+  const mine = running = new AbortController();
+  busy(true);
+  const heard = (line) => {
+    if (running !== mine) return;
+    if (line.type === "start") { if (data !== into) present(into); say(""); showCount(); }
+    else if (line.type === "progress") progress(line);
+    else drawSoon();
+  };
+  const broken = (error, seconds) => { if (running === mine) say(`${error.message}; asking again in ${seconds} s`, true); };
+  try {
+    await follow(into.request, into, mine.signal, {heard, broken});
+    if (running === mine) { say(remarks()); finish(); }
+  } catch (error) {
+    if (running !== mine) return;
+    if (data) showCount();
+    const left = error instanceof Problem ? form.showErrors(error.errors) : [];
+    if (mine.signal.aborted) say("cancelled");
+    else say([error.message, ...left.map((e) => e.detail).filter((d) => d !== error.message)].join("; "), true);
+  } finally {
+    if (running === mine) {
+      running = null;
+      busy(false);
+      draw();
+    }
+  }
+}
+
+function finish() { $("sweep-results").dataset.done = String(Number($("sweep-results").dataset.done ?? 0) + 1); }
+
+/** Where the plots lie below the form, one who asks for them is led there. */
+function lead() {
+  if ($("sweep-results").offsetLeft < $("sweep-form").offsetLeft + $("sweep-form").offsetWidth) $("sweep-results").scrollIntoView();
+}
+
+function run() {
+  form.showErrors([]);
+  return receive(new SweepData(form.request(), form.halfPeriod));
+}
+
+const sorted = (text) => { const q = new URLSearchParams(text); q.sort(); return String(q); };
+const markExample = () => { $("sweep-example").value = String(examples.findIndex(([, q]) => sorted(q) === sorted(SweepForm.toQuery(form.request())))); };
+
+/** Shows what a query asks for; without one the first example. */
+export async function open(given) {
+  const rest = new URLSearchParams(given);
+  for (const [name, id] of Object.entries(menus)) {
+    const wanted = rest.get(name);
+    $(id).dataset.wanted = wanted ?? "";
+    if (wanted && [...$(id).options].some((o) => o.value === wanted)) $(id).value = wanted;
+    rest.delete(name);
+  }
+  if (String(rest) === shown) return;
+  form.setQuery(rest.size ? rest : new URLSearchParams(examples[0][1]));
+  markExample();
+  showSize();
+  await run();
+}
+
+export function redraw() {
+  plots.recreate();
+  map.recreate();
+}
+
+function download() {
+  const url = URL.createObjectURL(data.file());
+  element("a", {href: url, download: `sweep-${data.axes.map((a) => a.parameter).join("-")}.ndjson`}).click();
+  setTimeout(() => URL.revokeObjectURL(url), 10000);
+}
+
+async function copy() {
+  const command = asCurl("v1/sweep", form.request(), "-sN");
+  try { await navigator.clipboard.writeText(command); say("copied"); } catch { say(command); }
+}
+
+function legend() {
+  $("sweep-regimes").replaceChildren(...Object.entries(regimes).map(([regime, what]) => element("li", {title: `Type ${regime}`},
+    element("span", {className: `key regime regime-${regime}`, textContent: regime === "none" ? what : `${regime} ${what}`}), element("small", {id: `sweep-regime-${regime}`}))));
+}
+
+/** tables: the answer of /v1/parameters; tell: called when there is another query; simulate(fields): shows the run of a point. */
+export function start(tables, tell, simulate) {
+  changed = tell;
+  form = new SweepForm($("sweep-fields"), tables, () => { showSize(); markExample(); });
+  const units = (parameter) => { const unit = form.parameters.get(parameter)?.unit; return unit && unit !== "dimensionless" ? ` (${unit})` : ""; };
+  const openPoint = (index) => simulate({...data.fields(index), cycles: cyclesOfPoint});
+  plots = new SweepPlots($("sweep-stack"), {section: $("plot-sweep-section"), lambda: $("plot-sweep-lambda"), other: $("plot-sweep-other")}, units, openPoint);
+  map = new HeatMap($("sweep-map"), $("plot-sweep-map"), units, openPoint);
+  legend();
+  $("sweep-keys").hidden = true;
+  $("sweep-example").append(new Option("own sweep", "-1"), ...examples.map(([title], i) => new Option(title, String(i))));
+  fillMenu("sweep-quantity", besideLambda.map((name) => [name, quantities[name].title]));
+  fillMenu("sweep-mapped", overTwoAxes.map((name) => [name, quantities[name].title]));
+  for (const id of [...Object.values(menus), "sweep-start"])
+    $(id).addEventListener("change", () => { if (!data) return; (data.axes.length > 1 ? map : plots).choose(choice()); changed(); });
+  $("sweep-example").addEventListener("change", () => {
+    const example = examples[$("sweep-example").value];
+    if (example) { form.setQuery(new URLSearchParams(example[1])); showSize(); run(); lead(); }
+  });
+  $("sweep-form").addEventListener("submit", (event) => { event.preventDefault(); run(); lead(); });
+  $("sweep-cancel").addEventListener("click", () => running?.abort());
+  $("sweep-resume").addEventListener("click", () => receive(data));
+  $("sweep-download").addEventListener("click", (event) => { event.preventDefault(); download(); });
+  $("sweep-copy").addEventListener("click", copy);
+}

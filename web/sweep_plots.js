@@ -1,0 +1,347 @@
+// A sweep over one axis: the bifurcation diagram of its section, lambda1, and another quantity with the regimes, over each other.
+import uPlot from "./uPlot.esm.js";
+import {element} from "./dom.js";
+import {colour} from "./plots.js";
+import {coordinates, describe, quantities, regimeColour, symbolOf, verdictColour} from "./quantities.js";
+import {clipped, nameOf, plotAxis, point, rule, wholeOrZoomed} from "./sweep_axes.js";
+import {Tip} from "./tip.js";
+
+export const startColours = ["c1", "before", "c2", "c4", "c3"];
+const startColour = (s) => startColours[s % startColours.length];
+
+// The symbols of the starts, around (x, y), in a path.
+const symbols = [
+  (c, x, y, r) => c.arc(x, y, r, 0, 2 * Math.PI),
+  (c, x, y, r) => c.rect(x - r * 0.9, y - r * 0.9, 1.8 * r, 1.8 * r),
+  (c, x, y, r) => { c.moveTo(x, y - 1.25 * r); c.lineTo(x + 1.15 * r, y + r); c.lineTo(x - 1.15 * r, y + r); },
+  (c, x, y, r) => { c.moveTo(x, y - 1.3 * r); c.lineTo(x + 1.3 * r, y); c.lineTo(x, y + 1.3 * r); c.lineTo(x - 1.3 * r, y); },
+  (c, x, y, r) => { c.moveTo(x, y + 1.25 * r); c.lineTo(x + 1.15 * r, y - r); c.lineTo(x - 1.15 * r, y - r); },
+];
+
+function symbol(c, start, x, y, r) {
+  c.beginPath();
+  symbols[start % symbols.length](c, x, y, r);
+  c.closePath();
+  c.fill();
+}
+
+/** The extent of values and a margin; a logarithmic one keeps above 0. */
+function extent(values, {log = false, from0 = false, least = 0} = {}) {
+  let min = from0 ? 0 : Infinity, max = -Infinity;
+  for (const v of values) if (Number.isFinite(v) && (!log || v > least)) { if (v < min) min = v; if (v > max) max = v; }
+  if (!(min <= max) || (from0 && max <= 0)) return log ? [0.1, 10] : [from0 ? 0 : -1, 1];
+  if (log) return [min / 1.3, max * 1.3];
+  const margin = (max - min) * 0.06 || Math.abs(max) * 0.06 || 1;
+  return [from0 ? 0 : min - margin, max + margin];
+}
+
+/** Bytes of a colour of the style sheet. */
+function bytes(name) {
+  const c = new OffscreenCanvas(1, 1).getContext("2d", {willReadFrequently: true});
+  c.fillStyle = colour(name);
+  c.fillRect(0, 0, 1, 1);
+  return c.getImageData(0, 0, 1, 1).data;
+}
+
+/** Moves of the keyboard along an axis. */
+const steps = {ArrowLeft: -1, ArrowRight: 1, PageUp: -10, PageDown: 10, Home: -Infinity, End: Infinity};
+
+export class SweepPlots {
+  /** containers: {section, lambda, other}; units(parameter): as in " (m)"; open(index): a point was chosen. */
+  constructor(root, containers, units, open) {
+    Object.assign(this, {root, containers, units, open, panels: null, data: null, current: null, zooming: false});
+    this.tip = new Tip(root);
+    new ResizeObserver(() => this.resize()).observe(root);
+    root.addEventListener("keydown", (event) => this.key(event));
+    root.addEventListener("focusout", (event) => { if (!root.contains(event.relatedTarget)) this.leave(); });
+  }
+
+  /** Another sweep; coordinate: of the section, quantity: of the third plot. */
+  show(data, choice) {
+    this.data = data;
+    this.choice = choice;
+    this.recreate();
+  }
+
+  recreate() {
+    for (const panel of this.panels ?? []) panel.destroy();
+    this.panels = null;
+    this.tip.hide();
+    if (this.data?.axes?.length === 1 && this.root.clientWidth) this.create();
+  }
+
+  /** A change of what is shown, not of the axis: the zoom stays. */
+  choose(choice) {
+    const logNow = this.coordinate()?.log;
+    this.choice = choice;
+    const zoom = this.panels?.[0].scales.x;
+    if (this.coordinate()?.log === logNow) return this.refresh();
+    this.recreate();
+    if (zoom && this.panels) this.panels[0].setScale("x", {min: zoom.min, max: zoom.max});
+  }
+
+  /** More points have come. */
+  refresh() {
+    if (!this.data?.axes) return;
+    if (!this.panels) return this.recreate();
+    for (const panel of this.panels) panel.setScale("x", {min: panel.scales.x.min, max: panel.scales.x.max});  // ranges the other axis again
+    if (this.current !== null) this.tell(...this.current);
+  }
+
+  resize() {
+    if (!this.root.clientWidth) return;
+    if (!this.panels) return this.recreate();
+    this.panels.forEach((panel) => panel.setSize(this.sizeOf(panel.root.parentNode)));
+  }
+
+  sizeOf(container) { return {width: container.clientWidth, height: container.clientHeight}; }
+  coordinate() { return coordinates[this.data?.section]?.[this.choice.coordinate]; }
+  starts() { return Array.from({length: this.data.starts}, (_, s) => s); }
+
+  /** f(point, k) of the points of a start that have come. */
+  each(start, f) {
+    for (let k = 0; k < this.data.axes[0].values.length; ++k) {
+      const p = this.data.at(k, 0, start);
+      if (p && !p.error) f(p, k);
+    }
+  }
+  /** All values of a start or of all of them, for a range. */
+  *values(of) {
+    for (const p of this.data.points) if (p && !p.error) for (const v of of(p)) if (v !== null && v !== undefined) yield v;
+  }
+
+  create() {
+    const lambda = {label: () => "λ", range: () => extent([0, ...this.values((p) => [p.lambda?.[0] - (p.standard_error ?? 0), p.lambda?.[0] + (p.standard_error ?? 0), p.lambda?.[1]])]), paint: (u) => this.paintLambda(u)};
+    const other = {label: () => quantities[this.choice.quantity].label, range: () => this.otherRange(), paint: (u) => this.paintOther(u), under: (u) => this.paintRegimes(u)};
+    const section = {label: () => this.coordinate()?.label ?? "", range: () => this.sectionRange(), paint: (u) => this.paintSection(u), log: Boolean(this.coordinate()?.log), turns: () => Boolean(this.coordinate()?.turns)};
+    this.panels = [[this.containers.section, section], [this.containers.lambda, lambda], [this.containers.other, other]]
+      .filter(([container]) => !container.closest("figure").hidden).map(([container, spec]) => this.panel(container, spec));
+  }
+
+  panel(container, {label, range, paint, under = () => {}, log = false, turns}) {
+    const [axis] = this.data.axes;
+    const options = {
+      ...this.sizeOf(container), padding: [8, 12, 0, 0], legend: {show: false},
+      scales: {x: {time: false, distr: axis.log ? 3 : 1, range: wholeOrZoomed(axis)}, y: {range, distr: log ? 3 : 1}},
+      axes: [plotAxis({size: 24, gap: 2, label: nameOf(axis, this.units), labelSize: 16}, {log: () => axis.log}),
+        plotAxis({side: 3, size: 52, gap: 3, label, labelSize: 18}, {log: () => log, turns})],
+      series: [{}, {paths: () => null, points: {show: false}}],
+      cursor: {sync: {key: "sweep"}, y: false, drag: {x: true, y: false}, points: {show: false}},
+      hooks: {
+        drawClear: [(u) => clipped(u, () => under(u))],
+        draw: [(u) => clipped(u, () => { paint(u); this.strip(u); })],
+        setScale: [(u, key) => { if (key === "x") this.zoomAll(u); }],
+      },
+    };
+    const u = new uPlot(options, [axis.values, axis.values.map(() => null)], container);
+    const at = (left) => u.posToIdx(left);
+    point(u.over, {
+      move: (left) => this.tell(u, at(left)), leave: () => this.leave(),
+      open: (left, top) => this.open(this.nearest(u, at(left), top)), touch: (left) => this.tell(u, at(left), true),
+    });
+    return u;
+  }
+
+  zoomAll(source) {
+    if (this.zooming || !this.panels) return;
+    this.zooming = true;
+    const {min, max} = source.scales.x;
+    for (const panel of this.panels) if (panel !== source && (panel.scales.x.min !== min || panel.scales.x.max !== max)) panel.setScale("x", {min, max});
+    this.zooming = false;
+  }
+
+  /** The index of the point at position k that lies next to the pointer: the starts have points at the same place. */
+  nearest(u, k, top) {
+    const of = u === this.panels.at(-1) ? quantities[this.choice.quantity].of : u === this.panels.at(-2) ? quantities.lambda1.of : () => null;
+    const away = (s) => { const p = this.data.at(k, 0, s), v = p ? of(p) : null; return v === null ? Infinity : Math.abs(u.valToPos(v, "y") - top); };
+    return this.data.index(k, 0, this.starts().reduce((best, s) => away(s) < away(best) ? s : best, 0));
+  }
+
+  leave() { this.current = null; this.tip.hide(); }
+
+  /** The tooltip of position k; act: with a button that opens it. */
+  tell(u, k, act = false) {
+    this.current = [u, k, act];
+    const {data} = this, [axis] = data.axes;
+    const rows = [[symbolOf(axis.parameter), `${Number(axis.values[k].toPrecision(6))}${this.units(axis.parameter).replace(/[()]/g, "")}`]];
+    for (const s of this.starts()) {
+      const p = data.at(k, 0, s);
+      if (data.starts > 1) rows.push([`start ${s + 1}`, ""]);
+      rows.push(...(p ? describe(p) : [["", "still to come"]]).slice(0, data.starts > 1 ? 5 : undefined));
+    }
+    const label = "Simulate this point";
+    const box = this.root.getBoundingClientRect(), over = u.over.getBoundingClientRect();
+    this.tip.show(over.left - box.left + u.valToPos(axis.values[k], "x"), over.top - box.top + over.height / 2, rows, `Click: simulate it${this.afresh()}`,
+      act ? {label, run: () => this.open(data.index(k))} : null);
+  }
+  afresh() { return (this.data.request.carry_state ?? "none") === "none" ? "" : ", afresh: not from its neighbour's last state"; }
+
+  key(event) {
+    if (!this.panels || event.target !== this.root) return;
+    const [, k = -1] = this.current ?? [], last = this.data.axes[0].values.length - 1;
+    if (event.key in steps) {
+      const next = Math.max(0, Math.min(last, k + steps[event.key]));
+      for (const u of this.panels) u.setCursor({left: u.valToPos(u.data[0][next], "x"), top: 10}, false);
+      this.tell(this.panels[0], next, true);
+    } else if (event.key === "Enter" && k >= 0) this.open(this.data.index(k));
+    else if (event.key === "Escape") this.leave();
+    else return;
+    event.preventDefault();
+  }
+
+  sectionRange() {
+    const coordinate = this.coordinate();
+    return coordinate?.range ?? (coordinate ? extent(this.sectionValues(), coordinate) : [0, 1]);
+  }
+  *sectionValues() { for (const p of this.data.points) if (p?.section) yield* p.section[this.choice.coordinate]; }
+
+  otherRange() {
+    const {of, levels = []} = quantities[this.choice.quantity];
+    const [min, max] = extent([...this.values((p) => [of(p)])], {from0: true});
+    return [min, Math.max(max, Math.min(levels[0] ?? 0, max * 1.5)) * 1.02];
+  }
+
+  /** The pixels from border to border of position k. */
+  cell(u, k) {
+    const {borders} = this.data.axes[0];
+    const from = Math.round(u.valToPos(borders[k], "x", true)), to = Math.round(u.valToPos(borders[k + 1], "x", true));
+    return [Math.max(from, u.bbox.left), Math.min(to, u.bbox.left + u.bbox.width)];
+  }
+
+  /** How often the section comes to each pixel, as opacity: a periodic orbit is a few full dots, chaos a cloud. */
+  paintSection(u) {
+    const coordinate = this.coordinate(), {left, top, width, height} = u.bbox;
+    if (!coordinate) return;
+    const {min, max} = u.scales.y, at = coordinate.log ? Math.log : (v) => v, scale = (height - 1) / (at(max) - at(min));
+    const row = (v) => Math.round((at(max) - at(v)) * scale);
+    const thick = Math.max(1, Math.round(1.4 * devicePixelRatio)), broad = Math.round(4 * devicePixelRatio);
+    rule(u, coordinate.levels ?? [], "line");
+    for (const start of this.starts()) {
+      const counts = new Uint16Array(width * height);
+      let most = 8;
+      this.each(start, (p, k) => {
+        let [from, to] = this.cell(u, k);
+        if (to - from > broad) { from = Math.round((from + to - broad) / 2); to = from + broad; }
+        to = Math.min(Math.max(to, from + 1), left + width);
+        for (const v of p.section?.[this.choice.coordinate] ?? []) {
+          if (!(v >= min && v <= max)) continue;
+          const y = row(v);
+          for (let j = Math.max(0, y - (thick >> 1)); j < Math.min(height, y - (thick >> 1) + thick); ++j)
+            for (let i = from - left; i < to - left; ++i) { const n = ++counts[j * width + i]; if (n > most) most = n; }
+        }
+      });
+      u.ctx.drawImage(density(counts, width, height, most, bytes(this.data.starts > 1 ? startColour(start) : "c1")), left, top);
+    }
+  }
+
+  radius(u) {
+    const {values} = this.data.axes[0], shown = Math.max(1, values.filter((v) => v >= u.scales.x.min && v <= u.scales.x.max).length);
+    return Math.max(1.3, Math.min(3.4, u.bbox.width / devicePixelRatio / shown * 0.62)) * devicePixelRatio * (this.data.starts > 1 ? 1.15 : 1);
+  }
+
+  /** A line through the points of a start that follow each other without a gap. */
+  line(u, start, of, name, width, alpha = 1) {
+    const {ctx} = u, [axis] = this.data.axes;
+    Object.assign(ctx, {strokeStyle: colour(name), lineWidth: width * devicePixelRatio, globalAlpha: alpha});
+    ctx.beginPath();
+    let last = -2;
+    this.each(start, (p, k) => {
+      const v = of(p);
+      if (v === null) return;
+      const x = u.valToPos(axis.values[k], "x", true), y = u.valToPos(v, "y", true);
+      if (last === k - 1) ctx.lineTo(x, y); else ctx.moveTo(x, y);
+      last = k;
+    });
+    ctx.stroke();
+    ctx.globalAlpha = 1;
+  }
+
+  dots(u, start, of, nameOfPoint, errorOf = () => null) {
+    const {ctx} = u, [axis] = this.data.axes, r = this.radius(u);
+    ctx.lineWidth = Math.max(1, r / 2);
+    this.each(start, (p, k) => {
+      const v = of(p);
+      if (v === null) return;
+      const x = u.valToPos(axis.values[k], "x", true), y = u.valToPos(v, "y", true), error = errorOf(p);
+      ctx.fillStyle = ctx.strokeStyle = colour(nameOfPoint(p));
+      if (error) {
+        ctx.globalAlpha = 0.45;
+        ctx.beginPath(); ctx.moveTo(x, u.valToPos(v - error, "y", true)); ctx.lineTo(x, u.valToPos(v + error, "y", true)); ctx.stroke();
+        ctx.globalAlpha = 1;
+      }
+      symbol(ctx, start, x, y, r);
+    });
+  }
+
+  paintLambda(u) {
+    const of = (i) => (p) => p.lambda?.[i] ?? null, several = this.data.starts > 1;
+    rule(u, [0], "soft");
+    for (const s of this.starts()) {
+      this.line(u, s, of(1), several ? startColour(s) : "second", 1, several ? 0.5 : 1);
+      this.dots(u, s, of(0), (p) => several ? startColour(s) : verdictColour[p.verdict] ?? "undecided", (p) => p.standard_error);
+    }
+  }
+
+  paintOther(u) {
+    const {of, levels = []} = quantities[this.choice.quantity], several = this.data.starts > 1;
+    rule(u, levels, "line");
+    for (const s of this.starts()) {
+      const name = several ? startColour(s) : "text";
+      this.line(u, s, of, name, 1, 0.35);
+      this.dots(u, s, of, () => name);
+    }
+  }
+
+  /** Neighbours of the same regime as one stretch: f(regime, from, to) in pixels. */
+  stretches(u, start, f) {
+    let open = null;
+    const close = () => { if (open && open.to > open.from) f(open.regime, open.from, open.to); };
+    this.each(start, (p, k) => {
+      const [from, to] = this.cell(u, k);
+      if (open && open.regime === p.regime && open.k === k - 1) Object.assign(open, {to, k});
+      else { close(); open = {regime: p.regime, from, to, k}; }
+    });
+    close();
+  }
+
+  /** Pale bands with the regimes' numbers; several starts have none: theirs may differ. */
+  paintRegimes(u) {
+    if (this.data.starts > 1) return;
+    const {ctx} = u, {top, height} = u.bbox;
+    ctx.font = `600 ${12 * devicePixelRatio}px system-ui`;
+    Object.assign(ctx, {textAlign: "center", textBaseline: "top"});
+    this.stretches(u, 0, (regime, from, to) => {
+      ctx.globalAlpha = 0.2;
+      ctx.fillStyle = colour(regimeColour(regime));
+      ctx.fillRect(from, top, to - from, height);
+      ctx.globalAlpha = 1;
+      ctx.fillStyle = colour("text");
+      if (ctx.measureText(regime).width + 4 < to - from) ctx.fillText(regime, (from + to) / 2, top + 12 * devicePixelRatio);
+    });
+  }
+
+  /** The regimes as a narrow strip along the top, a lane for each start. */
+  strip(u) {
+    const lane = Math.round(5 * devicePixelRatio);
+    for (const s of this.starts())
+      this.stretches(u, s, (regime, from, to) => { u.ctx.fillStyle = colour(regimeColour(regime)); u.ctx.fillRect(from, u.bbox.top + s * (lane + devicePixelRatio), to - from, lane); });
+  }
+}
+
+/** Counts as an image of one colour. */
+function density(counts, width, height, most, [r, g, b]) {
+  const image = new ImageData(width, height), pixels = image.data, scale = 0.58 / Math.log(most);
+  for (let i = 0; i < counts.length; ++i) {
+    if (!counts[i]) continue;
+    pixels[4 * i] = r; pixels[4 * i + 1] = g; pixels[4 * i + 2] = b;
+    pixels[4 * i + 3] = 255 * (0.42 + scale * Math.log(counts[i]));
+  }
+  const canvas = new OffscreenCanvas(width, height);
+  canvas.getContext("2d").putImageData(image, 0, 0);
+  return canvas;
+}
+
+/** The keys of the starts: their symbol and state. */
+export function startKeys(starts) {
+  return starts.map((state, s) => element("span", {className: `key start start${s % startColours.length}`, textContent: `${s + 1}: ${Object.entries(state).map(([name, v]) => `${symbolOf(name)} = ${v}`).join(", ")}`}));
+}
