@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <numbers>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -160,7 +161,7 @@ Json describe_section_points(const std::vector<SectionPoint>& points, Section se
     return j;
 }
 
-Json describe_point(const SweepRequest& r, std::size_t index, const PointResult& p) {
+Json describe_point(const SweepRequest& r, std::size_t index, double Omega, const PointResult& p) {
     Json line = located(r, index);
     line["lambda"] = Json::array();
     line["status"] = Json::array();
@@ -176,6 +177,7 @@ Json describe_point(const SweepRequest& r, std::size_t index, const PointResult&
     line["period_cycles"] = p.regime.orbit ? Json(p.regime.orbit->cycles) : Json(nullptr);
     line["impacts_per_period"] = p.regime.orbit ? Json(p.regime.orbit->contacts) : Json(nullptr);
     line["symmetric"] = p.regime.orbit ? Json(p.regime.orbit->symmetric) : Json(nullptr);
+    line["capture_cycle"] = p.regime.capture ? Json(std::round(p.regime.capture->tau * Omega / (2 * std::numbers::pi))) : Json(nullptr);
     line["multiplier"] = p.regime.orbit ? Json(std::abs(p.regime.orbit->multipliers[0])) : Json(nullptr);
     line["synchronised"] = p.regime.synchronised;
     line["x_max"] = p.x_max;
@@ -235,7 +237,7 @@ private:
             options.max_impacts = s.max_impacts;
             const PointResult result = measure(p, before ? carried(before->state, before->parameters, p) : s.start, options, [this] { return pace_.stop_or_yield(); });
             if (result.outcome.reason == End::stopped || pace_.stop_or_yield()) throw Stopped();
-            if (wanted) emit(index, describe_point(r_, index, result));
+            if (wanted) emit(index, describe_point(r_, index, p.Omega, result));
             return Carried{p, result.outcome.state};
         } catch (const Problem& problem) {  // inside the corners, but no system of its own
             Json line = located(r_, index);
