@@ -40,6 +40,9 @@ double sample_interval(const MeasuredRecord& r) { return (r.tau.back() - r.tau.f
 
 // Pulses of impacts between hard bodies last .2 to 2 ms; at an oscillator of 8 Hz that is .01 to .1 in tau.
 constexpr double shortest_pulse = 0.005, longest_pulse = 0.15;
+// A jump of x' without a spike is an impact only beyond this many standard errors. It is looked for in so many samples at once.
+constexpr double kink_sigmas = 7;
+constexpr std::size_t kink_window = 400;
 // The jump of a real impact is the area of its spike; noise and few samples leave that much of it.
 constexpr double least_jump = 0.25;
 
@@ -157,6 +160,9 @@ public:
         return rows;
     }
 
+    /// x at a time s after x' was raised by one.
+    double velocity_response(double s) const { return flow_.transfer(s).a21; }
+
 private:
     const double damping_, Omega_;
     const Flow flow_;
@@ -167,17 +173,21 @@ class Equations {
 public:
     explicit Equations(std::size_t intervals) : unknowns_(static_cast<Eigen::Index>(2 * intervals + 2)), right_(Eigen::VectorXd::Zero(unknowns_)) {}
 
-    /// weight^2 (row . (start of interval i, forcing) - value)^2 is to be small.
-    void add(std::size_t i, const Eigen::Vector4d& row, double value, double weight) {
+    /// The normal matrix and right side of interval i's samples, by its start and the forcing.
+    void add(std::size_t i, const Eigen::Matrix4d& N, const Eigen::Vector4d& g) {
         const Eigen::Index at[4] = {static_cast<Eigen::Index>(2 * i), static_cast<Eigen::Index>(2 * i + 1), unknowns_ - 2, unknowns_ - 1};
-        add(at, row, 4, value, weight);
+        for (int j = 0; j < 4; ++j) {
+            right_(at[j]) += g(j);
+            for (int k = 0; k < 4; ++k) triplets_.emplace_back(at[j], at[k], N(j, k));
+        }
     }
     /// x at the end of interval i (row) is x at the start of the next.
     void connect(std::size_t i, const Eigen::Vector4d& row, double weight) {
         Eigen::Matrix<double, 5, 1> all;
         all << row, -1;
         const Eigen::Index at[5] = {static_cast<Eigen::Index>(2 * i), static_cast<Eigen::Index>(2 * i + 1), unknowns_ - 2, unknowns_ - 1, static_cast<Eigen::Index>(2 * i + 2)};
-        add(at, all, 5, 0, weight);
+        for (int j = 0; j < 5; ++j)
+            for (int k = 0; k < 5; ++k) triplets_.emplace_back(at[j], at[k], weight * weight * all(j) * all(k));
     }
     Eigen::VectorXd solve() {
         // An interval without a sample, or a record that does not show the forcing, leaves its unknowns at zero.
@@ -189,13 +199,6 @@ public:
     }
 
 private:
-    template <class Row>
-    void add(const Eigen::Index* at, const Row& row, int n, double value, double weight) {
-        for (int i = 0; i < n; ++i) {
-            right_(at[i]) += weight * weight * row(i) * value;
-            for (int j = 0; j < n; ++j) triplets_.emplace_back(at[i], at[j], weight * weight * row(i) * row(j));
-        }
-    }
     const Eigen::Index unknowns_;
     std::vector<Eigen::Triplet<double>> triplets_;
     Eigen::VectorXd right_;
@@ -206,67 +209,85 @@ double pulse_shape(double s, double pulse) {
     return std::abs(s) < 0.5 * pulse ? 0.5 * std::numbers::pi / pulse * std::cos(std::numbers::pi * s / pulse) : 0;
 }
 
-std::size_t interval_at(const std::vector<double>& starts, double tau) {
-    return static_cast<std::size_t>(std::upper_bound(starts.begin(), starts.end(), tau) - starts.begin()) - 1;
-}
-
 }  // namespace
 
-FittedMotion fit_motion(const Parameters& p, const MeasuredRecord& r, const std::vector<double>& impacts, double pulse, bool connected) {
+FittedMotion fit_motion(const Parameters& p, const MeasuredRecord& r, const std::vector<double>& impacts, double pulse) {
     const Model model(p);
     FittedMotion m;
     m.tau = {r.tau.front()};
     m.tau.insert(m.tau.end(), impacts.begin(), impacts.end());
     const std::size_t n = m.tau.size();
-    const double step = sample_interval(r);
+    const double guard = 0.5 * pulse + 0.1 * sample_interval(r);  // the pulse spoils the acceleration on both sides of an impact
     const double sigma_x = r.x.empty() ? nan : std::max(noise_of(r.x), 1e-12), sigma_a = r.x_ddot.empty() ? nan : std::max(noise_of(r.x_ddot), 1e-12);
-    Equations equations(n);
-    std::vector<Eigen::Matrix2d> information(n, 1e-9 * Eigen::Matrix2d::Identity());  // of each interval's own start
     struct Sample {
-        std::size_t interval, k;
-        Rows rows;
+        std::size_t interval;
+        Eigen::Vector4d x, x_ddot;
         bool spike;
     };
     std::vector<Sample> samples;
     samples.reserve(r.tau.size());
+    std::vector<Eigen::Matrix4d> N(n, Eigen::Matrix4d::Zero());
+    std::vector<Eigen::Vector4d> g(n, Eigen::Vector4d::Zero());
+    std::size_t i = 0;
     for (std::size_t k = 0; k < r.tau.size(); ++k) {
-        const std::size_t i = interval_at(m.tau, r.tau[k]);
-        // The pulse spoils the acceleration on both sides of an impact.
-        const double guard = 0.5 * pulse + 0.1 * step;
+        while (i + 1 < n && m.tau[i + 1] <= r.tau[k]) ++i;
+        const Rows rows = model.at(m.tau[i], r.tau[k] - m.tau[i]);
         const bool spike = (i > 0 && r.tau[k] - m.tau[i] < guard) || (i + 1 < n && m.tau[i + 1] - r.tau[k] < guard);
-        samples.push_back({i, k, model.at(m.tau[i], r.tau[k] - m.tau[i]), spike});
-        const Sample& s = samples.back();
-        if (!r.x.empty()) information[i] += s.rows.x.head<2>() * s.rows.x.head<2>().transpose() / (sigma_x * sigma_x);
-        if (!r.x_ddot.empty() && !spike) information[i] += s.rows.x_ddot.head<2>() * s.rows.x_ddot.head<2>().transpose() / (sigma_a * sigma_a);
-        if (!r.x.empty()) equations.add(i, s.rows.x, r.x[k], 1 / sigma_x);
-        if (!r.x_ddot.empty() && !spike) equations.add(i, s.rows.x_ddot, r.x_ddot[k], 1 / sigma_a);
+        samples.push_back({i, rows.x, rows.x_ddot, spike});
+        auto add = [&](const Eigen::Vector4d& row, double value, double sigma) {
+            const Eigen::Vector4d scaled = row / sigma;
+            N[i] += scaled * scaled.transpose();
+            g[i] += scaled * (value / sigma);
+        };
+        if (!r.x.empty()) add(rows.x, r.x[k], sigma_x);
+        if (!r.x_ddot.empty() && !spike) add(rows.x_ddot, r.x_ddot[k], sigma_a);
     }
+    Equations equations(n);
+    std::vector<Rows> ends;
     const double sigma_c = 0.05 * (r.x.empty() ? sigma_a : sigma_x);
-    for (std::size_t i = 0; connected && i + 1 < n; ++i) equations.connect(i, model.at(m.tau[i], m.tau[i + 1] - m.tau[i]).x, 1 / sigma_c);
-    const Eigen::VectorXd z = equations.solve();
-
-    m.force_sin = z(z.size() - 2), m.force_cos = z(z.size() - 1);
-    auto solution = [&](std::size_t i) { return Eigen::Vector4d(z(static_cast<Eigen::Index>(2 * i)), z(static_cast<Eigen::Index>(2 * i + 1)), m.force_sin, m.force_cos); };
-    for (std::size_t i = 0; i < n; ++i) {
-        m.x.push_back(solution(i)(0));
-        m.x_dot.push_back(solution(i)(1));
-        if (i + 1 == n) break;
-        const Rows end = model.at(m.tau[i], m.tau[i + 1] - m.tau[i]);
-        m.x_dot_before.push_back(end.x_dot.dot(solution(i)));
-        m.x_ddot_before.push_back(end.x_ddot.dot(solution(i)));
-        m.x_ddot_after.push_back(model.at(m.tau[i + 1], 0).x_ddot.dot(solution(i + 1)));
-        if (connected) continue;
-        m.gap.push_back(end.x.dot(solution(i)) - solution(i + 1)(0));
-        const Eigen::Vector2d row = end.x.head<2>();
-        // An interval with hardly a sample says nothing.
-        const double variance = row.dot(information[i].inverse() * row) + information[i + 1].inverse()(0, 0);
-        m.gap_error.push_back(variance > 0 ? std::sqrt(variance) : std::numeric_limits<double>::infinity());
+    for (std::size_t k = 0; k < n; ++k) {
+        equations.add(k, N[k], g[k]);
+        if (k + 1 == n) break;
+        ends.push_back(model.at(m.tau[k], m.tau[k + 1] - m.tau[k]));
+        equations.connect(k, ends[k].x, 1 / sigma_c);
     }
+    const Eigen::VectorXd z = equations.solve();
+    m.force_sin = z(z.size() - 2), m.force_cos = z(z.size() - 1);
+    const Eigen::Vector2d force(m.force_sin, m.force_cos);
+
+    // Each interval by itself, and what it then knows of its start.
+    std::vector<Eigen::Matrix2d> covariance;
+    for (std::size_t k = 0; k < n; ++k) {
+        m.x.push_back(z(static_cast<Eigen::Index>(2 * k)));
+        m.x_dot.push_back(z(static_cast<Eigen::Index>(2 * k + 1)));
+        covariance.push_back((N[k].topLeftCorner<2, 2>() + 1e-9 * Eigen::Matrix2d::Identity()).inverse());
+        const Eigen::Vector2d own = covariance[k] * (g[k].head<2>() - N[k].topRightCorner<2, 2>() * force);
+        m.own_x.push_back(own(0));
+        m.own_x_dot.push_back(own(1));
+    }
+    const auto start = [&](double x, double x_dot) { return Eigen::Vector4d(x, x_dot, force(0), force(1)); };
+    // An interval with hardly a sample says nothing.
+    const auto error = [](double variance) { return variance > 0 ? std::sqrt(variance) : std::numeric_limits<double>::infinity(); };
+    for (std::size_t k = 0; k + 1 < n; ++k) {
+        const Eigen::Vector4d before = start(m.x[k], m.x_dot[k]), own = start(m.own_x[k], m.own_x_dot[k]);
+        m.x_dot_before.push_back(ends[k].x_dot.dot(before));
+        m.x_ddot_before.push_back(ends[k].x_ddot.dot(before));
+        m.x_ddot_after.push_back(model.at(m.tau[k + 1], 0).x_ddot.dot(start(m.x[k + 1], m.x_dot[k + 1])));
+        m.gap.push_back(ends[k].x.dot(own) - m.own_x[k + 1]);
+        m.gap_rate.push_back(ends[k].x_dot.dot(own) - m.own_x_dot[k + 1]);
+        const Eigen::Vector2d row = ends[k].x.head<2>(), speed = ends[k].x_dot.head<2>();
+        m.gap_error.push_back(error(row.dot(covariance[k] * row) + covariance[k + 1](0, 0)));
+        m.jump_error.push_back(error(speed.dot(covariance[k] * speed) + covariance[k + 1](1, 1)));
+    }
+
     std::vector<double> left_x, left_a;
-    for (const Sample& s : samples) {
-        if (!r.x_ddot.empty()) m.left.push_back(r.x_ddot[s.k] - s.rows.x_ddot.dot(solution(s.interval)));
-        if (!r.x.empty()) left_x.push_back(r.x[s.k] - s.rows.x.dot(solution(s.interval)));
-        if (!r.x_ddot.empty() && !s.spike) left_a.push_back(r.x_ddot[s.k] - s.rows.x_ddot.dot(solution(s.interval)));
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+        const Sample& s = samples[k];
+        const Eigen::Vector4d from = start(m.x[s.interval], m.x_dot[s.interval]);
+        if (!r.x.empty()) left_x.push_back(r.x[k] - s.x.dot(from));
+        if (r.x_ddot.empty()) continue;
+        m.left.push_back(r.x_ddot[k] - s.x_ddot.dot(from));
+        if (!s.spike) left_a.push_back(m.left.back());
     }
     m.noise_x = r.x.empty() ? nan : robust_deviation(left_x);
     m.noise_x_ddot = r.x_ddot.empty() ? nan : robust_deviation(left_a);
@@ -278,10 +299,8 @@ namespace {
 /// What is left of the acceleration around an impact, and how well a moment and a pulse length explain it.
 class Around {
 public:
-    /// `apart`: the same motion with each interval fitted by itself.
-    Around(const Parameters& p, const MeasuredRecord& r, const FittedMotion& m, const FittedMotion& apart, std::size_t impact, double reach)
-        : tau_(m.tau[impact + 1]), jump_(m.x_dot[impact + 1] - m.x_dot_before[impact]), gap_(apart.gap[impact]), gap_error_(apart.gap_error[impact]),
-          gap_rate_(apart.x_dot_before[impact] - apart.x_dot[impact + 1]) {
+    Around(const Parameters& p, const MeasuredRecord& r, const FittedMotion& m, std::size_t impact, double reach)
+        : tau_(m.tau[impact + 1]), jump_(m.x_dot[impact + 1] - m.x_dot_before[impact]), gap_(m.gap[impact]), gap_error_(m.gap_error[impact]), gap_rate_(m.gap_rate[impact]) {
         const double tau = tau_;
         const auto first = std::lower_bound(r.tau.begin(), r.tau.end(), tau - reach), last = std::upper_bound(r.tau.begin(), r.tau.end(), tau + reach);
         // The background runs through the impact but for its small step: half of each side's.
@@ -307,6 +326,47 @@ private:
     double tau_, jump_, gap_, gap_error_, gap_rate_;
     std::vector<std::pair<double, double>> samples_;
 };
+
+/// Kinks of x inside of intervals that one motion does not fit: impacts whose pulse no sample has seen. One in each interval.
+std::vector<Spike> find_kinks(const Parameters& p, const MeasuredRecord& r, const FittedMotion& m, double noise) {
+    const Model model(p);
+    std::vector<Spike> kinks;
+    for (std::size_t i = 0; i < m.tau.size(); ++i) {
+        const double begin = m.tau[i], end = i + 1 < m.tau.size() ? m.tau[i + 1] : r.tau.back();
+        const auto first = static_cast<std::size_t>(std::lower_bound(r.tau.begin(), r.tau.end(), begin) - r.tau.begin());
+        const std::size_t n = std::min(static_cast<std::size_t>(std::upper_bound(r.tau.begin(), r.tau.end(), end) - r.tau.begin()) - first, kink_window);
+        if (n < 12) continue;
+        // What is left of x in units of its noise, by a start of its own for these samples.
+        Eigen::MatrixXd rows(n, 3);
+        Eigen::VectorXd left(n);
+        for (std::size_t k = 0; k < n; ++k) {
+            const Rows at = model.at(begin, r.tau[first + k] - begin);
+            rows.block<1, 2>(static_cast<Eigen::Index>(k), 0) = at.x.head<2>().transpose() / noise;
+            left(static_cast<Eigen::Index>(k)) = (r.x[first + k] - at.x.dot(Eigen::Vector4d(m.own_x[i], m.own_x_dot[i], m.force_sin, m.force_cos))) / noise;
+        }
+        const auto misfit = [&](Eigen::Index columns, Eigen::VectorXd* solution) {
+            const Eigen::MatrixXd used = rows.leftCols(columns);
+            const Eigen::VectorXd z = (used.transpose() * used).ldlt().solve(used.transpose() * left);
+            if (solution) *solution = z;
+            return (left - used * z).squaredNorm();
+        };
+        const double whole_misfit = misfit(2, nullptr);
+        if (whole_misfit < 1.3 * static_cast<double>(n) + 10) continue;
+        double least = whole_misfit, where = 0, jump = 0;
+        for (std::size_t c = 3; c + 3 < n; ++c) {
+            const double tau = 0.5 * (r.tau[first + c] + r.tau[first + c - 1]);
+            for (std::size_t k = 0; k < n; ++k) {
+                const double s = r.tau[first + k] - tau;
+                rows(static_cast<Eigen::Index>(k), 2) = s > 0 ? model.velocity_response(s) / noise : 0;
+            }
+            Eigen::VectorXd z;
+            const double with_kink = misfit(3, &z);
+            if (with_kink < least) least = with_kink, where = tau, jump = z(2);
+        }
+        if (whole_misfit - least > kink_sigmas * kink_sigmas) kinks.push_back({where, jump > 0 ? -1 : 1, jump, 0});
+    }
+    return kinks;
+}
 
 }  // namespace
 
@@ -334,12 +394,12 @@ RefinedImpacts refine_impacts(const Parameters& p, const MeasuredRecord& r, std:
         return refined;
     }
     fit(2 * step);
-    for (int round = 0; round < 3 && !spikes.empty(); ++round) {
+    constexpr int rounds = 10;
+    for (int round = 0; round < rounds && !spikes.empty(); ++round) {
         const FittedMotion& motion = refined.motion;
-        const FittedMotion apart = fit_motion(p, r, refined.tau, refined.pulse, false);
         const double reach = std::max(1.5 * refined.pulse, 2.5 * step);
         std::vector<Around> around;
-        for (std::size_t i = 0; i < spikes.size(); ++i) around.emplace_back(p, r, motion, apart, i, reach);
+        for (std::size_t i = 0; i < spikes.size(); ++i) around.emplace_back(p, r, motion, i, reach);
         // The mean of all moments by their likelihood: a single sample in a short pulse leaves two moments, before it and behind it.
         auto moment = [&](std::size_t i, double length, double& least) {
             const double centre = motion.tau[i + 1], width = std::max(step, 0.5 * length);
@@ -353,11 +413,11 @@ RefinedImpacts refine_impacts(const Parameters& p, const MeasuredRecord& r, std:
                 sum += likelihood;
                 first += likelihood * width * k / steps;
             }
-            return centre + first / sum;
+            return std::isfinite(first / sum) ? centre + first / sum : centre;
         };
         // One pulse length for the record: that with the smallest typical misfit. A few odd spikes must not choose it.
         double least = std::numeric_limits<double>::infinity(), pulse = refined.pulse;
-        for (double length = std::min(0.3 * step, shortest_pulse); length < std::max(6 * step, longest_pulse); length *= 1.12) {
+        for (double length = std::min(0.3 * step, shortest_pulse); length < std::max(6 * step, longest_pulse); length *= 1.06) {
             std::vector<double> misfits;
             for (std::size_t i = 0; i < spikes.size(); i += 1 + spikes.size() / 100) {
                 double misfit;
@@ -373,24 +433,28 @@ RefinedImpacts refine_impacts(const Parameters& p, const MeasuredRecord& r, std:
         }
         fit(pulse);
         // What is no impact has no jump, or one of the other sign: the foot of a long pulse, a bump of the cable.
-        std::vector<Spike> kept;
+        const double noise = std::max(refined.motion.noise_x_ddot, background_share * robust_deviation(r.x_ddot));
+        std::vector<Spike> seen = grouped(r, refined.motion.left, noise, sigmas, std::max(2 * pulse, 4 * step)), kept;
+        auto same = [&](const Spike& a, const Spike& b) { return std::abs(a.tau - b.tau) < 0.5 * (pulse + step) && a.side == b.side; };
         for (std::size_t i = 0; i < spikes.size(); ++i) {
-            const double jump = refined.motion.x_dot[i + 1] - refined.motion.x_dot_before[i];
-            (-spikes[i].side * jump > least_jump * std::abs(spikes[i].jump) ? kept : refined.dropped).push_back(spikes[i]);
+            const double jump = -spikes[i].side * (refined.motion.x_dot[i + 1] - refined.motion.x_dot_before[i]);
+            const bool visible = sigmas > 0 ? std::any_of(seen.begin(), seen.end(), [&](const Spike& s) { return same(s, spikes[i]); }) : jump > least_jump * std::abs(spikes[i].jump);
+            const bool certain = jump > kink_sigmas * refined.motion.jump_error[i];
+            ((visible && jump > 0) || certain ? kept : refined.dropped).push_back(spikes[i]);
         }
-        if (kept.size() < spikes.size()) {
-            spikes = std::move(kept);
-            fit(pulse);
+        if (sigmas > 0 && round + 1 < rounds) {
+            const std::size_t known = kept.size();
+            for (const Spike& s : seen)
+                if (std::none_of(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(known), [&](const Spike& k) { return same(s, k); })) kept.push_back(s);
+            if (!r.x.empty()) {
+                const std::vector<Spike> kinks = find_kinks(p, r, refined.motion, refined.motion.noise_x);
+                kept.insert(kept.end(), kinks.begin(), kinks.end());
+            }
         }
-        if (sigmas > 0 && round < 2) {
-            const double noise = std::max(refined.motion.noise_x_ddot, background_share * robust_deviation(r.x_ddot));
-            std::vector<Spike> again = grouped(r, refined.motion.left, noise, sigmas, std::max(2 * pulse, 4 * step));
-            for (Spike& s : again)  // the moment of one that was there is known better already
-                for (const Spike& known : spikes)
-                    if (std::abs(known.tau - s.tau) < 0.5 * pulse && known.side == s.side) s.tau = known.tau;
-            spikes = std::move(again);
-            fit(pulse);
-        }
+        const bool settled = kept.size() == spikes.size();
+        spikes = std::move(kept);
+        if (!settled) fit(pulse);
+        if (settled && round >= 2) break;
     }
     return refined;
 }

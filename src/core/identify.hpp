@@ -45,10 +45,13 @@ struct FittedMotion {
     double force_sin, force_cos;     ///< of the forcing force_sin sin(Omega tau) + force_cos cos(Omega tau), m
     double noise_x, noise_x_ddot;    ///< of what is left of each sensor, standard deviation; NaN without it
     std::vector<double> left;        ///< of the acceleration at each sample without the motion: the pulses and the noise
-    std::vector<double> gap, gap_error;  ///< at the impacts: by how much x jumps, and its standard error; if not connected
+    // Of each interval fitted by itself, with the forcing of all:
+    std::vector<double> own_x, own_x_dot;  ///< at its start
+    std::vector<double> gap, gap_error;    ///< at the impacts: by how much x jumps then, and its standard error
+    std::vector<double> gap_rate;          ///< and how fast that changes with the impact's moment
+    std::vector<double> jump_error;        ///< standard error of the jump of x' then
 };
-/// `connected`: x is continuous at the impacts. If not, each interval is fitted by itself.
-FittedMotion fit_motion(const Parameters& parameters, const MeasuredRecord& record, const std::vector<double>& impacts, double pulse, bool connected = true);
+FittedMotion fit_motion(const Parameters& parameters, const MeasuredRecord& record, const std::vector<double>& impacts, double pulse);
 
 /// Moments of the impacts between the samples, and the length of the pulse by which each one shows in the acceleration (half a
 /// sine), both such that the spikes' shape and the kinks of x fit best. A spike at which the motion has no jump of its sign is
@@ -61,7 +64,8 @@ struct RefinedImpacts {
     std::vector<Spike> dropped;
 };
 /// Once there is a motion, spikes are picked again from what it leaves of the acceleration, above `sigmas` times the noise: it
-/// is a better background than the neighbourhood. With 0 the given ones stay, but for those that are dropped.
+/// is a better background than the neighbourhood. And an interval that one motion does not fit is split at the kink of x: a
+/// pulse may lie between two samples. With 0 the given impacts stay, but for those that are dropped.
 RefinedImpacts refine_impacts(const Parameters& parameters, const MeasuredRecord& record, std::vector<Spike> spikes, double sigmas);
 
 /// One impact with what follows from the intervals on both of its sides.

@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -137,6 +138,19 @@ TEST_CASE("from a chaotic response lambda1 is found within 15 %, whatever the wa
         CHECK(r.judged.verdict == Verdict::chaotic);
         CHECK(r.refined.pulse / m.omega0 == doctest::Approx(c.sensors.pulse).epsilon(0.25));
     }
+}
+
+TEST_CASE("an impact whose pulse falls between two samples is found by the kink of the displacement") {
+    const Measurement m = measured(0.015, 0.85, 0.85, {1024, 20, 0.8e-3, 2e-6, 0.05});
+    const std::vector<Spike> spikes = find_spikes(m.record, 6).spikes;
+    CHECK(static_cast<double>(spikes.size()) < 0.95 * static_cast<double>(m.impacts.size()));
+    const Result r = identified(m);
+    long found = 0;
+    for (const Impact& i : m.impacts)
+        found += std::any_of(r.refined.tau.begin(), r.refined.tau.end(), [&](double tau) { return std::abs(tau - i.tau) < 5e-4 * m.omega0; });
+    CHECK(static_cast<double>(found) > 0.96 * static_cast<double>(m.impacts.size()));
+    CHECK(r.lambda1 == doctest::Approx(true_lambda1(m)).epsilon(0.15));
+    CHECK(r.judged.verdict == Verdict::chaotic);
 }
 
 TEST_CASE("noise alone has no spikes") {
