@@ -174,6 +174,22 @@ Json describe_identified(const std::vector<IdentifiedImpact>& impacts, double om
     return j;
 }
 
+/// The paper's direct estimate beside ours: velocities by differences, and what follows from them.
+Json describe_direct(Parameters p, const IdentifyRequest& r, const RefinedImpacts& refined) {
+    if (r.record.x.empty() || r.record.x_ddot.empty()) return nullptr;
+    const Identification found = identify_impacts(p, direct_motion(r.record, refined.tau, refined.pulse), refined.side, refined.pulse);
+    if (!r.R_given) {
+        if (std::isfinite(found.plus.R)) p.R_plus = std::clamp(found.plus.R, 0.0, 1.0);
+        if (std::isfinite(found.minus.R)) p.R_minus = std::clamp(found.minus.R, 0.0, 1.0);
+    }
+    TransferProduct product({true, false, false, 256});
+    append_identified(p, found, product);
+    Json columns = describe_identified(found.impacts, r.system.si->omega0()), lambda = Json::array();
+    for (const char* same : {"time_s", "tau", "side"}) columns.erase(same);
+    for (double v : product.qr()) lambda.push_back(finite_or_null(v));
+    return {{"impacts", std::move(columns)}, {"restitution", {{"plus", describe_restitution(found.plus)}, {"minus", describe_restitution(found.minus)}}}, {"lambda", std::move(lambda)}};
+}
+
 /// The run of the identified system from the state after the first impact whose state is known, over the record's time.
 Json forward_run(const Parameters& p, const Identification& found, const FittedMotion& motion, double tau_end) {
     for (const IdentifiedImpact& i : found.impacts) {
@@ -312,7 +328,10 @@ Json identify_answer(const IdentifyRequest& r) {
     answer["slope"] = {{"lambda1", finite_or_null(judged.slope)}, {"low", finite_or_null(judged.low)}, {"high", finite_or_null(judged.high)}};
     answer["verdict"] = word(judged.verdict);
     answer["verdict_reason"] = reason_of(judged);
-    if (r.impacts.empty()) answer["forward"] = forward_run(p, found, refined.motion, r.record.tau.back());
+    if (r.impacts.empty()) {
+        answer["direct"] = describe_direct(r.system.parameters, r, refined);
+        answer["forward"] = forward_run(p, found, refined.motion, r.record.tau.back());
+    }
     answer["warnings"] = warnings;
     return answer;
 }

@@ -459,6 +459,42 @@ RefinedImpacts refine_impacts(const Parameters& p, const MeasuredRecord& r, std:
     return refined;
 }
 
+FittedMotion direct_motion(const MeasuredRecord& r, const std::vector<double>& impacts, double pulse) {
+    // Differences over this time: longer, and x'' changes; shorter, and the noise of x grows.
+    constexpr double span = 0.2;
+    FittedMotion m;
+    m.tau = {r.tau.front()};
+    m.tau.insert(m.tau.end(), impacts.begin(), impacts.end());
+    m.x = {r.x.front()};
+    m.x_dot = {nan};
+    const auto last = static_cast<std::ptrdiff_t>(r.tau.size()) - 1;
+    const auto sample = [&](double tau) { return std::lower_bound(r.tau.begin(), r.tau.end(), tau) - r.tau.begin(); };
+    for (std::size_t i = 0; i < impacts.size(); ++i) {
+        const double tau = impacts[i];
+        // On each side the sample next to the pulse, and one about `span` away, but not beyond the next impact's pulse.
+        struct Side {
+            double x, x_dot, x_ddot;
+        };
+        const auto estimate = [&](std::ptrdiff_t near, std::ptrdiff_t far) {
+            near = std::clamp<std::ptrdiff_t>(near, 0, last);
+            far = std::clamp<std::ptrdiff_t>(far, 0, last);
+            const double a = r.tau[near], b = r.tau[far], x_ddot = r.x_ddot[near];
+            const double x_dot = near == far ? nan : (r.x[near] - r.x[far]) / (a - b) + x_ddot * (tau - 0.5 * (a + b));
+            const double s = tau - a;
+            return Side{r.x[near] + x_dot * s - 0.5 * x_ddot * s * s, x_dot, x_ddot};
+        };
+        const double earliest = i > 0 ? impacts[i - 1] + 0.5 * pulse : r.tau.front(), latest = i + 1 < impacts.size() ? impacts[i + 1] - 0.5 * pulse : r.tau.back();
+        const Side before = estimate(sample(tau - 0.5 * pulse) - 1, sample(std::max(earliest, tau - 0.5 * pulse - span)));
+        const Side after = estimate(sample(tau + 0.5 * pulse), sample(std::min(latest, tau + 0.5 * pulse + span)) - 1);
+        m.x.push_back(0.5 * (before.x + after.x));
+        m.x_dot_before.push_back(before.x_dot);
+        m.x_ddot_before.push_back(before.x_ddot);
+        m.x_ddot_after.push_back(after.x_ddot);
+        m.x_dot.push_back(after.x_dot);
+    }
+    return m;
+}
+
 namespace {
 
 // What an impact of a real measurement may miss R in [0, 1] and the balance of momentum by, before it is left out.
@@ -467,6 +503,7 @@ constexpr double R_tolerance = 0.15, momentum_tolerance = 0.35;
 std::string fault_of(const IdentifiedImpact& i, double before, double pulse) {
     if (before < pulse) return "closer to the impact before it than the length of a pulse: one spike picked twice?";
     if (!std::isnan(i.y_dot_before) && !(i.side * (i.x_dot_before - i.y_dot_before) > 0)) return "the mass would move away from the wall that it meets: is an impact beside it missing, or b wrong?";
+    if (std::isnan(i.x_dot_before) || std::isnan(i.x_dot_after)) return "too few samples beside it for a velocity";
     if (std::isnan(i.R)) return "";  // the first and the last: the flight on one side is not known, and R with it
     if (i.R < -R_tolerance || i.R > 1 + R_tolerance) return "R lies outside [0, 1]: is an impact beside it missing, or b wrong?";
     if (!(std::abs(i.momentum_error) < momentum_tolerance)) return "momentum is not kept: is an impact beside it missing or false, or b wrong?";

@@ -68,6 +68,11 @@ struct RefinedImpacts {
 /// pulse may lie between two samples. With 0 the given impacts stay, but for those that are dropped.
 RefinedImpacts refine_impacts(const Parameters& parameters, const MeasuredRecord& record, std::vector<Spike> spikes, double sigmas);
 
+/// The paper's direct estimate of the motion at impacts that are known: x' from differences of x beside the pulse, carried to
+/// the impact by x'' from the sample there. Needs both sensors. What it magnifies is the noise of x over a short time; it is there
+/// to be compared with. Only what identify_impacts() takes is set.
+FittedMotion direct_motion(const MeasuredRecord& record, const std::vector<double>& impacts, double pulse);
+
 /// One impact with what follows from the intervals on both of its sides.
 struct IdentifiedImpact {
     double tau;

@@ -68,6 +68,10 @@ TEST_CASE("a CSV file and the same record as JSON give the impacts, the restitut
     CHECK(a["exponents"]["qr"]["history"]["tau"].size() + 1 == a["impacts"]["tau"].size());
     CHECK(a["slope"]["low"] < a["slope"]["high"]);
     CHECK(a["forward"]["impacts"]["tau"].size() > 100);
+    // The paper's direct estimate agrees, and scatters more.
+    CHECK(a["direct"]["restitution"]["plus"]["R"].get<double>() == doctest::Approx(0.85).epsilon(0.02));
+    CHECK(a["direct"]["restitution"]["plus"]["standard_error"] > a["restitution"]["plus"]["standard_error"]);
+    CHECK(std::abs(a["direct"]["lambda"][0].get<double>() - a["exponents"]["qr"]["final"][0].get<double>()) < 0.02);
     CHECK(Json::parse(a.dump()) == a);
     Json record = Json::object();
     for (const CsvColumn& c : parse_csv(csv)) record[c.name] = c.values;
