@@ -21,12 +21,23 @@ const post = (path, fields, signal) => fetch(path, {method: "POST", headers: {"C
 
 export const simulate = async (fields, signal) => read(await post("v1/simulate", fields, signal));
 
+/** query: the fields; record: a file of CSV, sent as it is. */
+export const identify = async (query, record, signal) => read(await fetch(`v1/identify?${query}`, {method: "POST", headers: {"Content-Type": "text/csv"}, body: record, signal}));
+
+/** The same with all in JSON. */
+export const identifyJson = async (fields, signal) => read(await post("v1/identify", fields, signal));
+
 /** A sweep's answer, a stream of lines. */
 export async function sweep(request, signal) {
   const response = await post("v1/sweep", request, signal);
   return response.ok ? response.body : read(response);
 }
 
+const quoted = (text) => `'${text.replaceAll("'", "'\\''")}'`;
+const whole = (path) => new URL(path, location.href.split("?")[0]);
+
 /** A request for a terminal. */
 export const asCurl = (path, fields, flags = "-s") =>
-  `curl ${flags} ${new URL(path, location.href.split("?")[0])} -d '${JSON.stringify(fields).replaceAll("'", "'\\''")}'`;
+  `curl ${flags} ${whole(path)} -d ${quoted(JSON.stringify(fields))}`;
+
+export const recordAsCurl = (query, name) => `curl -s ${quoted(`${whole("v1/identify")}?${query}`)} -H 'Content-Type: text/csv' --data-binary ${quoted(`@${name}`)}`;

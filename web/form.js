@@ -7,7 +7,7 @@ export const groups = {
   start: ["Initial state", false], run: ["Run", true], output: ["Output", false],
 };
 const hidden = new Set(["preset", "include"]);  // the preset has its own menu; the page needs every part that it draws
-const wide = new Set(["choice", "choices", "intervals", "states"]);
+const wide = new Set(["choice", "choices", "intervals", "states", "text"]);
 const hints = {intervals: "none; as a,b; c,d", states: "one; as x0=0.01; x0=0, y0=0.002"};
 
 const isObject = (value) => typeof value === "object" && value !== null;
@@ -20,7 +20,7 @@ const interval = (text) => text.split(",").map(number);
 const intervals = (text) => text.split(";").filter((part) => part.trim()).map(interval);
 const state = (text) => text.includes("=") ? Object.fromEntries(text.split(",").map((part) => part.split("=")).map(([name, value = ""]) => [name.trim(), number(value)])) : text.trim();
 const states = (text) => text.split(";").filter((part) => part.trim()).map(state);
-const readers = {interval, intervals, states};
+const readers = {interval, intervals, states, text: (text) => text.trim()};
 
 export class Form {
   /** prefix: of the ids, where a page has several forms; grouped: the groups to show, as in `groups`. */

@@ -1,15 +1,16 @@
 // The page: its tabs, and the address, which names the tab and holds its request. So a link shows the same, and Back leads back.
 import {get} from "./api.js";
 import {$} from "./dom.js";
+import * as measurement from "./measurement.js";
 import * as simulation from "./simulation.js";
 import * as sweep from "./sweep.js";
 import * as tabs from "./tabs.js";
 
-const panes = {simulation, sweep};
+const panes = {simulation, sweep, measurement};
 const scrolled = {};
 let current = null;
 
-const address = (name, query) => `?${name === "simulation" ? query : ["tab=sweep", query].filter(Boolean).join("&")}`;
+const address = (name, query) => `?${name === "simulation" ? query : [`tab=${name}`, query].filter(Boolean).join("&")}`;
 
 function show(name) {
   if (current === name) return;
@@ -21,7 +22,7 @@ function show(name) {
 
 /** Follows the address. */
 function follow() {
-  const query = new URLSearchParams(location.search), name = query.get("tab") === "sweep" ? "sweep" : "simulation";
+  const query = new URLSearchParams(location.search), name = Object.hasOwn(panes, query.get("tab")) ? query.get("tab") : "simulation";
   query.delete("tab");
   show(name);
   return panes[name].open(query);
@@ -45,6 +46,7 @@ async function start() {
   $("version").textContent = `vines ${version.version}`;
   simulation.start(fields.fields, presets, keep("simulation"));
   sweep.start(fields, keep("sweep"), simulatePoint);
+  measurement.start(fields.identify_fields, presets, keep("measurement"));
   tabs.listen((name) => { if (name !== current) go(name, panes[name].query() ?? ""); });
   addEventListener("popstate", follow);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { for (const pane of Object.values(panes)) pane.redraw(); });

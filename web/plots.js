@@ -6,15 +6,23 @@ export const colour = (name) => getComputedStyle(document.documentElement).getPr
 const plain = (value) => Math.abs(value) >= 1e5 || (value !== 0 && Math.abs(value) < 1e-3) ? value.toExponential(2).replace(/\.?0+e\+?/, "e") : Number(value.toPrecision(5)).toString();
 export const short = (value) => value == null ? "–" : plain(value).replace("-", "−");
 
-// Plots over tau zoom and point together.
-const together = new Set();
+const patience = 250;  // ms in which a second click makes a double-click
+
+// Plots over the same time zoom and point together.
+const together = {};
 let zooming = false;
-function zoomAll(source) {
+function zoomAll(source, group) {
   if (zooming) return;
   zooming = true;
   const {min, max} = source.scales.x;
-  for (const plot of together) if (plot !== source && plot.root.isConnected) plot.setScale("x", {min, max});
+  for (const plot of together[group]) if (plot !== source && plot.root.isConnected) plot.setScale("x", {min, max});
   zooming = false;
+}
+
+/** Adds a symbol to a path: a cross, or else a ring. */
+function symbol(c, shape, x, y, r) {
+  if (shape === "cross") { c.moveTo(x - r, y - r); c.lineTo(x + r, y + r); c.moveTo(x - r, y + r); c.lineTo(x + r, y - r); }
+  else { c.moveTo(x + r, y); c.arc(x, y, r, 0, 2 * Math.PI); }
 }
 
 /** The labels of a logarithmic axis: powers of ten (not all, if there are many), and 2 and 5 between them if there are few. */
@@ -29,7 +37,9 @@ export const axisStyle = () => ({stroke: colour("soft"), grid: {stroke: colour("
   font: "12px system-ui", labelFont: "12px system-ui", labelGap: 0});
 
 export class LinePlot {
-  constructor(container, {synced = false} = {}) {
+  /** synced: the name of the plots that zoom together. */
+  constructor(container, {synced} = {}) {
+    if (synced) together[synced] ??= new Set();
     this.container = container;
     this.synced = synced;
     this.plot = null;
@@ -48,41 +58,62 @@ export class LinePlot {
   }
 
   /**
-   * series: [{label, colour, dash, width, dots}], dots: their size, and no line unless there is a width; range: of y; log: of y;
-   * levels: of y, in the colour levelColour; lines: moments of tau; bands: intervals of tau, calm: those of the other shade.
+   * series: [{label, colour, dash, width, dots, paths}], dots: their size, and no line unless there is a width; paths: as uPlot has it; range: of y; log: of y;
+   * levels: of y, each in the colour levelColour or as {y, colour}; lines: moments of tau; bands: intervals of tau, calm: those of the other shade;
+   * marks: [{x, y, colour, shape, size}] over the lines; layers: [{from, to, colour}], of y, below them; x: the name of the axis, instead of tau; click(x, reach): called where one clicks, reach: a few pixels in units of x.
    */
   draw(options) {
     this.last = options;
     if (this.plot) {
-      together.delete(this.plot);
+      together[this.synced]?.delete(this.plot);
       this.plot.destroy();
       this.plot = null;
     }
     if (this.container.clientWidth) this.create(options);
   }
 
-  create({series, data, range, label, log = false, levels = [], levelColour = "soft", lines = [], bands = [], calm = []}) {
+  create({series, data, range, label, log = false, levels = [], levelColour = "soft", lines = [], bands = [], calm = [], layers = [], x = "τ", click}) {
     const axis = axisStyle();
     const logAxis = log ? {splits: (u) => logTicks(u.scales.y.min, u.scales.y.max), filter: (_, splits) => splits} : {};
     const values = (_, ticks) => ticks.map(short);
     const options = {
       padding: [8, 12, 0, 0], width: this.container.clientWidth, height: Math.max(this.container.clientHeight - 28, 80),
       scales: {x: {time: false}, y: {...(range ? {range: () => range} : {}), ...(log ? {distr: 3} : {})}},
-      axes: [{...axis, size: 24, gap: 2, label: "τ", labelSize: 16, values}, {...axis, size: 52, gap: 3, label, labelSize: 18, values, ...logAxis}],
-      series: [{label: "τ", value: (_, v) => short(v)},
+      axes: [{...axis, size: 24, gap: 2, label: x, labelSize: 16, values}, {...axis, size: 52, gap: 3, label, labelSize: 18, values, ...logAxis}],
+      series: [{label: x, value: (_, v) => short(v)},
         ...series.map((s) => ({label: s.label, stroke: colour(s.colour), width: s.width ?? 1, dash: s.dash, points: {show: false}, value: (_, v) => short(v), spanGaps: false,
-          ...(s.dots && !s.width ? {paths: () => null} : {})}))],
-      cursor: {sync: this.synced ? {key: "tau"} : undefined, drag: {x: true, y: false}, points: {size: 5}},
+          ...(s.paths || (s.dots && !s.width) ? {paths: s.paths ?? (() => null)} : {})}))],
+      cursor: {sync: this.synced ? {key: this.synced} : undefined, drag: {x: true, y: false}, points: {size: 5}},
       legend: {live: true},
       hooks: {
-        drawClear: [(u) => { this.shade(u, calm, "calm"); this.shade(u, bands, "shade"); }],
-        draw: [(u) => { this.rule(u, levels, levelColour, lines); series.forEach((s, i) => { if (s.dots) this.dot(u, s, i + 1); }); }],
-        setScale: [(u, key) => { if (this.synced && key === "x") zoomAll(u); }],
+        drawClear: [(u) => { for (const layer of layers) this.layer(u, layer); this.shade(u, calm, "calm"); this.shade(u, bands, "shade"); }],
+        draw: [(u) => { this.rule(u, levels, levelColour, lines); series.forEach((s, i) => { if (s.dots) this.dot(u, s, i + 1); }); for (const group of this.last.marks ?? []) this.symbols(u, group); }],
+        setScale: [(u, key) => { if (this.synced && key === "x") zoomAll(u, this.synced); }],
       },
     };
     this.plot = new uPlot(options, data, this.container);
     requestAnimationFrame(() => this.resize());  // when the legend has its final height
-    if (this.synced) together.add(this.plot);
+    if (this.synced) together[this.synced].add(this.plot);
+    if (click) this.listen(this.plot, click);
+  }
+
+  /** The end of a drag is no click, nor is half of a double-click. */
+  listen(u, click) {
+    let from = null, waiting = 0;
+    u.over.addEventListener("mousedown", (event) => { from = event.clientX; });
+    u.over.addEventListener("click", (event) => {
+      clearTimeout(waiting);
+      if (event.detail > 1 || (from !== null && Math.abs(event.clientX - from) > 3)) return;
+      const at = event.clientX - u.over.getBoundingClientRect().left, t = u.posToVal(at, "x");
+      waiting = setTimeout(() => click(t, u.posToVal(at + 6, "x") - t), patience);
+    });
+  }
+
+  /** Other marks, and the zoom stays. */
+  mark(marks) {
+    if (!this.last) return;
+    this.last.marks = marks;
+    this.plot?.redraw(false);
   }
 
   /** One path, filled once: bands that share a pixel do not darken it. */
@@ -98,6 +129,14 @@ export class LinePlot {
     u.ctx.restore();
   }
 
+  layer(u, {from, to, colour: name}) {
+    this.clip(u);
+    u.ctx.fillStyle = colour(name);
+    const top = u.valToPos(to, "y", true);
+    u.ctx.fillRect(u.bbox.left, top, u.bbox.width, u.valToPos(from, "y", true) - top);
+    u.ctx.restore();
+  }
+
   clip(u) {
     u.ctx.save();
     u.ctx.beginPath();
@@ -109,9 +148,9 @@ export class LinePlot {
     this.clip(u);
     u.ctx.lineWidth = devicePixelRatio;
     u.ctx.setLineDash([]);
-    u.ctx.strokeStyle = colour(levelColour);
-    for (const y of levels) {
-      const at = u.valToPos(y, "y", true);
+    for (const level of levels) {
+      const {y, colour: name} = typeof level === "number" ? {y: level, colour: levelColour} : level, at = u.valToPos(y, "y", true);
+      u.ctx.strokeStyle = colour(name);
       u.ctx.beginPath(); u.ctx.moveTo(u.bbox.left, at); u.ctx.lineTo(u.bbox.left + u.bbox.width, at); u.ctx.stroke();
     }
     u.ctx.strokeStyle = colour("wall");
@@ -138,6 +177,30 @@ export class LinePlot {
       u.ctx.fillRect(lastX = x, lastY = y, size, size);
     }
     u.ctx.restore();
+  }
+
+  /** A mark beyond the range of y lies on its edge. */
+  symbols(u, {x, y, colour: name, shape, size = 4, width = 1.3}) {
+    const {min, max} = u.scales.x, {left, top, width: w, height: h} = u.bbox, ratio = devicePixelRatio, c = u.ctx;
+    const shown = x.reduce((n, v) => n + (v >= min && v <= max), 0), r = size * ratio * Math.min(Math.max(Math.sqrt(w / ratio / (4 * shown)), 0.5), 1);  // smaller where there are many
+    const flat = shape === "dot" || shown > 2000;  // crosses that hide each other take long to draw
+    c.save();
+    c.beginPath();
+    c.rect(left - r, top - r, w + 2 * r, h + 2 * r);
+    c.clip();
+    c.strokeStyle = c.fillStyle = colour(name);
+    c.lineWidth = width * ratio;
+    c.setLineDash([]);
+    c.beginPath();
+    for (let i = 0; i < x.length; ++i) {
+      if (!(x[i] >= min && x[i] <= max) || y[i] == null) continue;
+      const px = u.valToPos(x[i], "x", true), py = Math.min(Math.max(u.valToPos(y[i], "y", true), top), top + h);
+      if (flat) c.rect(px - r, py - r, 2 * r, 2 * r);
+      else symbol(c, shape, px, py, r);
+    }
+    if (flat) c.fill();
+    else c.stroke();
+    c.restore();
   }
 
   redraw() { if (this.last) this.draw(this.last); }
@@ -168,7 +231,7 @@ export class ScatterPlot {
   }
 
   /**
-   * groups: [{x, y, colour, size, alpha}]; curves: [{x, y, colour, dash}]; levels: [{y, colour, label}]; extent: {x, y}, else that of the groups;
+   * groups: [{x, y, colour, size, alpha, shape}], shape: ring, cross or else a dot; curves: [{x, y, colour, dash}]; levels: [{y, colour, label}]; extent: {x, y}, else that of the groups;
    * equal: the same scale on both axes; xLabel, yLabel; empty: what to say if there are no points.
    */
   draw(options) {
@@ -221,11 +284,16 @@ export class ScatterPlot {
     c.restore();
   }
 
-  dots(c, {x, y, colour: name, size: asked = 2.4, alpha = 0.75}, px, py) {
+  dots(c, {x, y, colour: name, size: asked = 2.4, alpha = 0.75, shape}, px, py) {
     const size = x.length > 20000 ? 1 : asked;
     c.globalAlpha = alpha;
-    c.fillStyle = colour(name);
-    for (let i = 0; i < x.length; ++i) c.fillRect(px(x[i]) - size / 2, py(y[i]) - size / 2, size, size);
+    c.fillStyle = c.strokeStyle = colour(name);
+    if (shape) {
+      c.lineWidth = 1.2;
+      c.beginPath();
+      for (let i = 0; i < x.length; ++i) symbol(c, shape, px(x[i]), py(y[i]), size);
+      c.stroke();
+    } else for (let i = 0; i < x.length; ++i) c.fillRect(px(x[i]) - size / 2, py(y[i]) - size / 2, size, size);
     c.globalAlpha = 1;
   }
 

@@ -1,12 +1,12 @@
 // What a run came to, in words and numbers: the cards above the plots, the windows' table and where the energy went.
 import {$, element} from "./dom.js";
 
-const minus = (text) => text.replace("-", "−");
-const digits = (value, n = 4) => value == null ? "–" : minus(Math.abs(value) < 1e-3 && value !== 0 ? value.toExponential(2) : value.toFixed(n));
-const percent = (value) => value == null ? "–" : `${(value * 100).toFixed(value < 0.1 && value >= 0.0005 ? 1 : 0)} %`;
-const count = (n, noun) => `${n} ${noun}${n === 1 ? "" : "s"}`;
+export const minus = (text) => text.replace("-", "−");
+export const digits = (value, n = 4) => value == null ? "–" : minus(Math.abs(value) < 1e-3 && value !== 0 ? value.toExponential(2) : value.toFixed(n));
+export const percent = (value) => value == null ? "–" : `${(value * 100).toFixed(value < 0.1 && value >= 0.0005 ? 1 : 0)} %`;
+export const count = (n, noun) => `${n} ${noun}${n === 1 ? "" : "s"}`;
 const positives = (estimator) => !estimator || estimator.final[0] == null ? null : estimator.final.filter((v) => v > 0).length;
-const verdicts = {chaotic: "chaotic", regular: "regular", not_decided: "not decided"};
+export const verdicts = {chaotic: "chaotic", regular: "regular", not_decided: "not decided"};
 
 /** An exponent in a word where it has no value. */
 const exponent = ({final, status}, k) => status[k] === "minus_infinity" ? "−∞" : digits(final[k]);
@@ -33,6 +33,14 @@ function verdictCards(e, r) {
   ];
 }
 
+/** entries: [term, value, a remark]. */
+export function cards(list, entries) {
+  list.replaceChildren(...entries.map(([term, value, small]) => element("div", {},
+    element("dt", {textContent: term}), element("dd", {}, value, element("small", {textContent: small ? ` ${small}` : ""})))));
+}
+
+export const listWarnings = (list, warnings) => list.replaceChildren(...warnings.map((w) => element("li", {textContent: w})));
+
 export function summarise({exponents, regime, energy, impacts, sticking, parameters, warnings}, milliseconds) {
   const [type, z] = regimeCards(regime), [verdict, lambda, positive, residual, window] = verdictCards(exponents, regime);
   const entries = [
@@ -44,9 +52,8 @@ export function summarise({exponents, regime, energy, impacts, sticking, paramet
     positive, residual, window,
     ["answered in", `${milliseconds.toFixed(0)} ms`, `damping ζ = ${digits(parameters.derived.zeta, 5)}`],
   ];
-  $("summary").replaceChildren(...entries.map(([term, value, small]) => element("div", {},
-    element("dt", {textContent: term}), element("dd", {}, value, element("small", {textContent: small ? ` ${small}` : ""})))));
-  $("warnings").replaceChildren(...warnings.map((w) => element("li", {textContent: w})));
+  cards($("summary"), entries);
+  listWarnings($("warnings"), warnings);
 }
 
 /** The exponents of each window asked for. */

@@ -9,7 +9,7 @@ const matrices = ["J", "M", "T"];
 const line = (name, options) => [name, new LinePlot($(`plot-${name}`), options)];
 const scatter = (name) => [name, new ScatterPlot($(`plot-${name}`))];
 const plots = Object.fromEntries([
-  ...["x", "largest", "relative", "z", ...matrices, "differences"].map((name) => line(name, {synced: true})),
+  ...["x", "largest", "relative", "z", ...matrices, "differences"].map((name) => line(name, {synced: "tau"})),
   ...estimators.map((name) => line(name)),
   ...["portrait", "velocities", "section", "stroboscopic", "multipliers", "manifold"].map(scatter),
 ]);

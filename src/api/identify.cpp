@@ -201,16 +201,17 @@ Json forward_run(const Parameters& p, const Identification& found, const FittedM
         Lyapunov lyapunov(p, 0, std::numeric_limits<double>::infinity(), {true, false, false, 256});
         Observer* const observers[] = {&impacts, &lyapunov};
         simulate(p, state, {start + tau_end - i.tau, 100000, {}, start}, observers);
-        Json tau = Json::array(), side = Json::array(), x = Json::array();
+        Json tau = Json::array(), side = Json::array(), x = Json::array(), x_dot_after = Json::array();
         for (const Impact& impact : impacts.impacts) {
             tau.push_back(impact.tau - start + i.tau);
             side.push_back(impact.side);
             x.push_back(impact.x);
+            x_dot_after.push_back(impact.x_dot_after);
         }
         const Exponents lambda = lyapunov.product().qr();
         Json exponents = Json::array();
         for (double v : lambda) exponents.push_back(finite_or_null(v));
-        return {{"start", i.tau}, {"impacts", {{"tau", std::move(tau)}, {"side", std::move(side)}, {"x", std::move(x)}}}, {"lambda", std::move(exponents)}};
+        return {{"start", i.tau}, {"impacts", {{"tau", std::move(tau)}, {"side", std::move(side)}, {"x", std::move(x)}, {"x_dot_after", std::move(x_dot_after)}}}, {"lambda", std::move(exponents)}};
     }
     return nullptr;
 }
@@ -325,6 +326,7 @@ Json identify_answer(const IdentifyRequest& r) {
     answer["restitution"] = {{"plus", describe_restitution(found.plus)}, {"minus", describe_restitution(found.minus)}};
     answer["b_fitted"] = {{"b", finite_or_null(found.b_fitted)}, {"standard_error", finite_or_null(found.b_error)}};
     answer["exponents"] = describe_exponents(product, r.estimators, p.zeta(), Regime{}, true, warnings);
+    for (const char* of_a_simulation : {"verdict", "verdict_sigmas", "verdict_reason"}) answer["exponents"].erase(of_a_simulation);  // the record's own follows
     answer["slope"] = {{"lambda1", finite_or_null(judged.slope)}, {"low", finite_or_null(judged.low)}, {"high", finite_or_null(judged.high)}};
     answer["verdict"] = word(judged.verdict);
     answer["verdict_reason"] = reason_of(judged);

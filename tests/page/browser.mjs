@@ -26,16 +26,18 @@ export async function startBrowser() {
   return {context, complaints, stop: async () => { await context.close(); await rm(profile, {recursive: true, force: true}); }};
 }
 
-/** Opens a page and waits until its first answer is drawn: of a simulation, or of a whole sweep. */
+/** Opens a page and waits until its first answer is drawn: of a simulation, or of a whole sweep; or until a record can be chosen. */
 export async function open(context, url, options = {}) {
   const page = await context.newPage();
   if (options.viewport) await page.setViewportSize(options.viewport);
   if (options.colorScheme) await page.emulateMedia({colorScheme: options.colorScheme});
   await page.goto(url);
-  await (url.includes("tab=sweep") ? swept : drawn)(page, 1);
+  if (url.includes("tab=measurement")) await page.waitForFunction(() => document.getElementById("measure-preset").value);
+  else await (url.includes("tab=sweep") ? swept : drawn)(page, 1);
   return page;
 }
 
 const done = (id, timeout) => (page, n) => page.waitForFunction(([id, n]) => Number(document.getElementById(id).dataset.done ?? 0) >= n, [id, n], {timeout});
 export const drawn = done("results", 20000);
+export const identified = done("measure-results", 20000);
 export const swept = done("sweep-results", 90000);

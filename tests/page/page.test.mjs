@@ -2,7 +2,8 @@
 import {after, before, test} from "node:test";
 import assert from "node:assert/strict";
 import {readFile} from "node:fs/promises";
-import {startBrowser, open, drawn, swept} from "./browser.mjs";
+import {startBrowser, open, drawn, identified, swept} from "./browser.mjs";
+import {measured} from "./record.mjs";
 import {startService} from "../service.mjs";
 
 let service, browser;
@@ -470,3 +471,194 @@ for (const query of [small, "tab=sweep&axis1=b,0.005,0.035,8&axis2=R,0.4,0.8,6&c
     assert.deepEqual(beyond, []);
     await page.close();
   });
+
+// Measurements.
+
+const asFile = (text, name = "record.csv") => ({name, mimeType: "text/csv", buffer: Buffer.from(text)});
+
+/** A page that has identified a record. */
+async function identify(text, query = "", options = {}) {
+  const page = await open(browser.context, `${service.url}/?tab=measurement${query}`, options);
+  await page.setInputFiles("#measure-file", asFile(text));
+  await page.click("#measure-run");
+  await identified(page, 1);
+  return page;
+}
+
+let record;
+const regular = async () => record ??= await measured(service.url, "fig15", 6);
+const measuredCanvases = ["a canvas", "x canvas", "qr canvas", "raw canvas", "R canvas", "steps canvas", "portrait", "section"].map((name) => `#plot-measured-${name}`);
+const rows = (page) => page.$$eval("#measure-impacts tr", (list) => list.map((row) => [...row.cells].map((cell) => cell.querySelector("input")?.value ?? cell.textContent)));
+
+test("a record shows itself when it is chosen; identified, its impacts, section, exponents and verdict", async () => {
+  const page = await open(browser.context, `${service.url}/?tab=measurement&preset=fig15`);
+  await page.setInputFiles("#measure-file", asFile(await regular()));
+  await page.waitForSelector("#plot-measured-a canvas");
+  assert.equal(await pixels(page, "#plot-measured-a canvas", "plus"), 0, "no impacts are known yet");
+  await page.click("#measure-run");
+  await identified(page, 1);
+  for (const canvas of measuredCanvases) assert.ok(await colours(page, canvas) > 3, canvas);
+  for (const name of ["plus", "minus"]) for (const plot of ["a canvas", "x canvas", "section"]) assert.ok(await pixels(page, `#plot-measured-${plot}`, name) > 20, `${plot}: ${name}`);
+  const summary = await page.textContent("#measure-summary");
+  assert.match(summary, /verdictregular the slope's 90 % interval lies below/);
+  assert.match(summary, /impacts\d\d 0 left out/);
+  assert.match(summary, /R at \+b0\.8[45]\d+ ± 0\.000\d+ \d+ impacts/);
+  assert.match(summary, /b fitted\d\.\d+ ± 0\.0\d+ mm given 9 mm, agrees/);
+  assert.match(summary, /forcing G(10|9\.99\d*|10\.0\d) mm/);
+  assert.equal((await rows(page)).length, Number(summary.match(/impacts(\d+) 0 left/)[1]));
+  const [download] = await Promise.all([page.waitForEvent("download"), page.click("#measure-download")]);
+  assert.equal(JSON.parse(await readFile(await download.path(), "utf8")).verdict, "regular");
+  assert.equal(download.suggestedFilename(), "record-identified.json");
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("the form's link holds its fields, another tab keeps the record, and other units and separators draw the same", async () => {
+  const text = (await regular()).replace(/^.*\n/, "Zeit;Weg;a\n").replace(/(?<=\d),/g, ";").replaceAll(".", ",");
+  const page = await open(browser.context, `${service.url}/?tab=measurement&preset=fig15`);
+  await page.setInputFiles("#measure-file", asFile(text));
+  await page.click("#measure-group-record > summary");
+  await page.fill("[aria-describedby='measure-error-time_column']", "zeit");
+  await page.fill("[aria-describedby='measure-error-displacement_column']", "Weg");
+  await page.fill("[aria-describedby='measure-error-threshold']", "7");
+  await page.click("#measure-run");
+  await identified(page, 1);
+  assert.match(page.url(), /tab=measurement&preset=fig15&time_column=zeit&displacement_column=Weg&threshold=7$/);
+  assert.match(await page.textContent("#measure-summary"), /verdictregular/);
+  for (const name of ["a canvas", "x canvas"]) assert.ok(await pixels(page, `#plot-measured-${name}`, "plus") > 20, name);
+  await page.click("#tab-simulation");
+  await drawn(page, 1);
+  await page.goBack();
+  await page.waitForSelector("#plot-measured-a canvas");
+  assert.equal(await page.getAttribute("#measure-results", "data-done"), "1");
+  const again = await open(browser.context, page.url());
+  assert.equal(await again.inputValue("[aria-describedby='measure-error-displacement_column']"), "Weg");
+  assert.equal(await again.inputValue("#measure-group-system label:has-text('b, m') input"), "0.009");
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+  await again.close();
+});
+
+test("the list is edited by keyboard and by the plot; without one of its impacts the neighbours are inconsistent", async () => {
+  const page = await identify(await regular(), "&preset=fig15");
+  const before = await rows(page);
+  assert.ok(await page.isDisabled("#measure-again"));
+  await page.focus("#measure-impacts tr:nth-child(31) button");
+  await page.keyboard.press("Enter");
+  assert.equal((await rows(page))[30][5], "removed");
+  assert.equal(await page.evaluate(() => document.activeElement.textContent), "Restore");
+  await page.click("#measure-again");
+  await identified(page, 2);
+  const after = await rows(page);
+  assert.equal(after.length, before.length - 1);
+  assert.match(await page.textContent("#measure-warnings"), /\d of \d+ impacts are inconsistent and left out/);
+  assert.match(after[30][5], /missing/);
+  assert.ok(await pixels(page, "#plot-measured-a canvas", "wall") > 10, "left out impacts have marks of their own");
+  await page.check("#measure-doubtful");
+  assert.ok((await rows(page)).length < 10);
+  await page.uncheck("#measure-doubtful");
+  // Add it where its spike is: zoom there, and click on it.
+  const t = Number(before[30][1]), over = page.locator("#plot-measured-a .u-over");
+  await page.click("#measure-add-at");
+  await over.scrollIntoViewIfNeeded();
+  const box = await over.boundingBox(), at = (share) => box.x + box.width * share;
+  await page.mouse.move(at(t / 6 - 0.02), box.y + 40);
+  await page.mouse.down();
+  await page.mouse.move(at(t / 6 + 0.02), box.y + 40, {steps: 5});
+  await page.mouse.up();
+  await page.waitForTimeout(200);
+  assert.equal((await rows(page)).length, after.length, "the end of a drag adds nothing");
+  await page.mouse.click(at(0.5), box.y + 60);
+  await page.waitForSelector("#measure-impacts tr.edited");
+  const added = (await rows(page)).find((row) => row[5] === "added");
+  assert.ok(Math.abs(added[1] - t) < 0.002, `${added[1]} beside ${t}`);
+  await page.click("#measure-again");
+  await identified(page, 3);
+  assert.equal(await page.textContent("#measure-warnings"), "");
+  // Move one, by its field, and take all back.
+  await page.fill("#measure-impacts tr:nth-child(5) input", "1e9");
+  await page.keyboard.press("Enter");
+  assert.equal(await page.getAttribute("#measure-impacts tr:nth-child(5) input", "aria-invalid"), "true");
+  await page.fill("#measure-impacts tr:nth-child(5) input", String(Number(before[4][1]) + 0.001));
+  await page.keyboard.press("Enter");
+  assert.match((await rows(page))[4][5], /moved from/);
+  await page.click("#measure-reset");
+  assert.deepEqual((await rows(page)).map((row) => row[1]).map((v) => Number(v).toFixed(3)), before.map((row) => Number(row[1]).toFixed(3)));
+  await page.fill("#measure-add input", "0.5");
+  await page.keyboard.press("Enter");
+  assert.ok((await rows(page)).some((row) => row[5] === "added"));
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("a record without acceleration shows its list, to give the impacts by hand", async () => {
+  const page = await identify(await regular(), "&preset=fig15");
+  const times = (await rows(page)).map((row) => row[1]).slice(0, 30);
+  await page.setInputFiles("#measure-file", asFile((await regular()).split("\n").slice(0, 5001).map((line) => line.replace(/,[^,]*$/, "")).join("\n")));
+  await page.waitForFunction(() => document.getElementById("measure-about").textContent.includes("5000 samples"));
+  assert.deepEqual(await rows(page), []);
+  for (const t of times.filter((t) => t < 2.4)) {
+    await page.fill("#measure-add input", t);
+    await page.keyboard.press("Enter");
+  }
+  await page.click("#measure-again");
+  await identified(page, 2);
+  assert.match(await page.textContent("#measure-warnings"), /without an acceleration/);
+  assert.equal(await page.isVisible("#figure-measured-a"), false);
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("a list too long for an address is sent as JSON", async () => {
+  const text = await regular();
+  const page = await identify(text, "&preset=fig15");
+  let type;
+  page.on("request", (request) => { if (request.url().includes("/v1/identify")) type = request.headers()["content-type"]; });
+  // So many columns of nothing, as long a name, fill the address.
+  await page.click("#measure-group-record > summary");
+  const name = "acceleration_m_s2".padEnd(6100, "x");
+  await page.setInputFiles("#measure-file", asFile(text.replace("acceleration_m_s2", name)));
+  await page.fill("[aria-describedby='measure-error-acceleration_column']", name);
+  await page.click("#measure-run");
+  await identified(page, 2);
+  assert.equal(type, "application/json");
+  assert.match(await page.textContent("#measure-summary"), /verdictregular/);
+  await page.close();
+});
+
+test("what is wrong with a file is shown with its line; what is wrong with a field, at the field", async () => {
+  const page = await open(browser.context, `${service.url}/?tab=measurement&preset=fig15`);
+  await page.click("#measure-run");
+  assert.match(await page.textContent("#measure-message"), /choose a file/);
+  const lines = (await regular()).split("\n");
+  lines[6] = "0.003,abc,1";
+  await page.setInputFiles("#measure-file", asFile(lines.join("\n")));
+  await page.click("#measure-run");
+  await page.waitForSelector("#measure-lines:not([hidden])");
+  assert.equal(await page.textContent("#measure-message"), 'line 7, column displacement_m: "abc" is no number');
+  assert.match(await page.textContent("#measure-lines .at-fault"), /^ +7 {2}0\.003,abc,1\n$/);
+  await page.setInputFiles("#measure-file", asFile(await regular()));
+  assert.equal(await page.isVisible("#measure-lines"), false);
+  const b = page.locator("#measure-group-system label:has-text('b, m') input");
+  await b.fill("-1");
+  await page.click("#measure-run");
+  await page.waitForSelector("#measure-error-b:not(:empty)");
+  await b.fill("0.009");
+  await page.selectOption("#measure-preset", "");
+  await page.click("#measure-run");
+  await page.waitForSelector("#measure-error-m1:not(:empty)");
+  await page.selectOption("#measure-preset", "fig15");
+  await page.click("#measure-run");
+  await identified(page, 1);
+  browser.complaints.length = 0;  // Chromium notes each 422 in its console
+  await page.close();
+});
+
+test("on a narrow screen no measurement is wider than the screen", async () => {
+  const page = await identify(await regular(), "&preset=fig15", {viewport: {width: 390, height: 800}});
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+  const beyond = await page.$$eval("#panel-measurement :is(canvas, select, figure, input, .scroll, .u-legend)", (nodes) =>
+    nodes.filter((n) => n.offsetWidth && !n.closest(".scroll td") && n.getBoundingClientRect().right > innerWidth).map((n) => n.id || n.className));
+  assert.deepEqual(beyond, []);
+  await page.close();
+});

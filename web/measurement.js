@@ -1,0 +1,218 @@
+// The tab of a measurement: a file and its fields in, one request, what was identified out; the list of impacts can be edited and sent again.
+import {identify, identifyJson, Problem, recordAsCurl} from "./api.js";
+import {$, element} from "./dom.js";
+import {Form} from "./form.js";
+import {ImpactList} from "./impact_list.js";
+import {summariseMeasurement} from "./measurement_summary.js";
+import {draw, drawRecord, mark, redraw} from "./measurement_views.js";
+import {parse, recordOf, spikeNear} from "./record.js";
+
+const groups = {system: ["System", true], SI: ["Oscillator", true], record: ["Columns and units", false]};
+const experiments = ["fig15", "fig20"];  // those of Table 4
+const estimated = new Set(["R", "F", "cycles"]);  // the presets' values are of the simulation
+const longestQuery = 6000;  // servers and proxies take 8 kB of address
+
+let form, list, presets = [], file = null, text = "", reading = Promise.resolve(null), record = null, answer = null, sent = null, running = null, shown = null, remembered = () => {};
+
+function say(message, fault = false) {
+  $("measure-message").textContent = message;
+  $("measure-message").classList.toggle("fault", fault);
+}
+
+/** The service's fields as this form shows them: names of columns are typed in or taken from the file's header; the forcing's amplitude is fitted. */
+const changes = {threshold: {group: "system", unit: "sd of the noise"}, R: {default_note: "estimated"}, m1: {default_note: "required"}, k1: {default_note: "required"}, f: {default_note: "its own"}};
+const fieldsOf = (fields) => fields.filter((f) => !["impact_times_s", "F"].includes(f.name)).map((f) => ({...f, ...(f.type === "choice" && !f.choices && f.name !== "preset" ? {type: "text"} : {}), ...changes[f.name]}));
+
+const preset = () => presets.find((p) => p.name === $("measure-preset").value);
+const base = () => Object.fromEntries(Object.entries(preset()?.parameters ?? {}).filter(([name]) => !estimated.has(name)));
+
+/** Fields as a query; the commas of lists stay readable. */
+const asQuery = (fields) => String(new URLSearchParams(Object.entries(fields).map(([name, value]) => [name, Array.isArray(value) ? value.join(",") : value]))).replaceAll("%2C", ",");
+
+export const query = () => shown;
+
+/** The form as a query for a link; the file stays with who has it. */
+function remember() {
+  const given = base(), values = form.values(), start = preset() ? {preset: preset().name} : {};
+  const differing = Object.entries(values).filter(([name, value]) => value !== given[name]);
+  shown = asQuery({...start, ...Object.fromEntries(differing)});
+  remembered();
+}
+
+function choosePreset(name) {
+  $("measure-preset").value = experiments.includes(name) ? name : "";
+  form.set(base());
+}
+
+export async function open(given) {
+  if (String(given) === shown || asQuery(Object.fromEntries(given)) === shown) return;
+  const {preset: name = given.size ? "" : "fig20", ...rest} = Object.fromEntries(given);
+  choosePreset(name);
+  form.set({...base(), ...rest});
+  remember();
+}
+
+export {redraw};
+
+// What is drawn.
+
+function drawFile() {
+  for (const id of ["measure-parts", "measure-list", "measure-add-at"]) $(id).hidden = !record;
+  if (!record) return;
+  drawRecord(record, addAt);
+  list.set(answer?.impacts ?? {time_s: []}, [record.t[0], record.t.at(-1)]);  // a record whose impacts cannot be found has them given by hand
+}
+
+function edited() {
+  $("measure-again").disabled = $("measure-reset").disabled = !list.edited;
+  mark(record, list.rows, answer);
+}
+
+/** A click on the acceleration adds the impact whose spike is there, if that is what it is for now. */
+function addAt(t, reach) {
+  if ($("measure-add-at").getAttribute("aria-pressed") !== "true") return;
+  const at = spikeNear(record, t, reach);
+  if (at !== null && list.add(record.t[at])) say(`added an impact at ${record.t[at].toFixed(4)} s`);
+}
+
+function present(milliseconds) {
+  for (const node of document.querySelectorAll(".identified")) node.hidden = false;
+  summariseMeasurement(answer, milliseconds);
+  if (!record) return;
+  drawFile();
+  draw(record, answer);
+}
+
+/** The lines around one that is at fault. */
+function quoteLine(detail) {
+  const line = Number(/^line (\d+)/.exec(detail)?.[1]), lines = [];
+  for (let n = 1, from = 0; n <= line + 1 && from <= text.length; ++n) {
+    const at = text.indexOf("\n", from), to = at < 0 ? text.length : at;
+    if (n >= line - 1) lines.push(element("span", {className: n === line ? "at-fault" : "", textContent: `${String(n).padStart(7)}  ${text.slice(from, Math.min(to, from + 120)).trimEnd()}\n`}));
+    from = to + 1;
+  }
+  $("measure-lines").replaceChildren(...lines);
+  $("measure-lines").hidden = !lines.length;
+}
+
+// What is done.
+
+async function take(chosen) {
+  if (!chosen) return;
+  running?.abort();
+  const mine = file = chosen;
+  answer = record = sent = null;
+  for (const node of document.querySelectorAll(".identified")) node.hidden = true;
+  $("measure-about").textContent = `${mine.name}, ${(mine.size / 1e6).toFixed(mine.size < 1e5 ? 3 : 1)} MB`;
+  $("measure-run").disabled = false;
+  quoteLine("");
+  say("reading …");
+  reading = mine.text().then((all) => { if (file === mine) text = all; return parse(all); });
+  try {
+    const parsed = await reading;
+    if (file !== mine) return;
+    $("measure-columns").replaceChildren(...parsed.names.map((value) => element("option", {value})));
+    record = recordOf(parsed, form.values());
+    $("measure-about").textContent += `, ${parsed.columns[0]?.length ?? 0} samples`;
+    drawFile();
+    if (!running) say("");
+  } catch (error) {
+    say(`the file cannot be read: ${error.message}`, true);
+  }
+}
+
+/** What is sent: the file as it is, or, where the address would be too long, all as JSON. */
+async function request(fields, signal) {
+  const text = asQuery(fields);
+  if (text.length <= longestQuery) return identify(text, file, signal);
+  return identifyJson({...fields, record: Object.fromEntries(Object.entries(recordOf(await reading, fields).sent).map(([name, column]) => [name, [...column]]))}, signal);
+}
+
+async function run(more = {}) {
+  if (!file) { say("choose a file first", true); $("measure-file").focus(); return; }
+  running?.abort();
+  const mine = running = new AbortController(), fields = {...form.values(), ...more};
+  form.showErrors([]);
+  quoteLine("");
+  busy(true);
+  say("identifying …");
+  const began = performance.now();
+  try {
+    const got = await request(fields, mine.signal), milliseconds = performance.now() - began, parsed = await reading;
+    if (running !== mine) return;
+    [answer, sent, record] = [got, fields, recordOf(parsed, fields)];
+    remember();
+    say("");
+    present(milliseconds);
+    $("measure-results").dataset.done = String(Number($("measure-results").dataset.done ?? 0) + 1);
+  } catch (error) {
+    if (running !== mine) return;
+    if (mine.signal.aborted) return say("cancelled");
+    const left = error instanceof Problem ? form.showErrors(error.errors) : [];
+    say([error.message, ...left.map((e) => e.detail).filter((d) => d !== error.message)].join("; "), true);
+    quoteLine(error.message);
+  } finally {
+    if (running === mine) {
+      running = null;
+      busy(false);
+    }
+  }
+}
+
+function busy(is) {
+  $("measure-run").disabled = is;
+  $("measure-cancel").hidden = !is;
+  $("measure-results").classList.toggle("stale", is);
+}
+
+/** Where the plots lie below the form, one who asks for them is led there. */
+function lead() {
+  if (file && $("measure-results").offsetLeft < $("measure-form").offsetLeft + $("measure-form").offsetWidth) $("measure-results").scrollIntoView();
+}
+
+function download() {
+  const url = URL.createObjectURL(new Blob([JSON.stringify(answer, null, 1)], {type: "application/json"}));
+  element("a", {href: url, download: `${file.name.replace(/\.[^.]*$/, "")}-identified.json`}).click();
+  setTimeout(() => URL.revokeObjectURL(url), 10000);
+}
+
+async function copy() {
+  const command = recordAsCurl(asQuery(sent ?? form.values()), file?.name ?? "record.csv");
+  try { await navigator.clipboard.writeText(command); say("copied"); } catch { say(command); }
+}
+
+function listenToFiles() {
+  const panel = $("panel-measurement"), over = (is) => $("measure-drop").classList.toggle("over", is);
+  $("measure-file").addEventListener("change", () => take($("measure-file").files[0]));
+  panel.addEventListener("dragover", (event) => { event.preventDefault(); over(true); });
+  panel.addEventListener("dragleave", (event) => { if (!panel.contains(event.relatedTarget)) over(false); });
+  panel.addEventListener("drop", (event) => { event.preventDefault(); over(false); take(event.dataTransfer.files[0]); });
+}
+
+/** changed: called when there is another query. */
+export function start(fields, all, changed) {
+  remembered = changed;
+  presets = all.filter((p) => experiments.includes(p.name));
+  form = new Form($("measure-fields"), fieldsOf(fields), {prefix: "measure-", grouped: groups});
+  for (const name of ["time_column", "displacement_column", "acceleration_column"]) form.inputs.get(name).setAttribute("list", "measure-columns");
+  list = new ImpactList({body: $("measure-impacts"), note: $("measure-list-note"), adding: $("measure-add"), doubtful: $("measure-doubtful")}, edited);
+  $("measure-preset").append(new Option("own oscillator", ""), ...presets.map((p) => new Option(`Table 4, ${p.title.replace("experiment, ", "")}`, p.name)));
+  $("measure-preset").addEventListener("change", () => { choosePreset($("measure-preset").value); remember(); });
+  $("measure-fields").addEventListener("change", async () => {
+    remember();
+    const parsed = await reading.catch(() => null);
+    if (parsed && !answer) { record = recordOf(parsed, form.values()); drawFile(); }
+  });
+  $("measure-form").addEventListener("submit", (event) => { event.preventDefault(); run(); lead(); });
+  $("measure-cancel").addEventListener("click", () => running?.abort());
+  $("measure-again").addEventListener("click", () => run({impact_times_s: list.times().map((t) => Number(t.toFixed(7)))}));
+  $("measure-reset").addEventListener("click", () => list.reset());
+  $("measure-add-at").addEventListener("click", ({currentTarget: button}) => {
+    const on = button.getAttribute("aria-pressed") !== "true";
+    button.setAttribute("aria-pressed", String(on));
+    $("plot-measured-a").classList.toggle("adding", on);
+  });
+  $("measure-download").addEventListener("click", download);
+  $("measure-copy").addEventListener("click", copy);
+  listenToFiles();
+}

@@ -1,0 +1,85 @@
+// A record, read as the service reads it, to be drawn. What is at fault in it the service says.
+
+const atOnce = 50000;  // lines between two looks at the clock of the page
+
+const trimmed = (cell) => cell.replace(/^[\s"]+|[\s"]+$/g, "");
+const pause = () => new Promise((resolve) => { setTimeout(resolve); });
+
+/** The columns of a CSV text: {names, columns}, columns of numbers; lines that the service would refuse are left out. */
+export async function parse(text) {
+  let separator = ",", names = null, columns = [], rows = 0, from = text.charCodeAt(0) === 0xfeff ? 1 : 0;
+  for (let line = 1; from < text.length; ++line) {
+    const at = text.indexOf("\n", from), to = at < 0 ? text.length : at, cells = text.slice(from, to);
+    from = to + 1;
+    if (line % atOnce === 0) await pause();
+    if (!cells.trim() || cells[0] === "#") continue;
+    if (!names) {
+      separator = cells.includes(";") ? ";" : cells.includes("\t") ? "\t" : ",";
+      names = cells.split(separator).map(trimmed);
+      columns = names.map(() => new Float64Array(Math.ceil((text.length - to) / (2 * names.length)) + 1));  // a number takes two characters at least
+      continue;
+    }
+    const parts = cells.split(separator);
+    if (parts.length !== names.length) continue;
+    let good = true;
+    for (let k = 0; k < parts.length; ++k) {
+      let value = Number(parts[k]);
+      if (!Number.isFinite(value) || value === 0) {  // a zero may be an empty cell
+        const cell = trimmed(parts[k]);
+        value = cell === "" ? NaN : Number(separator === "," ? cell : cell.replaceAll(",", "."));
+      }
+      columns[k][rows] = value;
+      good &&= Number.isFinite(value);
+    }
+    rows += good;
+  }
+  return {names: names ?? [], columns: columns.map((column) => column.slice(0, rows))};
+}
+
+function find(names, asked, name, beginnings) {
+  const lower = names.map((n) => n.toLowerCase());
+  if (asked) return lower.indexOf(asked.toLowerCase());
+  const exact = lower.indexOf(name);
+  if (exact >= 0) return exact;
+  for (const b of beginnings) {
+    const at = lower.findIndex((n) => n === b || ["_", " ", "("].some((end) => n.startsWith(b + end)));
+    if (at >= 0) return at;
+  }
+  return -1;
+}
+
+const units = {s: 1, ms: 1e-3, m: 1e3, mm: 1, um: 1e-3, "m/s2": 1, g: 9.80665};
+const scaled = (column, unit) => units[unit] === 1 ? column : column.map((v) => v * units[unit]);
+
+/** What the fields make of the columns: {t (s), x (mm), a (m/s^2)}, null for one that is not there; sent: those columns by name, in the record's units. */
+export function recordOf({names, columns}, fields) {
+  const time = find(names, fields.time_column, "time_s", ["time", "t"]);
+  const x = find(names, fields.displacement_column, "displacement_m", ["displacement", "x"]);
+  const a = find(names, fields.acceleration_column, "acceleration_m_s2", ["acceleration", "a"]);
+  if (time < 0 || !columns[time].length || (x < 0 && a < 0)) return null;
+  let t = scaled(columns[time], fields.time_unit ?? "s"), keep = null;
+  for (let i = 1, last = t[0]; i < t.length; ++i) {
+    if (t[i] > last) last = t[i];
+    else (keep ??= new Uint8Array(t.length).fill(1))[i] = 0;
+  }
+  const kept = (column) => keep ? column.filter((_, i) => keep[i]) : column;  // the plots need an ascending time
+  const sent = Object.fromEntries([time, x, a].filter((k) => k >= 0).map((k) => [names[k], columns[k]]));
+  return {t: kept(t), x: x < 0 ? null : kept(scaled(columns[x], fields.displacement_unit ?? "m")), a: a < 0 ? null : kept(scaled(columns[a], fields.acceleration_unit ?? "m/s2")), sent};
+}
+
+/** The index of the first sample at t or later. */
+export function sampleAt(t, moment) {
+  let low = 0, high = t.length;
+  while (low < high) { const middle = (low + high) >> 1; if (t[middle] < moment) low = middle + 1; else high = middle; }
+  return low;
+}
+
+/** The sample within reach of a moment where the acceleration lies farthest from what is around it: where the eye sees the spike. */
+export function spikeNear({t, a}, moment, reach) {
+  const from = sampleAt(t, moment - reach), to = Math.max(sampleAt(t, moment + reach), from + 1);
+  if (!a || from >= t.length) return null;
+  const around = a.slice(Math.max(0, from - 8), Math.min(t.length, to + 8)).sort(), centre = around[around.length >> 1];
+  let best = from;
+  for (let i = from; i < Math.min(to, t.length); ++i) if (Math.abs(a[i] - centre) > Math.abs(a[best] - centre)) best = i;
+  return best;
+}
