@@ -41,7 +41,11 @@ double number(std::string_view text, char separator, std::size_t line, const std
     if (text.front() == '+') text.remove_prefix(1);
     double value;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) fault(line, column, text, "\"" + std::string(text.substr(0, 40)) + "\" is no number");
+    if (error != std::errc() || end != text.data() + text.size()) {
+        std::string what = "\"";  // not operator+: g++ 12 warns of it at -O3, without a reason
+        what.append(text.substr(0, 40)).append("\" is no number");
+        fault(line, column, text, what);
+    }
     if (!std::isfinite(value)) fault(line, column, text, "the number is not finite");
     return value;
 }
