@@ -126,8 +126,6 @@ void check_corners(const SweepRequest& r, std::vector<FieldError>& errors) {
     }
 }
 
-const char* reason_of(End end) { return end == End::tau_end ? "complete" : end == End::max_impacts ? "max_impacts" : "stopped"; }
-
 /// Where a point lies, and what was found there or what is wrong with it.
 Json located(const SweepRequest& r, std::size_t index) {
     const Place place = place_of(r, index);
@@ -137,6 +135,10 @@ Json located(const SweepRequest& r, std::size_t index) {
     if (r.starts.size() > 1) line["start"] = place.start;
     return line;
 }
+
+// What a point's line says of its motion: null where there was none to measure.
+constexpr const char* measured_quantities[] = {"lambda", "status", "standard_error", "verdict", "z", "regime", "periodic", "period_cycles", "impacts_per_period", "symmetric",
+                                               "capture_cycle", "multiplier", "synchronised", "x_max", "x_rms", "x_rms_ratio", "share_impacts", "impacts", "sticks"};
 
 Json describe_section_points(const std::vector<SectionPoint>& points, Section section) {
     auto column = [&](auto value) {
@@ -161,8 +163,15 @@ Json describe_section_points(const std::vector<SectionPoint>& points, Section se
     return j;
 }
 
-Json describe_point(const SweepRequest& r, std::size_t index, double Omega, const PointResult& p) {
+/// `carried`: whether the point goes on from its neighbour's last state.
+Json describe_point(const SweepRequest& r, std::size_t index, double Omega, const PointResult& p, bool carried) {
     Json line = located(r, index);
+    if (r.carry != SweepRequest::Carry::none) line["carried"] = carried;
+    if (!p.measured) {
+        for (const char* name : measured_quantities) line[name] = nullptr;
+        line["reason"] = "transient_max_impacts";
+        return line;
+    }
     line["lambda"] = Json::array();
     line["status"] = Json::array();
     for (double v : p.lambda) {
@@ -186,7 +195,7 @@ Json describe_point(const SweepRequest& r, std::size_t index, double Omega, cons
     line["share_impacts"] = finite_or_null(p.share_impacts);
     line["impacts"] = p.impacts;
     line["sticks"] = p.sticks;
-    line["reason"] = reason_of(p.outcome.reason);
+    line["reason"] = p.outcome.reason == End::tau_end ? "complete" : "max_impacts";
     if (r.options.section != Section::none) line["section"] = describe_section_points(p.section, r.options.section);
     return line;
 }
@@ -237,8 +246,9 @@ private:
             options.max_impacts = s.max_impacts;
             const PointResult result = measure(p, before ? carried(before->state, before->parameters, p) : s.start, options, [this] { return pace_.stop_or_yield(); });
             if (result.outcome.reason == End::stopped || pace_.stop_or_yield()) throw Stopped();
-            if (wanted) emit(index, describe_point(r_, index, p.Omega, result));
-            return Carried{p, result.outcome.state};
+            if (wanted) emit(index, describe_point(r_, index, p.Omega, result, before.has_value()));
+            if (!result.at_end) return std::nullopt;  // no state at a whole cycle: the next point starts afresh, and its line says so
+            return Carried{p, *result.at_end};
         } catch (const Problem& problem) {  // inside the corners, but no system of its own
             Json line = located(r_, index);
             line["error"] = problem.what();
