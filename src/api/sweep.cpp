@@ -163,10 +163,10 @@ Json describe_section_points(const std::vector<SectionPoint>& points, Section se
     return j;
 }
 
-/// `carried`: whether the point goes on from its neighbour's last state.
-Json describe_point(const SweepRequest& r, std::size_t index, double Omega, const PointResult& p, bool carried) {
+/// `afresh`: the point was to go on from its neighbour's last state, but there was none at a whole cycle.
+Json describe_point(const SweepRequest& r, std::size_t index, double Omega, const PointResult& p, bool afresh) {
     Json line = located(r, index);
-    if (r.carry != SweepRequest::Carry::none) line["carried"] = carried;
+    if (afresh) line["carried"] = false;
     if (!p.measured) {
         for (const char* name : measured_quantities) line[name] = nullptr;
         line["reason"] = "transient_max_impacts";
@@ -212,7 +212,7 @@ public:
     /// The wanted points of one chain, in the order of their index.
     void run_chain(std::span<const std::size_t> wanted) {
         if (r_.carry == SweepRequest::Carry::none) {
-            run_point(wanted[0], std::nullopt, true);
+            run_point(wanted[0], std::nullopt, true, true);
             return;
         }
         const std::size_t n = r_.axes[0].values.size(), row = wanted[0] / n * n;
@@ -221,7 +221,7 @@ public:
         for (std::size_t k = 0; k < n && left > 0; ++k) {
             const std::size_t index = row + (r_.carry == SweepRequest::Carry::up ? k : n - 1 - k);
             const bool is_wanted = std::binary_search(wanted.begin(), wanted.end(), index);
-            before = run_point(index, before, is_wanted);
+            before = run_point(index, before, k == 0, is_wanted);
             left -= is_wanted;
         }
     }
@@ -232,7 +232,8 @@ private:
         State state;
     };
 
-    std::optional<Carried> run_point(std::size_t index, const std::optional<Carried>& before, bool wanted) {
+    /// `first` of its chain, where it starts afresh anyway.
+    std::optional<Carried> run_point(std::size_t index, const std::optional<Carried>& before, bool first, bool wanted) {
         struct Turn {
             Pace& pace;
             explicit Turn(Pace& p) : pace(p) { pace.begin(); }
@@ -246,7 +247,7 @@ private:
             options.max_impacts = s.max_impacts;
             const PointResult result = measure(p, before ? carried(before->state, before->parameters, p) : s.start, options, [this] { return pace_.stop_or_yield(); });
             if (result.outcome.reason == End::stopped || pace_.stop_or_yield()) throw Stopped();
-            if (wanted) emit(index, describe_point(r_, index, p.Omega, result, before.has_value()));
+            if (wanted) emit(index, describe_point(r_, index, p.Omega, result, !first && !before));
             if (!result.at_end) return std::nullopt;  // no state at a whole cycle: the next point starts afresh, and its line says so
             return Carried{p, *result.at_end};
         } catch (const Problem& problem) {  // inside the corners, but no system of its own
