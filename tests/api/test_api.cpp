@@ -271,7 +271,7 @@ TEST_CASE("a free decay has no verdict of chaos") {
 
 TEST_CASE("nearly tangent means nearly tangent, at any restitution coefficient") {
     for (const char* R : {"1e-3", "0.02", "0"}) {
-        const Json a = answer(std::string(R"({"damping":"closed_form","tau_end":800,"include":["impacts"],"R":)") + R + "}");
+        const Json a = answer((std::string(R"({"damping":"closed_form","tau_end":800,"include":["impacts"],"R":)") + R + "}").c_str());
         for (const Json& warning : a["warnings"]) CHECK(warning.get<std::string>().find("nearly tangent") == std::string::npos);
     }
 }
