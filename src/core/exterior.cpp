@@ -25,34 +25,34 @@ Leg leg_of(const Flow& flow, double duration, bool stuck) {
     return {flow.transfer(part), part, -flow.damping() * part, static_cast<long>(parts), stuck};
 }
 
-Matrix4 part_of(const Leg& leg, double epsilon) {
-    const Transfer& t = leg.oscillator;
-    Matrix4 J;
-    if (leg.stuck) {
-        const double nu = 1 / (1 + epsilon), mu = epsilon * nu;
-        Eigen::Matrix2d A;
-        A << t.a11, t.a12, t.a21, t.a22;
-        J << nu * A, mu * A,
-             nu * A, mu * A;
-        return J;
+void carry(Matrix4& deviations, const Leg& leg, double epsilon) {
+    const auto& [a11, a12, a21, a22] = leg.oscillator;
+    const double nu = 1 / (1 + epsilon), mu = epsilon * nu, s = leg.duration;
+    for (int k = 0; k < 4; ++k) {
+        double *const d = deviations.col(k).data(), x_dot = leg.stuck ? nu * d[0] + mu * d[2] : d[0], x = leg.stuck ? nu * d[1] + mu * d[3] : d[1];
+        d[0] = a11 * x_dot + a12 * x;
+        d[1] = a21 * x_dot + a22 * x;
+        if (leg.stuck) d[2] = d[0], d[3] = d[1];
+        else d[3] += s * d[2];
     }
-    J << t.a11, t.a12, 0, 0,
-         t.a21, t.a22, 0, 0,
-         0, 0, 1, 0,
-         0, 0, leg.duration, 1;
-    return J;
 }
 
 Matrix4 transfer_of(const Leg& leg, double epsilon) {
-    const Matrix4 part = part_of(leg, epsilon);
-    Matrix4 J = part;
-    for (long k = 1; k < leg.parts; ++k) J = part * J;
+    Matrix4 J = Matrix4::Identity();
+    for (long k = 0; k < leg.parts; ++k) carry(J, leg, epsilon);
     return J;
 }
 
+namespace {
+
+/// Of one part, which shrinks too little for the difference to lose digits.
+double determinant(const Transfer& a) { return a.a11 * a.a22 - a.a12 * a.a21; }
+
+}  // namespace
+
 Area carried(const Area& w, const Leg& leg, double epsilon) {
     const auto& [a11, a12, a21, a22] = leg.oscillator;
-    const double det = std::exp(leg.log_det);
+    const double det = determinant(leg.oscillator);
     Area out;
     if (leg.stuck) {
         // The area of the two deviations of the centre of mass, (nu x' + mu y') and (nu x + mu y), as x' = y', x = y.
@@ -72,7 +72,7 @@ Volume carried(const Volume& volume, const Leg& leg) {
     // det(J) J^-T n
     const auto& [a11, a12, a21, a22] = leg.oscillator;
     const Eigen::Vector4d& n = volume.normal;
-    const double det = std::exp(leg.log_det);
+    const double det = determinant(leg.oscillator);
     return {{a22 * n(0) - a21 * n(1), a11 * n(1) - a12 * n(0), det * (n(2) - leg.duration * n(3)), det * n(3)}};
 }
 
@@ -121,9 +121,8 @@ double PowerProduct::Scaled<n>::log_radius() const {
 
 void PowerProduct::pass(const Leg& leg) {
     if (leg.stuck) rank_ = 2;
-    const Matrix4 part = part_of(leg, epsilon_);
     for (long count = 0; count < leg.parts; ++count) {
-        first_.matrix = part * first_.matrix;
+        carry(first_.matrix, leg, epsilon_);
         first_.rescale();
         for (int k = 0; k < 6; ++k) second_.matrix.col(k) = carried(Area(second_.matrix.col(k)), leg, epsilon_);
         second_.rescale();

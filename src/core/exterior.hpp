@@ -24,9 +24,10 @@ struct Leg {
 };
 Leg leg_of(const Flow& flow, double duration, bool stuck);
 
-/// One part's J of eq. (19), or of a stuck leg the projection onto the centre of mass and its motion; epsilon: mass ratio.
-Matrix4 part_of(const Leg& leg, double epsilon);
-/// All parts'.
+/// Carries deviations, a column each, over one part: J of eq. (19), or of a stuck leg the projection onto the centre of mass and
+/// its motion; epsilon: mass ratio.
+void carry(Matrix4& deviations, const Leg& leg, double epsilon);
+/// J of all parts.
 Matrix4 transfer_of(const Leg& leg, double epsilon);
 
 /// The area of two deviations: its components 01, 02, 03, 12, 13, 23 in the order (x', x, y', y).

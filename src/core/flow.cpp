@@ -15,7 +15,8 @@ constexpr double cells_per_period = 42;
 
 Flow::Flow(double stiffness, double damping, double forcing, double Omega)
     : stiffness_(stiffness), damping_(damping), forcing_(forcing), Omega_(Omega),
-      h_(2 * std::numbers::pi / cells_per_period / std::max({1.0, Omega, damping})), root_inverse_(1 / std::sqrt(stiffness)) {
+      h_(2 * std::numbers::pi / cells_per_period / std::max({1.0, Omega, damping})), root_inverse_(1 / std::sqrt(stiffness)),
+      decay_(0.5 * damping + std::sqrt(std::max(0.0, 0.25 * damping * damping - stiffness))) {
     // In extended precision: the tables are right to the last ulp of double.
     using Real = long double;
     struct State4 {
@@ -64,11 +65,6 @@ Flow Flow::free(const Parameters& p) { return Flow(1, 2 * p.zeta(), p.epsilon * 
 Flow Flow::stuck(const Parameters& p) {
     const double mass = 1 + p.epsilon;
     return Flow(1 / mass, 2 * p.zeta() / mass, p.epsilon * p.A() / mass, p.Omega);
-}
-
-double Flow::fastest_decay() const {
-    const double half = 0.5 * damping_;
-    return half + std::sqrt(std::max(0.0, half * half - stiffness_));
 }
 
 namespace {

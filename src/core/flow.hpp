@@ -45,7 +45,7 @@ public:
     double cell() const { return h_; }                     ///< width h of a cell
     double reach() const { return h_ * cells; }            ///< longest time that one look at the grid can bridge
     double damping() const { return damping_; }            ///< the transfer matrix over s has the determinant e^(-damping s)
-    double fastest_decay() const;                          ///< rate at which the unforced motion dies out, its faster part
+    double fastest_decay() const { return decay_; }        ///< rate at which the unforced motion dies out, its faster part
 
     double acceleration(const Oscillation& o) const { return -stiffness_ * o.x - damping_ * o.x_dot + forcing_ * o.sin_theta; }
     double jerk(const Oscillation& o) const { return -stiffness_ * o.x_dot - damping_ * acceleration(o) + forcing_ * Omega_ * o.cos_theta; }
@@ -85,6 +85,7 @@ public:
 private:
     double stiffness_, damping_, forcing_, Omega_, h_;
     double root_inverse_;  // of the stiffness
+    double decay_;
     // x(k h) and x'(k h) from x, x', sin theta, cos theta at 0; k h; cos and sin of Omega k h: each a column over k.
     std::vector<double> x_x_, x_v_, x_s_, x_c_, v_x_, v_v_, v_s_, v_c_, time_, cos_, sin_;
     Series from_x_, from_x_dot_, from_sin_, from_cos_;  // Taylor coefficients of x from each part of the state

@@ -131,10 +131,8 @@ struct TransferProduct::Qr {
     explicit Qr(std::size_t history) : thinned(history) {}
 
     /// Lengths as products since their last logarithm was taken, and the logarithms.
-    template <int n>
     struct Lengths {
-        std::array<double, n> growth, logs{};
-        Lengths() { growth.fill(1); }
+        std::array<double, 4> growth = {1, 1, 1, 1}, logs{};
         void grow(int k, double length) {
             growth[k] *= length;
             if (!(growth[k] > 1e-100 && growth[k] < 1e100)) take_logarithm(k);
@@ -147,11 +145,11 @@ struct TransferProduct::Qr {
     };
 
     Matrix4 frame = Matrix4::Identity();
-    Lengths<4> lengths;
+    Lengths lengths;
     // What the first two and three deviations span, from the exterior powers; and the determinant.
     Area area = Area::Unit(0);
     Volume volume{Eigen::Vector4d::UnitW()};
-    Lengths<2> spanned;
+    double log_area = 0, log_volume = 0;  // what was taken out of them
     double log_det = 0;
     Thinned thinned;
 
@@ -208,10 +206,9 @@ struct TransferProduct::Qr {
     }
 
     void pass(const Leg& leg, double epsilon, int rank) {
-        const Matrix4 part = part_of(leg, epsilon);
         for (long k = 0; k < leg.parts; ++k) {
             if (k > 0) orthonormalise(rank);
-            frame = part * frame;
+            carry(frame, leg, epsilon);
             area = carried(area, leg, epsilon);
             if (rank > 2) volume = carried(volume, leg);
             rescale(rank);
@@ -234,13 +231,16 @@ struct TransferProduct::Qr {
         log_det += 2 * std::log(R);
     }
 
+    /// Keeps area and volume within the range of double.
     void rescale(int rank) {
-        const double areas = area.norm(), volumes = rank > 2 ? volume.normal.norm() : 1;
-        spanned.grow(0, areas);
-        area *= 1 / areas;
-        if (rank < 3) return;
-        spanned.grow(1, volumes);
-        volume.normal *= 1 / volumes;
+        auto keep = [](auto& of, double& log) {
+            const double squared = of.squaredNorm();
+            if (squared > 1e-100 && squared < 1e100) return;
+            log += 0.5 * std::log(squared);
+            of *= 1 / std::sqrt(squared);
+        };
+        keep(area, log_area);
+        if (rank > 2) keep(volume.normal, log_volume);
     }
 
     struct Sums {
@@ -253,7 +253,9 @@ struct TransferProduct::Qr {
         for (int k = 0; k < rank; ++k) {
             s.logs[k] = lengths.logarithm(k);
             sum += s.logs[k];
-            if (k > 0) s.misses[k] = std::abs(sum - (k == 3 ? log_det : spanned.logarithm(k - 1)));
+            if (k == 1) s.misses[k] = std::abs(sum - (log_area + 0.5 * std::log(area.squaredNorm())));
+            if (k == 2) s.misses[k] = std::abs(sum - (log_volume + 0.5 * std::log(volume.normal.squaredNorm())));
+            if (k == 3) s.misses[k] = std::abs(sum - log_det);
         }
         return s;
     }
