@@ -37,7 +37,7 @@ std::vector<Field> make_simulate_fields() {
     const std::string one = "dimensionless", speed = "m per unit of tau";
     const std::string reduced = "from the SI fields if any is given";
     return {
-        {"preset", FieldType::choice, "system", "", "", "start from a figure or table of the paper (GET /v1/presets); other fields override it",
+        {"preset", FieldType::choice, "system", "", "", "start from a figure or table of the paper (GET /v1/presets); each other field replaces its own value alone",
          nullptr, "none", {}, {}, {}},  // any name: the reader of the request answers an unknown one with the list
         core_number("b", "system", "m", "b", "half-width of the cavity in which the free mass moves", p.b),
         number("R", "system", one, "R", "restitution coefficient of both walls; not together with R_plus or R_minus", p.R_plus, "", 0, 1),
