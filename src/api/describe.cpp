@@ -302,16 +302,19 @@ Json describe_regime(Regime r, std::size_t most, Warnings& warnings) {
 
 Json describe_manifold(const Parameters& p, double V_max, std::size_t points) {
     const double R = p.R_plus;
-    const ManifoldPoint fold = manifold_fold(R, p.Omega, p.b), breaking = manifold_symmetry_breaking(R, p.Omega, p.b);
+    const ManifoldPoint fold = manifold_fold(R, p.Omega, p.b), breaking = manifold_symmetry_breaking(R, p.Omega, p.b), contact = manifold_second_contact(R, p.Omega, p.b);
+    const bool breaks = breaking.V < contact.V;  // before the motion ends altogether
+    const double last = std::min(V_max > 0 ? V_max : 2 * breaking.V, contact.V);
     const auto free = free_amplitude(p);
     auto point = [](const ManifoldPoint& m) { return Json{{"C", m.C}, {"V", m.V}}; };
     auto branch = [&](double from, double to) {
-        const auto list = manifold_branch(R, p.Omega, p.b, from, to, points);
+        const auto list = from < to ? manifold_branch(R, p.Omega, p.b, from, to, points) : std::vector<ManifoldPoint>{};
         return Json{{"C", column(list, [](const auto& m) { return m.C; })}, {"V", column(list, [](const auto& m) { return m.V; })}};
     };
-    return {{"R", R}, {"Omega", p.Omega}, {"b", p.b}, {"fold", point(fold)}, {"activation_amplitude", fold.C}, {"symmetry_breaking", point(breaking)},
-            {"stable", branch(fold.V, breaking.V)}, {"unstable", branch(0, fold.V)},
-            {"asymmetric", branch(breaking.V, std::max(V_max > 0 ? V_max : 2 * breaking.V, breaking.V))},
+    return {{"R", R}, {"Omega", p.Omega}, {"b", p.b}, {"fold", point(fold)}, {"activation_amplitude", fold.C},
+            {"symmetry_breaking", breaks ? point(breaking) : Json(nullptr)}, {"second_contact", point(contact)},
+            {"stable_ends_by", breaks ? "symmetry_breaking" : "second_contact"},
+            {"stable", branch(fold.V, std::min(breaking.V, contact.V))}, {"unstable", branch(0, fold.V)}, {"asymmetric", branch(breaking.V, last)},
             {"free_amplitude", free ? Json(*free) : Json(nullptr)},
             {"b_at_free_amplitude", free && R < 1 ? Json(manifold_b(R, *free)) : Json(nullptr)}};
 }

@@ -42,7 +42,8 @@ Json describe_energy(const Parameters& parameters, const State& start, const Ene
 /// Its moving z thinned to `most` entries, and the last `most` stretches.
 Json describe_regime(Regime regime, std::size_t most, Warnings& warnings);
 
-/// The manifold with `points` points on each branch, up to V_max (0: twice the speed of the symmetry breaking).
+/// The manifold with `points` points on each branch that there is, up to V_max (0: twice the speed of the symmetry breaking) or
+/// to where the motion ends.
 Json describe_manifold(const Parameters& parameters, double V_max, std::size_t points);
 
 }  // namespace vines::api

@@ -83,7 +83,7 @@ std::vector<Field> make_manifold_fields() {
     std::vector<Field> fields;
     for (const Field& f : simulate_fields())
         if (f.group == "system" || f.group == "reduced" || f.group == "SI") fields.push_back(f);
-    fields.push_back(number("V_max", "output", "m per unit of tau", "V", "largest speed of the free mass on the unstable branch beyond the symmetry breaking",
+    fields.push_back(number("V_max", "output", "m per unit of tau", "V", "largest speed of the free mass on the branch beyond the symmetry breaking, which ends with the motion in any case",
                             nullptr, "twice the speed of the symmetry breaking", 1e-12, 1e6));
     fields.push_back(integer("points", "points of each branch", 200, 2, 100000));
     return fields;

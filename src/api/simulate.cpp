@@ -173,6 +173,9 @@ Json manifold_answer(const ManifoldRequest& r) {
     if (free && *free < activation)
         warnings.push_back("without the absorber the oscillator reaches " + digits("%.4g", *free) + " m, less than the activation amplitude " + digits("%.4g", activation) +
                            " m: two impacts per cycle cannot come about; b_at_free_amplitude is the largest b for which they can");
+    const double end = manifold_second_contact(r.system.parameters.R_plus, r.system.parameters.Omega, r.system.parameters.b).V;
+    if (r.V_max > end)
+        warnings.push_back("the branches end at V = " + digits("%.4g", end) + ", before V_max: there the mass meets the wall that it comes from a second time");
     return {{"version", version()}, {"parameters", std::move(parameters)}, {"warnings", warnings}, {"manifold", describe_manifold(r.system.parameters, r.V_max, r.points)}};
 }
 

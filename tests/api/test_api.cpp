@@ -365,6 +365,24 @@ TEST_CASE("the manifold has its fold, its branches and a hint for b, by itself a
     CHECK(run["warnings"].size() == 1);
 }
 
+TEST_CASE("the manifold ends where the motion does, and says by what") {
+    const auto manifold = [](const Json& given) { return manifold_answer(read_manifold_request(given)); };
+    const Json small = manifold({{"R", 0.05}, {"b", 0.02}})["manifold"];
+    CHECK(small["stable_ends_by"] == "second_contact");
+    CHECK(small["stable"]["V"].back() == small["second_contact"]["V"]);
+    CHECK(small["second_contact"]["V"].get<double>() == doctest::Approx(0.0186).epsilon(5e-3));
+    CHECK(small["symmetry_breaking"].is_null());  // the motion that would lose its symmetry is none
+    for (const char* column : {"C", "V"}) CHECK(small["asymmetric"][column] == Json::array());
+    const Json ordinary = manifold({{"R", 0.6}, {"b", 0.02}})["manifold"];
+    CHECK(ordinary["stable_ends_by"] == "symmetry_breaking");
+    CHECK(ordinary["stable"]["V"].back() == ordinary["symmetry_breaking"]["V"]);
+    CHECK(ordinary["asymmetric"]["V"].back() == 2 * ordinary["symmetry_breaking"]["V"].get<double>());
+    const Json far = manifold({{"R", 0.6}, {"b", 0.02}, {"V_max", 1}});
+    CHECK(far["manifold"]["asymmetric"]["V"].back() == far["manifold"]["second_contact"]["V"]);
+    CHECK(far["warnings"].dump().find("before V_max") != std::string::npos);
+    CHECK(answer(R"({"R":0.05,"b":0.02,"tau_end":10,"include":["manifold"]})")["manifold"]["stable"] == small["stable"]);
+}
+
 TEST_CASE("what a long run would fill memory with is cut to its last max_points, and said to be") {
     CHECK(pointers(refused(R"({"Omega":100,"tau_end":1e6})")) == std::set<std::string>{"/tau_end"});
     const Json a = answer(R"({"b":0.003,"tau_end":4000,"max_points":256,"include":["eigenvalues","matrices","section","regime","manifold","impacts"]})");
