@@ -128,9 +128,11 @@ struct TransferProduct::Qr {
         logs[k] += std::log(growth[k]);
         growth[k] = 1;
     }
-    const Exponents& logarithms() {
-        for (int k = 0; k < 4; ++k) take_logarithm(k);
-        return logs;
+    /// Leaves no trace, so that the result does not depend on how often it was asked for.
+    Exponents logarithms() const {
+        Exponents sum = logs;
+        for (int k = 0; k < 4; ++k) sum[k] += std::log(growth[k]);
+        return sum;
     }
 
     /// Gram-Schmidt on the first columns; the exponents grow by their lengths.
