@@ -227,6 +227,7 @@ SimulateRequest read_simulate_request(const Json& given) {
     r.samples_per_cycle = v.number("samples_per_cycle");
     r.max_points = static_cast<std::size_t>(v.number("max_points"));
     r.max_impacts = static_cast<long>(v.number("max_impacts"));
+    r.listed_impacts = static_cast<std::size_t>(r.max_impacts);
     r.include = v.words("include");
     r.estimators = {v.holds("exponents", "qr"), v.holds("exponents", "eigenvalues"), v.holds("exponents", "raw_product"), r.max_points};
     return r;

@@ -28,6 +28,7 @@ struct SimulateRequest {
     double samples_per_cycle;
     std::size_t max_points;
     long max_impacts;
+    std::size_t listed_impacts;  ///< the last so many impacts, sticks and touches are listed: all, unless the answer's size is limited
     std::set<std::string> include;
     ExponentOptions estimators;
 

@@ -54,8 +54,8 @@ std::vector<ManifoldPoint> manifold_branch(double R, double Omega, double b, dou
     return points;
 }
 
-HalfCycles::HalfCycles(const Parameters& p, double tau_start, double tau_end)
-    : half_cycle_(std::numbers::pi / p.Omega), tau_end_(tau_end), next_(static_cast<long>(std::ceil(tau_start / half_cycle_)) + 1),
+HalfCycles::HalfCycles(const Parameters& p, double tau_start, double tau_end, std::size_t most)
+    : half_cycle_(std::numbers::pi / p.Omega), tau_end_(tau_end), most_(most), next_(static_cast<long>(std::ceil(tau_start / half_cycle_)) + 1),
       begun_((next_ - 1) * half_cycle_) {}
 
 void HalfCycles::on_stretch(const Stretch& stretch) {
@@ -66,6 +66,8 @@ void HalfCycles::on_stretch(const Stretch& stretch) {
         if (next_ * half_cycle_ <= tau_end_ * (1 + 1e-12)) {
             tau.push_back(next_ * half_cycle_);
             points.push_back({peak_, path_ / half_cycle_});
+            keep_last(tau, most_);
+            keep_last(points, most_);
         }
         peak_ = path_ = 0;
         ++next_;

@@ -21,7 +21,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/simulate.hpp"
+#include "core/record.hpp"
 
 namespace vines {
 
@@ -45,10 +45,11 @@ double manifold_b(double R, double C);
 /// `count` points from V_from to V_to, evenly spaced in V.
 std::vector<ManifoldPoint> manifold_branch(double R, double Omega, double b, double V_from, double V_to, std::size_t count);
 
-/// What a run has in place of (C, V): in each half cycle of the forcing, the largest |x| and the mean of |y'|.
+/// What a run has in place of (C, V): in each half cycle of the forcing, the largest |x| and the mean of |y'|. It keeps up to
+/// half more than the last `most` of them.
 class HalfCycles : public Observer {
 public:
-    HalfCycles(const Parameters& parameters, double tau_start, double tau_end);
+    HalfCycles(const Parameters& parameters, double tau_start, double tau_end, std::size_t most = everything);
     void on_stretch(const Stretch&) override;
 
     std::vector<double> tau;  ///< end of the half cycle
@@ -57,6 +58,7 @@ public:
 private:
     void pass(const Stretch& stretch, double from, double to);
     const double half_cycle_, tau_end_;
+    const std::size_t most_;
     long next_;  // the half cycle at hand ends at next_ half_cycle_
     double peak_ = 0, path_ = 0, begun_;
 };

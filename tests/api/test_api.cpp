@@ -411,3 +411,69 @@ TEST_CASE("caps end a run as a result that says so") {
     a = simulate_answer(read_simulate_request({{"tau_end", 1e7}, {"max_impacts", 2000000}, {"include", Json::array()}}), {[] { return true; }});
     CHECK(a["status"]["reason"] == "deadline");
 }
+
+namespace {
+
+const std::vector<std::string> all_parts = {"series", "impacts", "exponents", "eigenvalues", "matrices", "section", "energy", "regime", "manifold"};
+
+Json within_bytes(const Json& given, std::size_t bytes) { return simulate_answer(read_simulate_request(given), {}, bytes); }
+
+bool warns(const Json& a, const std::string& text) { return a["warnings"].dump().find(text) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("an answer is no larger than its limit: lists are thinned or cut to their last entries, and it says so") {
+    Json given = {{"b", 0.003}, {"tau_end", 3000}, {"max_points", 100000}, {"include", all_parts}, {"windows", {{0, 100}, {0, 200}}}};
+    const Json all = within_bytes(given, any_size);
+    CHECK_FALSE(warns(all, "limit"));
+    CHECK(all.dump().size() > 3000000);
+    for (std::size_t bytes : {1000000, 500000}) {
+        CAPTURE(bytes);
+        const Json cut = within_bytes(given, bytes);
+        CHECK(cut.dump().size() < bytes);
+        CHECK(cut.dump().size() > bytes / 4);
+        CHECK(warns(cut, "this server's limit of " + std::to_string(bytes) + " bytes"));
+        CHECK(cut["impacts"]["tau"].size() < all["impacts"]["tau"].size());
+        CHECK(cut["impacts"]["tau"].back() == all["impacts"]["tau"].back());
+        CHECK(warns(cut, "of " + std::to_string(all["impacts"]["tau"].size()) + " impacts the last " + std::to_string(cut["impacts"]["tau"].size()) + " are listed"));
+        CHECK(cut["eigenvalues"]["T"].back() == all["eigenvalues"]["T"].back());
+        CHECK(cut["eigenvalues"]["tau"].size() == cut["parameters"]["max_points"]);
+        CHECK(cut["exponents"]["qr"]["final"] == all["exponents"]["qr"]["final"]);
+        CHECK(cut["series"]["tau"].size() <= cut["parameters"]["max_points"].get<std::size_t>() + 1);
+    }
+    // What needs little keeps all: the impacts of a long series, the series of many impacts.
+    given["include"] = {"impacts", "series"};
+    given["max_impacts"] = 10000;
+    CHECK(within_bytes(given, 6000000)["impacts"] == within_bytes(given, any_size)["impacts"]);
+    given.update({{"max_impacts", 100000}, {"max_points", 10000}});
+    CHECK(within_bytes(given, 6000000)["series"] == within_bytes(given, any_size)["series"]);
+}
+
+TEST_CASE("a list of sticks is bounded as well") {
+    const Json given = {{"R", 0}, {"b", 0.003}, {"tau_end", 3000}, {"max_impacts", 10000}, {"include", {"impacts"}}};
+    const Json all = within_bytes(given, any_size), cut = within_bytes(given, 100000);
+    CHECK(all["sticking"]["tau_start"].size() > 500);
+    CHECK(cut.dump().size() < 100000);
+    CHECK(cut["sticking"]["tau_end"].back() == all["sticking"]["tau_end"].back());
+    CHECK(warns(cut, "sticks the last "));
+}
+
+TEST_CASE("parts for which no time is left are null, and the answer names them") {
+    Stop stop;
+    stop.late = [] { return true; };
+    const SimulateRequest request = read_simulate_request({{"b", 0.003}, {"tau_end", 1000}, {"include", all_parts}, {"windows", {{0, 100}}}});
+    const Json a = simulate_answer(request, stop);
+    for (const std::string& part : all_parts) CHECK((a.contains(part) && a[part].is_null()));
+    CHECK(a["windows"].size() == 1);
+    CHECK(warns(a, "null: series, impacts, exponents, eigenvalues, matrices, section, energy, regime, manifold"));
+    // The eigenvalues of T, which take the longest, are those of the last impacts.
+    const SimulateRequest eigenvalues = read_simulate_request({{"b", 0.003}, {"tau_end", 1000}, {"include", {"eigenvalues"}}});
+    stop.late = [asked = 0]() mutable { return ++asked > 3; };
+    const Json some = simulate_answer(eigenvalues, stop)["eigenvalues"], every = simulate_answer(eigenvalues, {})["eigenvalues"];
+    CHECK(some["T"].size() == 512);
+    for (const auto& [name, column] : some.items()) {
+        REQUIRE(column.size() == 512);
+        CHECK(column == Json(std::vector<Json>(every[name].end() - 512, every[name].end())));
+    }
+    CHECK(warns(simulate_answer(eigenvalues, [&] { Stop s; s.late = [asked = 0]() mutable { return ++asked > 3; }; return s; }()), "those of the last 512 impacts"));
+}
