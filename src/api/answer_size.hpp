@@ -1,6 +1,8 @@
 // The largest answer that a request may get is known before it is computed: so many numbers for each point and each impact.
 #pragma once
 
+#include <limits>
+
 #include "api/describe.hpp"
 
 namespace vines::api {
