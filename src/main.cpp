@@ -2,6 +2,8 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <malloc.h>
+
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <csignal>
@@ -19,7 +21,7 @@ namespace {
 
 struct ServeOptions {
     vines::http::ServerOptions server;
-    vines::http::RouteOptions routes{30, 100000, 64u << 20, ""};
+    vines::http::RouteOptions routes{30, 100000, 64u << 20, 128u << 20, ""};
     int compute_threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     int compute_queue = 64;
     int sweeps = 4;
@@ -39,6 +41,7 @@ void add_serve_options(CLI::App& serve, ServeOptions& o) {
     serve.add_option("--deadline", o.routes.deadline, "seconds of computing for one request; then it ends with what it has")->envname("VINES_DEADLINE")->check(CLI::Range(0.001, 86400.0))->capture_default_str();
     serve.add_option("--payload-limit", o.server.payload_limit, "bytes of a request's body")->envname("VINES_PAYLOAD_LIMIT")->check(CLI::Range(1, 1 << 30))->capture_default_str();
     serve.add_option("--record-limit", o.routes.record_limit, "bytes of a measurement sent to /v1/identify")->envname("VINES_RECORD_LIMIT")->check(CLI::Range(1, 1 << 30))->capture_default_str();
+    serve.add_option("--answer-limit", o.routes.answer_limit, "bytes of an answer's JSON; one that would be larger is thinned, or refused where that cannot be")->envname("VINES_ANSWER_LIMIT")->check(CLI::Range(std::size_t{1}, std::size_t{1} << 40))->capture_default_str();
     serve.add_option("--web-dir", o.routes.web_dir, "serve the page from this folder instead of the program (while developing it)")->envname("VINES_WEB_DIR")->check(CLI::ExistingDirectory);
 }
 
@@ -47,6 +50,11 @@ const char* const exit_codes =
     "3 stopped by a signal or points are missing, what is there is usable.";
 
 int serve(const ServeOptions& options, const sigset_t& signals) {
+#ifdef __GLIBC__
+    // Records and answers of this size on are mapped and unmapped one by one. The library's own threshold grows up to 32 MiB with
+    // what is freed, and each of its many arenas would keep that much for good.
+    mallopt(M_MMAP_THRESHOLD, 1 << 20);
+#endif
     auto log = std::make_shared<spdlog::logger>("vines", std::make_shared<spdlog::sinks::stderr_sink_mt>());
     log->set_pattern("%v");  // the lines are JSON already
     log->flush_on(spdlog::level::info);

@@ -8,7 +8,7 @@ import {draw, redraw} from "./views.js";
 
 const include = ["series", "impacts", "exponents", "eigenvalues", "section", "energy", "regime", "manifold"];  // what the page draws
 
-let form, presets, running = null, shown = null, remembered = () => {};
+let form, fieldOf, presets, running = null, shown = null, remembered = () => {};
 
 function say(text, fault = false) {
   $("message").textContent = text;
@@ -37,7 +37,7 @@ async function run(lead = false) {
   say("computing …");
   const started = performance.now();
   try {
-    const answer = await simulate({...request, include}, mine.signal);
+    const answer = await simulate({...asked(request), include}, mine.signal);
     if (running !== mine) return;
     answer.request = request;
     leavePreset(request);
@@ -64,9 +64,19 @@ async function run(lead = false) {
 const queryText = (value) => Array.isArray(value?.[0]) ? value.join(";") : String(value);
 const queryValue = (text) => text.includes(";") ? text.split(";").filter((part) => part.trim()).map(queryValue) : text.includes(",") ? text.split(",") : text;
 
-/** A preset's name stands for its fields, so it does not fit a request that has emptied one of them. */
+/** A preset's name stands for its fields, so it does not fit a request that has emptied one of them. A default is not in the request. */
+const emptied = (request) => Object.entries(preset()?.parameters ?? {}).some(([name, value]) => !(name in request) && value !== fieldOf[name].default);
+
 function leavePreset(request) {
-  if (Object.keys(preset()?.parameters ?? {}).some((name) => !(name in request))) $("preset").value = $("preset-note").textContent = "";
+  if (emptied(request)) $("preset").value = $("preset-note").textContent = "";
+}
+
+/** What to send: the preset's name in place of those values of the system that are its own, so that one that differs changes alone. */
+function asked(request) {
+  const base = preset()?.parameters ?? {};
+  if (!preset() || emptied(request)) return request;
+  const own = ([name, value]) => ["system", "reduced", "SI"].includes(fieldOf[name].group) && queryText(value) === queryText(base[name]);
+  return {preset: preset().name, ...Object.fromEntries(Object.entries(request).filter((field) => !own(field)))};
 }
 
 /** The request as a query, as the GET route takes it. */
@@ -103,12 +113,13 @@ export function start(fields, list, changed) {
   presets = list;
   remembered = changed;
   form = new Form($("fields"), fields);
+  fieldOf = Object.fromEntries(fields.map((f) => [f.name, f]));
   $("preset").append(new Option("own parameters", ""), ...presets.map((p) => new Option(`${p.source}: ${p.title}`, p.name)));
   $("preset").addEventListener("change", () => { choosePreset($("preset").value); if ($("preset").value) run(true); });
   $("form").addEventListener("submit", (event) => { event.preventDefault(); run(); });
   $("cancel").addEventListener("click", () => { running?.abort(); });
   $("copy").addEventListener("click", async () => {
-    const command = asCurl("v1/simulate", {...form.values(), include});
+    const command = asCurl("v1/simulate", {...asked(form.values()), include});
     try { await navigator.clipboard.writeText(command); say("copied"); } catch { say(command); }
   });
 }

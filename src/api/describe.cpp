@@ -211,11 +211,18 @@ Json describe_exponents(const TransferProduct& product, const ExponentOptions& e
     return j;
 }
 
-Json describe_eigenvalues(const std::vector<ImpactTransfer>& transfers) {
+Json describe_eigenvalues(std::span<const ImpactTransfer> transfers, const std::function<bool()>& late, Warnings& warnings) {
+    constexpr std::size_t per_look = 256;
+    std::vector<Moduli> T;  // from the last on
+    for (std::size_t i = transfers.size(); i > 0 && !(T.size() % per_look == 0 && late && late()); --i) T.push_back(transfers[i - 1].T_moduli());
+    if (T.size() < transfers.size())
+        warnings.push_back("eigenvalues are those of the last " + std::to_string(T.size()) + " impacts: the time limit was over before those of the others");
+    std::reverse(T.begin(), T.end());
+    transfers = transfers.last(T.size());
     return {{"tau", column(transfers, [](const ImpactTransfer& t) { return t.tau; })},
             {"J", column(transfers, [](const ImpactTransfer& t) { return t.J_moduli(); })},
             {"M", column(transfers, [](const ImpactTransfer& t) { return t.M_moduli(); })},
-            {"T", column(transfers, [](const ImpactTransfer& t) { return t.T_moduli(); })},
+            {"T", column(T, [](const Moduli& moduli) { return moduli; })},
             {"M_condition", column(transfers, [](const ImpactTransfer& t) { return finite_or_null(t.M.condition(t.R)); })}};
 }
 
@@ -227,35 +234,27 @@ Json describe_matrices(const std::vector<ImpactTransfer>& transfers) {
             {"T", column(transfers, [](const ImpactTransfer& t) { return describe_matrix(t.T()); })}};
 }
 
-Json describe_section(const std::vector<Impact>& all, const StroboscopicRecord& stroboscopic, const Interval& window, std::size_t most, Warnings& warnings) {
-    std::vector<Impact> impacts;
-    Json difference = Json::array();
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        if (all[i].tau < window.from || all[i].tau > window.to) continue;
-        impacts.push_back(all[i]);
-        difference.push_back(i > 0 ? Json(all[i].tau - all[i - 1].tau) : Json(nullptr));
-    }
+Json describe_section(SectionRecord& section, const StroboscopicRecord& stroboscopic, const Interval& window, std::size_t most, Warnings& warnings) {
+    std::size_t first = 0, end = stroboscopic.states.size();
+    while (first < end && stroboscopic.tau(first) < window.from) ++first;
+    while (end > first && stroboscopic.tau(end - 1) > window.to) --end;
+    const std::size_t cycles = end - first;
+    if (section.seen > static_cast<long>(most) || cycles > most)
+        warnings.push_back("the sections hold their last " + std::to_string(most) + " points (max_points), of " + std::to_string(section.seen) + " impacts and " + std::to_string(cycles) + " cycles");
+    if (cycles > most) first = end - most;
+    trim_to_last(section.points, most);
     std::vector<double> tau;
-    std::vector<State> states;
-    for (std::size_t k = 0; k < stroboscopic.states.size(); ++k) {
-        if (stroboscopic.tau(k) < window.from || stroboscopic.tau(k) > window.to) continue;
-        tau.push_back(stroboscopic.tau(k));
-        states.push_back(stroboscopic.states[k]);
-    }
-    if (std::max(impacts.size(), tau.size()) > most)
-        warnings.push_back("the sections hold their last " + std::to_string(most) + " points (max_points), of " + std::to_string(impacts.size()) + " impacts and " + std::to_string(tau.size()) + " cycles");
-    trim_to_last(impacts, most);
-    trim_to_last(difference.get_ref<Json::array_t&>(), most);
-    trim_to_last(tau, most);
-    trim_to_last(states, most);
+    for (std::size_t k = first; k < end; ++k) tau.push_back(stroboscopic.tau(k));
+    const std::span<const State> states = std::span(stroboscopic.states).subspan(first, end - first);
+    const std::vector<SectionRecord::Point>& points = section.points;
     return {{"impact",
-             {{"tau", column(impacts, [](const Impact& i) { return i.tau; })},
-              {"side", column(impacts, [](const Impact& i) { return i.side; })},
-              {"phase", column(impacts, [](const Impact& i) { return i.phase(); })},
-              {"x", column(impacts, [](const Impact& i) { return i.x; })},
-              {"x_dot_after", column(impacts, [](const Impact& i) { return i.x_dot_after; })},
-              {"y_dot_after", column(impacts, [](const Impact& i) { return i.y_dot_after; })},
-              {"time_difference", std::move(difference)}}},
+             {{"tau", column(points, [](const auto& p) { return p.impact.tau; })},
+              {"side", column(points, [](const auto& p) { return p.impact.side; })},
+              {"phase", column(points, [](const auto& p) { return p.impact.phase(); })},
+              {"x", column(points, [](const auto& p) { return p.impact.x; })},
+              {"x_dot_after", column(points, [](const auto& p) { return p.impact.x_dot_after; })},
+              {"y_dot_after", column(points, [](const auto& p) { return p.impact.y_dot_after; })},
+              {"time_difference", column(points, [](const auto& p) { return finite_or_null(p.since); })}}},
             {"stroboscopic",
              {{"tau", std::move(tau)},
               {"x", column(states, [](const State& s) { return s.x; })},
@@ -303,9 +302,9 @@ Json describe_regime(Regime r, std::size_t most, Warnings& warnings) {
     of_orbit("orbit", [](const PeriodicOrbit& o) {
         return Json{{"tau", o.tau}, {"x_dot", o.state.x_dot}, {"x", o.state.x}, {"y_dot", o.state.y_dot}, {"y", o.state.y}};
     });
-    j["capture"] = r.capture ? Json{{"tau", r.capture->tau}, {"chaotic_before", r.capture->chaotic_before}, {"exponents_before", with_status(r.capture->before)}, {"exponents_after", with_status(r.capture->after)}}
+    j["capture"] = r.capture ? Json{{"tau", r.capture->tau}, {"chaotic_before", r.capture->chaotic_before ? Json(*r.capture->chaotic_before) : Json(nullptr)}, {"exponents_before", with_status(r.capture->before)}, {"exponents_after", with_status(r.capture->after)}}
                              : Json(nullptr);
-    if (r.capture && r.capture->chaotic_before)
+    if (r.capture && r.capture->chaotic_before == true)
         warnings.push_back("a chaotic transient (lambda1 = " + digits("%.3g", r.capture->before[0]) + ") was captured by a periodic orbit at tau = " + digits("%.1f", r.capture->tau) +
                            " (lambda1 = " + digits("%.3g", r.capture->after[0]) + "): exponents of a window that reaches over it average both");
     j["cycles_with"] = r.cycles_with;
@@ -321,16 +320,19 @@ Json describe_regime(Regime r, std::size_t most, Warnings& warnings) {
 
 Json describe_manifold(const Parameters& p, double V_max, std::size_t points) {
     const double R = p.R_plus;
-    const ManifoldPoint fold = manifold_fold(R, p.Omega, p.b), breaking = manifold_symmetry_breaking(R, p.Omega, p.b);
+    const ManifoldPoint fold = manifold_fold(R, p.Omega, p.b), breaking = manifold_symmetry_breaking(R, p.Omega, p.b), contact = manifold_second_contact(R, p.Omega, p.b);
+    const bool breaks = breaking.V < contact.V;  // before the motion ends altogether
+    const double last = std::min(V_max > 0 ? V_max : 2 * breaking.V, contact.V);
     const auto free = free_amplitude(p);
     auto point = [](const ManifoldPoint& m) { return Json{{"C", m.C}, {"V", m.V}}; };
     auto branch = [&](double from, double to) {
-        const auto list = manifold_branch(R, p.Omega, p.b, from, to, points);
+        const auto list = from < to ? manifold_branch(R, p.Omega, p.b, from, to, points) : std::vector<ManifoldPoint>{};
         return Json{{"C", column(list, [](const auto& m) { return m.C; })}, {"V", column(list, [](const auto& m) { return m.V; })}};
     };
-    return {{"R", R}, {"Omega", p.Omega}, {"b", p.b}, {"fold", point(fold)}, {"activation_amplitude", fold.C}, {"symmetry_breaking", point(breaking)},
-            {"stable", branch(fold.V, breaking.V)}, {"unstable", branch(0, fold.V)},
-            {"asymmetric", branch(breaking.V, std::max(V_max > 0 ? V_max : 2 * breaking.V, breaking.V))},
+    return {{"R", R}, {"Omega", p.Omega}, {"b", p.b}, {"fold", point(fold)}, {"activation_amplitude", fold.C},
+            {"symmetry_breaking", breaks ? point(breaking) : Json(nullptr)}, {"second_contact", point(contact)},
+            {"stable_ends_by", breaks ? "symmetry_breaking" : "second_contact"},
+            {"stable", branch(fold.V, std::min(breaking.V, contact.V))}, {"unstable", branch(0, fold.V)}, {"asymmetric", branch(breaking.V, last)},
             {"free_amplitude", free ? Json(*free) : Json(nullptr)},
             {"b_at_free_amplitude", free && R < 1 ? Json(manifold_b(R, *free)) : Json(nullptr)}};
 }

@@ -1,6 +1,8 @@
 // Results of the core as the parts of an answer: columns, and null with a word beside it for a number that does not exist.
 #pragma once
 
+#include <span>
+
 #include "api/request.hpp"
 #include "core/energy.hpp"
 #include "core/manifold.hpp"
@@ -30,19 +32,21 @@ Json describe_touches(const std::vector<TouchRecord::Touch>& touches);
 /// The exponents of one window of a run of this regime. `histories` adds those of each estimator, and warnings are about it then.
 Json describe_exponents(const TransferProduct& product, const ExponentOptions& estimators, const Regime& regime, bool histories, Warnings& warnings);
 
-/// Moduli of the eigenvalues of J, M, T at each impact, and the matrices themselves.
-Json describe_eigenvalues(const std::vector<ImpactTransfer>& transfers);
+/// Moduli of the eigenvalues of J, M, T at each impact, and the matrices themselves. Those of T take their time: once `late`, only
+/// the last impacts have them, and a warning says so.
+Json describe_eigenvalues(std::span<const ImpactTransfer> transfers, const std::function<bool()>& late, Warnings& warnings);
 Json describe_matrices(const std::vector<ImpactTransfer>& transfers);
 
 /// Sections at impact and at whole forcing cycles: the last `most` points of each that lie in the window.
-Json describe_section(const std::vector<Impact>& impacts, const StroboscopicRecord& stroboscopic, const Interval& window, std::size_t most, Warnings& warnings);
+Json describe_section(SectionRecord& impacts, const StroboscopicRecord& stroboscopic, const Interval& window, std::size_t most, Warnings& warnings);
 
 /// `window`: what of it the run has reached.
 Json describe_energy(const Parameters& parameters, const State& start, const Energy& energy, const Decay& decay, const Interval& window);
 /// Its moving z thinned to `most` entries, and the last `most` stretches.
 Json describe_regime(Regime regime, std::size_t most, Warnings& warnings);
 
-/// The manifold with `points` points on each branch, up to V_max (0: twice the speed of the symmetry breaking).
+/// The manifold with `points` points on each branch that there is, up to V_max (0: twice the speed of the symmetry breaking) or
+/// to where the motion ends.
 Json describe_manifold(const Parameters& parameters, double V_max, std::size_t points);
 
 }  // namespace vines::api

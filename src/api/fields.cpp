@@ -37,7 +37,7 @@ std::vector<Field> make_simulate_fields() {
     const std::string one = "dimensionless", speed = "m per unit of tau";
     const std::string reduced = "from the SI fields if any is given";
     return {
-        {"preset", FieldType::choice, "system", "", "", "start from a figure or table of the paper (GET /v1/presets); other fields override it",
+        {"preset", FieldType::choice, "system", "", "", "start from a figure or table of the paper (GET /v1/presets); each other field replaces its own value alone",
          nullptr, "none", {}, {}, {}},  // any name: the reader of the request answers an unknown one with the list
         core_number("b", "system", "m", "b", "half-width of the cavity in which the free mass moves", p.b),
         number("R", "system", one, "R", "restitution coefficient of both walls; not together with R_plus or R_minus", p.R_plus, "", 0, 1),
@@ -83,7 +83,7 @@ std::vector<Field> make_manifold_fields() {
     std::vector<Field> fields;
     for (const Field& f : simulate_fields())
         if (f.group == "system" || f.group == "reduced" || f.group == "SI") fields.push_back(f);
-    fields.push_back(number("V_max", "output", "m per unit of tau", "V", "largest speed of the free mass on the unstable branch beyond the symmetry breaking",
+    fields.push_back(number("V_max", "output", "m per unit of tau", "V", "largest speed of the free mass on the branch beyond the symmetry breaking, which ends with the motion in any case",
                             nullptr, "twice the speed of the symmetry breaking", 1e-12, 1e6));
     fields.push_back(integer("points", "points of each branch", 200, 2, 100000));
     return fields;

@@ -76,7 +76,7 @@ void check_record(const std::vector<double>& time, const MeasuredRecord& r, std:
 IdentifyRequest read_fields(const Json& given, bool with_record) {
     IdentifyRequest r;
     const Json object = checked(identify_fields(), given);
-    r.system = read_checked_system(identify_fields(), object);
+    r.system = read_checked_system(identify_fields(), object, given);
     if (with_record && !r.system.si)
         refuse({{"/m1", nullptr, nullptr, "a record in seconds needs the oscillator's own frequency: give m1 and k1 (and c1, m2), or a preset"},
                 {"/k1", nullptr, nullptr, "a record in seconds needs the oscillator's own frequency: give m1 and k1 (and c1, m2), or a preset"}});

@@ -23,7 +23,7 @@ const std::vector<std::string> si_names = {"m1", "c1", "k1", "m2", "F", "f"};
 const std::map<std::string, std::vector<std::string>> si_origin = {
     {"epsilon", {"m2", "m1"}}, {"lambda", {"c1", "k1", "m1", "m2"}}, {"G", {"F", "m1", "m2"}}, {"Omega", {"f", "k1", "m1"}}};
 
-/// Fields that exclude each other: giving one of each side is a fault, and one of the request's own removes the preset's.
+/// Fields that exclude each other: giving one of each side is a fault.
 struct Alternative {
     std::vector<std::string> one, other;
     std::string detail;
@@ -51,26 +51,58 @@ void check_alternatives(const Json& object, std::vector<FieldError>& errors) {
     }
 }
 
-/// The request's fields over those of its preset, of which only those that the table has are taken.
-Json over_preset(const std::vector<Field>& fields, const Json& object) {
-    if (!object.contains("preset")) return object;
-    const std::string name = object["preset"];
+const Preset& preset_named(const std::string& name) {
     const auto preset = std::find_if(presets().begin(), presets().end(), [&](const Preset& p) { return p.name == name; });
-    if (preset == presets().end()) {
-        Json names = Json::array();
-        for (const Preset& p : presets()) names.push_back(p.name);
-        refuse({{"/preset", name, names, "there is no preset of this name; GET /v1/presets lists them"}});
+    if (preset != presets().end()) return *preset;
+    Json names = Json::array();
+    for (const Preset& p : presets()) names.push_back(p.name);
+    refuse({{"/preset", name, names, "there is no preset of this name; GET /v1/presets lists them"}});
+}
+
+/// A system in SI from its fields, of which those left out are Table 1's; F and f then follow from the rest.
+SiParameters read_si(const Json& fields) {
+    SiParameters si;
+    si.m1 = fields.value("m1", si.m1);
+    si.c1 = fields.value("c1", si.c1);
+    si.k1 = fields.value("k1", si.k1);
+    si.m2 = fields.value("m2", si.m2);
+    si.F = fields.value("F", 0.02 * si.epsilon());
+    si.f = fields.value("f", si.f0());
+    return si;
+}
+
+/// The preset's system restated by the fields that the request speaks in, so that each one given replaces its own value alone.
+/// Presets are in SI, or Table 1's: then they leave these fields out. Reduced ones over SI leave m1 and k1, which set the scale.
+void restate_system(Json& preset, const Json& given) {
+    if (!present(given, si_names).empty()) {
+        const SiParameters si = read_si(preset);
+        preset.update({{"m1", si.m1}, {"c1", si.c1}, {"k1", si.k1}, {"m2", si.m2}, {"F", si.F}, {"f", si.f}});
+    } else if (!present(given, reduced_names).empty() && !present(preset, si_names).empty()) {
+        const SiParameters si = read_si(preset);
+        for (const std::string& name : si_names) preset.erase(name);
+        preset.update({{"m1", si.m1}, {"k1", si.k1}, {"epsilon", si.epsilon()}, {"lambda", si.lambda()}, {"G", si.G()}, {"Omega", si.Omega()}});
     }
-    Json merged = preset->parameters;
-    for (const Alternative& a : alternatives())
-        for (const auto& [own, others] : {std::pair(a.one, a.other), std::pair(a.other, a.one)})
-            if (!present(object, own).empty())
-                for (const std::string& other : others) merged.erase(other);
+}
+
+/// The same for the walls: R of the preset stands for both.
+void restate_walls(Json& preset, const Json& given) {
+    if (!preset.contains("R") || present(given, {"R_plus", "R_minus"}).empty()) return;
+    preset["R_plus"] = preset["R_minus"] = preset["R"];
+    preset.erase("R");
+}
+
+/// The request's fields over those of its preset, of which only those that the table has are taken.
+Json over_preset(const std::vector<Field>& fields, const Json& given) {
+    if (!given.contains("preset")) return given;
+    Json merged = preset_named(given["preset"]).parameters;
+    restate_system(merged, given);
+    restate_walls(merged, given);
     // A window that was left to the preset makes no sense in a run of another length.
-    if (object.contains("tau_end") || object.contains("cycles")) merged.erase("window"), merged.erase("windows");
+    if (given.contains("tau_end") || given.contains("cycles"))
+        for (const char* name : {"tau_end", "cycles", "window", "windows"}) merged.erase(name);
     for (auto it = merged.begin(); it != merged.end();)
         it = std::any_of(fields.begin(), fields.end(), [&](const Field& f) { return f.name == it.key(); }) ? std::next(it) : merged.erase(it);
-    merged.update(object);
+    merged.update(given);
     merged.erase("preset");
     return merged;
 }
@@ -105,17 +137,15 @@ private:
     const Json& object_;
 };
 
-/// A core fault is about a reduced field; where that follows from SI fields, it is they that are at fault.
-std::vector<FieldError> field_errors(const std::vector<Fault>& faults, const std::optional<SiParameters>& si, const Json& given) {
+/// A core fault is about a reduced field; where that follows from SI fields, it is they that are at fault: those that were given.
+std::vector<FieldError> field_errors(const std::vector<Fault>& faults, const Json& object, const Json& given) {
     std::vector<FieldError> errors;
     for (const Fault& f : faults) {
-        const auto origin = si ? si_origin.find(f.field) : si_origin.end();
-        if (origin == si_origin.end()) {
-            errors.push_back({"/" + f.field, given.contains(f.field) ? given[f.field] : Json(f.value), Json::array({f.minimum, f.maximum}), f.message});
-            continue;
-        }
-        for (const std::string& name : present(given, origin->second))
-            errors.push_back({"/" + name, given[name], nullptr, f.field + " = " + Json(f.value).dump() + " follows from the SI fields; " + f.message});
+        const auto origin = si_origin.find(f.field);
+        const auto names = object.contains(f.field) || origin == si_origin.end() ? std::vector<std::string>{} : present(given, origin->second);
+        if (names.empty()) errors.push_back({"/" + f.field, object.contains(f.field) ? object[f.field] : Json(f.value), Json::array({f.minimum, f.maximum}), f.message});
+        for (const std::string& name : names)
+            errors.push_back({"/" + name, object[name], nullptr, f.field + " = " + Json(f.value).dump() + " follows from the SI fields; " + f.message});
     }
     return errors;
 }
@@ -123,20 +153,19 @@ std::vector<FieldError> field_errors(const std::vector<Fault>& faults, const std
 System read_system(const Values& v, const Json& object) {
     System system;
     Parameters& p = system.parameters;
-    if (!present(object, si_names).empty()) {
-        SiParameters si{v.number("m1"), v.number("c1"), v.number("k1"), v.number("m2"), 0, 0};
-        si.F = v.number("F", 0.02 * si.epsilon());
-        si.f = v.number("f", si.omega0() / (2 * std::numbers::pi));
-        p.epsilon = si.epsilon();
-        p.lambda = si.lambda();
-        p.G = si.G();
-        p.Omega = v.has("f") ? si.Omega() : 1;
-        system.si = si;
+    const bool si = !present(object, si_names).empty();
+    if (si && present(object, reduced_names).empty()) {
+        system.si = read_si(object);
+        p.epsilon = system.si->epsilon();
+        p.lambda = system.si->lambda();
+        p.G = system.si->G();
+        p.Omega = system.si->Omega();
     } else {
         p.epsilon = v.number("epsilon");
         p.lambda = v.number("lambda");
         p.G = v.number("G");
         p.Omega = v.number("Omega");
+        if (si) system.si = in_si(p, v.number("m1"), v.number("k1"));
     }
     p.b = v.number("b");
     p.R_plus = v.number("R_plus", v.number("R"));
@@ -164,9 +193,9 @@ Json checked(const std::vector<Field>& fields, const Json& given) {
     return over_preset(fields, given);
 }
 
-System read_checked_system(const std::vector<Field>& fields, const Json& object) {
+System read_checked_system(const std::vector<Field>& fields, const Json& object, const Json& given) {
     const System system = read_system(Values(fields, object), object);
-    const std::vector<FieldError> errors = field_errors(validate(system.parameters, default_state(system.parameters)), system.si, object);
+    const std::vector<FieldError> errors = field_errors(validate(system.parameters, default_state(system.parameters)), object, given);
     if (!errors.empty()) refuse(errors);
     return system;
 }
@@ -180,10 +209,10 @@ SimulateRequest read_simulate_request(const Json& given) {
     const Parameters& p = r.system.parameters;
     r.start = read_start(v, p);
 
-    std::vector<FieldError> errors = field_errors(validate(p, r.start), r.system.si, object);
+    std::vector<FieldError> errors = field_errors(validate(p, r.start), object, given);
     r.tau_end = v.has("cycles") ? v.number("cycles") * 2 * std::numbers::pi / p.Omega : v.number("tau_end");
     const double cycle = 2 * std::numbers::pi / p.Omega, longest = std::min(longest_run, most_cycles * cycle);
-    if (r.tau_end > longest) {
+    if (errors.empty() && r.tau_end > longest) {  // of an Omega in its range
         const bool by_cycles = v.has("cycles");
         const double most = by_cycles ? longest / cycle : longest;
         errors.push_back({by_cycles ? "/cycles" : "/tau_end", by_cycles ? object["cycles"] : Json(r.tau_end), Json::array({1e-6, most}),
@@ -198,6 +227,7 @@ SimulateRequest read_simulate_request(const Json& given) {
     r.samples_per_cycle = v.number("samples_per_cycle");
     r.max_points = static_cast<std::size_t>(v.number("max_points"));
     r.max_impacts = static_cast<long>(v.number("max_impacts"));
+    r.listed_impacts = static_cast<std::size_t>(r.max_impacts);
     r.include = v.words("include");
     r.estimators = {v.holds("exponents", "qr"), v.holds("exponents", "eigenvalues"), v.holds("exponents", "raw_product"), r.max_points};
     return r;
@@ -210,7 +240,7 @@ StartedSystem read_started_system(const Json& given) {
     s.system = read_system(v, object);
     s.start = read_start(v, s.system.parameters);
     s.max_impacts = static_cast<long>(v.number("max_impacts"));
-    const std::vector<FieldError> errors = field_errors(validate(s.system.parameters, s.start), s.system.si, object);
+    const std::vector<FieldError> errors = field_errors(validate(s.system.parameters, s.start), object, given);
     if (!errors.empty()) refuse(errors);
     return s;
 }
@@ -221,7 +251,7 @@ ManifoldRequest read_manifold_request(const Json& given) {
     ManifoldRequest r;
     r.system = read_system(v, object);
     const Parameters& p = r.system.parameters;
-    std::vector<FieldError> errors = field_errors(validate(p, default_state(p)), r.system.si, object);
+    std::vector<FieldError> errors = field_errors(validate(p, default_state(p)), object, given);
     if (p.R_plus != p.R_minus)
         errors.push_back({"/R_minus", p.R_minus, Json::array({p.R_plus, p.R_plus}),
                           "the manifold of two symmetric impacts needs the same restitution coefficient at both walls, here R_plus = " + Json(p.R_plus).dump()});

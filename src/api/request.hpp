@@ -9,7 +9,7 @@
 
 namespace vines::api {
 
-/// The parameters of a request. `si` where it gave SI fields: the reduced ones follow from these.
+/// The parameters of a request. `si`: the same in SI, where the request or its preset is in SI.
 struct System {
     Parameters parameters;
     std::optional<SiParameters> si;
@@ -28,6 +28,7 @@ struct SimulateRequest {
     double samples_per_cycle;
     std::size_t max_points;
     long max_impacts;
+    std::size_t listed_impacts;  ///< the last so many impacts, sticks and touches are listed: all, unless the answer's size is limited
     std::set<std::string> include;
     ExponentOptions estimators;
 
@@ -49,10 +50,11 @@ StartedSystem read_started_system(const Json& object);
 /// Throws a Problem 422 that lists the errors.
 [[noreturn]] void refuse(std::vector<FieldError> errors);
 
-/// The fields of a table over those of the request's preset, each checked by itself. Problem 422 where one is at fault.
+/// The fields of a table over those of the request's preset, each checked by itself. A field that is given replaces its own value
+/// of the preset alone. Problem 422 where one is at fault.
 Json checked(const std::vector<Field>& fields, const Json& given);
-/// The system of fields that are checked. Problem 422 where they make none together.
-System read_checked_system(const std::vector<Field>& fields, const Json& object);
+/// The system of fields that are checked. Problem 422 where they make none together, at those that are `given`.
+System read_checked_system(const std::vector<Field>& fields, const Json& checked, const Json& given);
 
 struct ManifoldRequest {
     System system;

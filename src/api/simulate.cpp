@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "api/describe.hpp"
+#include "core/windows.hpp"
 
 namespace vines::api {
 
@@ -63,19 +64,29 @@ void warn_of_grazing(const std::vector<Impact>& impacts, const SimulateRequest& 
                            " of the median: there the motion is next to one without this impact");
 }
 
-Json describe_windows(const SimulateRequest& r, const std::vector<Lyapunov>& windows, const Regime& regime, Warnings& warnings) {
+Json describe_windows(const SimulateRequest& r, const Windows& windows, const Regime& regime, Warnings& warnings) {
     Json list = Json::array();
     for (std::size_t i = 0; i < windows.size(); ++i) {
         Json entry = {{"asked", {r.windows[i].from, r.windows[i].to}}};
-        entry.update(describe_exponents(windows[i].product(), r.estimators, regime, false, warnings));
+        entry.update(describe_exponents(windows.product(i), r.estimators, regime, false, warnings));
         list.push_back(std::move(entry));
     }
     return list;
 }
 
+/// Cuts a list to what the answer's limit leaves of it.
+template <class Entries>
+void list_last(Entries& entries, long seen, std::size_t most, const char* name, std::size_t bytes, Warnings& warnings) {
+    trim_to_last(entries, most);
+    if (seen > static_cast<long>(entries.size()))
+        warnings.push_back("of " + std::to_string(seen) + " " + name + " the last " + std::to_string(entries.size()) + " are listed" + limit_of(bytes));
+}
+
 }  // namespace
 
-Json simulate_answer(const SimulateRequest& r, const Stop& stop) {
+Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes) {
+    Warnings warnings;
+    fit_answer(r, most_bytes, warnings);
     const Parameters& p = r.system.parameters;
     const double cycle = 2 * std::numbers::pi / p.Omega, asked_step = cycle / r.samples_per_cycle;
     const double step = std::max(asked_step, r.tau_end / static_cast<double>(r.max_points - 1));
@@ -83,27 +94,30 @@ Json simulate_answer(const SimulateRequest& r, const Stop& stop) {
 
     // What each part of the answer is made from, observed in one run.
     SeriesRecord series(step);
-    ImpactRecord impacts;
-    StickRecord sticks;
-    TouchRecord touches;
-    Lyapunov lyapunov(p, from, to, r.estimators);
-    std::vector<Lyapunov> windows;
-    for (const Interval& w : r.windows) windows.emplace_back(p, w.from, w.to, ExponentOptions{r.estimators.qr, r.estimators.eigenvalues, r.estimators.raw_product, 2048});
+    ImpactRecord impacts(r.listed_impacts);
+    SectionRecord section(from, to, r.max_points);
+    StickRecord sticks(r.listed_impacts);
+    TouchRecord touches(r.listed_impacts);
+    // Verdict and regime rest on qr, whether or not it is listed.
+    const bool judged = r.includes("regime") || r.includes("exponents") || !r.windows.empty();
+    Lyapunov lyapunov(p, from, to, {true, r.estimators.eigenvalues && r.includes("exponents"), r.estimators.raw_product && r.includes("exponents"), r.estimators.history});
+    Windows windows(p, {r.estimators.qr, r.estimators.eigenvalues, r.estimators.raw_product, 256});  // their histories are for the standard errors alone
+    for (const Interval& w : r.windows) windows.add(w.from, w.to);
     TransferRecord transfers(p, from, to, r.max_points);
     StroboscopicRecord stroboscopic(p);
     Energy energy(p, from, to);
     Decay decay(p, r.start, {0.5, 0.1});
     ContactRecord contacts;
-    HalfCycles half_cycles(p, from, to);
+    HalfCycles half_cycles(p, from, to, r.max_points);
 
     std::vector<Observer*> observers = {&sticks, &touches};
     auto observe = [&](bool wanted, auto&... observer) { if (wanted) (observers.push_back(&observer), ...); };
     observe(r.includes("series"), series);
     observe(r.includes("impacts") || r.includes("section"), impacts);
-    observe(r.includes("exponents"), lyapunov);
-    for (Lyapunov& w : windows) observe(true, w);
+    observe(r.includes("section"), section);
+    observe(judged, lyapunov);
+    observe(!r.windows.empty(), windows);
     observe(r.includes("eigenvalues") || r.includes("matrices"), transfers);
-    const bool judged = r.includes("regime") || r.includes("exponents") || !windows.empty();  // the verdict on exponents rests on the regime, too
     observe(r.includes("section") || judged, stroboscopic);
     observe(r.includes("energy"), energy, decay);
     observe(judged, contacts);
@@ -113,19 +127,31 @@ Json simulate_answer(const SimulateRequest& r, const Stop& stop) {
 
     const Interval reached = {std::min(from, outcome.tau), std::min(to, outcome.tau)};
 
-    Warnings warnings;
     Json answer = {{"version", version()}, {"parameters", describe_parameters(r)}, {"status", describe_status(outcome, r, stop)}, {"warnings", nullptr}};
     if (outcome.reason != End::tau_end) warnings.push_back(answer["status"]["message"]);
     if (outcome.tau <= from) warnings.push_back("the run ended before its window began at tau = " + digits("%.6g", from));
-    if (r.includes("series")) {
+    std::string left_out;
+    // Whether a part is asked for and there is time for it.
+    auto wants = [&](const char* part) {
+        if (!r.includes(part) || !(stop.late && stop.late())) return r.includes(part);
+        answer[part] = nullptr;
+        left_out += (left_out.empty() ? "" : ", ") + std::string(part);
+        return false;
+    };
+    if (wants("series")) {
         series.finish(outcome);
         if (step > asked_step)
             warnings.push_back("the series has " + digits("%.4g", cycle / step) + " samples per cycle instead of " + digits("%.4g", r.samples_per_cycle) +
                                ", so that it holds no more than max_points = " + std::to_string(r.max_points));
         answer["series"] = describe_series(std::move(series));
     }
+    if (r.includes("impacts")) {
+        list_last(impacts.impacts, impacts.seen, r.listed_impacts, "impacts", most_bytes, warnings);
+        list_last(touches.touches, touches.seen, r.listed_impacts, "touches", most_bytes, warnings);
+    }
+    list_last(sticks.sticks, sticks.seen, r.listed_impacts, "sticks", most_bytes, warnings);
     const double typical_speed = median_speed(impacts.impacts);
-    if (r.includes("impacts")) answer["impacts"] = describe_impacts(impacts.impacts, p.epsilon, typical_speed);
+    if (wants("impacts")) answer["impacts"] = describe_impacts(impacts.impacts, p.epsilon, typical_speed);
     answer["sticking"] = describe_sticks(sticks.sticks);
     if (r.includes("impacts") && !touches.touches.empty()) {
         answer["touches"] = describe_touches(touches.touches);
@@ -133,18 +159,18 @@ Json simulate_answer(const SimulateRequest& r, const Stop& stop) {
     }
     const Verdict by_exponents = verdict_by_exponents(growth_of(lyapunov.product()));
     const Regime regime = judged ? regime_of(p, r.start, {contacts, stroboscopic, reached.from, reached.to, by_exponents, stop.asked}) : Regime{};
-    if (r.includes("exponents")) answer["exponents"] = describe_exponents(lyapunov.product(), r.estimators, regime, true, warnings);
-    if (!windows.empty()) answer["windows"] = describe_windows(r, windows, regime, warnings);
+    if (wants("exponents")) answer["exponents"] = describe_exponents(lyapunov.product(), r.estimators, regime, true, warnings);
+    if (!r.windows.empty()) answer["windows"] = describe_windows(r, windows, regime, warnings);
     warn_of_grazing(impacts.impacts, r, typical_speed, warnings);
     trim_to_last(transfers.transfers, r.max_points);
     if (transfers.seen > static_cast<long>(transfers.transfers.size()))
         warnings.push_back("eigenvalues and matrices are those of the last " + std::to_string(r.max_points) + " impacts (max_points) of " + std::to_string(transfers.seen));
-    if (r.includes("eigenvalues")) answer["eigenvalues"] = describe_eigenvalues(transfers.transfers);
-    if (r.includes("matrices")) answer["matrices"] = describe_matrices(transfers.transfers);
-    if (r.includes("section")) answer["section"] = describe_section(impacts.impacts, stroboscopic, r.window, r.max_points, warnings);
-    if (r.includes("energy")) answer["energy"] = describe_energy(p, r.start, energy, decay, reached);
-    if (r.includes("regime")) answer["regime"] = describe_regime(regime, r.max_points, warnings);
-    if (r.includes("manifold")) {
+    if (wants("eigenvalues")) answer["eigenvalues"] = describe_eigenvalues(transfers.transfers, stop.late, warnings);
+    if (wants("matrices")) answer["matrices"] = describe_matrices(transfers.transfers);
+    if (wants("section")) answer["section"] = describe_section(section, stroboscopic, r.window, r.max_points, warnings);
+    if (wants("energy")) answer["energy"] = describe_energy(p, r.start, energy, decay, reached);
+    if (wants("regime")) answer["regime"] = describe_regime(regime, r.max_points, warnings);
+    if (wants("manifold")) {
         if (p.R_plus == p.R_minus) {
             answer["manifold"] = describe_manifold(p, 0, 200);
         } else {
@@ -160,6 +186,7 @@ Json simulate_answer(const SimulateRequest& r, const Stop& stop) {
         }
         answer["manifold"]["points"] = {{"tau", half_cycles.tau}, {"C", std::move(C)}, {"V", std::move(V)}};
     }
+    if (!left_out.empty()) warnings.push_back("the time limit for one request was over before these parts were made up, which are null: " + left_out);
     answer["warnings"] = warnings;
     return answer;
 }
@@ -173,6 +200,9 @@ Json manifold_answer(const ManifoldRequest& r) {
     if (free && *free < activation)
         warnings.push_back("without the absorber the oscillator reaches " + digits("%.4g", *free) + " m, less than the activation amplitude " + digits("%.4g", activation) +
                            " m: two impacts per cycle cannot come about; b_at_free_amplitude is the largest b for which they can");
+    const double end = manifold_second_contact(r.system.parameters.R_plus, r.system.parameters.Omega, r.system.parameters.b).V;
+    if (r.V_max > end)
+        warnings.push_back("the branches end at V = " + digits("%.4g", end) + ", before V_max: there the mass meets the wall that it comes from a second time");
     return {{"version", version()}, {"parameters", std::move(parameters)}, {"warnings", warnings}, {"manifold", describe_manifold(r.system.parameters, r.V_max, r.points)}};
 }
 

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "api/request.hpp"
+#include "api/answer_size.hpp"
 
 namespace vines::api {
 
@@ -13,9 +13,11 @@ struct Stop {
     std::function<bool()> asked = {};
     std::string reason = "deadline";
     std::string message = "ended by the server's time limit for one request, before tau_end";
+    std::function<bool()> late = {};  ///< asked while the answer is made up: once true, the parts that are left are null
 };
 
-Json simulate_answer(const SimulateRequest& request, const Stop& stop);
+/// An answer of no more than about so many bytes of JSON: see fit_answer().
+Json simulate_answer(SimulateRequest request, const Stop& stop, std::size_t most_bytes = any_size);
 
 Json manifold_answer(const ManifoldRequest& request);
 

@@ -19,7 +19,7 @@ constexpr Exponents no_exponents = {nan, nan, nan, nan};
 /// A history that thins itself: when full it drops every second entry and from then on takes every second impact.
 class Thinned {
 public:
-    explicit Thinned(std::size_t capacity) : capacity_(std::max<std::size_t>(capacity, 256)) {}
+    explicit Thinned(std::size_t capacity) : capacity_(std::max(capacity, shortest_history)) {}
 
     bool wants_next() const { return seen_ % stride_ == 0; }
     void skip() { ++seen_; }
@@ -75,15 +75,15 @@ namespace {
 // with each modulation, so that shorter blocks, taken as independent, promise up to 2.5 times too little.
 constexpr int error_steps = 128, error_lags = 40;
 
-/// The sum of logarithms (lambda times its window) at evenly spaced tau, for one exponent.
-std::array<double, error_steps + 1> evenly_spaced(const ExponentHistory& h, double start, int exponent) {
+/// The sum of logarithms (lambda times its window) at evenly spaced tau up to the last entry of the history, for one exponent.
+std::array<double, error_steps + 1> evenly_spaced(const ExponentHistory& h, double start, std::size_t last, std::size_t stride, int exponent) {
     std::array<double, error_steps + 1> sums{};
     double tau_before = start, sum_before = 0;
     std::size_t i = 0;
     auto sum_at = [&](std::size_t k) { return h.lambda[k][exponent] * (h.tau[k] - start); };
     for (int step = 1; step <= error_steps; ++step) {
-        const double tau = start + (h.tau.back() - start) * step / error_steps;
-        for (; i + 1 < h.tau.size() && h.tau[i] < tau; ++i) tau_before = h.tau[i], sum_before = sum_at(i);
+        const double tau = start + (h.tau[last] - start) * step / error_steps;
+        for (; i < last && h.tau[i] < tau; i += stride) tau_before = h.tau[i], sum_before = sum_at(i);
         const double width = h.tau[i] - tau_before;
         sums[step] = width > 0 ? sum_before + (sum_at(i) - sum_before) * std::min(1.0, (tau - tau_before) / width) : sum_at(i);
     }
@@ -92,8 +92,16 @@ std::array<double, error_steps + 1> evenly_spaced(const ExponentHistory& h, doub
 
 }  // namespace
 
+std::size_t ExponentHistory::coarse_stride() const {
+    std::size_t stride = 1;
+    while ((tau.size() + stride - 1) / stride > shortest_history) stride *= 2;
+    return stride;
+}
+
 Exponents standard_error(const ExponentHistory& h, double start) {
     if (h.tau.size() < 32 || !(h.tau.back() > start)) return no_exponents;
+    const std::size_t stride = h.coarse_stride(), last = (h.tau.size() - 1) / stride * stride;
+    const double length = h.tau[last] - start;
     // Tukey and Hanning's estimate of the spectrum of the growth at frequency zero, times the length: the variance of the sum.
     std::array<double, error_lags + 1> weights;
     double taken = 1;
@@ -105,7 +113,7 @@ Exponents standard_error(const ExponentHistory& h, double start) {
     const double left = 1 - 0.5 * taken / error_steps;
     Exponents error;
     for (int k = 0; k < 4; ++k) {
-        const auto sums = evenly_spaced(h, start, k);
+        const auto sums = evenly_spaced(h, start, last, stride, k);
         std::array<double, error_steps> off;
         for (int i = 0; i < error_steps; ++i) off[i] = sums[i + 1] - sums[i] - sums[error_steps] / error_steps;
         auto covariance = [&](int lag) {
@@ -116,7 +124,7 @@ Exponents standard_error(const ExponentHistory& h, double start) {
         double variance = covariance(0);
         const double least = 0.02 * variance;  // the window's estimate may come out below zero
         for (int lag = 1; lag <= error_lags; ++lag) variance += 2 * weights[lag] * covariance(lag);
-        error[k] = std::isfinite(variance) ? std::sqrt(std::max(variance, least) / left) / (h.tau.back() - start) : nan;
+        error[k] = std::isfinite(variance) ? std::sqrt(std::max(variance, least) / left) / length : nan;
     }
     return error;
 }

@@ -33,16 +33,23 @@ using Exponents = std::array<double, 4>;  ///< per unit of tau; -infinity beyond
 enum class Status { ok, minus_infinity, not_converged };
 Status status_of(double exponent);
 
+/// A history holds at least so many entries before it is thinned.
+inline constexpr std::size_t shortest_history = 256;
+
 struct ExponentHistory {
     std::vector<double> tau;
     std::vector<Exponents> lambda;  ///< of the window from its first impact to tau
+
+    /// Every how many entries the shortest history of the same run would hold: what is concluded from a history rests on those
+    /// alone, and so does not depend on how long it was asked to be.
+    std::size_t coarse_stride() const;
 };
 
 /// Standard errors of the four exponents as means over the history's window, from how their sums of logarithms wander about a
 /// straight line; NaN with fewer than 32 entries, and where there is no number.
 Exponents standard_error(const ExponentHistory& history, double start);
 
-/// Which estimators to run, and how many entries their histories may have (at least 256). Longer ones are thinned to
+/// Which estimators to run, and how many entries their histories may have (at least shortest_history). Longer ones are thinned to
 /// every second, fourth, ... impact; `eigenvalues` keeps at most 2048, for each costs three eigenvalue problems.
 struct ExponentOptions {
     bool qr = true, eigenvalues = true, raw_product = true;

@@ -39,6 +39,13 @@ std::string format(double value) {
 
 }  // namespace
 
+SiParameters in_si(const Parameters& p, double m1, double k1) {
+    SiParameters si{m1, 0, k1, p.epsilon * m1, p.G * p.epsilon, 0};
+    si.c1 = p.lambda * si.m2 * si.omega0();
+    si.f = p.Omega * si.f0();
+    return si;
+}
+
 double Parameters::zeta() const { return damping == Damping::closed_form ? epsilon * lambda : 0.5 * epsilon * lambda; }
 
 double Parameters::A() const { return G * std::hypot(1.0, lambda * epsilon * Omega); }

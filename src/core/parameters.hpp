@@ -19,13 +19,14 @@ enum class Damping {
 /// are the paper's Table 1; its excitation is given in reduced form, G = .02 m and Omega = 1.
 struct SiParameters {
     double m1 = 3.807, c1 = 2.53, k1 = 11.68e3, m2 = 0.032;
-    double F = 0.02 * m2 / m1, f = omega0() / (2 * std::numbers::pi);
+    double F = 0.02 * m2 / m1, f = f0();
 
     double omega0() const { return std::sqrt(k1 / m1); }            ///< rad/s
+    double f0() const { return omega0() / (2 * std::numbers::pi); } ///< Hz
     double epsilon() const { return m2 / m1; }                      ///< the definitions below eq. (1)
     double lambda() const { return c1 / (m2 * omega0()); }
     double G() const { return F / epsilon(); }
-    double Omega() const { return 2 * std::numbers::pi * f / omega0(); }
+    double Omega() const { return f / f0(); }                       // exactly 1 for the oscillator's own f
 };
 
 /// Dimensionless but where a unit is given; the symbols are the paper's. The defaults are its Table 1 with the b of
@@ -46,6 +47,9 @@ struct Parameters {
     double cycle() const { return 2 * std::numbers::pi / Omega; }  ///< of the forcing, in tau
     double restitution(int side) const { return side > 0 ? R_plus : R_minus; }
 };
+
+/// The same system in SI, on the scale of an oscillator's mass and stiffness.
+SiParameters in_si(const Parameters& parameters, double m1, double k1);
 
 /// State of the flow in the paper's order, eq. (5). Positions in m, velocities in m per unit of tau.
 struct State {

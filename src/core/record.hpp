@@ -1,12 +1,16 @@
 // Observers that write down what a run does: the sampled motion, the impacts, the stuck phases.
 #pragma once
 
+#include <limits>
 #include <numbers>
 #include <vector>
 
 #include "core/simulate.hpp"
 
 namespace vines {
+
+/// Of a record that keeps all of its entries.
+inline constexpr std::size_t everything = std::numeric_limits<std::size_t>::max() / 2;
 
 /// Cuts a growing record down to its last `most` entries, at half of them more: each entry is moved once at most.
 template <class Entries>
@@ -48,15 +52,42 @@ private:
     const long first_;
 };
 
+/// Like the two below it keeps up to half more than its last `most`; `seen` counts all of them.
 class ImpactRecord : public Observer {
 public:
-    void on_impact(const Impact& impact) override { impacts.push_back(impact); }
+    explicit ImpactRecord(std::size_t most = everything) : most_(most) {}
+    void on_impact(const Impact& impact) override;
+
     std::vector<Impact> impacts;
+    long seen = 0;
+
+private:
+    const std::size_t most_;
+};
+
+/// The impacts in [tau_start, tau_end], each with the time since the impact before it, whether that is in the window or not.
+class SectionRecord : public Observer {
+public:
+    SectionRecord(double tau_start, double tau_end, std::size_t most) : tau_start_(tau_start), tau_end_(tau_end), most_(most) {}
+    void on_impact(const Impact& impact) override;
+
+    struct Point {
+        Impact impact;
+        double since;  ///< NaN at the first impact of the run
+    };
+    std::vector<Point> points;
+    long seen = 0;
+
+private:
+    const double tau_start_, tau_end_;
+    const std::size_t most_;
+    double before_ = std::numeric_limits<double>::quiet_NaN();
 };
 
 class StickRecord : public Observer {
 public:
-    void on_stick(const StickStart& start) override { sticks.push_back({start, start.tau}); }
+    explicit StickRecord(std::size_t most = everything) : most_(most) {}
+    void on_stick(const StickStart& start) override;
     void on_release(double tau) override { sticks.back().tau_end = tau; }
 
     struct Stick {
@@ -64,18 +95,27 @@ public:
         double tau_end;
     };
     std::vector<Stick> sticks;
+    long seen = 0;
+
+private:
+    const std::size_t most_;
 };
 
 /// Tangent contacts without an impact.
 class TouchRecord : public Observer {
 public:
-    void on_touch(double tau, int side) override { touches.push_back({tau, side}); }
+    explicit TouchRecord(std::size_t most = everything) : most_(most) {}
+    void on_touch(double tau, int side) override;
 
     struct Touch {
         double tau;
         int side;
     };
     std::vector<Touch> touches;
+    long seen = 0;
+
+private:
+    const std::size_t most_;
 };
 
 }  // namespace vines

@@ -186,11 +186,11 @@ std::size_t captured_from(const Parameters& p, const PeriodicOrbit& orbit, std::
 Capture capture_by(const Parameters& p, const State& start, std::span<const State> states, const State& scale, const RegimeEvidence& e,
                    const PeriodicOrbit& orbit, bool exponents_before) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    Capture capture{e.stroboscopic.tau(captured_from(p, orbit, states, scale)), {nan, nan, nan, nan}, orbit.exponents(p), false};
+    Capture capture{e.stroboscopic.tau(captured_from(p, orbit, states, scale)), {nan, nan, nan, nan}, orbit.exponents(p), std::nullopt};
     if (!exponents_before) return capture;
     Lyapunov before(p, 0, capture.tau, {true, false, false, 256});
     Observer* const observers[] = {&before};
-    simulate(p, start, {capture.tau, std::numeric_limits<long>::max(), e.stop}, observers);
+    if (simulate(p, start, {capture.tau, std::numeric_limits<long>::max(), e.stop}, observers).reason != End::tau_end) return capture;
     capture.before = before.product().qr();
     capture.chaotic_before = verdict_by_exponents(growth_of(before.product())) == Verdict::chaotic;
     return capture;
@@ -263,7 +263,7 @@ Judgement judge(const Growth& g, const Regime& r, double tau_start) {
     if (!r.forced) return {Verdict::not_decided, VerdictReason::free_decay};
     if (r.capture && tau_start >= r.capture->tau) return {Verdict::regular, VerdictReason::on_orbit};
     if (verdict_by_exponents(g) == Verdict::chaotic) return {Verdict::chaotic, VerdictReason::growth};
-    if (r.capture && !r.capture->chaotic_before) return {Verdict::regular, VerdictReason::settling};
+    if (r.capture && r.capture->chaotic_before == false) return {Verdict::regular, VerdictReason::settling};
     const VerdictReason why = r.capture                                         ? VerdictReason::transient
                               : std::isnan(g.standard_error)                    ? VerdictReason::no_error
                               : g.lambda1 < -verdict_sigmas * g.standard_error  ? VerdictReason::negative

@@ -50,7 +50,7 @@ struct Capture {
     double tau;
     Exponents before;  ///< qr, from the run's first impact to tau; NaN where there is too little
     Exponents after;   ///< from the Floquet multipliers
-    bool chaotic_before;  ///< by verdict_by_exponents(): the run was chaotic and then captured, not just settling
+    std::optional<bool> chaotic_before;  ///< by verdict_by_exponents(): the run was chaotic and then captured, not just settling; none: not known
 };
 
 struct Regime {
@@ -78,7 +78,8 @@ struct RegimeEvidence {
     std::function<bool()> stop = {};         ///< as in Limits: ends the search for an orbit
 };
 
-/// `exponents_before`: also those before a capture, for which the run is repeated up to there; else they are NaN.
+/// `exponents_before`: also those before a capture, for which the run is repeated up to there; else, or where the time for it was
+/// over, they are NaN.
 Regime regime_of(const Parameters& parameters, const State& start, const RegimeEvidence& evidence, bool exponents_before = true);
 
 /// What a verdict rests on.

@@ -1,7 +1,6 @@
 // Transfer matrices of the deviations: J over flights (19), projections over stuck phases, M at impacts (27), T = M J (30).
 #pragma once
 
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -43,7 +42,7 @@ struct ImpactTransfer {
 /// The matrices of the impacts in [tau_start, tau_end], from the second one on; up to half more than the last `most` of them.
 class TransferRecord : public Observer {
 public:
-    TransferRecord(const Parameters& parameters, double tau_start, double tau_end, std::size_t most = std::numeric_limits<std::size_t>::max() / 2)
+    TransferRecord(const Parameters& parameters, double tau_start, double tau_end, std::size_t most = everything)
         : parameters_(parameters), tau_start_(tau_start), tau_end_(tau_end), most_(most) {}
     void on_stretch(const Stretch& stretch) override { passage_.extend(stretch); }
     void on_impact(const Impact& impact) override;

@@ -8,7 +8,7 @@ Growth growth_of(const TransferProduct& product) {
     const ExponentHistory& h = product.qr_history();
     const double start = product.start_tau(), T = product.end_tau() - start, lambda1 = product.qr()[0];
     Growth g{lambda1, standard_error(h, start)[0], lambda1 * T, std::nan("")};
-    for (std::size_t i = 0; i < h.tau.size(); ++i)
+    for (std::size_t i = 0, stride = h.coarse_stride(); i < h.tau.size(); i += stride)
         if (h.tau[i] >= start + 0.5 * T) {
             g.late = g.whole - h.lambda[i][0] * (h.tau[i] - start);
             break;

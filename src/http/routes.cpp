@@ -1,5 +1,7 @@
 #include "http/routes.hpp"
 
+#include <malloc.h>
+
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -20,6 +22,35 @@ using api::Json;
 using api::Problem;
 
 Response json_response(const Json& json) { return {200, "application/json", json.dump() + "\n"}; }
+
+// From this size on an answer's memory is given back to the system at once.
+constexpr std::size_t large = 1 << 20;
+
+/// The text of an answer, whose parts are freed as they are written.
+std::string written(Json answer) {
+    std::string text;
+    for (auto& [name, part] : answer.get_ref<Json::object_t&>()) {
+        text += text.empty() ? '{' : ',';
+        text += Json(name).dump();
+        text += ':';
+        text += part.dump();
+        part = nullptr;
+    }
+    text += "}\n";
+    return text;
+}
+
+/// As json_response(), for answers that may be large: Problem 413 beyond the limit.
+Response limited_response(Json answer, std::size_t limit) {
+    std::string text = written(std::move(answer));
+#ifdef __GLIBC__
+    if (text.size() >= large) malloc_trim(0);  // what a thousand small arrays leave behind
+#endif
+    if (text.size() > limit)
+        throw Problem(413, "the answer has " + std::to_string(text.size()) + " bytes, and this server sends no more than " + std::to_string(limit) +
+                               ": ask for fewer parts (include), points (max_points) or impacts (max_impacts)");
+    return {200, "application/json", std::move(text)};
+}
 
 Response problem_response(const Problem& problem) {
     Response r{problem.status, "application/problem+json", problem.body()};
@@ -46,15 +77,24 @@ struct Entered {
     const ComputeGate::Place place;
 };
 
+// A run that its deadline ends is made up into an answer in this share of it more.
+constexpr double time_to_write = 0.2;
+
 Response simulate(const Json& object, const RouteOptions& options, ComputeGate& gate) {
     const api::SimulateRequest request = api::read_simulate_request(object);
     const Entered entered(gate);
     using Clock = std::chrono::steady_clock;
-    const auto deadline = Clock::now() + std::chrono::duration<double>(options.deadline);
-    return json_response(api::simulate_answer(request, {[deadline] { return Clock::now() > deadline; }}));
+    const auto now = Clock::now();
+    const std::chrono::duration<double> time(options.deadline);
+    api::Stop stop;
+    stop.asked = [deadline = now + time] { return Clock::now() > deadline; };
+    stop.late = [deadline = now + (1 + time_to_write) * time] { return Clock::now() > deadline; };
+    return limited_response(api::simulate_answer(request, stop, options.answer_limit), options.answer_limit);
 }
 
-Response manifold(const Json& object) { return json_response(api::manifold_answer(api::read_manifold_request(object))); }
+Response manifold(const Json& object, const RouteOptions& options) {
+    return limited_response(api::manifold_answer(api::read_manifold_request(object)), options.answer_limit);
+}
 
 Json body_of(const Request& r) {
     if (!r.query.empty()) throw Problem(400, "a POST takes its fields from the body; the query must be empty");
@@ -62,11 +102,11 @@ Json body_of(const Request& r) {
 }
 
 /// A CSV file with the fields in the query, or JSON with all in the body.
-Response identify(const Request& r, ComputeGate& gate) {
+Response identify(const Request& r, const RouteOptions& options, ComputeGate& gate) {
     const bool csv = r.content_type.rfind("text/csv", 0) == 0 || r.content_type.rfind("text/plain", 0) == 0;
     const api::IdentifyRequest request = csv ? api::read_identify_request(api::from_query(api::identify_fields(), r.query), r.body) : api::read_identify_request(body_of(r));
     const Entered entered(gate);
-    return json_response(api::identify_answer(request));
+    return limited_response(api::identify_answer(request), options.answer_limit);
 }
 
 /// A route whose answer may throw a Problem.
@@ -100,10 +140,10 @@ std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate) {
     routes.push_back(route("POST", "/v1/simulate", [options, &gate](const Request& r) {
         return simulate(body_of(r), options, gate);
     }));
-    routes.push_back(route("GET", "/v1/manifold", [](const Request& r) { return manifold(api::from_query(api::manifold_fields(), r.query)); }));
-    routes.push_back(route("POST", "/v1/manifold", [](const Request& r) { return manifold(body_of(r)); }));
+    routes.push_back(route("GET", "/v1/manifold", [options](const Request& r) { return manifold(api::from_query(api::manifold_fields(), r.query), options); }));
+    routes.push_back(route("POST", "/v1/manifold", [options](const Request& r) { return manifold(body_of(r), options); }));
     routes.push_back(route("POST", "/v1/sweep", [options, &gate](const Request& r) { return stream_sweep(api::read_sweep_request(body_of(r), options.sweep_points), gate); }));
-    routes.push_back(route("POST", "/v1/identify", [&gate](const Request& r) { return identify(r, gate); }));
+    routes.push_back(route("POST", "/v1/identify", [options, &gate](const Request& r) { return identify(r, options, gate); }));
     routes.back().body_limit = options.record_limit;
     routes.push_back(route("GET", "/v1/presets", [](const Request&) { return json_response(api::describe_presets()); }));
     routes.push_back(route("GET", "/v1/parameters", [](const Request&) { return json_response(api::describe_fields()); }));

@@ -5,6 +5,7 @@
 #include <sys/socket.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cctype>
 #include <cerrno>
@@ -33,13 +34,22 @@ constexpr int backlog = 512;  // httplib's own is 5: of 400 clients at once some
 std::string gzip(const std::string& text) {
     z_stream stream{};
     if (deflateInit2(&stream, 1, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) != Z_OK) throw std::runtime_error("zlib: deflateInit2");
-    std::string out(deflateBound(&stream, text.size()), '\0');
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
-    stream.avail_in = static_cast<uInt>(text.size());
-    stream.next_out = reinterpret_cast<Bytef*>(out.data());
-    stream.avail_out = static_cast<uInt>(out.size());
-    const int result = deflate(&stream, Z_FINISH);
-    out.resize(stream.total_out);
+    std::string out;
+    std::vector<char> piece(1 << 20);  // the whole may be 4 GiB and more, of which zlib cannot count
+    int result = Z_OK;
+    for (std::size_t at = 0; result == Z_OK; at += piece.size()) {
+        const std::size_t size = std::min(piece.size(), text.size() - at);
+        stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data() + at));
+        stream.avail_in = static_cast<uInt>(size);
+        const int flush = at + size == text.size() ? Z_FINISH : Z_NO_FLUSH;
+        do {
+            stream.next_out = reinterpret_cast<Bytef*>(piece.data());
+            stream.avail_out = static_cast<uInt>(piece.size());
+            result = deflate(&stream, flush);
+            if (result == Z_BUF_ERROR) result = Z_OK;  // nothing was left to do
+            out.append(piece.data(), piece.size() - stream.avail_out);
+        } while (result == Z_OK && stream.avail_out == 0);
+    }
     deflateEnd(&stream);
     if (result != Z_STREAM_END) throw std::runtime_error("zlib: deflate");
     return out;

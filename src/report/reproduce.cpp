@@ -125,7 +125,7 @@ Ensemble ensemble(double b, Damping damping, bool raw) {
         Observer* const observers[] = {&over, &contacts, &stroboscopic};
         simulate(p, start, {length * windows, 10000000, {}}, observers);
         const Regime regime = regime_of(p, start, {contacts, stroboscopic, 0, length * windows});
-        const bool chaotic_before = regime.capture && regime.capture->chaotic_before;
+        const bool chaotic_before = regime.capture && regime.capture->chaotic_before == true;
         const double until = chaotic_before ? regime.capture->tau : length * windows;
         e.captured += chaotic_before;
         if (regime.orbit && !chaotic_before) e.periodic = regime.orbit->exponents(p)[0];

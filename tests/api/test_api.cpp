@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numbers>
 #include <set>
 
 #include "api/presets.hpp"
@@ -156,9 +158,97 @@ TEST_CASE("every preset runs, names its figure or table, and the request overrid
     const Json over = answer(R"({"preset":"fig15","b":0.012,"R_plus":0.7,"tau_end":50,"include":[]})");
     CHECK(over["parameters"]["b"] == 0.012);
     CHECK(over["parameters"]["R_plus"] == 0.7);
-    CHECK(over["parameters"]["R_minus"] == 0.6);
+    CHECK(over["parameters"]["R_minus"] == 0.85);
     CHECK(over["parameters"]["tau_end"] == 50);
-    CHECK(answer(R"({"preset":"fig15","epsilon":0.01,"include":[]})")["parameters"]["lambda"].get<double>() == Parameters().lambda);
+}
+
+namespace {
+
+/// What a preset runs, with fields of the request over it.
+Json parameters_of(const std::string& preset, Json given) {
+    given.update({{"preset", preset}, {"include", Json::array()}, {"tau_end", 1}});
+    return simulate_answer(read_simulate_request(given), {})["parameters"];
+}
+
+/// The parameters whose values differ, of SI those in parameters.si.
+std::set<std::string> differing(const Json& a, const Json& b) {
+    std::set<std::string> names;
+    for (const auto& [name, value] : a.items())
+        if (name != "derived" && name != "y0" && name != "cycles" && value != b.at(name)) names.insert(name);
+    return names;
+}
+
+}  // namespace
+
+TEST_CASE("a reduced field over a preset changes that field alone, in SI the quantities that follow from it") {
+    const Json fig20 = parameters_of("fig20", Json::object()), fig3 = parameters_of("fig3", Json::object());
+    const std::map<std::string, std::pair<double, std::set<std::string>>> fields = {
+        {"epsilon", {0.01, {"m2", "c1", "F"}}}, {"lambda", {1, {"c1"}}}, {"G", {0.015, {"F"}}}, {"Omega", {1.1, {"f"}}}};
+    for (const auto& [name, change] : fields) {
+        CAPTURE(name);
+        const Json over = parameters_of("fig20", {{name, change.first}});
+        CHECK(over[name] == change.first);
+        CHECK(differing(over, fig20) == std::set<std::string>{name, "si"});
+        CHECK(differing(over["si"], fig20["si"]) == change.second);
+        CHECK(differing(parameters_of("fig3", {{name, change.first}}), fig3) == std::set<std::string>{name});
+        const Json& si = over["si"];
+        const double omega0 = over["derived"]["omega0"], mass_ratio = si["m2"].get<double>() / si["m1"].get<double>();
+        CHECK(mass_ratio == doctest::Approx(over["epsilon"].get<double>()).epsilon(1e-14));
+        CHECK(si["c1"].get<double>() / si["m2"].get<double>() / omega0 == doctest::Approx(over["lambda"].get<double>()).epsilon(1e-14));
+        CHECK(si["F"].get<double>() / mass_ratio == doctest::Approx(over["G"].get<double>()).epsilon(1e-14));
+        CHECK(2 * std::numbers::pi * si["f"].get<double>() / omega0 == doctest::Approx(over["Omega"].get<double>()).epsilon(1e-14));
+    }
+    CHECK(parameters_of("fig20", {{"Omega", 1.0}}) == fig20);
+}
+
+TEST_CASE("an SI field over a preset changes that field alone, in reduced form what follows from it") {
+    const SiParameters table1;
+    const Json fig3 = parameters_of("fig3", {{"m1", table1.m1}});
+    CHECK(differing(parameters_of("fig3", Json::object()), fig3).empty());  // Table 1 itself
+    CHECK(fig3["si"]["F"] == table1.F);
+    CHECK(fig3["si"]["f"] == table1.f);
+    const std::map<std::string, std::pair<double, std::set<std::string>>> fields = {
+        {"m1", {5, {"epsilon", "lambda", "G", "Omega"}}}, {"c1", {3, {"lambda"}}}, {"k1", {12e3, {"lambda", "Omega"}}},
+        {"m2", {0.04, {"epsilon", "lambda", "G"}}}, {"F", {1e-4, {"G"}}}, {"f", {9, {"Omega"}}}};
+    for (const char* preset : {"fig3", "fig20"}) {
+        const Json before = parameters_of(preset, {{"m1", preset == std::string("fig3") ? table1.m1 : 4.168}});
+        for (const auto& [name, change] : fields) {
+            CAPTURE(preset);
+            CAPTURE(name);
+            const Json over = parameters_of(preset, {{name, change.first}});
+            CHECK(differing(over["si"], before["si"]) == std::set<std::string>{name});
+            std::set<std::string> expected = change.second;
+            expected.insert("si");
+            CHECK(differing(over, before) == expected);
+        }
+    }
+}
+
+TEST_CASE("R over a preset replaces both walls' coefficients, R_plus and R_minus that of one wall") {
+    CHECK(differing(parameters_of("fig20", {{"R_plus", 0.7}}), parameters_of("fig20", Json::object())) == std::set<std::string>{"R_plus"});
+    CHECK(differing(parameters_of("fig20", {{"R_minus", 0.7}}), parameters_of("fig20", Json::object())) == std::set<std::string>{"R_minus"});
+    CHECK(parameters_of("fig3", {{"R_plus", 0.7}})["R_minus"] == 0.6);
+    const Json both = parameters_of("fig20", {{"R", 0.5}});
+    CHECK(both["R_plus"] == 0.5);
+    CHECK(both["R_minus"] == 0.5);
+}
+
+TEST_CASE("the manifold of a preset is that of the fields over it") {
+    const auto parameters = [](const Json& given) { return manifold_answer(read_manifold_request(given))["parameters"]; };
+    const Json fig20 = parameters({{"preset", "fig20"}});
+    CHECK(differing(parameters({{"preset", "fig20"}, {"Omega", 1.1}}), fig20) == std::set<std::string>{"Omega", "si"});
+    CHECK(differing(parameters({{"preset", "fig20"}, {"m2", 0.04}}), fig20) == std::set<std::string>{"epsilon", "lambda", "G", "si"});
+    CHECK(parameters({{"preset", "fig20"}, {"R_plus", 0.85}}) == fig20);  // R_minus is the preset's
+}
+
+TEST_CASE("a fault that follows from a preset and a field over it is that field's") {
+    for (const char* preset : {"fig3", "fig20"}) {
+        CAPTURE(preset);
+        CHECK(pointers(refused(R"({"preset":")" + std::string(preset) + R"(","m1":1e-9})")) == std::set<std::string>{"/m1"});
+        CHECK(pointers(refused(R"({"preset":")" + std::string(preset) + R"(","lambda":1e5})")) == std::set<std::string>{"/lambda"});
+        CHECK(pointers(refused(R"({"preset":")" + std::string(preset) + R"(","Omega":1,"f":9})")) == std::set<std::string>{"/Omega", "/f"});
+        CHECK(pointers(refused(R"({"preset":")" + std::string(preset) + R"(","R":0.5,"R_plus":0.6})")) == std::set<std::string>{"/R", "/R_plus"});
+    }
 }
 
 TEST_CASE("the field table describes exactly what a request takes") {
@@ -310,6 +400,24 @@ TEST_CASE("the manifold has its fold, its branches and a hint for b, by itself a
     CHECK(run["warnings"].size() == 1);
 }
 
+TEST_CASE("the manifold ends where the motion does, and says by what") {
+    const auto manifold = [](const Json& given) { return manifold_answer(read_manifold_request(given)); };
+    const Json small = manifold({{"R", 0.05}, {"b", 0.02}})["manifold"];
+    CHECK(small["stable_ends_by"] == "second_contact");
+    CHECK(small["stable"]["V"].back() == small["second_contact"]["V"]);
+    CHECK(small["second_contact"]["V"].get<double>() == doctest::Approx(0.0186).epsilon(5e-3));
+    CHECK(small["symmetry_breaking"].is_null());  // the motion that would lose its symmetry is none
+    for (const char* column : {"C", "V"}) CHECK(small["asymmetric"][column] == Json::array());
+    const Json ordinary = manifold({{"R", 0.6}, {"b", 0.02}})["manifold"];
+    CHECK(ordinary["stable_ends_by"] == "symmetry_breaking");
+    CHECK(ordinary["stable"]["V"].back() == ordinary["symmetry_breaking"]["V"]);
+    CHECK(ordinary["asymmetric"]["V"].back() == 2 * ordinary["symmetry_breaking"]["V"].get<double>());
+    const Json far = manifold({{"R", 0.6}, {"b", 0.02}, {"V_max", 1}});
+    CHECK(far["manifold"]["asymmetric"]["V"].back() == far["manifold"]["second_contact"]["V"]);
+    CHECK(far["warnings"].dump().find("before V_max") != std::string::npos);
+    CHECK(answer(R"({"R":0.05,"b":0.02,"tau_end":10,"include":["manifold"]})")["manifold"]["stable"] == small["stable"]);
+}
+
 TEST_CASE("what a long run would fill memory with is cut to its last max_points, and said to be") {
     CHECK(pointers(refused(R"({"Omega":100,"tau_end":1e6})")) == std::set<std::string>{"/tau_end"});
     const Json a = answer(R"({"b":0.003,"tau_end":4000,"max_points":256,"include":["eigenvalues","matrices","section","regime","manifold","impacts"]})");
@@ -337,4 +445,70 @@ TEST_CASE("caps end a run as a result that says so") {
     CHECK(a["warnings"].size() == 1);
     a = simulate_answer(read_simulate_request({{"tau_end", 1e7}, {"max_impacts", 2000000}, {"include", Json::array()}}), {[] { return true; }});
     CHECK(a["status"]["reason"] == "deadline");
+}
+
+namespace {
+
+const std::vector<std::string> all_parts = {"series", "impacts", "exponents", "eigenvalues", "matrices", "section", "energy", "regime", "manifold"};
+
+Json within_bytes(const Json& given, std::size_t bytes) { return simulate_answer(read_simulate_request(given), {}, bytes); }
+
+bool warns(const Json& a, const std::string& text) { return a["warnings"].dump().find(text) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("an answer is no larger than its limit: lists are thinned or cut to their last entries, and it says so") {
+    Json given = {{"b", 0.003}, {"tau_end", 3000}, {"max_points", 100000}, {"include", all_parts}, {"windows", {{0, 100}, {0, 200}}}};
+    const Json all = within_bytes(given, any_size);
+    CHECK_FALSE(warns(all, "limit"));
+    CHECK(all.dump().size() > 3000000);
+    for (std::size_t bytes : {1000000, 500000}) {
+        CAPTURE(bytes);
+        const Json cut = within_bytes(given, bytes);
+        CHECK(cut.dump().size() < bytes);
+        CHECK(cut.dump().size() > bytes / 4);
+        CHECK(warns(cut, "this server's limit of " + std::to_string(bytes) + " bytes"));
+        CHECK(cut["impacts"]["tau"].size() < all["impacts"]["tau"].size());
+        CHECK(cut["impacts"]["tau"].back() == all["impacts"]["tau"].back());
+        CHECK(warns(cut, "of " + std::to_string(all["impacts"]["tau"].size()) + " impacts the last " + std::to_string(cut["impacts"]["tau"].size()) + " are listed"));
+        CHECK(cut["eigenvalues"]["T"].back() == all["eigenvalues"]["T"].back());
+        CHECK(cut["eigenvalues"]["tau"].size() == cut["parameters"]["max_points"]);
+        CHECK(cut["exponents"]["qr"]["final"] == all["exponents"]["qr"]["final"]);
+        CHECK(cut["series"]["tau"].size() <= cut["parameters"]["max_points"].get<std::size_t>() + 1);
+    }
+    // What needs little keeps all: the impacts of a long series, the series of many impacts.
+    given["include"] = {"impacts", "series"};
+    given["max_impacts"] = 10000;
+    CHECK(within_bytes(given, 6000000)["impacts"] == within_bytes(given, any_size)["impacts"]);
+    given.update({{"max_impacts", 100000}, {"max_points", 10000}});
+    CHECK(within_bytes(given, 6000000)["series"] == within_bytes(given, any_size)["series"]);
+}
+
+TEST_CASE("a list of sticks is bounded as well") {
+    const Json given = {{"R", 0}, {"b", 0.003}, {"tau_end", 3000}, {"max_impacts", 10000}, {"include", {"impacts"}}};
+    const Json all = within_bytes(given, any_size), cut = within_bytes(given, 100000);
+    CHECK(all["sticking"]["tau_start"].size() > 500);
+    CHECK(cut.dump().size() < 100000);
+    CHECK(cut["sticking"]["tau_end"].back() == all["sticking"]["tau_end"].back());
+    CHECK(warns(cut, "sticks the last "));
+}
+
+TEST_CASE("parts for which no time is left are null, and the answer names them") {
+    Stop stop;
+    stop.late = [] { return true; };
+    const SimulateRequest request = read_simulate_request({{"b", 0.003}, {"tau_end", 1000}, {"include", all_parts}, {"windows", {{0, 100}}}});
+    const Json a = simulate_answer(request, stop);
+    for (const std::string& part : all_parts) CHECK((a.contains(part) && a[part].is_null()));
+    CHECK(a["windows"].size() == 1);
+    CHECK(warns(a, "null: series, impacts, exponents, eigenvalues, matrices, section, energy, regime, manifold"));
+    // The eigenvalues of T, which take the longest, are those of the last impacts.
+    const SimulateRequest eigenvalues = read_simulate_request({{"b", 0.003}, {"tau_end", 1000}, {"include", {"eigenvalues"}}});
+    stop.late = [asked = 0]() mutable { return ++asked > 3; };
+    const Json some = simulate_answer(eigenvalues, stop)["eigenvalues"], every = simulate_answer(eigenvalues, {})["eigenvalues"];
+    CHECK(some["T"].size() == 512);
+    for (const auto& [name, column] : some.items()) {
+        REQUIRE(column.size() == 512);
+        CHECK(column == Json(std::vector<Json>(every[name].end() - 512, every[name].end())));
+    }
+    CHECK(warns(simulate_answer(eigenvalues, [&] { Stop s; s.late = [asked = 0]() mutable { return ++asked > 3; }; return s; }()), "those of the last 512 impacts"));
 }

@@ -59,6 +59,18 @@ std::string replaced_line(const std::string& csv, int line, const std::string& b
 
 }  // namespace
 
+TEST_CASE("a reduced field over a preset leaves a record its oscillator") {
+    // A record in seconds needs omega0, which no reduced field tells.
+    const std::string csv = measured("fig15", 3);
+    const auto parameters = [&](const Json& given) { return identify_answer(read_identify_request(given, csv))["parameters"]; };
+    const Json preset = parameters({{"preset", "fig15"}}), over = parameters({{"preset", "fig15"}, {"Omega", 1.0}});
+    CHECK(over == preset);
+    const Json lambda = parameters({{"preset", "fig15"}, {"lambda", 1.7}});
+    CHECK(lambda["lambda"] == 1.7);
+    for (const char* name : {"epsilon", "Omega"}) CHECK(lambda[name] == preset[name]);
+    CHECK(lambda["derived"]["omega0"] == preset["derived"]["omega0"]);
+}
+
 TEST_CASE("a CSV file and the same record as JSON give the impacts, the restitution and the exponents of the motion") {
     const std::string csv = measured("fig15", 12);
     const Json a = identify_answer(read_identify_request({{"preset", "fig15"}}, csv));

@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <cstdio>
 #include <map>
 #include <numeric>
 #include <set>
@@ -141,6 +142,25 @@ TEST_CASE("axes are linear or logarithmic with exact ends, or a list") {
     CHECK(log.values[2] == 0.1);
     CHECK(request(R"({"axes":[{"parameter":"f","values":[8,9,10.5]}],"base":{"m1":4}})").axes[0].values == std::vector<double>{8, 9, 10.5});
     CHECK(request(R"({"axes":[{"parameter":"x0","from":0,"to":0.01,"count":1}]})").points == 1);
+}
+
+TEST_CASE("an axis over a preset changes that field alone, reduced, SI or of one wall") {
+    // Each point is the point of a sweep whose base says all of the preset's values.
+    const std::string rest = R"(,"cycles":60,"transient_cycles":0})";
+    const auto point = [&](const std::string& base, const std::string& axis) {
+        return run(request(R"({"base":)" + base + R"(,"axes":[)" + axis + "]" + rest)).at(0);
+    };
+    const SiParameters table4{4.168, 3.02, 11.47e3, 0.032, 0.01 * 0.032 / 4.168, 0};
+    char reduced[200];
+    std::snprintf(reduced, sizeof reduced, R"("epsilon":%.17g,"lambda":%.17g,"G":%.17g,"b":0.015)", table4.epsilon(), table4.lambda(), table4.G());
+    const std::string Omega = R"({"parameter":"Omega","values":[1.01]})", R_plus = R"({"parameter":"R_plus","values":[0.8]})";
+    CHECK(point(R"({"preset":"fig20"})", Omega) == point(std::string("{") + reduced + R"(,"R":0.85})", Omega));
+    CHECK(point(R"({"preset":"fig20"})", R_plus) == point(std::string("{") + reduced + R"(,"R_minus":0.85})", R_plus));
+    CHECK(point(R"({"preset":"fig20","Omega":1.01})", R_plus) == point(std::string("{") + reduced + R"(,"Omega":1.01,"R_minus":0.85})", R_plus));
+    const std::string c1 = R"({"parameter":"c1","values":[3]})";
+    CHECK(point(R"({"preset":"fig3"})", c1) == point(R"({"damping":"closed_form","m1":3.807})", c1));
+    CHECK(refused(R"({"base":{"R":0.85},"axes":[{"parameter":"R_plus","values":[0.8]}]})") == std::set<std::string>{"/axes/0", "/base/R"});
+    CHECK(refused(R"({"base":{"preset":"fig20"},"axes":[{"parameter":"m1","values":[1e-9]}]})") == std::set<std::string>{"/axes/0"});
 }
 
 TEST_CASE("what is wrong with a sweep is named at its place") {

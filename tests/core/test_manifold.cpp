@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -26,7 +27,60 @@ Moduli cycle_moduli(double R, double Omega, double b, double V) {
     return eigenvalue_moduli(record_of.transfers[1].T() * record_of.transfers[0].T());
 }
 
+/// How far the mass stays off both walls during the flight of a symmetric motion, least over a dense grid that leaves out
+/// its ends; negative: it would pass a wall.
+double clearance(double R, double b, double V) {
+    const double k = (1 - R) / (1 + R), x = b - std::numbers::pi / 2 * V;
+    double least = b;
+    for (int i = 1; i < 20000; ++i) {
+        const double t = std::numbers::pi * i / 20000, gap = x * std::cos(t) + k * V * std::sin(t) - (x - b + V * t);
+        least = std::min(least, b - std::abs(gap));
+    }
+    return least;
+}
+
+/// The impacts of the first cycle and a half of a motion on the manifold, with so light a mass.
+std::vector<Impact> impacts_on_manifold(double R, double b, double V, double epsilon) {
+    Parameters p;
+    p.epsilon = epsilon, p.lambda = 0, p.G = 0, p.b = b, p.R_plus = p.R_minus = R;
+    const double k = (1 - R) / (1 + R), x = b - std::numbers::pi / 2 * V;
+    ImpactRecord impacts;
+    record(p, {k * V, x, V, x - b}, 3.5 * std::numbers::pi, 1000, {&impacts});
+    return impacts.impacts;
+}
+
 }  // namespace
+
+TEST_CASE("the manifold ends where the mass meets the wall that it comes from a second time") {
+    CHECK(manifold_second_contact(0.001, 1, 0.02).V == doctest::Approx(0.0134).epsilon(5e-3));
+    CHECK(manifold_second_contact(0.05, 1, 0.02).V == doctest::Approx(0.0186).epsilon(5e-3));
+    CHECK(manifold_second_contact(0, 1, 0.02).V == doctest::Approx(0.02 * 2 / std::numbers::pi).epsilon(1e-12));
+    for (double R : {0.0, 1e-9, 1e-3, 0.05, 0.1, 0.3, 0.6, 0.9, 1.0}) {
+        CAPTURE(R);
+        const double V = manifold_second_contact(R, 1, 0.02).V;
+        CHECK(manifold_second_contact(R, 2, 0.02).V == doctest::Approx(2 * V).epsilon(1e-12));
+        CHECK(manifold_second_contact(R, 1, 0.02).C == manifold_C(R, 1, 0.02, V));
+        for (double share : {1e-3, 0.1, 0.5, 0.9, 0.999}) CHECK(clearance(R, 0.02, share * V) > 0);
+        for (double factor : {1.002, 1.1, 2.0}) CHECK(clearance(R, 0.02, factor * V) < 0);
+    }
+    CHECK(manifold_second_contact(0.0867, 1, 1).V < manifold_symmetry_breaking(0.0867, 1, 1).V);
+    CHECK(manifold_second_contact(0.0868, 1, 1).V > manifold_symmetry_breaking(0.0868, 1, 1).V);
+}
+
+TEST_CASE("a run started on the manifold alternates walls below its second contact and not above") {
+    for (double epsilon : {1e-5, 1e-9}) {
+        for (double R : {0.001, 0.05}) {
+            CAPTURE(R);
+            const double V = manifold_second_contact(R, 1, 0.02).V;
+            const auto below = impacts_on_manifold(R, 0.02, 0.99 * V, epsilon), above = impacts_on_manifold(R, 0.02, 1.01 * V, epsilon);
+            REQUIRE(below.size() == 3);
+            for (std::size_t i = 0; i < 3; ++i) CHECK(below[i].side == (i % 2 == 0 ? -1 : 1));
+            REQUIRE(above.size() > 0);
+            CHECK(above[0].side == 1);
+            CHECK(above[0].tau < std::numbers::pi / 2);
+        }
+    }
+}
 
 TEST_CASE("the fold is where C is smallest, and b can be chosen to put it at an amplitude") {
     for (double R : {0.2, 0.6, 0.9}) {

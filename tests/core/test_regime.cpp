@@ -162,7 +162,7 @@ TEST_CASE("a chaotic transient that a sticking orbit captures is reported with i
     CHECK(r.type == RegimeType::V);
     CHECK(std::abs(r.orbit->multipliers[2]) == 0);
     REQUIRE(r.capture);
-    CHECK(r.capture->chaotic_before);
+    CHECK(r.capture->chaotic_before == true);
     CHECK(r.capture->before[0] == doctest::Approx(0.10).epsilon(0.2));
     CHECK(r.capture->after[0] == doctest::Approx(-0.00703).epsilon(0.01));
     const auto differences = multipliers_by_differences(table1(0.022, Damping::closed_form), *r.orbit);
@@ -284,7 +284,7 @@ TEST_CASE("each window of a run has its own verdict") {
     simulate(p, default_state(p), {20000, 10000000, {}}, observers);
     const Regime r = regime_of(p, default_state(p), {contacts, stroboscopic, 4164, 20000, verdict_by_exponents(growth_of(last.product()))});
     REQUIRE(r.capture);
-    CHECK(r.capture->chaotic_before);
+    CHECK(r.capture->chaotic_before == true);
     for (const Lyapunov* window : {&first, &second}) {
         const Judgement j = judge(growth_of(window->product()), r, window->product().start_tau());
         CHECK(j.verdict == Verdict::chaotic);

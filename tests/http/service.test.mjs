@@ -244,6 +244,8 @@ test("large answers are compressed by gzip when asked for, small ones are not", 
   const [headers, bytes] = await get("/v1/simulate");
   assert.equal(headers["content-encoding"], "gzip");
   assert.ok(JSON.parse(gunzipSync(bytes)).series.tau.length > 1000);
+  const long = "/v1/simulate?include=series&tau_end=20000&max_points=100000";  // several pieces of a mebibyte
+  assert.equal(gunzipSync((await get(long))[1]).toString(), await (await fetch(`${service.url}${long}`, {headers: {"Accept-Encoding": "identity"}})).text());
   assert.equal((await get("/version"))[0]["content-encoding"], undefined);
 });
 
@@ -270,6 +272,34 @@ test("a request that computes too long ends with what it has", async () => {
   assert.ok(answer.status.tau > 0 && answer.status.tau < 1e7);
   assert.ok(Date.now() - started < 2000);
   await hasty.stop();
+});
+
+const everything = {b: 0.003, tau_end: 1e6, max_points: 1e6, max_impacts: 2e6, include: ["series", "impacts", "exponents", "eigenvalues", "matrices", "section", "energy", "regime", "manifold"]};
+
+test("the deadline and the answer's limit hold for all that can be asked for at once, in time and memory", async () => {
+  const hasty = await startService(["--deadline", "1", "--answer-limit", "50000000"]);
+  const started = Date.now();
+  const text = await (await fetch(`${hasty.url}/v1/simulate`, {method: "POST", body: JSON.stringify(everything)})).text();
+  assert.ok(Date.now() - started < 4000, `${Date.now() - started} ms`);
+  assert.ok(text.length <= 50000000, `${text.length} bytes`);
+  const answer = JSON.parse(text);
+  assert.equal(answer.status.reason, "deadline");
+  assert.ok(answer.warnings.some((w) => /max_points is \d+ instead of 1000000/.test(w)), answer.warnings.join("\n"));
+  for (const part of everything.include) assert.ok(answer[part] !== null || answer.warnings.some((w) => w.includes(part)), part);
+  const peak = Number((await readFile(`/proc/${hasty.pid}/status`, "utf8")).match(/VmHWM:\s+(\d+)/)[1]) / 1024;
+  assert.ok(peak < 1000, `${peak} MB`);
+  await hasty.stop();
+});
+
+test("an answer beyond the server's limit is thinned, or refused with both numbers where it cannot be", async () => {
+  const small = await startService([], {VINES_ANSWER_LIMIT: "300000"});
+  const get = (path) => fetch(`${small.url}${path}`);
+  const text = await (await get("/v1/simulate?b=0.003&include=series,impacts")).text();
+  assert.ok(text.length <= 300000, `${text.length} bytes`);
+  assert.ok(JSON.parse(text).warnings.some((w) => /limit of 300000 bytes/.test(w)));
+  assert.match((await problem(await get("/v1/manifold?points=100000"), 413)).detail, /has \d+ bytes, and this server sends no more than 300000/);
+  assert.equal((await get("/v1/manifold?points=1000")).status, 200);
+  await small.stop();
 });
 
 test("SIGTERM ends the service with 0, at once, with an idle connection open", async () => {

@@ -74,6 +74,13 @@ test("a preset fills the form and draws", async () => {
   await page.close();
 });
 
+test("a reduced field over a preset in SI changes that field alone, and the link keeps both", async () => {
+  const page = await open(browser.context, `${service.url}/?preset=fig20&Omega=1.01`);
+  assert.equal(await page.inputValue("#preset"), "fig20");
+  assert.equal(new URL(page.url()).search, "?preset=fig20&Omega=1.01");
+  await page.close();
+});
+
 test("a fault is shown at its field, and mending it draws again", async () => {
   const page = await open(browser.context, `${service.url}/?b=0.015&tau_end=300`);
   const b = page.locator("#fields label:has-text('b, m') input");

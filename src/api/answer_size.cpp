@@ -1,0 +1,60 @@
+#include "api/answer_size.hpp"
+
+#include <algorithm>
+
+namespace vines::api {
+
+namespace {
+
+// "-2.2250738585072014e-308,": the longest double that reads back to the same bits.
+constexpr double number = 25, side = 3, count = 8, word = 6, bracket = 2;  // count: up to 2000000; word: true, false, null
+// Words, parameters, the orbit, 200 points on each branch of the manifold.
+constexpr double rest = 64 * 1024;
+// The exponents of one window by three estimators, with their words.
+constexpr double window = 2048;
+// Of the estimator `eigenvalues`, which keeps no more.
+constexpr double eigenvalue_history = 2048;
+constexpr double fewest_points = 256;
+
+struct AnswerSize {
+    double point = 0, impact = 0, fixed = rest;
+};
+
+AnswerSize size_of(const SimulateRequest& r) {
+    AnswerSize size;
+    size.fixed += window * static_cast<double>(r.windows.size());
+    if (r.includes("series")) size.point += 5 * number;
+    if (r.includes("exponents")) {  // tau and four exponents, and the floor
+        if (r.estimators.qr) size.point += 5 * number;
+        if (r.estimators.raw_product) size.point += 6 * number;
+        if (r.estimators.eigenvalues) size.fixed += eigenvalue_history * 5 * number;
+    }
+    if (r.includes("eigenvalues")) size.point += 14 * number + 3 * bracket;
+    if (r.includes("matrices")) size.point += 49 * number + 15 * bracket;
+    if (r.includes("section")) size.point += 11 * number + side;
+    if (r.includes("regime")) size.point += 6 * number;    // z_moving, stretches
+    if (r.includes("manifold")) size.point += 3 * number;  // the half cycles
+    size.impact = 2 * number + side + count;  // sticking
+    if (r.includes("impacts")) size.impact += 9 * number + side + word + number + side;  // impacts, touches
+    return size;
+}
+
+}  // namespace
+
+std::string limit_of(std::size_t bytes) { return ", so that the answer is no larger than this server's limit of " + std::to_string(bytes) + " bytes"; }
+
+void fit_answer(SimulateRequest& r, std::size_t bytes, Warnings& warnings) {
+    const AnswerSize size = size_of(r);
+    const double room = std::max(0.0, static_cast<double>(bytes) - size.fixed);
+    const double points = static_cast<double>(r.max_points) * size.point, impacts = static_cast<double>(r.listed_impacts) * size.impact;
+    if (points + impacts <= room) return;
+    // What needs less than half of the room gets all that it needs.
+    const double for_points = std::min(points, std::max({room / 2, room - impacts, fewest_points * size.point})), for_impacts = room - for_points;
+    if (impacts > for_impacts) r.listed_impacts = static_cast<std::size_t>(std::max(1.0, for_impacts / size.impact));
+    if (points <= for_points) return;
+    const std::size_t fit = static_cast<std::size_t>(for_points / size.point);
+    warnings.push_back("max_points is " + std::to_string(fit) + " instead of " + std::to_string(r.max_points) + limit_of(bytes));
+    r.max_points = r.estimators.history = fit;
+}
+
+}  // namespace vines::api
