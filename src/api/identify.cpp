@@ -282,7 +282,6 @@ Json identify_answer(const IdentifyRequest& r) {
         refined = refine_impacts(p, r.record, spikes.spikes, r.moments.empty() ? r.threshold : 0);
         found = identify_impacts(p, refined.motion, refined.side, refined.pulse);
         if (!refined.dropped.empty()) warnings.push_back(std::to_string(refined.dropped.size()) + " spike(s) without a jump of the velocity were dropped, the first at " + digits("%.6g", refined.dropped[0].tau / omega0) + " s");
-        if (const std::string advice = sampling_advice(refined, step, omega0); !r.record.x_ddot.empty() && !advice.empty()) warnings.push_back(advice);
         signal = {{"samples", r.record.tau.size()}, {"sampling_rate", omega0 / step}, {"noise_displacement", finite_or_null(refined.motion.noise_x)},
                   {"noise_acceleration", finite_or_null(refined.motion.noise_x_ddot * omega0 * omega0)},
                   {"misfit", {{"displacement", finite_or_null(refined.motion.misfit_x)}, {"acceleration", finite_or_null(refined.motion.misfit_x_ddot)}}}, {"pulse_s", refined.pulse / omega0},
@@ -292,6 +291,8 @@ Json identify_answer(const IdentifyRequest& r) {
         if (!b_agrees(p, found)) warnings.push_back("the impacts' momentum fits b = " + digits("%.4g", found.b_fitted) + " m, not the given " + digits("%.4g", p.b) + " m");
         if (!std::isfinite(found.b_fitted)) warnings.push_back("no b is fitted to the impacts' momentum: " + found.b_fault);
         doubts = doubts_of(p, refined, found);
+        // What is fitted of the pulses is advice only where the rest of the fit is right.
+        if (const std::string advice = sampling_advice(refined, step, omega0); doubts.empty() && !r.record.x_ddot.empty() && !advice.empty()) warnings.push_back(advice);
     } else {
         found.impacts = r.impacts;
         found.b_fitted = found.b_error = std::nan("");

@@ -198,12 +198,12 @@ private:
     Eigen::VectorXd right_;
 };
 
-/// What a fit leaves of a sensor over the noise of that sensor, which is seen beside the pulses. Of the bulk and of the nine in
-/// ten that lie closest: a motion may be wrong in a part of the record, but a few odd samples are no misfit.
+/// What a fit leaves of a sensor over the noise of that sensor, which is seen beside the pulses. Of the nine in ten that lie
+/// closest: a motion may be wrong in a part of the record, but a few odd samples are no misfit.
 double misfit_of(const std::vector<double>& left, const std::vector<double>& tau, const std::vector<double>& signal, const std::vector<char>& spoiled) {
     const double floor = background_share * robust_deviation(signal), noise = std::hypot(difference_noise(tau, signal, spoiled), floor);
     constexpr double ninety_percent = 1.645;  // of a normal distribution lie within that many standard deviations
-    return std::max(robust_deviation(left), quantile_of_moduli(left, 0.9) / ninety_percent) / noise;
+    return quantile_of_moduli(left, 0.9) / ninety_percent / noise;
 }
 
 /// Half a sine of area 1 and length `pulse` about 0.

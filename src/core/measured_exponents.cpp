@@ -76,7 +76,6 @@ double MeasuredExponents::moment(double clock) const {
 
 bool is_representative(const std::vector<IdentifiedImpact>& impacts) {
     constexpr std::size_t enough = 200, enough_if_alike = 80;
-    constexpr double alike = 0.02;
     std::vector<double> jumps[2], off;
     std::size_t known = 0;
     for (const IdentifiedImpact& i : impacts) known += i.fault.empty();
@@ -85,7 +84,7 @@ bool is_representative(const std::vector<IdentifiedImpact>& impacts) {
         if (impacts[k].fault.empty()) jumps[impacts[k].side > 0].push_back(std::abs(impacts[k].x_dot_after - impacts[k].x_dot_before));
     for (const auto& of_side : jumps)
         for (const double jump : of_side) off.push_back(jump / median(of_side) - 1);
-    return quantile_of_moduli(off, 0.9) < alike;
+    return quantile_of_moduli(off, 0.9) < 0.02 + 0.001 * static_cast<double>(known - enough_if_alike);
 }
 
 IdentifiedExponents judge_exponents(const Parameters& p, const ExponentHistory& qr, double tau_start, bool representative) {

@@ -264,6 +264,7 @@ TEST_CASE("impacts in a list are judged as those of a record: momentum over the 
 TEST_CASE("there is no verdict and no advice where the motion does not explain the record") {
     const std::string csv = measured("fig15", 12);
     const Json good = identify_answer(read_identify_request({{"preset", "fig15"}}, csv));
+    CAPTURE(good["warnings"].dump());
     CHECK(good["verdict"] == "regular");
     CHECK(good["signal"]["misfit"]["displacement"] < 1.1);
     CHECK(good["signal"]["misfit"]["acceleration"] < 1.1);
