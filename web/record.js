@@ -42,13 +42,26 @@ function find(names, asked, name, beginnings) {
   const exact = lower.indexOf(name);
   if (exact >= 0) return exact;
   for (const b of beginnings) {
-    const at = lower.findIndex((n) => n === b || ["_", " ", "("].some((end) => n.startsWith(b + end)));
+    const at = lower.findIndex((n) => n === b || ["_", " ", "(", "["].some((end) => n.startsWith(b + end)));
     if (at >= 0) return at;
   }
   return -1;
 }
 
 const units = {s: 1, ms: 1e-3, m: 1e3, mm: 1, um: 1e-3, "m/s2": 1, g: 9.80665};
+const spellings = {s: "s", sec: "s", ms: "ms", msec: "ms", m: "m", mm: "mm", um: "um", "m/s2": "m/s2", m_s2: "m/s2", "ms-2": "m/s2", "m/s/s": "m/s2", g: "g"};
+const spelling = (text) => text.toLowerCase().replace(/[\u00b5\u03bc]/g, "u").replace(/\u00b2/g, "2").replace(/\u207b/g, "-").replace(/[ ^*\u00b7]/g, "");
+
+/** The unit that a column's name says, in brackets or behind a blank or underscore; undefined where it says none. */
+export function unitIn(name) {
+  const brackets = /[([]([^)\]]*)/.exec(name);
+  if (brackets) return spellings[spelling(brackets[1])];
+  for (const {index} of name.matchAll(/[_ ]/g)) {
+    const unit = spellings[spelling(name.slice(index + 1))];
+    if (unit) return unit;
+  }
+}
+
 const scaled = (column, unit) => units[unit] === 1 ? column : column.map((v) => v * units[unit]);
 
 /** What the fields make of the columns: {t (s), x (mm), a (m/s^2)}, null for one that is not there; sent: those columns by name, in the record's units. */
@@ -57,14 +70,15 @@ export function recordOf({names, columns}, fields) {
   const x = find(names, fields.displacement_column, "displacement_m", ["displacement", "x"]);
   const a = find(names, fields.acceleration_column, "acceleration_m_s2", ["acceleration", "a"]);
   if (time < 0 || !columns[time].length || (x < 0 && a < 0)) return null;
-  let t = scaled(columns[time], fields.time_unit ?? "s"), keep = null;
+  const unit = (k, asked, usual) => unitIn(names[k]) ?? asked ?? usual;
+  let t = scaled(columns[time], unit(time, fields.time_unit, "s")), keep = null;
   for (let i = 1, last = t[0]; i < t.length; ++i) {
     if (t[i] > last) last = t[i];
     else (keep ??= new Uint8Array(t.length).fill(1))[i] = 0;
   }
   const kept = (column) => keep ? column.filter((_, i) => keep[i]) : column;  // the plots need an ascending time
   const sent = Object.fromEntries([time, x, a].filter((k) => k >= 0).map((k) => [names[k], columns[k]]));
-  return {t: kept(t), x: x < 0 ? null : kept(scaled(columns[x], fields.displacement_unit ?? "m")), a: a < 0 ? null : kept(scaled(columns[a], fields.acceleration_unit ?? "m/s2")), sent};
+  return {t: kept(t), x: x < 0 ? null : kept(scaled(columns[x], unit(x, fields.displacement_unit, "m"))), a: a < 0 ? null : kept(scaled(columns[a], unit(a, fields.acceleration_unit, "m/s2"))), sent};
 }
 
 /** The index of the first sample at t or later. */

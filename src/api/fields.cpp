@@ -108,9 +108,9 @@ std::vector<Field> make_identify_fields() {
     fields.push_back(column("time_column", "name of the column of time", "time_s, or one that begins with time or t"));
     fields.push_back(column("displacement_column", "name of the column of displacement", "displacement_m, or one that begins with displacement or x"));
     fields.push_back(column("acceleration_column", "name of the column of acceleration", "acceleration_m_s2, or one that begins with acceleration or a"));
-    fields.push_back(unit("time_unit", "unit of time", {"s", "ms"}));
-    fields.push_back(unit("displacement_unit", "unit of displacement", {"m", "mm", "um"}));
-    fields.push_back(unit("acceleration_unit", "unit of acceleration", {"m/s2", "g"}));
+    fields.push_back(unit("time_unit", "unit of time, where the column's name says none", {"s", "ms"}));
+    fields.push_back(unit("displacement_unit", "unit of displacement, where the column's name says none", {"m", "mm", "um"}));
+    fields.push_back(unit("acceleration_unit", "unit of acceleration, where the column's name says none", {"m/s2", "g"}));
     fields.push_back(number("threshold", "record", "standard deviations of the noise", "", "height from which on a spike of the acceleration is an impact", 6, "", 3, 1000));
     Field times{"impact_times_s", FieldType::numbers, "record", "s", "", "moments of the impacts, from an edited list: then they are not searched for", nullptr, "found from the spikes", {}, {}, {}};
     fields.push_back(std::move(times));

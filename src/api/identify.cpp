@@ -5,63 +5,28 @@
 #include <map>
 #include <numbers>
 
-#include "api/csv.hpp"
 #include "api/describe.hpp"
+#include "api/record_columns.hpp"
 #include "api/simulate.hpp"
 
 namespace vines::api {
 
 namespace {
 
-constexpr double gravity = 9.80665;  // m/s^2, the standard value
 constexpr std::size_t fewest_samples = 100;
 
 using Columns = std::vector<CsvColumn>;
 
-std::string lower(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-    return text;
-}
-
-/// A column by the name that the request gives, by its default name, or by how its name begins; null where there is none.
-const CsvColumn* find_column(const Columns& columns, const Json& fields, const std::string& field, const std::string& name, const std::vector<std::string>& beginnings, bool required) {
-    std::vector<std::string> names;
-    for (const CsvColumn& c : columns) names.push_back(c.name);
-    auto named = [&](auto fits) -> const CsvColumn* {
-        const auto it = std::find_if(columns.begin(), columns.end(), [&](const CsvColumn& c) { return fits(lower(c.name)); });
-        return it == columns.end() ? nullptr : &*it;
-    };
-    if (fields.contains(field)) {
-        const std::string wanted = fields[field];
-        if (const CsvColumn* c = named([&](const std::string& n) { return n == lower(wanted); })) return c;
-        refuse({{"/" + field, wanted, names, "the record has no column of this name"}});
-    }
-    if (const CsvColumn* c = named([&](const std::string& n) { return n == name; })) return c;
-    for (const std::string& beginning : beginnings)
-        if (const CsvColumn* c = named([&](const std::string& n) { return n == beginning || n.rfind(beginning + "_", 0) == 0 || n.rfind(beginning + " ", 0) == 0 || n.rfind(beginning + "(", 0) == 0; })) return c;
-    if (required) refuse({{"/record", names, nullptr, "the record has no column " + name + "; name it in " + field}});
-    return nullptr;
-}
-
-std::string unit_of(const Json& fields, const char* name, const char* fallback) { return fields.contains(name) ? fields[name].get<std::string>() : fallback; }
-
 /// What would make every later step wrong without a word: line numbers count the header.
-void check_record(const std::vector<double>& time, const MeasuredRecord& r, std::vector<std::string>& notes) {
+void check_record(const std::vector<double>& time, const MeasuredRecord& r, double omega0, std::vector<std::string>& notes) {
     const std::size_t n = time.size();
     if (n < fewest_samples) refuse({{"/record", n, Json::array({fewest_samples, 1000000}), "the record has " + std::to_string(n) + " samples; at least " + std::to_string(fewest_samples) + " are needed"}});
     for (std::size_t i = 1; i < n; ++i)
         if (!(time[i] > time[i - 1]))
             refuse({{"/record/time_s/" + std::to_string(i), time[i], nullptr, "line " + std::to_string(i + 2) + ", column of time: time must increase, but " + Json(time[i]).dump() + " follows " + Json(time[i - 1]).dump()}});
-    std::vector<double> steps;
-    for (std::size_t i = 1; i < n; ++i) steps.push_back(time[i] - time[i - 1]);
-    std::vector<double> sorted = steps;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-    const double typical = sorted[sorted.size() / 2];
-    std::size_t gaps = 0, first = 0;
-    for (std::size_t i = 0; i < steps.size(); ++i)
-        if (steps[i] > 3 * typical && gaps++ == 0) first = i;
-    if (gaps > 0)
-        notes.push_back("the record has " + std::to_string(gaps) + " gap(s), the first of " + digits("%.4g", steps[first]) + " s after line " + std::to_string(first + 2) + ": an impact in one is not seen");
+    const std::vector<TimeGap> gaps = time_gaps(r);
+    if (!gaps.empty())
+        notes.push_back("the record has " + std::to_string(gaps.size()) + " gap(s), the first of " + digits("%.4g", (gaps[0].to - gaps[0].from) / omega0) + " s at " + digits("%.6g", gaps[0].from / omega0) + " s: an impact in one is not seen");
     // A clipped signal repeats its extreme value.
     for (const auto& [name, column] : {std::pair("displacement", &r.x), std::pair("acceleration", &r.x_ddot)}) {
         if (column->empty()) continue;
@@ -93,27 +58,23 @@ IdentifyRequest read_fields(const Json& given, bool with_record) {
 }
 
 void read_record(IdentifyRequest& r, const Json& fields, const Columns& columns) {
-    const CsvColumn* time = find_column(columns, fields, "time_column", "time_s", {"time", "t"}, true);
-    const CsvColumn* x = find_column(columns, fields, "displacement_column", "displacement_m", {"displacement", "x"}, false);
-    const CsvColumn* a = find_column(columns, fields, "acceleration_column", "acceleration_m_s2", {"acceleration", "a"}, false);
-    if (!x && !a) {
-        std::vector<std::string> names;
-        for (const CsvColumn& c : columns) names.push_back(c.name);
+    const RecordColumn time = find_column(columns, fields, time_quantity), x = find_column(columns, fields, displacement_quantity), a = find_column(columns, fields, acceleration_quantity);
+    std::vector<std::string> names;
+    for (const CsvColumn& c : columns) names.push_back(c.name);
+    if (!time.column) refuse({{"/record", names, nullptr, "the record has no column time_s; name it in time_column"}});
+    if (!x.column && !a.column)
         refuse({{"/record", names, nullptr, "the record has neither a displacement nor an acceleration; name them in displacement_column and acceleration_column"}});
-    }
-    if (!a && r.moments.empty())
+    if (!a.column && r.moments.empty())
         refuse({{"/record", nullptr, nullptr, "impacts are found from the spikes of the acceleration, and the record has none: give their moments in impact_times_s"}});
-    const double omega0 = r.system.si->omega0(), second = unit_of(fields, "time_unit", "s") == "ms" ? 1e-3 : 1;
-    const std::string length = unit_of(fields, "displacement_unit", "m");
-    const double metre = length == "mm" ? 1e-3 : length == "um" ? 1e-6 : 1, rate = unit_of(fields, "acceleration_unit", "m/s2") == "g" ? gravity : 1;
+    const double omega0 = r.system.si->omega0();
     std::vector<double> seconds;
-    for (double t : time->values) seconds.push_back(t * second);
+    for (double t : time.column->values) seconds.push_back(t * time.factor);
     for (double t : seconds) r.record.tau.push_back(t * omega0);
-    if (x) for (double v : x->values) r.record.x.push_back(v * metre);
-    if (a) for (double v : a->values) r.record.x_ddot.push_back(v * rate / (omega0 * omega0));
-    check_record(seconds, r.record, r.notes);
-    if (!x) r.notes.push_back("without a displacement, x at the impacts rests on the acceleration alone, whose errors add up: y' and R are less certain");
-    if (!a) r.notes.push_back("without an acceleration the moments of the impacts are taken as given");
+    if (x.column) for (double v : x.column->values) r.record.x.push_back(v * x.factor);
+    if (a.column) for (double v : a.column->values) r.record.x_ddot.push_back(v * a.factor / (omega0 * omega0));
+    check_record(seconds, r.record, omega0, r.notes);
+    if (!x.column) r.notes.push_back("without a displacement, x at the impacts rests on the acceleration alone, whose errors add up: y' and R are less certain");
+    if (!a.column) r.notes.push_back("without an acceleration the moments of the impacts are taken as given");
     for (double tau : r.moments)
         if (!(tau > r.record.tau.front() && tau < r.record.tau.back()))
             refuse({{"/impact_times_s", tau / omega0, Json::array({r.record.tau.front() / omega0, r.record.tau.back() / omega0}), "an impact lies outside the record"}});
@@ -144,15 +105,12 @@ void read_impacts(IdentifyRequest& r, const Json& columns) {
         if (i > 0 && !(v("tau") > values["tau"][i - 1])) errors.push_back({"/impacts/tau/" + std::to_string(i), v("tau"), nullptr, "the impacts must follow each other in time"});
         if (std::abs(v("side")) != 1) errors.push_back({"/impacts/side/" + std::to_string(i), v("side"), Json::array({-1, 1}), "a side is 1 or -1"});
         const double x_ddot = -v("x") - 2 * p.zeta() * v("x_dot_before") + p.epsilon * p.A() * std::sin(v("phase"));
-        IdentifiedImpact impact{v("tau"), static_cast<int>(v("side")), v("x"), v("x_dot_before"), v("x_dot_after"), x_ddot, v("y_dot_before"), v("y_dot_after"), 0, 0, ""};
-        const double before = impact.x_dot_before - impact.y_dot_before;
-        impact.R = -(impact.x_dot_after - impact.y_dot_after) / before;
-        impact.momentum_error = (impact.x_dot_after - impact.x_dot_before + p.epsilon * (impact.y_dot_after - impact.y_dot_before)) / std::abs(impact.x_dot_after - impact.x_dot_before);
-        if (!(impact.side * before > 0)) impact.fault = "the mass would move away from the wall that it meets";
-        r.impacts.push_back(std::move(impact));
+        r.impacts.push_back({.tau = v("tau"), .side = static_cast<int>(v("side")), .x = v("x"), .x_dot_before = v("x_dot_before"), .x_dot_after = v("x_dot_after"), .x_ddot_before = x_ddot,
+                             .y_dot_before = v("y_dot_before"), .y_dot_after = v("y_dot_after")});
         if (errors.size() >= most_errors) break;
     }
     if (!errors.empty()) refuse(std::move(errors));
+    complete_impacts(p, r.impacts, 0);
 }
 
 Json describe_restitution(const Restitution& r) { return {{"R", finite_or_null(r.R)}, {"standard_error", finite_or_null(r.error)}, {"impacts", r.impacts}}; }
@@ -182,11 +140,10 @@ Json describe_direct(Parameters p, const IdentifyRequest& r, const RefinedImpact
         if (std::isfinite(found.plus.R)) p.R_plus = std::clamp(found.plus.R, 0.0, 1.0);
         if (std::isfinite(found.minus.R)) p.R_minus = std::clamp(found.minus.R, 0.0, 1.0);
     }
-    TransferProduct product(p.epsilon, {true, false, false, 256});
-    append_identified(p, found, product);
+    const MeasuredExponents exponents(p, found.impacts, continuity_of(p, found.impacts, time_gaps(r.record)).stretches, {true, false, false, 256});
     Json columns = describe_identified(found.impacts, r.system.si->omega0()), lambda = Json::array();
     for (const char* same : {"time_s", "tau", "side"}) columns.erase(same);
-    for (double v : product.qr()) lambda.push_back(finite_or_null(v));
+    for (double v : exponents.all().qr()) lambda.push_back(finite_or_null(v));
     return {{"impacts", std::move(columns)}, {"restitution", {{"plus", describe_restitution(found.plus)}, {"minus", describe_restitution(found.minus)}}}, {"lambda", std::move(lambda)}};
 }
 
@@ -220,9 +177,42 @@ const char* reason_of(const IdentifiedExponents& e) {
     switch (e.verdict) {
         case Verdict::chaotic: return "the slope's 90 % interval lies above the oscillator's own damping zeta";
         case Verdict::regular: return "the slope's 90 % interval lies below the oscillator's own damping zeta";
-        case Verdict::not_decided: return "the record is too short to say: the slope's 90 % interval holds the oscillator's own damping zeta, or there are fewer than 20 impacts";
+        case Verdict::not_decided: return "the record is too short to say: the slope's 90 % interval holds the oscillator's own damping zeta, or there are too few impacts (20 for chaotic; for regular 200, or 80 whose jumps are alike: a chaotic motion may be in step for a while)";
     }
     return "";
+}
+
+/// How fast to sample, where impacts were not seen because their pulse fell between two samples; else empty.
+std::string sampling_advice(const RefinedImpacts& refined, double step, double omega0) {
+    // A pulse of a sample or more is seen. What is fitted of a shorter one is little more than that it is short.
+    if (refined.tau.empty() || refined.pulse >= step) return "";
+    constexpr double most = 4;
+    const double rate = omega0 / step * std::min(most, 2 * step / refined.pulse);
+    return "the impacts' pulses last about " + digits("%.3g", 1000 * refined.pulse / omega0) + " ms, the samples are " + digits("%.3g", 1000 * step / omega0) +
+           " ms apart: pulses may fall between samples; sample at " + digits("%.4g", std::ceil(rate)) + " Hz or more";
+}
+
+/// The exponents as of a simulation, in the record's time.
+Json describe_measured(const MeasuredExponents& e, const ExponentOptions& estimators, const Continuity& c, const std::vector<IdentifiedImpact>& impacts, Warnings& warnings) {
+    Json j = describe_exponents(e.all(), {true, false, false, estimators.history}, Regime{}, true, warnings);
+    for (const char* of_a_simulation : {"verdict", "verdict_sigmas", "verdict_reason"}) j.erase(of_a_simulation);  // the record's own follows
+    for (Json& tau : j["qr"]["history"]["tau"]) tau = e.moment(tau);
+    Warnings of_longest;
+    const Json longest = describe_exponents(e.longest(), {false, estimators.eigenvalues, estimators.raw_product, estimators.history}, Regime{}, true, of_longest);
+    for (const std::string& warning : of_longest)
+        if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) warnings.push_back(warning);
+    for (const char* name : {"eigenvalues", "raw_product"})
+        if (longest.contains(name)) {
+            j[name] = longest[name];
+            j[name]["window"] = longest["window"];
+        }
+    if (c.stretches.empty()) return j;
+    j["window"] = {impacts[c.stretches.front().first].tau, impacts[c.stretches.back().last].tau};
+    Json from = Json::array(), to = Json::array();
+    for (const KnownStretch& s : c.stretches) from.push_back(impacts[s.first].tau), to.push_back(impacts[s.last].tau);
+    j["stretches"] = {{"tau_start", std::move(from)}, {"tau_end", std::move(to)}};
+    j["duration"] = e.all().end_tau() - e.all().start_tau();
+    return j;
 }
 
 }  // namespace
@@ -269,6 +259,7 @@ Json identify_answer(const IdentifyRequest& r) {
     Identification found;
     RefinedImpacts refined;
     Json signal;
+    std::vector<std::string> doubts;
     if (r.impacts.empty()) {
         const double step = (r.record.tau.back() - r.record.tau.front()) / static_cast<double>(r.record.tau.size() - 1);
         Spikes spikes{{}, std::nan("")};
@@ -291,16 +282,17 @@ Json identify_answer(const IdentifyRequest& r) {
         refined = refine_impacts(p, r.record, spikes.spikes, r.moments.empty() ? r.threshold : 0);
         found = identify_impacts(p, refined.motion, refined.side, refined.pulse);
         if (!refined.dropped.empty()) warnings.push_back(std::to_string(refined.dropped.size()) + " spike(s) without a jump of the velocity were dropped, the first at " + digits("%.6g", refined.dropped[0].tau / omega0) + " s");
-        if (!r.record.x_ddot.empty() && refined.pulse < 1.5 * step)
-            warnings.push_back("the impacts' pulses last about " + digits("%.3g", 1000 * refined.pulse / omega0) + " ms, the samples are " + digits("%.3g", 1000 * step / omega0) +
-                               " ms apart: pulses may fall between samples; sample at " + digits("%.4g", std::ceil(2 * omega0 / refined.pulse)) + " Hz or more");
         signal = {{"samples", r.record.tau.size()}, {"sampling_rate", omega0 / step}, {"noise_displacement", finite_or_null(refined.motion.noise_x)},
-                  {"noise_acceleration", finite_or_null(refined.motion.noise_x_ddot * omega0 * omega0)}, {"pulse_s", refined.pulse / omega0},
+                  {"noise_acceleration", finite_or_null(refined.motion.noise_x_ddot * omega0 * omega0)},
+                  {"misfit", {{"displacement", finite_or_null(refined.motion.misfit_x)}, {"acceleration", finite_or_null(refined.motion.misfit_x_ddot)}}}, {"pulse_s", refined.pulse / omega0},
                   {"G", std::hypot(refined.motion.force_sin, refined.motion.force_cos) / p.epsilon / std::hypot(1.0, p.lambda * p.epsilon * p.Omega)},
                   {"force_sin", refined.motion.force_sin}, {"force_cos", refined.motion.force_cos}};
         p.G = signal["G"];
-        if (std::isfinite(found.b_fitted) && std::abs(found.b_fitted - p.b) > std::max(0.03 * p.b, 5 * found.b_error))
-            warnings.push_back("the impacts' momentum fits b = " + digits("%.4g", found.b_fitted) + " m, not the given " + digits("%.4g", p.b) + " m");
+        if (!b_agrees(p, found)) warnings.push_back("the impacts' momentum fits b = " + digits("%.4g", found.b_fitted) + " m, not the given " + digits("%.4g", p.b) + " m");
+        if (!std::isfinite(found.b_fitted)) warnings.push_back("no b is fitted to the impacts' momentum: " + found.b_fault);
+        doubts = doubts_of(p, refined, found);
+        // What is fitted of the pulses is advice only where the rest of the fit is right.
+        if (const std::string advice = sampling_advice(refined, step, omega0); doubts.empty() && !r.record.x_ddot.empty() && !advice.empty()) warnings.push_back(advice);
     } else {
         found.impacts = r.impacts;
         found.b_fitted = found.b_error = std::nan("");
@@ -311,12 +303,20 @@ Json identify_answer(const IdentifyRequest& r) {
         if (std::isfinite(found.plus.R)) p.R_plus = std::clamp(found.plus.R, 0.0, 1.0);
         if (std::isfinite(found.minus.R)) p.R_minus = std::clamp(found.minus.R, 0.0, 1.0);
     }
-    const auto faults = std::count_if(found.impacts.begin(), found.impacts.end(), [](const auto& i) { return !i.fault.empty(); });
-    if (faults > 0) warnings.push_back(std::to_string(faults) + " of " + std::to_string(found.impacts.size()) + " impacts are inconsistent and left out; impacts.status says why");
+    const Continuity continuity = continuity_of(p, found.impacts, time_gaps(r.record));
+    if (continuity.left_out > 0)
+        warnings.push_back(std::to_string(continuity.left_out) + " of " + std::to_string(found.impacts.size()) + " impacts are inconsistent and left out; impacts.status says why");
+    if (continuity.missing > 0)
+        warnings.push_back("between " + std::to_string(continuity.missing) + " pair(s) of impacts the mass did not fly freely: an impact is missing, both stuck together, or the record has a gap");
+    if (continuity.stretches.size() > 1)
+        warnings.push_back("the impacts fall into " + std::to_string(continuity.stretches.size()) + " stretches: qr adds up what it knows of each, eigenvalues and raw_product are of the longest");
+    if (continuity.share > Continuity::most)
+        doubts.insert(doubts.begin(), digits("%.3g", 100 * continuity.share) + " % of the impacts are left out or missing, more than " + digits("%.3g", 100 * Continuity::most) + " %");
 
-    TransferProduct product(p.epsilon, r.estimators);
-    append_identified(p, found, product);
-    const IdentifiedExponents judged = judge_exponents(p, product.qr_history(), product.start_tau());
+    const MeasuredExponents exponents(p, found.impacts, continuity.stretches, r.estimators);
+    IdentifiedExponents judged = judge_exponents(p, exponents.all().qr_history(), exponents.all().start_tau(), is_representative(found.impacts));
+    if (!doubts.empty()) judged.verdict = Verdict::not_decided;
+    for (const std::string& doubt : doubts) warnings.push_back("no verdict: " + doubt);
     System used = r.system;
     used.parameters = p;
     Json answer = {{"version", version()}, {"parameters", describe_system(used)}};
@@ -325,11 +325,10 @@ Json identify_answer(const IdentifyRequest& r) {
     answer["impacts"] = describe_identified(found.impacts, omega0);
     answer["restitution"] = {{"plus", describe_restitution(found.plus)}, {"minus", describe_restitution(found.minus)}};
     answer["b_fitted"] = {{"b", finite_or_null(found.b_fitted)}, {"standard_error", finite_or_null(found.b_error)}};
-    answer["exponents"] = describe_exponents(product, r.estimators, Regime{}, true, warnings);
-    for (const char* of_a_simulation : {"verdict", "verdict_sigmas", "verdict_reason"}) answer["exponents"].erase(of_a_simulation);  // the record's own follows
+    answer["exponents"] = describe_measured(exponents, r.estimators, continuity, found.impacts, warnings);
     answer["slope"] = {{"lambda1", finite_or_null(judged.slope)}, {"low", finite_or_null(judged.low)}, {"high", finite_or_null(judged.high)}};
     answer["verdict"] = word(judged.verdict);
-    answer["verdict_reason"] = reason_of(judged);
+    answer["verdict_reason"] = doubts.empty() ? reason_of(judged) : doubts[0];
     if (r.impacts.empty()) {
         answer["direct"] = describe_direct(r.system.parameters, r, refined);
         answer["forward"] = forward_run(p, found, refined.motion, r.record.tau.back());

@@ -84,7 +84,7 @@ Json parts(std::initializer_list<std::pair<const char*, const char*>> list) {
 /// JSON with all in the body, or CSV with the fields in the query.
 Json identify_operation() {
     const Json identified = {{"200", answer("impacts, restitution, exponents, verdict", "application/json",
-                                            parts({{"parameters", "with the identified R"}, {"signal", "noise, pulse length, forcing"}, {"impacts", "columns, with a status each"}, {"restitution", "of each wall"},
+                                            parts({{"parameters", "with the identified R"}, {"signal", "noise, misfit, pulse length, forcing"}, {"impacts", "columns, with a status each"}, {"restitution", "of each wall"},
                                                    {"b_fitted", "that fits the momentum"}, {"exponents", "of the sequence"}, {"slope", "with its 90 % interval"}, {"verdict", "chaotic, regular or not_decided"},
                                                    {"forward", "a run of the identified system"}, {"warnings", "sentences"}}))}};
     Json op = with_query(operation("identify", "exponents from a measurement of the oscillator, or from a list of impacts", identified), identify_fields());
@@ -94,7 +94,7 @@ Json identify_operation() {
 
 Json identify_request() {
     Json s = schema_of(identify_fields());
-    s["properties"]["record"] = {{"type", "object"}, {"description", "columns: time_s, displacement_m, acceleration_m_s2"}};
+    s["properties"]["record"] = {{"type", "object"}, {"description", "columns: time_s, displacement_m, acceleration_m_s2; a unit in a name (displacement_mm, time (ms)) is obeyed"}};
     s["properties"]["impacts"] = {{"type", "object"}, {"description", "columns as in the answer of /v1/simulate, in place of a record"}};
     return s;
 }

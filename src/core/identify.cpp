@@ -8,7 +8,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <random>
+
+#include "core/robust.hpp"
 
 namespace vines {
 
@@ -16,27 +17,12 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-double median(std::vector<double> v) {
-    if (v.empty()) return nan;
-    const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
-    std::nth_element(v.begin(), middle, v.end());
-    return *middle;
+/// The typical one: a record may have gaps.
+double sample_interval(const MeasuredRecord& r) {
+    std::vector<double> steps;
+    for (std::size_t k = 1; k < r.tau.size(); ++k) steps.push_back(r.tau[k] - r.tau[k - 1]);
+    return median(std::move(steps));
 }
-
-/// Standard deviation of the bulk, whatever the outliers.
-double robust_deviation(std::vector<double> v) {
-    for (double& x : v) x = std::abs(x);
-    return 1.4826 * median(std::move(v));
-}
-
-/// Noise of a smooth signal from its third differences, whose variance is 20 times that of the noise.
-double noise_of(const std::vector<double>& v) {
-    std::vector<double> third;
-    for (std::size_t i = 3; i < v.size(); ++i) third.push_back(v[i] - 3 * v[i - 1] + 3 * v[i - 2] - v[i - 3]);
-    return robust_deviation(std::move(third)) / std::sqrt(20.0);
-}
-
-double sample_interval(const MeasuredRecord& r) { return (r.tau.back() - r.tau.front()) / static_cast<double>(r.tau.size() - 1); }
 
 // Pulses of impacts between hard bodies last .2 to 2 ms; at an oscillator of 8 Hz that is .01 to .1 in tau.
 constexpr double shortest_pulse = 0.005, longest_pulse = 0.15;
@@ -104,10 +90,18 @@ std::vector<Spike> grouped(const MeasuredRecord& r, const std::vector<double>& l
 
 }  // namespace
 
+std::vector<TimeGap> time_gaps(const MeasuredRecord& r) {
+    std::vector<TimeGap> gaps;
+    const double longest = 3 * sample_interval(r);
+    for (std::size_t k = 1; k < r.tau.size(); ++k)
+        if (r.tau[k] - r.tau[k - 1] > longest) gaps.push_back({r.tau[k - 1], r.tau[k]});
+    return gaps;
+}
+
 Spikes find_spikes(const MeasuredRecord& r, double sigmas) {
     const std::size_t n = r.tau.size();
     const double background = std::max(background_least, background_samples * sample_interval(r));
-    Spikes found{{}, noise_of(r.x_ddot)};
+    Spikes found{{}, difference_noise(r.tau, r.x_ddot)};
     // First what stands out from the median of its neighbourhood; then, again and again, from the parabola through the rest.
     std::vector<char> masked(n, 0);
     std::vector<double> left(n), window;
@@ -204,6 +198,14 @@ private:
     Eigen::VectorXd right_;
 };
 
+/// What a fit leaves of a sensor over the noise of that sensor, which is seen beside the pulses. Of the nine in ten that lie
+/// closest: a motion may be wrong in a part of the record, but a few odd samples are no misfit.
+double misfit_of(const std::vector<double>& left, const std::vector<double>& tau, const std::vector<double>& signal, const std::vector<char>& spoiled) {
+    const double floor = background_share * robust_deviation(signal), noise = std::hypot(difference_noise(tau, signal, spoiled), floor);
+    constexpr double ninety_percent = 1.645;  // of a normal distribution lie within that many standard deviations
+    return quantile_of_moduli(left, 0.9) / ninety_percent / noise;
+}
+
 /// Half a sine of area 1 and length `pulse` about 0.
 double pulse_shape(double s, double pulse) {
     return std::abs(s) < 0.5 * pulse ? 0.5 * std::numbers::pi / pulse * std::cos(std::numbers::pi * s / pulse) : 0;
@@ -218,7 +220,7 @@ FittedMotion fit_motion(const Parameters& p, const MeasuredRecord& r, const std:
     m.tau.insert(m.tau.end(), impacts.begin(), impacts.end());
     const std::size_t n = m.tau.size();
     const double guard = 0.5 * pulse + 0.1 * sample_interval(r);  // the pulse spoils the acceleration on both sides of an impact
-    const double sigma_x = r.x.empty() ? nan : std::max(noise_of(r.x), 1e-12), sigma_a = r.x_ddot.empty() ? nan : std::max(noise_of(r.x_ddot), 1e-12);
+    const double sigma_x = r.x.empty() ? nan : std::max(difference_noise(r.tau, r.x), 1e-12), sigma_a = r.x_ddot.empty() ? nan : std::max(difference_noise(r.tau, r.x_ddot), 1e-12);
     struct Sample {
         std::size_t interval;
         Eigen::Vector4d x, x_ddot;
@@ -281,9 +283,11 @@ FittedMotion fit_motion(const Parameters& p, const MeasuredRecord& r, const std:
     }
 
     std::vector<double> left_x, left_a;
+    std::vector<char> spoiled;
     for (std::size_t k = 0; k < samples.size(); ++k) {
         const Sample& s = samples[k];
         const Eigen::Vector4d from = start(m.x[s.interval], m.x_dot[s.interval]);
+        spoiled.push_back(s.spike);
         if (!r.x.empty()) left_x.push_back(r.x[k] - s.x.dot(from));
         if (r.x_ddot.empty()) continue;
         m.left.push_back(r.x_ddot[k] - s.x_ddot.dot(from));
@@ -291,6 +295,8 @@ FittedMotion fit_motion(const Parameters& p, const MeasuredRecord& r, const std:
     }
     m.noise_x = r.x.empty() ? nan : robust_deviation(left_x);
     m.noise_x_ddot = r.x_ddot.empty() ? nan : robust_deviation(left_a);
+    m.misfit_x = r.x.empty() ? nan : misfit_of(left_x, r.tau, r.x, spoiled);
+    m.misfit_x_ddot = r.x_ddot.empty() ? nan : misfit_of(left_a, r.tau, r.x_ddot, spoiled);
     return m;
 }
 
@@ -370,9 +376,61 @@ std::vector<Spike> find_kinks(const Parameters& p, const MeasuredRecord& r, cons
 
 }  // namespace
 
-RefinedImpacts refine_impacts(const Parameters& p, const MeasuredRecord& r, std::vector<Spike> spikes, double sigmas) {
+namespace {
+
+// A sample of the displacement this many standard deviations off the cubic through its neighbours is odd, unless the kink of an
+// impact may put it there: two thirds of the jump times the step at most.
+constexpr double odd_sigmas = 10, odd_jumps = 4;
+
+double typical_jump(const std::vector<Spike>& spikes) {
+    std::vector<double> jumps;
+    for (const Spike& s : spikes) jumps.push_back(std::abs(s.jump));
+    return spikes.empty() ? 0 : median(std::move(jumps));
+}
+
+/// Single samples of the displacement that are far off are replaced by the cubic through their neighbours.
+void mend_displacement(MeasuredRecord& r, double jump) {
+    const std::size_t n = r.x.size();
+    const double step = sample_interval(r);
+    if (n < 5 || !(jump > 0)) return;
+    std::vector<double> cubic(r.x), off(n, 0);
+    for (std::size_t k = 2; k + 2 < n; ++k) {
+        if (r.tau[k + 2] - r.tau[k - 2] > 6 * step) continue;
+        const std::size_t at[4] = {k - 2, k - 1, k + 1, k + 2};
+        double value = 0;
+        for (std::size_t i : at) {
+            double weight = 1;
+            for (std::size_t j : at) if (j != i) weight *= (r.tau[k] - r.tau[j]) / (r.tau[i] - r.tau[j]);
+            value += weight * r.x[i];
+        }
+        cubic[k] = value;
+        off[k] = std::abs(r.x[k] - value);
+    }
+    const double limit = std::max(odd_sigmas * robust_deviation(off), odd_jumps * jump * step);
+    for (std::size_t k = 2; k + 2 < n; ++k)
+        if (off[k] > limit && off[k] >= std::max({off[k - 2], off[k - 1], off[k + 1], off[k + 2]})) r.x[k] = cubic[k];
+}
+
+/// Of two spikes of opposite sides in a time in which the mass could not fly from wall to wall, even twenty times as fast as it
+/// typically is, one is no impact: that against which the velocity jumps over both.
+std::vector<char> impossible(const Parameters& p, const std::vector<Spike>& spikes, const FittedMotion& m) {
+    const double least = 2 * p.b * p.epsilon / (20 * typical_jump(spikes));
+    std::vector<char> bad(spikes.size(), 0);
+    for (std::size_t i = 0; i + 1 < spikes.size(); ++i)
+        if (spikes[i].side == -spikes[i + 1].side && spikes[i + 1].tau - spikes[i].tau < least) {
+            const int side = m.x_dot[i + 2] > m.x_dot_before[i] ? -1 : 1;
+            bad[spikes[i].side == side ? i + 1 : i] = 1;
+        }
+    return bad;
+}
+
+}  // namespace
+
+RefinedImpacts refine_impacts(const Parameters& p, const MeasuredRecord& record, std::vector<Spike> spikes, double sigmas) {
+    MeasuredRecord r = record;
+    if (!r.x.empty()) mend_displacement(r, typical_jump(spikes));
     const double step = sample_interval(r), first_moment = r.tau.front() + 0.01 * step, last_moment = r.tau.back() - 0.01 * step;
-    RefinedImpacts refined{{}, {}, 0, {}, {}};
+    RefinedImpacts refined{{}, {}, 0, {}, {}, true};
     auto fit = [&](double pulse) {
         refined.tau.clear(), refined.side.clear();
         std::sort(spikes.begin(), spikes.end(), [](const Spike& a, const Spike& b) { return a.tau < b.tau; });
@@ -394,7 +452,13 @@ RefinedImpacts refine_impacts(const Parameters& p, const MeasuredRecord& r, std:
         return refined;
     }
     fit(2 * step);
-    constexpr int rounds = 10;
+    // What comes back after it was dropped twice would do so for ever.
+    struct Rejected {
+        Spike spike;
+        int times;
+    };
+    std::vector<Rejected> rejected;
+    constexpr int rounds = 12, most_rejections = 2;
     for (int round = 0; round < rounds && !spikes.empty(); ++round) {
         const FittedMotion& motion = refined.motion;
         const double reach = std::max(1.5 * refined.pulse, 2.5 * step);
@@ -432,30 +496,51 @@ RefinedImpacts refine_impacts(const Parameters& p, const MeasuredRecord& r, std:
             spikes[i].tau = moment(i, pulse, misfit);
         }
         fit(pulse);
-        // What is no impact has no jump, or one of the other sign: the foot of a long pulse, a bump of the cable.
+        // What is no impact has no jump, or one of the other sign: the foot of a long pulse, a bump of the cable, an odd sample.
         const double noise = std::max(refined.motion.noise_x_ddot, background_share * robust_deviation(r.x_ddot));
         std::vector<Spike> seen = grouped(r, refined.motion.left, noise, sigmas, std::max(2 * pulse, 4 * step)), kept;
         auto same = [&](const Spike& a, const Spike& b) { return std::abs(a.tau - b.tau) < 0.5 * (pulse + step) && a.side == b.side; };
+        auto is_kept = [&](const Spike& s) { return std::any_of(kept.begin(), kept.end(), [&](const Spike& k) { return same(s, k); }); };
+        const std::vector<char> bad = sigmas > 0 ? impossible(p, spikes, refined.motion) : std::vector<char>(spikes.size(), 0);
         for (std::size_t i = 0; i < spikes.size(); ++i) {
-            const double jump = -spikes[i].side * (refined.motion.x_dot[i + 1] - refined.motion.x_dot_before[i]);
-            const bool visible = sigmas > 0 ? std::any_of(seen.begin(), seen.end(), [&](const Spike& s) { return same(s, spikes[i]); }) : jump > least_jump * std::abs(spikes[i].jump);
-            const bool certain = jump > kink_sigmas * refined.motion.jump_error[i];
-            ((visible && jump > 0) || certain ? kept : refined.dropped).push_back(spikes[i]);
-        }
-        if (sigmas > 0 && round + 1 < rounds) {
-            const std::size_t known = kept.size();
-            for (const Spike& s : seen)
-                if (std::none_of(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(known), [&](const Spike& k) { return same(s, k); })) kept.push_back(s);
-            if (!r.x.empty()) {
-                const std::vector<Spike> kinks = find_kinks(p, r, refined.motion, refined.motion.noise_x);
-                kept.insert(kept.end(), kinks.begin(), kinks.end());
+            const double jump = -spikes[i].side * (refined.motion.x_dot[i + 1] - refined.motion.x_dot_before[i]), error = refined.motion.jump_error[i];
+            const bool as_its_spike = jump > least_jump * std::abs(spikes[i].jump);
+            const bool visible = sigmas > 0 ? std::any_of(seen.begin(), seen.end(), [&](const Spike& s) { return same(s, spikes[i]); }) : as_its_spike;
+            const bool certain = jump > kink_sigmas * error, uncertain = 3 * error > std::abs(spikes[i].jump);
+            if (!bad[i] && ((visible && (as_its_spike || (uncertain && jump > 0))) || certain)) {
+                kept.push_back(spikes[i]);
+                continue;
+            }
+            const auto before = std::find_if(rejected.begin(), rejected.end(), [&](const Rejected& d) { return same(d.spike, spikes[i]); });
+            if (before == rejected.end()) rejected.push_back({spikes[i], 1});
+            else if (++before->times == most_rejections) {
+                // No impact, so an odd sample: the motion stands for it.
+                for (std::size_t k = 0; k < r.tau.size(); ++k)
+                    if (std::abs(r.tau[k] - spikes[i].tau) < step) r.x_ddot[k] -= refined.motion.left[k];
             }
         }
-        const bool settled = kept.size() == spikes.size();
+        const bool none_dropped = kept.size() == spikes.size();
+        std::size_t added = 0;
+        if (sigmas > 0 && round + 1 < rounds) {
+            std::vector<Spike> found = seen;
+            if (!r.x.empty()) {
+                const std::vector<Spike> kinks = find_kinks(p, r, refined.motion, refined.motion.noise_x);
+                found.insert(found.end(), kinks.begin(), kinks.end());
+            }
+            for (const Spike& s : found) {
+                const bool hopeless = std::any_of(rejected.begin(), rejected.end(), [&](const Rejected& d) { return d.times >= most_rejections && same(d.spike, s); });
+                if (hopeless || is_kept(s)) continue;
+                kept.push_back(s);
+                ++added;
+            }
+        }
         spikes = std::move(kept);
-        if (!settled) fit(pulse);
-        if (settled && round >= 2) break;
+        refined.settled = none_dropped && added == 0;
+        if (refined.settled && round >= 2) break;
+        if (!refined.settled) fit(pulse);  // what is returned belongs together, settled or not
     }
+    for (const Rejected& d : rejected)
+        if (std::none_of(spikes.begin(), spikes.end(), [&](const Spike& s) { return std::abs(s.tau - d.spike.tau) < step && s.side == d.spike.side; })) refined.dropped.push_back(d.spike);
     return refined;
 }
 
@@ -497,127 +582,82 @@ FittedMotion direct_motion(const MeasuredRecord& r, const std::vector<double>& i
 
 namespace {
 
-// What an impact of a real measurement may miss R in [0, 1] and the balance of momentum by, before it is left out.
-constexpr double R_tolerance = 0.15, momentum_tolerance = 0.35;
+// A misfit of three quarters of the noise beside the noise: sqrt(1 + .75^2). Records with the assumed signal stay below 1.05.
+constexpr double misfit_limit = 1.25;
+// Where the impacts themselves do not agree on b to half of it, it is not their b.
+constexpr double b_scatter = 0.5, b_tolerance = 0.03;
 
-std::string fault_of(const IdentifiedImpact& i, double before, double pulse) {
-    if (before < pulse) return "closer to the impact before it than the length of a pulse: one spike picked twice?";
-    if (!std::isnan(i.y_dot_before) && !(i.side * (i.x_dot_before - i.y_dot_before) > 0)) return "the mass would move away from the wall that it meets: is an impact beside it missing, or b wrong?";
-    if (std::isnan(i.x_dot_before) || std::isnan(i.x_dot_after)) return "too few samples beside it for a velocity";
-    if (std::isnan(i.R)) return "";  // the first and the last: the flight on one side is not known, and R with it
-    if (i.R < -R_tolerance || i.R > 1 + R_tolerance) return "R lies outside [0, 1]: is an impact beside it missing, or b wrong?";
-    if (!(std::abs(i.momentum_error) < momentum_tolerance)) return "momentum is not kept: is an impact beside it missing or false, or b wrong?";
-    return "";
+/// y' of each flight is offset - b rate: y = x - side b at both of its ends (43).
+struct Flight {
+    double offset, rate;
+    double y_dot(double b) const { return offset - b * rate; }
+};
+
+/// x' + epsilon y' is kept at every impact, and y' is linear in b: the weighted median of what each impact says.
+void fit_b(const Parameters& p, const FittedMotion& m, const std::vector<Flight>& flights, Identification& found) {
+    found.b_fitted = found.b_error = nan;
+    std::vector<std::pair<double, double>> said;  // b, weight
+    double total = 0, sum = 0;
+    for (std::size_t i = 1; i < flights.size(); ++i) {
+        const double rate = flights[i].rate - flights[i - 1].rate;
+        const double b = ((m.x_dot[i + 1] - m.x_dot_before[i]) / p.epsilon + flights[i].offset - flights[i - 1].offset) / rate;
+        if (!std::isfinite(b)) continue;
+        said.emplace_back(b, std::abs(rate));
+        total += std::abs(rate);
+    }
+    if (said.empty()) {
+        found.b_fault = "no impact has one on the other wall before or after it";
+        return;
+    }
+    std::sort(said.begin(), said.end());
+    const auto middle = std::find_if(said.begin(), said.end(), [&](const auto& s) { return (sum += s.second) >= 0.5 * total; });
+    const double b = middle == said.end() ? nan : middle->first;
+    std::vector<double> off;
+    for (const auto& s : said) off.push_back(s.first - b);
+    const double scatter = robust_deviation(off);
+    if (!explains(m)) found.b_fault = "the fitted motion does not explain the record";
+    else if (!(b > 0)) found.b_fault = "it would be negative";
+    else if (!(scatter < b_scatter * b)) found.b_fault = "the impacts say different ones";
+    else found.b_fitted = b, found.b_error = 1.25 * scatter / std::sqrt(static_cast<double>(off.size()));
 }
 
 }  // namespace
 
-Restitution restitution_of(const std::vector<IdentifiedImpact>& impacts, int side) {
-    std::vector<double> R, off;
-    for (const IdentifiedImpact& i : impacts) if (i.side == side && i.fault.empty() && !std::isnan(i.R)) R.push_back(i.R);
-    const double centre = median(R);
-    for (double r : R) off.push_back(r - centre);
-    // The median of n values scatters by 1.25 times what their mean would.
-    return {centre, 1.25 * robust_deviation(off) / std::sqrt(static_cast<double>(R.size())), static_cast<long>(R.size())};
-}
+bool explains(const FittedMotion& m) { return !(m.misfit_x > misfit_limit) && !(m.misfit_x_ddot > misfit_limit); }
 
 Identification identify_impacts(const Parameters& p, const FittedMotion& m, const std::vector<int>& sides, double pulse) {
     Identification found;
     const std::size_t n = sides.size();
-    // y' of each flight is offset - b rate: y = x - side b at both of its ends (43).
-    struct Flight {
-        double offset, rate;
-        double y_dot(double b) const { return offset - b * rate; }
-    };
     std::vector<Flight> flights;
     for (std::size_t i = 0; i + 1 < n; ++i) {
         const double duration = m.tau[i + 2] - m.tau[i + 1];
         flights.push_back({(m.x[i + 2] - m.x[i + 1]) / duration, (sides[i + 1] - sides[i]) / duration});
     }
-    std::vector<double> jumps;
-    for (std::size_t i = 0; i < n; ++i) jumps.push_back(std::abs(m.x_dot[i + 1] - m.x_dot_before[i]));
-    const double typical = median(jumps);
     for (std::size_t i = 0; i < n; ++i) {
-        IdentifiedImpact impact{m.tau[i + 1], sides[i], m.x[i + 1], m.x_dot_before[i], m.x_dot[i + 1], m.x_ddot_before[i], nan, nan, nan, nan, ""};
+        IdentifiedImpact impact{.tau = m.tau[i + 1], .side = sides[i], .x = m.x[i + 1], .x_dot_before = m.x_dot_before[i], .x_dot_after = m.x_dot[i + 1], .x_ddot_before = m.x_ddot_before[i]};
         if (i > 0) impact.y_dot_before = flights[i - 1].y_dot(p.b);
         if (i + 1 < n) impact.y_dot_after = flights[i].y_dot(p.b);
-        impact.R = -(impact.x_dot_after - impact.y_dot_after) / (impact.x_dot_before - impact.y_dot_before);
-        impact.momentum_error = (impact.x_dot_after - impact.x_dot_before + p.epsilon * (impact.y_dot_after - impact.y_dot_before)) / typical;
-        impact.fault = fault_of(impact, i > 0 ? m.tau[i + 1] - m.tau[i] : std::numeric_limits<double>::infinity(), pulse);
         found.impacts.push_back(std::move(impact));
     }
+    complete_impacts(p, found.impacts, pulse);
     found.plus = restitution_of(found.impacts, 1);
     found.minus = restitution_of(found.impacts, -1);
 
-    // x' + epsilon y' is kept at every impact, and y' is linear in b: the weighted median of what each impact says.
-    std::vector<std::pair<double, double>> said;  // b, weight
-    for (std::size_t i = 1; i + 1 < n; ++i) {
-        const double rate = flights[i].rate - flights[i - 1].rate;
-        if (rate == 0) continue;
-        said.emplace_back(((m.x_dot[i + 1] - m.x_dot_before[i]) / p.epsilon + flights[i].offset - flights[i - 1].offset) / rate, std::abs(rate));
-    }
-    std::sort(said.begin(), said.end());
-    double total = 0, sum = 0;
-    for (const auto& [b, weight] : said) total += weight;
-    found.b_fitted = found.b_error = nan;
-    for (const auto& [b, weight] : said)
-        if ((sum += weight) >= 0.5 * total) {
-            found.b_fitted = b;
-            break;
-        }
-    std::vector<double> off;
-    for (const auto& [b, weight] : said) off.push_back(b - found.b_fitted);
-    if (!off.empty()) found.b_error = 1.25 * robust_deviation(off) / std::sqrt(static_cast<double>(off.size()));
+    fit_b(p, m, flights, found);
     return found;
 }
 
-void append_identified(const Parameters& p, const Identification& identification, TransferProduct& product) {
-    const Flow flow = Flow::free(p);
-    for (const IdentifiedImpact& i : identification.impacts) {
-        if (!i.fault.empty()) continue;
-        if (product.impacts() == 0) {
-            product.start(i.tau);
-            continue;
-        }
-        if (std::isnan(i.y_dot_before)) continue;
-        Impact impact{};
-        impact.R = p.restitution(i.side);
-        impact.relative_speed_before = i.x_dot_before - i.y_dot_before;
-        impact.x_ddot_before = i.x_ddot_before;
-        const Leg flight = leg_of(flow, i.tau - product.end_tau(), false);
-        product.append({&flight, 1}, saltation(p, impact), impact.R, i.tau);
-    }
+bool b_agrees(const Parameters& p, const Identification& i) {
+    return !std::isfinite(i.b_fitted) || std::abs(i.b_fitted - p.b) <= std::max(b_tolerance * p.b, 5 * i.b_error);
 }
 
-IdentifiedExponents judge_exponents(const Parameters& p, const ExponentHistory& qr, double tau_start) {
-    std::vector<double> log, duration;  // growth from impact to impact, without the first tenth
-    for (std::size_t i = 1 + qr.tau.size() / 10; i < qr.tau.size(); ++i) {
-        duration.push_back(qr.tau[i] - qr.tau[i - 1]);
-        log.push_back(qr.lambda[i][0] * (qr.tau[i] - tau_start) - qr.lambda[i - 1][0] * (qr.tau[i - 1] - tau_start));
-    }
-    IdentifiedExponents e{nan, nan, nan, Verdict::not_decided};
-    const std::size_t n = log.size();
-    if (n < 20) return e;
-    double sum = 0, time = 0;
-    for (std::size_t i = 0; i < n; ++i) sum += log[i], time += duration[i];
-    e.slope = sum / time;
-    // Blocks as long as the memory of the motion, some impacts, drawn anew a thousand times; always the same ones.
-    const auto block = static_cast<std::size_t>(std::clamp(std::cbrt(static_cast<double>(n)) * 2, 4.0, 20.0));
-    std::mt19937_64 engine(2018);
-    std::vector<double> slopes;
-    for (int draw = 0; draw < 1000; ++draw) {
-        double s = 0, t = 0;
-        for (std::size_t got = 0; got < n; got += block) {
-            const std::size_t from = engine() % (n - block + 1);
-            for (std::size_t i = from; i < from + block; ++i) s += log[i], t += duration[i];
-        }
-        slopes.push_back(s / t);
-    }
-    std::sort(slopes.begin(), slopes.end());
-    e.low = slopes[50], e.high = slopes[949];
-    if (e.low > p.zeta()) e.verdict = Verdict::chaotic;
-    if (e.high < p.zeta()) e.verdict = Verdict::regular;
-    return e;
+std::vector<std::string> doubts_of(const Parameters& p, const RefinedImpacts& refined, const Identification& identification) {
+    std::vector<std::string> doubts;
+    if (!refined.settled) doubts.push_back("the search for impacts did not settle: what one round finds the next one drops");
+    if (!explains(refined.motion))
+        doubts.push_back("the fitted motion does not explain the record: it leaves more than the noise of the sensors (signal.misfit). Is a parameter wrong (frequency, mass, stiffness), or has a sensor an offset, a drift, a delay or another scale?");
+    if (!b_agrees(p, identification)) doubts.push_back("the impacts' momentum does not fit the given b");
+    return doubts;
 }
 
 }  // namespace vines

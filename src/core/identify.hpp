@@ -8,12 +8,11 @@
 // All in dimensionless time: tau = omega0 t, velocities in m per unit of tau, accelerations in m per unit of tau^2.
 #pragma once
 
-#include <functional>
-#include <optional>
+#include <limits>
 #include <string>
 #include <vector>
 
-#include "core/verdict.hpp"
+#include "core/measured_exponents.hpp"
 
 namespace vines {
 
@@ -21,6 +20,9 @@ namespace vines {
 struct MeasuredRecord {
     std::vector<double> tau, x, x_ddot;
 };
+
+/// Steps of more than three typical ones.
+std::vector<TimeGap> time_gaps(const MeasuredRecord& record);
 
 /// An impact seen in the acceleration as a spike.
 struct Spike {
@@ -44,6 +46,8 @@ struct FittedMotion {
     std::vector<double> x_dot_before, x_ddot_before, x_ddot_after;  ///< at the impacts: one fewer, index i for tau[i + 1]
     double force_sin, force_cos;     ///< of the forcing force_sin sin(Omega tau) + force_cos cos(Omega tau), m
     double noise_x, noise_x_ddot;    ///< of what is left of each sensor, standard deviation; NaN without it
+    double misfit_x = std::numeric_limits<double>::quiet_NaN(), misfit_x_ddot = misfit_x;  ///< that over the sensor's own noise,
+                                     ///< taken from the signal beside the pulses: 1 if all is explained
     std::vector<double> left;        ///< of the acceleration at each sample without the motion: the pulses and the noise
     // Of each interval fitted by itself, with the forcing of all:
     std::vector<double> own_x, own_x_dot;  ///< at its start
@@ -62,6 +66,7 @@ struct RefinedImpacts {
     double pulse;
     FittedMotion motion;
     std::vector<Spike> dropped;
+    bool settled;  ///< the last round neither dropped nor added one
 };
 /// Once there is a motion, spikes are picked again from what it leaves of the acceleration, above `sigmas` times the noise: it
 /// is a better background than the neighbourhood. And an interval that one motion does not fit is split at the kink of x: a
@@ -73,43 +78,23 @@ RefinedImpacts refine_impacts(const Parameters& parameters, const MeasuredRecord
 /// to be compared with. Only what identify_impacts() takes is set.
 FittedMotion direct_motion(const MeasuredRecord& record, const std::vector<double>& impacts, double pulse);
 
-/// One impact with what follows from the intervals on both of its sides.
-struct IdentifiedImpact {
-    double tau;
-    int side;
-    double x, x_dot_before, x_dot_after, x_ddot_before;
-    double y_dot_before, y_dot_after;  ///< NaN where there is no impact on that side
-    double R;                          ///< NaN as well
-    double momentum_error;             ///< of x' + epsilon y', over the typical jump of x'; NaN as well
-    std::string fault;                 ///< why it is left out; empty if it is not
-};
-
-struct Restitution {
-    double R, error;  ///< median and its standard error; NaN without an impact
-    long impacts;
-};
-
-/// Of the impacts at one wall that are not left out.
-Restitution restitution_of(const std::vector<IdentifiedImpact>& impacts, int side);
-
 struct Identification {
     std::vector<IdentifiedImpact> impacts;
     Restitution plus, minus;
-    double b_fitted, b_error;  ///< the b with which the momentum balance fits best, m
+    double b_fitted, b_error;  ///< the b with which the momentum balance fits best, m; NaN where it fits none
+    std::string b_fault;       ///< and why
 };
 /// b and epsilon from the parameters; R of each side is that of its impacts. `pulse` as in RefinedImpacts: two spikes closer
 /// than that are one that was picked twice.
 Identification identify_impacts(const Parameters& parameters, const FittedMotion& motion, const std::vector<int>& sides, double pulse);
 
-/// Feeds the impacts that are not left out into a product, each with the parameters' R of its side.
-void append_identified(const Parameters& parameters, const Identification& identification, TransferProduct& product);
+/// Whether the fitted motion leaves no more of the sensors' signals than their noise.
+bool explains(const FittedMotion& motion);
 
-/// How the sum of logarithms of qr's first exponent grows, and what that says.
-struct IdentifiedExponents {
-    double slope;      ///< of lambda1(tau) tau over tau, without the first tenth of the impacts: less of the transient than lambda1 itself
-    double low, high;  ///< 90 % interval of it, by bootstrap of blocks of impacts
-    Verdict verdict;   ///< chaotic: low is above the oscillator's own damping zeta; regular: high is below it
-};
-IdentifiedExponents judge_exponents(const Parameters& parameters, const ExponentHistory& qr, double tau_start);
+/// Whether the given b is the one that the momentum fits, to 3 % or five standard errors; true where it fits none.
+bool b_agrees(const Parameters& parameters, const Identification& identification);
+
+/// Why no verdict can rest on this record; empty if nothing speaks against one.
+std::vector<std::string> doubts_of(const Parameters& parameters, const RefinedImpacts& refined, const Identification& identification);
 
 }  // namespace vines

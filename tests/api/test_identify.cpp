@@ -91,8 +91,8 @@ TEST_CASE("a CSV file and the same record as JSON give the impacts, the restitut
     // Other names, separators and units say the same.
     std::string german = measured("fig15", 12, ';');
     std::replace(german.begin(), german.end(), '.', ',');
-    german.replace(0, german.find('\n'), "Zeit;weg;\"acceleration (g)\"");
-    const Json b = identify_answer(read_identify_request({{"preset", "fig15"}, {"time_column", "Zeit"}, {"displacement_column", "weg"}, {"acceleration_column", "acceleration (g)"}}, german));
+    german.replace(0, german.find('\n'), "Zeit;weg;\"acceleration (m/s^2)\"");
+    const Json b = identify_answer(read_identify_request({{"preset", "fig15"}, {"time_column", "Zeit"}, {"displacement_column", "weg"}, {"acceleration_column", "acceleration (m/s^2)"}}, german));
     CHECK(b["impacts"]["tau"] == a["impacts"]["tau"]);
 }
 
@@ -172,4 +172,125 @@ TEST_CASE("a quiet record, a clipped one, gaps, slow sampling and a wrong b are 
     CHECK(warnings({{"preset", "fig15"}}, gap).find("1 gap(s)") != std::string::npos);
     CHECK(warnings({{"preset", "fig15"}}, clipped).find("clipped") != std::string::npos);
     CHECK(warnings({{"preset", "fig15"}}, slow).find("ms apart") != std::string::npos);
+}
+
+namespace {
+
+/// The record with another header, its columns over these factors.
+std::string rescaled(const std::string& csv, const std::string& new_header, double time, double displacement, double acceleration) {
+    std::string out = new_header + "\n";
+    for (std::size_t from = csv.find('\n') + 1, end; (end = csv.find('\n', from)) != std::string::npos; from = end + 1) {
+        double t, x, a;
+        std::sscanf(csv.c_str() + from, "%lf,%lf,%lf", &t, &x, &a);
+        char line[120];
+        std::snprintf(line, sizeof line, "%.12g,%.12g,%.12g\n", t / time, x / displacement, a / acceleration);
+        out += line;
+    }
+    return out;
+}
+
+}  // namespace
+
+TEST_CASE("a unit in a column's name is obeyed, in CSV and JSON, or refused where it is not known or contradicts the field") {
+    const std::string csv = measured("fig15", 3);
+    const Json a = identify_answer(read_identify_request({{"preset", "fig15"}}, csv));
+    const auto same = [&](const Json& b) {
+        REQUIRE(b["impacts"]["side"] == a["impacts"]["side"]);
+        CHECK(b["signal"]["G"].get<double>() == doctest::Approx(a["signal"]["G"].get<double>()).epsilon(1e-6));
+        for (std::size_t i = 0; i < a["impacts"]["tau"].size(); ++i) CHECK(b["impacts"]["tau"][i].get<double>() == doctest::Approx(a["impacts"]["tau"][i].get<double>()).epsilon(1e-6));
+    };
+    constexpr double g = 9.80665;
+    for (const char* header : {"time_ms,displacement_mm,acceleration_g", "time (ms),displacement (mm),acceleration (g)", "Time [ms],Displacement [mm],Acceleration [g]", "t ms,x mm,a g", "t(ms),x[mm],a(g)"}) {
+        CAPTURE(header);
+        same(identify_answer(read_identify_request({{"preset", "fig15"}}, rescaled(csv, header, 1e-3, 1e-3, g))));
+    }
+    same(identify_answer(read_identify_request({{"preset", "fig15"}}, rescaled(csv, "time_s,displacement (\xc2\xb5m),acceleration (m/s\xc2\xb2)", 1, 1e-6, 1))));
+    same(identify_answer(read_identify_request({{"preset", "fig15"}, {"displacement_column", "laser_mm"}, {"displacement_unit", "mm"}}, rescaled(csv, "time_s,laser_mm,acceleration_m_s2", 1, 1e-3, 1))));
+    // A name without a unit leaves it to the field.
+    same(identify_answer(read_identify_request({{"preset", "fig15"}, {"time_unit", "ms"}, {"displacement_column", "laser"}, {"displacement_unit", "um"}}, rescaled(csv, "t,laser,a", 1e-3, 1e-6, 1))));
+    same(identify_answer(read_identify_request({{"preset", "fig15"}, {"displacement_column", "laser_left"}}, rescaled(csv, "time,laser_left,acceleration_1", 1, 1, 1))));
+    Json record = Json::object();
+    for (const CsvColumn& c : parse_csv(rescaled(csv, "time_ms,displacement_mm,acceleration_g", 1e-3, 1e-3, g))) record[c.name] = c.values;
+    same(identify_answer(read_identify_request({{"preset", "fig15"}, {"record", record}})));
+
+    const auto fault = [&](Json fields, const char* header) {
+        fields["preset"] = "fig15";
+        const Problem p = refused(fields, rescaled(csv, header, 1, 1, 1));
+        REQUIRE(p.errors.size() == 1);
+        return p.errors[0];
+    };
+    const FieldError unknown = fault(Json::object(), "time_s,displacement_inch,acceleration_m_s2");
+    CHECK(unknown.pointer == "/record/displacement_inch");
+    CHECK(unknown.value == "inch");
+    CHECK(unknown.range == Json({"m", "mm", "um"}));
+    CHECK(unknown.detail.find("column displacement_inch: the unit \"inch\" is not known; known are m, mm, um") == 0);
+    CHECK(fault(Json::object(), "time (min),displacement_m,acceleration_m_s2").value == "min");
+    CHECK(fault({{"acceleration_column", "sensor [mV]"}, {"acceleration_unit", "g"}}, "time_s,displacement_m,sensor [mV]").pointer == "/record/sensor [mV]");
+    CHECK(fault({{"displacement_column", "laser_cm"}}, "time_s,laser_cm,acceleration_m_s2").value == "cm");
+    const FieldError contradiction = fault({{"displacement_unit", "mm"}}, "time_s,displacement_m,acceleration_m_s2");
+    CHECK(contradiction.pointer == "/displacement_unit");
+    CHECK(contradiction.value == "mm");
+    CHECK(contradiction.detail == "displacement_unit is mm, but the column displacement_m says m");
+}
+
+TEST_CASE("impacts in a list are judged as those of a record: momentum over the typical jump, R within [0, 1], no missing one flown over") {
+    const Json simulated = simulate_answer(read_simulate_request({{"preset", "fig20"}, {"include", {"impacts"}}, {"cycles", 200}}), {});
+    Json impacts = simulated["impacts"];
+    const double epsilon = simulated["parameters"]["epsilon"];
+    const std::size_t n = impacts["tau"].size();
+    REQUIRE(n > 100);
+    std::vector<double> jumps;
+    for (std::size_t i = 0; i < n; ++i) jumps.push_back(std::abs(impacts["x_dot_after"][i].get<double>() - impacts["x_dot_before"][i].get<double>()));
+    std::sort(jumps.begin(), jumps.end());
+    const double typical = 0.5 * (jumps[(n - 1) / 2] + jumps[n / 2]);
+    impacts["x_dot_after"][20] = impacts["x_dot_after"][20].get<double>() + 0.5 * typical;   // no momentum
+    impacts["y_dot_after"][30] = 2 * impacts["y_dot_after"][30].get<double>() - impacts["x_dot_after"][30].get<double>();  // R twice as large
+    const Json a = identify_answer(read_identify_request({{"preset", "fig20"}, {"impacts", impacts}}));
+    const Json& error = a["impacts"]["momentum_error"];
+    CHECK(error[20].get<double>() == doctest::Approx(0.5).epsilon(0.01));
+    const double change = impacts["y_dot_after"][30].get<double>() - simulated["impacts"]["y_dot_after"][30].get<double>();
+    CHECK(error[30].get<double>() == doctest::Approx(epsilon * change / typical).epsilon(0.01));
+    CHECK(std::abs(error[10].get<double>()) < 1e-9);
+    CHECK(a["impacts"]["status"][10] == "ok");
+    CHECK(a["impacts"]["status"][20].get<std::string>().find("momentum") == 0);
+    CHECK(a["impacts"]["status"][30].get<std::string>().find("R lies outside [0, 1]") == 0);
+    CHECK(a["exponents"]["stretches"]["tau_start"].size() == 3);
+    CHECK(a["exponents"]["sum_rule_residual"].get<double>() < 1e-12);
+    CHECK(a["verdict"] == "chaotic");
+
+    const auto thinned = [&](std::size_t every) {
+        Json rest = Json::object();
+        for (const auto& [name, column] : simulated["impacts"].items())
+            for (std::size_t i = 0; i < n; ++i) if (i % every != every / 2) rest[name].push_back(column[i]);
+        return identify_answer(read_identify_request({{"preset", "fig20"}, {"impacts", rest}}));
+    };
+    const Json few = thinned(50), many = thinned(10);
+    CHECK(few["verdict"] == "chaotic");
+    CHECK(few["warnings"].dump().find("did not fly freely") != std::string::npos);
+    CHECK(few["exponents"]["duration"].get<double>() < few["exponents"]["window"][1].get<double>() - few["exponents"]["window"][0].get<double>());
+    CHECK(few["exponents"]["eigenvalues"]["window"][0] >= few["exponents"]["window"][0]);
+    CHECK(many["verdict"] == "not_decided");
+    CHECK(many["verdict_reason"].get<std::string>().find("% of the impacts are left out or missing") != std::string::npos);
+}
+
+TEST_CASE("there is no verdict and no advice where the motion does not explain the record") {
+    const std::string csv = measured("fig15", 12);
+    const Json good = identify_answer(read_identify_request({{"preset", "fig15"}}, csv));
+    CAPTURE(good["warnings"].dump());
+    CHECK(good["verdict"] == "regular");
+    CHECK(good["signal"]["misfit"]["displacement"] < 1.1);
+    CHECK(good["signal"]["misfit"]["acceleration"] < 1.1);
+    const double f = good["parameters"]["si"]["f"], k1 = good["parameters"]["si"]["k1"];
+    for (const Json& wrong : {Json{{"f", 1.002 * f}}, Json{{"f", 1.0005 * f}}, Json{{"k1", 1.02 * k1}}, Json{{"b", 0.011}}}) {
+        CAPTURE(wrong.dump());
+        Json fields = wrong;
+        fields["preset"] = "fig15";
+        const Json a = identify_answer(read_identify_request(fields, csv));
+        CHECK(a["verdict"] == "not_decided");
+        CHECK(a["warnings"].dump().find("no verdict: " + a["verdict_reason"].get<std::string>().substr(0, 20)) != std::string::npos);
+        if (!a["b_fitted"]["b"].is_null()) CHECK(a["b_fitted"]["b"].get<double>() > 0.004);
+        else CHECK(a["warnings"].dump().find("no b is fitted to the impacts' momentum: ") != std::string::npos);
+        CHECK(a["warnings"].dump().find("fits b = -") == std::string::npos);
+        CHECK(a["warnings"].dump().find("sample at") == std::string::npos);  // the pulse is seen well
+    }
 }
