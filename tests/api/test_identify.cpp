@@ -99,6 +99,7 @@ TEST_CASE("a CSV file and the same record as JSON give the impacts, the restitut
 TEST_CASE("an edited list of moments is taken as it is") {
     const std::string csv = measured("fig15", 6);
     const Json a = identify_answer(read_identify_request({{"preset", "fig15"}}, csv));
+    CHECK(a["verdict"] == "not_decided");  // a chaotic motion may look like this for 6 s
     std::vector<double> times = a["impacts"]["time_s"];
     const Json same = identify_answer(read_identify_request({{"preset", "fig15"}, {"impact_times_s", times}}, csv));
     CHECK(same["impacts"]["tau"].size() == times.size());

@@ -492,14 +492,15 @@ async function identify(text, query = "", options = {}) {
   return page;
 }
 
-let record;
-const regular = async () => record ??= await measured(service.url, "fig15", 6);
+const records = {};
+/** Of 6 s: 68 impacts, too few to be called regular; of 12 s they are enough. */
+const regular = async (seconds = 6) => records[seconds] ??= await measured(service.url, "fig15", seconds);
 const measuredCanvases = ["a canvas", "x canvas", "qr canvas", "raw canvas", "R canvas", "steps canvas", "portrait", "section"].map((name) => `#plot-measured-${name}`);
 const rows = (page) => page.$$eval("#measure-impacts tr", (list) => list.map((row) => [...row.cells].map((cell) => cell.querySelector("input")?.value ?? cell.textContent)));
 
 test("a record shows itself when it is chosen; identified, its impacts, section, exponents and verdict", async () => {
   const page = await open(browser.context, `${service.url}/?tab=measurement&preset=fig15`);
-  await page.setInputFiles("#measure-file", asFile(await regular()));
+  await page.setInputFiles("#measure-file", asFile(await regular(12)));
   await page.waitForSelector("#plot-measured-a canvas");
   assert.equal(await pixels(page, "#plot-measured-a canvas", "plus"), 0, "no impacts are known yet");
   await page.click("#measure-run");
@@ -508,7 +509,7 @@ test("a record shows itself when it is chosen; identified, its impacts, section,
   for (const name of ["plus", "minus"]) for (const plot of ["a canvas", "x canvas", "section"]) assert.ok(await pixels(page, `#plot-measured-${plot}`, name) > 20, `${plot}: ${name}`);
   const summary = await page.textContent("#measure-summary");
   assert.match(summary, /verdictregular the slope's 90 % interval lies below/);
-  assert.match(summary, /impacts\d\d 0 left out/);
+  assert.match(summary, /impacts\d+ 0 left out/);
   assert.match(summary, /R at \+b0\.8[45]\d+ ± 0\.000\d+ \d+ impacts/);
   assert.match(summary, /b fitted\d\.\d+ ± 0\.0\d+ mm given 9 mm, agrees/);
   assert.match(summary, /forcing G(10|9\.99\d*|10\.0\d) mm/);
@@ -521,7 +522,7 @@ test("a record shows itself when it is chosen; identified, its impacts, section,
 });
 
 test("the form's link holds its fields, another tab keeps the record, and other units and separators draw the same", async () => {
-  const text = (await regular()).replace(/^.*\n/, "Zeit;Weg;a\n").replace(/(?<=\d),/g, ";").replaceAll(".", ",");
+  const text = (await regular(12)).replace(/^.*\n/, "Zeit;Weg;a\n").replace(/(?<=\d),/g, ";").replaceAll(".", ",");
   const page = await open(browser.context, `${service.url}/?tab=measurement&preset=fig15`);
   await page.setInputFiles("#measure-file", asFile(text));
   await page.click("#measure-group-record > summary");
@@ -617,7 +618,7 @@ test("a record without acceleration shows its list, to give the impacts by hand"
 });
 
 test("a list too long for an address is sent as JSON", async () => {
-  const text = await regular();
+  const text = await regular(12);
   const page = await identify(text, "&preset=fig15");
   let type;
   page.on("request", (request) => { if (request.url().includes("/v1/identify")) type = request.headers()["content-type"]; });
