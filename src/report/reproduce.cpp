@@ -13,6 +13,7 @@
 #include "core/manifold.hpp"
 #include "core/regime.hpp"
 #include "core/transfer.hpp"
+#include "core/windows.hpp"
 #include "report/svg.hpp"
 
 namespace vines::report {
@@ -69,7 +70,7 @@ struct Response {
         Observer* const observers[] = {&series, &impacts, &transfers, &half_cycles, &lyapunov, &contacts, &stroboscopic};
         const Outcome outcome = simulate(p, default_state(p), {tau_end, 1000000, {}}, observers);
         series.finish(outcome);
-        regime = regime_of(p, default_state(p), {contacts, stroboscopic, 0, outcome.tau});
+        regime = regime_of(p, default_state(p), {contacts, stroboscopic, 0, outcome.tau, verdict_by_exponents(growth_of(lyapunov.product()))});
     }
 
     int positive(const Exponents& lambda) const { return static_cast<int>(std::count_if(lambda.begin(), lambda.end(), [](double v) { return v > 0; })); }
@@ -95,22 +96,6 @@ private:
     }
 };
 
-/// One window after the other, so that each event concerns one of them.
-class Windows : public Observer {
-public:
-    Windows(const Parameters& p, double length, int count, bool raw) : length_(length) {
-        for (int i = 0; i < count; ++i) parts_.emplace_back(p, i * length, (i + 1) * length, ExponentOptions{true, false, raw, 256});
-    }
-    void on_stretch(const Stretch& s) override { at(s.tau).on_stretch(s); }
-    void on_impact(const Impact& i) override { at(i.tau).on_impact(i); }
-    const std::vector<Lyapunov>& parts() const { return parts_; }
-
-private:
-    Lyapunov& at(double tau) { return parts_[std::min(static_cast<std::size_t>(tau / length_), parts_.size() - 1)]; }
-    const double length_;
-    std::vector<Lyapunov> parts_;
-};
-
 Ensemble ensemble(double b, Damping damping, bool raw) {
     constexpr int runs = 12, windows = 11;
     constexpr double length = 1690;
@@ -119,23 +104,25 @@ Ensemble ensemble(double b, Damping damping, bool raw) {
     for (int run = 0; run < runs; ++run) {
         State start = default_state(p);
         start.y -= run * 1e-6 * b;
-        Windows over(p, length, windows, raw);
+        Windows over(p, {true, false, raw, 256});
+        for (int i = 0; i < windows; ++i) over.add(i * length, (i + 1) * length);
+        Lyapunov whole(p, 0, length * windows, {true, false, false, 256});
         ContactRecord contacts;
         StroboscopicRecord stroboscopic(p);
-        Observer* const observers[] = {&over, &contacts, &stroboscopic};
+        Observer* const observers[] = {&over, &whole, &contacts, &stroboscopic};
         simulate(p, start, {length * windows, 10000000, {}}, observers);
-        const Regime regime = regime_of(p, start, {contacts, stroboscopic, 0, length * windows});
+        const Regime regime = regime_of(p, start, {contacts, stroboscopic, 0, length * windows, verdict_by_exponents(growth_of(whole.product()))});
         const bool chaotic_before = regime.capture && regime.capture->chaotic_before == true;
         const double until = chaotic_before ? regime.capture->tau : length * windows;
         e.captured += chaotic_before;
         if (regime.orbit && !chaotic_before) e.periodic = regime.orbit->exponents(p)[0];
         for (int i = 1; i < windows; ++i) {  // the first holds the transient from rest
             if ((i + 1) * length > until) break;
-            const Exponents lambda = over.parts()[i].product().qr();
+            const TransferProduct& product = over.product(i);
+            const Exponents lambda = product.qr();
             // A stick leaves lambda3 and lambda4 minus infinity in its window: lambda1 and lambda2 stand.
             if (std::isnan(lambda[0])) continue;
             e.windows.push_back(lambda);
-            const TransferProduct& product = over.parts()[i].product();
             const Exponents unscaled = product.raw_product();
             if (raw && product.rank() == 4 && std::isfinite(unscaled[2])) e.raw_spreads.push_back((unscaled[0] - unscaled[2]) * (product.end_tau() - product.start_tau()));
         }
@@ -153,9 +140,10 @@ std::map<std::string, int> attractors(const Parameters& p, int starts) {
         start.y = start.x + uniform(-p.b, p.b);
         ContactRecord contacts;
         StroboscopicRecord stroboscopic(p);
-        Observer* const observers[] = {&contacts, &stroboscopic};
+        Lyapunov lyapunov(p, 0, 3000, {true, false, false, 256});
+        Observer* const observers[] = {&contacts, &stroboscopic, &lyapunov};
         const Outcome outcome = simulate(p, start, {3000, 1000000, {}}, observers);
-        const Regime r = regime_of(p, start, {contacts, stroboscopic, 1500, outcome.tau});
+        const Regime r = regime_of(p, start, {contacts, stroboscopic, 1500, outcome.tau, verdict_by_exponents(growth_of(lyapunov.product()))});
         const std::string word = !r.orbit ? std::string("irregular (Type ") + name_of(r.type) + ")"
                                           : format("Type %s, %ld impacts in %d cycle%s, %s", name_of(r.type), r.orbit->contacts, r.orbit->cycles, r.orbit->cycles > 1 ? "s" : "",
                                                    r.orbit->symmetric ? "symmetric" : "asymmetric");
