@@ -82,7 +82,7 @@ std::vector<Spike> grouped(const MeasuredRecord& r, const std::vector<double>& l
             moment += left[j] * width * r.tau[j];
             height = std::max(height, sign * left[j]);
         }
-        if (height > sigmas * noise && r.tau[j - 1] - r.tau[k] < longest) spikes.push_back({moment / area, sign > 0 ? -1 : 1, area, height / noise});
+        if (height > sigmas * noise && r.tau[j - 1] - r.tau[k] < longest && std::isfinite(moment / area)) spikes.push_back({moment / area, sign > 0 ? -1 : 1, area, height / noise});
         k = j;
     }
     return spikes;
@@ -189,7 +189,10 @@ public:
         Eigen::SparseMatrix<double> N(unknowns_, unknowns_);
         N.setFromTriplets(triplets_.begin(), triplets_.end());
         const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(N);
-        return solver.solve(right_);
+        // Without a factorisation solve() leaves its result unset. A motion of zero explains nothing, and is seen to.
+        if (solver.info() != Eigen::Success) return Eigen::VectorXd::Zero(unknowns_);
+        const Eigen::VectorXd z = solver.solve(right_);
+        return z.allFinite() ? z : Eigen::VectorXd(Eigen::VectorXd::Zero(unknowns_));
     }
 
 private:
