@@ -31,20 +31,36 @@ Json describe_history(const ExponentHistory& history) {
     return columns;
 }
 
-/// The sign of lambda1, and how sure it is.
-void add_verdict(Json& j, double lambda1, double error, const Regime& regime, double tau_start) {
-    const Verdict verdict = verdict_of(lambda1, error, regime, tau_start), by_errors = verdict_of(lambda1, error);
-    const double sigmas = lambda1 / error;
-    j["verdict"] = word(verdict);
-    j["verdict_sigmas"] = finite_or_null(sigmas);
-    if (verdict == Verdict::regular && regime.orbit)
-        j["verdict_reason"] = "the motion ends on a stable periodic orbit, whose largest multiplier has the modulus " + digits("%.4g", std::abs(regime.orbit->multipliers[0]));
-    else if (std::isfinite(sigmas))
-        j["verdict_reason"] = "lambda1 = " + digits("%.3g", lambda1) + " lies " + digits("%.1f", std::abs(sigmas)) + " standard errors " + (lambda1 > 0 ? "above" : "below") +
-                              " zero; " + (by_errors == Verdict::not_decided ? "less than " : "at least ") + digits("%.0f", verdict_sigmas) + " decide" +
-                              (regime.capture ? ", up to the capture by a periodic orbit at tau = " + digits("%.1f", regime.capture->tau) : "");
-    else
-        j["verdict_reason"] = "too few impacts for a standard error of lambda1";
+std::string reason_of(const Judgement& judgement, const Growth& g, const Regime& r) {
+    const std::string sigmas = "lambda1 = " + digits("%.3g", g.lambda1) + " lies " + digits("%.1f", std::abs(g.lambda1 / g.standard_error)) + " standard errors " +
+                               (g.lambda1 > 0 ? "above" : "below") + " zero";
+    auto orbit = [&] { return "a stable periodic orbit, whose largest multiplier has the modulus " + digits("%.4g", std::abs(r.orbit->multipliers[0])); };
+    auto captured = [&] { return " a periodic orbit captures the motion at tau = " + digits("%.1f", r.capture->tau); };
+    switch (judgement.reason) {
+        case VerdictReason::growth:
+            return sigmas + "; at least " + digits("%.0f", verdict_sigmas) + " decide" + (r.capture ? ", but" + captured() : "");
+        case VerdictReason::on_orbit: return "the motion is on " + orbit();
+        case VerdictReason::settling: return "the motion ends on " + orbit();
+        case VerdictReason::free_decay: return "without forcing (G = 0) the motion dies out: it has no exponents of a long run";
+        case VerdictReason::transient: return "the window begins in a chaotic transient;" + captured();
+        case VerdictReason::no_error: return "too few impacts for a standard error of lambda1";
+        case VerdictReason::within_error: return sigmas + "; less than " + digits("%.0f", verdict_sigmas) + " decide nothing";
+        case VerdictReason::little_growth:
+            return sigmas + ", but deviations grow by no more than e^" + digits("%.1f", g.whole) + " in this window, as they may while one unstable orbit is left; e^" +
+                   digits("%.0f", least_growth) + " decides";
+        case VerdictReason::algebraic_growth:
+            return sigmas + ", but deviations grow by no more than e^" + digits("%.1f", g.late) + " in the second half of this window: that may be algebraic growth beside a torus";
+        case VerdictReason::negative: return sigmas + ", but no stable periodic orbit was found that the motion comes to";
+    }
+    return "";
+}
+
+/// What the window's motion is, and what that rests on.
+void add_verdict(Json& j, const Growth& growth, const Regime& regime, double tau_start) {
+    const Judgement judgement = judge(growth, regime, tau_start);
+    j["verdict"] = word(judgement.verdict);
+    j["verdict_sigmas"] = finite_or_null(growth.lambda1 / growth.standard_error);
+    j["verdict_reason"] = reason_of(judgement, growth, regime);
 }
 
 /// A period's multipliers, by descending modulus.
@@ -153,13 +169,13 @@ Json describe_touches(const std::vector<TouchRecord::Touch>& touches) {
     return {{"tau", column(touches, [](const auto& t) { return t.tau; })}, {"side", column(touches, [](const auto& t) { return t.side; })}};
 }
 
-Json describe_exponents(const TransferProduct& product, const ExponentOptions& estimators, double zeta, const Regime& regime, bool histories, Warnings& warnings) {
+Json describe_exponents(const TransferProduct& product, const ExponentOptions& estimators, const Regime& regime, bool histories, Warnings& warnings) {
     const double start = product.start_tau(), T = product.end_tau() - start;
     Json j = {{"window", product.impacts() > 0 ? Json::array({start, product.end_tau()}) : Json(nullptr)}, {"impacts", product.impacts()},
-              {"sum_rule_residual", finite_or_null(product.sum_rule_residual(zeta))}};
+              {"sum_rule_residual", finite_or_null(product.sum_rule_residual())}};
     if (estimators.qr) {
         const Exponents error = standard_error(product.qr_history(), start);
-        add_verdict(j, product.qr()[0], error[0], regime, start);
+        add_verdict(j, growth_of(product), regime, start);
         Json qr = with_status(product.qr());
         qr["standard_error"] = four(error);
         if (histories) qr["history"] = describe_history(product.qr_history());
@@ -184,6 +200,9 @@ Json describe_exponents(const TransferProduct& product, const ExponentOptions& e
         if (histories && product.impacts() > 1 && std::isnan(final[0]))
             warnings.push_back("raw_product overflows in this window: the unscaled product leaves the range of double near T = 709/lambda1");
     }
+    if (product.sum_rule_residual() > most_residual)
+        warnings.push_back("the exponents of qr in [" + digits("%.6g", start) + ", " + digits("%.6g", product.end_tau()) + "] miss the sum rule by " +
+                           digits("%.2g", product.sum_rule_residual()) + ": those that rounding has reached are not_converged");
     if (!histories) return j;
     if (product.impacts() < 2) warnings.push_back("there are fewer than two impacts in the window, so there are no exponents");
     if (product.rank() == 2)
@@ -203,7 +222,7 @@ Json describe_eigenvalues(const std::vector<ImpactTransfer>& transfers) {
 Json describe_matrices(const std::vector<ImpactTransfer>& transfers) {
     return {{"tau", column(transfers, [](const ImpactTransfer& t) { return t.tau; })},
             {"order", {"x_dot", "x", "y_dot", "y"}},
-            {"J", column(transfers, [](const ImpactTransfer& t) { return describe_matrix(t.J); })},
+            {"J", column(transfers, [](const ImpactTransfer& t) { return describe_matrix(t.J()); })},
             {"M", column(transfers, [](const ImpactTransfer& t) { return describe_matrix(t.M.matrix()); })},
             {"T", column(transfers, [](const ImpactTransfer& t) { return describe_matrix(t.T()); })}};
 }

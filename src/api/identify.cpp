@@ -182,7 +182,7 @@ Json describe_direct(Parameters p, const IdentifyRequest& r, const RefinedImpact
         if (std::isfinite(found.plus.R)) p.R_plus = std::clamp(found.plus.R, 0.0, 1.0);
         if (std::isfinite(found.minus.R)) p.R_minus = std::clamp(found.minus.R, 0.0, 1.0);
     }
-    TransferProduct product({true, false, false, 256});
+    TransferProduct product(p.epsilon, {true, false, false, 256});
     append_identified(p, found, product);
     Json columns = describe_identified(found.impacts, r.system.si->omega0()), lambda = Json::array();
     for (const char* same : {"time_s", "tau", "side"}) columns.erase(same);
@@ -314,7 +314,7 @@ Json identify_answer(const IdentifyRequest& r) {
     const auto faults = std::count_if(found.impacts.begin(), found.impacts.end(), [](const auto& i) { return !i.fault.empty(); });
     if (faults > 0) warnings.push_back(std::to_string(faults) + " of " + std::to_string(found.impacts.size()) + " impacts are inconsistent and left out; impacts.status says why");
 
-    TransferProduct product(r.estimators);
+    TransferProduct product(p.epsilon, r.estimators);
     append_identified(p, found, product);
     const IdentifiedExponents judged = judge_exponents(p, product.qr_history(), product.start_tau());
     System used = r.system;
@@ -325,7 +325,7 @@ Json identify_answer(const IdentifyRequest& r) {
     answer["impacts"] = describe_identified(found.impacts, omega0);
     answer["restitution"] = {{"plus", describe_restitution(found.plus)}, {"minus", describe_restitution(found.minus)}};
     answer["b_fitted"] = {{"b", finite_or_null(found.b_fitted)}, {"standard_error", finite_or_null(found.b_error)}};
-    answer["exponents"] = describe_exponents(product, r.estimators, p.zeta(), Regime{}, true, warnings);
+    answer["exponents"] = describe_exponents(product, r.estimators, Regime{}, true, warnings);
     for (const char* of_a_simulation : {"verdict", "verdict_sigmas", "verdict_reason"}) answer["exponents"].erase(of_a_simulation);  // the record's own follows
     answer["slope"] = {{"lambda1", finite_or_null(judged.slope)}, {"low", finite_or_null(judged.low)}, {"high", finite_or_null(judged.high)}};
     answer["verdict"] = word(judged.verdict);

@@ -10,8 +10,10 @@ namespace vines::api {
 
 namespace {
 
-/// From here on a relative error of one ulp in what M acts on is one of 1e-8 in what it gives.
-constexpr double ill_conditioned = 4.5e7;
+/// |x''/(x'- - y'-)| from which on an impact is nearly tangent: without the wall the mass would have turned back within
+/// 1/1800 of a unit of tau. M's condition number is then about 14 (x''/(x'- - y'-))^2 at Table 1's R = .6, so that a relative error
+/// of one ulp in what M acts on is one of 1e-8 in what it gives.
+constexpr double nearly_tangent = 1800;
 
 Json describe_parameters(const SimulateRequest& r) {
     Json j = describe_system(r.system);
@@ -51,22 +53,21 @@ void warn_of_grazing(const std::vector<Impact>& impacts, const SimulateRequest& 
     const Impact* nearest = nullptr;
     for (const Impact& i : impacts) {
         if (i.side * i.x_ddot_before > 0 || i.tau < r.window.from || i.tau > r.window.to) continue;
-        if (!(saltation(r.system.parameters, i).condition(i.R) > ill_conditioned) || i.R == 0) continue;
+        if (!(std::abs(i.x_ddot_before) > nearly_tangent * std::abs(i.relative_speed_before))) continue;
         ++count;
         if (!nearest || std::abs(i.relative_speed_before) < std::abs(nearest->relative_speed_before)) nearest = &i;
     }
     if (count > 0)
-        warnings.push_back("M is ill-conditioned (above " + digits("%.2g", ill_conditioned) + ") at " + std::to_string(count) + " nearly tangent impact(s), most at tau = " +
+        warnings.push_back("M is ill-conditioned at " + std::to_string(count) + " nearly tangent impact(s), most at tau = " +
                            digits("%.6g", nearest->tau) + ", whose relative speed is " + digits("%.2g", std::abs(nearest->relative_speed_before) / typical_speed) +
                            " of the median: there the motion is next to one without this impact");
 }
 
-Json describe_windows(const SimulateRequest& r, const std::vector<Lyapunov>& windows, const Regime& regime) {
+Json describe_windows(const SimulateRequest& r, const std::vector<Lyapunov>& windows, const Regime& regime, Warnings& warnings) {
     Json list = Json::array();
-    Warnings none;
     for (std::size_t i = 0; i < windows.size(); ++i) {
         Json entry = {{"asked", {r.windows[i].from, r.windows[i].to}}};
-        entry.update(describe_exponents(windows[i].product(), r.estimators, r.system.parameters.zeta(), regime, false, none));
+        entry.update(describe_exponents(windows[i].product(), r.estimators, regime, false, warnings));
         list.push_back(std::move(entry));
     }
     return list;
@@ -130,11 +131,10 @@ Json simulate_answer(const SimulateRequest& r, const Stop& stop) {
         answer["touches"] = describe_touches(touches.touches);
         warnings.push_back("the mass touches a wall without an impact (tangent contact): neighbouring trajectories go different ways there");
     }
-    const double lambda1 = lyapunov.product().qr()[0];
-    const Verdict by_exponents = verdict_of(lambda1, standard_error(lyapunov.product().qr_history(), lyapunov.product().start_tau())[0]);
+    const Verdict by_exponents = verdict_by_exponents(growth_of(lyapunov.product()));
     const Regime regime = judged ? regime_of(p, r.start, {contacts, stroboscopic, reached.from, reached.to, by_exponents, stop.asked}) : Regime{};
-    if (r.includes("exponents")) answer["exponents"] = describe_exponents(lyapunov.product(), r.estimators, p.zeta(), regime, true, warnings);
-    if (!windows.empty()) answer["windows"] = describe_windows(r, windows, regime);
+    if (r.includes("exponents")) answer["exponents"] = describe_exponents(lyapunov.product(), r.estimators, regime, true, warnings);
+    if (!windows.empty()) answer["windows"] = describe_windows(r, windows, regime, warnings);
     warn_of_grazing(impacts.impacts, r, typical_speed, warnings);
     trim_to_last(transfers.transfers, r.max_points);
     if (transfers.seen > static_cast<long>(transfers.transfers.size()))

@@ -126,8 +126,6 @@ void check_corners(const SweepRequest& r, std::vector<FieldError>& errors) {
     }
 }
 
-const char* reason_of(End end) { return end == End::tau_end ? "complete" : end == End::max_impacts ? "max_impacts" : "stopped"; }
-
 /// Where a point lies, and what was found there or what is wrong with it.
 Json located(const SweepRequest& r, std::size_t index) {
     const Place place = place_of(r, index);
@@ -137,6 +135,10 @@ Json located(const SweepRequest& r, std::size_t index) {
     if (r.starts.size() > 1) line["start"] = place.start;
     return line;
 }
+
+// What a point's line says of its motion: null where there was none to measure.
+constexpr const char* measured_quantities[] = {"lambda", "status", "standard_error", "verdict", "z", "regime", "periodic", "period_cycles", "impacts_per_period", "symmetric",
+                                               "capture_cycle", "multiplier", "synchronised", "x_max", "x_rms", "x_rms_ratio", "share_impacts", "impacts", "sticks"};
 
 Json describe_section_points(const std::vector<SectionPoint>& points, Section section) {
     auto column = [&](auto value) {
@@ -161,8 +163,15 @@ Json describe_section_points(const std::vector<SectionPoint>& points, Section se
     return j;
 }
 
-Json describe_point(const SweepRequest& r, std::size_t index, double Omega, const PointResult& p) {
+/// `afresh`: the point was to go on from its neighbour's last state, but there was none at a whole cycle.
+Json describe_point(const SweepRequest& r, std::size_t index, double Omega, const PointResult& p, bool afresh) {
     Json line = located(r, index);
+    if (afresh) line["carried"] = false;
+    if (!p.measured) {
+        for (const char* name : measured_quantities) line[name] = nullptr;
+        line["reason"] = "transient_max_impacts";
+        return line;
+    }
     line["lambda"] = Json::array();
     line["status"] = Json::array();
     for (double v : p.lambda) {
@@ -186,7 +195,7 @@ Json describe_point(const SweepRequest& r, std::size_t index, double Omega, cons
     line["share_impacts"] = finite_or_null(p.share_impacts);
     line["impacts"] = p.impacts;
     line["sticks"] = p.sticks;
-    line["reason"] = reason_of(p.outcome.reason);
+    line["reason"] = p.outcome.reason == End::tau_end ? "complete" : "max_impacts";
     if (r.options.section != Section::none) line["section"] = describe_section_points(p.section, r.options.section);
     return line;
 }
@@ -203,7 +212,7 @@ public:
     /// The wanted points of one chain, in the order of their index.
     void run_chain(std::span<const std::size_t> wanted) {
         if (r_.carry == SweepRequest::Carry::none) {
-            run_point(wanted[0], std::nullopt, true);
+            run_point(wanted[0], std::nullopt, true, true);
             return;
         }
         const std::size_t n = r_.axes[0].values.size(), row = wanted[0] / n * n;
@@ -212,7 +221,7 @@ public:
         for (std::size_t k = 0; k < n && left > 0; ++k) {
             const std::size_t index = row + (r_.carry == SweepRequest::Carry::up ? k : n - 1 - k);
             const bool is_wanted = std::binary_search(wanted.begin(), wanted.end(), index);
-            before = run_point(index, before, is_wanted);
+            before = run_point(index, before, k == 0, is_wanted);
             left -= is_wanted;
         }
     }
@@ -223,7 +232,8 @@ private:
         State state;
     };
 
-    std::optional<Carried> run_point(std::size_t index, const std::optional<Carried>& before, bool wanted) {
+    /// `first` of its chain, where it starts afresh anyway.
+    std::optional<Carried> run_point(std::size_t index, const std::optional<Carried>& before, bool first, bool wanted) {
         struct Turn {
             Pace& pace;
             explicit Turn(Pace& p) : pace(p) { pace.begin(); }
@@ -237,8 +247,9 @@ private:
             options.max_impacts = s.max_impacts;
             const PointResult result = measure(p, before ? carried(before->state, before->parameters, p) : s.start, options, [this] { return pace_.stop_or_yield(); });
             if (result.outcome.reason == End::stopped || pace_.stop_or_yield()) throw Stopped();
-            if (wanted) emit(index, describe_point(r_, index, p.Omega, result));
-            return Carried{p, result.outcome.state};
+            if (wanted) emit(index, describe_point(r_, index, p.Omega, result, !first && !before));
+            if (!result.at_end) return std::nullopt;  // no state at a whole cycle: the next point starts afresh, and its line says so
+            return Carried{p, *result.at_end};
         } catch (const Problem& problem) {  // inside the corners, but no system of its own
             Json line = located(r_, index);
             line["error"] = problem.what();

@@ -66,6 +66,11 @@ Flow Flow::stuck(const Parameters& p) {
     return Flow(1 / mass, 2 * p.zeta() / mass, p.epsilon * p.A() / mass, p.Omega);
 }
 
+double Flow::fastest_decay() const {
+    const double half = 0.5 * damping_;
+    return half + std::sqrt(std::max(0.0, half * half - stiffness_));
+}
+
 namespace {
 
 /// The phasor turned by an angle. One Newton step keeps its length 1 over millions of turns.

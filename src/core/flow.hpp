@@ -44,6 +44,8 @@ public:
 
     double cell() const { return h_; }                     ///< width h of a cell
     double reach() const { return h_ * cells; }            ///< longest time that one look at the grid can bridge
+    double damping() const { return damping_; }            ///< the transfer matrix over s has the determinant e^(-damping s)
+    double fastest_decay() const;                          ///< rate at which the unforced motion dies out, its faster part
 
     double acceleration(const Oscillation& o) const { return -stiffness_ * o.x - damping_ * o.x_dot + forcing_ * o.sin_theta; }
     double jerk(const Oscillation& o) const { return -stiffness_ * o.x_dot - damping_ * acceleration(o) + forcing_ * Omega_ * o.cos_theta; }

@@ -77,20 +77,21 @@ private:
         return {};
     }
 
-    /// The only upward crossing in (a, e], f(a) < 0 <= f(e): Halley's steps kept inside the bracket.
+    /// The only upward crossing in (a, e], f(a) < 0 <= f(e): Halley's steps kept inside the bracket. It ends: where rounding keeps
+    /// them from converging, the bracket is halved until it is an ulp wide.
     double root(double a, double e) const {
         double low = a, high = e;
         const double fa = at(a).f, fe = at(e).f;
         double d = fe > fa ? a - fa * (e - a) / (fe - fa) : 0.5 * (a + e);
-        for (int i = 0; i < 200; ++i) {
+        for (int i = 0; high - low > ulp * d; ++i) {
             const Value v = at(d);
             if (v.f == 0) return d;
             (v.f < 0 ? low : high) = d;
             const double step = halley(v.f, v.f1, v.f2);
             // Halley's error shrinks with the cube of the step: after one below 1e-6 of d the next is below an ulp.
             if (std::abs(step) <= 1e-6 * d && v.f1 > 0 && std::abs(step * v.f2) <= 1e-6 * v.f1) return std::clamp(d + step, low, high);
-            d = d + step > low && d + step < high ? d + step : 0.5 * (low + high);
-            if (high - low <= ulp * d) break;
+            d = i < 20 && d + step > low && d + step < high ? d + step : 0.5 * (low + high);
+            if (d <= low || d >= high) break;  // neighbours
         }
         return d;
     }
@@ -144,13 +145,15 @@ struct Search {
                     f2 + d * (3 * f3 + d * (6 * f4 + d * 10 * f5)));
         d = std::clamp(d, 0.0, h);
 
+        // Two steps do, or the speed is so small that rounding moves the root by more than the bound: then in_cell() brackets it.
         SeriesValue v;
         double step;
-        for (int i = 0; i < 50; ++i) {
+        for (int i = 0;; ++i) {
+            if (i == 8) return {};
             v = value_at(c, d);
             step = halley(wall * (v.x - (y + start.y_dot * d)) - b, wall * (v.x_dot - start.y_dot), wall * v.half_x_ddot);
             if (std::abs(step) <= 1e-7 * h) break;
-            d += step;
+            d = std::clamp(d + step, 0.0, h);
         }
         // The state a last, tiny step further, by its Taylor polynomial: what that leaves out is below 1e-18.
         d += step;

@@ -584,8 +584,8 @@ void append_identified(const Parameters& p, const Identification& identification
         impact.R = p.restitution(i.side);
         impact.relative_speed_before = i.x_dot_before - i.y_dot_before;
         impact.x_ddot_before = i.x_ddot_before;
-        const double s = i.tau - product.end_tau();
-        product.append(free_transfer(flow.transfer(s), s), 4, saltation(p, impact), impact.R, i.tau);
+        const Leg flight = leg_of(flow, i.tau - product.end_tau(), false);
+        product.append({&flight, 1}, saltation(p, impact), impact.R, i.tau);
     }
 }
 

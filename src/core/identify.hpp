@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "core/lyapunov.hpp"
+#include "core/verdict.hpp"
 
 namespace vines {
 

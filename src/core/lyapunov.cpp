@@ -1,11 +1,12 @@
 #include "core/lyapunov.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-
-#include "core/compound.hpp"
+#include <numbers>
 
 namespace vines {
 
@@ -67,118 +68,201 @@ Status status_of(double exponent) {
 
 double rounding_floor(double lambda1, double T) { return lambda1 + std::log(std::numeric_limits<double>::epsilon()) / T; }
 
-Exponents standard_error(const ExponentHistory& h, double start) {
-    // Blocks are longer than the memory of the motion for a run of some hundred impacts, and 20 of them give the error to 16 %.
-    const int blocks = std::min<int>(20, static_cast<int>(h.tau.size() / 4));
-    if (blocks < 8) return no_exponents;
-    const double length = (h.tau.back() - start) / blocks;
-    std::vector<Exponents> means;
-    double tau_before = start;
-    Exponents log_before{};
+namespace {
+
+// The growth of a window is looked at in so many equal steps of tau, and steps that are up to this many apart are taken to
+// depend on each other: a bit more than a quarter of the window. A modulated response needs that much: its growth goes up and down
+// with each modulation, so that shorter blocks, taken as independent, promise up to 2.5 times too little.
+constexpr int error_steps = 128, error_lags = 40;
+
+/// The sum of logarithms (lambda times its window) at evenly spaced tau, for one exponent.
+std::array<double, error_steps + 1> evenly_spaced(const ExponentHistory& h, double start, int exponent) {
+    std::array<double, error_steps + 1> sums{};
+    double tau_before = start, sum_before = 0;
     std::size_t i = 0;
-    for (int block = 1; block <= blocks; ++block) {
-        const double end = block == blocks ? h.tau.back() : start + block * length;
-        const std::size_t from = i;
-        while (i < h.tau.size() && h.tau[i] <= end) ++i;
-        if (i == from || h.tau[i - 1] <= tau_before) continue;
-        Exponents mean;
-        for (int k = 0; k < 4; ++k) {
-            const double log = h.lambda[i - 1][k] * (h.tau[i - 1] - start);
-            mean[k] = (log - log_before[k]) / (h.tau[i - 1] - tau_before);
-            log_before[k] = log;
-        }
-        tau_before = h.tau[i - 1];
-        means.push_back(mean);
+    auto sum_at = [&](std::size_t k) { return h.lambda[k][exponent] * (h.tau[k] - start); };
+    for (int step = 1; step <= error_steps; ++step) {
+        const double tau = start + (h.tau.back() - start) * step / error_steps;
+        for (; i + 1 < h.tau.size() && h.tau[i] < tau; ++i) tau_before = h.tau[i], sum_before = sum_at(i);
+        const double width = h.tau[i] - tau_before;
+        sums[step] = width > 0 ? sum_before + (sum_at(i) - sum_before) * std::min(1.0, (tau - tau_before) / width) : sum_at(i);
     }
-    if (means.size() < 8) return no_exponents;
-    const double n = static_cast<double>(means.size());
-    Exponents error;
-    for (int k = 0; k < 4; ++k) {
-        double sum = 0, squares = 0;
-        for (const Exponents& m : means) sum += m[k];
-        for (const Exponents& m : means) squares += (m[k] - sum / n) * (m[k] - sum / n);
-        error[k] = std::isfinite(sum) ? std::sqrt(squares / (n - 1) / n) : nan;
-    }
-    return error;
+    return sums;
 }
 
-Verdict verdict_of(double lambda1, double error) {
-    if (lambda1 > verdict_sigmas * error) return Verdict::chaotic;
-    if (lambda1 < -verdict_sigmas * error) return Verdict::regular;
-    return Verdict::not_decided;
+}  // namespace
+
+Exponents standard_error(const ExponentHistory& h, double start) {
+    if (h.tau.size() < 32 || !(h.tau.back() > start)) return no_exponents;
+    // Tukey and Hanning's estimate of the spectrum of the growth at frequency zero, times the length: the variance of the sum.
+    std::array<double, error_lags + 1> weights;
+    double taken = 1;
+    for (int lag = 0; lag <= error_lags; ++lag) {
+        weights[lag] = 0.5 * (1 + std::cos(std::numbers::pi * lag / error_lags));
+        if (lag > 0) taken += 2 * weights[lag];
+    }
+    // The mean that is removed takes its share of white growth's variance, and about half of it where growth goes up and down.
+    const double left = 1 - 0.5 * taken / error_steps;
+    Exponents error;
+    for (int k = 0; k < 4; ++k) {
+        const auto sums = evenly_spaced(h, start, k);
+        std::array<double, error_steps> off;
+        for (int i = 0; i < error_steps; ++i) off[i] = sums[i + 1] - sums[i] - sums[error_steps] / error_steps;
+        auto covariance = [&](int lag) {
+            double sum = 0;
+            for (int i = 0; i + lag < error_steps; ++i) sum += off[i] * off[i + lag];
+            return sum;
+        };
+        double variance = covariance(0);
+        const double least = 0.02 * variance;  // the window's estimate may come out below zero
+        for (int lag = 1; lag <= error_lags; ++lag) variance += 2 * weights[lag] * covariance(lag);
+        error[k] = std::isfinite(variance) ? std::sqrt(std::max(variance, least) / left) / (h.tau.back() - start) : nan;
+    }
+    return error;
 }
 
 struct TransferProduct::Qr {
     // Above this |r| (it is x''/(x'- - y'-)) the columns of M Q hide each other: a volume of them computed from the sums would
     // have a relative error of |r|^2 ulp. Below, that error is under 1e-12.
     static constexpr double steep = 100;
+    // Below this R the columns hide each other as well: an impact shrinks deviations of x' - y' by R.
+    static constexpr double dull = 0.02;
 
     explicit Qr(std::size_t history) : thinned(history) {}
 
-    Matrix4 frame = Matrix4::Identity();
-    Exponents growth = {1, 1, 1, 1};  // lengths since the last logarithm was taken
-    Exponents logs{};
-    Thinned thinned;
+    /// Lengths as products since their last logarithm was taken, and the logarithms.
+    template <int n>
+    struct Lengths {
+        std::array<double, n> growth, logs{};
+        Lengths() { growth.fill(1); }
+        void grow(int k, double length) {
+            growth[k] *= length;
+            if (!(growth[k] > 1e-100 && growth[k] < 1e100)) take_logarithm(k);
+        }
+        void take_logarithm(int k) {
+            logs[k] += std::log(growth[k]);
+            growth[k] = 1;
+        }
+        double logarithm(int k) const { return logs[k] + std::log(growth[k]); }
+    };
 
-    void grow(int k, double length) {
-        growth[k] *= length;
-        if (!(growth[k] > 1e-100 && growth[k] < 1e100)) take_logarithm(k);
-    }
-    void take_logarithm(int k) {
-        logs[k] += std::log(growth[k]);
-        growth[k] = 1;
-    }
-    const Exponents& logarithms() {
-        for (int k = 0; k < 4; ++k) take_logarithm(k);
-        return logs;
-    }
+    Matrix4 frame = Matrix4::Identity();
+    Lengths<4> lengths;
+    // What the first two and three deviations span, from the exterior powers; and the determinant.
+    Area area = Area::Unit(0);
+    Volume volume{Eigen::Vector4d::UnitW()};
+    Lengths<2> spanned;
+    double log_det = 0;
+    Thinned thinned;
 
     /// Gram-Schmidt on the first columns; the exponents grow by their lengths.
     void orthonormalise(int columns) {
+        if (columns < 4) frame.rightCols(4 - columns).setZero();
         for (int k = 0; k < columns; ++k) {
             Eigen::Vector4d q = frame.col(k);
             for (int j = 0; j < k; ++j) q -= frame.col(j).dot(q) * frame.col(j);
             const double length = q.norm();
             frame.col(k) = q * (1 / length);
-            grow(k, length);
+            lengths.grow(k, length);
         }
     }
 
-    void append(const Matrix4& J, const Saltation& M, double R, int rank) {
-        frame = J * frame;
-        if (M.r.cwiseAbs().maxCoeff() > steep && rank == 4 && R > 0) {
-            orthonormalise(4);
-            shear(M);
-            frame = M.S * frame;
+    /// Deviations of x' - y' shrunk by `factor`, x' + epsilon y' and the positions kept: S for factor -R.
+    void shrink(double factor, double epsilon) {
+        const double nu = 1 / (1 + epsilon), mu = epsilon * nu;
+        const Eigen::RowVector4d relative = (1 - factor) * (frame.row(0) - frame.row(2));
+        frame.row(0) -= mu * relative;
+        frame.row(2) += nu * relative;
+    }
+
+    /// M = (I + r g^T) S, for g^T S = g^T. First S, in parts of which none shrinks by more than e^-4; then the shear.
+    void strike_apart(const Saltation& M, double R, double epsilon, int rank) {
+        const double parts = R > 0 ? std::max(1.0, std::ceil(-std::log(R) / 4)) : 1, part = std::pow(R, 1 / parts);
+        for (int k = 1; k < parts; ++k) {
+            shrink(part, epsilon);
+            orthonormalise(rank);
+        }
+        shrink(-part, epsilon);
+        orthonormalise(rank);
+        shear(M.r, R, rank);
+    }
+
+    /// Replaces the orthonormal columns Q by an orthonormal base of (I + r g^T) Q = Q + r a^T, a = Q^T g. With p = Q^T r the Gram
+    /// determinant of the first k columns is, written so that nothing cancels,
+    /// V_k^2 = (1 + sum_{j<=k} p_j a_j)^2 + (sum_{j<=k} a_j^2) |r - sum_{j<=k} p_j q_j|^2: the lengths are V_k/V_{k-1}. Of all four
+    /// columns it is the determinant 1 + g^T r = -R.
+    void shear(const Eigen::Vector4d& r, double R, int rank) {
+        const Eigen::Vector4d a = frame.transpose() * gap_gradient(), p = frame.transpose() * r;
+        Eigen::Vector4d rest = r;
+        double before = 1, dot = 1, head = 0;
+        for (int k = 0; k < rank; ++k) {
+            dot += p(k) * a(k);
+            head += a(k) * a(k);
+            rest -= p(k) * frame.col(k);
+            const double spanned_volume = k < 3 ? std::sqrt(dot * dot + head * rest.squaredNorm()) : R;
+            lengths.grow(k, spanned_volume / before);
+            before = spanned_volume;
+        }
+        const Eigen::HouseholderQR<Matrix4> factors(frame + r * a.transpose());
+        frame = factors.householderQ();
+    }
+
+    void pass(const Leg& leg, double epsilon, int rank) {
+        const Matrix4 part = part_of(leg, epsilon);
+        for (long k = 0; k < leg.parts; ++k) {
+            if (k > 0) orthonormalise(rank);
+            frame = part * frame;
+            area = carried(area, leg, epsilon);
+            if (rank > 2) volume = carried(volume, leg);
+            rescale(rank);
+            log_det += leg.log_det;
+        }
+        if (leg.parts > 1 || leg.stuck) orthonormalise(rank);
+    }
+
+    void strike(const Saltation& M, double R, double epsilon, int rank) {
+        if (R < dull || M.r.cwiseAbs().maxCoeff() > steep) {
+            orthonormalise(rank);
+            strike_apart(M, R, epsilon, rank);
         } else {
             frame = M.times(frame);
+            orthonormalise(rank);
         }
-        orthonormalise(rank);
+        area = carried(area, M, R);
+        if (rank > 2) volume = carried(volume, M, R);
+        rescale(rank);
+        log_det += 2 * std::log(R);
     }
 
-    /// Replaces the orthonormal frame Q by the orthonormal factor of (1 + rho g^T) Q = Q (1 + p a^T), rho = S^-1 r, p = Q^T rho,
-    /// a = Q^T g. The Gram determinant of its first k columns is, written so that nothing cancels,
-    /// V_k^2 = (1 + sum_{j<=k} p_j a_j)^2 + (sum_{j<=k} a_j^2)(sum_{j>k} p_j^2): the lengths are V_k/V_{k-1}. The whole sum,
-    /// p^T a = rho^T g, does not depend on Q: it is r_2 - r_4, where no large entry is left to cancel.
-    void shear(const Saltation& M) {
-        const Eigen::Vector4d p = frame.transpose() * (M.S.inverse() * M.r), a = frame.transpose() * gap_gradient();
-        double before = 1, dot = 1, head = 0;
-        for (int k = 0; k < 4; ++k) {
-            dot = k < 3 ? dot + p(k) * a(k) : 1 + M.r(1) - M.r(3);
-            head += a(k) * a(k);
-            const double volume = std::sqrt(dot * dot + head * p.tail(3 - k).squaredNorm());
-            grow(k, volume / before);
-            before = volume;
+    void rescale(int rank) {
+        const double areas = area.norm(), volumes = rank > 2 ? volume.normal.norm() : 1;
+        spanned.grow(0, areas);
+        area *= 1 / areas;
+        if (rank < 3) return;
+        spanned.grow(1, volumes);
+        volume.normal *= 1 / volumes;
+    }
+
+    struct Sums {
+        Exponents logs{};
+        std::array<double, 4> misses{};  ///< by how much the sum of the first logarithms misses the area, the volume, the determinant
+    };
+    Sums sums(int rank) const {
+        Sums s;
+        double sum = 0;
+        for (int k = 0; k < rank; ++k) {
+            s.logs[k] = lengths.logarithm(k);
+            sum += s.logs[k];
+            if (k > 0) s.misses[k] = std::abs(sum - (k == 3 ? log_det : spanned.logarithm(k - 1)));
         }
-        const Eigen::HouseholderQR<Matrix4> factors(Matrix4::Identity() + p * a.transpose());
-        frame = frame * Matrix4(factors.householderQ());
+        return s;
     }
 };
 
-struct TransferProduct::Compounds {
-    explicit Compounds(std::size_t history) : thinned(std::min<std::size_t>(history, 2048)) {}
+struct TransferProduct::Powers {
+    Powers(double epsilon, std::size_t history) : product(epsilon), thinned(std::min<std::size_t>(history, 2048)) {}
 
-    CompoundProduct product;
+    PowerProduct product;
     Thinned thinned;
 };
 
@@ -199,9 +283,9 @@ struct TransferProduct::Raw {
     }
 };
 
-TransferProduct::TransferProduct(const ExponentOptions& o) {
+TransferProduct::TransferProduct(double epsilon, const ExponentOptions& o) : epsilon_(epsilon) {
     if (o.qr) qr_ = std::make_unique<Qr>(o.history);
-    if (o.eigenvalues) compounds_ = std::make_unique<Compounds>(o.history);
+    if (o.eigenvalues) powers_ = std::make_unique<Powers>(epsilon, o.history);
     if (o.raw_product) raw_ = std::make_unique<Raw>(o.history);
 }
 TransferProduct::~TransferProduct() = default;
@@ -212,22 +296,28 @@ void TransferProduct::start(double tau) {
     impacts_ = 1;
 }
 
-void TransferProduct::append(const Matrix4& J, int rank, const Saltation& M, double R, double tau) {
+void TransferProduct::append(std::span<const Leg> legs, const Saltation& M, double R, double tau) {
     end_ = tau;
     ++impacts_;
-    rank_ = std::min({rank_, rank, R > 0 ? 4 : 3});
-    log_det_impacts_ += 2 * std::log(R);
     auto record = [&](auto& estimator, auto exponents) {
         if (!estimator.thinned.wants_next()) return estimator.thinned.skip();
         estimator.thinned.push(tau, exponents());
     };
+    Matrix4 J = Matrix4::Identity();
+    for (const Leg& leg : legs) {
+        if (leg.stuck) rank_ = 2;
+        if (qr_) qr_->pass(leg, epsilon_, rank_);
+        if (powers_) powers_->product.pass(leg);
+        if (raw_) J = transfer_of(leg, epsilon_) * J;
+    }
+    if (R == 0) rank_ = std::min(rank_, 3);
     if (qr_) {
-        qr_->append(J, M, R, rank_);
+        qr_->strike(M, R, epsilon_, rank_);
         record(*qr_, [&] { return qr(); });
     }
-    if (compounds_) {
-        compounds_->product.append(J, M, R, rank_);
-        record(*compounds_, [&] { return eigenvalues(); });
+    if (powers_) {
+        powers_->product.strike(M, R);
+        record(*powers_, [&] { return eigenvalues(); });
     }
     if (raw_) {
         raw_->product = M.matrix() * J * raw_->product;
@@ -235,25 +325,35 @@ void TransferProduct::append(const Matrix4& J, int rank, const Saltation& M, dou
     }
 }
 
-Exponents TransferProduct::qr() const { return qr_ ? per_time(qr_->logarithms(), rank_, end_ - start_) : no_exponents; }
-Exponents TransferProduct::eigenvalues() const { return compounds_ ? per_time(compounds_->product.log_moduli(rank_), rank_, end_ - start_) : no_exponents; }
+Exponents TransferProduct::qr() const {
+    if (!qr_) return no_exponents;
+    const double T = end_ - start_;
+    auto [logs, misses] = qr_->sums(rank_);
+    // The k-th exponent is the difference of two sums.
+    for (int k = 1; k < rank_; ++k)
+        if (!(std::max(misses[k], misses[k - 1]) <= most_residual * T)) logs[k] = nan;
+    // Over a short window, or one of strong damping, the columns need not have turned into descending order.
+    for (int k = 1; k < rank_; ++k)
+        for (int j = k; j > 0 && (logs[j] > logs[j - 1] || std::isnan(logs[j - 1])); --j) std::swap(logs[j], logs[j - 1]);
+    return per_time(logs, rank_, T);
+}
+Exponents TransferProduct::eigenvalues() const { return powers_ ? per_time(powers_->product.log_moduli(), rank_, end_ - start_) : no_exponents; }
 Exponents TransferProduct::raw_product() const { return raw_ ? raw_->exponents(end_ - start_) : no_exponents; }
 const ExponentHistory& TransferProduct::qr_history() const { return qr_ ? qr_->thinned.history() : none(); }
-const ExponentHistory& TransferProduct::eigenvalues_history() const { return compounds_ ? compounds_->thinned.history() : none(); }
+const ExponentHistory& TransferProduct::eigenvalues_history() const { return powers_ ? powers_->thinned.history() : none(); }
 const ExponentHistory& TransferProduct::raw_product_history() const { return raw_ ? raw_->thinned.history() : none(); }
 
-double TransferProduct::sum_rule_residual(double zeta) const {
-    if (!qr_ || rank_ < 4 || impacts_ < 2) return nan;
-    const Exponents lambda = qr();
-    const double sum = lambda[0] + lambda[1] + lambda[2] + lambda[3];
-    return std::abs(sum + 2 * zeta - log_det_impacts_ / (end_ - start_));
+double TransferProduct::sum_rule_residual() const {
+    if (!qr_ || impacts_ < 2) return nan;
+    const auto misses = qr_->sums(rank_).misses;
+    return *std::max_element(misses.begin(), misses.end()) / (end_ - start_);
 }
 
 Lyapunov::Lyapunov(const Parameters& parameters, double tau_start, double tau_end, const ExponentOptions& options)
-    : parameters_(parameters), tau_start_(tau_start), tau_end_(tau_end), product_(options) {}
+    : parameters_(parameters), tau_start_(tau_start), tau_end_(tau_end), product_(parameters.epsilon, options) {}
 
 void Lyapunov::on_stretch(const Stretch& stretch) {
-    if (product_.impacts() > 0) since_impact_.extend(stretch, parameters_.epsilon);  // the window has begun
+    if (product_.impacts() > 0) since_impact_.extend(stretch);  // the window has begun
 }
 
 void Lyapunov::on_impact(const Impact& impact) {
@@ -261,7 +361,7 @@ void Lyapunov::on_impact(const Impact& impact) {
     if (product_.impacts() == 0)
         product_.start(impact.tau);
     else
-        product_.append(since_impact_.matrix(), since_impact_.rank(), saltation(parameters_, impact), impact.R, impact.tau);
+        product_.append(since_impact_.legs(), saltation(parameters_, impact), impact.R, impact.tau);
     since_impact_.reset();
 }
 

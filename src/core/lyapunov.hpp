@@ -3,17 +3,19 @@
 //   qr           Benettin's: orthonormal deviations carried by T_i = M_i J_i (30), a QR factorisation at every impact.
 //                The reference.
 //   eigenvalues  ln|eigenvalues of T_n ... T_1| / T, eq. (33), all four moduli right over any window: the largest
-//                eigenvalue of each compound matrix of the product (its k-th compound has the k-fold products of its
+//                eigenvalue of each exterior power of the product (the k-th has the k-fold products of its
 //                eigenvalues), each product scaled as it grows.
 //   raw_product  (33) as the paper computed it: the product in double precision, unscaled. After a while it is a matrix
 //                of rank one plus rounding: its third and fourth "exponents" are lambda1 - ln(1/2.2e-16)/T, the
 //                rounding floor, and near T = 709/lambda1 it overflows.
 //
 // Sum rule, exact from impact to impact while nothing sticks: the four exponents add up to
-// -2 zeta + 2/T * (sum of ln R over the impacts). Its residual checks `qr`.
+// -2 zeta + 2/T * (sum of ln R over the impacts).
 //
 // A stick leaves only the deviations of the centre of mass (rank 2), an impact with R = 0 leaves none of x - y (rank 3):
-// from there on the exponents beyond the rank are minus infinity.
+// from there on the exponents beyond the rank are minus infinity, and the rule says nothing. The first two still add up to the
+// growth of the area that the first two deviations span, the first three to that of a volume; both are carried by the exterior
+// powers, which shares no step with a QR factorisation. `qr` is checked against them, and at rank 4 against the rule.
 #pragma once
 
 #include <array>
@@ -36,15 +38,9 @@ struct ExponentHistory {
     std::vector<Exponents> lambda;  ///< of the window from its first impact to tau
 };
 
-/// Standard errors of the four exponents from the means of up to 20 blocks of equal length; NaN with fewer than 8 blocks of
-/// at least 4 entries of the history each, and where there is no number.
+/// Standard errors of the four exponents as means over the history's window, from how their sums of logarithms wander about a
+/// straight line; NaN with fewer than 32 entries, and where there is no number.
 Exponents standard_error(const ExponentHistory& history, double start);
-
-/// What a finite run says about the sign of lambda1. chaotic or regular: at least `verdict_sigmas` standard errors from zero.
-enum class Verdict { chaotic, regular, not_decided };
-inline constexpr double verdict_sigmas = 3;
-/// `error` as of standard_error(); NaN: not decided.
-Verdict verdict_of(double lambda1, double error);
 
 /// Which estimators to run, and how many entries their histories may have (at least 256). Longer ones are thinned to
 /// every second, fourth, ... impact; `eigenvalues` keeps at most 2048, for each costs three eigenvalue problems.
@@ -56,22 +52,23 @@ struct ExponentOptions {
 /// The product of the transfer matrices of one window, as the estimators see it.
 class TransferProduct {
 public:
-    explicit TransferProduct(const ExponentOptions& options);
+    TransferProduct(double epsilon, const ExponentOptions& options);
     ~TransferProduct();
     TransferProduct(TransferProduct&&) noexcept;
 
     /// Starts the window at the impact at tau (whose own matrices do not belong to it).
     void start(double tau);
-    /// J over a flight, or over flights and stuck phases (then rank is 2), followed by the impact's M at tau.
-    void append(const Matrix4& J, int rank, const Saltation& M, double R, double tau);
+    /// The legs from the impact before to the impact at tau, and its M.
+    void append(std::span<const Leg> legs, const Saltation& M, double R, double tau);
 
     double start_tau() const { return start_; }
     double end_tau() const { return end_; }
     long impacts() const { return impacts_; }        ///< of the window, the first included
     int rank() const { return rank_; }
-    /// |sum of qr's exponents - the sum rule|, dimensionless; NaN without qr, rank 4 or two impacts.
-    double sum_rule_residual(double zeta) const;
-    /// The exponents at the last impact; NaN where there are none.
+    /// By how much the sums of qr's first exponents miss the area, the volume and, at rank 4, the sum rule: the largest of
+    /// them, per unit of tau; NaN without qr or two impacts.
+    double sum_rule_residual() const;
+    /// The exponents at the last impact, descending; NaN where there are none, or where a sum misses by more than `most_residual`.
     Exponents qr() const;
     Exponents eigenvalues() const;
     Exponents raw_product() const;
@@ -81,15 +78,19 @@ public:
 
 private:
     struct Qr;
-    struct Compounds;
+    struct Powers;
     struct Raw;
-    double start_ = 0, end_ = 0, log_det_impacts_ = 0;
+    const double epsilon_;
+    double start_ = 0, end_ = 0;
     long impacts_ = 0;
     int rank_ = 4;
     std::unique_ptr<Qr> qr_;
-    std::unique_ptr<Compounds> compounds_;
+    std::unique_ptr<Powers> powers_;
     std::unique_ptr<Raw> raw_;
 };
+
+/// An exponent whose sum rule misses by more is not shown (TransferProduct::qr).
+inline constexpr double most_residual = 1e-6;
 
 /// The exponent that rounding puts in place of a smaller one in raw_product: lambda1 - ln(1/2.2e-16)/T.
 double rounding_floor(double lambda1, double T);

@@ -3,9 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "core/compound.hpp"
 #include "core/record.hpp"
 #include "core/regime.hpp"
 
@@ -18,53 +16,44 @@ constexpr long most_impacts = 20000;
 // Newton's method has found the orbit when its return misses it by no more, in units of the scale.
 constexpr double closed = 1e-10;
 
-double cycle_of(const Parameters& p) { return 2 * std::numbers::pi / p.Omega; }
-
 Eigen::Vector4d vector(const State& s) { return {s.x_dot, s.x, s.y_dot, s.y}; }
 State state(const Eigen::Vector4d& v) { return {v(0), v(1), v(2), v(3)}; }
 
-/// The product of all transfer matrices of a run, as a matrix and by its compounds.
+/// The product of all transfer matrices of a run, as a matrix and by its exterior powers.
 class Monodromy : public Observer {
 public:
-    explicit Monodromy(const Parameters& p) : p_(p) {}
+    explicit Monodromy(const Parameters& p) : p_(p), powers_(p.epsilon) {}
     void on_stretch(const Stretch& stretch) override {
-        whole_.extend(stretch, p_.epsilon);
-        since_impact_.extend(stretch, p_.epsilon);
+        const Leg leg = leg_of(stretch.flow, stretch.duration, stretch.stuck_side != 0);
+        matrix_ = transfer_of(leg, p_.epsilon) * matrix_;
+        powers_.pass(leg);
     }
     void on_impact(const Impact& impact) override {
         const Saltation M = saltation(p_, impact);
-        whole_.strike(M);
-        if (impact.R == 0) rank_ = std::min(rank_, 3);
-        append(M, impact.R);
+        matrix_ = M.times(matrix_);
+        powers_.strike(M, impact.R);
     }
-    const Matrix4& matrix() const { return whole_.matrix(); }
+    const Matrix4& matrix() const { return matrix_; }
     /// Eigenvalues by descending modulus. The solver's error is one of the largest: small ones get their moduli from the
-    /// compound matrices.
-    std::array<std::complex<double>, 4> multipliers() {
-        append({Matrix4::Identity(), Eigen::Vector4d::Zero()}, 1);
-        const Eigen::EigenSolver<Matrix4> solver(matrix(), false);
+    /// exterior powers.
+    std::array<std::complex<double>, 4> multipliers() const {
+        const Eigen::EigenSolver<Matrix4> solver(matrix_, false);
         std::array<std::complex<double>, 4> values;
         for (int k = 0; k < 4; ++k) values[k] = solver.eigenvalues()(k);
         std::stable_sort(values.begin(), values.end(), [](auto a, auto b) { return std::abs(a) > std::abs(b); });
-        const auto logs = product_.log_moduli(rank_);
+        const auto logs = powers_.log_moduli();
         for (int k = 0; k < 4; ++k) {
             const double modulus = std::abs(values[k]);
-            if (k >= rank_ || modulus == 0) values[k] = 0;
-            else if (modulus < 1e-6 * std::abs(values[0])) values[k] *= std::exp(logs[k]) / modulus;
+            if (k >= powers_.rank() || modulus == 0) values[k] = 0;
+            else if (modulus < 1e-6 * std::abs(values[0]) && std::isfinite(logs[k])) values[k] *= std::exp(logs[k]) / modulus;
         }
         return values;
     }
 
 private:
-    void append(const Saltation& M, double R) {
-        rank_ = std::min(rank_, since_impact_.rank());
-        product_.append(since_impact_.matrix(), M, R, rank_);
-        since_impact_.reset();
-    }
-    const Parameters& p_;
-    Passage whole_, since_impact_;
-    CompoundProduct product_;
-    int rank_ = 4;
+    const Parameters p_;
+    Matrix4 matrix_ = Matrix4::Identity();
+    PowerProduct powers_;
 };
 
 using Stop = std::function<bool()>;
@@ -74,7 +63,7 @@ double quiet_moment(const Parameters& p, const State& start, const Stop& stop) {
     ImpactRecord impacts;
     StickRecord sticks;
     Observer* const observers[] = {&impacts, &sticks};
-    const double cycle = cycle_of(p);
+    const double cycle = p.cycle();
     follow(p, start, 0, cycle, stop, observers);
     double from = 0, length = 0, middle = 0.5 * cycle;
     std::size_t stick = 0;
@@ -97,7 +86,7 @@ std::optional<Return> after_period(const Parameters& p, const State& s, double t
     if (std::abs(s.x - s.y) > p.b) return std::nullopt;
     Monodromy monodromy(p);
     Observer* const observers[] = {&monodromy};
-    const auto end = follow(p, s, tau, cycles * cycle_of(p), stop, observers);
+    const auto end = follow(p, s, tau, cycles * p.cycle(), stop, observers);
     if (!end) return std::nullopt;
     return Return{*end, monodromy};
 }
@@ -151,7 +140,7 @@ double distance(const State& a, const State& b, const State& scale) {
 Exponents PeriodicOrbit::exponents(const Parameters& p) const {
     Exponents lambda;
     // Multipliers below what rounding leaves of a zero are zero: the orbit sticks, or R = 0.
-    for (int k = 0; k < 4; ++k) lambda[k] = std::log(std::abs(multipliers[k])) / (cycles * cycle_of(p));
+    for (int k = 0; k < 4; ++k) lambda[k] = std::log(std::abs(multipliers[k])) / (cycles * p.cycle());
     return lambda;
 }
 
@@ -162,7 +151,7 @@ std::optional<State> follow(const Parameters& p, const State& start, double tau,
 }
 
 std::optional<PeriodicOrbit> find_orbit(const Parameters& p, const State& at_whole_cycle, int cycles, const State& scale, double reach, const Stop& stop) {
-    const double tau = quiet_moment(p, at_whole_cycle, stop), cycle = cycle_of(p);
+    const double tau = quiet_moment(p, at_whole_cycle, stop), cycle = p.cycle();
     const auto guess = follow(p, at_whole_cycle, 0, tau, stop);
     if (!guess) return std::nullopt;
     const auto found = close(p, *guess, tau, cycles, scale, reach, stop);
@@ -210,41 +199,82 @@ std::optional<PeriodicOrbit> find_orbit(const Parameters& p, const State& at_who
     return orbit;
 }
 
+namespace {
+
+/// Deviations from an orbit in the eigenvectors of its monodromy matrix: there a small one shrinks, period by period, by the
+/// multipliers' moduli, however far from orthogonal the eigenvectors are.
+class EigenCoordinates {
+public:
+    EigenCoordinates(const PeriodicOrbit& orbit, const State& scale, bool oscillator_alone) : at_(vector(orbit.state)), unit_(vector(scale)) {
+        Matrix4 D = unit_.asDiagonal().inverse() * orbit.monodromy * unit_.asDiagonal();
+        if (oscillator_alone) D.bottomRows<2>().setZero(), D.rightCols<2>().setZero();
+        const Eigen::EigenSolver<Matrix4> solver(D);
+        to_ = solver.eigenvectors().inverse();
+        multipliers_ = solver.eigenvalues();
+    }
+    Eigen::Vector4cd of(const State& s) const { return to_ * (vector(s) - at_).cwiseQuotient(unit_); }
+    Eigen::Vector4cd after(Eigen::Vector4cd deviation, int periods) const {
+        for (int k = 0; k < 4; ++k) deviation(k) *= std::pow(multipliers_(k), periods);
+        return deviation;
+    }
+    bool usable() const { return to_.allFinite(); }
+
+private:
+    const Eigen::Vector4d at_, unit_;
+    Eigen::Matrix4cd to_;
+    Eigen::Vector4cd multipliers_;
+};
+
+// So close, in units of the scale, the motion is on the orbit: from order one a chance return would need 1e16 cycles or more.
+constexpr double there = 1e-8;
+// From order one to there takes this many times the contraction's own time, and some more while it is not linear yet.
+constexpr double decay_times = 24;
+constexpr int more_periods = 20;
+// A motion is followed for so many cycles at most, but for so many periods at least.
+constexpr int most_cycles = 4000, least_periods = 30;
+// Where that is too short, it must move as the orbit's linear map says, in each of so many spans, to this share of what the
+// map contracts in the span.
+constexpr int spans = 3;
+constexpr double linear_share = 0.2;
+
+}  // namespace
+
 bool attracts(const Parameters& p, const PeriodicOrbit& orbit, const State& at_whole_cycle, const State& scale, const Stop& stop) {
     // Without an impact nothing pulls the free mass back: its two multipliers are 1, and it is the oscillator that converges.
     const bool untouched = orbit.contacts == 0 && orbit.state.y_dot == 0;
     const Eigen::Matrix2d oscillator = orbit.monodromy.topLeftCorner<2, 2>();
-    const double per_period = -std::log(untouched ? oscillator.eigenvalues().cwiseAbs().maxCoeff() : std::abs(orbit.multipliers[0]));
+    const double largest = untouched ? oscillator.eigenvalues().cwiseAbs().maxCoeff() : std::abs(orbit.multipliers[0]);
+    const double per_period = -std::log(largest);
     if (!(per_period > 1e-9)) return false;  // nothing contracts, but for rounding
-    const auto begin = follow(p, at_whole_cycle, 0, orbit.tau, stop);
-    if (!begin) return false;
-    State s = *begin;
-    const double first = distance(s, orbit.state, scale);
-    constexpr double there = 1e-8;
-    if (first < there) return true;
-    // So many periods as should bring it a hundred times closer, three times over, but not for ever.
-    const int periods = static_cast<int>(std::clamp(3 * std::log(100.0) / per_period, 10.0, 3000.0 / orbit.cycles + 10));
-    Eigen::Vector4d linear = vector(s) - vector(orbit.state);
-    for (int k = 1; k <= periods; ++k) {
-        const auto next = follow(p, s, orbit.tau, orbit.cycles * cycle_of(p), stop);
-        if (!next) return false;
-        s = *next;
-        linear = orbit.monodromy * linear;
-        const double now = distance(s, orbit.state, scale);
-        if (now < std::max(0.01 * first, there)) return true;
-        // A slow one: what it differs by from the linear map's contraction is less than half of that contraction. Neither is
-        // by chance after so many cycles.
-        const State predicted = state(vector(orbit.state) + linear);
-        const double contraction = first - distance(predicted, orbit.state, scale);
-        if (k * orbit.cycles >= 100 && contraction > 0 && now < first && distance(s, predicted, scale) < 0.5 * contraction) return true;
+    std::optional<State> s = follow(p, at_whole_cycle, 0, orbit.tau, stop);
+    auto distant = [&] { return distance(*s, orbit.state, scale); };
+    auto pass = [&](int periods) {
+        for (int k = 0; k < periods && s && distant() >= there; ++k) s = follow(p, *s, orbit.tau, orbit.cycles * p.cycle(), stop);
+        return s.has_value();
+    };
+    if (!s) return false;
+
+    const int most_periods = std::max(most_cycles / orbit.cycles, least_periods);
+    const double needed = decay_times / per_period + more_periods;
+    if (needed <= most_periods) return pass(static_cast<int>(needed)) && distant() < there;
+
+    const EigenCoordinates coordinates(orbit, scale, untouched);
+    if (!coordinates.usable()) return false;
+    const int periods = most_periods / spans;
+    const double contraction = 1 - std::pow(largest, periods);
+    for (int span = 0; span < spans; ++span) {
+        const Eigen::Vector4cd before = coordinates.of(*s), linear = coordinates.after(before, periods);
+        if (!pass(periods)) return false;
+        if (distant() < there) return true;
+        if ((coordinates.of(*s) - linear).norm() > linear_share * contraction * before.norm()) return false;
     }
-    return false;
+    return true;
 }
 
 std::vector<State> whole_cycle_states(const Parameters& p, const PeriodicOrbit& orbit) {
     StroboscopicRecord record(p, 1);
     Observer* const observers[] = {&record};
-    follow(p, orbit.state, orbit.tau, (orbit.cycles + 0.5) * cycle_of(p), {}, observers);
+    follow(p, orbit.state, orbit.tau, (orbit.cycles + 0.5) * p.cycle(), {}, observers);
     record.states.resize(orbit.cycles);
     return record.states;
 }

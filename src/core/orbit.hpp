@@ -44,8 +44,9 @@ std::optional<State> follow(const Parameters& parameters, const State& start, do
 std::optional<PeriodicOrbit> find_orbit(const Parameters& parameters, const State& at_whole_cycle, int cycles, const State& scale, double reach,
                                         const std::function<bool()>& stop);
 
-/// Whether a stable orbit attracts the motion from a state at a whole cycle. The proof is to follow it: it comes a hundred
-/// times closer, or it contracts as the orbit's own linear map says.
+/// Whether a stable orbit attracts the motion from a state at a whole cycle. The proof is to follow it: it comes so close that
+/// no chance explains it, or, where the orbit contracts too slowly for that, it moves as the orbit's own linear map says, far
+/// more precisely than that contracts. A motion that only passes by does neither.
 bool attracts(const Parameters& parameters, const PeriodicOrbit& orbit, const State& at_whole_cycle, const State& scale, const std::function<bool()>& stop);
 
 /// The orbit's states at the next whole cycles 1, ..., orbit.cycles after its moment `tau`.

@@ -43,6 +43,7 @@ struct Parameters {
     double zeta() const;               ///< damping ratio of x'' + 2 zeta x' + x = ...
     double A() const;                  ///< forcing amplitude over epsilon, m, eq. (3)
     double phi() const;                ///< forcing phase at tau = 0, eq. (3)
+    double cycle() const { return 2 * std::numbers::pi / Omega; }  ///< of the forcing, in tau
     double restitution(int side) const { return side > 0 ? R_plus : R_minus; }
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace vines {
 
@@ -16,14 +15,17 @@ constexpr double synchrony_tolerance = 0.15;
 constexpr long shortest_stretch = 4;
 constexpr int moving_cycles = 10;
 // A period that the run may have closed: in cycles.
-constexpr int longest_period = 64;
-// States that differ by less, in units of their scale, may be a return; Newton's method decides.
-constexpr double near_return = 0.1;
+constexpr std::size_t longest_period = 512;
+// States that differ by less, in units of their scale, may be a return; Newton's method decides. A run that is chaotic by its
+// exponents comes as close as that by chance, all the time.
+constexpr double near_return = 0.1, near_return_of_chaos = 1e-3;
+// So many returns are tried, the first one whatever its length, the others while they add up to so many cycles.
 constexpr int most_attempts = 8;
+constexpr std::size_t most_attempted_cycles = 1024;
 // Of an irregular response z is a mean over a finite run.
 constexpr double irregular_margin = 0.02;
-// How far a run that is near a return but not on an orbit is followed further.
-constexpr int follow_cycles = 150, follow_rounds = 3;
+// How far a run that is near a return but not on an orbit is followed further, in cycles, round by round.
+constexpr int follow_rounds[] = {150, 300, 600, 1200};
 // A run has been captured once it stays this close to the orbit.
 constexpr double captured_within = 0.1;
 
@@ -99,19 +101,42 @@ void find_stretches(Regime& r, const std::vector<Contacts>& c, double half_cycle
     }
 }
 
-/// The attracting periodic orbit that the last of the states is next to, with the smallest period. `near` tells whether a
-/// return came close, so that there may be an orbit.
-std::optional<PeriodicOrbit> orbit_at_end(const Parameters& p, std::span<const State> states, const State& scale, const std::function<bool()>& stop, bool& near) {
+/// Numbers of cycles after which the last state may have returned: the closest returns first; of those that are about equally
+/// close, as all multiples of a period are, the shortest.
+std::vector<std::size_t> returns(std::span<const State> states, const State& scale, double near) {
+    constexpr double rounding = 1e-10;  // closer than this all are equally close
+    struct Return {
+        int decade;
+        std::size_t cycles;
+    };
+    std::vector<Return> found;
     const std::size_t last = states.size() - 1;
-    int attempts = 0;
-    for (int cycles = 1; cycles <= longest_period && static_cast<std::size_t>(cycles) < states.size() && attempts < most_attempts; ++cycles) {
+    for (std::size_t cycles = 1; cycles <= std::min(longest_period, last); ++cycles) {
         const std::size_t back = last - cycles;
-        if (distance(states[last], states[back], scale) > near_return) continue;
-        if (back > 0 && distance(states[last - 1], states[back - 1], scale) > 2 * near_return) continue;
+        const double miss = distance(states[last], states[back], scale);
+        if (miss > near || (back > 0 && distance(states[last - 1], states[back - 1], scale) > 2 * near)) continue;
+        found.push_back({static_cast<int>(std::floor(std::log10(std::max(miss, rounding)))), cycles});
+    }
+    std::stable_sort(found.begin(), found.end(), [](const Return& a, const Return& b) { return a.decade < b.decade; });
+    std::vector<std::size_t> cycles;
+    for (const Return& r : found) cycles.push_back(r.cycles);
+    return cycles;
+}
+
+/// The attracting periodic orbit that the last of the states is next to. `tried` tells whether a return came close, so that
+/// there may be an orbit.
+std::optional<PeriodicOrbit> orbit_at_end(const Parameters& p, std::span<const State> states, const State& scale, double near,
+                                          const std::function<bool()>& stop, bool& tried) {
+    int attempts = 0;
+    std::size_t attempted = 0;
+    for (const std::size_t cycles : returns(states, scale, near)) {
+        if (attempts > 0 && (attempts == most_attempts || attempted + cycles > most_attempted_cycles)) break;
         ++attempts;
-        near = true;
-        const auto orbit = find_orbit(p, states[last], cycles, scale, 5 * near_return, stop);
-        if (orbit && attracts(p, *orbit, states[last], scale, stop)) return orbit;
+        attempted += cycles;
+        tried = true;
+        const auto orbit = find_orbit(p, states.back(), static_cast<int>(cycles), scale, 5 * near_return, stop);
+        if (orbit && attracts(p, *orbit, states.back(), scale, stop)) return orbit;
+        if (stop && stop()) break;
     }
     return std::nullopt;
 }
@@ -127,17 +152,19 @@ std::size_t phase_of(const State& s, std::span<const State> along, const State& 
 /// As orbit_at_end(). A run may end while it slowly leaves an unstable orbit for a stable one nearby, to which Newton's method
 /// does not go from there: then the motion is followed on, and an orbit found later counts if the run's end was next to it already.
 std::optional<PeriodicOrbit> orbit_of(const Parameters& p, std::span<const State> states, const State& scale, const RegimeEvidence& e) {
-    bool near = false;
-    if (auto orbit = orbit_at_end(p, states, scale, e.stop, near)) return orbit;
-    const double cycle = 2 * std::numbers::pi / p.Omega;
+    const bool chaotic = e.by_exponents == Verdict::chaotic;
+    bool tried = false;
+    if (auto orbit = orbit_at_end(p, states, scale, chaotic ? near_return_of_chaos : near_return, e.stop, tried)) return orbit;
+    if (chaotic) return std::nullopt;
     State s = states.back();
-    for (int round = 0; round < follow_rounds && near && e.by_exponents != Verdict::chaotic; ++round) {
+    for (const int cycles : follow_rounds) {
+        if (!tried) return std::nullopt;
         StroboscopicRecord on(p);
         Observer* const observers[] = {&on};
-        if (!follow(p, s, 0, follow_cycles * cycle * (1 + 1e-12), e.stop, observers)) return std::nullopt;
+        if (!follow(p, s, 0, cycles * p.cycle() * (1 + 1e-12), e.stop, observers)) return std::nullopt;
         s = on.states.back();
-        near = false;
-        const auto orbit = orbit_at_end(p, on.states, scale, e.stop, near);
+        tried = false;
+        const auto orbit = orbit_at_end(p, on.states, scale, near_return, e.stop, tried);
         if (!orbit) continue;
         const auto along = whole_cycle_states(p, *orbit);
         if (distance(states.back(), along[phase_of(states.back(), along, scale)], scale) < 2 * captured_within) return orbit;
@@ -153,6 +180,20 @@ std::size_t captured_from(const Parameters& p, const PeriodicOrbit& orbit, std::
     std::size_t k = states.size();
     while (k > 0 && distance(states[k - 1], along[(end + n - (states.size() - k) % n) % n], scale) < captured_within) --k;
     return std::min(k, states.size() - 1);
+}
+
+/// When the run came to the orbit, and its exponents before and after.
+Capture capture_by(const Parameters& p, const State& start, std::span<const State> states, const State& scale, const RegimeEvidence& e,
+                   const PeriodicOrbit& orbit, bool exponents_before) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    Capture capture{e.stroboscopic.tau(captured_from(p, orbit, states, scale)), {nan, nan, nan, nan}, orbit.exponents(p), false};
+    if (!exponents_before) return capture;
+    Lyapunov before(p, 0, capture.tau, {true, false, false, 256});
+    Observer* const observers[] = {&before};
+    simulate(p, start, {capture.tau, std::numeric_limits<long>::max(), e.stop}, observers);
+    capture.before = before.product().qr();
+    capture.chaotic_before = verdict_by_exponents(growth_of(before.product())) == Verdict::chaotic;
+    return capture;
 }
 
 RegimeType type_of(const Regime& r) {
@@ -188,7 +229,7 @@ const char* name_of(RegimeType type) {
 Regime regime_of(const Parameters& p, const State& start, const RegimeEvidence& e, bool exponents_before) {
     Regime r;
     r.forced = p.G > 0;
-    const double cycle = 2 * std::numbers::pi / p.Omega;
+    const double cycle = p.cycle();
     const std::vector<Contacts> contacts = within(e.contacts.contacts, e.tau_start, e.tau_end);
     r.contacts = static_cast<long>(contacts.size());
     if (r.contacts > 1)
@@ -199,39 +240,37 @@ Regime regime_of(const Parameters& p, const State& start, const RegimeEvidence& 
     count_cycles(r, contacts, cycle, contacts.empty() ? e.tau_start : contacts.front().tau - cycle, e.tau_end);
     find_stretches(r, contacts, 0.5 * cycle);
 
-    // The states at whole cycles in the window.
+    // The states at whole cycles up to the window's end. The first in the window only says whether there are any.
     const auto& all = e.stroboscopic.states;
-    std::size_t first = 0, end = all.size();
-    while (first < end && e.stroboscopic.tau(first) < e.tau_start) ++first;
-    while (end > first && e.stroboscopic.tau(end - 1) > e.tau_end) --end;
-    const std::span<const State> states = std::span(all).subspan(first, end - first);
-    if (r.forced && states.size() > 1) {
+    std::size_t end = all.size();
+    while (end > 0 && e.stroboscopic.tau(end - 1) > e.tau_end) --end;
+    const std::span<const State> states = std::span(all).first(end);
+    if (r.forced && end > 1 && e.stroboscopic.tau(end - 2) >= e.tau_start) {
         // Of the last part: a transient may have been larger.
-        const State scale = scale_of(p, states.last(std::min<std::size_t>(states.size(), longest_period)));
+        const State scale = scale_of(p, states.last(std::min(states.size(), longest_period)));
         r.orbit = orbit_of(p, states, scale, e);
         r.search_stopped = !r.orbit && e.stop && e.stop();
         if (r.orbit) {
             r.z = static_cast<double>(r.orbit->contacts) / r.orbit->cycles;
-            constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-            Capture capture{e.stroboscopic.tau(first + captured_from(p, *r.orbit, states, scale)), {nan, nan, nan, nan}, r.orbit->exponents(p), false};
-            if (exponents_before) {
-                Lyapunov before(p, e.tau_start, capture.tau, {true, false, false, 256});
-                Observer* const observers[] = {&before};
-                simulate(p, start, {capture.tau, std::numeric_limits<long>::max(), e.stop}, observers);
-                capture.before = before.product().qr();
-                const auto error = standard_error(before.product().qr_history(), before.product().start_tau());
-                capture.chaotic_before = verdict_of(capture.before[0], error[0]) == Verdict::chaotic;
-            }
-            r.capture = capture;
+            r.capture = capture_by(p, start, states, scale, e, *r.orbit, exponents_before);
         }
     }
     r.type = type_of(r);
     return r;
 }
 
-Verdict verdict_of(double lambda1, double error, const Regime& r, double tau_start) {
-    if (r.capture && (!r.capture->chaotic_before || tau_start >= r.capture->tau)) return Verdict::regular;
-    return verdict_of(lambda1, error);
+Judgement judge(const Growth& g, const Regime& r, double tau_start) {
+    if (!r.forced) return {Verdict::not_decided, VerdictReason::free_decay};
+    if (r.capture && tau_start >= r.capture->tau) return {Verdict::regular, VerdictReason::on_orbit};
+    if (verdict_by_exponents(g) == Verdict::chaotic) return {Verdict::chaotic, VerdictReason::growth};
+    if (r.capture && !r.capture->chaotic_before) return {Verdict::regular, VerdictReason::settling};
+    const VerdictReason why = r.capture                                         ? VerdictReason::transient
+                              : std::isnan(g.standard_error)                    ? VerdictReason::no_error
+                              : g.lambda1 < -verdict_sigmas * g.standard_error  ? VerdictReason::negative
+                              : g.lambda1 <= verdict_sigmas * g.standard_error  ? VerdictReason::within_error
+                              : g.whole <= least_growth                         ? VerdictReason::little_growth
+                                                                                : VerdictReason::algebraic_growth;
+    return {Verdict::not_decided, why};
 }
 
 }  // namespace vines

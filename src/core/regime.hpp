@@ -7,6 +7,7 @@
 
 #include "core/orbit.hpp"
 #include "core/record.hpp"
+#include "core/verdict.hpp"
 
 namespace vines {
 
@@ -47,9 +48,9 @@ struct SynchronyStretch {
 /// The moment from which on a run stays next to the periodic orbit that attracts it.
 struct Capture {
     double tau;
-    Exponents before;  ///< qr, from the first impact of the window to tau; NaN where there is too little
+    Exponents before;  ///< qr, from the run's first impact to tau; NaN where there is too little
     Exponents after;   ///< from the Floquet multipliers
-    bool chaotic_before;  ///< by verdict_of(): the run was chaotic and then captured, not just settling
+    bool chaotic_before;  ///< by verdict_by_exponents(): the run was chaotic and then captured, not just settling
 };
 
 struct Regime {
@@ -80,9 +81,26 @@ struct RegimeEvidence {
 /// `exponents_before`: also those before a capture, for which the run is repeated up to there; else they are NaN.
 Regime regime_of(const Parameters& parameters, const State& start, const RegimeEvidence& evidence, bool exponents_before = true);
 
-/// verdict_of() the exponents of a window from tau_start on, unless the run has come to a stable orbit: then the window is
-/// regular if it begins on the orbit or if what came before was mere settling.
-Verdict verdict_of(double lambda1, double error, const Regime& regime, double tau_start);
+/// What a verdict rests on.
+enum class VerdictReason {
+    growth,             ///< chaotic: by the window's own exponents
+    on_orbit,           ///< regular: the window begins on the stable orbit
+    settling,           ///< regular: the motion settles on a stable orbit, which it was not chaotic before
+    free_decay,         ///< not decided: no forcing, so the motion dies out
+    transient,          ///< not decided: a chaotic transient and the orbit that captured it share the window
+    no_error,           ///< not decided: too few impacts for a standard error
+    within_error,       ///< not decided: lambda1 lies within its error
+    little_growth,      ///< not decided: leaving one unstable orbit could grow as much
+    algebraic_growth,   ///< not decided: the growth slows down as that beside a torus does
+    negative,           ///< not decided: lambda1 is negative, but no stable orbit was found
+};
+struct Judgement {
+    Verdict verdict;
+    VerdictReason reason;
+};
+
+/// The verdict on a window of a run, from the window's own exponents and from where the run went.
+Judgement judge(const Growth& growth, const Regime& regime, double tau_start);
 
 const char* name_of(RegimeType type);
 

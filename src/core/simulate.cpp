@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 namespace vines {
@@ -95,6 +96,7 @@ private:
         y_ += y_dot_ * limit;
         lo_ = limit == free_.reach() ? free_.at(lo_, Flow::cells) : free_.after(lo_, limit);
         side_ = 0;
+        hop_ = 0;
     }
 
     void touch(double tau, int side) {
@@ -104,7 +106,8 @@ private:
 
     void strike(const Contact& contact) {
         const Impact i = impact_at(p_, contact, free_.acceleration(contact.lo), clock_.tau());
-        chatter_ = i.side == last_side_ ? chatter_ + 1 : 1;
+        const bool pressed = i.side * i.x_ddot_before > 0 && contact.s < hop_;
+        chatter_ = i.side == last_side_ && pressed ? chatter_ + 1 : 1;
         last_side_ = i.side;
         ++impacts_;
         lo_.x_dot = i.x_dot_after;
@@ -117,6 +120,7 @@ private:
     /// On the wall side_ with a relative speed that is zero or leads away from it: which derivative of the gap leads.
     void leave_or_stick() {
         const double press = side_ * free_.acceleration(lo_), press_rate = side_ * free_.jerk(lo_);
+        hop_ = press > 0 ? longest_hop_ : 0;
         if (relative_speed_ != 0) {
             zeros_ = 1;
             const double R = p_.restitution(side_);
@@ -169,7 +173,11 @@ private:
     int side_ = 0;                // the wall that the mass is at, 0 in flight
     double relative_speed_ = 0;   // x' - y' at that wall
     int zeros_ = 1;               // see FlightStart
-    int last_side_ = 0, chatter_ = 0;  // side and length of the current run of impacts on one side
+    int last_side_ = 0, chatter_ = 0;  // side and length of the current run of impacts on one side that its wall's pressing joins
+    // A flight that leaves a pressing wall and comes back to it while it presses, within half a cycle of the faster of forcing and
+    // oscillator, was pressed all along: it belongs to a chatter. `hop_`: how long the one at hand may last for that.
+    const double longest_hop_ = std::numbers::pi / std::max(1.0, p_.Omega);
+    double hop_ = 0;
     std::vector<Touch> touches_;       // of the flight at hand
     long impacts_ = 0, others_ = 0;    // others: sticks and touches
     std::optional<End> end_;

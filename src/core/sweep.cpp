@@ -51,9 +51,18 @@ std::vector<SectionPoint> stroboscopic_section(const StroboscopicRecord& record,
 }  // namespace
 
 PointResult measure(const Parameters& p, const State& start, const PointOptions& o, const std::function<bool()>& stop) {
-    const double cycle = 2 * std::numbers::pi / p.Omega, tau_end = o.cycles * cycle;
+    const double tau_end = std::round(o.cycles) * p.cycle(), transient = std::round(o.transient_cycles);
+    // From a state at a whole cycle: the phase of the forcing is that of tau = 0 again.
+    auto pass = [&](const State& s, double from, double cycles) -> Outcome {
+        return simulate(p, s, {from + cycles * p.cycle(), static_cast<long>(std::ceil(cycles)) * transient_impacts_per_cycle, stop, from}, {});
+    };
+    PointResult r;
     State begin = start;
-    if (o.transient_cycles > 0) begin = simulate(p, start, {std::round(o.transient_cycles) * cycle, o.max_impacts, stop}, {}).state;
+    if (transient > 0) {
+        r.outcome = pass(start, 0, transient);
+        if (r.outcome.reason != End::tau_end) return r;
+        begin = r.outcome.state;
+    }
 
     Lyapunov lyapunov(p, 0, tau_end, {true, false, false, 256});
     ContactRecord contacts;
@@ -63,14 +72,15 @@ PointResult measure(const Parameters& p, const State& start, const PointOptions&
     section.b = p.b;
     std::vector<Observer*> observers = {&lyapunov, &contacts, &stroboscopic, &energy};
     if (o.section == Section::impact) observers.push_back(&section);
-    PointResult r;
     r.outcome = simulate(p, begin, {tau_end, o.max_impacts, stop}, observers);
+    r.measured = true;
 
     const TransferProduct& product = lyapunov.product();
+    const Growth growth = growth_of(product);
     r.lambda = product.qr();
     r.standard_error = standard_error(product.qr_history(), product.start_tau());
-    r.regime = regime_of(p, begin, {contacts, stroboscopic, 0, r.outcome.tau, verdict_of(r.lambda[0], r.standard_error[0]), stop}, false);
-    r.verdict = verdict_of(r.lambda[0], r.standard_error[0], r.regime, 0);
+    r.regime = regime_of(p, begin, {contacts, stroboscopic, 0, r.outcome.tau, verdict_by_exponents(growth), stop}, false);
+    r.verdict = r.regime.capture ? Verdict::regular : judge(growth, r.regime, 0).verdict;
     r.x_max = energy.peak();
     r.x_rms = energy.rms();
     r.x_rms_ratio = r.x_rms / unattached_rms(p, begin, r.outcome.tau);
@@ -79,6 +89,14 @@ PointResult measure(const Parameters& p, const State& start, const PointOptions&
     r.sticks = static_cast<long>(contacts.sticks.size());
     if (o.section == Section::impact) r.section = section.take();
     if (o.section == Section::stroboscopic) r.section = stroboscopic_section(stroboscopic, p.phi(), o.section_points);
+
+    // A run that ended within a cycle goes on to the end of it.
+    Outcome end = r.outcome;
+    if (end.reason == End::max_impacts) {
+        const double into = end.tau / p.cycle();
+        end = pass(end.state, end.tau, std::ceil(into) - into);
+    }
+    if (end.reason == End::tau_end) r.at_end = end.state;
     return r;
 }
 

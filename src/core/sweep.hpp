@@ -13,9 +13,9 @@ namespace vines {
 enum class Section { none, impact, stroboscopic };
 
 struct PointOptions {
-    double transient_cycles = 200;   ///< run before anything is measured
-    double cycles = 1000;            ///< measured
-    long max_impacts = 1000000;      ///< of each of the two
+    double transient_cycles = 200;   ///< run before anything is measured; whole cycles
+    double cycles = 1000;            ///< measured; whole cycles
+    long max_impacts = 1000000;      ///< of the measured part; the transient has its own limit
     Section section = Section::none;
     std::size_t section_points = 200;  ///< the last so many
 };
@@ -28,7 +28,9 @@ struct SectionPoint {
 };
 
 struct PointResult {
-    Outcome outcome;                 ///< of the measured part; what it ended by
+    bool measured = false;           ///< false: the transient did not end, and nothing else here has a meaning
+    Outcome outcome;                 ///< of the measured part, or of the transient where there is none; what it ended by
+    std::optional<State> at_end;     ///< at a whole cycle at or behind the measured part's end: what a neighbour may go on from
     Exponents lambda, standard_error;  ///< qr
     Verdict verdict;
     Regime regime;
@@ -37,6 +39,9 @@ struct PointResult {
     long impacts, sticks;
     std::vector<SectionPoint> section;
 };
+
+/// A transient may have so many impacts a cycle: far more than any motion has that is not a chatter without end (R = 1).
+inline constexpr long transient_impacts_per_cycle = 1000;
 
 /// Runs one point from a state at tau = 0. `stop` as in Limits; once it says true the result is worthless.
 PointResult measure(const Parameters& parameters, const State& start, const PointOptions& options, const std::function<bool()>& stop);

@@ -1,41 +1,19 @@
 #include "core/transfer.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
-
-#include "core/compound.hpp"
+#include <cmath>
 
 namespace vines {
 
-Matrix4 free_transfer(const Transfer& t, double s) {
-    Matrix4 J;
-    J << t.a11, t.a12, 0, 0,
-         t.a21, t.a22, 0, 0,
-         0, 0, 1, 0,
-         0, 0, s, 1;
-    return J;
-}
-
-Matrix4 stuck_transfer(const Transfer& t, double epsilon) {
-    const double nu = 1 / (1 + epsilon), mu = epsilon * nu;
-    Eigen::Matrix2d A;
-    A << t.a11, t.a12, t.a21, t.a22;
-    Matrix4 K;
-    K << nu * A, mu * A,
-         nu * A, mu * A;
-    return K;
-}
-
-void Passage::extend(const Stretch& stretch, double epsilon) {
-    const Transfer t = stretch.flow.transfer(stretch.duration);
-    const Matrix4 over = stretch.stuck_side == 0 ? free_transfer(t, stretch.duration) : stuck_transfer(t, epsilon);
-    matrix_ = empty_ ? over : over * matrix_;
-    empty_ = false;
-    if (stretch.stuck_side != 0) rank_ = 2;
-}
-
-void Passage::strike(const Saltation& M) {
-    matrix_ = M.times(matrix_);
-    empty_ = false;
+void Passage::extend(const Stretch& stretch) {
+    const bool stuck = stretch.stuck_side != 0;
+    double duration = stretch.duration;
+    if (!legs_.empty() && legs_.back().stuck == stuck) {
+        duration += legs_.back().duration * static_cast<double>(legs_.back().parts);
+        legs_.pop_back();
+    }
+    legs_.push_back(leg_of(stretch.flow, duration, stuck));
 }
 
 Moduli eigenvalue_moduli(const Matrix4& m) {
@@ -46,33 +24,49 @@ Moduli eigenvalue_moduli(const Matrix4& m) {
     return moduli;
 }
 
+Matrix4 ImpactTransfer::J() const {
+    Matrix4 J = Matrix4::Identity();
+    for (const Leg& leg : legs) J = transfer_of(leg, epsilon) * J;
+    return J;
+}
+
+int ImpactTransfer::rank() const {
+    return std::any_of(legs.begin(), legs.end(), [](const Leg& leg) { return leg.stuck; }) ? 2 : 4;
+}
+
 Moduli ImpactTransfer::J_moduli() const {
-    if (rank == 4) {  // two blocks; that of the free mass is a Jordan block, which an eigenvalue solver would split
-        const double half_trace = 0.5 * (J(0, 0) + J(1, 1)), det = J(0, 0) * J(1, 1) - J(0, 1) * J(1, 0);
-        const double d = half_trace * half_trace - det;
-        const double root = std::sqrt(std::max(d, 0.0)), large = d > 0 ? std::abs(half_trace) + root : std::sqrt(det);
-        Moduli moduli = {1, 1, large, det / large};
-        std::sort(moduli.begin(), moduli.end(), std::greater<>());
+    Moduli moduli = {1, 1, 1, 1};
+    if (rank() == 4) {  // two blocks; that of the free mass is a Jordan block, which an eigenvalue solver would split
+        for (const Leg& leg : legs) {
+            const double n = static_cast<double>(leg.parts), half_trace = 0.5 * std::abs(leg.oscillator.a11 + leg.oscillator.a22);
+            const double d = half_trace * half_trace - std::exp(leg.log_det);
+            const double large = d > 0 ? std::log(half_trace + std::sqrt(d)) : 0.5 * leg.log_det;
+            moduli[2] = std::exp(n * large);
+            moduli[3] = std::exp(n * (leg.log_det - large));
+        }
         return moduli;
     }
-    Moduli moduli = eigenvalue_moduli(J);
-    moduli[2] = moduli[3] = 0;
+    PowerProduct product(epsilon);
+    for (const Leg& leg : legs) product.pass(leg);
+    moduli = product.log_moduli();
+    for (double& m : moduli) m = std::exp(m);
     return moduli;
 }
 
 Moduli ImpactTransfer::T_moduli() const {
-    const int of_T = std::min(rank, R > 0 ? 4 : 3);
-    CompoundProduct product;
-    product.append(J, M, R, of_T);
-    Moduli moduli = product.log_moduli(of_T);
-    for (int k = 0; k < 4; ++k) moduli[k] = k < of_T ? std::exp(moduli[k]) : 0;
+    PowerProduct product(epsilon);
+    for (const Leg& leg : legs) product.pass(leg);
+    product.strike(M, R);
+    Moduli moduli = product.log_moduli();
+    for (double& m : moduli) m = std::exp(m);
     return moduli;
 }
 
 void TransferRecord::on_impact(const Impact& impact) {
     if (impact.tau < tau_start_ || impact.tau > tau_end_) return;
     if (begun_) {
-        transfers.push_back({impact.tau, impact.R, passage_.matrix(), saltation(parameters_, impact), passage_.rank()});
+        const auto legs = passage_.legs();
+        transfers.push_back({impact.tau, impact.R, parameters_.epsilon, saltation(parameters_, impact), {legs.begin(), legs.end()}});
         keep_last(transfers, most_);
         ++seen;
     }

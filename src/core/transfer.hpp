@@ -2,51 +2,41 @@
 #pragma once
 
 #include <limits>
+#include <span>
 #include <vector>
 
+#include "core/exterior.hpp"
 #include "core/record.hpp"
 
 namespace vines {
 
-/// J of eq. (19) as a 4x4 matrix.
-Matrix4 free_transfer(const Transfer& transfer, double duration);
-/// The projection onto the centre of mass, and its motion while both masses stick together.
-Matrix4 stuck_transfer(const Transfer& transfer, double epsilon);
-
-/// The transfer matrix since some moment, extended stretch by stretch. Its rank is 4, or 2 once a stick has left only the
-/// deviations of the centre of mass.
+/// The legs of the way since some moment, collected stretch by stretch. Free flights that follow each other are one.
 class Passage {
 public:
-    void extend(const Stretch& stretch, double epsilon);
-    void strike(const Saltation& M);
-    void reset() { *this = {}; }
-
-    const Matrix4& matrix() const { return matrix_; }
-    int rank() const { return rank_; }
+    void extend(const Stretch& stretch);
+    void reset() { legs_.clear(); }
+    std::span<const Leg> legs() const { return legs_; }
 
 private:
-    Matrix4 matrix_ = Matrix4::Identity();
-    bool empty_ = true;
-    int rank_ = 4;
+    std::vector<Leg> legs_;
 };
 
-/// Moduli of four eigenvalues, descending, dimensionless.
-using Moduli = std::array<double, 4>;
 Moduli eigenvalue_moduli(const Matrix4& m);
 
 /// The three matrices of one impact: J from the impact before it, its own M, and T = M J.
 struct ImpactTransfer {
     double tau;
-    double R;
-    Matrix4 J;
+    double R, epsilon;
     Saltation M;
-    int rank;  ///< of J
+    std::vector<Leg> legs;  ///< from the impact before it
 
-    Matrix4 T() const { return M.times(J); }
+    Matrix4 J() const;
+    int rank() const;       ///< of J: 4, or 2 after a stick
+    Matrix4 T() const { return M.times(J()); }
     Moduli J_moduli() const;
     /// Exactly 1, 1, R, R (section 4): in the coordinates of the centre of mass and of x - y, M is triangular.
     Moduli M_moduli() const { return {1, 1, R, R}; }
-    /// From the compound matrices, so that all four are right however large the entries of M are near grazing.
+    /// By the exterior powers, so that all four are right however strong the damping, however large the entries of M.
     Moduli T_moduli() const;
 };
 
@@ -55,7 +45,7 @@ class TransferRecord : public Observer {
 public:
     TransferRecord(const Parameters& parameters, double tau_start, double tau_end, std::size_t most = std::numeric_limits<std::size_t>::max() / 2)
         : parameters_(parameters), tau_start_(tau_start), tau_end_(tau_end), most_(most) {}
-    void on_stretch(const Stretch& stretch) override { passage_.extend(stretch, parameters_.epsilon); }
+    void on_stretch(const Stretch& stretch) override { passage_.extend(stretch); }
     void on_impact(const Impact& impact) override;
 
     std::vector<ImpactTransfer> transfers;

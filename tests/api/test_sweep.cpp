@@ -89,6 +89,41 @@ TEST_CASE("continuation follows a branch that a fresh start does not find") {
     CHECK(down.at(1)["x_max"] != run(request(text + "}")).at(1)["x_max"]);
 }
 
+TEST_CASE("a long transient is run to its end, so that the phase of the forcing is right behind it") {
+    const std::string text = R"({"base":{"epsilon":1,"lambda":0.2,"R_plus":0.9,"R_minus":0.2,"G":0.1},"axes":[{"parameter":"b","values":[0.23152542372881355]}],"cycles":500,"transient_cycles":)";
+    for (const char* transient : {"17000", "20000"}) {
+        CAPTURE(transient);
+        const Json line = run(request(text + transient + "}")).at(0);
+        CHECK(line["verdict"] == "regular");
+        CHECK(line["period_cycles"] == 3);
+        CHECK(line["reason"] == "complete");
+    }
+}
+
+TEST_CASE("a point whose transient does not end says so, and nothing else") {
+    // In a cavity of 10 nm the mass bounces a million times a cycle.
+    const Json line = run(request(R"({"base":{"R":1},"axes":[{"parameter":"b","values":[1e-8]}],"cycles":5,"transient_cycles":5})")).at(0);
+    CHECK(line["reason"] == "transient_max_impacts");
+    for (const char* name : {"lambda", "status", "standard_error", "verdict", "z", "regime", "periodic", "x_max", "x_rms", "impacts"}) {
+        CAPTURE(name);
+        CHECK(line.at(name).is_null());
+    }
+    CHECK(line["b"] == 1e-8);
+}
+
+TEST_CASE("a state is carried at a whole cycle, or not at all") {
+    // The first point ends within a cycle, by max_impacts: its state is taken at the end of that cycle.
+    const std::string axes = R"("axes":[{"parameter":"b","values":[0.0151,0.015]}],"carry_state":"up","transient_cycles":0,)";
+    const auto carried = run(request("{" + axes + R"("base":{"damping":"closed_form","max_impacts":801},"cycles":1000})"));
+    CHECK(carried.at(0)["reason"] == "max_impacts");
+    CHECK(carried.at(1)["regime"] == "III");
+    CHECK(carried.at(1)["capture_cycle"] == 0);  // it begins where the branch is
+    CHECK_FALSE(carried.at(1).contains("carried"));
+    // In a cavity of 10 nm the transient does not end.
+    const auto broken = run(request(R"({"axes":[{"parameter":"b","values":[1e-8,0.015]}],"carry_state":"up","base":{"R":1},"cycles":5,"transient_cycles":5})"));
+    CHECK(broken.at(1)["carried"] == false);
+}
+
 TEST_CASE("several starts at each point show coexisting attractors") {
     // A mass at rest in the middle of a wide cavity is never hit; one with a push is.
     const auto lines = run(request(R"({"base":{"damping":"closed_form"},"axes":[{"parameter":"b","values":[0.03]}],"starts":[{"y0":0},{"y0":0,"y_dot0":0.02}],"cycles":200})"));

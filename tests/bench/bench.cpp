@@ -46,8 +46,8 @@ Plain plain(const Parameters& p, long impacts, double scan_step) {
         left = x > y ? 1 : -1;
         const Contact contact{s, left, {x, v, std::sin(theta), std::cos(theta)}, v - u};
         const Impact i = impact_at(p, contact, a * std::sin(theta) - x - 2 * z * v, T);
-        const Transfer J{e * (c - z / wd * n), -e / wd * n, e / wd * n, e * (z / wd * n + c)};
-        frame = saltation(p, i).matrix() * free_transfer(J, s) * frame;
+        const Leg flight{{e * (c - z / wd * n), -e / wd * n, e / wd * n, e * (z / wd * n + c)}, s, -2 * z * s, 1, false};
+        frame = saltation(p, i).matrix() * transfer_of(flight, p.epsilon) * frame;
         const Eigen::HouseholderQR<Matrix4> qr(frame);
         growth += std::log(std::abs(qr.matrixQR()(0, 0)));
         frame = qr.householderQ();

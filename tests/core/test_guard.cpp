@@ -103,3 +103,28 @@ TEST_CASE("a contact at the very end of the interval belongs to it, one just beh
     CHECK(next_contact(flow, start, p.b, contact->s, touch));
     CHECK_FALSE(next_contact(flow, start, p.b, std::nextafter(contact->s, 0), touch));
 }
+
+TEST_CASE("a contact at a relative speed that rounding reaches is found once, at the wall") {
+    // Everything moves so slowly that the moment of the contact is known to no more than rounding over the speed.
+    std::mt19937_64 engine(31);
+    int contacts = 0;
+    for (int n = 0; n < 3000; ++n) {
+        Parameters p = table1(uniform(engine, 0.5, 2), Damping::closed_form);
+        p.G = 0;
+        const double speed = p.b * std::pow(10, uniform(engine, -15, -8));
+        const Flow flow = Flow::free(p);
+        const double s = uniform(engine, 0, 0.9) * flow.reach(), x = uniform(engine, 0, 0.5) * speed * s;
+        const FlightStart start{{x, uniform(engine, -0.5, 0.5) * speed, 0, 1}, -p.b + speed * s, -speed, 0, 0, 0};
+        std::vector<Touch> touches;
+        const auto contact = next_contact(flow, start, p.b, flow.reach(), touches);
+        if (!contact) continue;
+        ++contacts;
+        CHECK(contact->s >= 0);
+        CHECK(contact->s <= flow.reach());
+        CHECK(contact->side == 1);
+        CHECK(contact->relative_speed >= 0);
+        const double gap = flow.after(start.lo, contact->s).x - (start.y + start.y_dot * contact->s);
+        CHECK(std::abs(gap - p.b) < 8e-16 * p.b);
+    }
+    CHECK(contacts > 1000);
+}

@@ -72,7 +72,7 @@ Result identified(const Measurement& m) {
     Identification found = identify_impacts(m.parameters, refined.motion, refined.side, refined.pulse);
     Parameters p = m.parameters;
     p.R_plus = found.plus.R, p.R_minus = found.minus.R;
-    TransferProduct product({true, false, false, 20000});
+    TransferProduct product(p.epsilon, {true, false, false, 20000});
     append_identified(p, found, product);
     return {std::move(refined), std::move(found), product.qr()[0], judge_exponents(p, product.qr_history(), product.start_tau())};
 }

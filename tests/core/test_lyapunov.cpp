@@ -3,7 +3,9 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <cmath>
+#include <limits>
 
+#include "core/verdict.hpp"
 #include "support.hpp"
 
 using namespace vines;
@@ -72,7 +74,7 @@ TEST_CASE("the sum rule holds to 1e-10 in every window without a stick") {
             for (const auto& l : all) {
                 if (l->product().rank() < 4) continue;
                 ++free_of_sticks;
-                CHECK(l->product().sum_rule_residual(p.zeta()) < 1e-10);
+                CHECK(l->product().sum_rule_residual() < 1e-10);
             }
         }
     CHECK(free_of_sticks > 300);
@@ -82,7 +84,7 @@ TEST_CASE("the sum rule holds through nearly grazing impacts, where entries of M
     std::mt19937_64 engine(9);
     const Parameters p = table1(0.022, Damping::closed_form);
     for (double speed : {1e-4, 1e-6, 1e-8, 1e-10}) {
-        TransferProduct product({true, true, false, 256});
+        TransferProduct product(p.epsilon, {true, true, false, 256});
         product.start(0);
         double tau = 0;
         for (int n = 0; n < 300; ++n) {
@@ -91,10 +93,11 @@ TEST_CASE("the sum rule holds through nearly grazing impacts, where entries of M
             Contact c{0, n % 2 ? 1 : -1, {uniform(engine, -.005, .005), uniform(engine, -.005, .005), std::sin(n), std::cos(n)}, 0};
             c.relative_speed = c.side * (n % 10 == 0 ? speed : uniform(engine, 0.002, 0.02));
             const Impact i = impact_at(p, c, Flow::free(p).acceleration(c.lo), tau);
-            product.append(free_transfer(Flow::free(p).transfer(s), s), 4, saltation(p, i), i.R, tau);
+            const Leg flight = leg_of(Flow::free(p), s, false);
+            product.append({&flight, 1}, saltation(p, i), i.R, tau);
         }
         CAPTURE(speed);
-        CHECK(product.sum_rule_residual(p.zeta()) < 1e-10);
+        CHECK(product.sum_rule_residual() < 1e-10);
     }
 }
 
@@ -117,10 +120,10 @@ TEST_CASE("J and M carry a deviation as the trajectory itself does") {
         Matrix4 product = Matrix4::Identity();
         double before = 0;
         for (const Impact& i : run.impacts) {
-            product = saltation(p, i).matrix() * free_transfer(Flow::free(p).transfer(i.tau - before), i.tau - before) * product;
+            product = saltation(p, i).matrix() * transfer_of(leg_of(Flow::free(p), i.tau - before, false), p.epsilon) * product;
             before = i.tau;
         }
-        product = free_transfer(Flow::free(p).transfer(tau - before), tau - before) * product;
+        product = transfer_of(leg_of(Flow::free(p), tau - before, false), p.epsilon) * product;
 
         Matrix4 differences;
         const double d = 1e-7;
@@ -153,8 +156,7 @@ TEST_CASE("a deviation through a stick is that of the trajectory: only the centr
     struct Product : Observer {
         explicit Product(const Parameters& parameters) : p(parameters) {}
         void on_stretch(const Stretch& s) override {
-            const Transfer t = s.flow.transfer(s.duration);
-            m = (s.stuck_side ? stuck_transfer(t, p.epsilon) : free_transfer(t, s.duration)) * m;
+            m = transfer_of(leg_of(s.flow, s.duration, s.stuck_side != 0), p.epsilon) * m;
         }
         void on_impact(const Impact& i) override { m = saltation(p, i).matrix() * m; }
         const Parameters& p;
@@ -188,7 +190,7 @@ TEST_CASE("on a periodic orbit the eigenvalues estimator and QR agree with the o
     Matrix4 cycle = Matrix4::Identity();
     for (std::size_t k = last - 1; k <= last; ++k) {
         const double s = run.impacts[k].tau - run.impacts[k - 1].tau;
-        cycle = saltation(p, run.impacts[k]).matrix() * free_transfer(Flow::free(p).transfer(s), s) * cycle;
+        cycle = saltation(p, run.impacts[k]).matrix() * transfer_of(leg_of(Flow::free(p), s, false), p.epsilon) * cycle;
     }
     const double period = run.impacts[last].tau - run.impacts[last - 2].tau;
     CHECK(period == doctest::Approx(2 * 3.14159265358979323846).epsilon(1e-9));
@@ -238,7 +240,7 @@ TEST_CASE("after a stick two exponents are minus infinity, after R = 0 one is") 
         CHECK(status_of(e[2]) == Status::minus_infinity);
         CHECK(status_of(e[3]) == Status::minus_infinity);
     }
-    CHECK(std::isnan(stick.product().sum_rule_residual(p.zeta())));
+    CHECK(stick.product().sum_rule_residual() < 1e-10);  // the rule says nothing at rank 2; the area that two deviations span does
     Lyapunov before(p, 0, 70, {});
     record(p, default_state(p), 1709, 100000, {&before});
     CHECK(before.product().rank() == 4);
@@ -272,12 +274,142 @@ TEST_CASE("a thinned history keeps every second, fourth, ... impact and ends nea
     }
 }
 
-TEST_CASE("the standard error of one window covers the spread between windows") {
-    const Windows w = windows(0.025, 100, 1700, 1700);
-    const Parameters p = table1(0.025, Damping::closed_form);
-    Lyapunov lyapunov(p, 1700, 3400, {true, false, false, 20000});
-    record(p, default_state(p), 3400, 100000, {&lyapunov});
-    const double error = standard_error(lyapunov.product().qr_history(), lyapunov.product().start_tau())[0];
-    CHECK(error > 0.5 * w.deviation);
-    CHECK(error < 2 * w.deviation);
+TEST_CASE("the standard error of a window is the spread of lambda1 over runs from neighbouring starts") {
+    // 100 runs of 1709 each; that spread itself is known to 7 %.
+    const std::pair<Damping, std::vector<double>> chaotic[] = {{Damping::closed_form, {0.0165, 0.017, 0.018, 0.020, 0.022, 0.025, 0.028, 0.031, 0.034, 0.040}},
+                                                              {Damping::equation_of_motion, {0.022, 0.025, 0.028, 0.031, 0.034, 0.040}}};
+    for (const auto& [damping, values] : chaotic)
+        for (const double b : values) {
+            CAPTURE(b);
+            const Parameters p = table1(b, damping);
+            double sum = 0, squares = 0, stated = 0;
+            int decided = 0;
+            constexpr int runs = 100;
+            for (int k = 1; k <= runs; ++k) {
+                State start = default_state(p);
+                start.y *= 1 - 1e-9 * k;
+                Lyapunov lyapunov(p, 0, 1709, {true, false, false, 20000});
+                record(p, start, 1709, 100000, {&lyapunov});
+                const Growth g = growth_of(lyapunov.product());
+                sum += g.lambda1, squares += g.lambda1 * g.lambda1, stated += g.standard_error / runs;
+                decided += verdict_by_exponents(g) == Verdict::chaotic;
+            }
+            const double spread = std::sqrt((squares - sum * sum / runs) / (runs - 1));
+            CHECK(spread > 0.8 * stated);
+            CHECK(spread < 1.25 * stated);
+            CHECK(decided >= 95);
+        }
+}
+
+namespace {
+
+/// A run whose tangent was recomputed with a hundred digits and more, the trajectory with it: exponents of the whole run.
+struct StrongDamping {
+    const char* what;
+    double epsilon, lambda;
+    Damping damping;
+    double G, Omega, R_plus, R_minus, b;
+    State start;  ///< {x', x, y', y}
+    double tau_end;
+    long max_impacts;
+    int rank;
+    Exponents qr, eigenvalues;
+};
+
+constexpr double none = -std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+TEST_CASE("under strong damping all four exponents are right, at any rank") {
+    constexpr Damping closed = Damping::closed_form, eom = Damping::equation_of_motion;
+    const StrongDamping known[] = {
+        {"zeta 10", 0.05, 200, closed, 20, 0.3, 0.9, 0.9, 0.3, {0, 0, 0, 0.95 * 0.3}, 40, 100000, 4,
+         {0.0056723236839369, -0.12984378119204, -2.6680087027799, -17.232506894841}, {0.070372431439586, -0.050132058578645, -0.11973908807599, -19.925188339914}},
+        {"zeta 8.6", 0.80917866769974689, 21.363503334655736, eom, 0.26780170460853864, 0.21131234520997721, 0.81772560131210015, 0.81772560131210015, 0.07112859158384742,
+         {-0.0031710484321584775, 0.0029965901031818623, -0.065598170880527967, -0.0041769171892573828}, 2366.1655901038775, 35, 4,
+         {-0.34366741113086, -1.6135158820599, -2.9607132928161, -13.953785470029}, {0.040390259097347, -0.058209029265579, -2.2499438291075, -16.60391945676}},
+        {"zeta 5.6, unequal walls", 0.15064434455945627, 73.960004802397734, eom, 0.0086122554350312082, 0.33739170999697005, 0.90235070591500022, 0.84645249893577612, 0.00037441434807136936,
+         {-0.00040230575317433512, 0.00090751325457271164, -0.00084329953683750245, 0.00074916792598473867}, 1481.9569811140002, 40, 4,
+         {-0.032690384256406, -0.12600170652154, -0.2180006222215, -10.833989923581}, {-0.013869373448737, -0.090602251398699, -0.21744948660788, -10.888761525125}},
+        {"a stick", 0.024276304435937958, 294.85623717481195, closed, 0.0014247957227879831, 0.54562696648383391, 0.48324236909615015, 0.48324236909615015, 1.8598019189242804e-06,
+         {9.680602585311668e-06, 2.378384782140888e-07, 1.6699791909377704e-05, 6.4177043543955012e-07}, 916.37699511469111, 35, 2,
+         {-0.33118025668333, -5.9743513608014, none, none}, {-0.070204260802211, -1.6171952809562, none, none}},
+        {"R+ = 0", 0.052667565342183663, 229.59525056812129, eom, 0.11437367683122851, 0.29326411690417381, 0, 0.80022174105769761, 0.00091501298544069117,
+         {0.00039746910119850011, 0.0015260214031807325, 0.0023582740947381883, 0.001599835056365465}, 300, 5, 3,
+         {-0.058072070404582, -0.41083814072606, -2.9950275161035, none}, {0.16052985541372, -0.083302379384022, -0.69334846528586, none}},
+        {"zeta 1", 2, 1, eom, 0.5, 0.8, 0.9, 0.95, 0.2, {0, 0, 0, 0.95 * 0.2}, 100, 100000, 4,
+         {-0.15183909027258, -0.31160048928563, -0.32179478866042, -1.4993668652669}, {-0.15541299039932, -0.29526281326432, -0.3218819275795, -1.5120435022424}},
+        {"R+ = 0 and sticks", 0.2, 40, eom, 0.5, 1.8, 0, 1, 0.01, {0, 0, 0, 0.95 * 0.01}, 60, 100000, 2,
+         {-0.15656933619226, -3.119792010623, none, none}, {-0.12743595432885, -3.1563190620616, none, none}},
+    };
+    for (const StrongDamping& k : known) {
+        CAPTURE(k.what);
+        Parameters p;
+        p.epsilon = k.epsilon, p.lambda = k.lambda, p.damping = k.damping, p.G = k.G, p.Omega = k.Omega, p.R_plus = k.R_plus, p.R_minus = k.R_minus, p.b = k.b;
+        Lyapunov lyapunov(p, 0, k.tau_end, {});
+        record(p, k.start, k.tau_end, k.max_impacts, {&lyapunov});
+        const TransferProduct& product = lyapunov.product();
+        CHECK(product.rank() == k.rank);
+        CHECK(product.sum_rule_residual() < 1e-9);
+        for (int i = 0; i < 4; ++i) {
+            CAPTURE(i);
+            if (i >= k.rank) {
+                CHECK(product.qr()[i] == none);
+                CHECK(product.eigenvalues()[i] == none);
+            } else {
+                CHECK(std::abs(product.qr()[i] - k.qr[i]) < 1e-8);
+                CHECK(std::abs(product.eigenvalues()[i] - k.eigenvalues[i]) < 1e-8);
+            }
+        }
+    }
+}
+
+TEST_CASE("areas and volumes are carried as the deviations that span them") {
+    std::mt19937_64 engine(5);
+    for (int n = 0; n < 300; ++n) {
+        System s = random_system(engine);
+        const Parameters& p = s.parameters;
+        Contact c{0, n % 2 ? 1 : -1, {uniform(engine, -1, 1), uniform(engine, -1, 1), std::sin(n), std::cos(n)}, 0};
+        c.relative_speed = c.side * uniform(engine, 0.1, 1);
+        const Impact impact = impact_at(p, c, uniform(engine, -1, 1), 0);
+        const Saltation M = saltation(p, impact);
+        const Leg leg = leg_of(n % 3 ? Flow::free(p) : Flow::stuck(p), uniform(engine, 0, 0.5), n % 3 == 0);
+        Eigen::Matrix4d v;
+        for (int i = 0; i < 16; ++i) v(i / 4, i % 4) = uniform(engine, -1, 1);
+        auto area = [](const Eigen::Matrix4d& of) {
+            Area w;
+            int k = 0;
+            for (int i = 0; i < 4; ++i)
+                for (int j = i + 1; j < 4; ++j) w(k++) = of(i, 0) * of(j, 1) - of(j, 0) * of(i, 1);
+            return w;
+        };
+        auto volume = [](Eigen::Matrix4d of) {
+            Eigen::Vector4d normal;
+            for (int i = 0; i < 4; ++i) {
+                of.col(3) = Eigen::Vector4d::Unit(i);
+                normal(i) = of.determinant();
+            }
+            return Volume{normal};
+        };
+        const Eigen::Matrix4d after_leg = part_of(leg, p.epsilon) * v, after_impact = M.matrix() * v;
+        CHECK((carried(area(v), leg, p.epsilon) - area(after_leg)).norm() < 1e-12 * (1 + after_leg.squaredNorm()));
+        CHECK((carried(volume(v), leg).normal - volume(after_leg).normal).norm() < 1e-12 * (1 + std::pow(after_leg.norm(), 3)));
+        CHECK((carried(area(v), M, impact.R) - area(after_impact)).norm() < 1e-12 * (1 + after_impact.squaredNorm()));
+        CHECK((carried(volume(v), M, impact.R).normal - volume(after_impact).normal).norm() < 1e-12 * (1 + std::pow(after_impact.norm(), 3)));
+    }
+}
+
+TEST_CASE("tiny restitution coefficients leave the exponents right: their sum obeys the rule") {
+    for (double R : {0.5, 1e-2, 1e-4, 1e-8, 1e-12}) {
+        CAPTURE(R);
+        Parameters p = table1(0.02, Damping::closed_form);
+        p.R_plus = p.R_minus = R;
+        for (double from : {0.0, 300.0, 600.0}) {
+            Lyapunov lyapunov(p, from, from + 60, {});
+            record(p, default_state(p), 800, 100000, {&lyapunov});
+            if (lyapunov.product().impacts() < 2) continue;
+            CHECK(lyapunov.product().sum_rule_residual() < 1e-6);
+            CHECK(std::isfinite(lyapunov.product().qr()[1]));
+        }
+    }
 }

@@ -17,7 +17,7 @@ TEST_CASE("J has the moduli e^(-zeta s) twice and 1 twice, T has the determinant
     for (std::size_t i = 0; i < transfers.transfers.size(); ++i) {
         const ImpactTransfer& t = transfers.transfers[i];
         CHECK(t.tau == run.impacts[i + 1].tau);
-        if (t.rank < 4) continue;
+        if (t.rank() < 4) continue;
         const double decay = std::exp(-p.zeta() * (t.tau - run.impacts[i].tau));
         const Moduli J = t.J_moduli(), T = t.T_moduli();
         CHECK(std::abs(J[0] - 1) + std::abs(J[1] - 1) + std::abs(J[2] - decay) + std::abs(J[3] - decay) < 1e-13);
@@ -30,7 +30,7 @@ TEST_CASE("J has the moduli e^(-zeta s) twice and 1 twice, T has the determinant
 TEST_CASE("overdamped flights have two different moduli") {
     Parameters p = table1(0.01, Damping::equation_of_motion);
     p.lambda = 4 / p.epsilon;  // zeta = 2
-    ImpactTransfer t{0, 0.6, free_transfer(Flow::free(p).transfer(0.7), 0.7), {}, 4};
+    ImpactTransfer t{0, 0.6, p.epsilon, {}, {leg_of(Flow::free(p), 0.7, false)}};
     const Moduli J = t.J_moduli();
     CHECK(J[2] == doctest::Approx(std::exp((-2 + std::sqrt(3)) * 0.7)));
     CHECK(J[3] == doctest::Approx(std::exp((-2 - std::sqrt(3)) * 0.7)));
@@ -43,7 +43,7 @@ TEST_CASE("after a stick J and T have rank two") {
     REQUIRE(run.sticks.size() == 1);
     bool found = false;
     for (const ImpactTransfer& t : transfers.transfers) {
-        if (t.rank == 4) continue;
+        if (t.rank() == 4) continue;
         found = true;
         CHECK(t.J_moduli()[2] == 0);
         CHECK(t.T_moduli()[1] > 0);
