@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "tangent.hpp"
 
@@ -20,12 +19,10 @@ constexpr int settled_after = 6000, settled_for = 1000;
 // Enough for thirty impacts per cycle.
 constexpr long most_impacts = 600000;
 
-double cycle_of(const Parameters& p) { return 2 * std::numbers::pi / p.Omega; }
-
 /// The states at half cycles.
 class HalfCycleStates : public Observer {
 public:
-    HalfCycleStates(const Parameters& p, std::vector<State>& states) : half_(0.5 * cycle_of(p)), states_(states) {}
+    HalfCycleStates(const Parameters& p, std::vector<State>& states) : half_(0.5 * p.cycle()), states_(states) {}
     void on_stretch(const Stretch& stretch) override {
         for (double tau; (tau = static_cast<double>(states_.size()) * half_) < stretch.tau + stretch.duration;)
             states_.push_back(stretch.at(std::max(0.0, tau - stretch.tau)));
@@ -44,7 +41,7 @@ public:
 
     void on_stretch(const Stretch& stretch) override {
         carry(stretch.stuck_side == 0 ? flight(free_, stretch.duration) : together(stuck_, p_.epsilon, stretch.duration));
-        const auto cycle = static_cast<std::size_t>((stretch.tau + stretch.duration) / cycle_of(p_));
+        const auto cycle = static_cast<std::size_t>((stretch.tau + stretch.duration) / p_.cycle());
         while (growth_.size() <= cycle) growth_.push_back(log_);
     }
     void on_impact(const Impact& i) override {
@@ -67,7 +64,7 @@ private:
         log_ += std::log(length);
     }
     void count(std::vector<int>& per_cycle, double tau) {
-        const auto cycle = static_cast<std::size_t>(tau / cycle_of(p_));
+        const auto cycle = static_cast<std::size_t>(tau / p_.cycle());
         if (per_cycle.size() <= cycle) per_cycle.resize(cycle + 1);
         ++per_cycle[cycle];
     }
@@ -94,7 +91,7 @@ LongRun::LongRun(const Parameters& p, const State& start, int cycles) : paramete
         look += settled_for;
         return all_along;
     };
-    simulate(p, start, {(cycles + 0.25) * cycle_of(p), most_impacts, settled}, observers);
+    simulate(p, start, {(cycles + 0.25) * p.cycle(), most_impacts, settled}, observers);
     cycles_ = std::min(cycles, complete_cycles());
     impacts_.resize(std::max(impacts_.size(), static_cast<std::size_t>(cycles_) + 1));
     sticks_.resize(std::max(sticks_.size(), static_cast<std::size_t>(cycles_) + 1));
@@ -186,7 +183,7 @@ LongRun::Exponent LongRun::exponent(int from, int to) const {
     double sum = 0, squares = 0;
     for (int k = 0; k < blocks; ++k) {
         const int begin = from + static_cast<int>(k * length), end = from + static_cast<int>((k + 1) * length);
-        const double mean = growth(begin, end) / std::max(1, end - begin) / cycle_of(parameters_);
+        const double mean = growth(begin, end) / std::max(1, end - begin) / parameters_.cycle();
         sum += mean;
         squares += mean * mean;
     }

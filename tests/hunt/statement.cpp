@@ -1,8 +1,6 @@
 #include "statement.hpp"
 
-#include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "api/simulate.hpp"
 
@@ -12,8 +10,6 @@ namespace {
 
 constexpr long most_impacts = 500000;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-double cycle_of(const Parameters& p) { return 2 * std::numbers::pi / p.Omega; }
 
 Verdict verdict_named(const std::string& name) {
     return name == "chaotic" ? Verdict::chaotic : name == "regular" ? Verdict::regular : Verdict::not_decided;
@@ -32,10 +28,9 @@ Statement sweep_point(const System& system, int transient, int cycles) {
     const PointResult r = measure(p, system.start, options, {});
     Statement s{};
     s.door = "sweep, " + std::to_string(transient) + " + " + std::to_string(cycles) + " cycles";
-    s.start = simulate(p, system.start, {transient * cycle_of(p), most_impacts, {}}, {}).state;
+    s.start = simulate(p, system.start, {transient * p.cycle(), transient * transient_impacts_per_cycle, {}}, {}).state;
     s.cycles = cycles;
-    s.complete = r.outcome.reason == End::tau_end;
-    s.end = r.outcome.state;
+    s.complete = r.measured && r.outcome.reason == End::tau_end;
     s.verdict = r.verdict;
     s.lambda1 = r.lambda[0];
     s.error = r.standard_error[0];
@@ -45,7 +40,7 @@ Statement sweep_point(const System& system, int transient, int cycles) {
         s.symmetric = r.regime.orbit->symmetric;
     }
     if (r.regime.capture) {
-        s.captured_at = r.regime.capture->tau / cycle_of(p);
+        s.captured_at = r.regime.capture->tau / p.cycle();
         s.chaotic_before = r.regime.capture->chaotic_before;
     }
     s.type = name_of(r.regime.type);
@@ -72,7 +67,7 @@ Statement simulation(const System& system, int cycles) {
         s.symmetric = regime["symmetric"];
     }
     if (regime["capture"].is_object()) {
-        s.captured_at = number(regime["capture"]["tau"]) / cycle_of(system.parameters);
+        s.captured_at = number(regime["capture"]["tau"]) / system.parameters.cycle();
         s.chaotic_before = regime["capture"]["chaotic_before"] == true;
     }
     s.type = regime["type"];

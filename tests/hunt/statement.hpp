@@ -1,7 +1,6 @@
 // What the product says of a run, through its two doors: a sweep's point and the answer to a simulation.
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "core/sweep.hpp"
@@ -14,7 +13,6 @@ struct Statement {
     State start;          ///< of the measured run
     int cycles;           ///< measured
     bool complete;        ///< it ran to its end
-    std::optional<State> end;  ///< the last state, where it is told
     Verdict verdict;
     double lambda1, error;
     bool periodic;
