@@ -15,7 +15,9 @@ namespace vines::hunt {
 namespace {
 
 constexpr double tolerance = 1e-6;
-constexpr int fewest_impacts = 5, most_impacts = 60;
+constexpr int most_impacts = 60;
+// R = 0 soon ends in a stick: windows of few impacts keep some of them at rank 3.
+int fewest_impacts(const Parameters& p) { return std::min(p.R_plus, p.R_minus) > 0 ? 5 : 3; }
 // A run in double precision that leaves the true one by more (in tau) is no regular window.
 constexpr double most_departure = 1e-9;
 
@@ -33,14 +35,14 @@ struct Window {
 std::optional<Window> window_of(const System& system, int most) {
     const auto& [p, start] = system;
     const double longest = 500 / p.Omega;
-    for (; most >= fewest_impacts; most = most * 2 / 3) {
+    for (; most >= fewest_impacts(p); most = most * 2 / 3) {
         EventRecord record;
         Lyapunov lyapunov(p, 0, longest, {true, true, false, 256});
         Observer* const observers[] = {&record, &lyapunov};
         simulate(p, start, {longest, most, {}}, observers);
         while (!record.events.empty() && record.events.back().kind != Event::impact) record.events.pop_back();
         const TransferProduct& product = lyapunov.product();
-        if (product.impacts() < fewest_impacts) return std::nullopt;
+        if (product.impacts() < fewest_impacts(p)) return std::nullopt;
         const Retraced run = retrace(p, start, record.events);
         if (!(run.departure < most_departure)) return std::nullopt;
         if (!exact_exponents_possible(digits_lost(p, run))) continue;
@@ -57,9 +59,8 @@ Window random_window(std::uint64_t seed, int number) {
     std::mt19937_64 engine = engine_of(seed, number);
     for (;;) {
         const System system = strongly_damped(engine);
-        // R = 0 soon ends in a stick: few impacts keep some windows at rank 3.
-        const int most = std::min(system.parameters.R_plus, system.parameters.R_minus) > 0 ? most_impacts : fewest_impacts + 3;
-        if (auto window = window_of(system, fewest_impacts + static_cast<int>(engine() % (most - fewest_impacts + 1)))) return *window;
+        const int fewest = fewest_impacts(system.parameters), most = fewest == 3 ? 5 : most_impacts;
+        if (auto window = window_of(system, fewest + static_cast<int>(engine() % (most - fewest + 1)))) return *window;
     }
 }
 

@@ -56,10 +56,10 @@ void judge_orbit(const Parameters& p, const Statement& s, const LongRun& run, in
         wrong.push_back(sentence("a period of %d cycles is said, it is %d", s.period, period));
     } else {
         if (captured > s.captured_at + 1) wrong.push_back(sentence("a capture at cycle %.0f is said, but the run leaves the orbit until cycle %d", s.captured_at, captured));
-        // Behind a complete chatter the walls' R are forgotten, but not in it.
-        const bool symmetric = p.R_plus == p.R_minus && run.ends_symmetric(period);
-        if (s.symmetric != symmetric) wrong.push_back(sentence("symmetric: %d is said of a period of %d cycles, it is the other way round", s.symmetric, period));
         const auto contacts = run.contacts_at_end(period);
+        // Behind a complete chatter the walls' R are forgotten, but not in it.
+        const bool walls_differ = p.R_plus != p.R_minus && contacts.impacts > 0, symmetric = !walls_differ && run.ends_symmetric(period);
+        if (s.symmetric != symmetric) wrong.push_back(sentence("symmetric: %d is said of a period of %d cycles, it is the other way round", s.symmetric, period));
         const char* type = p.G > 0 ? type_expected(period, contacts.impacts, symmetric) : "none";
         if (contacts.sticks == 0 && s.type != type) wrong.push_back(sentence("type %s is said of %d impacts in %d cycles, it is %s", s.type.c_str(), contacts.impacts, period, type));
     }
@@ -78,7 +78,7 @@ void judge_verdict(const Statement& s, const LongRun& run, int period, std::vect
             wrong.push_back(sentence("chaotic is said, but a deviation grows by %.1f e-folds only in the %d cycles up to %s", run.growth(0, captured), captured, period > 0 ? "the capture" : "the end of the long run"));
         else if (run.growth(0, std::min(captured, s.cycles)) <= 0)
             wrong.push_back(sentence("chaotic is said, but a deviation has shrunk by %.1f e-folds", -run.growth(0, std::min(captured, s.cycles))));
-        else if (run.returns_all_along(0, s.cycles))
+        else if (!chaotic(run, 0, captured) && run.returns_all_along(0, s.cycles))
             wrong.push_back("chaotic is said of a motion that returns all along");
     }
     if (s.verdict == Verdict::regular && s.lambda1 > verdict_sigmas * s.error && !s.chaotic_before && !s.periodic)
