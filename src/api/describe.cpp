@@ -35,7 +35,7 @@ std::string reason_of(const Judgement& judgement, const Growth& g, const Regime&
     const std::string sigmas = "lambda1 = " + digits("%.3g", g.lambda1) + " lies " + digits("%.1f", std::abs(g.lambda1 / g.standard_error)) + " standard errors " +
                                (g.lambda1 > 0 ? "above" : "below") + " zero";
     auto orbit = [&] { return "a stable periodic orbit, whose largest multiplier has the modulus " + digits("%.4g", std::abs(r.orbit->multipliers[0])); };
-    auto captured = [&] { return " a periodic orbit captures the motion at tau = " + digits("%.1f", r.capture->tau); };
+    auto captured = [&] { return " a periodic orbit captures the motion " + (r.capture->tau ? "at tau = " + digits("%.1f", *r.capture->tau) : "after the run's end"); };
     switch (judgement.reason) {
         case VerdictReason::growth:
             return sigmas + "; at least " + digits("%.0f", verdict_sigmas) + " decide" + (r.capture ? ", but" + captured() : "");
@@ -302,10 +302,10 @@ Json describe_regime(Regime r, std::size_t most, Warnings& warnings) {
     of_orbit("orbit", [](const PeriodicOrbit& o) {
         return Json{{"tau", o.tau}, {"x_dot", o.state.x_dot}, {"x", o.state.x}, {"y_dot", o.state.y_dot}, {"y", o.state.y}};
     });
-    j["capture"] = r.capture ? Json{{"tau", r.capture->tau}, {"chaotic_before", r.capture->chaotic_before ? Json(*r.capture->chaotic_before) : Json(nullptr)}, {"exponents_before", with_status(r.capture->before)}, {"exponents_after", with_status(r.capture->after)}}
+    j["capture"] = r.capture ? Json{{"tau", r.capture->tau ? Json(*r.capture->tau) : Json(nullptr)}, {"status", r.capture->tau ? "captured" : "on_its_way"}, {"chaotic_before", r.capture->chaotic_before ? Json(*r.capture->chaotic_before) : Json(nullptr)}, {"exponents_before", with_status(r.capture->before)}, {"exponents_after", with_status(r.capture->after)}}
                              : Json(nullptr);
     if (r.capture && r.capture->chaotic_before == true)
-        warnings.push_back("a chaotic transient (lambda1 = " + digits("%.3g", r.capture->before[0]) + ") was captured by a periodic orbit at tau = " + digits("%.1f", r.capture->tau) +
+        warnings.push_back("a chaotic transient (lambda1 = " + digits("%.3g", r.capture->before[0]) + ") was captured by a periodic orbit " + (r.capture->tau ? "at tau = " + digits("%.1f", *r.capture->tau) : "after the run's end") +
                            " (lambda1 = " + digits("%.3g", r.capture->after[0]) + "): exponents of a window that reaches over it average both");
     j["cycles_with"] = r.cycles_with;
     j["share_two_impacts"] = r.cycles_with.size() > 2 ? r.cycles_with[2] : 0;

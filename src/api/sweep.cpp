@@ -186,7 +186,7 @@ Json describe_point(const SweepRequest& r, std::size_t index, double Omega, cons
     line["period_cycles"] = p.regime.orbit ? Json(p.regime.orbit->cycles) : Json(nullptr);
     line["impacts_per_period"] = p.regime.orbit ? Json(p.regime.orbit->contacts) : Json(nullptr);
     line["symmetric"] = p.regime.orbit ? Json(p.regime.orbit->symmetric) : Json(nullptr);
-    line["capture_cycle"] = p.regime.capture ? Json(std::round(p.regime.capture->tau * Omega / (2 * std::numbers::pi))) : Json(nullptr);
+    line["capture_cycle"] = p.regime.capture && p.regime.capture->tau ? Json(std::round(*p.regime.capture->tau * Omega / (2 * std::numbers::pi))) : Json(nullptr);
     line["multiplier"] = p.regime.orbit ? Json(std::abs(p.regime.orbit->multipliers[0])) : Json(nullptr);
     line["synchronised"] = p.regime.synchronised;
     line["x_max"] = p.x_max;

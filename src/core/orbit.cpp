@@ -191,8 +191,9 @@ std::optional<PeriodicOrbit> find_orbit(const Parameters& p, const State& at_who
     orbit.contacts = std::count_if(contacts.contacts.begin(), contacts.contacts.end(), [&](const Contacts& c) { return within(c.tau); });
     orbit.impacts = std::count_if(impacts.impacts.begin(), impacts.impacts.end(), [&](const Impact& i) { return within(i.tau); });
     orbit.sticks = std::count_if(contacts.sticks.begin(), contacts.sticks.end(), [&](const auto& s) { return within(s.tau_start); });
-    // Half a period on, the forcing has the opposite sign only where the period is an odd number of cycles.
-    if (orbit.cycles % 2 == 1) {
+    // Half a period on, the forcing has the opposite sign only where the period is an odd number of cycles. Walls that differ may
+    // leave the motion between their chatters the same, but not the chatters.
+    if (orbit.cycles % 2 == 1 && (p.R_plus == p.R_minus || orbit.impacts == 0)) {
         const auto half = follow(p, *found, tau, 0.5 * orbit.cycles * cycle, stop);
         orbit.symmetric = half && distance(state(-vector(*half)), *found, scale) < 1e-6;
     }

@@ -173,24 +173,26 @@ std::optional<PeriodicOrbit> orbit_of(const Parameters& p, std::span<const State
     return std::nullopt;
 }
 
-/// The first whole cycle from which on the run stays next to the orbit.
-std::size_t captured_from(const Parameters& p, const PeriodicOrbit& orbit, std::span<const State> states, const State& scale) {
+/// The first whole cycle from which on the run stays next to the orbit; none where it is not there at its end.
+std::optional<std::size_t> captured_from(const Parameters& p, const PeriodicOrbit& orbit, std::span<const State> states, const State& scale) {
     const std::vector<State> along = whole_cycle_states(p, orbit);
     const std::size_t n = along.size(), end = phase_of(states.back(), along, scale);
     std::size_t k = states.size();
     while (k > 0 && distance(states[k - 1], along[(end + n - (states.size() - k) % n) % n], scale) < captured_within) --k;
-    return std::min(k, states.size() - 1);
+    return k < states.size() ? std::optional(k) : std::nullopt;
 }
 
 /// When the run came to the orbit, and its exponents before and after.
 Capture capture_by(const Parameters& p, const State& start, std::span<const State> states, const State& scale, const RegimeEvidence& e,
                    const PeriodicOrbit& orbit, bool exponents_before) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    Capture capture{e.stroboscopic.tau(captured_from(p, orbit, states, scale)), {nan, nan, nan, nan}, orbit.exponents(p), std::nullopt};
+    const auto from = captured_from(p, orbit, states, scale);
+    Capture capture{from ? std::optional(e.stroboscopic.tau(*from)) : std::nullopt, {nan, nan, nan, nan}, orbit.exponents(p), std::nullopt};
     if (!exponents_before) return capture;
-    Lyapunov before(p, 0, capture.tau, {true, false, false, 256});
+    const double until = capture.tau.value_or(e.tau_end);
+    Lyapunov before(p, 0, until, {true, false, false, 256});
     Observer* const observers[] = {&before};
-    if (simulate(p, start, {capture.tau, std::numeric_limits<long>::max(), e.stop}, observers).reason != End::tau_end) return capture;
+    if (simulate(p, start, {until, std::numeric_limits<long>::max(), e.stop}, observers).reason != End::tau_end) return capture;
     capture.before = before.product().qr();
     capture.chaotic_before = verdict_by_exponents(growth_of(before.product())) == Verdict::chaotic;
     return capture;
@@ -261,7 +263,7 @@ Regime regime_of(const Parameters& p, const State& start, const RegimeEvidence& 
 
 Judgement judge(const Growth& g, const Regime& r, double tau_start) {
     if (!r.forced) return {Verdict::not_decided, VerdictReason::free_decay};
-    if (r.capture && tau_start >= r.capture->tau) return {Verdict::regular, VerdictReason::on_orbit};
+    if (r.capture && r.capture->tau && tau_start >= *r.capture->tau) return {Verdict::regular, VerdictReason::on_orbit};
     if (verdict_by_exponents(g) == Verdict::chaotic) return {Verdict::chaotic, VerdictReason::growth};
     if (r.capture && r.capture->chaotic_before == false) return {Verdict::regular, VerdictReason::settling};
     const VerdictReason why = r.capture                                         ? VerdictReason::transient

@@ -45,10 +45,10 @@ struct SynchronyStretch {
     long contacts;
 };
 
-/// The moment from which on a run stays next to the periodic orbit that attracts it.
+/// How a run comes to the periodic orbit that attracts it.
 struct Capture {
-    double tau;
-    Exponents before;  ///< qr, from the run's first impact to tau; NaN where there is too little
+    std::optional<double> tau;  ///< from when on it stays next to it; none: it ends before that, and following it further showed where it goes
+    Exponents before;  ///< qr, from the run's first impact to tau, or to its end; NaN where there is too little
     Exponents after;   ///< from the Floquet multipliers
     std::optional<bool> chaotic_before;  ///< by verdict_by_exponents(): the run was chaotic and then captured, not just settling; none: not known
 };

@@ -113,7 +113,7 @@ Ensemble ensemble(double b, Damping damping, bool raw) {
         simulate(p, start, {length * windows, 10000000, {}}, observers);
         const Regime regime = regime_of(p, start, {contacts, stroboscopic, 0, length * windows, verdict_by_exponents(growth_of(whole.product()))});
         const bool chaotic_before = regime.capture && regime.capture->chaotic_before == true;
-        const double until = chaotic_before ? regime.capture->tau : length * windows;
+        const double until = chaotic_before ? regime.capture->tau.value_or(length * windows) : length * windows;
         e.captured += chaotic_before;
         if (regime.orbit && !chaotic_before) e.periodic = regime.orbit->exponents(p)[0];
         for (int i = 1; i < windows; ++i) {  // the first holds the transient from rest
