@@ -12,7 +12,7 @@ export const verdicts = {chaotic: "chaotic", regular: "regular", not_decided: "n
 const exponent = ({final, status}, k) => status[k] === "minus_infinity" ? "−∞" : digits(final[k]);
 
 function regimeCards(r) {
-  const captured = r.capture?.chaotic_before ? `; captured at τ = ${r.capture.tau.toFixed(1)} after a chaotic transient` : "";
+  const captured = r.capture?.chaotic_before ? `; captured ${r.capture.tau === null ? "behind the run's end" : `at τ = ${r.capture.tau.toFixed(1)}`} after a chaotic transient` : "";
   const chatter = r.chatter_impacts_per_period ? `, ${r.chatter_impacts_per_period} of chatter` : "";
   const sticks = r.sticks_per_period ? `, ${count(r.sticks_per_period, "stick")}` : "";
   const rhythm = !r.contacts ? "" : r.periodic
