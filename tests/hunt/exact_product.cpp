@@ -139,7 +139,8 @@ double digits_lost(const Parameters& p, const Retraced& run) {
         digits += 2 * std::log10(2 + s) + 2 * zeta * s / std::log(10.0);
         if (e.kind != Event::impact) continue;
         const Collision<Precise>& c = e.collision;
-        const double kappa = static_cast<double>(abs(c.x_ddot_before / (c.x_dot_before - c.y_dot_before))) + 2 * zeta;
+        const double kappa =
+            static_cast<double>(abs(c.x_ddot_before / (c.x_dot_before - c.y_dot_before))) + 2 * zeta;
         digits += 2 * std::log10(2 + kappa) - (c.R > 0 ? std::log10(static_cast<double>(c.R)) : 0);
     }
     return digits;
@@ -149,7 +150,8 @@ bool exact_exponents_possible(double lost) { return digits_for(lost) <= many_dig
 
 ExactExponents exact_exponents(const Parameters& p, const Retraced& run) {
     const double lost = digits_lost(p, run);
-    return digits_for(lost) <= few_digits ? exponents_in<Decimal<few_digits>>(p, run, lost) : exponents_in<Decimal<many_digits>>(p, run, lost);
+    return digits_for(lost) <= few_digits ? exponents_in<Decimal<few_digits>>(p, run, lost)
+                                          : exponents_in<Decimal<many_digits>>(p, run, lost);
 }
 
 }  // namespace vines::hunt

@@ -1,4 +1,5 @@
-// The Lyapunov exponents of a run from the plain product of all its transfer matrices, in so many digits that nothing of it is lost.
+// The Lyapunov exponents of a run from the plain product of all its transfer matrices, in so many digits that
+// nothing of it is lost.
 #pragma once
 
 #include "core/lyapunov.hpp"
@@ -7,12 +8,11 @@
 namespace vines::hunt {
 
 struct ExactExponents {
-    int impacts;  ///< of the window, the first included
-    double T;     ///< from the first impact to the last
-    int rank;     ///< of the product
+    int impacts;                ///< of the window, the first included
+    double T;                   ///< from the first impact to the last
+    int rank;                   ///< of the product
     Exponents qr, eigenvalues;  ///< -infinity beyond the rank
 };
-
 
 /// How many digits the product of all matrices of a run loses at most.
 double digits_lost(const Parameters& parameters, const Retraced& run);

@@ -11,8 +11,8 @@ namespace vines::hunt {
 
 struct Judgement {
     std::vector<std::string> wrong;  ///< sentences on what is said with confidence and does not hold
-    int recurrent = 0;               ///< the period, of up to 64 cycles, that the run itself returns with at its end
-    bool missed = false;             ///< and which was not found
+    int recurrent = 0;    ///< the period, of up to 64 cycles, that the run itself returns with at its end
+    bool missed = false;  ///< and which was not found
 };
 
 Judgement judge(const Parameters& parameters, const Statement& statement, const LongRun& run);

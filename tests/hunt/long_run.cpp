@@ -37,16 +37,24 @@ private:
 class Deviation : public Observer {
 public:
     Deviation(const Parameters& p, std::vector<double>& growth, std::vector<int>& impacts, std::vector<int>& sticks)
-        : p_(p), free_(Oscillator<double>::free(p)), stuck_(Oscillator<double>::stuck(p)), growth_(growth), impacts_(impacts), sticks_(sticks) {}
+        : p_(p),
+          free_(Oscillator<double>::free(p)),
+          stuck_(Oscillator<double>::stuck(p)),
+          growth_(growth),
+          impacts_(impacts),
+          sticks_(sticks) {}
 
     void on_stretch(const Stretch& stretch) override {
-        carry(stretch.stuck_side == 0 ? flight(free_, stretch.duration) : together(stuck_, p_.epsilon, stretch.duration));
+        carry(stretch.stuck_side == 0 ? flight(free_, stretch.duration)
+                                      : together(stuck_, p_.epsilon, stretch.duration));
         const auto cycle = static_cast<std::size_t>((stretch.tau + stretch.duration) / p_.cycle());
         while (growth_.size() <= cycle) growth_.push_back(log_);
     }
     void on_impact(const Impact& i) override {
         const double x_ddot_after = i.x_ddot_before - free_.damping * (i.x_dot_after - i.x_dot_before);
-        carry(strike(Collision<double>{i.R, i.x_dot_before, i.x_dot_after, i.y_dot_before, i.y_dot_after, i.x_ddot_before, x_ddot_after}, p_.epsilon));
+        carry(strike(Collision<double>{i.R, i.x_dot_before, i.x_dot_after, i.y_dot_before, i.y_dot_after,
+                                       i.x_ddot_before, x_ddot_after},
+                     p_.epsilon));
         count(impacts_, i.tau);
     }
     void on_stick(const StickStart& s) override { count(sticks_, s.tau); }
@@ -97,7 +105,9 @@ LongRun::LongRun(const Parameters& p, const State& start, int cycles) : paramete
     sticks_.resize(std::max(sticks_.size(), static_cast<std::size_t>(cycles_) + 1));
 }
 
-int LongRun::complete_cycles() const { return std::min(static_cast<int>(states_.size() - 1) / 2, static_cast<int>(growth_.size()) - 1); }
+int LongRun::complete_cycles() const {
+    return std::min(static_cast<int>(states_.size() - 1) / 2, static_cast<int>(growth_.size()) - 1);
+}
 
 LongRun::Scale LongRun::scale_at(int cycle) const {
     Scale scale{0, 0, parameters_.b};
@@ -112,7 +122,8 @@ LongRun::Scale LongRun::scale_at(int cycle) const {
 
 double LongRun::distance(const State& a, const State& b, const Scale& scale) const {
     const double gap = (a.x - a.y) - (b.x - b.y);
-    return std::max({std::abs(a.x - b.x) / scale.x, std::abs(a.x_dot - b.x_dot) / scale.x, std::abs(a.y_dot - b.y_dot) / scale.y_dot, std::abs(gap) / scale.gap});
+    return std::max({std::abs(a.x - b.x) / scale.x, std::abs(a.x_dot - b.x_dot) / scale.x,
+                     std::abs(a.y_dot - b.y_dot) / scale.y_dot, std::abs(gap) / scale.gap});
 }
 
 int LongRun::period_at(int at) const {
@@ -120,10 +131,12 @@ int LongRun::period_at(int at) const {
     const auto returns = [&](int period, double tolerance) {
         const int looked_at = std::max(2 * period, 10);
         for (int k = 0; k < looked_at; ++k)
-            if (at - k < period || !(distance(at_cycle(at - k), at_cycle(at - k - period), scale) < tolerance)) return false;
+            if (at - k < period || !(distance(at_cycle(at - k), at_cycle(at - k - period), scale) < tolerance))
+                return false;
         return true;
     };
-    // A shorter return may be spoilt by the rounding in a chatter, or still be converging: the slower of two multipliers.
+    // A shorter return may be spoilt by the rounding in a chatter, or still be converging: the slower of two
+    // multipliers.
     const auto returns_in_the_end = [&](int period) {
         if (returns(period, 100 * returned)) return true;
         const int before = at - at / 4;
@@ -145,11 +158,14 @@ bool LongRun::returns_all_along(int from, int to) const {
         if (miss(middle, period) < 0.5 * miss(middle, nearest)) nearest = period;
     int returns = 0;
     const Scale scale = scale_at(middle);
-    for (int k = from + nearest; k <= to; ++k) returns += distance(at_cycle(k), at_cycle(k - nearest), scale) < 1e-3;
+    for (int k = from + nearest; k <= to; ++k)
+        returns += distance(at_cycle(k), at_cycle(k - nearest), scale) < 1e-3;
     return returns > 0.8 * (to - from - nearest);
 }
 
-double LongRun::miss(int at, int period) const { return distance(at_cycle(at), at_cycle(at - period), scale_at(at)); }
+double LongRun::miss(int at, int period) const {
+    return distance(at_cycle(at), at_cycle(at - period), scale_at(at));
+}
 
 int LongRun::captured_from(int period, double within) const {
     const Scale scale = scale_at(cycles_);
@@ -160,7 +176,8 @@ int LongRun::captured_from(int period, double within) const {
 
 bool LongRun::ends_symmetric(int period) const {
     if (period % 2 == 0) return false;  // half a period on, the forcing is the same
-    const State now = at_cycle(cycles_), half = states_[2 * static_cast<std::size_t>(cycles_) - static_cast<std::size_t>(period)];
+    const State now = at_cycle(cycles_),
+                half = states_[2 * static_cast<std::size_t>(cycles_) - static_cast<std::size_t>(period)];
     return distance(now, {-half.x_dot, -half.x, -half.y_dot, -half.y}, scale_at(cycles_)) < 1e-6;
 }
 
@@ -172,7 +189,8 @@ LongRun::PeriodContacts LongRun::contacts_at_end(int period) const {
         sum.impacts += impacts_[k];
         sum.sticks += sticks_[k];
     }
-    return {static_cast<int>(std::lround(1.0 * sum.impacts / periods)), static_cast<int>(std::lround(1.0 * sum.sticks / periods))};
+    return {static_cast<int>(std::lround(1.0 * sum.impacts / periods)),
+            static_cast<int>(std::lround(1.0 * sum.sticks / periods))};
 }
 
 double LongRun::growth(int from, int to) const { return growth_[to] - growth_[from]; }

@@ -6,7 +6,8 @@ namespace vines::hunt {
 
 namespace {
 
-/// The zero of a function next to a guess: Newton's method, each step doubling the digits. {value, slope} = function(s).
+/// The zero of a function next to a guess: Newton's method, each step doubling the digits. {value, slope} =
+/// function(s).
 template <class Function>
 Precise zero_near(Precise s, Function function) {
     for (int step = 0; step < 12; ++step) {
@@ -34,12 +35,14 @@ Retraced retrace(const Parameters& p, const State& start, const std::vector<Even
             if (event.tau > 0)
                 e.since = zero_near(guess, [&](const Precise& s) {
                     const auto at = free.after(lo, theta, s);
-                    return std::pair{Precise(at.x - y - y_dot * s - event.side * Precise(p.b)), Precise(at.x_dot - y_dot)};
+                    return std::pair{Precise(at.x - y - y_dot * s - event.side * Precise(p.b)),
+                                     Precise(at.x_dot - y_dot)};
                 });
         } else if (event.kind == Event::release) {
             e.since = zero_near(guess, [&](const Precise& s) {
                 const auto at = stuck.after(lo, theta, s);
-                return std::pair{stuck.acceleration(at, theta + stuck.Omega * s), stuck.jerk(at, theta + stuck.Omega * s)};
+                return std::pair{stuck.acceleration(at, theta + stuck.Omega * s),
+                                 stuck.jerk(at, theta + stuck.Omega * s)};
             });
         }
         const auto& law = event.kind == Event::release ? stuck : free;

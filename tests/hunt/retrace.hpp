@@ -1,4 +1,5 @@
-// A run's events once more in 100 digits. The run in double precision says only which event comes next and about when.
+// A run's events once more in 100 digits. The run in double precision says only which event comes next and about
+// when.
 #pragma once
 
 #include <vector>
@@ -29,7 +30,7 @@ public:
 /// An event with what its transfer matrix is made from.
 struct PreciseEvent {
     Event::Kind kind;
-    Precise since;  ///< time since the event before, or since tau = 0
+    Precise since;                 ///< time since the event before, or since tau = 0
     Collision<Precise> collision;  ///< of an impact
 };
 

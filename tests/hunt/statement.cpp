@@ -28,7 +28,8 @@ Statement sweep_point(const System& system, int transient, int cycles) {
     const PointResult r = measure(p, system.start, options, {});
     Statement s{};
     s.door = "sweep, " + std::to_string(transient) + " + " + std::to_string(cycles) + " cycles";
-    s.start = simulate(p, system.start, {transient * p.cycle(), transient * transient_impacts_per_cycle, {}}, {}).state;
+    s.start =
+        simulate(p, system.start, {transient * p.cycle(), transient * transient_impacts_per_cycle, {}}, {}).state;
     s.cycles = cycles;
     s.complete = r.measured && r.outcome.reason == End::tau_end;
     s.verdict = r.verdict;
@@ -44,7 +45,8 @@ Statement sweep_point(const System& system, int transient, int cycles) {
         s.chaotic_before = r.regime.capture->chaotic_before;
     }
     s.type = name_of(r.regime.type);
-    s.request = request(system, "\"transient_cycles\":" + std::to_string(transient) + ",\"cycles\":" + std::to_string(cycles));
+    s.request = request(
+        system, "\"transient_cycles\":" + std::to_string(transient) + ",\"cycles\":" + std::to_string(cycles));
     return s;
 }
 
@@ -53,7 +55,8 @@ Statement simulation(const System& system, int cycles) {
     s.door = "simulation, " + std::to_string(cycles) + " cycles";
     s.start = system.start;
     s.cycles = cycles;
-    s.request = request(system, "\"cycles\":" + std::to_string(cycles) + ",\"max_impacts\":" + std::to_string(most_impacts) +
+    s.request = request(system, "\"cycles\":" + std::to_string(cycles) +
+                                    ",\"max_impacts\":" + std::to_string(most_impacts) +
                                     ",\"include\":[\"exponents\",\"regime\"],\"exponents\":[\"qr\"]");
     const api::Json answer = api::simulate_answer(api::read_simulate_request(api::Json::parse(s.request)), {});
     const api::Json &exponents = answer["exponents"], &regime = answer["regime"];

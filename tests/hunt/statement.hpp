@@ -9,16 +9,16 @@
 namespace vines::hunt {
 
 struct Statement {
-    std::string door;     ///< which door it comes through
-    State start;          ///< of the measured run
-    int cycles;           ///< measured
-    bool complete;        ///< it ran to its end
+    std::string door;  ///< which door it comes through
+    State start;       ///< of the measured run
+    int cycles;        ///< measured
+    bool complete;     ///< it ran to its end
     Verdict verdict;
     double lambda1, error;
     bool periodic;
-    int period;           ///< in cycles, with what follows where periodic
+    int period;  ///< in cycles, with what follows where periodic
     bool symmetric;
-    double captured_at;   ///< in cycles
+    double captured_at;  ///< in cycles
     bool chaotic_before;
     std::string type;
     std::string request;  ///< that repeats it

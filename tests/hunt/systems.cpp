@@ -11,11 +11,15 @@ namespace {
 
 using test::uniform;
 
-double log_uniform(std::mt19937_64& engine, double from, double to) { return std::exp(uniform(engine, std::log(from), std::log(to))); }
+double log_uniform(std::mt19937_64& engine, double from, double to) {
+    return std::exp(uniform(engine, std::log(from), std::log(to)));
+}
 
 bool chance(std::mt19937_64& engine, double share) { return uniform(engine, 0, 1) < share; }
 
-void set_zeta(Parameters& p, double zeta) { p.lambda = (p.damping == Damping::closed_form ? 1 : 2) * zeta / p.epsilon; }
+void set_zeta(Parameters& p, double zeta) {
+    p.lambda = (p.damping == Damping::closed_form ? 1 : 2) * zeta / p.epsilon;
+}
 
 /// Amplitude of the oscillator without the absorber.
 double free_amplitude(const Parameters& p) {
@@ -32,9 +36,13 @@ State random_start(std::mt19937_64& engine, const Parameters& p, double amplitud
     return s;
 }
 
-System with_random_start(std::mt19937_64& engine, const Parameters& p) { return {p, random_start(engine, p, free_amplitude(p))}; }
+System with_random_start(std::mt19937_64& engine, const Parameters& p) {
+    return {p, random_start(engine, p, free_amplitude(p))};
+}
 
-Damping random_damping(std::mt19937_64& engine) { return chance(engine, 0.5) ? Damping::closed_form : Damping::equation_of_motion; }
+Damping random_damping(std::mt19937_64& engine) {
+    return chance(engine, 0.5) ? Damping::closed_form : Damping::equation_of_motion;
+}
 
 System wide(std::mt19937_64& engine) {
     Parameters p;
@@ -55,7 +63,8 @@ System table(std::mt19937_64& engine) {
     p.R_plus = p.R_minus = chance(engine, 0.5) ? 0.6 : uniform(engine, 0.3, 0.9);
     // Symmetry breaking, torus and fold of the motion with two impacts per cycle, closed form.
     const double special[] = {0.007046736303, 0.0162860264, 0.017274732497};
-    p.b = chance(engine, 0.2) ? special[engine() % 3] * uniform(engine, 0.99, 1.01) : log_uniform(engine, 0.003, 0.04);
+    p.b = chance(engine, 0.2) ? special[engine() % 3] * uniform(engine, 0.99, 1.01)
+                              : log_uniform(engine, 0.003, 0.04);
     return chance(engine, 0.5) ? System{p, default_state(p)} : with_random_start(engine, p);
 }
 
@@ -83,9 +92,15 @@ System neutral(std::mt19937_64& engine) {
     System system = wide(engine);
     Parameters& p = system.parameters;
     switch (engine() % 4) {
-        case 0: p.R_plus = p.R_minus = 1; break;
-        case 1: p.R_plus = 1; break;
-        case 2: p.lambda = 0; break;
+        case 0:
+            p.R_plus = p.R_minus = 1;
+            break;
+        case 1:
+            p.R_plus = 1;
+            break;
+        case 2:
+            p.lambda = 0;
+            break;
         case 3:  // not touched
             p.b = free_amplitude(p) * uniform(engine, 1.5, 5);
             system.start = {0, 0, 0, 0};
@@ -97,7 +112,8 @@ System neutral(std::mt19937_64& engine) {
 }  // namespace
 
 std::mt19937_64 engine_of(std::uint64_t seed, int number) {
-    std::seed_seq all{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32), static_cast<std::uint32_t>(number)};
+    std::seed_seq all{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
+                      static_cast<std::uint32_t>(number)};
     return std::mt19937_64(all);
 }
 
@@ -108,18 +124,27 @@ const char* name_of(Kind kind) {
 
 Kind random_kind(std::mt19937_64& engine) {
     const double u = uniform(engine, 0, 1);
-    return u < 0.45 ? Kind::wide : u < 0.65 ? Kind::table : u < 0.75 ? Kind::band : u < 0.92 ? Kind::contracting : Kind::neutral;
+    return u < 0.45   ? Kind::wide
+           : u < 0.65 ? Kind::table
+           : u < 0.75 ? Kind::band
+           : u < 0.92 ? Kind::contracting
+                      : Kind::neutral;
 }
 
 namespace {
 
 System any_system(Kind kind, std::mt19937_64& engine) {
     switch (kind) {
-        case Kind::wide: return wide(engine);
-        case Kind::table: return table(engine);
-        case Kind::band: return band(engine);
-        case Kind::contracting: return contracting(engine);
-        case Kind::neutral: return neutral(engine);
+        case Kind::wide:
+            return wide(engine);
+        case Kind::table:
+            return table(engine);
+        case Kind::band:
+            return band(engine);
+        case Kind::contracting:
+            return contracting(engine);
+        case Kind::neutral:
+            return neutral(engine);
     }
     return {};
 }
@@ -141,7 +166,9 @@ System strongly_damped(std::mt19937_64& engine) {
     p.Omega = log_uniform(engine, 0.2, 3);
     p.G = log_uniform(engine, 1e-3, 10);
     // Small R leads to sticks, R = 0 to a lost direction at every impact.
-    p.R_plus = chance(engine, 0.15) ? 0 : chance(engine, 0.3) ? uniform(engine, 0.05, 0.3) : uniform(engine, 0.3, 1);
+    p.R_plus = chance(engine, 0.15)  ? 0
+               : chance(engine, 0.3) ? uniform(engine, 0.05, 0.3)
+                                     : uniform(engine, 0.3, 1);
     p.R_minus = chance(engine, 0.6) ? p.R_plus : uniform(engine, 0.05, 1);
     p.b = free_amplitude(p) * log_uniform(engine, 0.1, 1);
     System system = with_random_start(engine, p);
@@ -153,10 +180,11 @@ std::string request(const System& system, const std::string& more) {
     const auto& [p, s] = system;
     char text[700];
     std::snprintf(text, sizeof text,
-                  "{\"epsilon\":%.17g,\"lambda\":%.17g,\"damping\":\"%s\",\"G\":%.17g,\"Omega\":%.17g,\"R_plus\":%.17g,\"R_minus\":%.17g,\"b\":%.17g,"
+                  "{\"epsilon\":%.17g,\"lambda\":%.17g,\"damping\":\"%s\",\"G\":%.17g,\"Omega\":%.17g,\"R_plus\":%."
+                  "17g,\"R_minus\":%.17g,\"b\":%.17g,"
                   "\"x0\":%.17g,\"x_dot0\":%.17g,\"y0\":%.17g,\"y_dot0\":%.17g",
-                  p.epsilon, p.lambda, p.damping == Damping::closed_form ? "closed_form" : "equation_of_motion", p.G, p.Omega, p.R_plus, p.R_minus, p.b,
-                  s.x, s.x_dot, s.y, s.y_dot);
+                  p.epsilon, p.lambda, p.damping == Damping::closed_form ? "closed_form" : "equation_of_motion",
+                  p.G, p.Omega, p.R_plus, p.R_minus, p.b, s.x, s.x_dot, s.y, s.y_dot);
     return text + ("," + more) + "}";
 }
 

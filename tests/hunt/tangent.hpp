@@ -1,5 +1,5 @@
-// How deviations [x' x y' y] are carried by flights, stuck phases and impacts, in any arithmetic. Derived anew from the
-// equations of motion, so that it shares nothing with the matrices that it judges.
+// How deviations [x' x y' y] are carried by flights, stuck phases and impacts, in any arithmetic. Derived anew from
+// the equations of motion, so that it shares nothing with the matrices that it judges.
 #pragma once
 
 #include <vector>
@@ -54,7 +54,8 @@ Square<Real> flight(const Oscillator<Real>& law, const Real& s) {
 template <class Real>
 Square<Real> together(const Oscillator<Real>& law, const Real& epsilon, const Real& s) {
     const auto a = law.transfer(s);
-    const Real weight[2] = {1 / (1 + epsilon), epsilon / (1 + epsilon)}, block[2][2] = {{a.a11, a.a12}, {a.a21, a.a22}};
+    const Real weight[2] = {1 / (1 + epsilon), epsilon / (1 + epsilon)},
+               block[2][2] = {{a.a11, a.a12}, {a.a21, a.a22}};
     Square<Real> K(4);
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 4; ++j) K(i, j) = block[i % 2][j % 2] * weight[j / 2];
@@ -68,12 +69,13 @@ struct Collision {
 
     template <class Other>
     Collision<Other> as() const {
-        return {Other(R), Other(x_dot_before), Other(x_dot_after), Other(y_dot_before), Other(y_dot_after), Other(x_ddot_before), Other(x_ddot_after)};
+        return {Other(R),           Other(x_dot_before),  Other(x_dot_after), Other(y_dot_before),
+                Other(y_dot_after), Other(x_ddot_before), Other(x_ddot_after)};
     }
 };
 
-/// M of an impact: a deviation d meets the wall later by -(g d)/(g f-), g = [0 1 0 -1]; until then it moves by f-, from then
-/// on by f+: M = S + (f+ - S f-) g/(g f-), f = [x'' x' 0 y'].
+/// M of an impact: a deviation d meets the wall later by -(g d)/(g f-), g = [0 1 0 -1]; until then it moves by f-,
+/// from then on by f+: M = S + (f+ - S f-) g/(g f-), f = [x'' x' 0 y'].
 template <class Real>
 Square<Real> strike(const Collision<Real>& c, const Real& epsilon) {
     const Real gain = (1 + c.R) / (1 + epsilon);

@@ -15,7 +15,7 @@ constexpr int transient = 200, measured = 1000;
 constexpr int longer = 20;
 
 struct Findings {
-    std::string report;   ///< of what is wrong
+    std::string report;  ///< of what is wrong
     int wrong = 0, statements = 0, unjudged = 0;
     int verdicts[3] = {};
     int recurrent = 0, missed = 0, longest = 0;
@@ -41,7 +41,8 @@ void judge_statement(const Parameters& p, const Statement& s, const LongRun& run
     f.longest = std::max(f.longest, j.recurrent);
     if (!j.missed) return;
     ++f.missed;
-    f.report += "MISSED " + s.door + ", " + kind + ": the state returns every " + std::to_string(j.recurrent) + " cycles\n    " + s.request + "\n";
+    f.report += "MISSED " + s.door + ", " + kind + ": the state returns every " + std::to_string(j.recurrent) +
+                " cycles\n    " + s.request + "\n";
 }
 
 Findings hunt_one(std::uint64_t seed, int number) {
@@ -50,7 +51,8 @@ Findings hunt_one(std::uint64_t seed, int number) {
     const System system = random_system(kind, engine);
     Findings f;
     const Statement point = sweep_point(system, transient, measured);
-    judge_statement(system.parameters, point, LongRun(system.parameters, point.start, longer * measured), name_of(kind), f);
+    judge_statement(system.parameters, point, LongRun(system.parameters, point.start, longer * measured),
+                    name_of(kind), f);
 
     const LongRun from_start(system.parameters, system.start, longer * measured);
     std::vector<Statement> runs;
@@ -74,18 +76,23 @@ bool hunt_verdicts(int systems, std::uint64_t seed, int first, int threads) {
     parallel(found.size(), threads, [&](std::size_t i) {
         const int number = first + static_cast<int>(i);
         found[i] = hunt_one(seed, number);
-        if (!found[i].report.empty()) std::printf("system %d\n%s", number, found[i].report.c_str()), std::fflush(stdout);
+        if (!found[i].report.empty())
+            std::printf("system %d\n%s", number, found[i].report.c_str()), std::fflush(stdout);
         if (++done % 100 == 0) std::fprintf(stderr, "%d of %d systems\n", done.load(), systems);
     });
     Findings all;
     int systems_wrong = 0;
     for (const Findings& f : found) {
         systems_wrong += f.wrong > 0;
-        all.wrong += f.wrong, all.statements += f.statements, all.unjudged += f.unjudged, all.recurrent += f.recurrent, all.missed += f.missed;
+        all.wrong += f.wrong, all.statements += f.statements, all.unjudged += f.unjudged,
+            all.recurrent += f.recurrent, all.missed += f.missed;
         for (int k = 0; k < 3; ++k) all.verdicts[k] += f.verdicts[k];
     }
-    std::printf("%d systems, %d statements (chaotic %d, regular %d, not decided %d; %d runs cut short and not judged): %d wrong with confidence in %d systems, %d of %d periodic orbits missed\n",
-                systems, all.statements, all.verdicts[0], all.verdicts[1], all.verdicts[2], all.unjudged, all.wrong, systems_wrong, all.missed, all.recurrent);
+    std::printf(
+        "%d systems, %d statements (chaotic %d, regular %d, not decided %d; %d runs cut short and not judged): %d "
+        "wrong with confidence in %d systems, %d of %d periodic orbits missed\n",
+        systems, all.statements, all.verdicts[0], all.verdicts[1], all.verdicts[2], all.unjudged, all.wrong,
+        systems_wrong, all.missed, all.recurrent);
     return all.wrong == 0 && 1000L * all.missed <= all.recurrent;
 }
 
