@@ -41,8 +41,8 @@ Statement sweep_point(const System& system, int transient, int cycles) {
         s.symmetric = r.regime.orbit->symmetric;
     }
     if (r.regime.capture) {
-        s.captured_at = r.regime.capture->tau / p.cycle();
-        s.chaotic_before = r.regime.capture->chaotic_before;
+        if (r.regime.capture->tau) s.captured_at = *r.regime.capture->tau / p.cycle();
+        s.chaotic_before = r.regime.capture->chaotic_before == true;
     }
     s.type = name_of(r.regime.type);
     s.request = request(
@@ -70,7 +70,8 @@ Statement simulation(const System& system, int cycles) {
         s.symmetric = regime["symmetric"];
     }
     if (regime["capture"].is_object()) {
-        s.captured_at = number(regime["capture"]["tau"]) / system.parameters.cycle();
+        const api::Json& tau = regime["capture"]["tau"];
+        if (tau.is_number()) s.captured_at = tau.get<double>() / system.parameters.cycle();
         s.chaotic_before = regime["capture"]["chaotic_before"] == true;
     }
     s.type = regime["type"];

@@ -1,6 +1,7 @@
 // What the product says of a run, through its two doors: a sweep's point and the answer to a simulation.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/sweep.hpp"
@@ -18,7 +19,7 @@ struct Statement {
     bool periodic;
     int period;  ///< in cycles, with what follows where periodic
     bool symmetric;
-    double captured_at;  ///< in cycles
+    std::optional<double> captured_at;  ///< in cycles; none: not yet
     bool chaotic_before;
     std::string type;
     std::string request;  ///< that repeats it
