@@ -43,6 +43,7 @@ std::string reason_of(const Judgement& judgement, const Growth& g, const Regime&
         case VerdictReason::settling: return "the motion ends on " + orbit();
         case VerdictReason::free_decay: return "without forcing (G = 0) the motion dies out: it has no exponents of a long run";
         case VerdictReason::transient: return "the window begins in a chaotic transient;" + captured();
+        case VerdictReason::not_known_before: return captured().substr(1) + "; the time limit left none to see whether it was chaotic before";
         case VerdictReason::no_error: return "too few impacts for a standard error of lambda1";
         case VerdictReason::within_error: return sigmas + "; less than " + digits("%.0f", verdict_sigmas) + " decide nothing";
         case VerdictReason::little_growth:

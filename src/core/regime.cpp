@@ -266,7 +266,8 @@ Judgement judge(const Growth& g, const Regime& r, double tau_start) {
     if (r.capture && r.capture->tau && tau_start >= *r.capture->tau) return {Verdict::regular, VerdictReason::on_orbit};
     if (verdict_by_exponents(g) == Verdict::chaotic) return {Verdict::chaotic, VerdictReason::growth};
     if (r.capture && r.capture->chaotic_before == false) return {Verdict::regular, VerdictReason::settling};
-    const VerdictReason why = r.capture                                         ? VerdictReason::transient
+    const VerdictReason why = r.capture && !r.capture->chaotic_before           ? VerdictReason::not_known_before
+                              : r.capture                                       ? VerdictReason::transient
                               : std::isnan(g.standard_error)                    ? VerdictReason::no_error
                               : g.lambda1 < -verdict_sigmas * g.standard_error  ? VerdictReason::negative
                               : g.lambda1 <= verdict_sigmas * g.standard_error  ? VerdictReason::within_error

@@ -89,6 +89,7 @@ enum class VerdictReason {
     settling,           ///< regular: the motion settles on a stable orbit, which it was not chaotic before
     free_decay,         ///< not decided: no forcing, so the motion dies out
     transient,          ///< not decided: a chaotic transient and the orbit that captured it share the window
+    not_known_before,   ///< not decided: an orbit captured the motion, but there was no time to look at what came before
     no_error,           ///< not decided: too few impacts for a standard error
     within_error,       ///< not decided: lambda1 lies within its error
     little_growth,      ///< not decided: leaving one unstable orbit could grow as much
