@@ -184,7 +184,9 @@ TEST_CASE("a reduced field over a preset changes that field alone, in SI the qua
     const Json fig20 = parameters_of("fig20", Json::object()), fig3 = parameters_of("fig3", Json::object());
     const std::map<std::string, std::pair<double, std::set<std::string>>> fields = {
         {"epsilon", {0.01, {"m2", "c1", "F"}}}, {"lambda", {1, {"c1"}}}, {"G", {0.015, {"F"}}}, {"Omega", {1.1, {"f"}}}};
-    for (const auto& [name, change] : fields) {
+    for (const auto& field : fields) {
+        const std::string& name = field.first;  // doctest's CAPTURE takes no structured binding
+        const auto& change = field.second;
         CAPTURE(name);
         const Json over = parameters_of("fig20", {{name, change.first}});
         CHECK(over[name] == change.first);
@@ -212,7 +214,9 @@ TEST_CASE("an SI field over a preset changes that field alone, in reduced form w
         {"m2", {0.04, {"epsilon", "lambda", "G"}}}, {"F", {1e-4, {"G"}}}, {"f", {9, {"Omega"}}}};
     for (const char* preset : {"fig3", "fig20"}) {
         const Json before = parameters_of(preset, {{"m1", preset == std::string("fig3") ? table1.m1 : 4.168}});
-        for (const auto& [name, change] : fields) {
+        for (const auto& field : fields) {
+            const std::string& name = field.first;
+            const auto& change = field.second;
             CAPTURE(preset);
             CAPTURE(name);
             const Json over = parameters_of(preset, {{name, change.first}});
