@@ -12,7 +12,7 @@ before(async () => { folder = await mkdtemp(join(tmpdir(), "vines-cli-")); });
 after(() => rm(folder, {recursive: true}));
 const at = (name) => join(folder, name);
 
-/** Runs the program to its end, or sends it a signal once `until` says so: {code, out, errors}. */
+/** Runs the program to its end, or sends it one signal once `until` says so: {code, out, errors}. */
 const run = (args, {input = "", env = {}, signal, until} = {}) => new Promise((resolve) => {
   const child = spawn(program, args, {env: {...process.env, ...env}});
   let out = "", errors = "";
@@ -21,11 +21,12 @@ const run = (args, {input = "", env = {}, signal, until} = {}) => new Promise((r
   child.on("close", (code) => resolve({code, out, errors}));
   child.stdin.on("error", () => {});
   child.stdin.end(input);
-  if (!signal) return;
-  const look = setInterval(async () => {
-    if (child.exitCode !== null) return clearInterval(look);
-    if (await until()) { clearInterval(look); child.kill(signal); }
-  }, 5);
+  const look = async () => {  // one look after the other: a second signal would end the program at once
+    if (child.exitCode !== null) return;
+    if (await until()) child.kill(signal);
+    else setTimeout(look, 5);
+  };
+  if (signal) look();
 });
 
 const sweep = JSON.stringify({base: {damping: "closed_form"}, axes: [{parameter: "b", from: 0.008, to: 0.03, count: 40}], cycles: 60, section: "impact", section_points: 5});
