@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 
 namespace vines::api {
 
@@ -32,7 +31,7 @@ Json describe_history(const ExponentHistory& history) {
 }
 
 std::string reason_of(const Judgement& judgement, const Growth& g, const Regime& r) {
-    const std::string sigmas = "lambda1 = " + digits("%.3g", g.lambda1) + " lies " + digits("%.1f", std::abs(g.lambda1 / g.standard_error)) + " standard errors " +
+    const std::string sigmas = "lambda1 = " + digits("%.3g", g.lambda1) + " lies " + digits("%.1f", std::abs(g.lambda1 / g.standard_error[0])) + " standard errors " +
                                (g.lambda1 > 0 ? "above" : "below") + " zero";
     auto orbit = [&] { return "a stable periodic orbit, whose largest multiplier has the modulus " + digits("%.4g", std::abs(r.orbit->multipliers[0])); };
     auto captured = [&] { return " a periodic orbit captures the motion " + (r.capture->tau ? "at tau = " + digits("%.1f", *r.capture->tau) : "after the run's end"); };
@@ -60,7 +59,7 @@ std::string reason_of(const Judgement& judgement, const Growth& g, const Regime&
 void add_verdict(Json& j, const Growth& growth, const Regime& regime, double tau_start) {
     const Judgement judgement = judge(growth, regime, tau_start);
     j["verdict"] = word(judgement.verdict);
-    j["verdict_sigmas"] = finite_or_null(growth.lambda1 / growth.standard_error);
+    j["verdict_sigmas"] = finite_or_null(growth.lambda1 / growth.standard_error[0]);
     j["verdict_reason"] = reason_of(judgement, growth, regime);
 }
 
@@ -133,10 +132,10 @@ Json describe_derived(const System& system) {
     const Parameters& p = system.parameters;
     const double zeta = p.zeta();
     Json j = {{"zeta", zeta}, {"omega_d", zeta < 1 ? Json(std::sqrt(1 - zeta * zeta)) : Json(nullptr)}, {"A", p.A()}, {"phi", p.phi()},
-              {"cycle", 2 * std::numbers::pi / p.Omega}};
+              {"cycle", p.cycle()}};
     if (system.si) {
         j["omega0"] = system.si->omega0();
-        j["f0"] = system.si->omega0() / (2 * std::numbers::pi);
+        j["f0"] = system.si->f0();
     }
     return j;
 }
@@ -170,15 +169,14 @@ Json describe_touches(const std::vector<TouchRecord::Touch>& touches) {
     return {{"tau", column(touches, [](const auto& t) { return t.tau; })}, {"side", column(touches, [](const auto& t) { return t.side; })}};
 }
 
-Json describe_exponents(const TransferProduct& product, const ExponentOptions& estimators, const Regime& regime, bool histories, Warnings& warnings) {
+Json describe_exponents(const TransferProduct& product, const Growth& growth, const ExponentOptions& estimators, const Regime& regime, bool histories, Warnings& warnings) {
     const double start = product.start_tau(), T = product.end_tau() - start;
     Json j = {{"window", product.impacts() > 0 ? Json::array({start, product.end_tau()}) : Json(nullptr)}, {"impacts", product.impacts()},
               {"sum_rule_residual", finite_or_null(product.sum_rule_residual())}};
     if (estimators.qr) {
-        const Exponents error = standard_error(product.qr_history(), start);
-        add_verdict(j, growth_of(product), regime, start);
+        add_verdict(j, growth, regime, start);
         Json qr = with_status(product.qr());
-        qr["standard_error"] = four(error);
+        qr["standard_error"] = four(growth.standard_error);
         if (histories) qr["history"] = describe_history(product.qr_history());
         j["qr"] = std::move(qr);
     }

@@ -30,7 +30,7 @@ Json describe_sticks(const std::vector<StickRecord::Stick>& sticks);
 Json describe_touches(const std::vector<TouchRecord::Touch>& touches);
 
 /// The exponents of one window of a run of this regime. `histories` adds those of each estimator, and warnings are about it then.
-Json describe_exponents(const TransferProduct& product, const ExponentOptions& estimators, const Regime& regime, bool histories, Warnings& warnings);
+Json describe_exponents(const TransferProduct& product, const Growth& growth, const ExponentOptions& estimators, const Regime& regime, bool histories, Warnings& warnings);
 
 /// Moduli of the eigenvalues of J, M, T at each impact, and the matrices themselves. Those of T take their time: once `late`, only
 /// the last impacts have them, and a warning says so.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
 #include "api/describe.hpp"
 #include "api/record_columns.hpp"
@@ -152,7 +151,7 @@ Json forward_run(const Parameters& p, const Identification& found, const FittedM
     for (const IdentifiedImpact& i : found.impacts) {
         if (!i.fault.empty() || std::isnan(i.y_dot_after)) continue;
         // simulate() measures the phase of the forcing from that of eq. (3); the record has its own.
-        const double phase = std::atan2(motion.force_cos, motion.force_sin), start = std::fmod(i.tau + (phase - p.phi()) / p.Omega, 2 * std::numbers::pi / p.Omega);
+        const double phase = std::atan2(motion.force_cos, motion.force_sin), start = std::fmod(i.tau + (phase - p.phi()) / p.Omega, p.cycle());
         const State state{i.x_dot_after, i.x, i.y_dot_after, i.x - i.side * p.b};
         ImpactRecord impacts;
         Lyapunov lyapunov(p, 0, std::numeric_limits<double>::infinity(), {true, false, false, 256});
@@ -194,11 +193,11 @@ std::string sampling_advice(const RefinedImpacts& refined, double step, double o
 
 /// The exponents as of a simulation, in the record's time.
 Json describe_measured(const MeasuredExponents& e, const ExponentOptions& estimators, const Continuity& c, const std::vector<IdentifiedImpact>& impacts, Warnings& warnings) {
-    Json j = describe_exponents(e.all(), {true, false, false, estimators.history}, Regime{}, true, warnings);
+    Json j = describe_exponents(e.all(), growth_of(e.all()), {true, false, false, estimators.history}, Regime{}, true, warnings);
     for (const char* of_a_simulation : {"verdict", "verdict_sigmas", "verdict_reason"}) j.erase(of_a_simulation);  // the record's own follows
     for (Json& tau : j["qr"]["history"]["tau"]) tau = e.moment(tau);
     Warnings of_longest;
-    const Json longest = describe_exponents(e.longest(), {false, estimators.eigenvalues, estimators.raw_product, estimators.history}, Regime{}, true, of_longest);
+    const Json longest = describe_exponents(e.longest(), growth_of(e.longest()), {false, estimators.eigenvalues, estimators.raw_product, estimators.history}, Regime{}, true, of_longest);
     for (const std::string& warning : of_longest)
         if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) warnings.push_back(warning);
     for (const char* name : {"eigenvalues", "raw_product"})

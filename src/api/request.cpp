@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <numbers>
 
 #include "api/presets.hpp"
 
@@ -210,8 +209,8 @@ SimulateRequest read_simulate_request(const Json& given) {
     r.start = read_start(v, p);
 
     std::vector<FieldError> errors = field_errors(validate(p, r.start), object, given);
-    r.tau_end = v.has("cycles") ? v.number("cycles") * 2 * std::numbers::pi / p.Omega : v.number("tau_end");
-    const double cycle = 2 * std::numbers::pi / p.Omega, longest = std::min(longest_run, most_cycles * cycle);
+    r.tau_end = v.has("cycles") ? v.number("cycles") * p.cycle() : v.number("tau_end");
+    const double cycle = p.cycle(), longest = std::min(longest_run, most_cycles * cycle);
     if (errors.empty() && r.tau_end > longest) {  // of an Omega in its range
         const bool by_cycles = v.has("cycles");
         const double most = by_cycles ? longest / cycle : longest;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "api/describe.hpp"
 #include "core/windows.hpp"
@@ -19,7 +18,7 @@ constexpr double nearly_tangent = 1800;
 Json describe_parameters(const SimulateRequest& r) {
     Json j = describe_system(r.system);
     j.update({{"x0", r.start.x}, {"x_dot0", r.start.x_dot}, {"y0", r.start.y}, {"y_dot0", r.start.y_dot}, {"tau_end", r.tau_end},
-              {"cycles", r.tau_end * r.system.parameters.Omega / (2 * std::numbers::pi)}, {"window", {r.window.from, r.window.to}},
+              {"cycles", r.tau_end / r.system.parameters.cycle()}, {"window", {r.window.from, r.window.to}},
               {"samples_per_cycle", r.samples_per_cycle}, {"max_points", r.max_points}, {"max_impacts", r.max_impacts}});
     j["derived"] = describe_derived(r.system);
     return j;
@@ -68,7 +67,7 @@ Json describe_windows(const SimulateRequest& r, const Windows& windows, const Re
     Json list = Json::array();
     for (std::size_t i = 0; i < windows.size(); ++i) {
         Json entry = {{"asked", {r.windows[i].from, r.windows[i].to}}};
-        entry.update(describe_exponents(windows.product(i), r.estimators, regime, false, warnings));
+        entry.update(describe_exponents(windows.product(i), growth_of(windows.product(i)), r.estimators, regime, false, warnings));
         list.push_back(std::move(entry));
     }
     return list;
@@ -88,7 +87,7 @@ Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes
     Warnings warnings;
     fit_answer(r, most_bytes, warnings);
     const Parameters& p = r.system.parameters;
-    const double cycle = 2 * std::numbers::pi / p.Omega, asked_step = cycle / r.samples_per_cycle;
+    const double cycle = p.cycle(), asked_step = cycle / r.samples_per_cycle;
     const double step = std::max(asked_step, r.tau_end / static_cast<double>(r.max_points - 1));
     const auto [from, to] = r.window;
 
@@ -157,9 +156,9 @@ Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes
         answer["touches"] = describe_touches(touches.touches);
         warnings.push_back("the mass touches a wall without an impact (tangent contact): neighbouring trajectories go different ways there");
     }
-    const Verdict by_exponents = verdict_by_exponents(growth_of(lyapunov.product()));
-    const Regime regime = judged ? regime_of(p, r.start, {contacts, stroboscopic, reached.from, reached.to, by_exponents, stop.asked}) : Regime{};
-    if (wants("exponents")) answer["exponents"] = describe_exponents(lyapunov.product(), r.estimators, regime, true, warnings);
+    const Growth growth = growth_of(lyapunov.product());
+    const Regime regime = judged ? regime_of(p, r.start, {contacts, stroboscopic, reached.from, reached.to, verdict_by_exponents(growth), stop.asked}) : Regime{};
+    if (wants("exponents")) answer["exponents"] = describe_exponents(lyapunov.product(), growth, r.estimators, regime, true, warnings);
     if (!r.windows.empty()) answer["windows"] = describe_windows(r, windows, regime, warnings);
     warn_of_grazing(impacts.impacts, r, typical_speed, warnings);
     trim_to_last(transfers.transfers, r.max_points);

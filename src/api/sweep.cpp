@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
-#include <numbers>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -164,7 +163,7 @@ Json describe_section_points(const std::vector<SectionPoint>& points, Section se
 }
 
 /// `afresh`: the point was to go on from its neighbour's last state, but there was none at a whole cycle.
-Json describe_point(const SweepRequest& r, std::size_t index, double Omega, const PointResult& p, bool afresh) {
+Json describe_point(const SweepRequest& r, std::size_t index, double cycle, const PointResult& p, bool afresh) {
     Json line = located(r, index);
     if (afresh) line["carried"] = false;
     if (!p.measured) {
@@ -186,7 +185,7 @@ Json describe_point(const SweepRequest& r, std::size_t index, double Omega, cons
     line["period_cycles"] = p.regime.orbit ? Json(p.regime.orbit->cycles) : Json(nullptr);
     line["impacts_per_period"] = p.regime.orbit ? Json(p.regime.orbit->contacts) : Json(nullptr);
     line["symmetric"] = p.regime.orbit ? Json(p.regime.orbit->symmetric) : Json(nullptr);
-    line["capture_cycle"] = p.regime.capture && p.regime.capture->tau ? Json(std::round(*p.regime.capture->tau * Omega / (2 * std::numbers::pi))) : Json(nullptr);
+    line["capture_cycle"] = p.regime.capture && p.regime.capture->tau ? Json(std::round(*p.regime.capture->tau / cycle)) : Json(nullptr);
     line["multiplier"] = p.regime.orbit ? Json(std::abs(p.regime.orbit->multipliers[0])) : Json(nullptr);
     line["synchronised"] = p.regime.synchronised;
     line["x_max"] = p.x_max;
@@ -247,7 +246,7 @@ private:
             options.max_impacts = s.max_impacts;
             const PointResult result = measure(p, before ? carried(before->state, before->parameters, p) : s.start, options, [this] { return pace_.stop_or_yield(); });
             if (result.outcome.reason == End::stopped || pace_.stop_or_yield()) throw Stopped();
-            if (wanted) emit(index, describe_point(r_, index, p.Omega, result, !first && !before));
+            if (wanted) emit(index, describe_point(r_, index, p.cycle(), result, !first && !before));
             if (!result.at_end) return std::nullopt;  // no state at a whole cycle: the next point starts afresh, and its line says so
             return Carried{p, *result.at_end};
         } catch (const Problem& problem) {  // inside the corners, but no system of its own
@@ -307,6 +306,7 @@ SweepRequest read_sweep_request(const Json& given, std::size_t most_points) {
     r.options.transient_cycles = field(given, "transient_cycles").get<double>();
     const std::string section = field(given, "section"), carry = field(given, "carry_state");
     r.options.section = section == "impact" ? Section::impact : section == "stroboscopic" ? Section::stroboscopic : Section::none;
+    r.options.carry = carry != "none";
     r.options.section_points = static_cast<std::size_t>(field(given, "section_points").get<double>());
     r.carry = carry == "up" ? SweepRequest::Carry::up : carry == "down" ? SweepRequest::Carry::down : SweepRequest::Carry::none;
     if (given.contains("indices")) {

@@ -1,9 +1,10 @@
 #include "core/exterior.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "core/linear.hpp"
 
 namespace vines {
 
@@ -11,9 +12,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-// In nepers, of one part of a leg.
-constexpr double most_contraction = 4;
 
 // A product's spectral radius below this share of its norm is made of rounding as much as of the product.
 constexpr double least_radius = 1e-8;
@@ -113,9 +111,7 @@ void PowerProduct::Scaled<n>::rescale() {
 template <int n>
 double PowerProduct::Scaled<n>::log_radius() const {
     if (!matrix.allFinite()) return nan;
-    const Eigen::EigenSolver<Eigen::Matrix<double, n, n>> solver(matrix, false);
-    if (solver.info() != Eigen::Success) return nan;
-    const double radius = solver.eigenvalues().cwiseAbs().maxCoeff();
+    const double radius = eigenvalues_of(matrix).cwiseAbs().maxCoeff();
     return radius > least_radius ? log_scale + std::log(radius) : nan;
 }
 

@@ -13,8 +13,11 @@
 
 namespace vines {
 
-/// A free flight, or a stuck phase (both masses as one), in so many equal parts that none of them shrinks a deviation by
-/// more than e^-4: the product of two neighbouring lengths then keeps 14 digits.
+/// What is carried in one go shrinks no deviation by more than e to the minus this: the product of two neighbouring lengths then
+/// keeps 14 digits.
+inline constexpr double most_contraction = 4;
+
+/// A free flight, or a stuck phase (both masses as one), in equal parts of which none shrinks by more than most_contraction.
 struct Leg {
     Transfer oscillator;  ///< of one part: J's block of (x', x), eq. (19)
     double duration;      ///< of one part

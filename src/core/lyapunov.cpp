@@ -1,12 +1,12 @@
 #include "core/lyapunov.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
+
+#include "core/linear.hpp"
 
 namespace vines {
 
@@ -68,67 +68,6 @@ Status status_of(double exponent) {
 
 double rounding_floor(double lambda1, double T) { return lambda1 + std::log(std::numeric_limits<double>::epsilon()) / T; }
 
-namespace {
-
-// The growth of a window is looked at in so many equal steps of tau, and steps that are up to this many apart are taken to
-// depend on each other: a bit more than a quarter of the window. A modulated response needs that much: its growth goes up and down
-// with each modulation, so that shorter blocks, taken as independent, promise up to 2.5 times too little.
-constexpr int error_steps = 128, error_lags = 40;
-
-/// The sum of logarithms (lambda times its window) at evenly spaced tau up to the last entry of the history, for one exponent.
-std::array<double, error_steps + 1> evenly_spaced(const ExponentHistory& h, double start, std::size_t last, std::size_t stride, int exponent) {
-    std::array<double, error_steps + 1> sums{};
-    double tau_before = start, sum_before = 0;
-    std::size_t i = 0;
-    auto sum_at = [&](std::size_t k) { return h.lambda[k][exponent] * (h.tau[k] - start); };
-    for (int step = 1; step <= error_steps; ++step) {
-        const double tau = start + (h.tau[last] - start) * step / error_steps;
-        for (; i < last && h.tau[i] < tau; i += stride) tau_before = h.tau[i], sum_before = sum_at(i);
-        const double width = h.tau[i] - tau_before;
-        sums[step] = width > 0 ? sum_before + (sum_at(i) - sum_before) * std::min(1.0, (tau - tau_before) / width) : sum_at(i);
-    }
-    return sums;
-}
-
-}  // namespace
-
-std::size_t ExponentHistory::coarse_stride() const {
-    std::size_t stride = 1;
-    while ((tau.size() + stride - 1) / stride > shortest_history) stride *= 2;
-    return stride;
-}
-
-Exponents standard_error(const ExponentHistory& h, double start) {
-    if (h.tau.size() < 32 || !(h.tau.back() > start)) return no_exponents;
-    const std::size_t stride = h.coarse_stride(), last = (h.tau.size() - 1) / stride * stride;
-    const double length = h.tau[last] - start;
-    // Tukey and Hanning's estimate of the spectrum of the growth at frequency zero, times the length: the variance of the sum.
-    std::array<double, error_lags + 1> weights;
-    double taken = 1;
-    for (int lag = 0; lag <= error_lags; ++lag) {
-        weights[lag] = 0.5 * (1 + std::cos(std::numbers::pi * lag / error_lags));
-        if (lag > 0) taken += 2 * weights[lag];
-    }
-    // The mean that is removed takes its share of white growth's variance, and about half of it where growth goes up and down.
-    const double left = 1 - 0.5 * taken / error_steps;
-    Exponents error;
-    for (int k = 0; k < 4; ++k) {
-        const auto sums = evenly_spaced(h, start, last, stride, k);
-        std::array<double, error_steps> off;
-        for (int i = 0; i < error_steps; ++i) off[i] = sums[i + 1] - sums[i] - sums[error_steps] / error_steps;
-        auto covariance = [&](int lag) {
-            double sum = 0;
-            for (int i = 0; i + lag < error_steps; ++i) sum += off[i] * off[i + lag];
-            return sum;
-        };
-        double variance = covariance(0);
-        const double least = 0.02 * variance;  // the window's estimate may come out below zero
-        for (int lag = 1; lag <= error_lags; ++lag) variance += 2 * weights[lag] * covariance(lag);
-        error[k] = std::isfinite(variance) ? std::sqrt(std::max(variance, least) / left) / length : nan;
-    }
-    return error;
-}
-
 struct TransferProduct::Qr {
     // Above this |r| (it is x''/(x'- - y'-)) the columns of M Q hide each other: a volume of them computed from the sums would
     // have a relative error of |r|^2 ulp. Below, that error is under 1e-12.
@@ -181,9 +120,9 @@ struct TransferProduct::Qr {
         frame.row(2) += nu * relative;
     }
 
-    /// M = (I + r g^T) S, for g^T S = g^T. First S, in parts of which none shrinks by more than e^-4; then the shear.
+    /// M = (I + r g^T) S, for g^T S = g^T. First S, in parts of which none shrinks by more than e^-most_contraction; then the shear.
     void strike_apart(const Saltation& M, double R, double epsilon, int rank) {
-        const double parts = R > 0 ? std::max(1.0, std::ceil(-std::log(R) / 4)) : 1, part = std::pow(R, 1 / parts);
+        const double parts = R > 0 ? std::max(1.0, std::ceil(-std::log(R) / most_contraction)) : 1, part = std::pow(R, 1 / parts);
         for (int k = 1; k < parts; ++k) {
             shrink(part, epsilon);
             orthonormalise(rank);
@@ -284,10 +223,10 @@ struct TransferProduct::Raw {
 
     Exponents exponents(double T) const {
         if (!(T > 0) || !product.allFinite()) return no_exponents;
-        const Eigen::EigenSolver<Matrix4> solver(product, false);
-        if (solver.info() != Eigen::Success) return no_exponents;
+        const Eigen::Vector4cd eigenvalues = eigenvalues_of(product);
+        if (!eigenvalues.allFinite()) return no_exponents;
         Exponents lambda;
-        for (int k = 0; k < 4; ++k) lambda[k] = std::log(std::abs(solver.eigenvalues()(k))) / T;
+        for (int k = 0; k < 4; ++k) lambda[k] = std::log(std::abs(eigenvalues(k))) / T;
         std::sort(lambda.begin(), lambda.end(), std::greater<>());
         return lambda;
     }

@@ -45,10 +45,6 @@ struct ExponentHistory {
     std::size_t coarse_stride() const;
 };
 
-/// Standard errors of the four exponents as means over the history's window, from how their sums of logarithms wander about a
-/// straight line; NaN with fewer than 32 entries, and where there is no number.
-Exponents standard_error(const ExponentHistory& history, double start);
-
 /// Which estimators to run, and how many entries their histories may have (at least shortest_history). Longer ones are thinned to
 /// every second, fourth, ... impact; `eigenvalues` keeps at most 2048, for each costs three eigenvalue problems.
 struct ExponentOptions {

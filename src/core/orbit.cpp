@@ -1,9 +1,9 @@
 #include "core/orbit.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear.hpp"
 #include "core/record.hpp"
 #include "core/regime.hpp"
 
@@ -37,9 +37,9 @@ public:
     /// Eigenvalues by descending modulus. The solver's error is one of the largest: small ones get their moduli from the
     /// exterior powers.
     std::array<std::complex<double>, 4> multipliers() const {
-        const Eigen::EigenSolver<Matrix4> solver(matrix_, false);
+        const Eigen::Vector4cd eigenvalues = eigenvalues_of(matrix_);
         std::array<std::complex<double>, 4> values;
-        for (int k = 0; k < 4; ++k) values[k] = solver.eigenvalues()(k);
+        for (int k = 0; k < 4; ++k) values[k] = eigenvalues(k);
         std::stable_sort(values.begin(), values.end(), [](auto a, auto b) { return std::abs(a) > std::abs(b); });
         const auto logs = powers_.log_moduli();
         for (int k = 0; k < 4; ++k) {
@@ -107,10 +107,7 @@ std::optional<State> close(const Parameters& p, State s, double tau, int cycles,
         miss_before = size;
         const Matrix4 D = unit.asDiagonal().inverse() * (back->monodromy.matrix() - Matrix4::Identity()) * unit.asDiagonal();
         // Neutral directions (a mass at rest that is never hit) are left as they are: the smallest step solves.
-        Eigen::CompleteOrthogonalDecomposition<Matrix4> solver;
-        solver.setThreshold(1e-10);
-        solver.compute(D);
-        Eigen::Vector4d correction = -solver.solve(miss);
+        Eigen::Vector4d correction = -smallest_solution(D, miss);
         State next = state(vector(s) + correction.cwiseProduct(unit));
         for (int half = 0; half < 6 && std::abs(next.x - next.y) > p.b; ++half) {
             correction *= 0.5;
@@ -209,21 +206,18 @@ public:
     EigenCoordinates(const PeriodicOrbit& orbit, const State& scale, bool oscillator_alone) : at_(vector(orbit.state)), unit_(vector(scale)) {
         Matrix4 D = unit_.asDiagonal().inverse() * orbit.monodromy * unit_.asDiagonal();
         if (oscillator_alone) D.bottomRows<2>().setZero(), D.rightCols<2>().setZero();
-        const Eigen::EigenSolver<Matrix4> solver(D);
-        to_ = solver.eigenvectors().inverse();
-        multipliers_ = solver.eigenvalues();
+        base_ = eigen_base_of(D);
     }
-    Eigen::Vector4cd of(const State& s) const { return to_ * (vector(s) - at_).cwiseQuotient(unit_); }
+    Eigen::Vector4cd of(const State& s) const { return base_.to_coordinates * (vector(s) - at_).cwiseQuotient(unit_); }
     Eigen::Vector4cd after(Eigen::Vector4cd deviation, int periods) const {
-        for (int k = 0; k < 4; ++k) deviation(k) *= std::pow(multipliers_(k), periods);
+        for (int k = 0; k < 4; ++k) deviation(k) *= std::pow(base_.values(k), periods);
         return deviation;
     }
-    bool usable() const { return to_.allFinite(); }
+    bool usable() const { return base_.to_coordinates.allFinite(); }
 
 private:
     const Eigen::Vector4d at_, unit_;
-    Eigen::Matrix4cd to_;
-    Eigen::Vector4cd multipliers_;
+    EigenBase base_;
 };
 
 // So close, in units of the scale, the motion is on the orbit: from order one a chance return would need 1e16 cycles or more.
@@ -243,8 +237,7 @@ constexpr double linear_share = 0.2;
 bool attracts(const Parameters& p, const PeriodicOrbit& orbit, const State& at_whole_cycle, const State& scale, const Stop& stop) {
     // Without an impact nothing pulls the free mass back: its two multipliers are 1, and it is the oscillator that converges.
     const bool untouched = orbit.contacts == 0 && orbit.state.y_dot == 0;
-    const Eigen::Matrix2d oscillator = orbit.monodromy.topLeftCorner<2, 2>();
-    const double largest = untouched ? oscillator.eigenvalues().cwiseAbs().maxCoeff() : std::abs(orbit.multipliers[0]);
+    const double largest = untouched ? spectral_radius(orbit.monodromy.topLeftCorner<2, 2>()) : std::abs(orbit.multipliers[0]);
     const double per_period = -std::log(largest);
     if (!(per_period > 1e-9)) return false;  // nothing contracts, but for rounding
     std::optional<State> s = follow(p, at_whole_cycle, 0, orbit.tau, stop);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <limits>
-#include <numbers>
 #include <vector>
 
 #include "core/simulate.hpp"
@@ -41,7 +40,7 @@ private:
 /// The states at one phase of the forcing: at tau = first, first + 1, ... times 2 pi/Omega (theta = phi).
 class StroboscopicRecord : public Observer {
 public:
-    explicit StroboscopicRecord(const Parameters& parameters, long first = 0) : cycle_(2 * std::numbers::pi / parameters.Omega), first_(first) {}
+    explicit StroboscopicRecord(const Parameters& parameters, long first = 0) : cycle_(parameters.cycle()), first_(first) {}
     void on_stretch(const Stretch&) override;
 
     double tau(std::size_t k) const { return (first_ + static_cast<long>(k)) * cycle_; }

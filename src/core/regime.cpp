@@ -268,9 +268,9 @@ Judgement judge(const Growth& g, const Regime& r, double tau_start) {
     if (r.capture && r.capture->chaotic_before == false) return {Verdict::regular, VerdictReason::settling};
     const VerdictReason why = r.capture && !r.capture->chaotic_before           ? VerdictReason::not_known_before
                               : r.capture                                       ? VerdictReason::transient
-                              : std::isnan(g.standard_error)                    ? VerdictReason::no_error
-                              : g.lambda1 < -verdict_sigmas * g.standard_error  ? VerdictReason::negative
-                              : g.lambda1 <= verdict_sigmas * g.standard_error  ? VerdictReason::within_error
+                              : std::isnan(g.standard_error[0])                  ? VerdictReason::no_error
+                              : g.lambda1 < -verdict_sigmas * g.standard_error[0]  ? VerdictReason::negative
+                              : g.lambda1 <= verdict_sigmas * g.standard_error[0]  ? VerdictReason::within_error
                               : g.whole <= least_growth                         ? VerdictReason::little_growth
                                                                                 : VerdictReason::algebraic_growth;
     return {Verdict::not_decided, why};

@@ -78,7 +78,7 @@ PointResult measure(const Parameters& p, const State& start, const PointOptions&
     const TransferProduct& product = lyapunov.product();
     const Growth growth = growth_of(product);
     r.lambda = product.qr();
-    r.standard_error = standard_error(product.qr_history(), product.start_tau());
+    r.standard_error = growth.standard_error;
     r.regime = regime_of(p, begin, {contacts, stroboscopic, 0, r.outcome.tau, verdict_by_exponents(growth), stop}, false);
     r.verdict = r.regime.capture ? Verdict::regular : judge(growth, r.regime, 0).verdict;
     r.x_max = energy.peak();
@@ -90,6 +90,7 @@ PointResult measure(const Parameters& p, const State& start, const PointOptions&
     if (o.section == Section::impact) r.section = section.take();
     if (o.section == Section::stroboscopic) r.section = stroboscopic_section(stroboscopic, p.phi(), o.section_points);
 
+    if (!o.carry) return r;
     // A run that ended within a cycle goes on to the end of it.
     Outcome end = r.outcome;
     if (end.reason == End::max_impacts) {

@@ -18,6 +18,7 @@ struct PointOptions {
     long max_impacts = 1000000;      ///< of the measured part; the transient has its own limit
     Section section = Section::none;
     std::size_t section_points = 200;  ///< the last so many
+    bool carry = false;                ///< whether a neighbour goes on from the last state: PointResult::at_end
 };
 
 /// One point of a section. At impact: side, phase, x, x' and y' after the impact, and the time since the impact before
@@ -30,8 +31,8 @@ struct SectionPoint {
 struct PointResult {
     bool measured = false;           ///< false: the transient did not end, and nothing else here has a meaning
     Outcome outcome;                 ///< of the measured part, or of the transient where there is none; what it ended by
-    std::optional<State> at_end;     ///< at a whole cycle at or behind the measured part's end: what a neighbour may go on from
-    Exponents lambda, standard_error;  ///< qr
+    std::optional<State> at_end;     ///< at a whole cycle at or behind the measured part's end; with PointOptions::carry
+    Exponents lambda, standard_error;    ///< qr
     Verdict verdict;
     Regime regime;
     double x_max, x_rms, x_rms_ratio;  ///< m, m, over that without the absorber

@@ -1,8 +1,9 @@
 #include "core/transfer.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "core/linear.hpp"
 
 namespace vines {
 
@@ -17,9 +18,9 @@ void Passage::extend(const Stretch& stretch) {
 }
 
 Moduli eigenvalue_moduli(const Matrix4& m) {
-    const Eigen::EigenSolver<Matrix4> solver(m, false);
+    const Eigen::Vector4cd eigenvalues = eigenvalues_of(m);
     Moduli moduli;
-    for (int k = 0; k < 4; ++k) moduli[k] = std::abs(solver.eigenvalues()(k));
+    for (int k = 0; k < 4; ++k) moduli[k] = std::abs(eigenvalues(k));
     std::sort(moduli.begin(), moduli.end(), std::greater<>());
     return moduli;
 }

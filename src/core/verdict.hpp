@@ -23,10 +23,11 @@ inline constexpr double least_growth = 36.04;
 /// 4 ln 2 of the second half of the window: see above; one more power of t than there can be, for the bounded ups and downs.
 inline constexpr double least_late_growth = 2.77;
 
-/// What qr's first exponent of a window says. Dimensionless; NaN where there is none.
+/// How deviations grow over a window, by qr. Dimensionless; NaN where there is none.
 struct Growth {
-    double lambda1, standard_error;
-    double whole, late;  ///< sum of logarithms over the window and over its second half
+    double lambda1;
+    Exponents standard_error;  ///< of all four
+    double whole, late;        ///< sum of the first one's logarithms over the window and over its second half
 };
 Growth growth_of(const TransferProduct& product);
 

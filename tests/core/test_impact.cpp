@@ -1,10 +1,10 @@
 #include <doctest/doctest.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear.hpp"
 #include "support.hpp"
 
 using namespace vines;
@@ -57,7 +57,7 @@ TEST_CASE("|det M| = R^2 and the moduli of its eigenvalues are 1, 1, R, R") {
         const Impact i = random_impact(engine, p);
         const Matrix4 M = saltation(p, i).matrix();
         CHECK(std::abs(M.determinant()) == doctest::Approx(i.R * i.R).epsilon(1e-9));
-        Eigen::Vector4d moduli = Eigen::EigenSolver<Matrix4>(M, false).eigenvalues().cwiseAbs();
+        Eigen::Vector4d moduli = eigenvalues_of(M).cwiseAbs();
         std::sort(moduli.begin(), moduli.end());
         const Eigen::Vector4d expected(i.R, i.R, 1, 1);
         CHECK((moduli - expected).cwiseAbs().maxCoeff() < 1e-5 * M.norm());  // double eigenvalues: the root of the rounding
