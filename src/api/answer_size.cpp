@@ -22,20 +22,21 @@ struct AnswerSize {
 
 AnswerSize size_of(const SimulateRequest& r) {
     AnswerSize size;
+    const double si = r.system.si ? number : 0;  // of each column that has a twin in SI
     size.fixed += window * static_cast<double>(r.windows.size());
-    if (r.includes("series")) size.point += 5 * number;
+    if (r.includes("series")) size.point += 6 * number + 4 * si;
     if (r.includes("exponents")) {  // tau and four exponents, and the floor
-        if (r.estimators.qr) size.point += 5 * number;
-        if (r.estimators.raw_product) size.point += 6 * number;
-        if (r.estimators.eigenvalues) size.fixed += eigenvalue_history * 5 * number;
+        if (r.estimators.qr) size.point += 5 * number + si;
+        if (r.estimators.raw_product) size.point += 6 * number + si;
+        if (r.estimators.eigenvalues) size.fixed += eigenvalue_history * (5 * number + si);
     }
-    if (r.includes("eigenvalues")) size.point += 14 * number + 3 * bracket;
-    if (r.includes("matrices")) size.point += 49 * number + 15 * bracket;
-    if (r.includes("section")) size.point += 11 * number + side;
-    if (r.includes("regime")) size.point += 6 * number;    // z_moving, stretches
-    if (r.includes("manifold")) size.point += 3 * number;  // the half cycles
-    size.impact = 2 * number + side + count;  // sticking
-    if (r.includes("impacts")) size.impact += 9 * number + side + word + number + side;  // impacts, touches
+    if (r.includes("eigenvalues")) size.point += 14 * number + si + 3 * bracket;
+    if (r.includes("matrices")) size.point += 49 * number + si + 15 * bracket;
+    if (r.includes("section")) size.point += 11 * number + 7 * si + side;
+    if (r.includes("regime")) size.point += 6 * number + 3 * si;    // z_moving, stretches
+    if (r.includes("manifold")) size.point += 3 * number + 2 * si;  // the half cycles
+    size.impact = 2 * (number + si) + side + count;  // sticking
+    if (r.includes("impacts")) size.impact += 11 * number + 8 * si + side + word + number + si + side;  // impacts, touches
     return size;
 }
 

@@ -41,6 +41,7 @@ std::string reason_of(const Judgement& judgement, const Growth& g, const Regime&
         case VerdictReason::on_orbit: return "the motion is on " + orbit();
         case VerdictReason::settling: return "the motion ends on " + orbit();
         case VerdictReason::free_decay: return "without forcing (G = 0) the motion dies out: it has no exponents of a long run";
+        case VerdictReason::untouched: return "the free mass meets no wall in the end: there are no exponents to judge";
         case VerdictReason::transient: return "the window begins in a chaotic transient;" + captured();
         case VerdictReason::not_known_before: return captured().substr(1) + "; the time limit left none to see whether it was chaotic before";
         case VerdictReason::no_error: return "too few impacts for a standard error of lambda1";
@@ -100,13 +101,14 @@ const char* word(Status status) {
     return "";
 }
 
-const char* word(Verdict verdict) {
+Json word(Verdict verdict) {
     switch (verdict) {
         case Verdict::chaotic: return "chaotic";
         case Verdict::regular: return "regular";
         case Verdict::not_decided: return "not_decided";
+        case Verdict::none: return nullptr;
     }
-    return "";
+    return nullptr;
 }
 
 std::string digits(const char* format, double value) {
@@ -121,6 +123,7 @@ Json describe_system(const System& system) {
     const Parameters& p = system.parameters;
     Json j = {{"epsilon", p.epsilon}, {"lambda", p.lambda}, {"G", p.G}, {"Omega", p.Omega}, {"R_plus", p.R_plus}, {"R_minus", p.R_minus},
               {"b", p.b}, {"damping", p.damping == Damping::closed_form ? "closed_form" : "equation_of_motion"}};
+    j["origin"] = system.origin;
     if (system.si) {
         const SiParameters& si = *system.si;
         j["si"] = {{"m1", si.m1}, {"c1", si.c1}, {"k1", si.k1}, {"m2", si.m2}, {"F", si.F}, {"f", si.f}};
@@ -134,14 +137,14 @@ Json describe_derived(const System& system) {
     Json j = {{"zeta", zeta}, {"omega_d", zeta < 1 ? Json(std::sqrt(1 - zeta * zeta)) : Json(nullptr)}, {"A", p.A()}, {"phi", p.phi()},
               {"cycle", p.cycle()}};
     if (system.si) {
-        j["omega0"] = system.si->omega0();
-        j["f0"] = system.si->f0();
+        const SiParameters& si = *system.si;
+        j.update({{"omega0", si.omega0()}, {"f0", si.f0()}, {"damping_ratio", si.damping_ratio()}, {"mass_ratio", si.epsilon()}, {"cycle_s", 1 / si.f}});
     }
     return j;
 }
 
 Json describe_series(SeriesRecord&& s) {
-    return {{"tau", std::move(s.tau)}, {"x", std::move(s.x)}, {"x_dot", std::move(s.x_dot)}, {"y", std::move(s.y)}, {"y_dot", std::move(s.y_dot)}};
+    return {{"tau", std::move(s.tau)}, {"x", std::move(s.x)}, {"x_dot", std::move(s.x_dot)}, {"y", std::move(s.y)}, {"y_dot", std::move(s.y_dot)}, {"x_ddot", std::move(s.x_ddot)}};
 }
 
 Json describe_impacts(const std::vector<Impact>& impacts, double epsilon, double typical_speed) {
@@ -153,6 +156,8 @@ Json describe_impacts(const std::vector<Impact>& impacts, double epsilon, double
             {"x_dot_after", column(impacts, [](const Impact& i) { return i.x_dot_after; })},
             {"y_dot_before", column(impacts, [](const Impact& i) { return i.y_dot_before; })},
             {"y_dot_after", column(impacts, [](const Impact& i) { return i.y_dot_after; })},
+            {"x_ddot_before", column(impacts, [](const Impact& i) { return i.x_ddot_before; })},
+            {"relative_speed", column(impacts, [](const Impact& i) { return std::abs(i.relative_speed_before); })},
             {"impulse", column(impacts, [&](const Impact& i) { return i.impulse(epsilon); })},
             {"relative_speed_ratio", column(impacts, [&](const Impact& i) { return std::abs(i.relative_speed_before) / typical_speed; })},
             {"grazing", column(impacts, [](const Impact& i) { return i.grazing; })}};
@@ -262,6 +267,17 @@ Json describe_section(SectionRecord& section, const StroboscopicRecord& strobosc
               {"y_dot", column(states, [](const State& s) { return s.y_dot; })}}}};
 }
 
+/// When a half and a tenth of the energy are left, with the absorber and without it; null where the run, or an undamped motion, does not come to it.
+Json describe_decay(const Parameters& p, const State& start, const Decay& decay, double tau_start) {
+    auto moments = [](const std::vector<std::optional<double>>& tau) {
+        auto moment = [&](std::size_t k) { return tau[k] ? Json(*tau[k]) : Json(nullptr); };
+        return Json{{"tau_half", moment(0)}, {"tau_tenth", moment(1)}};
+    };
+    Json j = moments(decay.tau);
+    j["without_absorber"] = moments(unattached_decay(p, start, tau_start, decay_shares));
+    return j;
+}
+
 Json describe_energy(const Parameters& p, const State& start, const Energy& e, const Decay& decay, const Interval& window) {
     const Unattached alone = unattached(p, start, window.from, window.to);
     const double dissipated = e.impacts() + e.damper();
@@ -271,10 +287,7 @@ Json describe_energy(const Parameters& p, const State& start, const Energy& e, c
               {"at_start", e.at_start()}, {"at_end", e.at_end()}, {"rms", e.rms()}, {"peak", e.peak()},
               {"without_absorber", {{"rms", alone.rms}, {"peak", alone.peak}, {"amplitude", alone.amplitude ? Json(*alone.amplitude) : Json(nullptr)}}},
               {"rms_ratio", ratio(e.rms(), alone.rms)}, {"peak_ratio", ratio(e.peak(), alone.peak)}};
-    if (p.G == 0) {
-        auto moment = [&](std::size_t k) { return decay.tau[k] ? Json(*decay.tau[k]) : Json(nullptr); };
-        j["decay"] = {{"tau_half", moment(0)}, {"tau_tenth", moment(1)}};
-    }
+    if (p.G == 0) j["decay"] = describe_decay(p, start, decay, window.from);
     return j;
 }
 
@@ -334,6 +347,11 @@ Json describe_manifold(const Parameters& p, double V_max, std::size_t points) {
             {"stable", branch(fold.V, std::min(breaking.V, contact.V))}, {"unstable", branch(0, fold.V)}, {"asymmetric", branch(breaking.V, last)},
             {"free_amplitude", free ? Json(*free) : Json(nullptr)},
             {"b_at_free_amplitude", free && R < 1 ? Json(manifold_b(R, *free)) : Json(nullptr)}};
+}
+
+Json describe_recommendation(const std::optional<Recommendation>& r) {
+    if (!r) return nullptr;
+    return {{"b", r->b}, {"fold_share", r->fold_share}, {"x_rms_ratio", r->x_rms_ratio}, {"x_max", r->x_max}, {"regime", name_of(r->regime)}, {"start", r->start.name}};
 }
 
 }  // namespace vines::api

@@ -6,6 +6,7 @@
 #include "api/request.hpp"
 #include "core/energy.hpp"
 #include "core/manifold.hpp"
+#include "core/recommend.hpp"
 #include "core/regime.hpp"
 
 namespace vines::api {
@@ -15,7 +16,8 @@ using Warnings = std::vector<std::string>;
 Json finite_or_null(double value);
 /// The words of the answers.
 const char* word(Status status);
-const char* word(Verdict verdict);
+/// Null where there is nothing to judge.
+Json word(Verdict verdict);
 /// A number for people: with printf's format.
 std::string digits(const char* format, double value);
 
@@ -40,6 +42,8 @@ Json describe_matrices(const std::vector<ImpactTransfer>& transfers);
 /// Sections at impact and at whole forcing cycles: the last `most` points of each that lie in the window.
 Json describe_section(SectionRecord& impacts, const StroboscopicRecord& stroboscopic, const Interval& window, std::size_t most, Warnings& warnings);
 
+/// The shares of the energy at the window's start that `decay` of describe_energy() is of.
+inline const std::vector<double> decay_shares = {0.5, 0.1};
 /// `window`: what of it the run has reached.
 Json describe_energy(const Parameters& parameters, const State& start, const Energy& energy, const Decay& decay, const Interval& window);
 /// Its moving z thinned to `most` entries, and the last `most` stretches.
@@ -48,5 +52,7 @@ Json describe_regime(Regime regime, std::size_t most, Warnings& warnings);
 /// The manifold with `points` points on each branch that there is, up to V_max (0: twice the speed of the symmetry breaking) or
 /// to where the motion ends.
 Json describe_manifold(const Parameters& parameters, double V_max, std::size_t points);
+/// Null where there is none.
+Json describe_recommendation(const std::optional<Recommendation>& recommendation);
 
 }  // namespace vines::api

@@ -33,7 +33,7 @@ Field integer(std::string name, std::string description, long fallback, double m
 
 std::vector<Field> make_simulate_fields() {
     const Parameters p;
-    const SiParameters si;
+    const std::string whole = "none: a system in SI is given as a whole, or a preset for the rest";
     const std::string one = "dimensionless", speed = "m per unit of tau";
     const std::string reduced = "from the SI fields if any is given";
     return {
@@ -51,16 +51,21 @@ std::vector<Field> make_simulate_fields() {
         core_number("lambda", "reduced", one, "lambda", "damping c1/(m2 omega0)", p.lambda, reduced),
         core_number("G", "reduced", "m", "G", "amplitude of the base over epsilon", p.G, reduced),
         core_number("Omega", "reduced", one, "Omega", "forcing frequency over omega0", p.Omega, reduced),
-        number("m1", "SI", "kg", "m1", "mass of the linear oscillator; SI and reduced fields cannot be mixed", si.m1, "", 1e-9, 1e9),
-        number("c1", "SI", "N s/m", "c1", "damping of the linear oscillator", si.c1, "", 0, 1e12),
-        number("k1", "SI", "N/m", "k1", "stiffness of the linear oscillator", si.k1, "", 1e-9, 1e15),
-        number("m2", "SI", "kg", "m2", "mass of the absorber", si.m2, "", 1e-12, 1e9),
-        number("F", "SI", "m", "F", "amplitude of the base", nullptr, "0.02 m times m2/m1", 0, 1e3),
-        number("f", "SI", "Hz", "f", "forcing frequency", nullptr, "the oscillator's own, omega0/(2 pi)", 1e-9, 1e9),
+        number("m1", "SI", "kg", "m1", "mass of the linear oscillator; SI and reduced fields cannot be mixed", nullptr, whole, 1e-9, 1e9),
+        number("f0", "SI", "Hz", "f0", "its natural frequency sqrt(k1/m1)/(2 pi), in place of k1", nullptr, "from k1", 1e-9, 1e9),
+        number("k1", "SI", "N/m", "k1", "its stiffness", nullptr, whole, 1e-9, 1e15),
+        number("damping_ratio", "SI", one, "c1/(2 m1 omega0)", "its damping ratio, in place of c1", nullptr, "from c1", 0, 10),
+        number("c1", "SI", "N s/m", "c1", "its damping", nullptr, whole, 0, 1e12),
+        number("mass_ratio", "SI", one, "m2/m1", "mass of the absorber over m1, in place of m2", nullptr, "from m2", 1e-9, 10),
+        number("m2", "SI", "kg", "m2", "mass of the absorber", nullptr, whole, 1e-12, 1e9),
+        number("F", "SI", "m", "F", "amplitude of the base, which moves by F sin(2 pi f t)", nullptr, whole, 0, 1e3),
+        number("f", "SI", "Hz", "f", "forcing frequency", nullptr, whole, 1e-9, 1e9),
         core_number("x0", "start", "m", "x(0)", "displacement of the linear oscillator at tau = 0", 0),
         core_number("x_dot0", "start", speed, "x'(0)", "its velocity", 0),
+        number("x_velocity0", "start", "m/s", "dx/dt(0)", "the same in m/s, for a system in SI", nullptr, "from x_dot0", -1e9, 1e9),
         core_number("y0", "start", "m", "y(0)", "displacement of the free mass; |x0 - y0| <= b", nullptr, "0.95 b"),
         core_number("y_dot0", "start", speed, "y'(0)", "its velocity", 0),
+        number("y_velocity0", "start", "m/s", "dy/dt(0)", "the same in m/s, for a system in SI", nullptr, "from y_dot0", -1e9, 1e9),
         number("tau_end", "run", one, "tau", "how long to run; not together with cycles", 1709, "", 1e-6, longest_run),
         number("cycles", "run", one, "", "how many forcing cycles of 2 pi/Omega to run", nullptr, "from tau_end", 1e-6, 1e6),
         {"window", FieldType::interval, "run", one, "[tau_s, tau_e]",
@@ -74,6 +79,7 @@ std::vector<Field> make_simulate_fields() {
          "((33) unscaled in double precision, as in the paper)",
          Json::array({"qr", "eigenvalues", "raw_product"}), "", {}, {}, {"qr", "eigenvalues", "raw_product"}},
         number("samples_per_cycle", "output", one, "", "samples of the series per forcing cycle", 32, "", 1, 10000),
+        number("section_phase", "output", "rad", "", "phase of the stroboscopic section after each whole cycle", 0, "", 0, 6.283185307179586),
         integer("max_points", "longest series and histories; a longer series gets a larger step, longer histories are thinned", 20000, 256, 1000000),
         integer("max_impacts", "end the run after so many impacts", 100000, 1, 2000000),
     };
@@ -134,17 +140,23 @@ std::vector<Field> make_sweep_fields() {
     Field transient = integer("transient_cycles", "forcing cycles run before them", 200, 0, 1e6);
     Field section_points = integer("section_points", "the last so many points of the section are given at each point", 100, 1, 100000);
     for (Field* f : {&cycles, &transient, &section_points}) f->group = "sweep", f->unit = one;
+    Field starts = structured(FieldType::objects, "starts",
+                              "initial states {x0, x_dot0, y0, y_dot0}, each run at every point, to show coexisting attractors; or \"default set\": at rest in the middle, at a wall, moving, and the "
+                              "last states of both neighbours on the first axis, of which a line tells the worst and the best by x_max", Json::array(), "");
+    starts.choices = {default_set_of_starts};
     return {
         structured(FieldType::object, "base", "fields of /v1/simulate that all points share: system, reduced or SI, start, preset, max_impacts", Json::object()),
-        structured(FieldType::objects, "axes", "one or two: {parameter, from, to, count, scale} or {parameter, values}; the index of a point counts along the first axis fastest",
+        structured(FieldType::objects, "axes", "one to three: {parameter, from, to, count, scale} or {parameter, values}; the index of a point counts along the first axis fastest",
                    nullptr, "required"),
-        structured(FieldType::objects, "starts", "initial states {x0, x_dot0, y0, y_dot0}, each run at every point, to show coexisting attractors", Json::array(), ""),
+        std::move(starts),
         std::move(cycles),
         std::move(transient),
         {"carry_state", FieldType::choice, "sweep", "", "", "none: each point starts afresh; up, down: from the last state of its neighbour on the first axis, in ascending or descending order of the axis' entries",
          "none", "", {}, {}, {"none", "up", "down"}},
         {"section", FieldType::choice, "sweep", "", "", "points for a bifurcation diagram: at impact or at whole forcing cycles", "none", "", {}, {}, {"none", "impact", "stroboscopic"}},
         std::move(section_points),
+        number("section_phase", "sweep", "rad", "", "phase of the stroboscopic section after each whole cycle", 0, "", 0, 6.283185307179586),
+        {"reduce", FieldType::choice, "sweep", "", "", "\"max over f\": of the points along that axis only the largest x_max and where it is, as x_peak; or \"min over f\"", nullptr, "none: a line for each point", {}, {}, {}},
         structured(FieldType::integers, "indices", "only these points: those that a broken stream did not bring", nullptr, "all"),
     };
 }
@@ -282,9 +294,11 @@ void check_field(const Field& f, const Json& value, std::vector<FieldError>& err
         case FieldType::object:
             if (!value.is_object()) fault("", value, "must be an object");
             return;
-        case FieldType::objects:
-            if (!value.is_array()) fault("", value, "must be an array");
+        case FieldType::objects: {
+            const bool named = value.is_string() && std::find(f.choices.begin(), f.choices.end(), value.get<std::string>()) != f.choices.end();
+            if (!value.is_array() && !named) fault("", value, "must be an array" + (f.choices.empty() ? "" : " or \"" + list(f.choices) + "\""));
             return;
+        }
     }
 }
 
@@ -299,6 +313,22 @@ Json describe(const std::vector<Field>& fields) {
         list.push_back(std::move(entry));
     }
     return list;
+}
+
+/// What the symbols are: eq. (1) of the paper, in SI and reduced.
+Json describe_model() {
+    return {{"equations",
+             {"m1 x'' + c1 x' + k1 x = k1 F sin(2 pi f t) + 2 pi f c1 F cos(2 pi f t), m2 y'' = 0 while |x - y| < b, derivatives in t (s)",
+              "x'' + 2 zeta x' + x = epsilon G sin(Omega tau) + epsilon^2 lambda G Omega cos(Omega tau), y'' = 0 while |x - y| < b, derivatives in tau = omega0 t",
+              "at |x - y| = b: x' + epsilon y' is kept, x' - y' is reversed and shrunk by R"}},
+            {"symbols",
+             {{"x", "displacement of the linear oscillator (mass m1) from rest, absolute: that of an observer who does not move with the base"},
+              {"y", "displacement of the free mass m2, absolute, from where x - y = 0 in the middle of its cavity"},
+              {"F", "amplitude of the base in m: it moves by F sin(2 pi f t) and carries spring k1 and damper c1; F = epsilon G"},
+              {"b", "half-width of the cavity: its free length is 2 b and the diameter of the ball, with walls where x - y = b (side 1) and x - y = -b (side -1)"},
+              {"omega0", "sqrt(k1/m1), rad/s"}, {"epsilon", "m2/m1"}, {"lambda", "c1/(m2 omega0)"}, {"Omega", "2 pi f/omega0"}, {"G", "F/epsilon, m"},
+              {"zeta", "epsilon lambda/2 = c1/(2 m1 omega0) with damping equation_of_motion, twice that with closed_form"}}},
+            {"sketch", "system.svg"}};
 }
 
 /// The number that the whole of a text stands for, or the text.
@@ -386,7 +416,7 @@ const std::vector<Field>& manifold_fields() {
     return fields;
 }
 
-Json describe_fields() { return {{"fields", describe(simulate_fields())}, {"manifold_fields", describe(manifold_fields())}, {"sweep_fields", describe(sweep_fields())},
+Json describe_fields() { return {{"model", describe_model()}, {"fields", describe(simulate_fields())}, {"manifold_fields", describe(manifold_fields())}, {"sweep_fields", describe(sweep_fields())},
                                   {"axis_fields", describe(axis_fields())}, {"identify_fields", describe(identify_fields())}}; }
 
 Json from_query(const std::vector<Field>& fields, const std::vector<std::pair<std::string, std::string>>& query) {

@@ -36,6 +36,9 @@ struct Field {
 inline constexpr double longest_run = 1e7;
 inline constexpr double most_cycles = 2e6;
 
+/// In place of a list of starts.
+inline constexpr const char* default_set_of_starts = "default set";
+
 /// The fields of /v1/simulate, in the order in which a form shows them.
 const std::vector<Field>& simulate_fields();
 

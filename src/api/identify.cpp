@@ -39,11 +39,13 @@ void check_record(const std::vector<double>& time, const MeasuredRecord& r, doub
 
 IdentifyRequest read_fields(const Json& given, bool with_record) {
     IdentifyRequest r;
-    const Json object = checked(identify_fields(), given);
-    r.system = read_checked_system(identify_fields(), object, given);
+    const Layered l = layered(identify_fields(), given);
+    const Json& object = l.fields;
+    r.system = read_system_alone(l, with_record);
+    r.notes = r.system.notes;
     if (with_record && !r.system.si)
-        refuse({{"/m1", nullptr, nullptr, "a record in seconds needs the oscillator's own frequency: give m1 and k1 (and c1, m2), or a preset"},
-                {"/k1", nullptr, nullptr, "a record in seconds needs the oscillator's own frequency: give m1 and k1 (and c1, m2), or a preset"}});
+        refuse({{"/m1", nullptr, nullptr, "a record in seconds needs the oscillator's own frequency: give m1, c1, k1, m2 and f, or a preset"},
+                {"/k1", nullptr, nullptr, "a record in seconds needs the oscillator's own frequency: give m1, c1, k1, m2 and f, or a preset"}});
     r.R_given = given.contains("R") || (given.contains("R_plus") && given.contains("R_minus"));
     r.threshold = object.contains("threshold") ? object["threshold"].get<double>() : 6;
     if (object.contains("impact_times_s")) {
@@ -177,6 +179,7 @@ const char* reason_of(const IdentifiedExponents& e) {
         case Verdict::chaotic: return "the slope's 90 % interval lies above the oscillator's own damping zeta";
         case Verdict::regular: return "the slope's 90 % interval lies below the oscillator's own damping zeta";
         case Verdict::not_decided: return "the record is too short to say: the slope's 90 % interval holds the oscillator's own damping zeta, or there are too few impacts (20 for chaotic; for regular 200, or 80 whose jumps are alike: a chaotic motion may be in step for a while)";
+        case Verdict::none: return "the motion dies out: it has no exponents of a long run";
     }
     return "";
 }
@@ -287,7 +290,7 @@ Json identify_answer(const IdentifyRequest& r) {
                   {"G", std::hypot(refined.motion.force_sin, refined.motion.force_cos) / p.epsilon / std::hypot(1.0, p.lambda * p.epsilon * p.Omega)},
                   {"force_sin", refined.motion.force_sin}, {"force_cos", refined.motion.force_cos}};
         p.G = signal["G"];
-        if (!b_agrees(p, found)) warnings.push_back("the impacts' momentum fits b = " + digits("%.4g", found.b_fitted) + " m, not the given " + digits("%.4g", p.b) + " m");
+        if (!b_agrees(p, found)) warnings.push_back("the impacts' momentum fits b = " + digits("%.4g", found.b_fitted) + " m, not b = " + digits("%.4g", p.b) + " m (" + r.system.origin.at("b") + ")");
         if (!std::isfinite(found.b_fitted)) warnings.push_back("no b is fitted to the impacts' momentum: " + found.b_fault);
         doubts = doubts_of(p, refined, found);
         // What is fitted of the pulses is advice only where the rest of the fit is right.
@@ -315,9 +318,15 @@ Json identify_answer(const IdentifyRequest& r) {
     const MeasuredExponents exponents(p, found.impacts, continuity.stretches, r.estimators);
     IdentifiedExponents judged = judge_exponents(p, exponents.all().qr_history(), exponents.all().start_tau(), is_representative(found.impacts));
     if (!doubts.empty()) judged.verdict = Verdict::not_decided;
+    else if (p.G == 0 || dies_out(found.impacts)) judged.verdict = Verdict::none;
     for (const std::string& doubt : doubts) warnings.push_back("no verdict: " + doubt);
     System used = r.system;
     used.parameters = p;
+    if (!r.R_given) used.origin["R_plus"] = used.origin["R_minus"] = "estimated from the impacts";
+    if (r.impacts.empty()) {
+        used.si->F = p.G * p.epsilon;
+        used.origin["F"] = used.origin["G"] = "fitted to the record";
+    }
     Json answer = {{"version", version()}, {"parameters", describe_system(used)}};
     answer["parameters"]["derived"] = describe_derived(used);
     if (!signal.is_null()) answer["signal"] = std::move(signal);

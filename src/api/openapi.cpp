@@ -26,6 +26,7 @@ Json schema_of(const Field& f) {
         case FieldType::objects: s = {{"type", "array"}, {"items", reference(f.name == "axes" ? "Axis" : "Start")}}; break;
     }
     if (f.type == FieldType::choice && !f.choices.empty()) s["enum"] = f.choices;
+    if (f.type == FieldType::objects && !f.choices.empty()) s = {{"anyOf", {s, {{"type", "string"}, {"enum", f.choices}}}}};
     if (f.minimum) s["minimum"] = *f.minimum, s["maximum"] = *f.maximum;
     if (!f.fallback.is_null()) s["default"] = f.fallback;
     std::string text = f.description;
@@ -108,7 +109,7 @@ Json plain(const std::string& id, const std::string& summary) {
 Json openapi() {
     const Json simulated = {{"200", answer("what was asked for by include", "application/json", reference("Simulation"))}};
     const Json manifold = {{"200", answer("the manifold", "application/json", parts({{"version", ""}, {"parameters", "resolved, with derived"}, {"warnings", ""}, {"manifold", "fold, branches, hints"}}))}};
-    const Json swept = {{"200", answer("a line of JSON each: start, point, progress, done or error", "application/x-ndjson", reference("SweepLine"))}};
+    const Json swept = {{"200", answer("a line of JSON each: start, point, progress, warning, done or error", "application/x-ndjson", reference("SweepLine"))}};
     Json paths = {
         {"/v1/simulate",
          {{"get", with_query(operation("simulate_by_query", "one run", simulated), simulate_fields())}, {"post", with_body(operation("simulate", "one run", simulated), "SimulateRequest")}}},
@@ -117,7 +118,7 @@ Json openapi() {
         {"/v1/manifold",
          {{"get", with_query(operation("manifold_by_query", "the slow invariant manifold", manifold), manifold_fields())},
           {"post", with_body(operation("manifold", "the slow invariant manifold", manifold), "ManifoldRequest")}}},
-        {"/v1/parameters", plain("parameters", "every field: type, unit, range, default, meaning")},
+        {"/v1/parameters", plain("parameters", "the model and its symbols, and every field: type, unit, range, default, meaning")},
         {"/v1/presets", plain("presets", "one preset for each figure and table of the paper")},
         {"/v1/openapi.json", plain("openapi", "this document")},
         {"/healthz", plain("healthz", "the process answers")},
@@ -138,7 +139,7 @@ Json openapi() {
                               {"exponents", "qr, eigenvalues, raw_product over the window, with a verdict"}, {"windows", "exponents of each of the windows"},
                               {"eigenvalues", "moduli of those of J, M, T at each impact"}, {"matrices", "J, M, T themselves, by rows"}, {"section", "at impact and stroboscopic"},
                               {"energy", "balance, amplitudes, decay"}, {"regime", "type I to VI with its evidence"}, {"manifold", "slow invariant manifold and the run's half cycles"}})},
-        {"SweepLine", parts({{"type", "start, point, progress, done or error"}, {"index", "of a point"}, {"lambda", "four exponents (qr)"}, {"standard_error", "of lambda1"}, {"z", "contacts per cycle"},
+        {"SweepLine", parts({{"type", "start, point, progress, warning, done or error"}, {"index", "of a point"}, {"lambda", "four exponents (qr)"}, {"standard_error", "of the four exponents"}, {"z", "contacts per cycle"},
                              {"regime", "I to VI or none"}, {"section", "points of a bifurcation diagram"}, {"done", "points so far"}, {"of", "points wanted"}})},
         {"Problem", {{"type", "object"},
                      {"properties",

@@ -1,5 +1,7 @@
 #include "api/presets.hpp"
 
+#include "core/parameters.hpp"
+
 namespace vines::api {
 
 namespace {
@@ -25,8 +27,8 @@ Json windowed(Json parameters, double from, double to) {
 
 // Table 4. The base's amplitude is not printed; with G = .01 m at resonance and R = .85 the two responses of section 5 appear.
 Json experiment(double b, double cycles) {
-    const double F = 0.01 * 0.032 / 4.168;
-    Json p = {{"m1", 4.168}, {"c1", 3.02}, {"k1", 11.47e3}, {"m2", 0.032}, {"F", F}};
+    const SiParameters si{.m1 = 4.168, .c1 = 3.02, .k1 = 11.47e3, .m2 = 0.032, .F = 0.01 * 0.032 / 4.168};
+    Json p = {{"m1", si.m1}, {"c1", si.c1}, {"k1", si.k1}, {"m2", si.m2}, {"F", si.F}, {"f", si.f0()}};
     p.update({{"R", 0.85}, {"b", b}, {"damping", "equation_of_motion"}, {"cycles", cycles}});
     return p;
 }

@@ -85,4 +85,11 @@ Json parse_object(std::string_view text) {
     }
 }
 
+void refuse(std::vector<FieldError> errors) {
+    const std::string detail = errors.size() == 1             ? errors[0].detail
+                               : errors.size() >= most_errors ? "the first " + std::to_string(errors.size()) + " faults are listed"
+                                                              : std::to_string(errors.size()) + " fields are at fault";
+    throw Problem(422, detail, std::move(errors));
+}
+
 }  // namespace vines::api

@@ -39,4 +39,7 @@ std::string_view reason_phrase(int status);
 /// (deeper ones make the library overflow the stack) and for names that come twice (of which it would keep the last).
 Json parse_object(std::string_view text);
 
+/// Throws a Problem 422 that lists the errors.
+[[noreturn]] void refuse(std::vector<FieldError> errors);
+
 }  // namespace vines::api

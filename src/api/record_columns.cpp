@@ -5,7 +5,7 @@
 #include <optional>
 #include <set>
 
-#include "api/request.hpp"
+#include "api/problem.hpp"
 
 namespace vines::api {
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "api/describe.hpp"
+#include "api/si_columns.hpp"
 #include "core/windows.hpp"
 
 namespace vines::api {
@@ -19,7 +20,8 @@ Json describe_parameters(const SimulateRequest& r) {
     Json j = describe_system(r.system);
     j.update({{"x0", r.start.x}, {"x_dot0", r.start.x_dot}, {"y0", r.start.y}, {"y_dot0", r.start.y_dot}, {"tau_end", r.tau_end},
               {"cycles", r.tau_end / r.system.parameters.cycle()}, {"window", {r.window.from, r.window.to}},
-              {"samples_per_cycle", r.samples_per_cycle}, {"max_points", r.max_points}, {"max_impacts", r.max_impacts}});
+              {"samples_per_cycle", r.samples_per_cycle}, {"section_phase", r.section_phase}, {"max_points", r.max_points}, {"max_impacts", r.max_impacts}});
+    if (r.system.si) j["si"].update({{"x_velocity0", r.start.x_dot * r.system.si->omega0()}, {"y_velocity0", r.start.y_dot * r.system.si->omega0()}});
     j["derived"] = describe_derived(r.system);
     return j;
 }
@@ -84,7 +86,7 @@ void list_last(Entries& entries, long seen, std::size_t most, const char* name, 
 }  // namespace
 
 Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes) {
-    Warnings warnings;
+    Warnings warnings = r.system.notes;
     fit_answer(r, most_bytes, warnings);
     const Parameters& p = r.system.parameters;
     const double cycle = p.cycle(), asked_step = cycle / r.samples_per_cycle;
@@ -103,9 +105,9 @@ Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes
     Windows windows(p, {r.estimators.qr, r.estimators.eigenvalues, r.estimators.raw_product, 256});  // their histories are for the standard errors alone
     for (const Interval& w : r.windows) windows.add(w.from, w.to);
     TransferRecord transfers(p, from, to, r.max_points);
-    StroboscopicRecord stroboscopic(p);
+    StroboscopicRecord stroboscopic(p), shifted(p, 0, r.section_phase);
     Energy energy(p, from, to);
-    Decay decay(p, r.start, {0.5, 0.1});
+    Decay decay(p, from, decay_shares);
     ContactRecord contacts;
     HalfCycles half_cycles(p, from, to, r.max_points);
 
@@ -113,11 +115,11 @@ Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes
     auto observe = [&](bool wanted, auto&... observer) { if (wanted) (observers.push_back(&observer), ...); };
     observe(r.includes("series"), series);
     observe(r.includes("impacts") || r.includes("section"), impacts);
-    observe(r.includes("section"), section);
+    observe(r.includes("section"), section, shifted);
     observe(judged, lyapunov);
     observe(!r.windows.empty(), windows);
     observe(r.includes("eigenvalues") || r.includes("matrices"), transfers);
-    observe(r.includes("section") || judged, stroboscopic);
+    observe(judged, stroboscopic);
     observe(r.includes("energy"), energy, decay);
     observe(judged, contacts);
     observe(r.includes("manifold"), half_cycles);
@@ -166,7 +168,7 @@ Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes
         warnings.push_back("eigenvalues and matrices are those of the last " + std::to_string(r.max_points) + " impacts (max_points) of " + std::to_string(transfers.seen));
     if (wants("eigenvalues")) answer["eigenvalues"] = describe_eigenvalues(transfers.transfers, stop.late, warnings);
     if (wants("matrices")) answer["matrices"] = describe_matrices(transfers.transfers);
-    if (wants("section")) answer["section"] = describe_section(section, stroboscopic, r.window, r.max_points, warnings);
+    if (wants("section")) answer["section"] = describe_section(section, shifted, r.window, r.max_points, warnings);
     if (wants("energy")) answer["energy"] = describe_energy(p, r.start, energy, decay, reached);
     if (wants("regime")) answer["regime"] = describe_regime(regime, r.max_points, warnings);
     if (wants("manifold")) {
@@ -185,6 +187,13 @@ Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes
         }
         answer["manifold"]["points"] = {{"tau", half_cycles.tau}, {"C", std::move(C)}, {"V", std::move(V)}};
     }
+    if (r.system.si) {
+        for (const char* part : {"series", "impacts", "sticking", "touches", "exponents", "windows", "eigenvalues", "matrices", "section", "energy", "regime", "manifold"})
+            if (answer.contains(part)) add_si(answer[part], *r.system.si);
+        if (answer.contains("energy") && answer["energy"].is_object()) add_joules(answer["energy"], *r.system.si);
+        answer["status"]["time_s"] = outcome.tau / r.system.si->omega0();
+        add_si(answer["parameters"], *r.system.si);
+    }
     if (!left_out.empty()) warnings.push_back("the time limit for one request was over before these parts were made up, which are null: " + left_out);
     answer["warnings"] = warnings;
     return answer;
@@ -193,8 +202,11 @@ Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes
 Json manifold_answer(const ManifoldRequest& r) {
     Json parameters = describe_system(r.system);
     parameters["derived"] = describe_derived(r.system);
-    Warnings warnings;
+    Warnings warnings = r.system.notes;
     const auto free = free_amplitude(r.system.parameters);
+    const auto recommended = recommended_b(r.system.parameters, {});
+    if (!free) warnings.push_back("an undamped oscillator at resonance has no amplitude without the absorber: there is none to reduce");
+    if (free && *free > 0 && !recommended) warnings.push_back("no b is recommended: none of those tried reduces the motion at this frequency from every start");
     const double activation = manifold_fold(r.system.parameters.R_plus, r.system.parameters.Omega, r.system.parameters.b).C;
     if (free && *free < activation)
         warnings.push_back("without the absorber the oscillator reaches " + digits("%.4g", *free) + " m, less than the activation amplitude " + digits("%.4g", activation) +
@@ -202,7 +214,10 @@ Json manifold_answer(const ManifoldRequest& r) {
     const double end = manifold_second_contact(r.system.parameters.R_plus, r.system.parameters.Omega, r.system.parameters.b).V;
     if (r.V_max > end)
         warnings.push_back("the branches end at V = " + digits("%.4g", end) + ", before V_max: there the mass meets the wall that it comes from a second time");
-    return {{"version", version()}, {"parameters", std::move(parameters)}, {"warnings", warnings}, {"manifold", describe_manifold(r.system.parameters, r.V_max, r.points)}};
+    Json manifold = describe_manifold(r.system.parameters, r.V_max, r.points);
+    manifold["recommended"] = describe_recommendation(recommended);
+    if (r.system.si) add_si(manifold, *r.system.si);
+    return {{"version", version()}, {"parameters", std::move(parameters)}, {"warnings", warnings}, {"manifold", std::move(manifold)}};
 }
 
 std::string version() { return VINES_VERSION; }

@@ -184,13 +184,14 @@ int run(const SweepOptions& o) {
     Bar bar(of - request.indices.size(), of);
     SignalPace pace;
     const int threads = o.threads > 0 ? o.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    api::run_sweep(request, threads, pace, [&](std::size_t index, const Json& line) {
+    const std::string warning = api::run_sweep(request, threads, pace, [&](std::size_t index, const Json& line) {
         std::string text = line.dump();
         if (out) out->line(text);
         file.points[index] = std::move(text);
         bar.step();
     });
     out.reset();
+    if (!warning.empty()) std::fprintf(stderr, "vines: %s\n", warning.c_str());
     if (file.points.size() == of) {
         write_all(o.files.output, file.text());
         return complete;

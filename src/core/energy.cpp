@@ -16,6 +16,9 @@ struct Node {
 constexpr std::array<Node, 5> gauss = {{{0.046910077030668004, 0.11846344252809454}, {0.23076534494715845, 0.23931433524968324}, {0.5, 0.28444444444444444},
                                         {0.76923465505284155, 0.23931433524968324}, {0.95308992296933200, 0.11846344252809454}}};
 
+// Nobody waits for a decay that takes longer, in tau.
+constexpr double longest_decay = 1e6;
+
 Eigen::Vector4d vector(const Oscillation& o) { return {o.x, o.x_dot, o.sin_theta, o.cos_theta}; }
 
 }  // namespace
@@ -135,22 +138,52 @@ Unattached unattached(const Parameters& p, const State& start, double tau_start,
     return {duration > 0 ? std::sqrt(Quadrature(flow).over(begin, duration).x_squared / duration) : 0, excursion(flow, begin, duration).peak, free_amplitude(p)};
 }
 
-Decay::Decay(const Parameters& p, const State& start, std::vector<double> shares)
-    : tau(shares.size()), parameters_(p), start_(energy_of(p, start)), shares_(std::move(shares)) {}
+namespace {
+
+/// Where an energy that does not rise falls to a level between 0 and `high`, after tau_start: by bisection.
+template <class EnergyAt>
+double moment_of(EnergyAt energy_at, double level, double high, double tau_start) {
+    double low = 0;
+    while (high - low > 1e-15 * (tau_start + high)) {
+        const double middle = 0.5 * (low + high);
+        if (middle <= low || middle >= high) break;
+        (energy_at(middle) > level ? low : high) = middle;
+    }
+    return tau_start + high;
+}
+
+}  // namespace
+
+Decay::Decay(const Parameters& p, double tau_start, std::vector<double> shares) : tau(shares.size()), parameters_(p), tau_start_(tau_start), shares_(std::move(shares)) {}
 
 void Decay::on_stretch(const Stretch& stretch) {
-    const double end = energy_of(parameters_, stretch.at(stretch.duration));
+    const double from = tau_start_ - stretch.tau;
+    if (from > stretch.duration) return;
+    auto energy_at = [&](double s) { return energy_of(parameters_, stretch.at(s)); };
+    if (!at_start_) at_start_ = energy_at(std::max(0.0, from));
+    const double end = energy_at(stretch.duration);
     for (std::size_t k = 0; k < shares_.size(); ++k) {
-        const double level = shares_[k] * start_;
-        if (tau[k] || end > level) continue;
-        double low = 0, high = stretch.duration;  // E falls all along a stretch: bisection
-        while (high - low > 1e-15 * (stretch.tau + high)) {
-            const double middle = 0.5 * (low + high);
-            if (middle <= low || middle >= high) break;
-            (energy_of(parameters_, stretch.at(middle)) > level ? low : high) = middle;
-        }
-        tau[k] = stretch.tau + high;
+        const double level = shares_[k] * *at_start_;
+        if (!tau[k] && end <= level) tau[k] = std::max(tau_start_, moment_of(energy_at, level, stretch.duration, stretch.tau));
     }
+}
+
+std::vector<std::optional<double>> unattached_decay(const Parameters& p, const State& start, double tau_start, const std::vector<double>& shares) {
+    std::vector<std::optional<double>> tau(shares.size());
+    const Flow flow(1, 2 * p.zeta(), 0, p.Omega);
+    const Oscillation begin = flow.after({start.x, start.x_dot, 0, 1}, tau_start);
+    auto energy_at = [&](double s) {
+        const Oscillation o = flow.after(begin, s);
+        return 0.5 * (o.x * o.x + o.x_dot * o.x_dot);
+    };
+    if (p.zeta() == 0 || energy_at(0) == 0) return tau;
+    for (std::size_t k = 0; k < shares.size(); ++k) {
+        const double level = shares[k] * energy_at(0);
+        double high = 1;
+        while (energy_at(high) > level && high < longest_decay) high *= 2;
+        if (high < longest_decay) tau[k] = moment_of(energy_at, level, high, tau_start);
+    }
+    return tau;
 }
 
 }  // namespace vines

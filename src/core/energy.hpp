@@ -75,10 +75,10 @@ Unattached unattached(const Parameters& parameters, const State& start, double t
 double unattached_rms(const Parameters& parameters, const State& start, double duration);
 std::optional<double> free_amplitude(const Parameters& parameters);
 
-/// When the energy of a free decay (G = 0) first falls to a share of what it was at the start of the run.
+/// When the energy of a free decay (G = 0) first falls to a share of what it was at tau_start.
 class Decay : public Observer {
 public:
-    Decay(const Parameters& parameters, const State& start, std::vector<double> shares);
+    Decay(const Parameters& parameters, double tau_start, std::vector<double> shares);
     void on_stretch(const Stretch&) override;
 
     /// One for each share; none where the run ended before.
@@ -86,8 +86,12 @@ public:
 
 private:
     const Parameters parameters_;
-    const double start_;
+    const double tau_start_;
+    std::optional<double> at_start_;
     const std::vector<double> shares_;
 };
+
+/// The same of the linear oscillator without its absorber; none where it is undamped or at rest.
+std::vector<std::optional<double>> unattached_decay(const Parameters& parameters, const State& start, double tau_start, const std::vector<double>& shares);
 
 }  // namespace vines

@@ -1,6 +1,7 @@
 #include "core/measured_exponents.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -86,6 +87,20 @@ bool is_representative(const std::vector<IdentifiedImpact>& impacts) {
     for (const auto& of_side : jumps)
         for (const double jump : of_side) off.push_back(jump / median(of_side) - 1);
     return quantile_of_moduli(off, 0.9) < 0.02 + 0.001 * static_cast<double>(known - enough_if_alike);
+}
+
+bool dies_out(const std::vector<IdentifiedImpact>& impacts) {
+    constexpr std::size_t fewest = 20;
+    constexpr double least_fall = 2;
+    if (impacts.size() < fewest) return false;
+    // Of a chatter only the first impact tells how strong it was.
+    std::array<double, 4> largest{};
+    const double start = impacts.front().tau, duration = impacts.back().tau - start;
+    for (const IdentifiedImpact& i : impacts) {
+        double& of_quarter = largest[static_cast<std::size_t>(std::min(3.0, 4 * (i.tau - start) / duration))];
+        if (i.fault.empty()) of_quarter = std::max(of_quarter, std::abs(i.x_dot_after - i.x_dot_before));
+    }
+    return std::is_sorted(largest.rbegin(), largest.rend()) && largest[3] > 0 && largest[3] * least_fall < largest[0];
 }
 
 IdentifiedExponents judge_exponents(const Parameters& p, const ExponentHistory& qr, double tau_start, bool representative) {

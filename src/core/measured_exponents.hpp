@@ -67,6 +67,9 @@ struct IdentifiedExponents {
 /// 80 are the jumps of the second half alike to 2 %, in none of 150 to 9 %, as those of a periodic motion soon are: nine in ten of
 /// them, against the typical jump at their wall. (Six b from 10.8 to 13 mm, some 30,000 windows of 80 to 200 impacts.)
 bool is_representative(const std::vector<IdentifiedImpact>& impacts);
+/// Whether the impacts are those of a motion that decays: from quarter to quarter of their time the largest jump falls, to less than
+/// half in all.
+bool dies_out(const std::vector<IdentifiedImpact>& impacts);
 IdentifiedExponents judge_exponents(const Parameters& parameters, const ExponentHistory& qr, double tau_start, bool representative);
 
 }  // namespace vines

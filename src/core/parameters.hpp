@@ -23,6 +23,7 @@ struct SiParameters {
 
     double omega0() const { return std::sqrt(k1 / m1); }            ///< rad/s
     double f0() const { return omega0() / (2 * std::numbers::pi); } ///< Hz
+    double damping_ratio() const { return c1 / (2 * m1 * omega0()); }
     double epsilon() const { return m2 / m1; }                      ///< the definitions below eq. (1)
     double lambda() const { return c1 / (m2 * omega0()); }
     double G() const { return F / epsilon(); }

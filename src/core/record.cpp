@@ -2,21 +2,25 @@
 
 namespace vines {
 
-void SeriesRecord::add(double at, const State& s) {
+void SeriesRecord::add(double at, const State& s, double acceleration) {
     tau.push_back(at);
     x.push_back(s.x);
     x_dot.push_back(s.x_dot);
     y.push_back(s.y);
     y_dot.push_back(s.y_dot);
+    x_ddot.push_back(acceleration);
 }
 
 void SeriesRecord::on_stretch(const Stretch& stretch) {
-    for (double at = next_ * step_; at < stretch.tau + stretch.duration; at = ++next_ * step_)
-        add(at, stretch.at(std::max(0.0, at - stretch.tau)));
+    for (double at = next_ * step_; at < stretch.tau + stretch.duration; at = ++next_ * step_) {
+        const double s = std::max(0.0, at - stretch.tau);
+        add(at, stretch.at(s), stretch.x_ddot(s));
+    }
+    x_ddot_at_end_ = stretch.x_ddot(stretch.duration);
 }
 
 void SeriesRecord::finish(const Outcome& outcome) {
-    if (tau.empty() || tau.back() < outcome.tau) add(outcome.tau, outcome.state);
+    if (tau.empty() || tau.back() < outcome.tau) add(outcome.tau, outcome.state, x_ddot_at_end_);
 }
 
 void StroboscopicRecord::on_stretch(const Stretch& stretch) {

@@ -29,25 +29,27 @@ public:
     void on_stretch(const Stretch&) override;
     void finish(const Outcome& outcome);
 
-    std::vector<double> tau, x, x_dot, y, y_dot;
+    std::vector<double> tau, x, x_dot, y, y_dot, x_ddot;
 
 private:
-    void add(double tau, const State& state);
-    double step_;
+    void add(double tau, const State& state, double x_ddot);
+    double step_, x_ddot_at_end_ = 0;
     long next_ = 0;
 };
 
-/// The states at one phase of the forcing: at tau = first, first + 1, ... times 2 pi/Omega (theta = phi).
+/// The states at one phase of the forcing, once a cycle: at tau = (k + phase/(2 pi)) 2 pi/Omega, k = first, first + 1, ... So
+/// theta = phi + phase.
 class StroboscopicRecord : public Observer {
 public:
-    explicit StroboscopicRecord(const Parameters& parameters, long first = 0) : cycle_(parameters.cycle()), first_(first) {}
+    explicit StroboscopicRecord(const Parameters& parameters, long first = 0, double phase = 0)
+        : cycle_(parameters.cycle()), after_(phase / parameters.Omega), first_(first) {}
     void on_stretch(const Stretch&) override;
 
-    double tau(std::size_t k) const { return (first_ + static_cast<long>(k)) * cycle_; }
+    double tau(std::size_t k) const { return static_cast<double>(first_ + static_cast<long>(k)) * cycle_ + after_; }
     std::vector<State> states;  ///< the k-th at tau(k)
 
 private:
-    const double cycle_;
+    const double cycle_, after_;
     const long first_;
 };
 

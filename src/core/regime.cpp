@@ -262,7 +262,8 @@ Regime regime_of(const Parameters& p, const State& start, const RegimeEvidence& 
 }
 
 Judgement judge(const Growth& g, const Regime& r, double tau_start) {
-    if (!r.forced) return {Verdict::not_decided, VerdictReason::free_decay};
+    if (!r.forced) return {Verdict::none, VerdictReason::free_decay};
+    if (r.type == RegimeType::none && verdict_by_exponents(g) != Verdict::chaotic) return {Verdict::none, VerdictReason::untouched};
     if (r.capture && r.capture->tau && tau_start >= *r.capture->tau) return {Verdict::regular, VerdictReason::on_orbit};
     if (verdict_by_exponents(g) == Verdict::chaotic) return {Verdict::chaotic, VerdictReason::growth};
     if (r.capture && r.capture->chaotic_before == false) return {Verdict::regular, VerdictReason::settling};

@@ -87,7 +87,8 @@ enum class VerdictReason {
     growth,             ///< chaotic: by the window's own exponents
     on_orbit,           ///< regular: the window begins on the stable orbit
     settling,           ///< regular: the motion settles on a stable orbit, which it was not chaotic before
-    free_decay,         ///< not decided: no forcing, so the motion dies out
+    free_decay,         ///< none: no forcing, so the motion dies out
+    untouched,          ///< none: the motion ends without impacts
     transient,          ///< not decided: a chaotic transient and the orbit that captured it share the window
     not_known_before,   ///< not decided: an orbit captured the motion, but there was no time to look at what came before
     no_error,           ///< not decided: too few impacts for a standard error

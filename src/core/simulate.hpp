@@ -22,6 +22,8 @@ struct Stretch {
 
     /// The state of both masses at 0 <= s <= duration.
     State at(double s) const;
+    /// Acceleration of the linear oscillator there; m per unit of tau squared.
+    double x_ddot(double s) const { return flow.acceleration(flow.after(start, s)); }
 };
 
 /// A stuck phase begins: the impacts of a chatter (or a single one with R = 0) have come to their limit.

@@ -66,12 +66,13 @@ PointResult measure(const Parameters& p, const State& start, const PointOptions&
 
     Lyapunov lyapunov(p, 0, tau_end, {true, false, false, 256});
     ContactRecord contacts;
-    StroboscopicRecord stroboscopic(p);
+    StroboscopicRecord stroboscopic(p), shifted(p, 0, o.section_phase);
     Energy energy(p, 0, tau_end);
     ImpactSection section(o.section == Section::impact ? o.section_points : 0);
     section.b = p.b;
     std::vector<Observer*> observers = {&lyapunov, &contacts, &stroboscopic, &energy};
     if (o.section == Section::impact) observers.push_back(&section);
+    if (o.section == Section::stroboscopic) observers.push_back(&shifted);
     r.outcome = simulate(p, begin, {tau_end, o.max_impacts, stop}, observers);
     r.measured = true;
 
@@ -80,15 +81,18 @@ PointResult measure(const Parameters& p, const State& start, const PointOptions&
     r.lambda = product.qr();
     r.standard_error = growth.standard_error;
     r.regime = regime_of(p, begin, {contacts, stroboscopic, 0, r.outcome.tau, verdict_by_exponents(growth), stop}, false);
-    r.verdict = r.regime.capture ? Verdict::regular : judge(growth, r.regime, 0).verdict;
+    // Of what the motion ends in: a capture outweighs the transient before it.
+    r.verdict = judge(growth, r.regime, 0).verdict;
+    if (r.regime.capture && r.verdict != Verdict::none) r.verdict = r.regime.type == RegimeType::none ? Verdict::none : Verdict::regular;
     r.x_max = energy.peak();
     r.x_rms = energy.rms();
-    r.x_rms_ratio = r.x_rms / unattached_rms(p, begin, r.outcome.tau);
+    r.x_free = free_amplitude(p);
+    r.x_rms_ratio = r.x_rms / (r.x_free && *r.x_free > 0 ? *r.x_free / std::numbers::sqrt2 : unattached_rms(p, begin, r.outcome.tau));
     r.share_impacts = energy.impacts() / (energy.impacts() + energy.damper());
     r.impacts = contacts.impacts;
     r.sticks = static_cast<long>(contacts.sticks.size());
     if (o.section == Section::impact) r.section = section.take();
-    if (o.section == Section::stroboscopic) r.section = stroboscopic_section(stroboscopic, p.phi(), o.section_points);
+    if (o.section == Section::stroboscopic) r.section = stroboscopic_section(shifted, p.phi() + o.section_phase, o.section_points);
 
     if (!o.carry) return r;
     // A run that ended within a cycle goes on to the end of it.
@@ -99,6 +103,27 @@ PointResult measure(const Parameters& p, const State& start, const PointOptions&
     }
     if (end.reason == End::tau_end) r.at_end = end.state;
     return r;
+}
+
+std::vector<NamedStart> default_starts(const Parameters& p) {
+    std::vector<NamedStart> starts = {{"middle", {}}, {"wall", default_state(p)}};
+    const auto amplitude = free_amplitude(p);
+    if (!amplitude || *amplitude == 0) return starts;
+    // x = C sin(tau' - delta), tan(delta) = 2 zeta Omega/(1 - Omega^2): the steady motion at theta = phi.
+    const double delta = std::atan2(2 * p.zeta() * p.Omega, (1 - p.Omega) * (1 + p.Omega)), theta = p.phi() - delta;
+    const double x = *amplitude * std::sin(theta);
+    const double x_dot = *amplitude * p.Omega * std::cos(theta);
+    starts.push_back({"moving", {x_dot, x, 0, x}});
+    if (*amplitude < p.b) starts.push_back({"untouched", {x_dot, x, 0, 0}});
+    return starts;
+}
+
+bool ends_elsewhere(const PointResult& one, const PointResult& other) {
+    const Regime &a = one.regime, &b = other.regime;
+    if (a.type == RegimeType::none || b.type == RegimeType::none) return a.type != b.type;  // without impacts there is one motion
+    auto apart = [&](double share) { return std::abs(one.x_rms - other.x_rms) > share * std::max(one.x_rms, other.x_rms); };
+    if (a.orbit && b.orbit) return a.orbit->cycles != b.orbit->cycles || a.orbit->contacts != b.orbit->contacts || apart(0.01);
+    return apart(0.25);
 }
 
 State carried(const State& s, const Parameters& from, const Parameters& to) {

@@ -1,4 +1,4 @@
-// What is measured at one point of a parameter plane, and many of them on all cores.
+// What is measured at one point of a parameter plane, whether it depends on the start, and many points on all cores.
 #pragma once
 
 #include <functional>
@@ -18,6 +18,7 @@ struct PointOptions {
     long max_impacts = 1000000;      ///< of the measured part; the transient has its own limit
     Section section = Section::none;
     std::size_t section_points = 200;  ///< the last so many
+    double section_phase = 0;          ///< of a stroboscopic section: rad after each whole cycle
     bool carry = false;                ///< whether a neighbour goes on from the last state: PointResult::at_end
 };
 
@@ -35,7 +36,8 @@ struct PointResult {
     Exponents lambda, standard_error;    ///< qr
     Verdict verdict;
     Regime regime;
-    double x_max, x_rms, x_rms_ratio;  ///< m, m, over that without the absorber
+    double x_max, x_rms, x_rms_ratio;  ///< m, m, over that of the steady motion without the absorber (free: of the same start)
+    std::optional<double> x_free;    ///< steady amplitude without the absorber, m; none undamped at resonance
     double share_impacts;            ///< of the dissipated energy; NaN where nothing is dissipated
     long impacts, sticks;
     std::vector<SectionPoint> section;
@@ -49,6 +51,20 @@ PointResult measure(const Parameters& parameters, const State& start, const Poin
 
 /// The state that a run of other parameters takes over: the same motion, the free mass at the same place of its cavity.
 State carried(const State& state, const Parameters& from, const Parameters& to);
+
+/// A start that shows whether the motion depends on it.
+struct NamedStart {
+    const char* name;
+    State state;
+};
+/// Starts of different energy: middle (all at rest, the free mass in the middle of its cavity), wall (the default start, next to a wall);
+/// with the oscillator in its steady motion without the absorber, where there is one: moving (the free mass at rest in the middle of the cavity as it
+/// is then) and, where that motion is smaller than b, untouched (the free mass at rest at y = 0, which is then a motion for ever).
+std::vector<NamedStart> default_starts(const Parameters& parameters);
+
+/// Whether two runs of the same point end in different motions, as far as this shows without a doubt: only one without impacts, or
+/// different periods or impacts per period, or an rms of x that differs by 1 % between periodic ones, by a fourth between others.
+bool ends_elsewhere(const PointResult& one, const PointResult& other);
 
 /// Calls task(0), ..., task(count - 1), each once, from so many threads, and returns when all are done. A task that
 /// throws ends the work: the exception comes out of here once the other threads are back.

@@ -14,7 +14,8 @@
 
 namespace vines {
 
-enum class Verdict { chaotic, regular, not_decided };
+/// none: there is nothing to judge, for the motion dies out or the free mass meets no wall.
+enum class Verdict { chaotic, regular, not_decided, none };
 
 /// lambda1 must lie so many standard errors above zero.
 inline constexpr double verdict_sigmas = 3;

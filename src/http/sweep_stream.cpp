@@ -1,5 +1,6 @@
 #include "http/sweep_stream.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -80,24 +81,26 @@ private:
     bool finished_ = false;
 };
 
-Json progress(std::size_t done, std::size_t of, double seconds) {
+/// Of the lines; how long the rest will take follows from the runs.
+Json progress(std::size_t done, std::size_t of, std::size_t runs, std::size_t runs_of, double seconds) {
     const double rate = seconds > 0 ? static_cast<double>(done) / seconds : 0;
-    return {{"type", "progress"}, {"done", done}, {"of", of}, {"per_second", rate}, {"seconds_left", rate > 0 ? Json(static_cast<double>(of - done) / rate) : Json(nullptr)}};
+    const double left = done < of && runs > 0 ? static_cast<double>(runs_of - std::min(runs, runs_of)) * seconds / static_cast<double>(runs) : 0;
+    return {{"type", "progress"}, {"done", done}, {"of", of}, {"per_second", rate}, {"seconds_left", runs > 0 ? Json(left) : Json(nullptr)}, {"runs", runs}, {"runs_of", runs_of}};
 }
 
 void stream(const api::SweepRequest& request, ComputeGate& gate, Writer& out) {
     GatePace pace(gate);
     Lines lines;
-    std::string failure;
+    std::string failure, warning;
     const auto started = Clock::now();
-    const std::size_t of = request.indices.size();
+    const std::size_t of = request.indices.size(), runs_of = api::runs_of(request);
     Json start = api::sweep_start(request);
     start["of"] = of;
     if (!out.write(start.dump() + "\n")) return;
 
     std::thread computing([&] {
         try {
-            api::run_sweep(request, gate.threads(), pace, [&](std::size_t, const Json& line) { lines.push(line.dump()); });
+            warning = api::run_sweep(request, gate.threads(), pace, [&](std::size_t, const Json& line) { lines.push(line.dump()); });
         } catch (const std::exception& e) {
             failure = e.what();
         }
@@ -110,7 +113,7 @@ void stream(const api::SweepRequest& request, ComputeGate& gate, Writer& out) {
         std::string text = lines.take(done, finished);
         const auto now = Clock::now();
         if (now - reported >= report || finished) {
-            text += progress(done, of, std::chrono::duration<double>(now - started).count()).dump() + "\n";
+            text += progress(done, of, pace.runs, runs_of, std::chrono::duration<double>(now - started).count()).dump() + "\n";
             reported = now;
         }
         present = present && out.present() && (text.empty() || out.write(text));
@@ -119,6 +122,7 @@ void stream(const api::SweepRequest& request, ComputeGate& gate, Writer& out) {
     computing.join();
     if (!present) return;
     if (done == of) {
+        if (!warning.empty()) out.write(Json{{"type", "warning"}, {"message", warning}}.dump() + "\n");
         out.write(Json{{"type", "done"}, {"points", done}}.dump() + "\n");
     } else {
         const std::string detail = !failure.empty() ? "the server failed at a point; its log says why" : "the server is stopping; ask again for the indices that are missing";

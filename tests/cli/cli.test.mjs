@@ -55,6 +55,19 @@ test("identify takes a CSV file with its fields as a query, or the service's JSO
   assert.equal(JSON.parse(refused.errors).detail, 'line 3, column a: "x" is no number');
 });
 
+test("a sweep whose motion depends on the start says so on stderr, one with the default set of starts has the worst and the best in its lines", async () => {
+  const platform = {base: {m1: 12, f0: 14, damping_ratio: 0.006, mass_ratio: 0.01, F: 0.0004, R: 0.4, b: 0.03}, axes: [{parameter: "f", from: 13.8, to: 14.2, count: 3}], cycles: 100};
+  const single = await run(["sweep"], {input: JSON.stringify(platform)});
+  assert.equal(single.code, 0);
+  assert.match(single.errors, /^vines: the motion depends on the start: at 2 of 3 points/);
+  const both = await run(["sweep"], {input: JSON.stringify({...platform, starts: "default set", reduce: "max over f"})});
+  assert.deepEqual({code: both.code, errors: both.errors}, {code: 0, errors: ""});
+  const [start, line, done] = both.out.trim().split("\n").map((text) => JSON.parse(text));
+  assert.equal(start.parameters.origin.f, "swept: the first of its axis");
+  assert.ok(line.worst.x_peak > line.best.x_peak);
+  assert.deepEqual(done, {type: "done", points: 1});
+});
+
 test("a request at fault is a problem document on stderr and exit code 2, a file that is not there is 1", async () => {
   for (const [command, input] of [["simulate", '{"b":-1}'], ["sweep", '{"axes":[{"parameter":"q","values":[1]}]}'], ["simulate", "{"]]) {
     const {code, out, errors} = await run([command], {input});

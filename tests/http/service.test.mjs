@@ -107,6 +107,7 @@ test("a sweep is a stream of lines: start, points, progress, done; the points th
   assert.equal(lines[0].type, "start");
   assert.equal(lines[0].points, 30);
   assert.deepEqual(lines.at(-1), {type: "done", points: 30});
+  assert.match(lines.at(-2).message, /the motion depends on the start: at \d+ of 15 points/);  // the ball at rest in the middle is not met
   const points = lines.filter((l) => l.type === "point");
   assert.deepEqual(points.map((p) => p.index).sort((a, b) => a - b), Array.from({length: 30}, (_, i) => i));
   assert.ok(lines.some((l) => l.type === "progress" && l.done === 30 && l.of === 30));

@@ -113,6 +113,7 @@ void judge_verdict(const Statement& s, const LongRun& run, int period, std::vect
         wrong.push_back(sentence("chaotic is said beside lambda1 = %.4g +- %.2g", s.lambda1, s.error));
     if (s.verdict == Verdict::chaotic && s.periodic && !s.chaotic_before)
         wrong.push_back("chaotic is said of a periodic motion, and no chaos before its capture");
+    if (s.verdict == Verdict::none && s.type != "none") wrong.push_back("no verdict is given of a motion of type " + s.type);
     if (!s.periodic && (s.type == "III" || s.type == "IV" || s.type == "V"))
         wrong.push_back("type " + s.type + ", a periodic one, is said of a motion that is not");
 }

@@ -11,8 +11,8 @@ namespace {
 constexpr long most_impacts = 500000;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-Verdict verdict_named(const std::string& name) {
-    return name == "chaotic" ? Verdict::chaotic : name == "regular" ? Verdict::regular : Verdict::not_decided;
+Verdict verdict_named(const api::Json& name) {
+    return name.is_null() ? Verdict::none : name == "chaotic" ? Verdict::chaotic : name == "regular" ? Verdict::regular : Verdict::not_decided;
 }
 
 double number(const api::Json& value) { return value.is_number() ? value.get<double>() : nan; }

@@ -17,7 +17,7 @@ constexpr int longer = 20;
 struct Findings {
     std::string report;  ///< of what is wrong
     int wrong = 0, statements = 0, unjudged = 0;
-    int verdicts[3] = {};
+    int verdicts[4] = {};
     int recurrent = 0, missed = 0, longest = 0;
 };
 
@@ -86,12 +86,12 @@ bool hunt_verdicts(int systems, std::uint64_t seed, int first, int threads) {
         systems_wrong += f.wrong > 0;
         all.wrong += f.wrong, all.statements += f.statements, all.unjudged += f.unjudged,
             all.recurrent += f.recurrent, all.missed += f.missed;
-        for (int k = 0; k < 3; ++k) all.verdicts[k] += f.verdicts[k];
+        for (int k = 0; k < 4; ++k) all.verdicts[k] += f.verdicts[k];
     }
     std::printf(
-        "%d systems, %d statements (chaotic %d, regular %d, not decided %d; %d runs cut short and not judged): %d "
+        "%d systems, %d statements (chaotic %d, regular %d, not decided %d, nothing to judge %d; %d runs cut short and not judged): %d "
         "wrong with confidence in %d systems, %d of %d periodic orbits missed\n",
-        systems, all.statements, all.verdicts[0], all.verdicts[1], all.verdicts[2], all.unjudged, all.wrong,
+        systems, all.statements, all.verdicts[0], all.verdicts[1], all.verdicts[2], all.verdicts[3], all.unjudged, all.wrong,
         systems_wrong, all.missed, all.recurrent);
     return all.wrong == 0 && 1000L * all.missed <= all.recurrent;
 }
