@@ -1,9 +1,11 @@
 // The form, built from the field table of /v1/parameters. An empty input stands for the default that its placeholder shows.
 import {element} from "./dom.js";
+import {originText, resolved} from "./origins.js";
 
-// The groups of /v1/simulate: title, and whether they are open at first.
+// The groups of /v1/simulate: title, whether they are open at first, and what to know of them.
 export const groups = {
-  system: ["System", true], reduced: ["Reduced parameters", false], SI: ["SI parameters", false],
+  system: ["System", true], reduced: ["Reduced parameters", false],
+  SI: ["SI parameters", false, "A system of your own: m1, F and f, and one of each pair between them."],
   start: ["Initial state", false], run: ["Run", true], output: ["Output", false],
 };
 const hidden = new Set(["preset", "include"]);  // the preset has its own menu; the page needs every part that it draws
@@ -19,8 +21,17 @@ const number = (text) => text.trim() !== "" && Number.isFinite(Number(text)) ? N
 const interval = (text) => text.split(",").map(number);
 const intervals = (text) => text.split(";").filter((part) => part.trim()).map(interval);
 const state = (text) => text.includes("=") ? Object.fromEntries(text.split(",").map((part) => part.split("=")).map(([name, value = ""]) => [name.trim(), number(value)])) : text.trim();
-const states = (text) => text.split(";").filter((part) => part.trim()).map(state);
+export const defaultSet = "default set";  // of starts, in place of a list
+const states = (text) => text.trim() === defaultSet ? defaultSet : text.split(";").filter((part) => part.trim()).map(state);
+// Two ways to say the same: where one is filled the other follows from it.
+const alternatives = [["k1", "f0"], ["c1", "damping_ratio"], ["m2", "mass_ratio"], ["x_dot0", "x_velocity0"], ["y_dot0", "y_velocity0"], ["tau_end", "cycles"]];
+const others = Object.fromEntries(alternatives.flatMap(([one, other]) => [[one, other], [other, one]]));
+const rounded = (value) => typeof value === "number" ? Number(value.toPrecision(6)) : Array.isArray(value) ? value.map(rounded) : value;
+
 const readers = {interval, intervals, states, text: (text) => text.trim()};
+
+/** What an empty input stands for, before an answer tells. */
+const standardOf = (field) => (field.default_note ?? "").split(":")[0] || show(field.default ?? "") || hints[field.type] || "";
 
 export class Form {
   /** prefix: of the ids, where a page has several forms; grouped: the groups to show, as in `groups`. */
@@ -31,19 +42,23 @@ export class Form {
     this.errors = new Map();
     this.rows = new Map();
     this.parts = new Map();
-    for (const [group, [title, open]] of Object.entries(grouped)) {
+    this.origins = new Map();
+    this.replaced = [];
+    for (const [group, [title, open, note = ""]] of Object.entries(grouped)) {
       const grid = element("div", {className: "grid"});
       for (const field of this.fields.filter((f) => f.group === group)) grid.append(this.row(field));
-      const details = element("details", {open, id: `${prefix}group-${group}`}, element("summary", {textContent: title}), grid);
+      const details = element("details", {open, id: `${prefix}group-${group}`}, element("summary", {textContent: title}), element("p", {className: "note", textContent: note}), grid);
       this.parts.set(group, details);
       container.append(details);
     }
+    container.addEventListener("input", () => this.greyOut());
   }
 
   row(field) {
     const error = element("p", {className: "error", id: `${this.prefix}error-${field.name}`});
-    const unit = field.unit && field.unit !== "dimensionless" ? `, ${field.unit}` : "";
-    const name = element("span", {}, field.name, element("span", {className: "unit", textContent: unit}));
+    const unit = field.unit && field.unit !== "dimensionless" ? `, ${field.unit.replace("per unit of tau", "per τ")}` : "";
+    const origin = element("span", {className: "origin"});
+    const name = element("span", {className: "name"}, element("span", {}, field.name, element("span", {className: "unit", textContent: unit})), origin);
     let input;
     if (field.type === "choice") {
       input = element("select", {}, ...field.choices.map((c) => element("option", {value: c, textContent: c})));
@@ -52,15 +67,16 @@ export class Form {
       input = element("div", {className: "checks"}, ...field.choices.map((c) =>
         element("label", {}, element("input", {type: "checkbox", value: c, checked: field.default.includes(c)}), c)));
     } else {
-      const placeholder = field.default_note || show(field.default ?? "") || hints[field.type] || "";
-      input = element("input", {type: "text", inputMode: readers[field.type] ? "text" : "decimal", placeholder});
+      input = element("input", {type: "text", inputMode: readers[field.type] ? "text" : "decimal", placeholder: standardOf(field)});
     }
     input.setAttribute("aria-describedby", error.id);
     const range = field.minimum === undefined ? "" : ` [${field.minimum} to ${field.maximum}]`;
+    input.addEventListener("input", () => this.forgetOrigin(field.name));
     this.inputs.set(field.name, input);
+    this.origins.set(field.name, origin);
     this.errors.set(field.name, error);
     const label = element(field.type === "choices" ? "div" : "label", {title: field.description + range}, name, input);
-    const row = element("div", {className: `field${wide.has(field.type) && !field.narrow ? " wide" : ""}`}, label, error);
+    const row = element("div", {className: `field field-${field.name}${wide.has(field.type) && !field.narrow ? " wide" : ""}`}, label, error);
     this.rows.set(field.name, row);
     return row;
   }
@@ -93,14 +109,57 @@ export class Form {
       else input.value = value === undefined ? "" : show(value);
       if (value !== undefined) this.parts.get(field.group).open = true;
     }
+    for (const {name} of this.fields) this.forgetOrigin(name);
+    this.greyOut();
     this.showErrors([]);
   }
 
-  /** Greys out the fields of these names and only these: something else sets them. */
-  disable(names) {
+  /** Shows where each value comes from, and in what is empty the value itself. parameters: of an answer. */
+  showOrigins(parameters) {
+    const {values, origins} = resolved(parameters);
     for (const field of this.fields) {
-      this.inputs.get(field.name).disabled = names.includes(field.name);
-      this.rows.get(field.name).classList.toggle("off", names.includes(field.name));
+      const input = this.inputs.get(field.name), origin = this.origins.get(field.name), value = values[field.name];
+      origin.textContent = originText(origins[field.name]);
+      origin.title = origins[field.name] ?? "";
+      if (input.type === "text") input.placeholder = value == null ? standardOf(field) : show(rounded(value));
+    }
+  }
+
+  /** The fields of these names and only these are set by something else. */
+  disable(names) {
+    this.replaced = names;
+    this.greyOut();
+  }
+
+  /** What is there now is not of the last answer. */
+  forgetOrigin(name) { Object.assign(this.origins.get(name), {textContent: "", title: ""}); }
+
+  /** A value as its input has it. */
+  textOf(value) { return show(value); }
+
+  /** Another value than the last answer's. */
+  replace(name, text) {
+    this.inputs.get(name).value = text;
+    this.forgetOrigin(name);
+  }
+
+  filled(name) { return Boolean(this.inputs.get(name)?.value?.trim()); }
+
+  /** The empty fields that cannot be mixed with those that are filled, or named: a system is in SI or reduced. */
+  unmixable(named = []) {
+    const of = (group) => this.fields.filter((f) => f.group === group).map((f) => f.name);
+    const some = (group) => of(group).some((name) => this.filled(name) || named.includes(name));
+    const si = some("SI"), reduced = some("reduced");
+    return si === reduced ? [] : of(si ? "reduced" : "SI").filter((name) => !this.filled(name));
+  }
+
+  /** Greys out what something else sets, or what follows from another field. */
+  greyOut() {
+    for (const {name} of this.fields) {
+      const other = others[name];
+      const off = this.replaced.includes(name) || (other && (this.replaced.includes(other) || (this.filled(other) && !this.filled(name))));
+      this.inputs.get(name).disabled = Boolean(off);
+      this.rows.get(name).classList.toggle("off", Boolean(off));
     }
   }
 

@@ -1,7 +1,7 @@
-// A sweep over two axes: a quantity as colours, with its scale beside it.
+// A sweep over two axes, or a slice of one over three: a quantity as colours, with its scale beside it.
 import uPlot from "./uPlot.esm.js";
 import {colour, short} from "./plots.js";
-import {describe, quantities, regimeColour, symbolOf} from "./quantities.js";
+import {bestMotion, describe, quantityOf, regimeColour, symbolOf} from "./quantities.js";
 import {clipped, nameOf, plotAxis, point, wholeOrZoomed} from "./sweep_axes.js";
 import {Tip} from "./tip.js";
 
@@ -39,7 +39,7 @@ export class HeatMap {
     root.addEventListener("focusout", (event) => { if (!root.contains(event.relatedTarget)) this.leave(); });
   }
 
-  /** choice: {map: the quantity, start}. */
+  /** choice: {map: the quantity, start, best: the best motion in place of the worst, slice: along the third axis}. */
   show(data, choice) {
     this.data = data;
     this.choice = choice;
@@ -50,7 +50,7 @@ export class HeatMap {
     this.plot?.destroy();
     this.plot = null;
     this.leave();
-    if (this.data?.axes?.length === 2 && this.container.clientWidth) this.create();
+    if (this.data?.axes?.length > 1 && this.container.clientWidth) this.create();
   }
 
   choose(choice) {
@@ -73,7 +73,7 @@ export class HeatMap {
     this.plot.setSize({width: this.container.clientWidth, height: this.container.clientHeight});
   }
 
-  quantity() { return quantities[this.choice.map]; }
+  quantity() { return quantityOf(this.choice.map, this.data); }
 
   create() {
     const [first, second] = this.data.axes;
@@ -99,12 +99,13 @@ export class HeatMap {
     const l = borders.findIndex((border) => border > v) - 1;
     return [this.plot.posToIdx(left), Math.max(0, l === -2 ? borders.length - 2 : l)];
   }
-  indexAt(k, l) { return this.data.index(k, l, this.choice.start); }
+  indexAt(k, l) { return this.data.index(k, l, this.choice.start, this.choice.slice); }
 
   /** A pixel for each cell, from the top down. */
   cells() {
     const {data, choice} = this, quantity = this.quantity(), [first, second] = data.axes, n = first.values.length, m = second.values.length;
-    const at = (k, l) => { const p = data.at(k, l, choice.start); return p && { value: p.error ? null : quantity.of(p) }; };
+    const motion = choice.best ? bestMotion : (p) => p;
+    const at = (k, l) => { const p = data.at(k, l, choice.start, choice.slice); return p && { value: p.error ? null : quantity.of(motion(p)) ?? null }; };
     const values = [];
     if (!quantity.categories) for (let l = 0; l < m; ++l) for (let k = 0; k < n; ++k) { const v = at(k, l)?.value; if (v != null) values.push(v); }
     this.scale = quantity.categories ? null : scaleOf(quantity, values);
@@ -144,13 +145,16 @@ export class HeatMap {
     }
   }
 
+  /** A value of the axis that is folded, in words. */
+  where = (value) => `${symbolOf(this.data.reduced)} = ${Number(value.toPrecision(6))}${this.units(this.data.reduced).replace(/[()]/g, "")}`;
+
   leave() { this.current = null; this.tip.hide(); }
 
   tell(k, l, act = false) {
-    const {data, plot: u} = this, [first, second] = data.axes, p = data.at(k, l, this.choice.start);
+    const {data, plot: u} = this, [first, second] = data.axes, p = data.at(k, l, this.choice.start, this.choice.slice);
     this.current = [k, l, act];
     const coordinate = (axis, i) => [symbolOf(axis.parameter), `${Number(axis.values[i].toPrecision(6))}${this.units(axis.parameter).replace(/[()]/g, "")}`];
-    const rows = [coordinate(first, k), coordinate(second, l), ...(p ? describe(p) : [["", "still to come"]])];
+    const rows = [coordinate(first, k), coordinate(second, l), ...(p ? describe(p, data.reduced && this.where) : [["", "still to come"]])];
     const box = this.root.getBoundingClientRect(), over = u.over.getBoundingClientRect();
     const afresh = (data.request.carry_state ?? "none") === "none" ? "" : ", afresh: not from its neighbour's last state";
     this.tip.show(over.left - box.left + u.valToPos(first.values[k], "x"), over.top - box.top + u.valToPos(second.values[l], "y"), rows, `Click: simulate it${afresh}`,

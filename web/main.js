@@ -2,6 +2,7 @@
 import {get} from "./api.js";
 import {$} from "./dom.js";
 import * as measurement from "./measurement.js";
+import {showModel} from "./model.js";
 import * as simulation from "./simulation.js";
 import * as sweep from "./sweep.js";
 import * as tabs from "./tabs.js";
@@ -47,6 +48,7 @@ async function start() {
   simulation.start(fields.fields, presets, keep("simulation"));
   sweep.start(fields, keep("sweep"), simulatePoint);
   measurement.start(fields.identify_fields, presets, keep("measurement"));
+  showModel().catch(() => {});  // the equations are there without the sketch
   tabs.listen((name) => { if (name !== current) go(name, panes[name].query() ?? ""); });
   addEventListener("popstate", follow);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { for (const pane of Object.values(panes)) pane.redraw(); });

@@ -3,12 +3,15 @@ import {mark, show} from "./about.js";
 import {asCurl, simulate, Problem} from "./api.js";
 import {$} from "./dom.js";
 import {Form} from "./form.js";
+import {listParameters} from "./parameters.js";
+import {holding, isOfSystem, queryText} from "./presets.js";
 import {accountEnergy, summarise, tabulate} from "./summary.js";
+import {onUnits, unitsOf, unitsSwitch} from "./units.js";
 import {draw, redraw} from "./views.js";
 
 const include = ["series", "impacts", "exponents", "eigenvalues", "section", "energy", "regime", "manifold"];  // what the page draws
 
-let form, fieldOf, presets, running = null, shown = null, remembered = () => {};
+let form, fieldOf, presets, running = null, shown = null, last = null, dampingChosen = false, remembered = () => {};
 
 function say(text, fault = false) {
   $("message").textContent = text;
@@ -18,10 +21,14 @@ function say(text, fault = false) {
 const preset = () => presets.find((p) => p.name === $("preset").value);
 
 function present(answer, milliseconds) {
-  summarise(answer, milliseconds);
-  tabulate(answer.windows);
-  accountEnergy(answer.energy);
-  draw(answer);
+  last = {answer, milliseconds};
+  const units = unitsOf(answer.parameters);
+  $("units").hidden = !answer.parameters.si;
+  summarise(answer, milliseconds, units);
+  listParameters(answer.parameters, fieldOf);
+  tabulate(answer.windows, units);
+  accountEnergy(answer.energy, units);
+  draw(answer, units);
   return mark(preset());
 }
 
@@ -40,8 +47,9 @@ async function run(lead = false) {
     const answer = await simulate({...asked(request), include}, mine.signal);
     if (running !== mine) return;
     answer.request = request;
-    leavePreset(request);
+    if (emptied(request)) leavePreset("");
     remember(request);
+    form.showOrigins(answer.parameters);
     const figures = present(answer, performance.now() - started);
     say("");  // what ended the run early is among the warnings
     if (lead) show(figures);
@@ -60,37 +68,70 @@ async function run(lead = false) {
   }
 }
 
-/** A value as a query has it; intervals: a,b;c,d. */
-const queryText = (value) => Array.isArray(value?.[0]) ? value.join(";") : String(value);
 const queryValue = (text) => text.includes(";") ? text.split(";").filter((part) => part.trim()).map(queryValue) : text.includes(",") ? text.split(",") : text;
 
+/** What of the preset holds beside a request's fields. */
+const held = (request) => holding(preset()?.parameters ?? {}, request, fieldOf);
+
 /** A preset's name stands for its fields, so it does not fit a request that has emptied one of them. A default is not in the request. */
-const emptied = (request) => Object.entries(preset()?.parameters ?? {}).some(([name, value]) => !(name in request) && value !== fieldOf[name].default);
+const emptied = (request) => Object.entries(held(request)).some(([name, value]) => !(name in request) && value !== fieldOf[name].default);
 
-function leavePreset(request) {
-  if (emptied(request)) $("preset").value = $("preset-note").textContent = "";
+function leavePreset(why) {
+  $("preset").value = "";
+  $("preset-note").textContent = why;
+  greyOut();
 }
 
-/** What to send: the preset's name in place of those values of the system that are its own, so that one that differs changes alone. */
-function asked(request) {
-  const base = preset()?.parameters ?? {};
-  if (!preset() || emptied(request)) return request;
-  const own = ([name, value]) => ["system", "reduced", "SI"].includes(fieldOf[name].group) && queryText(value) === queryText(base[name]);
-  return {preset: preset().name, ...Object.fromEntries(Object.entries(request).filter((field) => !own(field)))};
+/** Over a preset in SI a reduced field can be changed; a system of one's own is one or the other. */
+const greyOut = () => form.disable(preset() ? [] : form.unmixable());
+
+/** The fields that are not the preset's. */
+function differing(request) {
+  const base = held(request);
+  return Object.fromEntries(Object.entries(request).filter(([name, value]) => !(name in base) || queryText(value) !== queryText(base[name])));
 }
+
+/** What to send: the preset's name in place of those values that are its own, so that one that differs changes alone. */
+const asked = (request) => !preset() || emptied(request) ? request : {preset: preset().name, ...differing(request)};
 
 /** The request as a query, as the GET route takes it. */
 function remember(request) {
-  const base = preset()?.parameters ?? {}, query = new URLSearchParams(preset() ? {preset: preset().name} : {});
-  for (const [name, value] of Object.entries(request)) if (!(name in base) || queryText(value) !== queryText(base[name])) query.set(name, queryText(value));
-  shown = String(query);
+  const fields = {...(preset() ? {preset: preset().name} : {}), ...differing(request)};
+  shown = String(new URLSearchParams(Object.entries(fields).map(([name, value]) => [name, queryText(value)])));
   remembered();
+}
+
+/** The damping of the paper's numbers and its windows go with its system: they make way for a system of one's own, unless they were chosen. */
+function makeWay(base) {
+  const gone = [], input = (name) => form.inputs.get(name), standard = fieldOf.damping.default;
+  if (!dampingChosen && input("damping").value !== standard) {
+    form.replace("damping", standard);
+    gone.push(`damping is ${standard}`);
+  }
+  for (const name of ["window", "windows"].filter((n) => n in base && input(n).value === form.textOf(base[n]))) {
+    form.replace(name, "");
+    gone.push(`${name} is empty`);
+  }
+  return gone;
+}
+
+/** Something was typed over a preset. Reduced fields over one in SI change it where it is: both cannot be mixed. */
+function typedOver(name) {
+  const chosen = preset(), base = chosen?.parameters;
+  if (!base) return greyOut();
+  if (name in base && !form.filled(name)) return leavePreset("");
+  if (!isOfSystem(name) || !form.filled(name)) return;
+  const gone = makeWay(base);
+  if ("m1" in base && fieldOf[name].group === "reduced") return;
+  leavePreset([`A system of your own, in place of ${chosen.source}`, ...gone].join("; "));
 }
 
 function choosePreset(name) {
   $("preset").value = presets.some((p) => p.name === name) ? name : "";
   $("preset-note").textContent = preset()?.note ?? "";
+  dampingChosen = false;
   if (preset()) form.set(preset().parameters);
+  greyOut();
 }
 
 /** The query of the run that is shown, or null before the first. */
@@ -102,7 +143,10 @@ export async function open(given) {
   const rest = new URLSearchParams(given);
   choosePreset(rest.get("preset") ?? (rest.size ? "" : "fig3"));
   rest.delete("preset");
-  form.set({...preset()?.parameters, ...Object.fromEntries([...rest].map(([key, text]) => [key, queryValue(text)]))});
+  const fields = Object.fromEntries([...rest].map(([key, text]) => [key, queryValue(text)]));
+  dampingChosen = "damping" in fields;
+  form.set({...held(fields), ...fields});
+  greyOut();
   await run();
 }
 
@@ -114,6 +158,10 @@ export function start(fields, list, changed) {
   remembered = changed;
   form = new Form($("fields"), fields);
   fieldOf = Object.fromEntries(fields.map((f) => [f.name, f]));
+  for (const [name, input] of form.inputs) input.addEventListener("input", () => typedOver(name));
+  form.inputs.get("damping").addEventListener("change", () => { dampingChosen = true; });
+  unitsSwitch($("units"));
+  onUnits(() => { if (last) present(last.answer, last.milliseconds); });
   $("preset").append(new Option("own parameters", ""), ...presets.map((p) => new Option(`${p.source}: ${p.title}`, p.name)));
   $("preset").addEventListener("change", () => { choosePreset($("preset").value); if ($("preset").value) run(true); });
   $("form").addEventListener("submit", (event) => { event.preventDefault(); run(); });

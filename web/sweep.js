@@ -2,11 +2,14 @@
 import {asCurl, Problem} from "./api.js";
 import {$, element} from "./dom.js";
 import {HeatMap} from "./heatmap.js";
-import {besideLambda, coordinates, overTwoAxes, quantities, regimes} from "./quantities.js";
+import {showPeaks} from "./peaks.js";
+import {coordinates, menuOf, otherMotion, regimes, symbolOf} from "./quantities.js";
 import {SweepData} from "./sweep_data.js";
 import {SweepForm, examples} from "./sweep_form.js";
 import {SweepPlots, startKeys} from "./sweep_plots.js";
+import {listWarnings} from "./summary.js";
 import {follow} from "./sweep_stream.js";
+import {onUnits, unitsSwitch} from "./units.js";
 
 const cyclesOfPoint = 272;  // of the simulation of a point: the paper's tau of 1709
 
@@ -19,11 +22,19 @@ function say(text, fault = false) {
 
 // The menus, by their name in the query. Their first entry needs no mention there.
 const menus = {coordinate: "sweep-coordinate", beside: "sweep-quantity", map: "sweep-mapped"};
-const choice = () => ({coordinate: $("sweep-coordinate").value, quantity: $("sweep-quantity").value, map: $("sweep-mapped").value, start: Number($("sweep-start").value)});
+const choice = () => ({coordinate: $("sweep-coordinate").value, quantity: $("sweep-quantity").value, map: $("sweep-mapped").value,
+  start: Number($("sweep-start").value) || 0, best: $("sweep-start").value === "best", slice: Number($("sweep-slice").value)});
 
 function fillMenu(id, entries, wanted) {
   $(id).replaceChildren(...entries.map(([value, text]) => new Option(text, value)));
   if (entries.some(([value]) => value === wanted)) $(id).value = wanted;
+}
+
+/** What a menu is to show: what the query asked for, once, else what it shows. */
+function wish(id) {
+  const {wanted} = $(id).dataset;
+  $(id).dataset.wanted = "";
+  return wanted || $(id).value;
 }
 
 /** The query of the sweep that is shown, or null before the first. */
@@ -64,8 +75,18 @@ function draw() {
   if (!data?.axes) return;
   const began = performance.now();
   (data.axes.length > 1 ? map : plots).refresh();
+  showPeaks(data, unitsOfParameter);
+  showMotions();
   countRegimes();
   setTimeout(() => { cost = performance.now() - began; });  // uPlot paints after this function
+}
+
+/** The keys of the worst and the best motion, or of one from another start, where there are any. */
+function showMotions() {
+  const {defaultSet} = data;
+  $("sweep-motions").hidden = data.axes.length !== 1 || !(defaultSet || (data.starts === 1 && data.points.some(otherMotion)));
+  $("sweep-worst").hidden = !defaultSet;
+  $("sweep-other").textContent = defaultSet ? "the best, where they end apart" : "from another start, where it was tried and ends elsewhere";
 }
 
 function countRegimes() {
@@ -82,23 +103,35 @@ function countRegimes() {
 function present(fresh) {
   data = fresh;
   shown = String(SweepForm.toQuery(data.request));
-  const over2 = data.axes.length > 1, section = data.section, starts = data.request.starts ?? [];
-  $("sweep-stack").hidden = over2;
-  $("sweep-map").hidden = !over2;
+  const {section, defaultSet, reduced} = data, starts = defaultSet ? [] : data.request.starts ?? [], [, , third] = data.axes;
+  $("sweep-stack").hidden = data.axes.length !== 1;
+  $("sweep-map").hidden = data.axes.length < 2;
   $("figure-sweep-section").hidden = section === "none";
+  $("figure-sweep-lambda").hidden = reduced !== null;
+  $("sweep-units").hidden = !data.parameters.si;
+  form.base.showOrigins(data.parameters);
   $("sweep-where").textContent = section === "impact" ? "at impact:" : "once a cycle:";
-  fillMenu("sweep-coordinate", Object.entries(coordinates[section] ?? {}).map(([name, {title}]) => [name, title]), $("sweep-coordinate").value || $("sweep-coordinate").dataset.wanted);
-  fillMenu("sweep-start", (starts.length ? starts : [0]).map((_, s) => [String(s), String(s + 1)]), $("sweep-start").value);
-  $("sweep-start-of").hidden = starts.length < 2;
+  fillMenu("sweep-coordinate", Object.entries(coordinates[section] ?? {}).map(([name, {title}]) => [name, title]), wish("sweep-coordinate"));
+  for (const id of ["sweep-quantity", "sweep-mapped"]) fillMenu(id, menuOf(data), wish(id));
+  fillMenu("sweep-start", defaultSet ? [["0", "worst"], ["best", "best"]] : (starts.length ? starts : [0]).map((_, s) => [String(s), String(s + 1)]), $("sweep-start").value);
+  $("sweep-start-of").hidden = starts.length < 2 && !defaultSet;
+  $("sweep-start-word").textContent = defaultSet ? "of the start that is" : "from start";
+  fillMenu("sweep-slice", third ? third.values.map((v, m) => [String(m), String(Number(v.toPrecision(6)))]) : [["0", ""]], $("sweep-slice").value);
+  $("sweep-slice-of").hidden = !third;
+  $("sweep-slice-word").textContent = third ? `where ${symbolOf(third.parameter)} =` : "";
   $("sweep-starts").hidden = starts.length < 2;
+  listWarnings($("sweep-warnings"), [...data.warnings]);
   $("sweep-verdicts").hidden = starts.length > 1;  // the colours are those of the starts, then
   $("sweep-starts").replaceChildren(...startKeys(starts).map((key) => element("li", {}, key)));
   $("sweep-keys").hidden = false;
   $("sweep-download").hidden = false;
   plots.show(data, choice());
   map.show(data, choice());
+  showFreeKey();
   changed();
 }
+
+function showFreeKey() { $("sweep-free").hidden = $("sweep-quantity").value !== "x_max"; }
 
 function busy(is) {
   $("sweep-run").disabled = is;
@@ -127,7 +160,7 @@ async function receive(into) {
   const broken = (error, seconds) => { if (running === mine) say(`${error.message}; asking again in ${seconds} s`, true); };
   try {
     await follow(into.request, into, mine.signal, {heard, broken});
-    if (running === mine) { say(remarks()); finish(); }
+    if (running === mine) { say(remarks()); listWarnings($("sweep-warnings"), [...into.warnings]); finish(); }
   } catch (error) {
     if (running !== mine) return;
     if (data) showCount();
@@ -156,7 +189,8 @@ function run() {
 }
 
 const sorted = (text) => { const q = new URLSearchParams(text); q.sort(); return String(q); };
-const markExample = () => { $("sweep-example").value = String(examples.findIndex(([, q]) => sorted(q) === sorted(SweepForm.toQuery(form.request())))); };
+const exampleOf = (query) => examples.findIndex(([, q]) => sorted(q) === sorted(query));
+const markExample = () => { $("sweep-example").value = String(exampleOf(SweepForm.toQuery(form.request()))); };
 
 /** Shows what a query asks for; without one the first example. */
 export async function open(given) {
@@ -168,7 +202,8 @@ export async function open(given) {
     rest.delete(name);
   }
   if (String(rest) === shown) return;
-  form.setQuery(rest.size ? rest : new URLSearchParams(examples[0][1]));
+  const first = new URLSearchParams(examples[0][1]), wanted = rest.size ? rest : first;
+  form.setQuery(wanted, exampleOf(wanted) >= 0);
   markExample();
   showSize();
   await run();
@@ -181,7 +216,7 @@ export function redraw() {
 
 function download() {
   const url = URL.createObjectURL(data.file());
-  element("a", {href: url, download: `sweep-${data.axes.map((a) => a.parameter).join("-")}.ndjson`}).click();
+  element("a", {href: url, download: `sweep-${data.request.axes.map((a) => a.parameter).join("-")}.ndjson`}).click();
   setTimeout(() => URL.revokeObjectURL(url), 10000);
 }
 
@@ -195,24 +230,34 @@ function legend() {
     element("span", {className: `key regime regime-${regime}`, textContent: regime === "none" ? what : `${regime} ${what}`}), element("small", {id: `sweep-regime-${regime}`}))));
 }
 
+/** The unit of a parameter, as in " (m)". */
+function unitsOfParameter(parameter) {
+  const unit = form.parameters.get(parameter)?.unit;
+  return unit && unit !== "dimensionless" ? ` (${unit})` : "";
+}
+
 /** tables: the answer of /v1/parameters; tell: called when there is another query; simulate(fields): shows the run of a point. */
 export function start(tables, tell, simulate) {
   changed = tell;
   form = new SweepForm($("sweep-fields"), tables, () => { showSize(); markExample(); });
-  const units = (parameter) => { const unit = form.parameters.get(parameter)?.unit; return unit && unit !== "dimensionless" ? ` (${unit})` : ""; };
-  const openPoint = (index) => simulate({...data.fields(index), cycles: cyclesOfPoint});
+  const units = unitsOfParameter, openPoint = (index) => simulate({...data.fields(index), cycles: cyclesOfPoint});
   plots = new SweepPlots($("sweep-stack"), {section: $("plot-sweep-section"), lambda: $("plot-sweep-lambda"), other: $("plot-sweep-other")}, units, openPoint);
   map = new HeatMap($("sweep-map"), $("plot-sweep-map"), units, openPoint);
   legend();
   $("sweep-keys").hidden = true;
   $("sweep-example").append(new Option("own sweep", "-1"), ...examples.map(([title], i) => new Option(title, String(i))));
-  fillMenu("sweep-quantity", besideLambda.map((name) => [name, quantities[name].title]));
-  fillMenu("sweep-mapped", overTwoAxes.map((name) => [name, quantities[name].title]));
-  for (const id of [...Object.values(menus), "sweep-start"])
-    $(id).addEventListener("change", () => { if (!data) return; (data.axes.length > 1 ? map : plots).choose(choice()); changed(); });
+  for (const id of [...Object.values(menus), "sweep-start", "sweep-slice"])
+    $(id).addEventListener("change", () => { if (!data) return; (data.axes.length > 1 ? map : plots).choose(choice()); showFreeKey(); changed(); });
+  unitsSwitch($("sweep-units"));
+  onUnits(() => { if (data?.axes) plots.recreate(); });
   $("sweep-example").addEventListener("change", () => {
     const example = examples[$("sweep-example").value];
-    if (example) { form.setQuery(new URLSearchParams(example[1])); showSize(); run(); lead(); }
+    if (!example) return;
+    for (const [name, wanted] of Object.entries(example[2] ?? {})) $(menus[name]).dataset.wanted = wanted;
+    form.setQuery(new URLSearchParams(example[1]), true);
+    showSize();
+    run();
+    lead();
   });
   $("sweep-form").addEventListener("submit", (event) => { event.preventDefault(); run(); lead(); });
   $("sweep-cancel").addEventListener("click", () => running?.abort());

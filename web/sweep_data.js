@@ -1,4 +1,5 @@
 // The points of a sweep, where they lie, and the lines they came in.
+import {defaultSet} from "./form.js";
 import {coordinates} from "./quantities.js";
 
 const ascending = (values) => values.map((_, i) => i).sort((a, b) => values[a] - values[b]);
@@ -18,6 +19,12 @@ function arrange({parameter, values}, scale) {
   return {parameter, log, order, given: values, values: sorted, borders: borders(sorted, log)};
 }
 
+/** A line of a reduction, and each motion in it, as a point whose largest |x| is the peak: `where` along the axis that is folded. */
+function unfold({worst, best, starts, ...line}, parameter) {
+  const peak = ({x_peak, x_free_peak, ...rest}) => ({...rest, x_max: x_peak, x_free: x_free_peak ?? null, where: rest[parameter]});
+  return {...peak(line), ...(best ? {worst: peak(worst), best: peak(best), starts: starts.map(peak)} : {})};
+}
+
 const enough = 500;  // lines that are kept as texts before they go into a Blob
 
 export class SweepData {
@@ -26,8 +33,12 @@ export class SweepData {
     this.request = request;
     this.halfPeriod = halfPeriod;
     this.section = request.section ?? "none";
-    this.starts = Math.max(1, request.starts?.length ?? 0);
-    this.axes = null;
+    this.defaultSet = request.starts === defaultSet;
+    this.starts = this.defaultSet ? 1 : Math.max(1, request.starts?.length ?? 0);
+    this.reduced = /^(?:max|min) over (.+)$/.exec(request.reduce ?? "")?.[1] ?? null;  // the parameter of the axis that is folded
+    this.axes = null;  // those that are left
+    this.parameters = null;
+    this.warnings = new Set();
     this.points = [];
     this.received = 0;
     this.faults = new Map();
@@ -41,14 +52,17 @@ export class SweepData {
 
   take(line, text) {
     if (line.type === "start") {
+      for (const warning of line.warnings) this.warnings.add(warning);
       if (this.axes) return;  // of a stream that brings the rest
-      this.axes = line.axes.map((axis, i) => arrange(axis, this.request.axes[i].scale));
+      this.axes = line.axes.map((axis, i) => arrange(axis, this.request.axes[i].scale)).filter((axis) => axis.parameter !== this.reduced);
+      this.parameters = line.parameters;
       this.points = new Array(line.points).fill(null);
     } else if (line.type === "point") {
       if (this.points[line.index]) return;
       this.points[line.index] = this.trim(line);
       ++this.received;
     } else {
+      if (line.type === "warning") this.warnings.add(line.message);
       return;  // progress and the end are not part of the result
     }
     this.texts.push(text, "\n");
@@ -59,31 +73,41 @@ export class SweepData {
   trim(point) {
     if (point.error) this.faults.set(point.error, (this.faults.get(point.error) ?? 0) + 1);
     if (point.reason && point.reason !== "complete") ++this.early;
+    if (this.reduced) return unfold(point, this.reduced);
     if (!point.section) return point;
     const {section, ...rest} = point;
     if (this.axes.length > 1) return rest;
     const half = this.halfPeriod(this.fields(point.index));
-    rest.section = Object.fromEntries(Object.entries(coordinates[this.section]).map(([name, {columns, value}]) => {
+    rest.section = {};
+    for (const [name, {columns, value, seconds}] of Object.entries(coordinates[this.section])) {
       const [first, second] = columns(section);
-      return [name, Float32Array.from(first, (v, i) => value(v, half, second?.[i]))];
-    }));
+      rest.section[name] = Float32Array.from(first, (v, i) => value(v, half, second?.[i]));
+      if (seconds && section[seconds.column]) rest.section[`${name}_SI`] = Float32Array.from(section[seconds.column], (v) => v * 1000);
+    }
     return rest;
   }
 
   missing() { return this.points.flatMap((point, i) => point ? [] : [i]); }
 
-  /** The index of the point at positions k, l of the (ascending) axes. The first axis counts fastest, then the starts. */
-  index(k, l = 0, start = 0) {
-    const [first, second] = this.axes;
-    return ((second ? second.order[l] : 0) * this.starts + start) * first.order.length + first.order[k];
+  /** The index of the point at positions k, l, m of the (ascending) axes. The first axis counts fastest, then the starts, then the others. */
+  index(k = 0, l = 0, start = 0, m = 0) {
+    const [first, second, third] = this.axes, size = (axis) => axis?.values.length ?? 1, entry = (axis, i) => axis ? axis.order[i] : 0;
+    return ((entry(third, m) * size(second) + entry(second, l)) * this.starts + start) * size(first) + entry(first, k);
   }
-  at(k, l, start) { return this.points[this.index(k, l, start)]; }
+  at(k, l, start, m) { return this.points[this.index(k, l, start, m)]; }
 
   /** The fields of /v1/simulate of a point. */
   fields(index) {
-    const n = this.axes[0].values.length, row = Math.floor(index / n), [first, second] = this.axes;
-    const value = (axis, i) => ({[axis.parameter]: axis.given[i]});
-    return {...this.request.base, ...this.request.starts?.[row % this.starts], ...value(first, index % n), ...(second ? value(second, Math.floor(row / this.starts)) : {})};
+    const point = this.points[index], fields = {...this.request.base, ...(this.defaultSet ? point?.state : {})};
+    let rest = index;
+    const take = (n) => { const i = rest % n; rest = Math.floor(rest / n); return i; };
+    const place = (axis) => { if (axis) fields[axis.parameter] = axis.given[take(axis.given.length)]; };
+    place(this.axes[0]);
+    const start = this.defaultSet ? {} : this.request.starts?.[take(this.starts)];
+    place(this.axes[1]);
+    place(this.axes[2]);
+    if (this.reduced && point?.where != null) fields[this.reduced] = point.where;
+    return {...fields, ...start};
   }
 
   /** What has come, as lines of JSON. */

@@ -1,17 +1,19 @@
 // The form of a sweep: its axes, how each point is run, and what all points share; and the same as a query.
 import {$, element} from "./dom.js";
-import {Form, groups} from "./form.js";
+import {defaultSet, Form, groups} from "./form.js";
+import {isOfSystem} from "./presets.js";
 
 const none = "none";
-const axisNames = ["axis1", "axis2"];
+const axisNames = ["axis1", "axis2", "axis3"];
 
-// Sweeps to begin with. The first is shown when nothing is asked for.
+// Sweeps to begin with: title, form, and what a menu beside the plots shows. The first is shown when nothing is asked for.
 export const examples = [
   ["Regimes over b, the range of Table 3", "axis1=b,0.003,0.04,400&cycles=1000&section=impact&damping=closed_form"],
   ["Map over b and R", "axis1=b,0.003,0.04,120&axis2=R,0.3,0.9,80&cycles=200&transient_cycles=100&damping=closed_form"],
   ["Map over Ω and G", "axis1=Omega,0.94,1.06,120&axis2=G,0.005,0.04,80&cycles=200&transient_cycles=100&b=0.015&damping=closed_form"],
   ["Resonance, from two initial states", "axis1=Omega,0.92,1.08,240&cycles=300&section=stroboscopic&starts=x0=0; y_dot0=0.03&b=0.015&damping=closed_form"],
   ["Resonance, followed upwards", "axis1=Omega,0.92,1.08,320&cycles=300&section=impact&carry_state=up&b=0.015&damping=closed_form"],
+  ["A platform's resonance, worst of several starts", "axis1=f,13,15,81&starts=default set&m1=12&f0=14&damping_ratio=0.006&mass_ratio=0.01&F=0.0004&R=0.4&b=0.03", {beside: "x_max"}],
 ];
 
 /** The fields of an axis: the server's, with the parameters to choose from; one that may be absent has none of them at first. */
@@ -21,8 +23,9 @@ function axisFields(fields, parameters, optional) {
     .map((f) => f.name === "parameter" ? {...f, choices, default: optional ? none : undefined} : {...f, default_note: f.name === "count" ? "" : " ", narrow: true});
 }
 
+/** What there is to reduce depends on the axes. */
 const runFields = (fields, base) => [
-  ...fields.filter((f) => ["integer", "choice"].includes(f.type)).map((f) => ({...f, narrow: true})),
+  ...fields.filter((f) => ["integer", "choice"].includes(f.type)).map((f) => f.name === "reduce" ? {...f, choices: [none], default: none, narrow: true} : {...f, narrow: true}),
   ...base.filter((f) => f.name === "max_impacts").map((f) => ({...f, group: "sweep"})),
   ...fields.filter((f) => f.name === "starts").map((f) => ({...f, type: "states"})),
 ];
@@ -33,13 +36,33 @@ export class SweepForm {
     const {start, system, reduced, SI} = groups;
     this.shared = tables.fields.filter((f) => f.group in {system, reduced, SI, start});
     this.parameters = new Map(this.shared.filter((f) => f.type === "number").map((f) => [f.name, f]));
-    this.axes = ["First axis", "Second axis"].map((title, i) =>
-      new Form(container, axisFields(tables.axis_fields, [...this.parameters.keys()], i === 1), {prefix: `sweep-${axisNames[i]}-`, grouped: {axis: [title, true]}}));
+    this.axes = ["First axis", "Second axis", "Third axis"].map((title, i) =>
+      new Form(container, axisFields(tables.axis_fields, [...this.parameters.keys()], i > 0), {prefix: `sweep-${axisNames[i]}-`, grouped: {axis: [title, i < 2]}}));
     this.run = new Form(container, runFields(tables.sweep_fields, tables.fields), {prefix: "sweep-", grouped: {sweep: ["Each point", true]}});
     this.base = new Form(container, this.shared, {prefix: "sweep-base-", grouped: {system, reduced, SI, start}});
     this.notes = this.axes.map((axis) => axis.parts.get("axis").appendChild(element("p", {className: "note"})));
     this.axes.forEach((axis, i) => axis.inputs.get("parameter").addEventListener("change", () => this.chooseParameter(i)));
+    for (const [name, input] of this.base.inputs) input.addEventListener("input", () => { if (isOfSystem(name) && this.base.filled(name)) this.makeWay(); });
+    this.base.inputs.get("damping").addEventListener("change", () => { this.dampingChosen = true; });
+    this.offerDefaultSet();
     container.addEventListener("input", () => { this.adapt(); changed(); });
+  }
+
+  /** A box that fills in the default set of starts. */
+  offerDefaultSet() {
+    const input = this.run.inputs.get("starts"), box = this.defaultSet = element("input", {type: "checkbox", id: "sweep-default-set"});
+    const title = "at rest in the middle, at a wall, moving, and on from both neighbours: the worst and the best of them are told";
+    const label = element("label", {className: "check", title}, box, `${defaultSet}: worst and best of several`);
+    this.run.rows.get("starts").insertBefore(label, this.run.errors.get("starts"));
+    box.addEventListener("input", () => { input.value = box.checked ? defaultSet : ""; });  // before adapt() hears of it
+  }
+
+  /** The damping of the paper's numbers goes with its system: it makes way for another one, unless it was chosen. */
+  makeWay() {
+    const input = this.base.inputs.get("damping"), standard = this.base.fields.find((f) => f.name === "damping").default;
+    if (this.dampingChosen || input.value === standard) return;
+    this.base.replace("damping", standard);
+    $("sweep-note").textContent = `A system of your own: damping is ${standard}`;
   }
 
   parameter(i) { return this.axes[i].inputs.get("parameter").value; }
@@ -47,7 +70,8 @@ export class SweepForm {
   /** The limits that were there are of another parameter. A map has no place for a section, which would be most of the answer. */
   chooseParameter(i) {
     for (const name of ["from", "to"]) this.axes[i].inputs.get(name).value = "";
-    if (i === 1 && this.parameter(1) !== none) this.run.inputs.get("section").value = none;
+    if (i > 0 && this.parameter(i) !== none) this.run.inputs.get("section").value = none;
+    if (isOfSystem(this.parameter(i))) this.makeWay();
     this.adapt();
   }
 
@@ -60,7 +84,21 @@ export class SweepForm {
       axis.inputs.get("from").placeholder = field ? `from ${field.minimum}` : "";
       axis.inputs.get("to").placeholder = field ? `to ${field.maximum}` : "";
     });
-    this.base.disable([this.parameter(0), this.parameter(1)]);
+    const swept = this.axes.map((_, i) => this.parameter(i));
+    this.base.disable([...swept, ...this.base.unmixable(swept)]);
+    this.adaptRun();
+  }
+
+  /** What can be reduced, and what the default set and a reduction leave no place for: they tell of several motions. */
+  adaptRun() {
+    const {inputs} = this.run, reduce = inputs.get("reduce"), chosen = reduce.value;
+    const choices = [none, ...this.axes.map((_, i) => this.parameter(i)).filter((name) => name !== none).flatMap((name) => [`max over ${name}`, `min over ${name}`])];
+    reduce.replaceChildren(...choices.map((c) => new Option(c)));
+    reduce.value = choices.includes(chosen) ? chosen : none;
+    const several = this.defaultSet.checked = inputs.get("starts").value.trim() === defaultSet;
+    const off = [...(several ? ["carry_state"] : []), ...(several || reduce.value !== none ? ["section"] : [])];
+    for (const name of off) inputs.get(name).value = none;
+    this.run.disable(off);
   }
 
   request() {
@@ -71,8 +109,9 @@ export class SweepForm {
 
   set({base = {}, axes = [], ...run}) {
     this.base.set(base);
-    this.run.set({...run, max_impacts: base.max_impacts});
     this.axes.forEach((axis, i) => axis.set(axes[i] ?? (i ? {} : {parameter: "b"})));
+    this.adapt();
+    this.run.set({...run, max_impacts: base.max_impacts});
     this.adapt();
   }
 
@@ -81,12 +120,14 @@ export class SweepForm {
     const query = new URLSearchParams();
     axes.forEach(({parameter, from = "", to = "", count = "", scale}, i) => query.set(axisNames[i], [parameter, from, to, count, ...(scale ? [scale] : [])].join(",")));
     for (const [name, value] of Object.entries({...run, ...base})) query.set(name, value);
-    if (starts) query.set("starts", starts.map((s) => typeof s === "string" ? s : Object.entries(s).map((pair) => pair.join("=")).join(",")).join(";"));
+    if (starts) query.set("starts", typeof starts === "string" ? starts : starts.map((s) => typeof s === "string" ? s : Object.entries(s).map((pair) => pair.join("=")).join(",")).join(";"));
     return query;
   }
 
-  /** Sets what a query asks for. */
-  setQuery(query) {
+  /** Sets what a query asks for. example: it is one of the examples, whose damping nobody chose. */
+  setQuery(query, example) {
+    this.dampingChosen = !example && query.has("damping");
+    $("sweep-note").textContent = "";
     const {starts, ...rest} = Object.fromEntries(query);
     const axes = axisNames.filter((name) => rest[name]).map((name) => rest[name].split(",")).map(([parameter, from, to, count, scale]) => ({parameter, from, to, count, scale}));
     this.set({base: rest, axes, ...rest, ...(starts ? {starts: [starts]} : {})});
@@ -101,22 +142,19 @@ export class SweepForm {
     return [
       ...this.base.showErrors(within("/base", () => "/").filter((e) => e.pointer !== "/max_impacts")),
       ...this.run.showErrors(ofRun),
-      ...this.axes[1].showErrors(within("/axes/1", end(1))),
+      ...[2, 1].flatMap((i) => this.axes[i].showErrors(within(`/axes/${i}`, end(i)))),
       ...this.axes[0].showErrors([...within("/axes/0", end(0)), ...errors.filter((e) => e.pointer === "/axes").map((e) => ({...e, pointer: "/count"}))]),
     ];
   }
 
   /** How many points there will be, as far as the fields tell. */
   size() {
-    const {axes, starts, cycles, transient_cycles} = this.request();
+    const {axes, starts: asked, cycles, transient_cycles} = this.request(), several = asked === defaultSet, starts = several ? 1 : asked?.length || 1;
     const standard = (name) => this.run.fields.find((f) => f.name === name).default;
-    const counts = axes.map((axis) => axis.count ?? NaN), points = counts.reduce((a, n) => a * n, starts?.length || 1);
-    return {counts, starts: starts?.length || 1, points, cycles: points * ((cycles ?? standard("cycles")) + (transient_cycles ?? standard("transient_cycles")))};
+    const counts = axes.map((axis) => axis.count ?? NaN), points = counts.reduce((a, n) => a * n, starts);
+    return {counts, starts, points, cycles: points * (several ? 5 : 1) * ((cycles ?? standard("cycles")) + (transient_cycles ?? standard("transient_cycles")))};
   }
 
   /** Half a forcing period, pi/Omega, of a point's fields. */
-  halfPeriod = (fields) => {
-    const of = (name) => fields[name] ?? this.parameters.get(name).default;
-    return Math.PI / (fields.Omega ?? (fields.f ? 2 * Math.PI * fields.f / Math.sqrt(of("k1") / of("m1")) : 1));
-  };
+  halfPeriod = ({Omega, f, f0, k1, m1}) => Math.PI / (Omega ?? (f ? f / (f0 ?? Math.sqrt(k1 / m1) / (2 * Math.PI)) : 1));
 }

@@ -2,9 +2,10 @@
 import uPlot from "./uPlot.esm.js";
 import {element} from "./dom.js";
 import {colour} from "./plots.js";
-import {coordinates, describe, quantities, regimeColour, symbolOf, verdictColour} from "./quantities.js";
+import {coordinates, describe, otherMotion, quantities, quantityOf, regimeColour, startNames, symbolOf, verdictColour} from "./quantities.js";
 import {clipped, nameOf, plotAxis, point, rule, wholeOrZoomed} from "./sweep_axes.js";
 import {Tip} from "./tip.js";
+import {inSeconds} from "./units.js";
 
 export const startColours = ["c1", "before", "c2", "c4", "c3"];
 const startColour = (s) => startColours[s % startColours.length];
@@ -24,6 +25,8 @@ function symbol(c, start, x, y, r) {
   c.closePath();
   c.fill();
 }
+
+const untouched = (p) => p.verdict === null && p.regime === "none";
 
 /** The extent of values and a margin; a logarithmic one keeps above 0. */
 function extent(values, {log = false, from0 = false, least = 0} = {}) {
@@ -96,6 +99,11 @@ export class SweepPlots {
 
   sizeOf(container) { return {width: container.clientWidth, height: container.clientHeight}; }
   coordinate() { return coordinates[this.data?.section]?.[this.choice.coordinate]; }
+  quantity() { return quantityOf(this.choice.quantity, this.data); }
+  /** Whether the section's velocities are drawn in mm/s. */
+  seconds() { return Boolean(this.coordinate()?.seconds && this.data.parameters.si && inSeconds()); }
+  sectionLabel() { return (this.seconds() ? this.coordinate().seconds.label : this.coordinate()?.label) ?? ""; }
+  sectionOf(p) { return p?.section?.[`${this.choice.coordinate}${this.seconds() ? "_SI" : ""}`] ?? []; }
   starts() { return Array.from({length: this.data.starts}, (_, s) => s); }
 
   /** f(point, k) of the points of a start that have come. */
@@ -111,11 +119,17 @@ export class SweepPlots {
   }
 
   create() {
-    const lambda = {label: () => "λ", range: () => extent([0, ...this.values((p) => [p.lambda?.[0] - (p.standard_error ?? 0), p.lambda?.[0] + (p.standard_error ?? 0), p.lambda?.[1]])]), paint: (u) => this.paintLambda(u)};
-    const other = {label: () => quantities[this.choice.quantity].label, range: () => this.otherRange(), paint: (u) => this.paintOther(u), under: (u) => this.paintRegimes(u)};
-    const section = {label: () => this.coordinate()?.label ?? "", range: () => this.sectionRange(), paint: (u) => this.paintSection(u), log: Boolean(this.coordinate()?.log), turns: () => Boolean(this.coordinate()?.turns)};
+    const lambda = {label: () => "λ", range: () => extent([0, ...this.values((p) => this.lambdasOf(p))]), paint: (u) => this.paintLambda(u)};
+    const other = {label: () => this.quantity().label, range: () => this.otherRange(), paint: (u) => this.paintOther(u), under: (u) => this.paintRegimes(u)};
+    const section = {label: () => this.sectionLabel(), range: () => this.sectionRange(), paint: (u) => this.paintSection(u), log: Boolean(this.coordinate()?.log), turns: () => Boolean(this.coordinate()?.turns)};
     this.panels = [[this.containers.section, section], [this.containers.lambda, lambda], [this.containers.other, other]]
       .filter(([container]) => !container.closest("figure").hidden).map(([container, spec]) => this.panel(container, spec));
+  }
+
+  /** What the axis of lambda has to hold of a point. */
+  lambdasOf(p) {
+    const [lambda = null, second] = p.lambda ?? [], error = p.standard_error?.[0] ?? 0;
+    return lambda === null ? [] : [lambda - error, lambda + error, second, otherMotion(p)?.lambda?.[0]];
   }
 
   panel(container, {label, range, paint, under = () => {}, log = false, turns}) {
@@ -152,7 +166,7 @@ export class SweepPlots {
 
   /** The index of the point at position k that lies next to the pointer: the starts have points at the same place. */
   nearest(u, k, top) {
-    const of = u === this.panels.at(-1) ? quantities[this.choice.quantity].of : u === this.panels.at(-2) ? quantities.lambda1.of : () => null;
+    const of = u === this.panels.at(-1) ? this.quantity().of : u === this.panels.at(-2) ? quantities.lambda1.of : () => null;
     const away = (s) => { const p = this.data.at(k, 0, s), v = p ? of(p) : null; return v === null ? Infinity : Math.abs(u.valToPos(v, "y") - top); };
     return this.data.index(k, 0, this.starts().reduce((best, s) => away(s) < away(best) ? s : best, 0));
   }
@@ -167,13 +181,16 @@ export class SweepPlots {
     for (const s of this.starts()) {
       const p = data.at(k, 0, s);
       if (data.starts > 1) rows.push([`start ${s + 1}`, ""]);
-      rows.push(...(p ? describe(p) : [["", "still to come"]]).slice(0, data.starts > 1 ? 5 : undefined));
+      rows.push(...(p ? describe(p, data.reduced && this.where) : [["", "still to come"]]).slice(0, data.starts > 1 ? 5 : undefined));
     }
-    const label = "Simulate this point";
+    const label = "Simulate this point", {start} = data.defaultSet ? data.at(k) ?? {} : {};
+    const from = start ? `, from its start: ${startNames[start]}` : this.afresh();
     const box = this.root.getBoundingClientRect(), over = u.over.getBoundingClientRect();
-    this.tip.show(over.left - box.left + u.valToPos(axis.values[k], "x"), over.top - box.top + over.height / 2, rows, `Click: simulate it${this.afresh()}`,
+    this.tip.show(over.left - box.left + u.valToPos(axis.values[k], "x"), over.top - box.top + over.height / 2, rows, `Click: simulate it${from}`,
       act ? {label, run: () => this.open(data.index(k))} : null);
   }
+  /** A value of the axis that is folded, in words. */
+  where = (value) => `${symbolOf(this.data.reduced)} = ${Number(value.toPrecision(6))}${this.units(this.data.reduced).replace(/[()]/g, "")}`;
   afresh() { return (this.data.request.carry_state ?? "none") === "none" ? "" : ", afresh: not from its neighbour's last state"; }
 
   key(event) {
@@ -193,11 +210,12 @@ export class SweepPlots {
     const coordinate = this.coordinate();
     return coordinate?.range ?? (coordinate ? extent(this.sectionValues(), coordinate) : [0, 1]);
   }
-  *sectionValues() { for (const p of this.data.points) if (p?.section) yield* p.section[this.choice.coordinate]; }
+  *sectionValues() { for (const p of this.data.points) yield* this.sectionOf(p); }
 
   otherRange() {
-    const {of, levels = []} = quantities[this.choice.quantity];
-    const [min, max] = extent([...this.values((p) => [of(p)])], {from0: true});
+    const {of, levels = [], free = () => null, from0 = false} = this.quantity(), other = (p) => { const m = otherMotion(p); return m && of(m); };
+    const [min, max] = extent([...this.values((p) => [of(p), free(p), other(p)])], {from0});
+    if (!from0) return [min, max];
     return [min, Math.max(max, Math.min(levels[0] ?? 0, max * 1.5)) * 1.02];
   }
 
@@ -223,7 +241,7 @@ export class SweepPlots {
         let [from, to] = this.cell(u, k);
         if (to - from > broad) { from = Math.round((from + to - broad) / 2); to = from + broad; }
         to = Math.min(Math.max(to, from + 1), left + width);
-        for (const v of p.section?.[this.choice.coordinate] ?? []) {
+        for (const v of this.sectionOf(p)) {
           if (!(v >= min && v <= max)) continue;
           const y = row(v);
           for (let j = Math.max(0, y - (thick >> 1)); j < Math.min(height, y - (thick >> 1) + thick); ++j)
@@ -240,20 +258,35 @@ export class SweepPlots {
   }
 
   /** A line through the points of a start that follow each other without a gap. */
-  line(u, start, of, name, width, alpha = 1) {
+  line(u, start, of, name, width, alpha = 1, dash = []) {
     const {ctx} = u, [axis] = this.data.axes;
+    ctx.setLineDash(dash.map((v) => v * devicePixelRatio));
     Object.assign(ctx, {strokeStyle: colour(name), lineWidth: width * devicePixelRatio, globalAlpha: alpha});
     ctx.beginPath();
     let last = -2;
     this.each(start, (p, k) => {
-      const v = of(p);
+      const v = of(p) ?? null;
       if (v === null) return;
       const x = u.valToPos(axis.values[k], "x", true), y = u.valToPos(v, "y", true);
       if (last === k - 1) ctx.lineTo(x, y); else ctx.moveTo(x, y);
       last = k;
     });
     ctx.stroke();
+    ctx.setLineDash([]);
     ctx.globalAlpha = 1;
+  }
+
+  /** The best of a point's motions, or one from another start that ends elsewhere, as rings on a thin line. */
+  rings(u, of) {
+    const {ctx} = u, [axis] = this.data.axes, r = this.radius(u), ofOther = (p) => { const m = otherMotion(p); return m && of(m); };
+    this.line(u, 0, ofOther, "best", 1, 0.6);
+    ctx.strokeStyle = colour("best");
+    ctx.lineWidth = 1.5 * devicePixelRatio;
+    this.each(0, (p, k) => {
+      const v = ofOther(p);
+      if (v === null || v === undefined) return;
+      ctx.beginPath(); ctx.arc(u.valToPos(axis.values[k], "x", true), u.valToPos(v, "y", true), r, 0, 2 * Math.PI); ctx.stroke();
+    });
   }
 
   dots(u, start, of, nameOfPoint, errorOf = () => null) {
@@ -278,18 +311,22 @@ export class SweepPlots {
     rule(u, [0], "soft");
     for (const s of this.starts()) {
       this.line(u, s, of(1), several ? startColour(s) : "second", 1, several ? 0.5 : 1);
-      this.dots(u, s, of(0), (p) => several ? startColour(s) : verdictColour[p.verdict] ?? "undecided", (p) => p.standard_error);
+      this.dots(u, s, of(0), (p) => several ? startColour(s) : verdictColour(p), (p) => p.standard_error?.[0]);
+      this.dots(u, s, (p) => untouched(p) ? 0 : null, (p) => several ? startColour(s) : verdictColour(p));
     }
+    if (!several) this.rings(u, of(0));
   }
 
   paintOther(u) {
-    const {of, levels = []} = quantities[this.choice.quantity], several = this.data.starts > 1;
+    const {of, levels = [], free} = this.quantity(), several = this.data.starts > 1;
     rule(u, levels, "line");
     for (const s of this.starts()) {
       const name = several ? startColour(s) : "text";
       this.line(u, s, of, name, 1, 0.35);
       this.dots(u, s, of, () => name);
+      if (free) this.line(u, s, free, "wall", 1.4, 1, [6, 4]);
     }
+    if (!several) this.rings(u, of);
   }
 
   /** Neighbours of the same regime as one stretch: f(regime, from, to) in pixels. */

@@ -33,7 +33,7 @@ const colours = async (page, selector) => (await survey(page, selector)).colours
 const pixels = async (page, selector, name) => (await survey(page, selector, name)).pixels;
 const hash = async (page, selector) => (await survey(page, selector)).hash;
 
-const lines = ["x", "largest", "relative", "z", "qr", "eigenvalues", "raw_product", "J", "M", "T", "differences"].map((name) => `#plot-${name} canvas`);
+const lines = ["x", "acceleration", "largest", "relative", "z", "qr", "eigenvalues", "raw_product", "J", "M", "T", "differences"].map((name) => `#plot-${name} canvas`);
 const scatters = ["portrait", "section", "velocities", "stroboscopic", "manifold"].map((name) => `#plot-${name}`);
 const canvases = [...lines, ...scatters];
 
@@ -203,7 +203,11 @@ test("walls with different R leave the manifold's branches out and keep the run'
 test("a free decay is drawn: energy from the start, no amplitude without absorber", async () => {
   const page = await open(browser.context, `${service.url}/?G=0&x0=0.02&tau_end=600`);
   assert.match(await page.textContent("#summary"), /free decay, no forcing/);
-  assert.match(await page.textContent("#energy"), /200 mm² there at the start; half is left at τ = \d+/);
+  assert.match(await page.textContent("#summary"), /verdict– without forcing \(G = 0\) the motion dies out/);
+  const energy = await page.textContent("#energy");
+  assert.match(energy, /200 mm² there at the start; half is left at τ = \d+/);
+  const times = /half is left at τ = ([\d.]+) \(without absorber: τ = ([\d.]+)\); a tenth is left at τ = ([\d.]+) \(without absorber: τ = ([\d.]+)\)/.exec(energy).slice(1).map(Number);
+  assert.ok(times[0] < times[1] && times[2] < times[3], "the absorber shortens the decay");
   for (const canvas of canvases) assert.ok(await colours(page, canvas) > 3, canvas);
   assert.deepEqual(browser.complaints, []);
   await page.close();
@@ -223,6 +227,7 @@ test("a run without impacts is drawn and says that it has no exponents", async (
   const page = await open(browser.context, `${service.url}/?b=0.5&tau_end=300`);
   assert.match(await page.textContent("#warnings"), /no exponents/);
   assert.match(await page.textContent("#summary"), /regimenone no impacts/);
+  assert.match(await page.textContent("#summary"), /verdict– .*the free mass meets no wall/);
   assert.equal(await page.isVisible("#figure-multipliers"), false);
   assert.ok(await colours(page, "#plot-x canvas") > 3);
   assert.deepEqual(browser.complaints, []);
@@ -237,7 +242,7 @@ test("zooming into one plot over tau zooms the others", async () => {
   await page.mouse.move(box.x + box.width * 0.6, box.y + 40, {steps: 5});
   await page.mouse.up();
   await page.waitForTimeout(200);
-  for (const name of ["relative", "largest", "z", "T", "differences"]) {
+  for (const name of ["acceleration", "relative", "largest", "z", "T", "differences"]) {
     await page.hover(`#plot-${name} .u-over`, {position: {x: 5, y: 40}});
     await page.waitForTimeout(100);
     const tau = Number((await page.textContent(`#plot-${name} .u-legend .u-series:first-child .u-value`)).trim());
@@ -251,6 +256,185 @@ for (const query of ["", "?preset=fig11", "?b=0.022&tau_end=900&windows=18,400;4
     const page = await open(browser.context, `${service.url}/${query}`, {viewport: {width: 390, height: 800}});
     assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
     const beyond = await page.$$eval("figure :is(canvas, .stack, .compare, .u-legend)", (nodes) => nodes.filter((n) => n.offsetWidth && n.getBoundingClientRect().right > innerWidth).map((n) => n.closest("figure").id));
+    assert.deepEqual(beyond, []);
+    await page.close();
+  });
+
+// A system of one's own.
+
+const input = (name) => `#fields [aria-describedby='error-${name}']`;
+const origin = (page, name) => page.textContent(`#fields .field-${name} .origin`);
+const platform = {m1: "12", f0: "14", damping_ratio: ".006", mass_ratio: ".01", F: ".0004", f: "14", b: ".03", R: ".4"};
+const platformQuery = String(new URLSearchParams(platform));
+
+/** Counts the requests of a page to a route. */
+function asked(page, route) {
+  const requests = [];
+  page.on("request", (request) => { if (request.url().endsWith(route)) requests.push(request.postDataJSON()); });
+  return requests;
+}
+
+test("each field says where its value comes from, and an empty one shows it", async () => {
+  const page = await open(browser.context, service.url);
+  assert.equal(await origin(page, "b"), "fig3");
+  assert.equal(await origin(page, "tau_end"), "fig3");
+  assert.equal(await origin(page, "epsilon"), "default");
+  assert.equal(await page.getAttribute(input("epsilon"), "placeholder"), "0.00840557");
+  assert.equal(await page.getAttribute(input("R"), "placeholder"), "0.6");
+  await page.fill(input("b"), "0.03");
+  assert.equal(await origin(page, "b"), "", "typed, and no longer the preset's");
+  await page.click("#run");
+  await drawn(page, 2);
+  assert.equal(await origin(page, "b"), "");
+  assert.equal(await page.inputValue("#preset"), "fig3", "the walls are not the system: its name stays");
+  await page.click("#parameters > summary");
+  const rows = await page.$$eval("#parameters tr", (list) => Object.fromEntries(list.map((row) => [row.cells[0].textContent, [...row.cells].slice(1).map((cell) => cell.textContent)])));
+  assert.deepEqual(rows.b, ["b", "0.03 m (30 mm)", "given"]);
+  assert.deepEqual(rows.epsilon, ["ε", "0.00840557", "default"]);
+  assert.deepEqual(rows.damping, ["", "closed form", "preset fig3"]);
+  assert.equal(rows.zeta[0], "ζ");
+  await page.close();
+});
+
+test("a mass typed over a preset takes the place of its system, its damping and its window, and what is missing is said at its field", async () => {
+  const page = await open(browser.context, service.url);
+  await page.click("#group-SI > summary");
+  await page.fill(input("m1"), "12");
+  assert.equal(await page.inputValue(input("damping")), "equation_of_motion");
+  assert.equal(await page.inputValue(input("window")), "");
+  assert.equal(await page.inputValue("#preset"), "");
+  assert.match(await page.textContent("#preset-note"), /your own, in place of Fig\. 3; damping is equation_of_motion; window is empty/);
+  assert.equal(await origin(page, "damping"), "", "it is Fig. 3's no more");
+  assert.equal(await page.inputValue(input("b")), "0.022", "the rest stays");
+  await page.click("#run");
+  for (const name of ["c1", "k1", "m2", "F", "f"]) await page.waitForSelector(`#error-${name}:not(:empty)`);
+  assert.match(await page.textContent("#error-k1"), /k1 \(or f0\) is missing/);
+  browser.complaints.length = 0;  // Chromium notes each 422 in its console
+  await page.close();
+});
+
+test("a damping that was chosen stays when masses are typed over the preset; so does a window of one's own", async () => {
+  const page = await open(browser.context, service.url);
+  await page.selectOption(input("damping"), "equation_of_motion");
+  await page.selectOption(input("damping"), "closed_form");
+  await page.fill(input("window"), "20, 1000");
+  await page.click("#group-reduced > summary");
+  await page.fill(input("epsilon"), "0.01");
+  assert.equal(await page.inputValue(input("damping")), "closed_form");
+  assert.equal(await page.inputValue(input("window")), "20, 1000");
+  await page.click("#run");
+  await drawn(page, 2);
+  assert.match(page.url(), /\?b=0\.022&damping=closed_form&epsilon=0\.01&tau_end=5521\.3&window=20%2C1000/);
+  await page.close();
+});
+
+test("a mass typed over a preset in SI leaves a whole system, shown in seconds", async () => {
+  const page = await open(browser.context, `${service.url}/?preset=fig20`);
+  assert.equal(await origin(page, "m2"), "fig20");
+  await page.fill(input("m2"), "0.05");
+  assert.equal(await page.inputValue("#preset"), "");
+  await page.click("#run");
+  await drawn(page, 2);
+  assert.match(page.url(), /m1=4\.168&k1=11470&c1=3\.02&m2=0\.05&F=/);
+  assert.match(await page.textContent("#plot-x .u-legend"), /^t \(s\)/);
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("of two fields that say the same the one that follows is greyed out and shows its value; reduced fields give way to SI", async () => {
+  const page = await open(browser.context, `${service.url}/?${platformQuery}&tau_end=300`);
+  const following = [["k1", "92853.2", "from f0, m1"], ["c1", "12.6669", "from damping_ratio, m1, f0"], ["m2", "0.12", "from mass_ratio, m1"], ["cycles", "47.7465", "from tau_end"],
+    ["epsilon", "0.01", "from mass_ratio, m1"]];
+  for (const [name, value, from] of following) {
+    assert.ok(await page.isDisabled(input(name)), name);
+    assert.equal(await page.getAttribute(input(name), "placeholder"), value);
+    assert.equal(await origin(page, name), from);
+  }
+  await page.fill(input("f0"), "");
+  assert.ok(await page.isEnabled(input("k1")));
+  await page.fill(input("k1"), "92853.2");
+  assert.ok(await page.isDisabled(input("f0")));
+  await page.click("#run");
+  await drawn(page, 2);
+  assert.equal(await page.getAttribute(input("f0"), "placeholder"), "14");
+  assert.match(page.url(), /k1=92853\.2/);
+  await page.close();
+});
+
+test("a reduced field over a preset in SI, and a system over one of Table 1 by a link, mean what the service takes them for", async () => {
+  for (const query of ["preset=fig20&epsilon=0.02", "preset=fig3&lambda=2", "preset=fig3&b=0.03", "preset=fig20&tau_end=500"]) {
+    const page = await open(browser.context, `${service.url}/?${query}`);
+    assert.equal(new URL(page.url()).search, `?${query}`);
+    const {parameters} = await (await fetch(`${service.url}/v1/simulate?${query}&include=impacts`)).json();
+    assert.equal(await page.inputValue(input("damping")), parameters.damping, query);
+    const shown = async (name) => (await page.inputValue(input(name))) || (await page.getAttribute(input(name), "placeholder"));
+    assert.deepEqual((await shown("window")).split(", ").map(Number).map(Math.round), parameters.window.map(Math.round), query);
+    await page.close();
+  }
+});
+
+test("a system in SI is shown in seconds, mm/s, m/s² and J; the switch goes to tau without a request and is remembered, not in the link", async () => {
+  const page = await open(browser.context, `${service.url}/?${platformQuery}&tau_end=900&windows=100,400`);
+  const requests = asked(page, "/v1/simulate"), legend = (name) => page.textContent(`#plot-${name} .u-legend`), heads = () => page.textContent("#windows thead");
+  const amounts = () => page.textContent("#energy .parts");
+  for (const name of ["x", "acceleration", "relative", "qr", "T", "differences"]) assert.match(await legend(name), /^t \(s\)/, name);
+  assert.match(await page.textContent("#summary"), /window0\.\d to 10\.\d s/);
+  assert.match(await page.textContent("#summary"), /impact speed\d+ mm\/s median; at most \d+; impulse 0\.\d+ N s/);
+  assert.match(await page.textContent("#summary"), /peak acceleration\d+ m\/s²/);
+  assert.match(await heads(), /^from \(s\)to \(s\)/);
+  assert.match(await amounts(), /\d+ J/);
+  const seconds = await hash(page, "#plot-velocities"), address = page.url();
+  await page.click("#units >> text=τ");
+  for (const name of ["x", "acceleration", "qr"]) assert.match(await legend(name), /^τ/, name);
+  assert.match(await heads(), /^τ from/);
+  assert.match(await amounts(), /mm²/);
+  assert.notEqual(await hash(page, "#plot-velocities"), seconds);
+  assert.equal(requests.length, 0);
+  assert.equal(page.url(), address);
+  const again = await open(browser.context, address);
+  assert.match(await again.textContent("#plot-x .u-legend"), /^τ/);
+  await again.click("#units >> text=mm/s");
+  assert.equal(await hash(again, "#plot-velocities"), seconds);
+  const reduced = await open(browser.context, `${service.url}/?b=0.02&tau_end=300`);
+  assert.match(await reduced.textContent("#plot-x .u-legend"), /^τ/, "without SI there are no seconds");
+  assert.equal(await reduced.isVisible("#units"), false);
+  assert.deepEqual(browser.complaints, []);
+  for (const p of [page, again, reduced]) await p.close();
+});
+
+test("the system is sketched and its equation written out: open on a wide screen, closed on a narrow one", async () => {
+  for (const [width, isOpen] of [[1400, true], [390, false]]) {
+    const page = await open(browser.context, `${service.url}/?tau_end=100`, {viewport: {width, height: 800}});
+    await page.waitForSelector("#model-sketch svg", {state: "attached"});
+    assert.equal(await page.isVisible("#model-sketch svg"), isOpen);
+    if (!isOpen) await page.click("#model > summary");
+    const box = await page.locator("#model-sketch svg").boundingBox();
+    assert.ok(box.width > 200 && box.x + box.width < width, `${box.width} px`);
+    assert.match((await page.textContent("#model")).replace(/[\s\u2009]+/g, " "), /m1x″ \+ c1x′ \+ k1x = k1F sin 2πft \+ 2πf c1F cos 2πft y″ = 0 while \|x − y\| < b/);
+    assert.deepEqual(browser.complaints, []);
+    await page.close();
+  }
+});
+
+test("the sketch takes the colours of the page", async () => {
+  for (const colorScheme of ["light", "dark"]) {
+    const page = await open(browser.context, `${service.url}/?tau_end=100`, {colorScheme, viewport: {width: 1400, height: 900}});
+    await page.waitForSelector("#model-sketch svg");
+    const [sketch, text] = await page.evaluate(() => [document.querySelector("#model-sketch svg"), document.body].map((node) => getComputedStyle(node).color));
+    assert.equal(sketch, text, colorScheme);
+    await page.close();
+  }
+});
+
+for (const query of [`?${platformQuery}&tau_end=900&windows=18,400;400,900`, "?preset=fig3"])
+  test(`on a narrow screen neither the system nor the parameters are wider than the screen: ${query}`, async () => {
+    const page = await open(browser.context, `${service.url}/${query}`, {viewport: {width: 390, height: 800}});
+    for (const part of ["#model", "#parameters"]) await page.click(`${part} > summary`);
+    for (const part of await page.$$("#fields details:not([open]) > summary")) await part.click();
+    assert.deepEqual(await page.$$eval(".field .name", (names) => names.filter((n) => n.scrollWidth > n.clientWidth).map((n) => n.textContent)), []);
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+    const beyond = await page.$$eval("#panel-simulation :is(canvas, svg, input, select, figure, td, .origin)", (nodes) =>
+      nodes.filter((n) => n.getBoundingClientRect().width && !n.closest(".scroll") && n.getBoundingClientRect().right > innerWidth).map((n) => n.id || n.textContent));
     assert.deepEqual(beyond, []);
     await page.close();
   });
@@ -328,6 +512,7 @@ test("a sweep fills its diagrams, counts what has come, and a link shows the sam
 
 test("zooming into one diagram of a sweep zooms the others", async () => {
   const page = await open(browser.context, `${service.url}/?${small}`);
+  await page.locator("#plot-sweep-lambda .u-over").scrollIntoViewIfNeeded();
   const box = await page.locator("#plot-sweep-lambda .u-over").boundingBox();
   await page.mouse.move(box.x + box.width * 0.4, box.y + 40);
   await page.mouse.down();
@@ -470,14 +655,189 @@ test("several starts over a logarithmic axis have symbols of their own", async (
   await page.close();
 });
 
-for (const query of [small, "tab=sweep&axis1=b,0.005,0.035,8&axis2=R,0.4,0.8,6&cycles=30"])
+for (const query of [small, "tab=sweep&axis1=b,0.005,0.035,8&axis2=R,0.4,0.8,6&cycles=30", "tab=sweep"])
   test(`on a narrow screen no sweep is wider than the screen: ${query}`, async () => {
     const page = await open(browser.context, `${service.url}/?${query}`, {viewport: {width: 390, height: 800}});
     assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
-    const beyond = await page.$$eval("#panel-sweep :is(canvas, select, figure)", (nodes) => nodes.filter((n) => n.offsetWidth && n.getBoundingClientRect().right > innerWidth).map((n) => n.id || n.parentNode.id));
+    const beyond = await page.$$eval("#panel-sweep :is(canvas, select, figure, .key)", (nodes) => nodes.filter((n) => n.offsetWidth && n.getBoundingClientRect().right > innerWidth).map((n) => n.id || n.parentNode.id));
     assert.deepEqual(beyond, []);
     await page.close();
   });
+
+const platformSweep = "tab=sweep&axis1=f,13.7,14.3,13&starts=default+set&cycles=150&m1=12&f0=14&damping_ratio=0.006&mass_ratio=0.01&F=0.0004&R=0.4&b=0.03&beside=x_max";
+const peaks = (page) => page.$$eval("#sweep-peaks tbody tr", (list) => Object.fromEntries(list.map((row) => [row.cells[0].textContent, [...row.cells].slice(1).map((cell) => cell.textContent)])));
+
+test("the default set of starts shows the worst motion and, hollow, the best; the amplitude without the absorber is dashed; an untouched ball has its own colour", async () => {
+  const page = await open(browser.context, `${service.url}/?${platformSweep}`);
+  assert.ok(await page.isChecked("#sweep-default-set"));
+  assert.equal(await page.inputValue("#sweep-quantity"), "x_max");
+  assert.match(await page.textContent("#sweep-motions"), /the worst of the starts.*the best, where they end apart/);
+  assert.ok(await page.isVisible("#sweep-free"));
+  for (const name of ["best", "wall", "text"]) assert.ok(await pixels(page, "#plot-sweep-other canvas", name) > 20, name);
+  assert.ok(await pixels(page, "#plot-sweep-lambda canvas", "untouched") > 20);
+  assert.ok(Number(await page.textContent("#sweep-regime-none")) > 3);
+  await hoverAt(page, "#plot-sweep-other", 0.29);
+  assert.match(await tip(page), /^f13\.85 Hzregimeno impacts.*without16\.\d+ mm.*middle1[67]\.\d+ mm, no impacts.*at the wall1\d\.\d+ mm, Type III.*moving.*previous point.*next point/);
+  assert.match(await tip(page), /Click: simulate it, from the (middle|wall)$/);
+  await page.selectOption("#sweep-quantity", "z");
+  assert.equal(await page.isVisible("#sweep-free"), false);
+  assert.equal(await pixels(page, "#plot-sweep-other canvas", "wall"), 0);
+  const {middle, "at the wall": wall, "without the absorber": free} = await peaks(page);
+  assert.ok(Number(middle[0]) > 1.3 * Number(wall[0]), `${middle[0]} beside ${wall[0]} mm`);
+  assert.deepEqual(free.slice(0, 2), ["33.3", "14"]);
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("no verdict's colour is that of an untouched ball, and no regime's that of nothing", async () => {
+  const page = await open(browser.context, `${service.url}/?${small}`);
+  const named = await page.evaluate(() =>
+    ["untouched", "regular", "chaotic", "undecided", "second", "regime-none", "nothing"].map((name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim()));
+  assert.equal(new Set(named).size, named.length, named.join(" "));
+  await page.close();
+});
+
+test("the box of the default set fills in the starts and leaves no place for a section; a list of starts takes the box away", async () => {
+  const page = await open(browser.context, `${service.url}/?${small}`);
+  await page.check("#sweep-default-set");
+  assert.equal(await page.inputValue(field("sweep-error-starts")), "default set");
+  for (const name of ["section", "carry_state"]) assert.ok(await page.isDisabled(field(`sweep-error-${name}`)), name);
+  const requests = asked(page, "/v1/sweep");
+  await page.click("#sweep-run");
+  await swept(page, 2);
+  assert.equal(requests[0].starts, "default set");
+  assert.equal(requests[0].section, undefined);
+  assert.equal(await page.isVisible("#figure-sweep-section"), false);
+  assert.match(page.url(), /starts=default\+set/);
+  await page.fill(field("sweep-error-starts"), "x0=0; y_dot0=0.02");
+  assert.equal(await page.isChecked("#sweep-default-set"), false);
+  await page.click("#sweep-run");
+  await swept(page, 3);
+  assert.equal(requests[1].starts.length, 2);
+  assert.equal(await page.isVisible("#sweep-motions"), false);
+  await page.close();
+});
+
+test("a reduction folds an axis: over the other one there is the peak and where it is; where none is left, a table of the starts", async () => {
+  const page = await open(browser.context, `${service.url}/?${platformSweep}&axis2=b,0.02,0.04,3`);
+  assert.ok(await page.isVisible("#sweep-map"));
+  await page.selectOption(field("sweep-error-reduce"), "max over f");
+  await page.click("#sweep-run");
+  await swept(page, 2);
+  assert.match(page.url(), /reduce=max\+over\+f/);
+  assert.match(await page.textContent("#sweep-rate"), /3 of 3/);
+  assert.equal(await page.isVisible("#figure-sweep-lambda"), false);
+  assert.deepEqual(await page.$$eval("#sweep-quantity option", (list) => list.map((o) => o.value)), ["x_max", "where", "z"]);
+  for (const [name, least] of [["text", 20], ["best", 2]]) assert.ok(await pixels(page, "#plot-sweep-other canvas", name) > least, name);  // of three points
+  await hoverAt(page, "#plot-sweep-other", 0.5);
+  assert.match(await tip(page), /^b0\.03 m.*largest \|x\|2\d\.\d+ mm at f = 1[34]\.\d+ Hz/);
+  await page.selectOption(field("sweep-axis2-error-parameter"), "none");
+  await page.fill(`#sweep-base-group-system .field-b input`, "0.03");
+  await page.click("#sweep-run");
+  await swept(page, 3);
+  assert.equal(await page.isVisible("#sweep-stack"), false);
+  const {middle, "without the absorber": free} = await peaks(page);
+  assert.ok(Number(middle[0]) > 20 && Number(middle[0]) < 33, middle[0]);
+  assert.equal(free[0], "33.3");
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("a third axis has a map for each of its values, of the worst or the best start", async () => {
+  const page = await open(browser.context, `${service.url}/?${platformSweep.replace("R=0.4&", "").replace("cycles=150", "cycles=60")}&axis2=b,0.025,0.035,3&axis3=R,0.4,0.6,2&map=x_max`);
+  assert.match(await page.textContent("#sweep-rate"), /78 of 78/);
+  assert.equal(await page.textContent("#sweep-slice-word"), "where R =");
+  const first = await hash(page, "#plot-sweep-map canvas");
+  await page.selectOption("#sweep-start", "best");
+  await page.waitForTimeout(100);
+  assert.notEqual(await hash(page, "#plot-sweep-map canvas"), first);
+  await page.selectOption("#sweep-start", "0");
+  await page.selectOption("#sweep-slice", "1");
+  await page.waitForTimeout(100);
+  assert.notEqual(await hash(page, "#plot-sweep-map canvas"), first);
+  await clickAt(page, "#plot-sweep-map", 0.5, 0.5);
+  await drawn(page, 1);
+  const query = new URL(page.url()).searchParams;
+  assert.deepEqual(["f", "b", "R", "m1"].map((name) => Number(Number(query.get(name)).toFixed(9))), [14, 0.03, 0.6, 12]);
+  browser.complaints.length = 0;
+  await page.close();
+});
+
+test("what a sweep warns of is listed: that the motion depends on the start, and of a damping that is not the ratio's", async () => {
+  const page = await open(browser.context, `${service.url}/?${platformSweep.replace("starts=default+set&", "")}&damping=closed_form&y0=0`);
+  const warnings = await page.textContent("#sweep-warnings");
+  assert.match(warnings, /damping is closed_form \(given\)/);
+  assert.match(warnings, /the motion depends on the start/);
+  await page.close();
+});
+
+test("masses typed over an example, or swept, reset its damping, unless it was chosen; the base says where its values come from", async () => {
+  const page = await open(browser.context, `${service.url}/?tab=sweep`);
+  const damping = field("sweep-base-error-damping");
+  assert.equal(await page.inputValue(damping), "closed_form");
+  assert.equal(await page.textContent("#sweep-base-group-reduced .field-epsilon .origin"), "default");
+  assert.equal(await page.getAttribute("#sweep-base-group-reduced .field-epsilon input", "placeholder"), "0.00840557");
+  await page.selectOption(field("sweep-axis1-error-parameter"), "lambda");
+  assert.equal(await page.inputValue(damping), "equation_of_motion");
+  assert.match(await page.textContent("#sweep-note"), /damping is equation_of_motion/);
+  await page.selectOption("#sweep-example", "1");
+  assert.equal(await page.inputValue(damping), "closed_form");
+  assert.equal(await page.textContent("#sweep-note"), "");
+  await page.click("#sweep-cancel");
+  await page.selectOption(damping, "equation_of_motion");
+  await page.selectOption(damping, "closed_form");
+  await page.click("#sweep-base-group-SI > summary");
+  await page.fill("#sweep-base-group-SI .field-m1 input", "12");
+  assert.equal(await page.inputValue(damping), "closed_form");
+  assert.ok(await page.isDisabled("#sweep-base-group-reduced .field-epsilon input"));
+  await page.close();
+});
+
+test("the section of a sweep in SI has its velocities in mm/s, or per unit of tau", async () => {
+  const page = await open(browser.context, `${service.url}/?${platformSweep.replace("starts=default+set&", "").replace("&beside=x_max", "")}&section=impact&coordinate=x_dot_after`);
+  const seconds = await hash(page, "#plot-sweep-section canvas"), requests = asked(page, "/v1/sweep");
+  await page.click("#sweep-units >> text=τ");
+  await page.waitForTimeout(100);
+  assert.notEqual(await hash(page, "#plot-sweep-section canvas"), seconds);
+  await page.click("#sweep-units >> text=mm/s");
+  await page.waitForTimeout(100);
+  assert.equal(await hash(page, "#plot-sweep-section canvas"), seconds);
+  assert.equal(requests.length, 0);
+  await page.close();
+});
+
+test("on a narrow screen the worst and the best of a default set, and their peaks, are no wider than the screen", async () => {
+  const page = await open(browser.context, `${service.url}/?${platformSweep}`, {viewport: {width: 390, height: 800}});
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+  const beyond = await page.$$eval("#panel-sweep :is(canvas, select, figure, td, .key)", (nodes) => nodes.filter((n) => n.offsetWidth && n.getBoundingClientRect().right > innerWidth).map((n) => n.id || n.textContent));
+  assert.deepEqual(beyond, []);
+  await page.close();
+});
+
+test("a platform by hand: typed over Fig. 3 it is simulated in seconds; its sweep tells the peaks from the wall and from the middle", async () => {
+  const page = await open(browser.context, service.url, {viewport: {width: 1400, height: 1000}});
+  await page.click("#group-SI > summary");
+  for (const [name, value] of Object.entries(platform)) await page.fill(input(name), value);
+  await page.click("#run");
+  await drawn(page, 2);
+  assert.equal(await page.inputValue(input("damping")), "equation_of_motion");
+  assert.equal(await page.inputValue("#preset"), "");
+  assert.match(await page.textContent("#summary"), /amplitude without absorber33\.3 mm/);
+  assert.match(await page.textContent("#summary"), /damping ζ = 0\.00600/);
+  assert.match(await page.textContent("#plot-x .u-legend"), /^t \(s\)/);
+  await page.click("#tab-sweep");
+  await page.waitForFunction(() => document.getElementById("sweep-results").dataset.done);
+  await page.selectOption("#sweep-example", {label: "A platform's resonance, worst of several starts"});
+  await page.waitForFunction(() => /^81 of 81/.test(document.getElementById("sweep-rate").textContent));
+  await swept(page, 2);
+  assert.equal(await page.inputValue("#sweep-quantity"), "x_max");
+  const {middle, "at the wall": wall} = await peaks(page);
+  assert.equal(middle[0], "28.7");
+  assert.ok(Math.abs(Number(wall[0]) - 14.7) < 0.3, `${wall[0]} mm from the wall`);  // of a chaotic motion: it grows a little with the cycles
+  assert.equal(middle[2], "no impacts");
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
 
 // Measurements.
 
@@ -576,7 +936,13 @@ test("the list is edited by keyboard and by the plot; without one of its impacts
   await page.mouse.up();
   await page.waitForTimeout(200);
   assert.equal((await rows(page)).length, after.length, "the end of a drag adds nothing");
-  await page.mouse.click(at(0.5), box.y + 60);
+  const timeAt = async (share) => {
+    await page.mouse.move(at(share), box.y + 60);
+    await page.waitForTimeout(50);
+    return Number(await page.textContent("#plot-measured-a .u-legend .u-series:first-child .u-value"));
+  };
+  const left = await timeAt(0.01), right = await timeAt(0.99);  // a drag ends on whole pixels
+  await page.mouse.click(at(0.01 + 0.98 * (t - left) / (right - left)), box.y + 60);
   await page.waitForSelector("#measure-impacts tr.edited");
   const added = (await rows(page)).find((row) => row[5] === "added");
   assert.ok(Math.abs(added[1] - t) < 0.002, `${added[1]} beside ${t}`);
