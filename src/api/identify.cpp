@@ -6,6 +6,7 @@
 
 #include "api/describe.hpp"
 #include "api/record_columns.hpp"
+#include "api/si_columns.hpp"
 #include "api/simulate.hpp"
 
 namespace vines::api {
@@ -116,21 +117,18 @@ void read_impacts(IdentifyRequest& r, const Json& columns) {
 
 Json describe_restitution(const Restitution& r) { return {{"R", finite_or_null(r.R)}, {"standard_error", finite_or_null(r.error)}, {"impacts", r.impacts}}; }
 
-Json describe_identified(const std::vector<IdentifiedImpact>& impacts, double omega0) {
+Json describe_identified(const std::vector<IdentifiedImpact>& impacts) {
     auto column = [&](auto value) {
         Json values = Json::array();
         for (const IdentifiedImpact& i : impacts) values.push_back(value(i));
         return values;
     };
     auto number = [&](double IdentifiedImpact::*member) { return column([member](const IdentifiedImpact& i) { return finite_or_null(i.*member); }); };
-    Json j = Json::object();
-    if (omega0 > 0) j["time_s"] = column([&](const IdentifiedImpact& i) { return i.tau / omega0; });
-    j.update({{"tau", number(&IdentifiedImpact::tau)}, {"side", column([](const auto& i) { return i.side; })}, {"x", number(&IdentifiedImpact::x)},
+    return {{"tau", number(&IdentifiedImpact::tau)}, {"side", column([](const auto& i) { return i.side; })}, {"x", number(&IdentifiedImpact::x)},
               {"x_dot_before", number(&IdentifiedImpact::x_dot_before)}, {"x_dot_after", number(&IdentifiedImpact::x_dot_after)}, {"x_ddot_before", number(&IdentifiedImpact::x_ddot_before)},
               {"y_dot_before", number(&IdentifiedImpact::y_dot_before)}, {"y_dot_after", number(&IdentifiedImpact::y_dot_after)}, {"R", number(&IdentifiedImpact::R)},
               {"momentum_error", number(&IdentifiedImpact::momentum_error)},
-              {"status", column([](const auto& i) { return i.fault.empty() ? (std::isnan(i.R) ? "R is not known" : "ok") : i.fault; })}});
-    return j;
+              {"status", column([](const auto& i) { return i.fault.empty() ? (std::isnan(i.R) ? "R is not known" : "ok") : i.fault; })}};
 }
 
 /// The paper's direct estimate beside ours: velocities by differences, and what follows from them.
@@ -142,7 +140,7 @@ Json describe_direct(Parameters p, const IdentifyRequest& r, const RefinedImpact
         if (std::isfinite(found.minus.R)) p.R_minus = std::clamp(found.minus.R, 0.0, 1.0);
     }
     const MeasuredExponents exponents(p, found.impacts, continuity_of(p, found.impacts, time_gaps(r.record)).stretches, {true, false, false, 256});
-    Json columns = describe_identified(found.impacts, r.system.si->omega0()), lambda = Json::array();
+    Json columns = describe_identified(found.impacts), lambda = Json::array();
     for (const char* same : {"time_s", "tau", "side"}) columns.erase(same);
     for (double v : exponents.all().qr()) lambda.push_back(finite_or_null(v));
     return {{"impacts", std::move(columns)}, {"restitution", {{"plus", describe_restitution(found.plus)}, {"minus", describe_restitution(found.minus)}}}, {"lambda", std::move(lambda)}};
@@ -330,7 +328,7 @@ Json identify_answer(const IdentifyRequest& r) {
     Json answer = {{"version", version()}, {"parameters", describe_system(used)}};
     answer["parameters"]["derived"] = describe_derived(used);
     if (!signal.is_null()) answer["signal"] = std::move(signal);
-    answer["impacts"] = describe_identified(found.impacts, omega0);
+    answer["impacts"] = describe_identified(found.impacts);
     answer["restitution"] = {{"plus", describe_restitution(found.plus)}, {"minus", describe_restitution(found.minus)}};
     answer["b_fitted"] = {{"b", finite_or_null(found.b_fitted)}, {"standard_error", finite_or_null(found.b_error)}};
     answer["exponents"] = describe_measured(exponents, r.estimators, continuity, found.impacts, warnings);
@@ -341,6 +339,9 @@ Json identify_answer(const IdentifyRequest& r) {
         answer["direct"] = describe_direct(r.system.parameters, r, refined);
         answer["forward"] = forward_run(p, found, refined.motion, r.record.tau.back());
     }
+    if (r.system.si)
+        for (const char* part : {"impacts", "exponents", "direct", "forward"})
+            if (answer.contains(part)) add_si(answer[part], *r.system.si);
     answer["warnings"] = warnings;
     return answer;
 }

@@ -140,7 +140,7 @@ Json openapi() {
                               {"eigenvalues", "moduli of those of J, M, T at each impact"}, {"matrices", "J, M, T themselves, by rows"}, {"section", "at impact and stroboscopic"},
                               {"energy", "balance, amplitudes, decay"}, {"regime", "type I to VI with its evidence"}, {"manifold", "slow invariant manifold and the run's half cycles"}})},
         {"SweepLine", parts({{"type", "start, point, progress, warning, done or error"}, {"index", "of a point"}, {"lambda", "four exponents (qr)"}, {"standard_error", "of the four exponents"}, {"z", "contacts per cycle"},
-                             {"regime", "I to VI or none"}, {"section", "points of a bifurcation diagram"}, {"done", "points so far"}, {"of", "points wanted"}})},
+                             {"regime", "I to VI or none"}, {"section", "points of a bifurcation diagram"}, {"x_free", "amplitude without the absorber"}, {"worst", "motion of the default set of starts"}, {"best", "another"}, {"starts", "all of them"}, {"depends_on_start", "whether they end in different motions"}, {"x_peak", "of a reduction"}, {"message", "of a warning"}, {"done", "points so far"}, {"of", "points wanted"}})},
         {"Problem", {{"type", "object"},
                      {"properties",
                       {{"type", {{"type", "string"}}}, {"title", {{"type", "string"}}}, {"status", {{"type", "integer"}}}, {"detail", {{"type", "string"}}},

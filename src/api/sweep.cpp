@@ -49,6 +49,8 @@ private:
         SweepPoint point;
         try {
             point.system = read_started_system(fields_of(r_, place));
+            point.system->system.origin.clear();  // sweep_start() has told it
+            point.system->system.notes.clear();
         } catch (const Problem& problem) {
             point.error = problem.what();
         }
@@ -167,6 +169,7 @@ private:
             const std::size_t index = row.wanted[0] / n * n + k;
             if (!std::binary_search(row.wanted.begin(), row.wanted.end(), index)) continue;
             emit(index, describe_point(r_, index, point));
+            point = {};
             --left;
         }
     }

@@ -81,6 +81,9 @@ PointResult measure(const Parameters& p, const State& start, const PointOptions&
     r.lambda = product.qr();
     r.standard_error = growth.standard_error;
     r.regime = regime_of(p, begin, {contacts, stroboscopic, 0, r.outcome.tau, verdict_by_exponents(growth), stop}, false);
+    // A row of points is kept in memory: of the regime its numbers, not its lists.
+    for (auto* list : {&r.regime.moving_tau, &r.regime.moving_z, &r.regime.cycles_with}) *list = {};
+    r.regime.stretches = {};
     // Of what the motion ends in: a capture outweighs the transient before it.
     r.verdict = judge(growth, r.regime, 0).verdict;
     if (r.regime.capture && r.verdict != Verdict::none) r.verdict = r.regime.type == RegimeType::none ? Verdict::none : Verdict::regular;

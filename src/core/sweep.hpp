@@ -35,7 +35,7 @@ struct PointResult {
     std::optional<State> at_end;     ///< at a whole cycle at or behind the measured part's end; with PointOptions::carry
     Exponents lambda, standard_error;    ///< qr
     Verdict verdict;
-    Regime regime;
+    Regime regime;                   ///< without its lists
     double x_max, x_rms, x_rms_ratio;  ///< m, m, over that of the steady motion without the absorber (free: of the same start)
     std::optional<double> x_free;    ///< steady amplitude without the absorber, m; none undamped at resonance
     double share_impacts;            ///< of the dissipated energy; NaN where nothing is dissipated

@@ -84,6 +84,10 @@ TEST_CASE("a CSV file and the same record as JSON give the impacts, the restitut
     CHECK(a["exponents"]["qr"]["history"]["tau"].size() + 1 == a["impacts"]["tau"].size());
     CHECK(a["slope"]["low"] < a["slope"]["high"]);
     CHECK(a["forward"]["impacts"]["tau"].size() > 100);
+    const double omega0 = a["parameters"]["derived"]["omega0"];
+    CHECK(a["exponents"]["window_s"][0].get<double>() * omega0 == doctest::Approx(a["exponents"]["window"][0].get<double>()));
+    CHECK(a["exponents"]["stretches"]["time_start_s"].size() == a["exponents"]["stretches"]["tau_start"].size());
+    CHECK(a["impacts"]["x_velocity_before"][7].get<double>() == doctest::Approx(a["impacts"]["x_dot_before"][7].get<double>() * omega0).epsilon(1e-12).scale(0));
     // The paper's direct estimate agrees, and scatters more.
     CHECK(a["direct"]["restitution"]["plus"]["R"].get<double>() == doctest::Approx(0.85).epsilon(0.02));
     CHECK(a["direct"]["restitution"]["plus"]["standard_error"] > a["restitution"]["plus"]["standard_error"]);
