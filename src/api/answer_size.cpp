@@ -7,7 +7,8 @@ namespace vines::api {
 namespace {
 
 // "-2.2250738585072014e-308,": the longest double that reads back to the same bits.
-constexpr double number = 25, side = 3, count = 8, word = 6, bracket = 2;  // count: up to 2000000; word: true, false, null
+// count: up to 2000000; word: true, false, null.
+constexpr double number = 25, side = 3, count = 8, word = 6, bracket = 2;
 // Words, parameters, the orbit, 200 points on each branch of the manifold.
 constexpr double rest = 64 * 1024;
 // The exponents of one window by three estimators, with their words.
@@ -35,26 +36,37 @@ AnswerSize size_of(const SimulateRequest& r) {
     if (r.includes("section")) size.point += 11 * number + 7 * si + side;
     if (r.includes("regime")) size.point += 6 * number + 3 * si;    // z_moving, stretches
     if (r.includes("manifold")) size.point += 3 * number + 2 * si;  // the half cycles
-    size.impact = 2 * (number + si) + side + count;  // sticking
-    if (r.includes("impacts")) size.impact += 11 * number + 8 * si + side + word + number + si + side;  // impacts, touches
+    size.impact = 2 * (number + si) + side + count;                 // sticking
+    // Impacts, touches.
+    if (r.includes("impacts"))
+        size.impact += 11 * number + 8 * si + side + word + number + si + side;
     return size;
 }
 
 }  // namespace
 
-std::string limit_of(std::size_t bytes) { return ", so that the answer is no larger than this server's limit of " + std::to_string(bytes) + " bytes"; }
+std::string limit_of(std::size_t bytes) {
+    return ", so that the answer is no larger than this server's limit of " +
+           std::to_string(bytes) + " bytes";
+}
 
 void fit_answer(SimulateRequest& r, std::size_t bytes, Warnings& warnings) {
     const AnswerSize size = size_of(r);
     const double room = std::max(0.0, static_cast<double>(bytes) - size.fixed);
-    const double points = static_cast<double>(r.max_points) * size.point, impacts = static_cast<double>(r.listed_impacts) * size.impact;
+    const double points = static_cast<double>(r.max_points) * size.point,
+                 impacts = static_cast<double>(r.listed_impacts) * size.impact;
     if (points + impacts <= room) return;
     // What needs less than half of the room gets all that it needs.
-    const double for_points = std::min(points, std::max({room / 2, room - impacts, fewest_points * size.point})), for_impacts = room - for_points;
-    if (impacts > for_impacts) r.listed_impacts = static_cast<std::size_t>(std::max(1.0, for_impacts / size.impact));
+    const double for_points = std::min(
+                     points, std::max({room / 2, room - impacts, fewest_points * size.point})),
+                 for_impacts = room - for_points;
+    if (impacts > for_impacts)
+        r.listed_impacts = static_cast<std::size_t>(std::max(1.0, for_impacts / size.impact));
     if (points <= for_points) return;
     const std::size_t fit = static_cast<std::size_t>(for_points / size.point);
-    warnings.push_back("max_points is " + std::to_string(fit) + " instead of " + std::to_string(r.max_points) + limit_of(bytes));
+    warnings.push_back(
+        "max_points is " + std::to_string(fit) + " instead of " + std::to_string(r.max_points) +
+        limit_of(bytes));
     r.max_points = r.estimators.history = fit;
 }
 

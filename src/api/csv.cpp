@@ -25,9 +25,15 @@ std::vector<std::string_view> cells(std::string_view line, char separator) {
     }
 }
 
-[[noreturn]] void fault(std::size_t line, const std::string& column, std::string_view value, const std::string& what) {
-    const std::string shown(value.substr(0, 40)), where = "line " + std::to_string(line) + (column.empty() ? "" : ", column " + column);
-    throw Problem(422, where + ": " + what, {{"/record/" + (column.empty() ? std::to_string(line) : column + "/" + std::to_string(line)), shown, nullptr, where + ": " + what}});
+[[noreturn]] void fault(
+    std::size_t line, const std::string& column, std::string_view value, const std::string& what) {
+    const std::string shown(value.substr(0, 40)),
+        where = "line " + std::to_string(line) + (column.empty() ? "" : ", column " + column);
+    throw Problem(
+        422, where + ": " + what,
+        {{"/record/" +
+              (column.empty() ? std::to_string(line) : column + "/" + std::to_string(line)),
+          shown, nullptr, where + ": " + what}});
 }
 
 double number(std::string_view text, char separator, std::size_t line, const std::string& column) {
@@ -64,20 +70,32 @@ std::vector<CsvColumn> parse_csv(std::string_view text) {
         ++number_of_line;
         if (trimmed(line).empty() || line.front() == '#') continue;
         if (columns.empty()) {
-            separator = line.find(';') != std::string_view::npos ? ';' : line.find('\t') != std::string_view::npos ? '\t' : ',';
-            for (std::string_view name : cells(line, separator)) columns.push_back({std::string(name), {}});
+            separator = line.find(';') != std::string_view::npos    ? ';'
+                        : line.find('\t') != std::string_view::npos ? '\t'
+                                                                    : ',';
+            for (std::string_view name : cells(line, separator))
+                columns.push_back({std::string(name), {}});
             double value;
             const std::string& first = columns[0].name;
             if (std::from_chars(first.data(), first.data() + first.size(), value).ec == std::errc())
-                fault(number_of_line, "", first, "the first line must name the columns, for example time_s,displacement_m,acceleration_m_s2");
+                fault(
+                    number_of_line, "", first,
+                    "the first line must name the columns, for example "
+                    "time_s,displacement_m,acceleration_m_s2");
             continue;
         }
         const auto parts = cells(line, separator);
         if (parts.size() != columns.size())
-            fault(number_of_line, "", line, "has " + std::to_string(parts.size()) + " columns, the header has " + std::to_string(columns.size()));
-        for (std::size_t k = 0; k < parts.size(); ++k) columns[k].values.push_back(number(parts[k], separator, number_of_line, columns[k].name));
+            fault(
+                number_of_line, "", line,
+                "has " + std::to_string(parts.size()) + " columns, the header has " +
+                    std::to_string(columns.size()));
+        for (std::size_t k = 0; k < parts.size(); ++k)
+            columns[k].values.push_back(
+                number(parts[k], separator, number_of_line, columns[k].name));
     }
-    if (columns.empty()) throw Problem(422, "the record is empty: it needs a header and lines of numbers");
+    if (columns.empty())
+        throw Problem(422, "the record is empty: it needs a header and lines of numbers");
     return columns;
 }
 

@@ -1,4 +1,5 @@
-// Columns of numbers from the text of a measurement: CSV with a header, separated by comma, semicolon or tab.
+// Columns of numbers from the text of a measurement: CSV with a header, separated by comma,
+// semicolon or tab.
 #pragma once
 
 #include <string>
@@ -14,8 +15,9 @@ struct CsvColumn {
     std::vector<double> values;
 };
 
-/// All columns. The separator is found from the header; with a semicolon or a tab, numbers may have a decimal comma. Empty lines
-/// are passed over. Problem 422 that names line and column for what is no number, NaN, or a line of another length.
+/// All columns. The separator is found from the header; with a semicolon or a tab, numbers may have
+/// a decimal comma. Empty lines are passed over. Problem 422 that names line and column for what is
+/// no number, NaN, or a line of another length.
 std::vector<CsvColumn> parse_csv(std::string_view text);
 
 }  // namespace vines::api

@@ -1,4 +1,5 @@
-// Results of the core as the parts of an answer: columns, and null with a word beside it for a number that does not exist.
+// Results of the core as the parts of an answer: columns, and null with a word beside it for a
+// number that does not exist.
 #pragma once
 
 #include <span>
@@ -31,26 +32,36 @@ Json describe_impacts(const std::vector<Impact>& impacts, double epsilon, double
 Json describe_sticks(const std::vector<StickRecord::Stick>& sticks);
 Json describe_touches(const std::vector<TouchRecord::Touch>& touches);
 
-/// The exponents of one window of a run of this regime. `histories` adds those of each estimator, and warnings are about it then.
-Json describe_exponents(const TransferProduct& product, const Growth& growth, const ExponentOptions& estimators, const Regime& regime, bool histories, Warnings& warnings);
+/// The exponents of one window of a run of this regime. `histories` adds those of each estimator,
+/// and warnings are about it then.
+Json describe_exponents(
+    const TransferProduct& product, const Growth& growth, const ExponentOptions& estimators,
+    const Regime& regime, bool histories, Warnings& warnings);
 
-/// Moduli of the eigenvalues of J, M, T at each impact, and the matrices themselves. Those of T take their time: once `late`, only
-/// the last impacts have them, and a warning says so.
-Json describe_eigenvalues(std::span<const ImpactTransfer> transfers, const std::function<bool()>& late, Warnings& warnings);
+/// Moduli of the eigenvalues of J, M, T at each impact, and the matrices themselves. Those of T
+/// take their time: once `late`, only the last impacts have them, and a warning says so.
+Json describe_eigenvalues(
+    std::span<const ImpactTransfer> transfers, const std::function<bool()>& late,
+    Warnings& warnings);
 Json describe_matrices(const std::vector<ImpactTransfer>& transfers);
 
-/// Sections at impact and at whole forcing cycles: the last `most` points of each that lie in the window.
-Json describe_section(SectionRecord& impacts, const StroboscopicRecord& stroboscopic, const Interval& window, std::size_t most, Warnings& warnings);
+/// Sections at impact and at whole forcing cycles: the last `most` points of each that lie in the
+/// window.
+Json describe_section(
+    SectionRecord& impacts, const StroboscopicRecord& stroboscopic, const Interval& window,
+    std::size_t most, Warnings& warnings);
 
 /// The shares of the energy at the window's start that `decay` of describe_energy() is of.
 inline const std::vector<double> decay_shares = {0.5, 0.1};
 /// `window`: what of it the run has reached.
-Json describe_energy(const Parameters& parameters, const State& start, const Energy& energy, const Decay& decay, const Interval& window);
+Json describe_energy(
+    const Parameters& parameters, const State& start, const Energy& energy, const Decay& decay,
+    const Interval& window);
 /// Its moving z thinned to `most` entries, and the last `most` stretches.
 Json describe_regime(Regime regime, std::size_t most, Warnings& warnings);
 
-/// The manifold with `points` points on each branch that there is, up to V_max (0: twice the speed of the symmetry breaking) or
-/// to where the motion ends.
+/// The manifold with `points` points on each branch that there is, up to V_max (0: twice the speed
+/// of the symmetry breaking) or to where the motion ends.
 Json describe_manifold(const Parameters& parameters, double V_max, std::size_t points);
 /// Null where there is none.
 Json describe_recommendation(const std::optional<Recommendation>& recommendation);

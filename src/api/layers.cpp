@@ -8,19 +8,24 @@
 namespace vines::api {
 
 const std::vector<std::string> reduced_names = {"epsilon", "lambda", "G", "Omega"};
-const std::vector<std::vector<std::string>> si_lines = {{"m1"}, {"c1", "damping_ratio"}, {"k1", "f0"}, {"m2", "mass_ratio"}, {"F"}, {"f"}};
-const std::vector<std::string> si_names = {"m1", "c1", "damping_ratio", "k1", "f0", "m2", "mass_ratio", "F", "f"};
+const std::vector<std::vector<std::string>> si_lines = {
+    {"m1"}, {"c1", "damping_ratio"}, {"k1", "f0"}, {"m2", "mass_ratio"}, {"F"}, {"f"}};
+const std::vector<std::string> si_names = {
+    "m1", "c1", "damping_ratio", "k1", "f0", "m2", "mass_ratio", "F", "f"};
 
 std::vector<std::string> present(const Json& object, const std::vector<std::string>& names) {
     std::vector<std::string> found;
-    std::copy_if(names.begin(), names.end(), std::back_inserter(found), [&](const std::string& n) { return object.contains(n); });
+    std::copy_if(names.begin(), names.end(), std::back_inserter(found), [&](const std::string& n) {
+        return object.contains(n);
+    });
     return found;
 }
 
 namespace {
 
 /// Masses, spring and damper. A preset's damping goes with them.
-const std::vector<std::string> own_system = {"epsilon", "lambda", "m1", "c1", "damping_ratio", "k1", "f0", "m2", "mass_ratio"};
+const std::vector<std::string> own_system = {
+    "epsilon", "lambda", "m1", "c1", "damping_ratio", "k1", "f0", "m2", "mass_ratio"};
 /// Fields that exclude each other: giving one of each side is a fault.
 struct Alternative {
     std::vector<std::string> one, other;
@@ -28,14 +33,24 @@ struct Alternative {
 };
 const std::vector<Alternative>& alternatives() {
     static const std::vector<Alternative> list = {
-        {reduced_names, si_names, "reduced (epsilon, lambda, G, Omega) and SI (m1, c1, k1, m2, F, f; damping_ratio, f0, mass_ratio) fields cannot be mixed"},
-        {{"R"}, {"R_plus", "R_minus"}, "R stands for both walls and cannot be mixed with R_plus or R_minus"},
+        {reduced_names, si_names,
+         "reduced (epsilon, lambda, G, Omega) and SI (m1, c1, k1, m2, F, f; damping_ratio, f0, "
+         "mass_ratio) fields cannot be mixed"},
+        {{"R"},
+         {"R_plus", "R_minus"},
+         "R stands for both walls and cannot be mixed with R_plus or R_minus"},
         {{"tau_end"}, {"cycles"}, "tau_end and cycles both say how long to run; give one of them"},
         {{"k1"}, {"f0"}, "f0 stands for k1 = m1 (2 pi f0)^2; give one of them"},
-        {{"c1"}, {"damping_ratio"}, "damping_ratio stands for c1 = 2 damping_ratio m1 omega0; give one of them"},
+        {{"c1"},
+         {"damping_ratio"},
+         "damping_ratio stands for c1 = 2 damping_ratio m1 omega0; give one of them"},
         {{"m2"}, {"mass_ratio"}, "mass_ratio stands for m2 = mass_ratio m1; give one of them"},
-        {{"x_dot0"}, {"x_velocity0"}, "x_dot0 (m per unit of tau) and x_velocity0 (m/s) are the same; give one of them"},
-        {{"y_dot0"}, {"y_velocity0"}, "y_dot0 (m per unit of tau) and y_velocity0 (m/s) are the same; give one of them"},
+        {{"x_dot0"},
+         {"x_velocity0"},
+         "x_dot0 (m per unit of tau) and x_velocity0 (m/s) are the same; give one of them"},
+        {{"y_dot0"},
+         {"y_velocity0"},
+         "y_dot0 (m per unit of tau) and y_velocity0 (m/s) are the same; give one of them"},
     };
     return list;
 }
@@ -44,19 +59,24 @@ void check_alternatives(const Json& object, std::vector<FieldError>& errors) {
     for (const Alternative& a : alternatives()) {
         if (present(object, a.one).empty() || present(object, a.other).empty()) continue;
         for (const auto& names : {a.one, a.other})
-            for (const std::string& name : present(object, names)) errors.push_back({"/" + name, object[name], nullptr, a.detail});
+            for (const std::string& name : present(object, names))
+                errors.push_back({"/" + name, object[name], nullptr, a.detail});
     }
 }
 
 const Preset& preset_named(const std::string& name) {
-    const auto preset = std::find_if(presets().begin(), presets().end(), [&](const Preset& p) { return p.name == name; });
+    const auto preset = std::find_if(
+        presets().begin(), presets().end(), [&](const Preset& p) { return p.name == name; });
     if (preset != presets().end()) return *preset;
     Json names = Json::array();
     for (const Preset& p : presets()) names.push_back(p.name);
-    refuse({{"/preset", name, names, "there is no preset of this name; GET /v1/presets lists them"}});
+    refuse(
+        {{"/preset", name, names, "there is no preset of this name; GET /v1/presets lists them"}});
 }
 
-double number_of(const Json& fields, const char* name, double fallback) { return fields.contains(name) ? fields[name].get<double>() : fallback; }
+double number_of(const Json& fields, const char* name, double fallback) {
+    return fields.contains(name) ? fields[name].get<double>() : fallback;
+}
 
 }  // namespace
 
@@ -65,19 +85,25 @@ SiParameters si_of(const Json& fields) {
     si.m1 = number_of(fields, "m1", si.m1);
     const double omega0 = 2 * std::numbers::pi * number_of(fields, "f0", 0);
     si.k1 = fields.contains("f0") ? si.m1 * omega0 * omega0 : number_of(fields, "k1", si.k1);
-    si.m2 = fields.contains("mass_ratio") ? fields["mass_ratio"].get<double>() * si.m1 : number_of(fields, "m2", si.m2);
-    si.c1 = fields.contains("damping_ratio") ? 2 * fields["damping_ratio"].get<double>() * si.m1 * si.omega0() : number_of(fields, "c1", si.c1);
+    si.m2 = fields.contains("mass_ratio") ? fields["mass_ratio"].get<double>() * si.m1
+                                          : number_of(fields, "m2", si.m2);
+    si.c1 = fields.contains("damping_ratio")
+                ? 2 * fields["damping_ratio"].get<double>() * si.m1 * si.omega0()
+                : number_of(fields, "c1", si.c1);
     si.F = number_of(fields, "F", 0.02 * si.epsilon());
     si.f = number_of(fields, "f", si.f0());
     return si;
 }
 
-Json fields_of(const SiParameters& si) { return {{"m1", si.m1}, {"c1", si.c1}, {"k1", si.k1}, {"m2", si.m2}, {"F", si.F}, {"f", si.f}}; }
+Json fields_of(const SiParameters& si) {
+    return {{"m1", si.m1}, {"c1", si.c1}, {"k1", si.k1}, {"m2", si.m2}, {"F", si.F}, {"f", si.f}};
+}
 
 namespace {
 
-/// The preset's system restated by the fields that the request speaks in, so that each one given replaces its own value alone.
-/// Presets are in SI, or Table 1's: then they leave these fields out. Reduced ones over SI leave m1 and k1, which set the scale.
+/// The preset's system restated by the fields that the request speaks in, so that each one given
+/// replaces its own value alone. Presets are in SI, or Table 1's: then they leave these fields out.
+/// Reduced ones over SI leave m1 and k1, which set the scale.
 void restate_system(Json& preset, const Json& given) {
     if (!present(given, si_names).empty()) {
         preset.update(fields_of(si_of(preset)));
@@ -93,7 +119,11 @@ void restate_system(Json& preset, const Json& given) {
         const bool in_si = !present(preset, si_names).empty();
         for (const std::string& name : si_names) preset.erase(name);
         if (in_si) preset.update({{"m1", si.m1}, {"k1", si.k1}});
-        preset.update({{"epsilon", si.epsilon()}, {"lambda", si.lambda()}, {"G", si.G()}, {"Omega", si.Omega()}});
+        preset.update(
+            {{"epsilon", si.epsilon()},
+             {"lambda", si.lambda()},
+             {"G", si.G()},
+             {"Omega", si.Omega()}});
     }
 }
 
@@ -104,7 +134,8 @@ void restate_walls(Json& preset, const Json& given) {
     preset.erase("R");
 }
 
-/// Takes from a preset what goes with its own system or its own run, where another one is given; returns it.
+/// Takes from a preset what goes with its own system or its own run, where another one is given;
+/// returns it.
 Json leave_what_is_not_its_own(Json& preset, const std::vector<Field>& table, const Json& given) {
     Json left = Json::object();
     auto leave = [&](const char* name) {
@@ -112,10 +143,13 @@ Json leave_what_is_not_its_own(Json& preset, const std::vector<Field>& table, co
         if (!given.contains(name)) left[name] = preset[name];
         preset.erase(name);
     };
-    auto replaced = [&](const std::string& name) { return given.contains(name) && (!preset.contains(name) || preset[name] != given[name]); };
+    auto replaced = [&](const std::string& name) {
+        return given.contains(name) && (!preset.contains(name) || preset[name] != given[name]);
+    };
     const bool another_system = std::any_of(own_system.begin(), own_system.end(), replaced);
     const bool another_run = std::any_of(table.begin(), table.end(), [&](const Field& f) {
-        const bool of_the_motion = f.group == "system" || f.group == "reduced" || f.group == "SI" || f.group == "start" || f.name == "tau_end" || f.name == "cycles";
+        const bool of_the_motion = f.group == "system" || f.group == "reduced" || f.group == "SI" ||
+                                   f.group == "start" || f.name == "tau_end" || f.name == "cycles";
         return of_the_motion && f.name != "preset" && replaced(f.name);
     });
     if (another_system) leave("damping");
@@ -142,7 +176,10 @@ Layered layered(const std::vector<Field>& table, const Json& given) {
     restate_walls(merged, given);
     Json left = leave_what_is_not_its_own(merged, table, given);
     for (auto it = merged.begin(); it != merged.end();)  // those that the table has
-        it = std::any_of(table.begin(), table.end(), [&](const Field& f) { return f.name == it.key(); }) ? std::next(it) : merged.erase(it);
+        it = std::any_of(
+                 table.begin(), table.end(), [&](const Field& f) { return f.name == it.key(); })
+                 ? std::next(it)
+                 : merged.erase(it);
     merged.update(given);
     merged.erase("preset");
     return {table, given, std::move(merged), given["preset"], std::move(left)};
@@ -162,10 +199,18 @@ Interval interval_of(const Json& v) { return {v[0].get<double>(), v[1].get<doubl
 
 }  // namespace
 
-double Layered::number(const std::string& name) const { return value_of(*this, name).get<double>(); }
-std::string Layered::word(const std::string& name) const { return value_of(*this, name).get<std::string>(); }
-std::set<std::string> Layered::words(const std::string& name) const { return value_of(*this, name).get<std::set<std::string>>(); }
-Interval Layered::interval(const std::string& name) const { return interval_of(value_of(*this, name)); }
+double Layered::number(const std::string& name) const {
+    return value_of(*this, name).get<double>();
+}
+std::string Layered::word(const std::string& name) const {
+    return value_of(*this, name).get<std::string>();
+}
+std::set<std::string> Layered::words(const std::string& name) const {
+    return value_of(*this, name).get<std::set<std::string>>();
+}
+Interval Layered::interval(const std::string& name) const {
+    return interval_of(value_of(*this, name));
+}
 
 std::vector<Interval> Layered::intervals(const std::string& name) const {
     std::vector<Interval> list;

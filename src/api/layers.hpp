@@ -26,20 +26,24 @@ struct Layered {
     bool has(const std::string& name) const { return fields.contains(name); }
     /// Values by name: the request's or the preset's, else the table's default.
     double number(const std::string& name) const;
-    double number(const std::string& name, double fallback) const { return has(name) ? number(name) : fallback; }
+    double number(const std::string& name, double fallback) const {
+        return has(name) ? number(name) : fallback;
+    }
     std::string word(const std::string& name) const;
     std::set<std::string> words(const std::string& name) const;
     Interval interval(const std::string& name) const;
     std::vector<Interval> intervals(const std::string& name) const;
 };
 
-/// A field that is given replaces its own value of the preset alone. But a preset's damping is that of its own masses, spring and damper, and
-/// its windows are those of its own motion: they go with them. Problem 422 where a field is at fault.
+/// A field that is given replaces its own value of the preset alone. But a preset's damping is that
+/// of its own masses, spring and damper, and its windows are those of its own motion: they go with
+/// them. Problem 422 where a field is at fault.
 Layered layered(const std::vector<Field>& table, const Json& given);
 
 /// epsilon, lambda, G, Omega.
 extern const std::vector<std::string> reduced_names;
-/// One of each line makes a system in SI; the second of a line is what engineers say in place of the first.
+/// One of each line makes a system in SI; the second of a line is what engineers say in place of
+/// the first.
 extern const std::vector<std::vector<std::string>> si_lines;
 /// All of them.
 extern const std::vector<std::string> si_names;
@@ -47,7 +51,8 @@ extern const std::vector<std::string> si_names;
 /// Those of the names that an object has.
 std::vector<std::string> present(const Json& object, const std::vector<std::string>& names);
 
-/// A system in SI from its fields, of which those left out are Table 1's; F and f then follow from the rest.
+/// A system in SI from its fields, of which those left out are Table 1's; F and f then follow from
+/// the rest.
 SiParameters si_of(const Json& fields);
 /// m1, c1, k1, m2, F, f.
 Json fields_of(const SiParameters& si);

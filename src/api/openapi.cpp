@@ -11,22 +11,30 @@ Json reference(const std::string& name) { return {{"$ref", "#/components/schemas
 
 /// The JSON Schema of a field's values.
 Json schema_of(const Field& f) {
-    const Json number = {{"type", "number"}}, interval = {{"type", "array"}, {"items", number}, {"minItems", 2}, {"maxItems", 2}};
+    const Json number = {{"type", "number"}},
+               interval = {{"type", "array"}, {"items", number}, {"minItems", 2}, {"maxItems", 2}};
     Json s;
     switch (f.type) {
         case FieldType::number: s = number; break;
         case FieldType::integer: s = {{"type", "integer"}}; break;
         case FieldType::choice: s = {{"type", "string"}}; break;
-        case FieldType::choices: s = {{"type", "array"}, {"items", {{"type", "string"}, {"enum", f.choices}}}}; break;
+        case FieldType::choices:
+            s = {{"type", "array"}, {"items", {{"type", "string"}, {"enum", f.choices}}}};
+            break;
         case FieldType::interval: s = interval; break;
         case FieldType::intervals: s = {{"type", "array"}, {"items", interval}}; break;
-        case FieldType::integers: s = {{"type", "array"}, {"items", {{"type", "integer"}, {"minimum", 0}}}}; break;
+        case FieldType::integers:
+            s = {{"type", "array"}, {"items", {{"type", "integer"}, {"minimum", 0}}}};
+            break;
         case FieldType::numbers: s = {{"type", "array"}, {"items", number}}; break;
         case FieldType::object: s = reference("SweepBase"); break;
-        case FieldType::objects: s = {{"type", "array"}, {"items", reference(f.name == "axes" ? "Axis" : "Start")}}; break;
+        case FieldType::objects:
+            s = {{"type", "array"}, {"items", reference(f.name == "axes" ? "Axis" : "Start")}};
+            break;
     }
     if (f.type == FieldType::choice && !f.choices.empty()) s["enum"] = f.choices;
-    if (f.type == FieldType::objects && !f.choices.empty()) s = {{"anyOf", {s, {{"type", "string"}, {"enum", f.choices}}}}};
+    if (f.type == FieldType::objects && !f.choices.empty())
+        s = {{"anyOf", {s, {{"type", "string"}, {"enum", f.choices}}}}};
     if (f.minimum) s["minimum"] = *f.minimum, s["maximum"] = *f.maximum;
     if (!f.fallback.is_null()) s["default"] = f.fallback;
     std::string text = f.description;
@@ -39,7 +47,8 @@ Json schema_of(const Field& f) {
 Json schema_of(const std::vector<Field>& fields, std::vector<std::string> required = {}) {
     Json properties = Json::object();
     for (const Field& f : fields) properties[f.name] = schema_of(f);
-    Json s = {{"type", "object"}, {"additionalProperties", false}, {"properties", std::move(properties)}};
+    Json s = {
+        {"type", "object"}, {"additionalProperties", false}, {"properties", std::move(properties)}};
     if (!required.empty()) s["required"] = required;
     return s;
 }
@@ -49,8 +58,15 @@ Json query_of(const std::vector<Field>& fields) {
     Json list = Json::array();
     for (const Field& f : fields) {
         Json schema = schema_of(f);
-        if (f.type == FieldType::intervals) schema = {{"type", "string"}, {"description", "from,to;from,to"}};
-        list.push_back({{"name", f.name}, {"in", "query"}, {"description", schema_of(f)["description"]}, {"style", "form"}, {"explode", false}, {"schema", std::move(schema)}});
+        if (f.type == FieldType::intervals)
+            schema = {{"type", "string"}, {"description", "from,to;from,to"}};
+        list.push_back(
+            {{"name", f.name},
+             {"in", "query"},
+             {"description", schema_of(f)["description"]},
+             {"style", "form"},
+             {"explode", false},
+             {"schema", std::move(schema)}});
     }
     return list;
 }
@@ -60,14 +76,20 @@ Json answer(const std::string& description, const std::string& type, const Json&
 }
 
 Json operation(const std::string& id, const std::string& summary, Json responses) {
-    const std::pair<const char*, const char*> problems[] = {{"400", "not JSON, or a name twice"}, {"413", "the body, or the answer, is larger than the server takes"}, {"422", "fields at fault, each with its pointer, value and range"},
-                                                            {"503", "as many requests as the server takes are waiting; Retry-After says when to come back"}};
-    for (const auto& [status, text] : problems) responses[status] = answer(text, "application/problem+json", reference("Problem"));
+    const std::pair<const char*, const char*> problems[] = {
+        {"400", "not JSON, or a name twice"},
+        {"413", "the body, or the answer, is larger than the server takes"},
+        {"422", "fields at fault, each with its pointer, value and range"},
+        {"503",
+         "as many requests as the server takes are waiting; Retry-After says when to come back"}};
+    for (const auto& [status, text] : problems)
+        responses[status] = answer(text, "application/problem+json", reference("Problem"));
     return {{"operationId", id}, {"summary", summary}, {"responses", std::move(responses)}};
 }
 
 Json with_body(Json op, const std::string& schema) {
-    op["requestBody"] = {{"required", true}, {"content", {{"application/json", {{"schema", reference(schema)}}}}}};
+    op["requestBody"] = {
+        {"required", true}, {"content", {{"application/json", {{"schema", reference(schema)}}}}}};
     return op;
 }
 
@@ -84,41 +106,94 @@ Json parts(std::initializer_list<std::pair<const char*, const char*>> list) {
 
 /// JSON with all in the body, or CSV with the fields in the query.
 Json identify_operation() {
-    const Json identified = {{"200", answer("impacts, restitution, exponents, verdict", "application/json",
-                                            parts({{"parameters", "with the identified R"}, {"signal", "noise, misfit, pulse length, forcing"}, {"impacts", "columns, with a status each"}, {"restitution", "of each wall"},
-                                                   {"b_fitted", "that fits the momentum"}, {"exponents", "of the sequence"}, {"slope", "with its 90 % interval"}, {"verdict", "chaotic, regular or not_decided"},
-                                                   {"forward", "a run of the identified system"}, {"warnings", "sentences"}}))}};
-    Json op = with_query(operation("identify", "exponents from a measurement of the oscillator, or from a list of impacts", identified), identify_fields());
-    op["requestBody"] = {{"required", true}, {"content", {{"text/csv", {{"schema", {{"type", "string"}}}}}, {"application/json", {{"schema", reference("IdentifyRequest")}}}}}};
+    const Json identified = {
+        {"200", answer(
+                    "impacts, restitution, exponents, verdict", "application/json",
+                    parts(
+                        {{"parameters", "with the identified R"},
+                         {"signal", "noise, misfit, pulse length, forcing"},
+                         {"impacts", "columns, with a status each"},
+                         {"restitution", "of each wall"},
+                         {"b_fitted", "that fits the momentum"},
+                         {"exponents", "of the sequence"},
+                         {"slope", "with its 90 % interval"},
+                         {"verdict", "chaotic, regular or not_decided"},
+                         {"forward", "a run of the identified system"},
+                         {"warnings", "sentences"}}))}};
+    Json op = with_query(
+        operation(
+            "identify", "exponents from a measurement of the oscillator, or from a list of impacts",
+            identified),
+        identify_fields());
+    op["requestBody"] = {
+        {"required", true},
+        {"content",
+         {{"text/csv", {{"schema", {{"type", "string"}}}}},
+          {"application/json", {{"schema", reference("IdentifyRequest")}}}}}};
     return op;
 }
 
 Json identify_request() {
     Json s = schema_of(identify_fields());
-    s["properties"]["record"] = {{"type", "object"}, {"description", "columns: time_s, displacement_m, acceleration_m_s2; a unit in a name (displacement_mm, time (ms)) is obeyed"}};
-    s["properties"]["impacts"] = {{"type", "object"}, {"description", "columns as in the answer of /v1/simulate, in place of a record"}};
+    s["properties"]["record"] = {
+        {"type", "object"},
+        {"description",
+         "columns: time_s, displacement_m, acceleration_m_s2; a unit in a name (displacement_mm, "
+         "time (ms)) is obeyed"}};
+    s["properties"]["impacts"] = {
+        {"type", "object"},
+        {"description", "columns as in the answer of /v1/simulate, in place of a record"}};
     return s;
 }
 
 Json plain(const std::string& id, const std::string& summary) {
-    return {{"get", {{"operationId", id}, {"summary", summary}, {"responses", {{"200", answer(summary, "application/json", {{"type", "object"}})}}}}}};
+    return {
+        {"get",
+         {{"operationId", id},
+          {"summary", summary},
+          {"responses", {{"200", answer(summary, "application/json", {{"type", "object"}})}}}}}};
 }
 
 }  // namespace
 
 Json openapi() {
-    const Json simulated = {{"200", answer("what was asked for by include", "application/json", reference("Simulation"))}};
-    const Json manifold = {{"200", answer("the manifold", "application/json", parts({{"version", ""}, {"parameters", "resolved, with derived"}, {"warnings", ""}, {"manifold", "fold, branches, hints"}}))}};
-    const Json swept = {{"200", answer("a line of JSON each: start, point, progress, warning, done or error", "application/x-ndjson", reference("SweepLine"))}};
+    const Json simulated = {
+        {"200",
+         answer("what was asked for by include", "application/json", reference("Simulation"))}};
+    const Json manifold = {
+        {"200", answer(
+                    "the manifold", "application/json",
+                    parts(
+                        {{"version", ""},
+                         {"parameters", "resolved, with derived"},
+                         {"warnings", ""},
+                         {"manifold", "fold, branches, hints"}}))}};
+    const Json swept = {
+        {"200", answer(
+                    "a line of JSON each: start, point, progress, warning, done or error",
+                    "application/x-ndjson", reference("SweepLine"))}};
     Json paths = {
         {"/v1/simulate",
-         {{"get", with_query(operation("simulate_by_query", "one run", simulated), simulate_fields())}, {"post", with_body(operation("simulate", "one run", simulated), "SimulateRequest")}}},
-        {"/v1/sweep", {{"post", with_body(operation("sweep", "many runs over one or two parameters, as a stream", swept), "SweepRequest")}}},
+         {{"get",
+           with_query(operation("simulate_by_query", "one run", simulated), simulate_fields())},
+          {"post", with_body(operation("simulate", "one run", simulated), "SimulateRequest")}}},
+        {"/v1/sweep",
+         {{"post",
+           with_body(
+               operation("sweep", "many runs over one or two parameters, as a stream", swept),
+               "SweepRequest")}}},
         {"/v1/identify", {{"post", identify_operation()}}},
         {"/v1/manifold",
-         {{"get", with_query(operation("manifold_by_query", "the slow invariant manifold", manifold), manifold_fields())},
-          {"post", with_body(operation("manifold", "the slow invariant manifold", manifold), "ManifoldRequest")}}},
-        {"/v1/parameters", plain("parameters", "the model and its symbols, and every field: type, unit, range, default, meaning")},
+         {{"get", with_query(
+                      operation("manifold_by_query", "the slow invariant manifold", manifold),
+                      manifold_fields())},
+          {"post", with_body(
+                       operation("manifold", "the slow invariant manifold", manifold),
+                       "ManifoldRequest")}}},
+        {"/v1/parameters",
+         plain(
+             "parameters",
+             "the model and its symbols, and every field: type, unit, range, default, meaning")},
         {"/v1/presets", plain("presets", "one preset for each figure and table of the paper")},
         {"/v1/openapi.json", plain("openapi", "this document")},
         {"/healthz", plain("healthz", "the process answers")},
@@ -134,22 +209,66 @@ Json openapi() {
         {"SweepBase", schema_of(sweep_base_fields())},
         {"Axis", schema_of(axis_fields(), {"parameter"})},
         {"Start", schema_of(start_fields())},
-        {"Simulation", parts({{"version", ""}, {"parameters", "every one, resolved, with derived"}, {"status", "reason, tau, message"}, {"warnings", "sentences"}, {"series", "columns over tau"},
-                              {"impacts", "columns, an entry for each impact"}, {"sticking", "columns, an entry for each stuck phase"}, {"touches", "tangent contacts, if any"},
-                              {"exponents", "qr, eigenvalues, raw_product over the window, with a verdict"}, {"windows", "exponents of each of the windows"},
-                              {"eigenvalues", "moduli of those of J, M, T at each impact"}, {"matrices", "J, M, T themselves, by rows"}, {"section", "at impact and stroboscopic"},
-                              {"energy", "balance, amplitudes, decay"}, {"regime", "type I to VI with its evidence"}, {"manifold", "slow invariant manifold and the run's half cycles"}})},
-        {"SweepLine", parts({{"type", "start, point, progress, warning, done or error"}, {"index", "of a point"}, {"lambda", "four exponents (qr)"}, {"standard_error", "of the four exponents"}, {"z", "contacts per cycle"},
-                             {"regime", "I to VI or none"}, {"section", "points of a bifurcation diagram"}, {"x_free", "amplitude without the absorber"}, {"worst", "motion of the default set of starts"}, {"best", "another"}, {"starts", "all of them"}, {"depends_on_start", "whether they end in different motions"}, {"x_peak", "of a reduction"}, {"message", "of a warning"}, {"done", "points so far"}, {"of", "points wanted"}})},
-        {"Problem", {{"type", "object"},
-                     {"properties",
-                      {{"type", {{"type", "string"}}}, {"title", {{"type", "string"}}}, {"status", {{"type", "integer"}}}, {"detail", {{"type", "string"}}},
-                       {"errors", {{"type", "array"}, {"items", parts({{"pointer", "JSON Pointer to the field"}, {"value", "as given"}, {"range", "or choices, or null"}, {"detail", "a sentence"}})}}}}}}},
+        {"Simulation",
+         parts(
+             {{"version", ""},
+              {"parameters", "every one, resolved, with derived"},
+              {"status", "reason, tau, message"},
+              {"warnings", "sentences"},
+              {"series", "columns over tau"},
+              {"impacts", "columns, an entry for each impact"},
+              {"sticking", "columns, an entry for each stuck phase"},
+              {"touches", "tangent contacts, if any"},
+              {"exponents", "qr, eigenvalues, raw_product over the window, with a verdict"},
+              {"windows", "exponents of each of the windows"},
+              {"eigenvalues", "moduli of those of J, M, T at each impact"},
+              {"matrices", "J, M, T themselves, by rows"},
+              {"section", "at impact and stroboscopic"},
+              {"energy", "balance, amplitudes, decay"},
+              {"regime", "type I to VI with its evidence"},
+              {"manifold", "slow invariant manifold and the run's half cycles"}})},
+        {"SweepLine", parts(
+                          {{"type", "start, point, progress, warning, done or error"},
+                           {"index", "of a point"},
+                           {"lambda", "four exponents (qr)"},
+                           {"standard_error", "of the four exponents"},
+                           {"z", "contacts per cycle"},
+                           {"regime", "I to VI or none"},
+                           {"section", "points of a bifurcation diagram"},
+                           {"x_free", "amplitude without the absorber"},
+                           {"worst", "motion of the default set of starts"},
+                           {"best", "another"},
+                           {"starts", "all of them"},
+                           {"depends_on_start", "whether they end in different motions"},
+                           {"x_peak", "of a reduction"},
+                           {"message", "of a warning"},
+                           {"done", "points so far"},
+                           {"of", "points wanted"}})},
+        {"Problem",
+         {{"type", "object"},
+          {"properties",
+           {{"type", {{"type", "string"}}},
+            {"title", {{"type", "string"}}},
+            {"status", {{"type", "integer"}}},
+            {"detail", {{"type", "string"}}},
+            {"errors",
+             {{"type", "array"},
+              {"items", parts(
+                            {{"pointer", "JSON Pointer to the field"},
+                             {"value", "as given"},
+                             {"range", "or choices, or null"},
+                             {"detail", "a sentence"}})}}}}}}},
     };
-    return {{"openapi", "3.1.0"},
-            {"info", {{"title", "vines"}, {"version", version()}, {"description", "Exact simulation of a linear oscillator coupled with a vibro-impact nonlinear energy sink. Lengths in m, the rest dimensionless but where a name is SI."}}},
-            {"paths", std::move(paths)},
-            {"components", {{"schemas", std::move(schemas)}}}};
+    return {
+        {"openapi", "3.1.0"},
+        {"info",
+         {{"title", "vines"},
+          {"version", version()},
+          {"description",
+           "Exact simulation of a linear oscillator coupled with a vibro-impact nonlinear energy "
+           "sink. Lengths in m, the rest dimensionless but where a name is SI."}}},
+        {"paths", std::move(paths)},
+        {"components", {{"schemas", std::move(schemas)}}}};
 }
 
 }  // namespace vines::api

@@ -8,7 +8,8 @@ namespace {
 
 const char* const doi = "10.1007/s11071-017-4015-y";
 const char* const citation =
-    "T. Li, C.-H. Lamarque, S. Seguy, A. Berlioz: Chaotic characteristic of a linear oscillator coupled with vibro-impact nonlinear energy "
+    "T. Li, C.-H. Lamarque, S. Seguy, A. Berlioz: Chaotic characteristic of a linear oscillator "
+    "coupled with vibro-impact nonlinear energy "
     "sink. Nonlinear Dynamics 91 (2018) 2319-2330";
 
 // The window of the paper's exponents (Table 2, first row); its other runs are about as long.
@@ -25,10 +26,13 @@ Json windowed(Json parameters, double from, double to) {
     return parameters;
 }
 
-// Table 4. The base's amplitude is not printed; with G = .01 m at resonance and R = .85 the two responses of section 5 appear.
+// Table 4. The base's amplitude is not printed; with G = .01 m at resonance and R = .85 the two
+// responses of section 5 appear.
 Json experiment(double b, double cycles) {
-    const SiParameters si{.m1 = 4.168, .c1 = 3.02, .k1 = 11.47e3, .m2 = 0.032, .F = 0.01 * 0.032 / 4.168};
-    Json p = {{"m1", si.m1}, {"c1", si.c1}, {"k1", si.k1}, {"m2", si.m2}, {"F", si.F}, {"f", si.f0()}};
+    const SiParameters si{
+        .m1 = 4.168, .c1 = 3.02, .k1 = 11.47e3, .m2 = 0.032, .F = 0.01 * 0.032 / 4.168};
+    Json p = {{"m1", si.m1}, {"c1", si.c1}, {"k1", si.k1},
+              {"m2", si.m2}, {"F", si.F},   {"f", si.f0()}};
     p.update({{"R", 0.85}, {"b", b}, {"damping", "equation_of_motion"}, {"cycles", cycles}});
     return p;
 }
@@ -37,28 +41,45 @@ std::vector<Preset> make_presets() {
     const std::string smr = "Type II, chaotic strongly modulated response";
     std::vector<Preset> list = {
         {"fig3", "Fig. 3", smr + ", b = 22 mm: displacement x of the linear oscillator",
-         "The exponents are those of the window between the paper's broken lines.", windowed(closed_form(0.022, 5521.3), window_start, window_end)},
-        {"fig4", "Fig. 4", smr + ", b = 22 mm: relative displacement y - x enlarged", "", closed_form(0.022, 600)},
+         "The exponents are those of the window between the paper's broken lines.",
+         windowed(closed_form(0.022, 5521.3), window_start, window_end)},
+        {"fig4", "Fig. 4", smr + ", b = 22 mm: relative displacement y - x enlarged", "",
+         closed_form(0.022, 600)},
         {"fig5", "Fig. 5", smr + ", b = 22 mm: transient Lyapunov exponents",
-         "The paper's four positive values are those of raw_product: but for lambda1 they are its rounding floor. qr has one. The spikes are not grazing: they come where the "
-         "product's leading eigenvalue passes through zero.", closed_form(0.022)},
-        {"fig6", "Fig. 6", smr + ", b = 22 mm: transfer matrices J_i of the flights", "", closed_form(0.022)},
-        {"fig7", "Fig. 7", smr + ", b = 22 mm: transfer matrices M_i of the impacts", "", closed_form(0.022)},
-        {"fig8", "Fig. 8", smr + ", b = 22 mm: transfer matrices T_i = M_i J_i", "", closed_form(0.022)},
-        {"fig9", "Fig. 9", smr + ", b = 22 mm: envelope of x against the matrices T_i", "", closed_form(0.022)},
-        {"fig10", "Fig. 10", "Type I, sparse irregular impacts, b = 40 mm", "Four positive values, as printed, are rounding (raw_product); qr has one. After a stick lambda3 and lambda4 are minus infinity.",
+         "The paper's four positive values are those of raw_product: but for lambda1 they are its "
+         "rounding floor. qr has one. The spikes are not grazing: they come where the "
+         "product's leading eigenvalue passes through zero.",
+         closed_form(0.022)},
+        {"fig6", "Fig. 6", smr + ", b = 22 mm: transfer matrices J_i of the flights", "",
+         closed_form(0.022)},
+        {"fig7", "Fig. 7", smr + ", b = 22 mm: transfer matrices M_i of the impacts", "",
+         closed_form(0.022)},
+        {"fig8", "Fig. 8", smr + ", b = 22 mm: transfer matrices T_i = M_i J_i", "",
+         closed_form(0.022)},
+        {"fig9", "Fig. 9", smr + ", b = 22 mm: envelope of x against the matrices T_i", "",
+         closed_form(0.022)},
+        {"fig10", "Fig. 10", "Type I, sparse irregular impacts, b = 40 mm",
+         "Four positive values, as printed, are rounding (raw_product); qr has one. After a stick "
+         "lambda3 and lambda4 are minus infinity.",
          closed_form(0.040)},
         {"fig11", "Fig. 11", "Type III, two symmetric impacts per cycle, b = 15 mm",
-         "A stick at tau = 11.8 makes lambda3 and lambda4 of a window from the start minus infinity; the orbit's own are in its Floquet multipliers.", closed_form(0.015)},
+         "A stick at tau = 11.8 makes lambda3 and lambda4 of a window from the start minus "
+         "infinity; the orbit's own are in its Floquet multipliers.",
+         closed_form(0.015)},
         {"fig12", "Fig. 12", "Type IV, two asymmetric impacts per cycle, b = 6.5 mm",
-         "The paper prints b = 8 mm. From its initial state, and from each of 200 random ones, the two impacts are symmetric there; they are asymmetric from 7.0 to about 5.5 mm.",
+         "The paper prints b = 8 mm. From its initial state, and from each of 200 random ones, the "
+         "two impacts are symmetric there; they are asymmetric from 7.0 to about 5.5 mm.",
          closed_form(0.0065)},
         {"fig13", "Fig. 13", "Type V, three impacts per cycle, b = 4.6 mm",
-         "The paper prints b = 4 mm, where the response is irregular from its initial state and from each of 200 random ones; three impacts per cycle hold from about 4.3 to 5.2 mm.",
+         "The paper prints b = 4 mm, where the response is irregular from its initial state and "
+         "from each of 200 random ones; three impacts per cycle hold from about 4.3 to 5.2 mm.",
          closed_form(0.0046)},
-        {"fig14", "Fig. 14", "Type VI, irregular, about three impacts per cycle, b = 3 mm", "", closed_form(0.003)},
+        {"fig14", "Fig. 14", "Type VI, irregular, about three impacts per cycle, b = 3 mm", "",
+         closed_form(0.003)},
         {"table1", "Table 1", "the paper's parameters, with b = 22 mm",
-         "The paper varies b. Its numbers come from zeta = epsilon lambda (closed_form); its equation of motion has half of that.", closed_form(0.022)},
+         "The paper varies b. Its numbers come from zeta = epsilon lambda (closed_form); its "
+         "equation of motion has half of that.",
+         closed_form(0.022)},
     };
     const double windows[3][2] = {{18.13, 1708.9}, {1708.9, 3652.7}, {3652.7, 5521.3}};
     Json rows = Json::array();
@@ -69,20 +90,35 @@ std::vector<Preset> make_presets() {
         return p;
     };
     for (int i = 0; i < 3; ++i)
-        list.push_back({"table2_" + std::to_string(i + 1), "Table 2, row " + std::to_string(i + 1), smr + ", b = 22 mm: window of the exponents",
-                        "The printed lambda3 is lambda1 - ln(1/2.2e-16)/T: rounding. It is negative (qr).",
-                        of_table2(i)});
-    for (const char* b : {"0.040", "0.034", "0.031", "0.028", "0.025", "0.022", "0.020", "0.018", "0.017", "0.0165"})
-        list.push_back({"table3_b" + std::string(b), "Table 3", std::string(std::stod(b) > 0.032 ? "Type I" : smr) + ", b = " + Json(std::stod(b) * 1000).dump() + " mm",
-                        "The printed lambda3 is lambda1 - ln(1/2.2e-16)/T: rounding. One window knows lambda1 to about 10 %.", closed_form(std::stod(b))});
-    const std::string excitation = "Forced at resonance with G = 10 mm; the paper does not print its excitation.";
+        list.push_back(
+            {"table2_" + std::to_string(i + 1), "Table 2, row " + std::to_string(i + 1),
+             smr + ", b = 22 mm: window of the exponents",
+             "The printed lambda3 is lambda1 - ln(1/2.2e-16)/T: rounding. It is negative (qr).",
+             of_table2(i)});
+    for (const char* b :
+         {"0.040", "0.034", "0.031", "0.028", "0.025", "0.022", "0.020", "0.018", "0.017",
+          "0.0165"})
+        list.push_back(
+            {"table3_b" + std::string(b), "Table 3",
+             std::string(std::stod(b) > 0.032 ? "Type I" : smr) +
+                 ", b = " + Json(std::stod(b) * 1000).dump() + " mm",
+             "The printed lambda3 is lambda1 - ln(1/2.2e-16)/T: rounding. One window knows lambda1 "
+             "to about 10 %.",
+             closed_form(std::stod(b))});
+    const std::string excitation =
+        "Forced at resonance with G = 10 mm; the paper does not print its excitation.";
     for (int figure = 15; figure <= 19; ++figure)
-        list.push_back({"fig" + std::to_string(figure), "Fig. " + std::to_string(figure) + ", Table 4", "experiment, b = 9 mm: two impacts per cycle",
-                        excitation, experiment(0.009, 100)});
+        list.push_back(
+            {"fig" + std::to_string(figure), "Fig. " + std::to_string(figure) + ", Table 4",
+             "experiment, b = 9 mm: two impacts per cycle", excitation, experiment(0.009, 100)});
     for (int figure = 20; figure <= 24; ++figure)
-        list.push_back({"fig" + std::to_string(figure), "Fig. " + std::to_string(figure) + ", Table 4",
-                        "experiment, b = 15 mm: chaotic strongly modulated response", excitation, experiment(0.015, 170)});
-    list.push_back({"table4", "Table 4", "experimental parameters, with b = 15 mm", excitation, experiment(0.015, 170)});
+        list.push_back(
+            {"fig" + std::to_string(figure), "Fig. " + std::to_string(figure) + ", Table 4",
+             "experiment, b = 15 mm: chaotic strongly modulated response", excitation,
+             experiment(0.015, 170)});
+    list.push_back(
+        {"table4", "Table 4", "experimental parameters, with b = 15 mm", excitation,
+         experiment(0.015, 170)});
     return list;
 }
 
@@ -96,7 +132,13 @@ const std::vector<Preset>& presets() {
 Json describe_presets() {
     Json list = Json::array();
     for (const Preset& p : presets())
-        list.push_back({{"name", p.name}, {"source", p.source}, {"doi", doi}, {"title", p.title}, {"note", p.note}, {"parameters", p.parameters}});
+        list.push_back(
+            {{"name", p.name},
+             {"source", p.source},
+             {"doi", doi},
+             {"title", p.title},
+             {"note", p.note},
+             {"parameters", p.parameters}});
     return {{"citation", citation}, {"doi", doi}, {"presets", std::move(list)}};
 }
 

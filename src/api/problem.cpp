@@ -10,7 +10,9 @@ constexpr int deepest = 16;
 
 constexpr std::size_t longest_echo = 200;
 
-std::string shortened(const std::string& text) { return text.size() <= longest_echo ? text : text.substr(0, longest_echo) + "..."; }
+std::string shortened(const std::string& text) {
+    return text.size() <= longest_echo ? text : text.substr(0, longest_echo) + "...";
+}
 
 Json shortened(const Json& value) {
     if (value.is_string()) return shortened(value.get<std::string>());
@@ -24,14 +26,24 @@ std::string quoted(const std::string& name) { return "\"" + name + "\""; }
 }  // namespace
 
 Problem::Problem(int status_, const std::string& detail, std::vector<FieldError> errors_)
-    : std::runtime_error(detail), status(status_), errors(std::move(errors_)) {}
+    : std::runtime_error(detail),
+      status(status_),
+      errors(std::move(errors_)) {}
 
 std::string Problem::body() const {
-    Json document = {{"type", "about:blank"}, {"title", reason_phrase(status)}, {"status", status}, {"detail", what()}};
+    Json document = {
+        {"type", "about:blank"},
+        {"title", reason_phrase(status)},
+        {"status", status},
+        {"detail", what()}};
     if (!errors.empty()) {
         Json& list = document["errors"] = Json::array();
         for (const FieldError& e : errors)
-            list.push_back({{"pointer", shortened(e.pointer)}, {"value", shortened(e.value)}, {"range", e.range}, {"detail", e.detail}});
+            list.push_back(
+                {{"pointer", shortened(e.pointer)},
+                 {"value", shortened(e.value)},
+                 {"range", e.range},
+                 {"detail", e.detail}});
     }
     return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -58,25 +70,35 @@ Json parse_object(std::string_view text) {
     auto check = [&names](int depth, Json::parse_event_t event, Json& value) {
         using Event = Json::parse_event_t;
         if (event == Event::object_start || event == Event::array_start) {
-            if (depth >= deepest) throw Problem(400, "the JSON text is nested deeper than " + std::to_string(deepest) + " levels");
+            if (depth >= deepest)
+                throw Problem(
+                    400,
+                    "the JSON text is nested deeper than " + std::to_string(deepest) + " levels");
             names.emplace_back();
         } else if (event == Event::object_end || event == Event::array_end) {
             names.pop_back();
         } else if (event == Event::key && !names.back().insert(value.get<std::string>()).second) {
-            throw Problem(400, "the name " + quoted(value.get<std::string>()) + " comes twice in the same JSON object");
+            throw Problem(
+                400, "the name " + quoted(value.get<std::string>()) +
+                         " comes twice in the same JSON object");
         }
         return true;
     };
-    if (text.find('\0') != std::string_view::npos)  // the library would take it for the end of the text
+    // The library would take it for the end of the text.
+    if (text.find('\0') != std::string_view::npos)
         throw Problem(400, "the body is not valid JSON: it holds a NUL byte");
     if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
-        throw Problem(400, "the body is empty; send a JSON object of parameters, {} for the defaults");
+        throw Problem(
+            400, "the body is empty; send a JSON object of parameters, {} for the defaults");
     try {
         Json object = Json::parse(text, check);
-        if (!object.is_object()) throw Problem(400, "the body must be a JSON object, not " + std::string(object.type_name()));
+        if (!object.is_object())
+            throw Problem(
+                400, "the body must be a JSON object, not " + std::string(object.type_name()));
         return object;
     } catch (const Json::parse_error& e) {
-        // The library's text is "[json.exception....] parse error at line 1, column 5: ..."; its tag is of no use to anyone.
+        // The library's text is "[json.exception....] parse error at line 1, column 5: ..."; its
+        // tag is of no use to anyone.
         const std::string what = e.what();
         throw Problem(400, "the body is not valid JSON: " + what.substr(what.find("] ") + 2));
     } catch (const Json::out_of_range& e) {  // a number beyond the range of double
@@ -86,9 +108,11 @@ Json parse_object(std::string_view text) {
 }
 
 void refuse(std::vector<FieldError> errors) {
-    const std::string detail = errors.size() == 1             ? errors[0].detail
-                               : errors.size() >= most_errors ? "the first " + std::to_string(errors.size()) + " faults are listed"
-                                                              : std::to_string(errors.size()) + " fields are at fault";
+    const std::string detail =
+        errors.size() == 1 ? errors[0].detail
+        : errors.size() >= most_errors
+            ? "the first " + std::to_string(errors.size()) + " faults are listed"
+            : std::to_string(errors.size()) + " fields are at fault";
     throw Problem(422, detail, std::move(errors));
 }
 

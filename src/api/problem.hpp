@@ -1,4 +1,5 @@
-// What is wrong with a request, as application/problem+json (RFC 9457), and the parsing of untrusted JSON.
+// What is wrong with a request, as application/problem+json (RFC 9457), and the parsing of
+// untrusted JSON.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -19,7 +20,8 @@ struct FieldError {
     std::string detail;
 };
 
-/// More faults of one request than this are counted, not listed: an answer must not be larger than what it answers.
+/// More faults of one request than this are counted, not listed: an answer must not be larger than
+/// what it answers.
 inline constexpr std::size_t most_errors = 20;
 
 /// Thrown on the way from bytes to a request; the HTTP layer answers with it.
@@ -35,8 +37,9 @@ public:
 /// "Unprocessable Content" for 422, and so on.
 std::string_view reason_phrase(int status);
 
-/// An object from JSON text. Problem 400 for anything that is no JSON object, with the place; for nesting deeper than 16
-/// (deeper ones make the library overflow the stack) and for names that come twice (of which it would keep the last).
+/// An object from JSON text. Problem 400 for anything that is no JSON object, with the place; for
+/// nesting deeper than 16 (deeper ones make the library overflow the stack) and for names that come
+/// twice (of which it would keep the last).
 Json parse_object(std::string_view text);
 
 /// Throws a Problem 422 that lists the errors.

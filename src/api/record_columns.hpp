@@ -8,7 +8,8 @@
 
 namespace vines::api {
 
-/// A unit by its name in the fields, and how headers may write it once blanks, ^ and * are gone and a superscript is a digit.
+/// A unit by its name in the fields, and how headers may write it once blanks, ^ and * are gone and
+/// a superscript is a digit.
 struct Unit {
     std::string name;
     double factor;  ///< to SI
@@ -27,9 +28,11 @@ struct RecordColumn {
     const CsvColumn* column;  ///< null where there is none
     double factor;            ///< to SI
 };
-/// The column that the request names, else the default, else the first with one of the beginnings. Its unit is what its name
-/// says - displacement_mm, time (ms), acceleration [g] -, else the request's field, else the default. Problem 422 where the name
-/// says a unit that is not known, or another one than the field.
-RecordColumn find_column(const std::vector<CsvColumn>& columns, const Json& fields, const Quantity& quantity);
+/// The column that the request names, else the default, else the first with one of the beginnings.
+/// Its unit is what its name says - displacement_mm, time (ms), acceleration [g] -, else the
+/// request's field, else the default. Problem 422 where the name says a unit that is not known, or
+/// another one than the field.
+RecordColumn find_column(
+    const std::vector<CsvColumn>& columns, const Json& fields, const Quantity& quantity);
 
 }  // namespace vines::api

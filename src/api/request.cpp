@@ -7,9 +7,13 @@ namespace vines::api {
 namespace {
 
 /// A window must begin within the run.
-void check_window(const std::string& where, const Interval& window, double tau_end, std::vector<FieldError>& errors) {
+void check_window(
+    const std::string& where, const Interval& window, double tau_end,
+    std::vector<FieldError>& errors) {
     if (window.from >= tau_end)
-        errors.push_back({where + "/0", window.from, Json::array({0, tau_end}), "the window begins after the run's end, tau_end = " + Json(tau_end).dump()});
+        errors.push_back(
+            {where + "/0", window.from, Json::array({0, tau_end}),
+             "the window begins after the run's end, tau_end = " + Json(tau_end).dump()});
 }
 
 }  // namespace
@@ -28,13 +32,17 @@ SimulateRequest read_simulate_request(const Json& given) {
     if (errors.empty() && r.tau_end > longest) {  // of an Omega in its range
         const bool by_cycles = l.has("cycles");
         const double most = by_cycles ? longest / cycle : longest;
-        errors.push_back({by_cycles ? "/cycles" : "/tau_end", by_cycles ? l.fields["cycles"] : Json(r.tau_end), Json::array({1e-6, most}),
-                          "a run may be as long as tau = 1e7 and 2e6 cycles of 2 pi/Omega: here at most " + Json(most).dump()});
+        errors.push_back(
+            {by_cycles ? "/cycles" : "/tau_end", by_cycles ? l.fields["cycles"] : Json(r.tau_end),
+             Json::array({1e-6, most}),
+             "a run may be as long as tau = 1e7 and 2e6 cycles of 2 pi/Omega: here at most " +
+                 Json(most).dump()});
     }
     r.window = l.has("window") ? l.interval("window") : Interval{0, r.tau_end};
     check_window("/window", r.window, r.tau_end, errors);
     r.windows = l.intervals("windows");
-    for (std::size_t i = 0; i < r.windows.size(); ++i) check_window("/windows/" + std::to_string(i), r.windows[i], r.tau_end, errors);
+    for (std::size_t i = 0; i < r.windows.size(); ++i)
+        check_window("/windows/" + std::to_string(i), r.windows[i], r.tau_end, errors);
     if (!errors.empty()) refuse(std::move(errors));
 
     r.samples_per_cycle = l.number("samples_per_cycle");
@@ -44,11 +52,15 @@ SimulateRequest read_simulate_request(const Json& given) {
     r.listed_impacts = static_cast<std::size_t>(r.max_impacts);
     r.include = l.words("include");
     const std::set<std::string> estimators = l.words("exponents");
-    r.estimators = {estimators.contains("qr"), estimators.contains("eigenvalues"), estimators.contains("raw_product"), r.max_points};
+    r.estimators = {
+        estimators.contains("qr"), estimators.contains("eigenvalues"),
+        estimators.contains("raw_product"), r.max_points};
     for (const char* name : {"tau_end", "cycles"}) r.system.origin[name] = l.origin(name);
     if (l.has("cycles")) r.system.origin["tau_end"] = "follows from cycles";
     else r.system.origin["cycles"] = "follows from tau_end";
-    for (const char* name : {"window", "samples_per_cycle", "section_phase", "max_points", "max_impacts"}) r.system.origin[name] = l.origin(name);
+    for (const char* name :
+         {"window", "samples_per_cycle", "section_phase", "max_points", "max_impacts"})
+        r.system.origin[name] = l.origin(name);
     return r;
 }
 
@@ -69,8 +81,11 @@ ManifoldRequest read_manifold_request(const Json& given) {
     r.system = read_system_alone(l, false);
     const Parameters& p = r.system.parameters;
     if (p.R_plus != p.R_minus)
-        refuse({{"/R_minus", p.R_minus, Json::array({p.R_plus, p.R_plus}),
-                 "the manifold of two symmetric impacts needs the same restitution coefficient at both walls, here R_plus = " + Json(p.R_plus).dump()}});
+        refuse(
+            {{"/R_minus", p.R_minus, Json::array({p.R_plus, p.R_plus}),
+              "the manifold of two symmetric impacts needs the same restitution coefficient at "
+              "both walls, here R_plus = " +
+                  Json(p.R_plus).dump()}});
     r.V_max = l.number("V_max", 0);
     r.points = static_cast<std::size_t>(l.number("points"));
     return r;

@@ -15,7 +15,9 @@ struct SimulateRequest {
     double samples_per_cycle, section_phase;
     std::size_t max_points;
     long max_impacts;
-    std::size_t listed_impacts;  ///< the last so many impacts, sticks and touches are listed: all, unless the answer's size is limited
+    /// The last so many impacts, sticks and touches are listed: all, unless the answer's size is
+    /// limited.
+    std::size_t listed_impacts;
     std::set<std::string> include;
     ExponentOptions estimators;
 

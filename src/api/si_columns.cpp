@@ -10,7 +10,8 @@ namespace vines::api {
 
 namespace {
 
-/// A quantity in units of tau and its twin: value * omega0^power, and m1 beside it for what is per m1.
+/// A quantity in units of tau and its twin: value * omega0^power, and m1 beside it for what is per
+/// m1.
 struct Twin {
     const char *name, *si_name;
     int power;
@@ -40,8 +41,10 @@ constexpr Twin twins[] = {
     {"V", "V_velocity", 1},
 };
 constexpr Twin energies[] = {
-    {"input", "input_J", 2, true},       {"damper", "damper_J", 2, true},     {"impacts", "impacts_J", 2, true}, {"stored", "stored_J", 2, true},
-    {"residual", "residual_J", 2, true}, {"at_start", "at_start_J", 2, true}, {"at_end", "at_end_J", 2, true},
+    {"input", "input_J", 2, true},       {"damper", "damper_J", 2, true},
+    {"impacts", "impacts_J", 2, true},   {"stored", "stored_J", 2, true},
+    {"residual", "residual_J", 2, true}, {"at_start", "at_start_J", 2, true},
+    {"at_end", "at_end_J", 2, true},
 };
 
 Json scaled(const Json& value, double factor) {
@@ -55,7 +58,9 @@ Json scaled(const Json& value, double factor) {
 
 void add(Json& object, std::span<const Twin> table, const SiParameters& si) {
     for (const Twin& t : table)
-        if (object.contains(t.name) && !object[t.name].is_string()) object[t.si_name] = scaled(object[t.name], std::pow(si.omega0(), t.power) * (t.per_m1 ? si.m1 : 1));
+        if (object.contains(t.name) && !object[t.name].is_string())
+            object[t.si_name] =
+                scaled(object[t.name], std::pow(si.omega0(), t.power) * (t.per_m1 ? si.m1 : 1));
 }
 
 }  // namespace

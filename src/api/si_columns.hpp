@@ -1,4 +1,5 @@
-// The answer in the units of a question in SI: beside each quantity in units of tau its twin in s, m/s, m/s^2, N s or J.
+// The answer in the units of a question in SI: beside each quantity in units of tau its twin in s,
+// m/s, m/s^2, N s or J.
 #pragma once
 
 #include "api/problem.hpp"
@@ -6,8 +7,9 @@
 
 namespace vines::api {
 
-/// Adds the twins to an object and to all that it holds: time_s beside tau, x_velocity (m/s) beside x_dot, x_acceleration (m/s^2)
-/// beside x_ddot, impulse_N_s beside impulse. A column has a column beside it, null where it is null.
+/// Adds the twins to an object and to all that it holds: time_s beside tau, x_velocity (m/s) beside
+/// x_dot, x_acceleration (m/s^2) beside x_ddot, impulse_N_s beside impulse. A column has a column
+/// beside it, null where it is null.
 void add_si(Json& part, const SiParameters& si);
 
 /// The same for the part `energy`, whose energies are per m1 omega0^2: input_J beside input.

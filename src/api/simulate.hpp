@@ -7,13 +7,14 @@
 
 namespace vines::api {
 
-/// What may end a run from outside: asked every few events; once it says true, the answer is what was found until then, and
-/// status has this reason and message.
+/// What may end a run from outside: asked every few events; once it says true, the answer is what
+/// was found until then, and status has this reason and message.
 struct Stop {
     std::function<bool()> asked = {};
     std::string reason = "deadline";
     std::string message = "ended by the server's time limit for one request, before tau_end";
-    std::function<bool()> late = {};  ///< asked while the answer is made up: once true, the parts that are left are null
+    /// Asked while the answer is made up: once true, the parts that are left are null.
+    std::function<bool()> late = {};
 };
 
 /// An answer of no more than about so many bytes of JSON: see fit_answer().

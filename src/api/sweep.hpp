@@ -12,19 +12,25 @@ namespace vines::api {
 class Pace {
 public:
     virtual ~Pace() = default;
-    virtual void begin() {}                   ///< before a point is computed, on the thread that does it
+    /// Before a point is computed, on the thread that does it.
+    virtual void begin() {}
     virtual void end() {}
-    virtual bool stop_or_yield() { return false; }  ///< asked every few events; true stops the sweep
+    /// Asked every few events; true stops the sweep.
+    virtual bool stop_or_yield() { return false; }
 
-    std::atomic<std::size_t> runs = 0;        ///< that are done: of runs_of()
+    std::atomic<std::size_t> runs = 0;  ///< that are done: of runs_of()
 };
 
-/// How many runs the wanted lines take, about: where rows are computed together their lines come late, and only the runs tell how far it is.
+/// How many runs the wanted lines take, about: where rows are computed together their lines come
+/// late, and only the runs tell how far it is.
 std::size_t runs_of(const SweepRequest& request);
 
-/// Computes the points wanted on so many threads and hands out each as a line {type: point, index, ...}, in the order in
-/// which they come. `point` is called by one thread at a time. A line depends on the request and its index alone.
-/// Returns what is worth a warning about all of them; empty if nothing is.
-std::string run_sweep(const SweepRequest& request, int threads, Pace& pace, const std::function<void(std::size_t index, const Json& line)>& point);
+/// Computes the points wanted on so many threads and hands out each as a line {type: point, index,
+/// ...}, in the order in which they come. `point` is called by one thread at a time. A line depends
+/// on the request and its index alone. Returns what is worth a warning about all of them; empty if
+/// nothing is.
+std::string run_sweep(
+    const SweepRequest& request, int threads, Pace& pace,
+    const std::function<void(std::size_t index, const Json& line)>& point);
 
 }  // namespace vines::api

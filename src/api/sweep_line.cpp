@@ -12,8 +12,27 @@ namespace vines::api {
 namespace {
 
 // What a point's line says of its motion: null where there was none to measure.
-constexpr const char* measured_quantities[] = {"lambda", "status", "standard_error", "verdict", "z", "regime", "periodic", "period_cycles", "impacts_per_period", "symmetric",
-                                               "capture_cycle", "multiplier", "synchronised", "x_max", "x_rms", "x_rms_ratio", "x_free", "share_impacts", "impacts", "sticks"};
+constexpr const char* measured_quantities[] = {
+    "lambda",
+    "status",
+    "standard_error",
+    "verdict",
+    "z",
+    "regime",
+    "periodic",
+    "period_cycles",
+    "impacts_per_period",
+    "symmetric",
+    "capture_cycle",
+    "multiplier",
+    "synchronised",
+    "x_max",
+    "x_rms",
+    "x_rms_ratio",
+    "x_free",
+    "share_impacts",
+    "impacts",
+    "sticks"};
 
 Json describe_section_points(const std::vector<SectionPoint>& points, Section section) {
     auto column = [&](auto value) {
@@ -28,7 +47,8 @@ Json describe_section_points(const std::vector<SectionPoint>& points, Section se
         j["x"] = column([](const auto& p) { return p.x; });
         j["x_dot_after"] = column([](const auto& p) { return p.x_dot; });
         j["y_dot_after"] = column([](const auto& p) { return p.y_dot; });
-        j["time_difference"] = column([](const auto& p) { return finite_or_null(p.time_difference); });
+        j["time_difference"] =
+            column([](const auto& p) { return finite_or_null(p.time_difference); });
     } else {
         j["x"] = column([](const auto& p) { return p.x; });
         j["x_dot"] = column([](const auto& p) { return p.x_dot; });
@@ -38,18 +58,19 @@ Json describe_section_points(const std::vector<SectionPoint>& points, Section se
     return j;
 }
 
-
 /// Where a line lies.
 Json located(const SweepRequest& r, std::size_t index) {
     const Place place = place_of(r, index);
     Json line = {{"type", "point"}, {"index", index}};
     for (std::size_t a = 0; a < r.axes.size(); ++a)
-        if (!(r.reduce && r.reduce->axis == a)) line[r.axes[a].parameter] = r.axes[a].values[place.at[a]];
+        if (!(r.reduce && r.reduce->axis == a))
+            line[r.axes[a].parameter] = r.axes[a].values[place.at[a]];
     if (r.starts.size() > 1) line["start"] = place.start;
     return line;
 }
 
-void add_motion(Json& line, const SweepRequest& r, const StartedSystem& system, const PointResult& p) {
+void add_motion(
+    Json& line, const SweepRequest& r, const StartedSystem& system, const PointResult& p) {
     if (!p.measured) {
         for (const char* name : measured_quantities) line[name] = nullptr;
         line["reason"] = "transient_max_impacts";
@@ -72,7 +93,9 @@ void add_motion(Json& line, const SweepRequest& r, const StartedSystem& system, 
     line["period_cycles"] = orbit ? Json(orbit->cycles) : Json(nullptr);
     line["impacts_per_period"] = orbit ? Json(orbit->contacts) : Json(nullptr);
     line["symmetric"] = orbit ? Json(orbit->symmetric) : Json(nullptr);
-    line["capture_cycle"] = capture && capture->tau ? Json(std::round(*capture->tau / system.system.parameters.cycle())) : Json(nullptr);
+    line["capture_cycle"] = capture && capture->tau
+                                ? Json(std::round(*capture->tau / system.system.parameters.cycle()))
+                                : Json(nullptr);
     line["multiplier"] = orbit ? Json(std::abs(orbit->multipliers[0])) : Json(nullptr);
     line["synchronised"] = p.regime.synchronised;
     line["x_max"] = p.x_max;
@@ -89,13 +112,22 @@ void add_motion(Json& line, const SweepRequest& r, const StartedSystem& system, 
 }
 
 /// As fields of /v1/simulate: there the same motion comes about.
-Json describe_start(const State& s) { return {{"x0", s.x}, {"x_dot0", s.x_dot}, {"y0", s.y}, {"y_dot0", s.y_dot}}; }
+Json describe_start(const State& s) {
+    return {{"x0", s.x}, {"x_dot0", s.x_dot}, {"y0", s.y}, {"y_dot0", s.y_dot}};
+}
 
 /// What tells one motion of a point from another.
 Json describe_motion(const Motion& m) {
     const PointResult& p = m.result;
-    if (!p.measured) return {{"start", m.start}, {"state", describe_start(m.from)}, {"reason", "transient_max_impacts"}};
-    return {{"start", m.start}, {"state", describe_start(m.from)}, {"x_max", p.x_max}, {"x_rms", p.x_rms}, {"regime", name_of(p.regime.type)}, {"verdict", word(p.verdict)}, {"z", p.regime.z}, {"lambda1", finite_or_null(p.lambda[0])}};
+    if (!p.measured)
+        return {
+            {"start", m.start},
+            {"state", describe_start(m.from)},
+            {"reason", "transient_max_impacts"}};
+    return {
+        {"start", m.start}, {"state", describe_start(m.from)},       {"x_max", p.x_max},
+        {"x_rms", p.x_rms}, {"regime", name_of(p.regime.type)},      {"verdict", word(p.verdict)},
+        {"z", p.regime.z},  {"lambda1", finite_or_null(p.lambda[0])}};
 }
 
 /// A transient should leave no more of a free motion's amplitude.
@@ -108,12 +140,16 @@ std::vector<const Motion*> ranked(const SweepPoint& point) {
     std::vector<const Motion*> motions;
     for (const Motion& m : point.motions)
         if (m.result.measured) motions.push_back(&m);
-    std::stable_sort(motions.begin(), motions.end(), [](const Motion* a, const Motion* b) { return peak_of(*a) < peak_of(*b); });
+    std::stable_sort(motions.begin(), motions.end(), [](const Motion* a, const Motion* b) {
+        return peak_of(*a) < peak_of(*b);
+    });
     return motions;
 }
 
 bool depends_on_start(const std::vector<const Motion*>& motions) {
-    return std::any_of(motions.begin(), motions.end(), [&](const Motion* m) { return ends_elsewhere(motions.back()->result, m->result); });
+    return std::any_of(motions.begin(), motions.end(), [&](const Motion* m) {
+        return ends_elsewhere(motions.back()->result, m->result);
+    });
 }
 
 /// The highest or lowest peak along a row, of the motion that `choose` takes at each point.
@@ -126,7 +162,9 @@ Peak peak_along(const SweepRequest& r, std::span<const SweepPoint> row, Choose c
     Peak peak;
     for (const SweepPoint& point : row) {
         const Motion* m = choose(point);
-        if (m && (!peak.motion || (r.reduce->largest ? peak_of(*m) > peak_of(*peak.motion) : peak_of(*m) < peak_of(*peak.motion)))) peak = {&point, m};
+        if (m && (!peak.motion || (r.reduce->largest ? peak_of(*m) > peak_of(*peak.motion)
+                                                     : peak_of(*m) < peak_of(*peak.motion))))
+            peak = {&point, m};
     }
     return peak;
 }
@@ -135,9 +173,16 @@ Json describe_peak(const SweepRequest& r, std::span<const SweepPoint> row, const
     const Axis& axis = r.axes[r.reduce->axis];
     if (!peak.motion) return {{"x_peak", nullptr}, {axis.parameter, nullptr}};
     const PointResult& p = peak.motion->result;
-    Json j = {{"x_peak", p.x_max}, {axis.parameter, axis.values[static_cast<std::size_t>(peak.point - row.data())]}};
-    if (!peak.motion->start.empty()) j.update({{"start", peak.motion->start}, {"state", describe_start(peak.motion->from)}});
-    j.update({{"regime", name_of(p.regime.type)}, {"verdict", word(p.verdict)}, {"z", p.regime.z}, {"x_rms", p.x_rms}});
+    Json j = {
+        {"x_peak", p.x_max},
+        {axis.parameter, axis.values[static_cast<std::size_t>(peak.point - row.data())]}};
+    if (!peak.motion->start.empty())
+        j.update({{"start", peak.motion->start}, {"state", describe_start(peak.motion->from)}});
+    j.update(
+        {{"regime", name_of(p.regime.type)},
+         {"verdict", word(p.verdict)},
+         {"z", p.regime.z},
+         {"x_rms", p.x_rms}});
     return j;
 }
 
@@ -151,17 +196,30 @@ Json sweep_start(const SweepRequest& r) {
     for (const Axis& a : r.axes) parameters["origin"][a.parameter] = "swept: the first of its axis";
     std::vector<std::string> warnings = system.notes;
     // Of what the oscillator does by itself, as it does where the ball is not met.
-    const double left = std::exp(-system.parameters.zeta() * system.parameters.cycle() * r.options.transient_cycles);
+    const double left = std::exp(
+        -system.parameters.zeta() * system.parameters.cycle() * r.options.transient_cycles);
     if (left > most_left) {
-        const double enough = std::ceil(-std::log(most_left) / (system.parameters.zeta() * system.parameters.cycle()));
-        warnings.push_back("after transient_cycles = " + digits("%.0f", r.options.transient_cycles) + " the oscillator's free motion still has " + digits("%.0f", 100 * left) +
-                           " % of its amplitude" + (std::isfinite(enough) ? "; " + digits("%.0f", enough) + " leave 1 %" : ": it is undamped"));
+        const double enough = std::ceil(
+            -std::log(most_left) / (system.parameters.zeta() * system.parameters.cycle()));
+        warnings.push_back(
+            "after transient_cycles = " + digits("%.0f", r.options.transient_cycles) +
+            " the oscillator's free motion still has " + digits("%.0f", 100 * left) +
+            " % of its amplitude" +
+            (std::isfinite(enough) ? "; " + digits("%.0f", enough) + " leave 1 %"
+                                   : ": it is undamped"));
     }
     parameters["derived"] = describe_derived(system);
     double runs = r.default_set ? 6 : static_cast<double>(r.starts.size());
     for (const Axis& a : r.axes) runs *= static_cast<double>(a.values.size());
-    return {{"type", "start"}, {"version", version()}, {"points", r.points}, {"cycles", runs * (r.options.cycles + r.options.transient_cycles)}, {"axes", std::move(axes)},
-            {"parameters", std::move(parameters)}, {"warnings", std::move(warnings)}, {"request", r.given}};
+    return {
+        {"type", "start"},
+        {"version", version()},
+        {"points", r.points},
+        {"cycles", runs * (r.options.cycles + r.options.transient_cycles)},
+        {"axes", std::move(axes)},
+        {"parameters", std::move(parameters)},
+        {"warnings", std::move(warnings)},
+        {"request", r.given}};
 }
 
 Json describe_point(const SweepRequest& r, std::size_t index, const SweepPoint& point) {
@@ -183,7 +241,8 @@ Json describe_point(const SweepRequest& r, std::size_t index, const SweepPoint& 
         line["depends_on_start"] = depends_on_start(motions);
     } else if (point.second) {
         line["second_start"] = describe_motion(*point.second);
-        line["depends_on_start"] = worst.result.measured && point.second->result.measured && ends_elsewhere(worst.result, point.second->result);
+        line["depends_on_start"] = worst.result.measured && point.second->result.measured &&
+                                   ends_elsewhere(worst.result, point.second->result);
     }
     return line;
 }
@@ -192,8 +251,14 @@ Json describe_row(const SweepRequest& r, std::size_t index, std::span<const Swee
     Json line = located(r, index);
     const Axis& axis = r.axes[r.reduce->axis];
     line["reduce"] = std::string(r.reduce->largest ? "max" : "min") + " over " + axis.parameter;
-    auto worst_of = [](const SweepPoint& p) { const auto motions = ranked(p); return motions.empty() ? nullptr : motions.back(); };
-    auto best_of = [](const SweepPoint& p) { const auto motions = ranked(p); return motions.empty() ? nullptr : motions.front(); };
+    auto worst_of = [](const SweepPoint& p) {
+        const auto motions = ranked(p);
+        return motions.empty() ? nullptr : motions.back();
+    };
+    auto best_of = [](const SweepPoint& p) {
+        const auto motions = ranked(p);
+        return motions.empty() ? nullptr : motions.front();
+    };
     line.update(describe_peak(r, row, peak_along(r, row, worst_of)));
     if (r.default_set) {
         line["worst"] = describe_peak(r, row, peak_along(r, row, worst_of));
@@ -202,12 +267,17 @@ Json describe_row(const SweepRequest& r, std::size_t index, std::span<const Swee
         std::vector<std::string> names;
         for (const SweepPoint& p : row)
             for (const Motion& m : p.motions)
-                if (std::find(names.begin(), names.end(), m.start) == names.end()) names.push_back(m.start);
+                if (std::find(names.begin(), names.end(), m.start) == names.end())
+                    names.push_back(m.start);
         for (const std::string& name : names)
-            line["starts"].push_back(describe_peak(r, row, peak_along(r, row, [&](const SweepPoint& p) {
-                const auto m = std::find_if(p.motions.begin(), p.motions.end(), [&](const Motion& motion) { return motion.start == name && motion.result.measured; });
-                return m == p.motions.end() ? nullptr : &*m;
-            })));
+            line["starts"].push_back(describe_peak(
+                r, row, peak_along(r, row, [&](const SweepPoint& p) {
+                    const auto m =
+                        std::find_if(p.motions.begin(), p.motions.end(), [&](const Motion& motion) {
+                            return motion.start == name && motion.result.measured;
+                        });
+                    return m == p.motions.end() ? nullptr : &*m;
+                })));
     }
     std::optional<double> free;
     std::size_t missing = 0, elsewhere = 0, tried = 0;
@@ -216,9 +286,12 @@ Json describe_row(const SweepRequest& r, std::size_t index, std::span<const Swee
         missing += motions.empty();
         if (motions.empty()) continue;
         const auto x_free = motions.back()->result.x_free;
-        if (x_free && (!free || (r.reduce->largest ? *x_free > *free : *x_free < *free))) free = x_free;
+        if (x_free && (!free || (r.reduce->largest ? *x_free > *free : *x_free < *free)))
+            free = x_free;
         tried += r.default_set || p.second;
-        elsewhere += r.default_set ? depends_on_start(motions) : p.second && ends_elsewhere(motions.back()->result, p.second->result);
+        elsewhere += r.default_set
+                         ? depends_on_start(motions)
+                         : p.second && ends_elsewhere(motions.back()->result, p.second->result);
     }
     line["x_free_peak"] = free ? Json(*free) : Json(nullptr);
     line["points"] = row.size();
@@ -229,8 +302,10 @@ Json describe_row(const SweepRequest& r, std::size_t index, std::span<const Swee
 
 std::string start_warning(std::size_t elsewhere, std::size_t tried) {
     if (elsewhere == 0) return "";
-    return "the motion depends on the start: at " + std::to_string(elsewhere) + " of " + std::to_string(tried) +
-           " points where a second one was tried it ends elsewhere (second_start); \"starts\": \"" + default_set_of_starts + "\" tells the worst and the best of several";
+    return "the motion depends on the start: at " + std::to_string(elsewhere) + " of " +
+           std::to_string(tried) +
+           " points where a second one was tried it ends elsewhere (second_start); \"starts\": \"" +
+           default_set_of_starts + "\" tells the worst and the best of several";
 }
 
 }  // namespace vines::api

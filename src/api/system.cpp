@@ -8,25 +8,35 @@ namespace {
 
 /// Which others each field of the core follows from, where it is not given itself.
 const std::map<std::string, std::vector<std::string>> sources = {
-    {"epsilon", {"m2", "mass_ratio", "m1"}}, {"lambda", {"c1", "damping_ratio", "k1", "f0", "m1", "m2", "mass_ratio"}}, {"G", {"F", "m1", "m2", "mass_ratio"}},
-    {"Omega", {"f", "k1", "f0", "m1"}}, {"x_dot0", {"x_velocity0"}}, {"y_dot0", {"y_velocity0"}}};
+    {"epsilon", {"m2", "mass_ratio", "m1"}},
+    {"lambda", {"c1", "damping_ratio", "k1", "f0", "m1", "m2", "mass_ratio"}},
+    {"G", {"F", "m1", "m2", "mass_ratio"}},
+    {"Omega", {"f", "k1", "f0", "m1"}},
+    {"x_dot0", {"x_velocity0"}},
+    {"y_dot0", {"y_velocity0"}}};
 
-/// Those that are there of the fields that one follows from. Omega is f over f0, whatever m1 is, where f0 is given.
+/// Those that are there of the fields that one follows from. Omega is f over f0, whatever m1 is,
+/// where f0 is given.
 std::vector<std::string> sources_of(const std::string& name, const Json& fields) {
     std::vector<std::string> names = present(fields, sources.at(name));
     if (name == "Omega" && fields.contains("f0")) std::erase(names, "m1");
     return names;
 }
 
-/// A system in SI needs all of its lines; F and f belong together, but where nothing is forced f may be any.
+/// A system in SI needs all of its lines; F and f belong together, but where nothing is forced f
+/// may be any.
 void check_si_is_whole(const Layered& l, bool forcing_fitted) {
     std::vector<FieldError> errors;
     const bool unforced = l.fields.contains("F") && l.fields["F"] == 0;
     for (const auto& line : si_lines) {
-        if (!present(l.fields, line).empty() || (line[0] == "f" && unforced) || (line[0] == "F" && forcing_fitted)) continue;
-        errors.push_back({"/" + line[0], nullptr, nullptr,
-                          line[0] + (line.size() > 1 ? " (or " + line[1] + ")" : "") +
-                              " is missing: a system in SI needs m1, c1 or damping_ratio, k1 or f0, m2 or mass_ratio, F and f, or a preset for the rest"});
+        if (!present(l.fields, line).empty() || (line[0] == "f" && unforced) ||
+            (line[0] == "F" && forcing_fitted))
+            continue;
+        errors.push_back(
+            {"/" + line[0], nullptr, nullptr,
+             line[0] + (line.size() > 1 ? " (or " + line[1] + ")" : "") +
+                 " is missing: a system in SI needs m1, c1 or damping_ratio, k1 or f0, m2 or "
+                 "mass_ratio, F and f, or a preset for the rest"});
     }
     if (!errors.empty()) refuse(std::move(errors));
 }
@@ -40,19 +50,26 @@ std::string joined(const std::vector<std::string>& words, const char* separator 
 /// Where the values of a system come from.
 std::map<std::string, std::string> origins_of(const Layered& l, const System& s) {
     std::map<std::string, std::string> origin;
-    auto follows = [&](const std::string& name) { return "follows from " + joined(sources_of(name, l.fields)); };
-    for (const std::string& name : reduced_names) origin[name] = s.si && !l.fields.contains(name) ? follows(name) : l.origin(name);
+    auto follows = [&](const std::string& name) {
+        return "follows from " + joined(sources_of(name, l.fields));
+    };
+    for (const std::string& name : reduced_names)
+        origin[name] = s.si && !l.fields.contains(name) ? follows(name) : l.origin(name);
     for (const char* name : {"b", "damping"}) origin[name] = l.origin(name);
-    for (const char* name : {"R_plus", "R_minus"}) origin[name] = l.origin(l.fields.contains(name) ? name : "R");
+    for (const char* name : {"R_plus", "R_minus"})
+        origin[name] = l.origin(l.fields.contains(name) ? name : "R");
     if (!s.si) return origin;
     const bool reduced = !present(l.fields, reduced_names).empty();
     for (const auto& line : si_lines) {
         const bool other = line.size() > 1 && l.fields.contains(line[1]);
-        origin[line[0]] = other                            ? "follows from " + line[1] + ", m1" + (line[0] == "c1" ? ", " + std::string(l.fields.contains("f0") ? "f0" : "k1") : "")
-                          : l.fields.contains(line[0])     ? l.origin(line[0])
-                          : reduced                        ? "follows from the reduced fields"
-                          : line[0] == "f"                 ? "the natural frequency, for nothing is forced"
-                                                           : "default";
+        origin[line[0]] =
+            other ? "follows from " + line[1] + ", m1" +
+                        (line[0] == "c1" ? ", " + std::string(l.fields.contains("f0") ? "f0" : "k1")
+                                         : "")
+            : l.fields.contains(line[0]) ? l.origin(line[0])
+            : reduced                    ? "follows from the reduced fields"
+            : line[0] == "f"             ? "the natural frequency, for nothing is forced"
+                                         : "default";
     }
     return origin;
 }
@@ -62,23 +79,33 @@ std::vector<std::string> notes_on(const Layered& l, const System& s) {
     std::vector<std::string> notes;
     const Parameters& p = s.parameters;
     if (l.left.contains("damping") && l.word("damping") != l.left["damping"])
-        notes.push_back("the system is not that of preset " + l.preset + ": its damping is " + l.word("damping") + ", not the preset's " + l.left["damping"].get<std::string>());
+        notes.push_back(
+            "the system is not that of preset " + l.preset + ": its damping is " +
+            l.word("damping") + ", not the preset's " + l.left["damping"].get<std::string>());
     if (!s.si || present(l.given, si_names).empty()) return notes;
     std::vector<std::string> taken, assumed;
     const Json si = fields_of(*s.si);
     for (const auto& line : si_lines)
-        if (present(l.given, line).empty() && l.fields.contains(line[0])) taken.push_back(line[0] + " = " + si[line[0]].dump());
+        if (present(l.given, line).empty() && l.fields.contains(line[0]))
+            taken.push_back(line[0] + " = " + si[line[0]].dump());
     // The cavity belongs to the machine as well.
     auto cavity = [&](const std::string& text, const std::vector<std::string>& names) {
-        if (present(l.given, names).empty()) (present(l.fields, names).empty() ? assumed : taken).push_back(text);
+        if (present(l.given, names).empty())
+            (present(l.fields, names).empty() ? assumed : taken).push_back(text);
     };
     cavity("b = " + Json(p.b).dump(), {"b"});
-    const auto R = std::find_if(l.table.begin(), l.table.end(), [](const Field& f) { return f.name == "R"; });
-    if (!R->fallback.is_null()) cavity("R = " + Json(p.R_plus).dump(), {"R", "R_plus", "R_minus"});  // else it is estimated
-    if (!taken.empty() && !l.preset.empty()) notes.push_back("not given, and taken from preset " + l.preset + ": " + joined(taken));
-    if (!assumed.empty()) notes.push_back("not given, and assumed as in Table 1 of the paper: " + joined(assumed));
+    const auto R =
+        std::find_if(l.table.begin(), l.table.end(), [](const Field& f) { return f.name == "R"; });
+    // Else it is estimated.
+    if (!R->fallback.is_null()) cavity("R = " + Json(p.R_plus).dump(), {"R", "R_plus", "R_minus"});
+    if (!taken.empty() && !l.preset.empty())
+        notes.push_back("not given, and taken from preset " + l.preset + ": " + joined(taken));
+    if (!assumed.empty())
+        notes.push_back("not given, and assumed as in Table 1 of the paper: " + joined(assumed));
     if (p.damping == Damping::closed_form)
-        notes.push_back("damping is closed_form (" + l.origin("damping") + "): zeta = " + Json(p.zeta()).dump() + " is twice the damping ratio c1/(2 m1 omega0)");
+        notes.push_back(
+            "damping is closed_form (" + l.origin("damping") +
+            "): zeta = " + Json(p.zeta()).dump() + " is twice the damping ratio c1/(2 m1 omega0)");
     return notes;
 }
 
@@ -88,10 +115,17 @@ std::vector<FieldError> field_errors(const std::vector<Fault>& faults, const Lay
     std::vector<FieldError> errors;
     for (const Fault& f : faults) {
         const auto source = sources.find(f.field);
-        const auto names = l.fields.contains(f.field) || source == sources.end() ? std::vector<std::string>{} : sources_of(f.field, l.given);
-        if (names.empty()) errors.push_back({"/" + f.field, l.fields.contains(f.field) ? l.fields[f.field] : Json(f.value), Json::array({f.minimum, f.maximum}), f.message});
+        const auto names = l.fields.contains(f.field) || source == sources.end()
+                               ? std::vector<std::string>{}
+                               : sources_of(f.field, l.given);
+        if (names.empty())
+            errors.push_back(
+                {"/" + f.field, l.fields.contains(f.field) ? l.fields[f.field] : Json(f.value),
+                 Json::array({f.minimum, f.maximum}), f.message});
         for (const std::string& name : names)
-            errors.push_back({"/" + name, l.given[name], nullptr, f.field + " = " + Json(f.value).dump() + " follows from it; " + f.message});
+            errors.push_back(
+                {"/" + name, l.given[name], nullptr,
+                 f.field + " = " + Json(f.value).dump() + " follows from it; " + f.message});
     }
     return errors;
 }
@@ -117,13 +151,15 @@ System read_system(const Layered& l, bool forcing_fitted) {
     p.b = l.number("b");
     p.R_plus = l.number("R_plus", l.number("R"));
     p.R_minus = l.number("R_minus", l.number("R"));
-    p.damping = l.word("damping") == "closed_form" ? Damping::closed_form : Damping::equation_of_motion;
+    p.damping =
+        l.word("damping") == "closed_form" ? Damping::closed_form : Damping::equation_of_motion;
     system.origin = origins_of(l, system);
     system.notes = notes_on(l, system);
     return system;
 }
 
-/// Velocities in m/s need the time scale of a system in SI; those in m per unit of tau are worth a word beside one.
+/// Velocities in m/s need the time scale of a system in SI; those in m per unit of tau are worth a
+/// word beside one.
 State read_start(const Layered& l, System& system) {
     const Parameters& p = system.parameters;
     std::vector<FieldError> errors;
@@ -131,25 +167,34 @@ State read_start(const Layered& l, System& system) {
         if (!l.has(in_SI)) {
             const double value = l.number(in_tau);
             if (system.si && value != 0 && l.has(in_tau))
-                system.notes.push_back(in_tau + " = " + Json(value).dump() + " is in m per unit of tau, here " + Json(value * system.si->omega0()).dump() + " m/s; " + in_SI + " is in m/s");
+                system.notes.push_back(
+                    in_tau + " = " + Json(value).dump() + " is in m per unit of tau, here " +
+                    Json(value * system.si->omega0()).dump() + " m/s; " + in_SI + " is in m/s");
             return value;
         }
         if (!system.si) {
-            errors.push_back({"/" + in_SI, l.fields[in_SI], nullptr, in_SI + " is in m/s and needs a system in SI (m1, k1 or f0, ...); without one it is " + in_tau + ", in m per unit of tau"});
+            errors.push_back(
+                {"/" + in_SI, l.fields[in_SI], nullptr,
+                 in_SI +
+                     " is in m/s and needs a system in SI (m1, k1 or f0, ...); without one it is " +
+                     in_tau + ", in m per unit of tau"});
             return 0.0;
         }
         system.origin[in_tau] = "follows from " + in_SI;
         return l.number(in_SI) / system.si->omega0();
     };
     for (const char* name : {"x0", "x_dot0", "y0", "y_dot0"}) system.origin[name] = l.origin(name);
-    const State start{velocity("x_dot0", "x_velocity0"), l.number("x0"), velocity("y_dot0", "y_velocity0"), l.number("y0", default_state(p).y)};
+    const State start{
+        velocity("x_dot0", "x_velocity0"), l.number("x0"), velocity("y_dot0", "y_velocity0"),
+        l.number("y0", default_state(p).y)};
     if (!errors.empty()) refuse(std::move(errors));
     return start;
 }
 
 System read_system_alone(const Layered& l, bool forcing_fitted) {
     const System system = read_system(l, forcing_fitted);
-    const std::vector<FieldError> errors = field_errors(validate(system.parameters, default_state(system.parameters)), l);
+    const std::vector<FieldError> errors =
+        field_errors(validate(system.parameters, default_state(system.parameters)), l);
     if (!errors.empty()) refuse(errors);
     return system;
 }

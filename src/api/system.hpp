@@ -12,13 +12,16 @@ namespace vines::api {
 struct System {
     Parameters parameters;
     std::optional<SiParameters> si;
-    std::map<std::string, std::string> origin;  ///< of each field: given, preset fig3, default, or what it follows from
-    std::vector<std::string> notes;             ///< what is worth a warning
+    /// Of each field: given, preset fig3, default, or what it follows from.
+    std::map<std::string, std::string> origin;
+    std::vector<std::string> notes;  ///< what is worth a warning
 };
 
-/// `forcing_fitted`: F need not be given. Problem 422 where a system in SI is not whole; the core's own ranges are not checked here.
+/// `forcing_fitted`: F need not be given. Problem 422 where a system in SI is not whole; the core's
+/// own ranges are not checked here.
 System read_system(const Layered& fields, bool forcing_fitted = false);
-/// Velocities in m/s need a system in SI, else Problem 422. What is worth a word goes into the system's notes.
+/// Velocities in m/s need a system in SI, else Problem 422. What is worth a word goes into the
+/// system's notes.
 State read_start(const Layered& fields, System& system);
 
 /// The core's faults as those of the fields that were given: a reduced one may follow from several.

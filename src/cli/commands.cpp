@@ -49,7 +49,8 @@ std::string read_all(const std::string& path) {
 
 void write_all(const std::string& path, const std::string& text) {
     if (!standard(path)) return replace_file(path, text);
-    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) throw std::runtime_error(std::string("cannot write to stdout: ") + std::strerror(errno));
+    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+        throw std::runtime_error(std::string("cannot write to stdout: ") + std::strerror(errno));
 }
 
 /// Runs a command; what is wrong with its request or its files becomes a message and an exit code.
@@ -82,10 +83,16 @@ private:
         const auto now = Clock::now();
         if (!shown_ || (!always && now - drawn_ < std::chrono::milliseconds(100))) return;
         drawn_ = now;
-        const double seconds = std::chrono::duration<double>(now - started_).count(), rate = static_cast<double>(done_ - done_before_) / std::max(seconds, 1e-9);
+        const double seconds = std::chrono::duration<double>(now - started_).count(),
+                     rate = static_cast<double>(done_ - done_before_) / std::max(seconds, 1e-9);
         const int width = 30, full = of_ ? static_cast<int>(width * done_ / of_) : width;
-        std::fprintf(stderr, "\r[%s%s] %zu of %zu points", std::string(full, '#').c_str(), std::string(width - full, '.').c_str(), done_, of_);
-        if (done_ > done_before_) std::fprintf(stderr, ", %.3g per second, %.0f s left  ", rate, static_cast<double>(of_ - done_) / rate);
+        std::fprintf(
+            stderr, "\r[%s%s] %zu of %zu points", std::string(full, '#').c_str(),
+            std::string(width - full, '.').c_str(), done_, of_);
+        if (done_ > done_before_)
+            std::fprintf(
+                stderr, ", %.3g per second, %.0f s left  ", rate,
+                static_cast<double>(of_ - done_) / rate);
         std::fflush(stderr);
     }
     std::size_t done_;
@@ -108,7 +115,8 @@ std::pair<std::size_t, std::size_t> numbers(const std::string& shard, const std:
         return text.empty() || *end || errno || value < 0 ? -1 : value;
     };
     const long i = number(shard), n = number(of);
-    if (i < 0 || n < 1 || i >= n) throw api::Problem(422, "a shard is i/N with 0 <= i < N, not " + shard + "/" + of);
+    if (i < 0 || n < 1 || i >= n)
+        throw api::Problem(422, "a shard is i/N with 0 <= i < N, not " + shard + "/" + of);
     return {static_cast<std::size_t>(i), static_cast<std::size_t>(n)};
 }
 
@@ -117,7 +125,8 @@ std::pair<std::size_t, std::size_t> shard_numbers(const SweepOptions& o) {
     if (o.shard.empty()) return {0, 1};
     if (o.shard != "auto") {
         const std::size_t slash = std::min(o.shard.find('/'), o.shard.size());
-        return numbers(o.shard.substr(0, slash), slash < o.shard.size() ? o.shard.substr(slash + 1) : "");
+        return numbers(
+            o.shard.substr(0, slash), slash < o.shard.size() ? o.shard.substr(slash + 1) : "");
     }
     const auto variable = [](const char* name) {
         const char* value = std::getenv(name);
@@ -125,18 +134,27 @@ std::pair<std::size_t, std::size_t> shard_numbers(const SweepOptions& o) {
     };
     const std::string given = o.shards > 0 ? std::to_string(o.shards) : "";
     if (!variable("SLURM_ARRAY_TASK_ID").empty()) {
-        const std::string least = variable("SLURM_ARRAY_TASK_MIN"), id = variable("SLURM_ARRAY_TASK_ID");
+        const std::string least = variable("SLURM_ARRAY_TASK_MIN"),
+                          id = variable("SLURM_ARRAY_TASK_ID");
         const long first = least.empty() ? 0 : std::strtol(least.c_str(), nullptr, 10);
-        return numbers(std::to_string(std::strtol(id.c_str(), nullptr, 10) - first), given.empty() ? variable("SLURM_ARRAY_TASK_COUNT") : given);
+        return numbers(
+            std::to_string(std::strtol(id.c_str(), nullptr, 10) - first),
+            given.empty() ? variable("SLURM_ARRAY_TASK_COUNT") : given);
     }
-    if (!variable("JOB_COMPLETION_INDEX").empty()) return numbers(variable("JOB_COMPLETION_INDEX"), given);
-    throw api::Problem(422, "--shard auto needs SLURM_ARRAY_TASK_ID and SLURM_ARRAY_TASK_COUNT, or JOB_COMPLETION_INDEX and --shards, in the environment");
+    if (!variable("JOB_COMPLETION_INDEX").empty())
+        return numbers(variable("JOB_COMPLETION_INDEX"), given);
+    throw api::Problem(
+        422,
+        "--shard auto needs SLURM_ARRAY_TASK_ID and SLURM_ARRAY_TASK_COUNT, or "
+        "JOB_COMPLETION_INDEX and --shards, in the environment");
 }
 
 /// Appends lines to a file as they come, each in one write, so that a killed run keeps all of them.
 class Appending {
 public:
-    explicit Appending(const std::string& path) : path_(path), file_(std::fopen(path.c_str(), "ab")) {
+    explicit Appending(const std::string& path)
+        : path_(path),
+          file_(std::fopen(path.c_str(), "ab")) {
         if (!file_) throw std::runtime_error("cannot write " + path + ": " + std::strerror(errno));
     }
     ~Appending() { std::fclose(file_); }
@@ -144,7 +162,9 @@ public:
     Appending& operator=(const Appending&) = delete;
     void line(const std::string& text) {
         const std::string whole = text + "\n";
-        if (std::fwrite(whole.data(), 1, whole.size(), file_) != whole.size() || std::fflush(file_) != 0) throw std::runtime_error("cannot write " + path_ + ": " + std::strerror(errno));
+        if (std::fwrite(whole.data(), 1, whole.size(), file_) != whole.size() ||
+            std::fflush(file_) != 0)
+            throw std::runtime_error("cannot write " + path_ + ": " + std::strerror(errno));
     }
 
 private:
@@ -156,16 +176,21 @@ private:
 SweepFile resumed(const SweepOptions& o, const std::string& start) {
     SweepFile file;
     if (!standard(o.files.output) && ::access(o.files.output.c_str(), F_OK) == 0) {
-        if (!o.resume) throw std::runtime_error(o.files.output + " is there already; --resume completes it");
+        if (!o.resume)
+            throw std::runtime_error(o.files.output + " is there already; --resume completes it");
         file = read_sweep_file(o.files.output);
-        if (!file.start.empty() && file.start != start) throw std::runtime_error(o.files.output + " belongs to another sweep (or another version): its first line differs");
+        if (!file.start.empty() && file.start != start)
+            throw std::runtime_error(
+                o.files.output +
+                " belongs to another sweep (or another version): its first line differs");
     }
     file.start = start;
     return file;
 }
 
 int run(const SweepOptions& o) {
-    api::SweepRequest request = api::read_sweep_request(api::parse_object(read_all(o.files.input)), most_points);
+    api::SweepRequest request =
+        api::read_sweep_request(api::parse_object(read_all(o.files.input)), most_points);
     const auto [shard, shards] = shard_numbers(o);
     request.indices = api::shard_of(request, shard, shards);
     const std::size_t of = request.indices.size();
@@ -183,13 +208,16 @@ int run(const SweepOptions& o) {
     if (to_file) out.emplace(o.files.output);
     Bar bar(of - request.indices.size(), of);
     SignalPace pace;
-    const int threads = o.threads > 0 ? o.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    const std::string warning = api::run_sweep(request, threads, pace, [&](std::size_t index, const Json& line) {
-        std::string text = line.dump();
-        if (out) out->line(text);
-        file.points[index] = std::move(text);
-        bar.step();
-    });
+    const int threads = o.threads > 0
+                            ? o.threads
+                            : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    const std::string warning =
+        api::run_sweep(request, threads, pace, [&](std::size_t index, const Json& line) {
+            std::string text = line.dump();
+            if (out) out->line(text);
+            file.points[index] = std::move(text);
+            bar.step();
+        });
     out.reset();
     if (!warning.empty()) std::fprintf(stderr, "vines: %s\n", warning.c_str());
     if (file.points.size() == of) {
@@ -197,7 +225,9 @@ int run(const SweepOptions& o) {
         return complete;
     }
     if (!to_file) write_all("", file.text().substr(0, file.text().rfind("{\"type\":\"done\"")));
-    std::fprintf(stderr, "vines: stopped after %zu of %zu points%s\n", file.points.size(), of, to_file ? "; --resume completes the file" : "");
+    std::fprintf(
+        stderr, "vines: stopped after %zu of %zu points%s\n", file.points.size(), of,
+        to_file ? "; --resume completes the file" : "");
     return incomplete;
 }
 
@@ -205,8 +235,14 @@ int run(const SweepOptions& o) {
 
 int simulate(const Files& files) {
     return guarded([&] {
-        const api::SimulateRequest request = api::read_simulate_request(api::parse_object(read_all(files.input)));
-        write_all(files.output, api::simulate_answer(request, {[] { return stopped.load(); }, "interrupted", "ended by a signal, before tau_end"}).dump() + "\n");
+        const api::SimulateRequest request =
+            api::read_simulate_request(api::parse_object(read_all(files.input)));
+        write_all(
+            files.output, api::simulate_answer(
+                              request, {[] { return stopped.load(); }, "interrupted",
+                                        "ended by a signal, before tau_end"})
+                                  .dump() +
+                              "\n");
         return stopped ? incomplete : complete;
     });
 }
@@ -216,13 +252,19 @@ int identify(const Files& files, const std::string& query) {
         const std::string text = read_all(files.input);
         std::vector<std::pair<std::string, std::string>> pairs;
         for (std::size_t from = 0; from < query.size();) {
-            const std::size_t end = std::min(query.find('&', from), query.size()), equals = std::min(query.find('=', from), end);
-            if (end > from) pairs.emplace_back(query.substr(from, equals - from), query.substr(std::min(equals + 1, end), end - std::min(equals + 1, end)));
+            const std::size_t end = std::min(query.find('&', from), query.size()),
+                              equals = std::min(query.find('=', from), end);
+            if (end > from)
+                pairs.emplace_back(
+                    query.substr(from, equals - from),
+                    query.substr(std::min(equals + 1, end), end - std::min(equals + 1, end)));
             from = end + 1;
         }
         const std::size_t first = text.find_first_not_of(" \t\r\n");
         const bool json = first != std::string::npos && text[first] == '{';
-        const api::IdentifyRequest request = json ? api::read_identify_request(api::parse_object(text)) : api::read_identify_request(api::from_query(api::identify_fields(), pairs), text);
+        const api::IdentifyRequest request =
+            json ? api::read_identify_request(api::parse_object(text))
+                 : api::read_identify_request(api::from_query(api::identify_fields(), pairs), text);
         write_all(files.output, api::identify_answer(request).dump() + "\n");
         return complete;
     });
@@ -239,10 +281,16 @@ int merge(const std::vector<std::string>& inputs, const std::string& output) {
             SweepFile part = read_sweep_file(path);
             if (part.start.empty()) throw std::runtime_error(path + " is empty");
             if (all.start.empty()) all.start = part.start;
-            if (part.start != all.start) throw std::runtime_error(path + " belongs to another sweep than " + inputs[0] + ": its first line differs");
+            if (part.start != all.start)
+                throw std::runtime_error(
+                    path + " belongs to another sweep than " + inputs[0] +
+                    ": its first line differs");
             for (auto& [index, line] : part.points) {
                 const auto [there, added] = all.points.try_emplace(index, line);
-                if (!added && there->second != line) throw std::runtime_error(path + ": point " + std::to_string(index) + " differs from the same point in another file");
+                if (!added && there->second != line)
+                    throw std::runtime_error(
+                        path + ": point " + std::to_string(index) +
+                        " differs from the same point in another file");
             }
         }
         const std::size_t points = Json::parse(all.start)["points"].get<std::size_t>();
@@ -252,7 +300,11 @@ int merge(const std::vector<std::string>& inputs, const std::string& output) {
                 if (index != first) break;
                 ++first;
             }
-            std::fprintf(stderr, "vines: %zu of %zu points are missing, the first is %zu: a shard is not complete or was not given\n", points - all.points.size(), points, first);
+            std::fprintf(
+                stderr,
+                "vines: %zu of %zu points are missing, the first is %zu: a shard is not complete "
+                "or was not given\n",
+                points - all.points.size(), points, first);
             return incomplete;
         }
         write_all(output, all.text());

@@ -27,15 +27,24 @@ SweepFile read_sweep_file(const std::string& path) {
     const std::string text = content.str();
     SweepFile file;
     long number = 0;
-    for (std::size_t from = 0, end; (end = text.find('\n', from)) != std::string::npos; from = end + 1) {
+    for (std::size_t from = 0, end; (end = text.find('\n', from)) != std::string::npos;
+         from = end + 1) {
         ++number;
         const std::string line = text.substr(from, end - from);
         const api::Json json = api::Json::parse(line, nullptr, false);
-        const std::string type = json.is_object() && json.contains("type") && json["type"].is_string() ? json["type"].get<std::string>() : "";
+        const std::string type =
+            json.is_object() && json.contains("type") && json["type"].is_string()
+                ? json["type"].get<std::string>()
+                : "";
         if (number == 1 && type == "start") file.start = line;
-        else if (number > 1 && type == "point" && json.contains("index") && json["index"].is_number_unsigned()) file.points[json["index"].get<std::size_t>()] = line;
+        else if (
+            number > 1 && type == "point" && json.contains("index") &&
+            json["index"].is_number_unsigned())
+            file.points[json["index"].get<std::size_t>()] = line;
         else if (number > 1 && type == "done") file.done = true;
-        else throw std::runtime_error(path + ", line " + std::to_string(number) + ": not a line of a sweep");
+        else
+            throw std::runtime_error(
+                path + ", line " + std::to_string(number) + ": not a line of a sweep");
     }
     return file;
 }
@@ -52,7 +61,8 @@ void replace_file(const std::string& path, const std::string& text) {
     }
     ok = ok && ::fsync(file) == 0;
     if (file >= 0) ok = ::close(file) == 0 && ok;
-    if (!ok || ::rename(next.c_str(), path.c_str()) != 0) throw std::runtime_error("cannot write " + path + ": " + std::strerror(errno));
+    if (!ok || ::rename(next.c_str(), path.c_str()) != 0)
+        throw std::runtime_error("cannot write " + path + ": " + std::strerror(errno));
 }
 
 }  // namespace vines::cli

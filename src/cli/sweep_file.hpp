@@ -1,5 +1,6 @@
-// The file of a sweep: a start line, a line for each point, and at its end a line {type: done}. While a sweep runs, points are
-// in the order in which they came; a complete file has them in the order of their index.
+// The file of a sweep: a start line, a line for each point, and at its end a line {type: done}.
+// While a sweep runs, points are in the order in which they came; a complete file has them in the
+// order of their index.
 #pragma once
 
 #include <map>
@@ -16,11 +17,12 @@ struct SweepFile {
     std::string text() const;
 };
 
-/// Reads what is there; a last line that was cut off is left out. Throws std::runtime_error where it cannot be read or
-/// is no such file.
+/// Reads what is there; a last line that was cut off is left out. Throws std::runtime_error where
+/// it cannot be read or is no such file.
 SweepFile read_sweep_file(const std::string& path);
 
-/// Puts the text in the file's place at once: another one sees the old file or the new. Throws std::runtime_error.
+/// Puts the text in the file's place at once: another one sees the old file or the new. Throws
+/// std::runtime_error.
 void replace_file(const std::string& path, const std::string& text);
 
 }  // namespace vines::cli

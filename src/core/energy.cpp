@@ -8,13 +8,17 @@ namespace vines {
 
 namespace {
 
-// Gauss-Legendre on [0, 1] with five nodes: right for polynomials up to degree 9. Over one cell, 2 pi/42 of the faster
-// frequency, what it leaves of x'^2 is below 1e-16.
+// Gauss-Legendre on [0, 1] with five nodes: right for polynomials up to degree 9. Over one cell, 2
+// pi/42 of the faster frequency, what it leaves of x'^2 is below 1e-16.
 struct Node {
     double at, weight;
 };
-constexpr std::array<Node, 5> gauss = {{{0.046910077030668004, 0.11846344252809454}, {0.23076534494715845, 0.23931433524968324}, {0.5, 0.28444444444444444},
-                                        {0.76923465505284155, 0.23931433524968324}, {0.95308992296933200, 0.11846344252809454}}};
+constexpr std::array<Node, 5> gauss = {
+    {{0.046910077030668004, 0.11846344252809454},
+     {0.23076534494715845, 0.23931433524968324},
+     {0.5, 0.28444444444444444},
+     {0.76923465505284155, 0.23931433524968324},
+     {0.95308992296933200, 0.11846344252809454}}};
 
 // Nobody waits for a decay that takes longer, in tau.
 constexpr double longest_decay = 1e6;
@@ -50,9 +54,10 @@ Quadrature::Quadrature(const Flow& flow) : flow_(flow) {
         Eigen::Matrix4d over;
         for (int j = 0; j < 4; ++j) over.col(j) = vector(flow.at(unit[j], k));
         const Forms& before = from_start_.back();
-        from_start_.push_back({before.x_squared + over.transpose() * cell.x_squared * over,
-                               before.x_dot_squared + over.transpose() * cell.x_dot_squared * over,
-                               before.x_dot_sin + over.transpose() * cell.x_dot_sin * over});
+        from_start_.push_back(
+            {before.x_squared + over.transpose() * cell.x_squared * over,
+             before.x_dot_squared + over.transpose() * cell.x_dot_squared * over,
+             before.x_dot_sin + over.transpose() * cell.x_dot_sin * over});
     }
 }
 
@@ -86,13 +91,19 @@ Quadrature::Integrals Quadrature::over(Oscillation o, double duration) const {
     return sum += over_part(flow_.at(o, cells), std::max(0.0, duration - cells * flow_.cell()));
 }
 
-double energy_of(const Parameters& p, const State& s) { return 0.5 * (s.x_dot * s.x_dot + s.x * s.x + p.epsilon * s.y_dot * s.y_dot); }
+double energy_of(const Parameters& p, const State& s) {
+    return 0.5 * (s.x_dot * s.x_dot + s.x * s.x + p.epsilon * s.y_dot * s.y_dot);
+}
 
 Energy::Energy(const Parameters& p, double tau_start, double tau_end)
-    : parameters_(p), tau_start_(tau_start), tau_end_(tau_end), free_(Flow::free(p)) {}
+    : parameters_(p),
+      tau_start_(tau_start),
+      tau_end_(tau_end),
+      free_(Flow::free(p)) {}
 
 void Energy::on_stretch(const Stretch& stretch) {
-    const double from = std::max(0.0, tau_start_ - stretch.tau), to = std::min(stretch.duration, tau_end_ - stretch.tau);
+    const double from = std::max(0.0, tau_start_ - stretch.tau),
+                 to = std::min(stretch.duration, tau_end_ - stretch.tau);
     if (!(from < to)) return;
     if (stretch.stuck_side != 0 && !stuck_) stuck_.emplace(Flow::stuck(parameters_));
     if (duration_ == 0) start_ = energy_of(parameters_, stretch.at(from));
@@ -105,28 +116,37 @@ void Energy::on_stretch(const Stretch& stretch) {
 
 void Energy::on_impact(const Impact& i) {
     if (i.tau > tau_end_) return;
-    if (i.tau <= tau_start_) {  // belongs to what was before, as does the rounding of a stretch that ended a trifle later
+    // Belongs to what was before, as does the rounding of a stretch that ended a trifle later.
+    if (i.tau <= tau_start_) {
         integrals_ = {};
         duration_ = peak_ = 0;
         return;
     }
-    const double w = i.relative_speed_before, loss = (1 - i.R * i.R) * w * w * parameters_.epsilon / (2 * (1 + parameters_.epsilon));
+    const double w = i.relative_speed_before, loss = (1 - i.R * i.R) * w * w * parameters_.epsilon /
+                                                     (2 * (1 + parameters_.epsilon));
     impacts_ += loss;
     end_ -= loss;
 }
 
-double Energy::input() const { return parameters_.epsilon * parameters_.A() * integrals_.x_dot_sin; }
+double Energy::input() const {
+    return parameters_.epsilon * parameters_.A() * integrals_.x_dot_sin;
+}
 double Energy::damper() const { return 2 * parameters_.zeta() * integrals_.x_dot_squared; }
-double Energy::rms() const { return duration_ > 0 ? std::sqrt(integrals_.x_squared / duration_) : 0; }
+double Energy::rms() const {
+    return duration_ > 0 ? std::sqrt(integrals_.x_squared / duration_) : 0;
+}
 
 std::optional<double> free_amplitude(const Parameters& p) {
-    const double detuning = (1 - p.Omega) * (1 + p.Omega), D = detuning * detuning + 4 * p.zeta() * p.zeta() * p.Omega * p.Omega;
+    const double detuning = (1 - p.Omega) * (1 + p.Omega),
+                 D = detuning * detuning + 4 * p.zeta() * p.zeta() * p.Omega * p.Omega;
     if (D == 0) return std::nullopt;
     return p.epsilon * p.A() / std::sqrt(D);
 }
 
 double unattached_rms(const Parameters& p, const State& start, double duration) {
-    const Quadrature::Integrals sum = Quadrature(Flow::free(p)).over({start.x, start.x_dot, std::sin(p.phi()), std::cos(p.phi())}, duration);
+    const Quadrature::Integrals sum =
+        Quadrature(Flow::free(p))
+            .over({start.x, start.x_dot, std::sin(p.phi()), std::cos(p.phi())}, duration);
     return std::sqrt(sum.x_squared / duration);
 }
 
@@ -135,12 +155,15 @@ Unattached unattached(const Parameters& p, const State& start, double tau_start,
     const Oscillation o{start.x, start.x_dot, std::sin(p.phi()), std::cos(p.phi())};
     const Oscillation begin = flow.after(o, tau_start);
     const double duration = tau_end - tau_start;
-    return {duration > 0 ? std::sqrt(Quadrature(flow).over(begin, duration).x_squared / duration) : 0, excursion(flow, begin, duration).peak, free_amplitude(p)};
+    return {
+        duration > 0 ? std::sqrt(Quadrature(flow).over(begin, duration).x_squared / duration) : 0,
+        excursion(flow, begin, duration).peak, free_amplitude(p)};
 }
 
 namespace {
 
-/// Where an energy that does not rise falls to a level between 0 and `high`, after tau_start: by bisection.
+/// Where an energy that does not rise falls to a level between 0 and `high`, after tau_start: by
+/// bisection.
 template <class EnergyAt>
 double moment_of(EnergyAt energy_at, double level, double high, double tau_start) {
     double low = 0;
@@ -154,7 +177,11 @@ double moment_of(EnergyAt energy_at, double level, double high, double tau_start
 
 }  // namespace
 
-Decay::Decay(const Parameters& p, double tau_start, std::vector<double> shares) : tau(shares.size()), parameters_(p), tau_start_(tau_start), shares_(std::move(shares)) {}
+Decay::Decay(const Parameters& p, double tau_start, std::vector<double> shares)
+    : tau(shares.size()),
+      parameters_(p),
+      tau_start_(tau_start),
+      shares_(std::move(shares)) {}
 
 void Decay::on_stretch(const Stretch& stretch) {
     const double from = tau_start_ - stretch.tau;
@@ -164,11 +191,14 @@ void Decay::on_stretch(const Stretch& stretch) {
     const double end = energy_at(stretch.duration);
     for (std::size_t k = 0; k < shares_.size(); ++k) {
         const double level = shares_[k] * *at_start_;
-        if (!tau[k] && end <= level) tau[k] = std::max(tau_start_, moment_of(energy_at, level, stretch.duration, stretch.tau));
+        if (!tau[k] && end <= level)
+            tau[k] =
+                std::max(tau_start_, moment_of(energy_at, level, stretch.duration, stretch.tau));
     }
 }
 
-std::vector<std::optional<double>> unattached_decay(const Parameters& p, const State& start, double tau_start, const std::vector<double>& shares) {
+std::vector<std::optional<double>> unattached_decay(
+    const Parameters& p, const State& start, double tau_start, const std::vector<double>& shares) {
     std::vector<std::optional<double>> tau(shares.size());
     const Flow flow(1, 2 * p.zeta(), 0, p.Omega);
     const Oscillation begin = flow.after({start.x, start.x_dot, 0, 1}, tau_start);

@@ -1,4 +1,5 @@
-// Where the energy goes: input of the forcing, damper, impacts, what is stored; amplitudes of the linear oscillator.
+// Where the energy goes: input of the forcing, damper, impacts, what is stored; amplitudes of the
+// linear oscillator.
 //
 // Energies are per unit of m1, in m^2 (time is dimensionless): E = x'^2/2 + x^2/2 + epsilon y'^2/2.
 #pragma once
@@ -43,15 +44,17 @@ public:
     void on_impact(const Impact&) override;
 
     double duration() const { return duration_; }
-    double input() const;                          ///< work of the forcing epsilon A sin(theta) on x'
-    double damper() const;                         ///< dissipated by 2 zeta x'
-    double impacts() const { return impacts_; }    ///< dissipated in impacts: (1 - R^2)(x'- - y'-)^2 epsilon/(2 (1 + epsilon)) each
+    /// Work of the forcing epsilon A sin(theta) on x'.
+    double input() const;
+    double damper() const;  ///< dissipated by 2 zeta x'
+    /// Dissipated in impacts: (1 - R^2)(x'- - y'-)^2 epsilon/(2 (1 + epsilon)) each.
+    double impacts() const { return impacts_; }
     double stored() const { return end_ - start_; }
     double at_start() const { return start_; }
     double at_end() const { return end_; }
     double residual() const { return input() - damper() - impacts() - stored(); }
-    double rms() const;                            ///< of x, m
-    double peak() const { return peak_; }          ///< of |x|, m
+    double rms() const;                    ///< of x, m
+    double peak() const { return peak_; }  ///< of |x|, m
 
 private:
     const Parameters parameters_;
@@ -65,12 +68,16 @@ private:
 /// E of a state.
 double energy_of(const Parameters& parameters, const State& state);
 
-/// The linear oscillator without its absorber, forced as it is, from a start over [tau_start, tau_end].
+/// The linear oscillator without its absorber, forced as it is, from a start over [tau_start,
+/// tau_end].
 struct Unattached {
-    double rms, peak;                 ///< of x over the interval, m
-    std::optional<double> amplitude;  ///< epsilon A/sqrt((1 - Omega^2)^2 + 4 zeta^2 Omega^2) once it is steady, m; none undamped at resonance
+    double rms, peak;  ///< of x over the interval, m
+    /// epsilon A/sqrt((1 - Omega^2)^2 + 4 zeta^2 Omega^2) once it is steady, m; none undamped at
+    /// resonance.
+    std::optional<double> amplitude;
 };
-Unattached unattached(const Parameters& parameters, const State& start, double tau_start, double tau_end);
+Unattached unattached(
+    const Parameters& parameters, const State& start, double tau_start, double tau_end);
 /// Its rms alone, from tau = 0 on: the cheaper part.
 double unattached_rms(const Parameters& parameters, const State& start, double duration);
 std::optional<double> free_amplitude(const Parameters& parameters);
@@ -92,6 +99,8 @@ private:
 };
 
 /// The same of the linear oscillator without its absorber; none where it is undamped or at rest.
-std::vector<std::optional<double>> unattached_decay(const Parameters& parameters, const State& start, double tau_start, const std::vector<double>& shares);
+std::vector<std::optional<double>> unattached_decay(
+    const Parameters& parameters, const State& start, double tau_start,
+    const std::vector<double>& shares);
 
 }  // namespace vines

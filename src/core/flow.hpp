@@ -1,11 +1,12 @@
-// The motion between events: a harmonically forced linear oscillator, alone (free) or with the absorber's mass glued
-// to it (stuck), as a function of the time s since the last event.
+// The motion between events: a harmonically forced linear oscillator, alone (free) or with the
+// absorber's mass glued to it (stuck), as a function of the time s since the last event.
 //
-// Instead of the closed form (8)-(11), which divides by omega_d and by the distance to resonance, the flow is kept as
-// the exponential of the matrix of (x, x', sin theta, cos theta): a table of it on a grid of s, and a Taylor series
-// within a cell. That is the same function, to the last ulp, for every zeta >= 0 and every Omega: undamped, at
-// resonance (secular growth), critically damped and overdamped need no case of their own. No absolute time enters;
-// the forcing phase is carried as the phasor (sin theta, cos theta), so it is reduced modulo 2 pi by construction.
+// Instead of the closed form (8)-(11), which divides by omega_d and by the distance to resonance,
+// the flow is kept as the exponential of the matrix of (x, x', sin theta, cos theta): a table of it
+// on a grid of s, and a Taylor series within a cell. That is the same function, to the last ulp,
+// for every zeta >= 0 and every Omega: undamped, at resonance (secular growth), critically damped
+// and overdamped need no case of their own. No absolute time enters; the forcing phase is carried
+// as the phasor (sin theta, cos theta), so it is reduced modulo 2 pi by construction.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,9 +30,11 @@ struct Transfer {
 /// x'' = -stiffness x - damping x' + forcing sin(theta), theta' = Omega.
 class Flow {
 public:
-    static constexpr int cells = 128;    ///< the grid reaches 3 periods of the faster of forcing and oscillator
-    static constexpr int degree = 13;    ///< of the Taylor series within a cell: its remainder is below 1e-20 of the motion
-    static constexpr int block = 4;      ///< grid points that gaps() evaluates at once
+    /// The grid reaches 3 periods of the faster of forcing and oscillator.
+    static constexpr int cells = 128;
+    /// Of the Taylor series within a cell: its remainder is below 1e-20 of the motion.
+    static constexpr int degree = 13;
+    static constexpr int block = 4;  ///< grid points that gaps() evaluates at once
     using Series = Eigen::Array<double, degree + 1, 1>;
     using Block = Eigen::Array<double, block, 1>;
 
@@ -42,29 +45,44 @@ public:
     /// Both masses as one: (1 + epsilon) x'' + 2 zeta x' + x = epsilon A sin(theta).
     static Flow stuck(const Parameters& parameters);
 
-    double cell() const { return h_; }                     ///< width h of a cell
-    double reach() const { return h_ * cells; }            ///< longest time that one look at the grid can bridge
-    double damping() const { return damping_; }            ///< the transfer matrix over s has the determinant e^(-damping s)
-    double fastest_decay() const { return decay_; }        ///< rate at which the unforced motion dies out, its faster part
+    double cell() const { return h_; }  ///< width h of a cell
+    /// Longest time that one look at the grid can bridge.
+    double reach() const { return h_ * cells; }
+    /// The transfer matrix over s has the determinant e^(-damping s)
+    double damping() const { return damping_; }
+    /// Rate at which the unforced motion dies out, its faster part.
+    double fastest_decay() const { return decay_; }
 
-    double acceleration(const Oscillation& o) const { return -stiffness_ * o.x - damping_ * o.x_dot + forcing_ * o.sin_theta; }
-    double jerk(const Oscillation& o) const { return -stiffness_ * o.x_dot - damping_ * acceleration(o) + forcing_ * Omega_ * o.cos_theta; }
+    double acceleration(const Oscillation& o) const {
+        return -stiffness_ * o.x - damping_ * o.x_dot + forcing_ * o.sin_theta;
+    }
+    double jerk(const Oscillation& o) const {
+        return -stiffness_ * o.x_dot - damping_ * acceleration(o) + forcing_ * Omega_ * o.cos_theta;
+    }
 
-    /// x - y at the grid times k h, ..., (k + block - 1) h, for y = y0 + y_dot s: five multiply-adds each. k <= cells.
+    /// x - y at the grid times k h, ..., (k + block - 1) h, for y = y0 + y_dot s: five
+    /// multiply-adds each. k <= cells.
     Block gaps(const Oscillation& o, double y0, double y_dot, int k) const {
-        const auto from = [k](const std::vector<double>& column) { return Eigen::Map<const Block>(column.data() + k); };
-        return from(x_x_) * o.x + from(x_v_) * o.x_dot + from(x_s_) * o.sin_theta + from(x_c_) * o.cos_theta - (y0 + from(time_) * y_dot);
+        const auto from = [k](const std::vector<double>& column) {
+            return Eigen::Map<const Block>(column.data() + k);
+        };
+        return from(x_x_) * o.x + from(x_v_) * o.x_dot + from(x_s_) * o.sin_theta +
+               from(x_c_) * o.cos_theta - (y0 + from(time_) * y_dot);
     }
     /// x' at the same grid times.
     Block speeds(const Oscillation& o, int k) const {
-        const auto from = [k](const std::vector<double>& column) { return Eigen::Map<const Block>(column.data() + k); };
-        return from(v_x_) * o.x + from(v_v_) * o.x_dot + from(v_s_) * o.sin_theta + from(v_c_) * o.cos_theta;
+        const auto from = [k](const std::vector<double>& column) {
+            return Eigen::Map<const Block>(column.data() + k);
+        };
+        return from(v_x_) * o.x + from(v_v_) * o.x_dot + from(v_s_) * o.sin_theta +
+               from(v_c_) * o.cos_theta;
     }
     /// The whole state at grid time k h.
     Oscillation at(const Oscillation& o, int k) const;
     /// Taylor coefficients of x(s + d) in d.
     Series series(const Oscillation& o) const {
-        return from_x_ * o.x + from_x_dot_ * o.x_dot + from_sin_ * o.sin_theta + from_cos_ * o.cos_theta;
+        return from_x_ * o.x + from_x_dot_ * o.x_dot + from_sin_ * o.sin_theta +
+               from_cos_ * o.cos_theta;
     }
     /// The state with its phasor turned by 0 <= d <= h; x and x' stay.
     Oscillation turned(const Oscillation& o, double d) const;
@@ -75,8 +93,8 @@ public:
     /// The transfer matrix over any s >= 0, eq. (19).
     Transfer transfer(double s) const;
 
-    /// Upper bounds of |x|, |x''| and |x'''| over the reach, from the growth of the energy: sqrt(stiffness x^2 + x'^2)
-    /// rises no faster than the forcing, for any damping >= 0.
+    /// Upper bounds of |x|, |x''| and |x'''| over the reach, from the growth of the energy:
+    /// sqrt(stiffness x^2 + x'^2) rises no faster than the forcing, for any damping >= 0.
     struct Bounds {
         double x, x_ddot, x_dddot;
     };
@@ -86,9 +104,11 @@ private:
     double stiffness_, damping_, forcing_, Omega_, h_;
     double root_inverse_;  // of the stiffness
     double decay_;
-    // x(k h) and x'(k h) from x, x', sin theta, cos theta at 0; k h; cos and sin of Omega k h: each a column over k.
+    // x(k h) and x'(k h) from x, x', sin theta, cos theta at 0; k h; cos and sin of Omega k h: each
+    // a column over k.
     std::vector<double> x_x_, x_v_, x_s_, x_c_, v_x_, v_v_, v_s_, v_c_, time_, cos_, sin_;
-    Series from_x_, from_x_dot_, from_sin_, from_cos_;  // Taylor coefficients of x from each part of the state
+    // Taylor coefficients of x from each part of the state.
+    Series from_x_, from_x_dot_, from_sin_, from_cos_;
 };
 
 /// x, x' and x''/2 of a Taylor series at d.
@@ -97,7 +117,8 @@ struct SeriesValue {
 };
 SeriesValue value_at(const Flow::Series& series, double d);
 
-/// How far x goes over 0 <= s <= duration: its largest modulus, and the length of its path up and down.
+/// How far x goes over 0 <= s <= duration: its largest modulus, and the length of its path up and
+/// down.
 struct Excursion {
     double peak = 0, path = 0;
 };

@@ -28,7 +28,8 @@ Impact impact_at(const Parameters& p, const Contact& contact, double x_ddot, dou
     i.y_dot_after = i.x_dot_after - i.relative_speed_after;
     i.x_ddot_before = x_ddot;
     i.R = R;
-    // The gap is b + w s + x'' s^2/2 (times side) near the contact: depth w^2/(2 |x''|), if x'' turns it back at all.
+    // The gap is b + w s + x'' s^2/2 (times side) near the contact: depth w^2/(2 |x''|), if x''
+    // turns it back at all.
     i.grazing = contact.side * x_ddot < 0 && w * w < 2 * std::abs(x_ddot) * grazing_depth * p.b;
     return i;
 }
@@ -50,8 +51,8 @@ Matrix4 Saltation::times(const Matrix4& d) const {
 }
 
 double Saltation::condition(double R) const {
-    // M^-1 = S^-1 - S^-1 r g^T S^-1/(1 + g^T S^-1 r). S leaves positions alone and g sees nothing else, so that
-    // g^T S^-1 = g^T and 1 + g^T r = -R: no large entry of r is left to cancel.
+    // M^-1 = S^-1 - S^-1 r g^T S^-1/(1 + g^T S^-1 r). S leaves positions alone and g sees nothing
+    // else, so that g^T S^-1 = g^T and 1 + g^T r = -R: no large entry of r is left to cancel.
     if (R == 0) return std::numeric_limits<double>::infinity();
     const Matrix4 S_inverse = S.inverse();
     return matrix().norm() * (S_inverse + S_inverse * r * gap_gradient().transpose() / R).norm();
@@ -61,10 +62,7 @@ Saltation saltation(const Parameters& p, const Impact& i) {
     const double mu = p.epsilon / (1 + p.epsilon), nu = 1 / (1 + p.epsilon), e = 1 + i.R;
     const double kappa = i.x_ddot_before / i.relative_speed_before;
     Saltation m;
-    m.S << 1 - e * mu, 0, e * mu, 0,
-           0, 1, 0, 0,
-           e * nu, 0, 1 - e * nu, 0,
-           0, 0, 0, 1;
+    m.S << 1 - e * mu, 0, e * mu, 0, 0, 1, 0, 0, e * nu, 0, 1 - e * nu, 0, 0, 0, 0, 1;
     // x'' jumps by -2 zeta (x'+ - x'-); the velocities by their share of (1 + R)(x'- - y'-).
     m.r << e * mu * (kappa + 2 * p.zeta()), -e * mu, -e * nu * kappa, e * nu;
     return m;

@@ -16,7 +16,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr Exponents no_exponents = {nan, nan, nan, nan};
 
-/// A history that thins itself: when full it drops every second entry and from then on takes every second impact.
+/// A history that thins itself: when full it drops every second entry and from then on takes every
+/// second impact.
 class Thinned {
 public:
     explicit Thinned(std::size_t capacity) : capacity_(std::max(capacity, shortest_history)) {}
@@ -63,16 +64,22 @@ const ExponentHistory& none() {
 }  // namespace
 
 Status status_of(double exponent) {
-    return std::isnan(exponent) ? Status::not_converged : std::isinf(exponent) ? Status::minus_infinity : Status::ok;
+    return std::isnan(exponent)   ? Status::not_converged
+           : std::isinf(exponent) ? Status::minus_infinity
+                                  : Status::ok;
 }
 
-double rounding_floor(double lambda1, double T) { return lambda1 + std::log(std::numeric_limits<double>::epsilon()) / T; }
+double rounding_floor(double lambda1, double T) {
+    return lambda1 + std::log(std::numeric_limits<double>::epsilon()) / T;
+}
 
 struct TransferProduct::Qr {
-    // Above this |r| (it is x''/(x'- - y'-)) the columns of M Q hide each other: a volume of them computed from the sums would
-    // have a relative error of |r|^2 ulp. Below, that error is under 1e-12.
+    // Above this |r| (it is x''/(x'- - y'-)) the columns of M Q hide each other: a volume of them
+    // computed from the sums would have a relative error of |r|^2 ulp. Below, that error is under
+    // 1e-12.
     static constexpr double steep = 100;
-    // Below this R the columns hide each other as well: an impact shrinks deviations of x' - y' by R.
+    // Below this R the columns hide each other as well: an impact shrinks deviations of x' - y' by
+    // R.
     static constexpr double dull = 0.02;
 
     explicit Qr(std::size_t history) : thinned(history) {}
@@ -112,7 +119,8 @@ struct TransferProduct::Qr {
         }
     }
 
-    /// Deviations of x' - y' shrunk by `factor`, x' + epsilon y' and the positions kept: S for factor -R.
+    /// Deviations of x' - y' shrunk by `factor`, x' + epsilon y' and the positions kept: S for
+    /// factor -R.
     void shrink(double factor, double epsilon) {
         const double nu = 1 / (1 + epsilon), mu = epsilon * nu;
         const Eigen::RowVector4d relative = (1 - factor) * (frame.row(0) - frame.row(2));
@@ -120,9 +128,11 @@ struct TransferProduct::Qr {
         frame.row(2) += nu * relative;
     }
 
-    /// M = (I + r g^T) S, for g^T S = g^T. First S, in parts of which none shrinks by more than e^-most_contraction; then the shear.
+    /// M = (I + r g^T) S, for g^T S = g^T. First S, in parts of which none shrinks by more than
+    /// e^-most_contraction; then the shear.
     void strike_apart(const Saltation& M, double R, double epsilon, int rank) {
-        const double parts = R > 0 ? std::max(1.0, std::ceil(-std::log(R) / most_contraction)) : 1, part = std::pow(R, 1 / parts);
+        const double parts = R > 0 ? std::max(1.0, std::ceil(-std::log(R) / most_contraction)) : 1,
+                     part = std::pow(R, 1 / parts);
         for (int k = 1; k < parts; ++k) {
             shrink(part, epsilon);
             orthonormalise(rank);
@@ -132,10 +142,11 @@ struct TransferProduct::Qr {
         shear(M.r, R, rank);
     }
 
-    /// Replaces the orthonormal columns Q by an orthonormal base of (I + r g^T) Q = Q + r a^T, a = Q^T g. With p = Q^T r the Gram
-    /// determinant of the first k columns is, written so that nothing cancels,
-    /// V_k^2 = (1 + sum_{j<=k} p_j a_j)^2 + (sum_{j<=k} a_j^2) |r - sum_{j<=k} p_j q_j|^2: the lengths are V_k/V_{k-1}. Of all four
-    /// columns it is the determinant 1 + g^T r = -R.
+    /// Replaces the orthonormal columns Q by an orthonormal base of (I + r g^T) Q = Q + r a^T, a =
+    /// Q^T g. With p = Q^T r the Gram determinant of the first k columns is, written so that
+    /// nothing cancels, V_k^2 = (1 + sum_{j<=k} p_j a_j)^2 + (sum_{j<=k} a_j^2) |r - sum_{j<=k} p_j
+    /// q_j|^2: the lengths are V_k/V_{k-1}. Of all four columns it is the determinant 1 + g^T r =
+    /// -R.
     void shear(const Eigen::Vector4d& r, double R, int rank) {
         const Eigen::Vector4d a = frame.transpose() * gap_gradient(), p = frame.transpose() * r;
         Eigen::Vector4d rest = r;
@@ -144,7 +155,8 @@ struct TransferProduct::Qr {
             dot += p(k) * a(k);
             head += a(k) * a(k);
             rest -= p(k) * frame.col(k);
-            const double spanned_volume = k < 3 ? std::sqrt(dot * dot + head * rest.squaredNorm()) : R;
+            const double spanned_volume =
+                k < 3 ? std::sqrt(dot * dot + head * rest.squaredNorm()) : R;
             lengths.grow(k, spanned_volume / before);
             before = spanned_volume;
         }
@@ -192,7 +204,9 @@ struct TransferProduct::Qr {
 
     struct Sums {
         Exponents logs{};
-        std::array<double, 4> misses{};  ///< by how much the sum of the first logarithms misses the area, the volume, the determinant
+        /// By how much the sum of the first logarithms misses the area, the volume, the
+        /// determinant.
+        std::array<double, 4> misses{};
     };
     Sums sums(int rank) const {
         Sums s;
@@ -200,8 +214,11 @@ struct TransferProduct::Qr {
         for (int k = 0; k < rank; ++k) {
             s.logs[k] = lengths.logarithm(k);
             sum += s.logs[k];
-            if (k == 1) s.misses[k] = std::abs(sum - (log_area + 0.5 * std::log(area.squaredNorm())));
-            if (k == 2) s.misses[k] = std::abs(sum - (log_volume + 0.5 * std::log(volume.normal.squaredNorm())));
+            if (k == 1)
+                s.misses[k] = std::abs(sum - (log_area + 0.5 * std::log(area.squaredNorm())));
+            if (k == 2)
+                s.misses[k] =
+                    std::abs(sum - (log_volume + 0.5 * std::log(volume.normal.squaredNorm())));
             if (k == 3) s.misses[k] = std::abs(sum - log_det);
         }
         return s;
@@ -209,7 +226,9 @@ struct TransferProduct::Qr {
 };
 
 struct TransferProduct::Powers {
-    Powers(double epsilon, std::size_t history) : product(epsilon), thinned(std::min<std::size_t>(history, 2048)) {}
+    Powers(double epsilon, std::size_t history)
+        : product(epsilon),
+          thinned(std::min<std::size_t>(history, 2048)) {}
 
     PowerProduct product;
     Thinned thinned;
@@ -281,16 +300,28 @@ Exponents TransferProduct::qr() const {
     // The k-th exponent is the difference of two sums.
     for (int k = 1; k < rank_; ++k)
         if (!(std::max(misses[k], misses[k - 1]) <= most_residual * T)) logs[k] = nan;
-    // Over a short window, or one of strong damping, the columns need not have turned into descending order.
+    // Over a short window, or one of strong damping, the columns need not have turned into
+    // descending order.
     for (int k = 1; k < rank_; ++k)
-        for (int j = k; j > 0 && (logs[j] > logs[j - 1] || std::isnan(logs[j - 1])); --j) std::swap(logs[j], logs[j - 1]);
+        for (int j = k; j > 0 && (logs[j] > logs[j - 1] || std::isnan(logs[j - 1])); --j)
+            std::swap(logs[j], logs[j - 1]);
     return per_time(logs, rank_, T);
 }
-Exponents TransferProduct::eigenvalues() const { return powers_ ? per_time(powers_->product.log_moduli(), rank_, end_ - start_) : no_exponents; }
-Exponents TransferProduct::raw_product() const { return raw_ ? raw_->exponents(end_ - start_) : no_exponents; }
-const ExponentHistory& TransferProduct::qr_history() const { return qr_ ? qr_->thinned.history() : none(); }
-const ExponentHistory& TransferProduct::eigenvalues_history() const { return powers_ ? powers_->thinned.history() : none(); }
-const ExponentHistory& TransferProduct::raw_product_history() const { return raw_ ? raw_->thinned.history() : none(); }
+Exponents TransferProduct::eigenvalues() const {
+    return powers_ ? per_time(powers_->product.log_moduli(), rank_, end_ - start_) : no_exponents;
+}
+Exponents TransferProduct::raw_product() const {
+    return raw_ ? raw_->exponents(end_ - start_) : no_exponents;
+}
+const ExponentHistory& TransferProduct::qr_history() const {
+    return qr_ ? qr_->thinned.history() : none();
+}
+const ExponentHistory& TransferProduct::eigenvalues_history() const {
+    return powers_ ? powers_->thinned.history() : none();
+}
+const ExponentHistory& TransferProduct::raw_product_history() const {
+    return raw_ ? raw_->thinned.history() : none();
+}
 
 double TransferProduct::sum_rule_residual() const {
     if (!qr_ || impacts_ < 2) return nan;
@@ -298,8 +329,12 @@ double TransferProduct::sum_rule_residual() const {
     return *std::max_element(misses.begin(), misses.end()) / (end_ - start_);
 }
 
-Lyapunov::Lyapunov(const Parameters& parameters, double tau_start, double tau_end, const ExponentOptions& options)
-    : parameters_(parameters), tau_start_(tau_start), tau_end_(tau_end), product_(parameters.epsilon, options) {}
+Lyapunov::Lyapunov(
+    const Parameters& parameters, double tau_start, double tau_end, const ExponentOptions& options)
+    : parameters_(parameters),
+      tau_start_(tau_start),
+      tau_end_(tau_end),
+      product_(parameters.epsilon, options) {}
 
 void Lyapunov::on_stretch(const Stretch& stretch) {
     if (product_.impacts() > 0) since_impact_.extend(stretch);  // the window has begun
@@ -307,8 +342,7 @@ void Lyapunov::on_stretch(const Stretch& stretch) {
 
 void Lyapunov::on_impact(const Impact& impact) {
     if (impact.tau < tau_start_ || impact.tau > tau_end_) return;
-    if (product_.impacts() == 0)
-        product_.start(impact.tau);
+    if (product_.impacts() == 0) product_.start(impact.tau);
     else
         product_.append(since_impact_.legs(), saltation(parameters_, impact), impact.R, impact.tau);
     since_impact_.reset();

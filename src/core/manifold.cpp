@@ -30,12 +30,15 @@ ManifoldPoint manifold_symmetry_breaking(double R, double Omega, double b) {
 }
 
 ManifoldPoint manifold_second_contact(double R, double Omega, double b) {
-    // Half the moment of the contact, where tan(u) = (1 + R) u; tan(u)/u >= 1 + u^2/3 bounds it from above.
+    // Half the moment of the contact, where tan(u) = (1 + R) u; tan(u)/u >= 1 + u^2/3 bounds it
+    // from above.
     double below = 0, u = std::min(quarter_turn, std::sqrt(3 * R));
     for (double middle = u / 2; middle > below && middle < u; middle = below + (u - below) / 2)
         (std::sin(middle) < (1 + R) * middle * std::cos(middle) ? below : u) = middle;
-    // The minimum itself, (1 - k cos t)/sin t there, written so that nothing cancels; with R = 0 the mass stays on the wall from t = 0 on.
-    const double sin_u = std::sin(u), q = u > 0 ? (R / (1 + R) + k_of(R) * sin_u * sin_u) / (sin_u * std::cos(u)) : 0;
+    // The minimum itself, (1 - k cos t)/sin t there, written so that nothing cancels; with R = 0
+    // the mass stays on the wall from t = 0 on.
+    const double sin_u = std::sin(u),
+                 q = u > 0 ? (R / (1 + R) + k_of(R) * sin_u * sin_u) / (sin_u * std::cos(u)) : 0;
     const double V = Omega * b / (quarter_turn - q);
     return {manifold_C(R, Omega, b, V), V};
 }
@@ -45,17 +48,23 @@ double manifold_b(double R, double C) {
     return k > 0 ? C * std::sqrt(quarter_turn * quarter_turn + k * k) / k : 0;
 }
 
-std::vector<ManifoldPoint> manifold_branch(double R, double Omega, double b, double from, double to, std::size_t count) {
+std::vector<ManifoldPoint> manifold_branch(
+    double R, double Omega, double b, double from, double to, std::size_t count) {
     std::vector<ManifoldPoint> points;
     for (std::size_t i = 0; i < count; ++i) {
-        const double V = std::lerp(from, to, static_cast<double>(i) / static_cast<double>(count - 1));  // exact at both ends
+        // Exact at both ends.
+        const double V =
+            std::lerp(from, to, static_cast<double>(i) / static_cast<double>(count - 1));
         points.push_back({manifold_C(R, Omega, b, V), V});
     }
     return points;
 }
 
 HalfCycles::HalfCycles(const Parameters& p, double tau_start, double tau_end, std::size_t most)
-    : half_cycle_(std::numbers::pi / p.Omega), tau_end_(tau_end), most_(most), next_(static_cast<long>(std::ceil(tau_start / half_cycle_)) + 1),
+    : half_cycle_(std::numbers::pi / p.Omega),
+      tau_end_(tau_end),
+      most_(most),
+      next_(static_cast<long>(std::ceil(tau_start / half_cycle_)) + 1),
       begun_((next_ - 1) * half_cycle_) {}
 
 void HalfCycles::on_stretch(const Stretch& stretch) {

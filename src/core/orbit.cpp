@@ -34,18 +34,20 @@ public:
         powers_.strike(M, impact.R);
     }
     const Matrix4& matrix() const { return matrix_; }
-    /// Eigenvalues by descending modulus. The solver's error is one of the largest: small ones get their moduli from the
-    /// exterior powers.
+    /// Eigenvalues by descending modulus. The solver's error is one of the largest: small ones get
+    /// their moduli from the exterior powers.
     std::array<std::complex<double>, 4> multipliers() const {
         const Eigen::Vector4cd eigenvalues = eigenvalues_of(matrix_);
         std::array<std::complex<double>, 4> values;
         for (int k = 0; k < 4; ++k) values[k] = eigenvalues(k);
-        std::stable_sort(values.begin(), values.end(), [](auto a, auto b) { return std::abs(a) > std::abs(b); });
+        std::stable_sort(
+            values.begin(), values.end(), [](auto a, auto b) { return std::abs(a) > std::abs(b); });
         const auto logs = powers_.log_moduli();
         for (int k = 0; k < 4; ++k) {
             const double modulus = std::abs(values[k]);
             if (k >= powers_.rank() || modulus == 0) values[k] = 0;
-            else if (modulus < 1e-6 * std::abs(values[0]) && std::isfinite(logs[k])) values[k] *= std::exp(logs[k]) / modulus;
+            else if (modulus < 1e-6 * std::abs(values[0]) && std::isfinite(logs[k]))
+                values[k] *= std::exp(logs[k]) / modulus;
         }
         return values;
     }
@@ -58,7 +60,8 @@ private:
 
 using Stop = std::function<bool()>;
 
-/// The middle of the longest flight within one cycle from a state at a whole cycle: a moment with no event nearby.
+/// The middle of the longest flight within one cycle from a state at a whole cycle: a moment with
+/// no event nearby.
 double quiet_moment(const Parameters& p, const State& start, const Stop& stop) {
     ImpactRecord impacts;
     StickRecord sticks;
@@ -69,7 +72,8 @@ double quiet_moment(const Parameters& p, const State& start, const Stop& stop) {
     std::size_t stick = 0;
     auto flight_to = [&](double tau) {
         // What is left of a chatter, and the stuck phase behind it, are no flight.
-        for (; stick < sticks.sticks.size() && sticks.sticks[stick].start.tau <= tau; ++stick) from = std::max(from, sticks.sticks[stick].tau_end);
+        for (; stick < sticks.sticks.size() && sticks.sticks[stick].start.tau <= tau; ++stick)
+            from = std::max(from, sticks.sticks[stick].tau_end);
         if (tau - from > length) length = tau - from, middle = 0.5 * (from + tau);
         from = std::max(from, tau);
     };
@@ -82,7 +86,8 @@ struct Return {
     State state;
     Monodromy monodromy;
 };
-std::optional<Return> after_period(const Parameters& p, const State& s, double tau, int cycles, const Stop& stop) {
+std::optional<Return> after_period(
+    const Parameters& p, const State& s, double tau, int cycles, const Stop& stop) {
     if (std::abs(s.x - s.y) > p.b) return std::nullopt;
     Monodromy monodromy(p);
     Observer* const observers[] = {&monodromy};
@@ -92,7 +97,9 @@ std::optional<Return> after_period(const Parameters& p, const State& s, double t
 }
 
 /// Newton's method, in coordinates scaled to order one.
-std::optional<State> close(const Parameters& p, State s, double tau, int cycles, const State& scale, double reach, const Stop& stop) {
+std::optional<State> close(
+    const Parameters& p, State s, double tau, int cycles, const State& scale, double reach,
+    const Stop& stop) {
     const State guess = s;
     const Eigen::Vector4d unit = vector(scale);
     double miss_before = std::numeric_limits<double>::infinity();
@@ -105,8 +112,10 @@ std::optional<State> close(const Parameters& p, State s, double tau, int cycles,
         if (size < 1e-14 || (size < closed && size > 0.1 * miss_before)) return s;
         if (size > miss_before && ++worse > 2) return std::nullopt;
         miss_before = size;
-        const Matrix4 D = unit.asDiagonal().inverse() * (back->monodromy.matrix() - Matrix4::Identity()) * unit.asDiagonal();
-        // Neutral directions (a mass at rest that is never hit) are left as they are: the smallest step solves.
+        const Matrix4 D = unit.asDiagonal().inverse() *
+                          (back->monodromy.matrix() - Matrix4::Identity()) * unit.asDiagonal();
+        // Neutral directions (a mass at rest that is never hit) are left as they are: the smallest
+        // step solves.
         Eigen::Vector4d correction = -smallest_solution(D, miss);
         State next = state(vector(s) + correction.cwiseProduct(unit));
         for (int half = 0; half < 6 && std::abs(next.x - next.y) > p.b; ++half) {
@@ -122,11 +131,15 @@ std::optional<State> close(const Parameters& p, State s, double tau, int cycles,
 }  // namespace
 
 State scale_of(const Parameters& p, std::span<const State> states) {
-    // The free mass is never slower, by order of magnitude, than b per half cycle where it meets both walls.
+    // The free mass is never slower, by order of magnitude, than b per half cycle where it meets
+    // both walls.
     State scale{1e-9 * p.b, 1e-9 * p.b, 0.1 * p.b, p.b};
     for (const State& s : states)
-        scale = {std::max(scale.x_dot, std::abs(s.x_dot)), std::max(scale.x, std::abs(s.x)), std::max(scale.y_dot, std::abs(s.y_dot)), scale.y};
-    scale.x = scale.x_dot = std::max(scale.x, scale.x_dot);  // at one phase of the forcing either may pass through zero
+        scale = {
+            std::max(scale.x_dot, std::abs(s.x_dot)), std::max(scale.x, std::abs(s.x)),
+            std::max(scale.y_dot, std::abs(s.y_dot)), scale.y};
+    // At one phase of the forcing either may pass through zero.
+    scale.x = scale.x_dot = std::max(scale.x, scale.x_dot);
     return scale;
 }
 
@@ -137,17 +150,23 @@ double distance(const State& a, const State& b, const State& scale) {
 Exponents PeriodicOrbit::exponents(const Parameters& p) const {
     Exponents lambda;
     // Multipliers below what rounding leaves of a zero are zero: the orbit sticks, or R = 0.
-    for (int k = 0; k < 4; ++k) lambda[k] = std::log(std::abs(multipliers[k])) / (cycles * p.cycle());
+    for (int k = 0; k < 4; ++k)
+        lambda[k] = std::log(std::abs(multipliers[k])) / (cycles * p.cycle());
     return lambda;
 }
 
-std::optional<State> follow(const Parameters& p, const State& start, double tau, double duration, const Stop& stop, std::span<Observer* const> observers) {
-    const Outcome outcome = simulate(p, start, {tau + duration, most_impacts, stop, tau}, observers);
+std::optional<State> follow(
+    const Parameters& p, const State& start, double tau, double duration, const Stop& stop,
+    std::span<Observer* const> observers) {
+    const Outcome outcome =
+        simulate(p, start, {tau + duration, most_impacts, stop, tau}, observers);
     if (outcome.reason != End::tau_end) return std::nullopt;
     return outcome.state;
 }
 
-std::optional<PeriodicOrbit> find_orbit(const Parameters& p, const State& at_whole_cycle, int cycles, const State& scale, double reach, const Stop& stop) {
+std::optional<PeriodicOrbit> find_orbit(
+    const Parameters& p, const State& at_whole_cycle, int cycles, const State& scale, double reach,
+    const Stop& stop) {
     const double tau = quiet_moment(p, at_whole_cycle, stop), cycle = p.cycle();
     const auto guess = follow(p, at_whole_cycle, 0, tau, stop);
     if (!guess) return std::nullopt;
@@ -170,7 +189,8 @@ std::optional<PeriodicOrbit> find_orbit(const Parameters& p, const State& at_who
         break;
     }
 
-    // Three periods, of which one is counted from the first contact after a release: a chatter must not be cut in two.
+    // Three periods, of which one is counted from the first contact after a release: a chatter must
+    // not be cut in two.
     ContactRecord contacts;
     ImpactRecord impacts;
     Observer* const observers[] = {&contacts, &impacts};
@@ -185,11 +205,18 @@ std::optional<PeriodicOrbit> find_orbit(const Parameters& p, const State& at_who
     // The rounding of a contact's tau must not count it twice.
     const double to = from + period * (1 - 1e-9);
     const auto within = [&](double t) { return t >= from && t < to; };
-    orbit.contacts = std::count_if(contacts.contacts.begin(), contacts.contacts.end(), [&](const Contacts& c) { return within(c.tau); });
-    orbit.impacts = std::count_if(impacts.impacts.begin(), impacts.impacts.end(), [&](const Impact& i) { return within(i.tau); });
-    orbit.sticks = std::count_if(contacts.sticks.begin(), contacts.sticks.end(), [&](const auto& s) { return within(s.tau_start); });
-    // Half a period on, the forcing has the opposite sign only where the period is an odd number of cycles. Walls that differ may
-    // leave the motion between their chatters the same, but not the chatters.
+    orbit.contacts = std::count_if(
+        contacts.contacts.begin(), contacts.contacts.end(),
+        [&](const Contacts& c) { return within(c.tau); });
+    orbit.impacts = std::count_if(
+        impacts.impacts.begin(), impacts.impacts.end(),
+        [&](const Impact& i) { return within(i.tau); });
+    orbit.sticks = std::count_if(
+        contacts.sticks.begin(), contacts.sticks.end(),
+        [&](const auto& s) { return within(s.tau_start); });
+    // Half a period on, the forcing has the opposite sign only where the period is an odd number of
+    // cycles. Walls that differ may leave the motion between their chatters the same, but not the
+    // chatters.
     if (orbit.cycles % 2 == 1 && (p.R_plus == p.R_minus || orbit.impacts == 0)) {
         const auto half = follow(p, *found, tau, 0.5 * orbit.cycles * cycle, stop);
         orbit.symmetric = half && distance(state(-vector(*half)), *found, scale) < 1e-6;
@@ -199,16 +226,20 @@ std::optional<PeriodicOrbit> find_orbit(const Parameters& p, const State& at_who
 
 namespace {
 
-/// Deviations from an orbit in the eigenvectors of its monodromy matrix: there a small one shrinks, period by period, by the
-/// multipliers' moduli, however far from orthogonal the eigenvectors are.
+/// Deviations from an orbit in the eigenvectors of its monodromy matrix: there a small one shrinks,
+/// period by period, by the multipliers' moduli, however far from orthogonal the eigenvectors are.
 class EigenCoordinates {
 public:
-    EigenCoordinates(const PeriodicOrbit& orbit, const State& scale, bool oscillator_alone) : at_(vector(orbit.state)), unit_(vector(scale)) {
+    EigenCoordinates(const PeriodicOrbit& orbit, const State& scale, bool oscillator_alone)
+        : at_(vector(orbit.state)),
+          unit_(vector(scale)) {
         Matrix4 D = unit_.asDiagonal().inverse() * orbit.monodromy * unit_.asDiagonal();
         if (oscillator_alone) D.bottomRows<2>().setZero(), D.rightCols<2>().setZero();
         base_ = eigen_base_of(D);
     }
-    Eigen::Vector4cd of(const State& s) const { return base_.to_coordinates * (vector(s) - at_).cwiseQuotient(unit_); }
+    Eigen::Vector4cd of(const State& s) const {
+        return base_.to_coordinates * (vector(s) - at_).cwiseQuotient(unit_);
+    }
     Eigen::Vector4cd after(Eigen::Vector4cd deviation, int periods) const {
         for (int k = 0; k < 4; ++k) deviation(k) *= std::pow(base_.values(k), periods);
         return deviation;
@@ -220,30 +251,37 @@ private:
     EigenBase base_;
 };
 
-// So close, in units of the scale, the motion is on the orbit: from order one a chance return would need 1e16 cycles or more.
+// So close, in units of the scale, the motion is on the orbit: from order one a chance return would
+// need 1e16 cycles or more.
 constexpr double there = 1e-8;
-// From order one to there takes this many times the contraction's own time, and some more while it is not linear yet.
+// From order one to there takes this many times the contraction's own time, and some more while it
+// is not linear yet.
 constexpr double decay_times = 24;
 constexpr int more_periods = 20;
 // A motion is followed for so many cycles at most, but for so many periods at least.
 constexpr int most_cycles = 4000, least_periods = 30;
-// Where that is too short, it must move as the orbit's linear map says, in each of so many spans, to this share of what the
-// map contracts in the span.
+// Where that is too short, it must move as the orbit's linear map says, in each of so many spans,
+// to this share of what the map contracts in the span.
 constexpr int spans = 3;
 constexpr double linear_share = 0.2;
 
 }  // namespace
 
-bool attracts(const Parameters& p, const PeriodicOrbit& orbit, const State& at_whole_cycle, const State& scale, const Stop& stop) {
-    // Without an impact nothing pulls the free mass back: its two multipliers are 1, and it is the oscillator that converges.
+bool attracts(
+    const Parameters& p, const PeriodicOrbit& orbit, const State& at_whole_cycle,
+    const State& scale, const Stop& stop) {
+    // Without an impact nothing pulls the free mass back: its two multipliers are 1, and it is the
+    // oscillator that converges.
     const bool untouched = orbit.contacts == 0 && orbit.state.y_dot == 0;
-    const double largest = untouched ? spectral_radius(orbit.monodromy.topLeftCorner<2, 2>()) : std::abs(orbit.multipliers[0]);
+    const double largest = untouched ? spectral_radius(orbit.monodromy.topLeftCorner<2, 2>())
+                                     : std::abs(orbit.multipliers[0]);
     const double per_period = -std::log(largest);
     if (!(per_period > 1e-9)) return false;  // nothing contracts, but for rounding
     std::optional<State> s = follow(p, at_whole_cycle, 0, orbit.tau, stop);
     auto distant = [&] { return distance(*s, orbit.state, scale); };
     auto pass = [&](int periods) {
-        for (int k = 0; k < periods && s && distant() >= there; ++k) s = follow(p, *s, orbit.tau, orbit.cycles * p.cycle(), stop);
+        for (int k = 0; k < periods && s && distant() >= there; ++k)
+            s = follow(p, *s, orbit.tau, orbit.cycles * p.cycle(), stop);
         return s.has_value();
     };
     if (!s) return false;
@@ -257,10 +295,12 @@ bool attracts(const Parameters& p, const PeriodicOrbit& orbit, const State& at_w
     const int periods = most_periods / spans;
     const double contraction = 1 - std::pow(largest, periods);
     for (int span = 0; span < spans; ++span) {
-        const Eigen::Vector4cd before = coordinates.of(*s), linear = coordinates.after(before, periods);
+        const Eigen::Vector4cd before = coordinates.of(*s),
+                               linear = coordinates.after(before, periods);
         if (!pass(periods)) return false;
         if (distant() < there) return true;
-        if ((coordinates.of(*s) - linear).norm() > linear_share * contraction * before.norm()) return false;
+        if ((coordinates.of(*s) - linear).norm() > linear_share * contraction * before.norm())
+            return false;
     }
     return true;
 }

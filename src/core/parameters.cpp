@@ -9,12 +9,14 @@ namespace vines {
 
 namespace {
 
-// x0 and y0 are decimal numbers rounded to double: their difference may miss b by some ulps of the largest of the three.
+// x0 and y0 are decimal numbers rounded to double: their difference may miss b by some ulps of the
+// largest of the three.
 double wall_tolerance(const State& s, double b) {
     return 8 * std::numeric_limits<double>::epsilon() * std::max({std::abs(s.x), std::abs(s.y), b});
 }
 
-// Above this damping ratio the cells of the search (flow.cpp) would be so short that nobody wants to wait for the answer.
+// Above this damping ratio the cells of the search (flow.cpp) would be so short that nobody wants
+// to wait for the answer.
 constexpr double zeta_maximum = 10;
 
 constexpr ParameterRange ranges[] = {
@@ -46,7 +48,9 @@ SiParameters in_si(const Parameters& p, double m1, double k1) {
     return si;
 }
 
-double Parameters::zeta() const { return damping == Damping::closed_form ? epsilon * lambda : 0.5 * epsilon * lambda; }
+double Parameters::zeta() const {
+    return damping == Damping::closed_form ? epsilon * lambda : 0.5 * epsilon * lambda;
+}
 
 double Parameters::A() const { return G * std::hypot(1.0, lambda * epsilon * Omega); }
 
@@ -63,18 +67,26 @@ int wall_of(const State& s, double b) {
 
 std::vector<Fault> validate(const Parameters& p, const State& start) {
     std::vector<Fault> faults;
-    auto check = [&](const std::string& field, double value, double minimum, double maximum, const std::string& what) {
+    auto check = [&](const std::string& field, double value, double minimum, double maximum,
+                     const std::string& what) {
         if (value >= minimum && value <= maximum) return;  // false for NaN, too
-        faults.push_back({field, value, minimum, maximum, what + " must lie in [" + format(minimum) + ", " + format(maximum) + "]"});
+        faults.push_back(
+            {field, value, minimum, maximum,
+             what + " must lie in [" + format(minimum) + ", " + format(maximum) + "]"});
     };
     for (const ParameterRange& r : ranges)
         check(r.name, r.parameter ? p.*r.parameter : start.*r.state, r.minimum, r.maximum, r.name);
     if (!faults.empty()) return faults;  // what follows is computed from numbers that are in range
 
     if (p.zeta() > zeta_maximum)
-        check("lambda", p.lambda, 0, p.lambda / p.zeta() * zeta_maximum, "lambda, which with this epsilon gives a damping ratio zeta of " + format(p.zeta()) + ",");
+        check(
+            "lambda", p.lambda, 0, p.lambda / p.zeta() * zeta_maximum,
+            "lambda, which with this epsilon gives a damping ratio zeta of " + format(p.zeta()) +
+                ",");
     if (!wall_of(start, p.b))
-        check("y0", start.y, start.x - p.b, start.x + p.b, "y0, so that the free mass starts inside its cavity (|x0 - y0| <= b),");
+        check(
+            "y0", start.y, start.x - p.b, start.x + p.b,
+            "y0, so that the free mass starts inside its cavity (|x0 - y0| <= b),");
     return faults;
 }
 

@@ -1,4 +1,5 @@
-// The parameters of the oscillator with a vibro-impact nonlinear energy sink (VI NES), and what follows from them.
+// The parameters of the oscillator with a vibro-impact nonlinear energy sink (VI NES), and what
+// follows from them.
 #pragma once
 
 #include <cmath>
@@ -9,42 +10,49 @@
 
 namespace vines {
 
-/// Which damping ratio zeta the motion has. The paper uses both: see README, "What the paper says and what holds".
+/// Which damping ratio zeta the motion has. The paper uses both: see README, "What the paper says
+/// and what holds".
 enum class Damping {
     equation_of_motion,  ///< 2 zeta = epsilon lambda, eqs. (1), (6), (17): what c1 means
-    closed_form          ///< zeta = epsilon lambda, eqs. (8)-(11), (19), (20): what the paper's numbers were computed with
+    /// Zeta = epsilon lambda, eqs. (8)-(11), (19), (20): what the paper's numbers were computed
+    /// with.
+    closed_form
 };
 
-/// The same system in SI units: masses in kg, c1 in N s/m, k1 in N/m, F (amplitude of the base) in m, f in Hz. The defaults
-/// are the paper's Table 1; its excitation is given in reduced form, G = .02 m and Omega = 1.
+/// The same system in SI units: masses in kg, c1 in N s/m, k1 in N/m, F (amplitude of the base) in
+/// m, f in Hz. The defaults are the paper's Table 1; its excitation is given in reduced form, G =
+/// .02 m and Omega = 1.
 struct SiParameters {
     double m1 = 3.807, c1 = 2.53, k1 = 11.68e3, m2 = 0.032;
     double F = 0.02 * m2 / m1, f = f0();
 
-    double omega0() const { return std::sqrt(k1 / m1); }            ///< rad/s
-    double f0() const { return omega0() / (2 * std::numbers::pi); } ///< Hz
+    double omega0() const { return std::sqrt(k1 / m1); }             ///< rad/s
+    double f0() const { return omega0() / (2 * std::numbers::pi); }  ///< Hz
     double damping_ratio() const { return c1 / (2 * m1 * omega0()); }
-    double epsilon() const { return m2 / m1; }                      ///< the definitions below eq. (1)
+    /// The definitions below eq. (1)
+    double epsilon() const { return m2 / m1; }
     double lambda() const { return c1 / (m2 * omega0()); }
     double G() const { return F / epsilon(); }
-    double Omega() const { return f / f0(); }                       // exactly 1 for the oscillator's own f
+    // Exactly 1 for the oscillator's own f.
+    double Omega() const { return f / f0(); }
 };
 
-/// Dimensionless but where a unit is given; the symbols are the paper's. The defaults are its Table 1 with the b of
-/// Fig. 3; epsilon and lambda come from the table's SI values, of which .84 % and 1.43 are rounded.
+/// Dimensionless but where a unit is given; the symbols are the paper's. The defaults are its Table
+/// 1 with the b of Fig. 3; epsilon and lambda come from the table's SI values, of which .84 %
+/// and 1.43 are rounded.
 struct Parameters {
     double epsilon = SiParameters{}.epsilon();  ///< mass ratio m2/m1
     double lambda = SiParameters{}.lambda();    ///< c1/(m2 omega0)
-    double G = 0.02;          ///< base amplitude over epsilon, m
-    double Omega = 1.0;       ///< forcing frequency over omega0
-    double R_plus = 0.6;      ///< restitution coefficient where x - y = +b
-    double R_minus = 0.6;     ///< restitution coefficient where x - y = -b
-    double b = 0.022;         ///< half-width of the cavity, m
+    double G = 0.02;                            ///< base amplitude over epsilon, m
+    double Omega = 1.0;                         ///< forcing frequency over omega0
+    double R_plus = 0.6;                        ///< restitution coefficient where x - y = +b
+    double R_minus = 0.6;                       ///< restitution coefficient where x - y = -b
+    double b = 0.022;                           ///< half-width of the cavity, m
     Damping damping = Damping::equation_of_motion;
 
-    double zeta() const;               ///< damping ratio of x'' + 2 zeta x' + x = ...
-    double A() const;                  ///< forcing amplitude over epsilon, m, eq. (3)
-    double phi() const;                ///< forcing phase at tau = 0, eq. (3)
+    double zeta() const;  ///< damping ratio of x'' + 2 zeta x' + x = ...
+    double A() const;     ///< forcing amplitude over epsilon, m, eq. (3)
+    double phi() const;   ///< forcing phase at tau = 0, eq. (3)
     double cycle() const { return 2 * std::numbers::pi / Omega; }  ///< of the forcing, in tau
     double restitution(int side) const { return side > 0 ? R_plus : R_minus; }
 };
@@ -52,7 +60,8 @@ struct Parameters {
 /// The same system in SI, on the scale of an oscillator's mass and stiffness.
 SiParameters in_si(const Parameters& parameters, double m1, double k1);
 
-/// State of the flow in the paper's order, eq. (5). Positions in m, velocities in m per unit of tau.
+/// State of the flow in the paper's order, eq. (5). Positions in m, velocities in m per unit of
+/// tau.
 struct State {
     double x_dot = 0, x = 0, y_dot = 0, y = 0;
 };
@@ -60,15 +69,16 @@ struct State {
 /// The closed range that a parameter must lie in. Exactly one of the two members is set.
 struct ParameterRange {
     const char* name;
-    double Parameters::*parameter;
-    double State::*state;
+    double Parameters::* parameter;
+    double State::* state;
     double minimum, maximum;
 };
 
 /// The ranges of all parameters and of the initial state.
 std::span<const ParameterRange> parameter_ranges();
 
-/// One thing that is wrong with an input: the field, its value, the range it must lie in, and a sentence that says so.
+/// One thing that is wrong with an input: the field, its value, the range it must lie in, and a
+/// sentence that says so.
 struct Fault {
     std::string field;
     double value;
@@ -79,8 +89,8 @@ struct Fault {
 /// The state that a run starts from by Table 1: at rest, the free mass at 95 % of b.
 State default_state(const Parameters& parameters);
 
-/// Every fault of a system and its initial state (empty: valid). Beyond each number's own range: the damping ratio,
-/// and |x - y| <= b at the start.
+/// Every fault of a system and its initial state (empty: valid). Beyond each number's own range:
+/// the damping ratio, and |x - y| <= b at the start.
 std::vector<Fault> validate(const Parameters& parameters, const State& start);
 
 /// The wall (side = sign(x - y)) that a state touches up to rounding, or 0.

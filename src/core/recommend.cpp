@@ -17,7 +17,8 @@ constexpr long most_impacts = 50000;
 
 std::optional<Recommendation> recommended_b(Parameters p, const std::function<bool()>& stop) {
     const auto amplitude = free_amplitude(p);
-    if (p.R_plus != p.R_minus || p.R_plus == 1 || !amplitude || *amplitude == 0) return std::nullopt;
+    if (p.R_plus != p.R_minus || p.R_plus == 1 || !amplitude || *amplitude == 0)
+        return std::nullopt;
     PointOptions options;
     options.transient_cycles = transient_cycles;
     options.cycles = cycles;
@@ -29,7 +30,8 @@ std::optional<Recommendation> recommended_b(Parameters p, const std::function<bo
         for (const NamedStart& start : default_starts(p)) {
             const PointResult r = measure(p, start.state, options, stop);
             if (!r.measured || r.outcome.reason == End::stopped) return std::nullopt;
-            if (!worst || r.x_rms_ratio > worst->x_rms_ratio) worst = Recommendation{p.b, share, start, r.x_rms_ratio, r.x_max, r.regime.type};
+            if (!worst || r.x_rms_ratio > worst->x_rms_ratio)
+                worst = Recommendation{p.b, share, start, r.x_rms_ratio, r.x_max, r.regime.type};
         }
         if (!best || worst->x_rms_ratio < best->x_rms_ratio) best = worst;
     }

@@ -26,7 +26,8 @@ void SeriesRecord::finish(const Outcome& outcome) {
 void StroboscopicRecord::on_stretch(const Stretch& stretch) {
     const double end = stretch.tau + stretch.duration;
     // One at the very end of a stretch is taken before whatever happens there.
-    while (tau(states.size()) <= end) states.push_back(stretch.at(std::max(0.0, tau(states.size()) - stretch.tau)));
+    while (tau(states.size()) <= end)
+        states.push_back(stretch.at(std::max(0.0, tau(states.size()) - stretch.tau)));
 }
 
 void ImpactRecord::on_impact(const Impact& impact) {

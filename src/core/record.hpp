@@ -11,15 +11,18 @@ namespace vines {
 /// Of a record that keeps all of its entries.
 inline constexpr std::size_t everything = std::numeric_limits<std::size_t>::max() / 2;
 
-/// Cuts a growing record down to its last `most` entries, at half of them more: each entry is moved once at most.
+/// Cuts a growing record down to its last `most` entries, at half of them more: each entry is moved
+/// once at most.
 template <class Entries>
 void keep_last(Entries& entries, std::size_t most) {
-    if (entries.size() >= most + most / 2 + 1) entries.erase(entries.begin(), entries.end() - static_cast<std::ptrdiff_t>(most));
+    if (entries.size() >= most + most / 2 + 1)
+        entries.erase(entries.begin(), entries.end() - static_cast<std::ptrdiff_t>(most));
 }
 /// The same at the end of the run.
 template <class Entries>
 void trim_to_last(Entries& entries, std::size_t most) {
-    if (entries.size() > most) entries.erase(entries.begin(), entries.end() - static_cast<std::ptrdiff_t>(most));
+    if (entries.size() > most)
+        entries.erase(entries.begin(), entries.end() - static_cast<std::ptrdiff_t>(most));
 }
 
 /// The motion at tau = 0, step, 2 step, ... and at the end of the run. Units as in State.
@@ -37,15 +40,19 @@ private:
     long next_ = 0;
 };
 
-/// The states at one phase of the forcing, once a cycle: at tau = (k + phase/(2 pi)) 2 pi/Omega, k = first, first + 1, ... So
-/// theta = phi + phase.
+/// The states at one phase of the forcing, once a cycle: at tau = (k + phase/(2 pi)) 2 pi/Omega, k
+/// = first, first + 1, ... So theta = phi + phase.
 class StroboscopicRecord : public Observer {
 public:
     explicit StroboscopicRecord(const Parameters& parameters, long first = 0, double phase = 0)
-        : cycle_(parameters.cycle()), after_(phase / parameters.Omega), first_(first) {}
+        : cycle_(parameters.cycle()),
+          after_(phase / parameters.Omega),
+          first_(first) {}
     void on_stretch(const Stretch&) override;
 
-    double tau(std::size_t k) const { return static_cast<double>(first_ + static_cast<long>(k)) * cycle_ + after_; }
+    double tau(std::size_t k) const {
+        return static_cast<double>(first_ + static_cast<long>(k)) * cycle_ + after_;
+    }
     std::vector<State> states;  ///< the k-th at tau(k)
 
 private:
@@ -66,10 +73,14 @@ private:
     const std::size_t most_;
 };
 
-/// The impacts in [tau_start, tau_end], each with the time since the impact before it, whether that is in the window or not.
+/// The impacts in [tau_start, tau_end], each with the time since the impact before it, whether that
+/// is in the window or not.
 class SectionRecord : public Observer {
 public:
-    SectionRecord(double tau_start, double tau_end, std::size_t most) : tau_start_(tau_start), tau_end_(tau_end), most_(most) {}
+    SectionRecord(double tau_start, double tau_end, std::size_t most)
+        : tau_start_(tau_start),
+          tau_end_(tau_end),
+          most_(most) {}
     void on_impact(const Impact& impact) override;
 
     struct Point {

@@ -19,7 +19,8 @@ double quantile_of_moduli(std::vector<double> v, double share) {
     std::erase_if(v, [](double x) { return std::isnan(x); });
     if (v.empty()) return std::numeric_limits<double>::quiet_NaN();
     for (double& x : v) x = std::abs(x);
-    const auto at = v.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(v.size() - 1));
+    const auto at =
+        v.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(v.size() - 1));
     std::nth_element(v.begin(), at, v.end());
     return *at;
 }
@@ -29,7 +30,9 @@ double robust_deviation(std::vector<double> v) {
     return 1.4826 * median(std::move(v));
 }
 
-double difference_noise(const std::vector<double>& tau, const std::vector<double>& v, const std::vector<char>& spoiled) {
+double difference_noise(
+    const std::vector<double>& tau, const std::vector<double>& v,
+    const std::vector<char>& spoiled) {
     if (v.size() < 4) return std::numeric_limits<double>::quiet_NaN();
     const double step = (tau.back() - tau.front()) / static_cast<double>(tau.size() - 1);
     std::vector<double> third;
@@ -40,7 +43,8 @@ double difference_noise(const std::vector<double>& tau, const std::vector<double
         bool clean = true;
         for (std::size_t j = i - 3; j <= i; ++j) {
             double product = 1;
-            for (std::size_t k = i - 3; k <= i; ++k) if (k != j) product *= (tau[j] - tau[k]) / step;
+            for (std::size_t k = i - 3; k <= i; ++k)
+                if (k != j) product *= (tau[j] - tau[k]) / step;
             difference += v[j] / product;
             variance += 1 / (product * product);
             clean = clean && (spoiled.empty() || !spoiled[j]);

@@ -14,8 +14,11 @@ double quantile_of_moduli(std::vector<double> values, double share);
 /// Standard deviation of the bulk about zero, whatever the outliers.
 double robust_deviation(std::vector<double> values);
 
-/// White noise of a smooth signal from its third differences, whose variance is 20 times that of the noise at equal steps: a
-/// parabola leaves none. Divided differences, so that steps may differ; not over gaps, nor where `spoiled` (empty: nowhere).
-double difference_noise(const std::vector<double>& tau, const std::vector<double>& values, const std::vector<char>& spoiled = {});
+/// White noise of a smooth signal from its third differences, whose variance is 20 times that of
+/// the noise at equal steps: a parabola leaves none. Divided differences, so that steps may differ;
+/// not over gaps, nor where `spoiled` (empty: nowhere).
+double difference_noise(
+    const std::vector<double>& tau, const std::vector<double>& values,
+    const std::vector<char>& spoiled = {});
 
 }  // namespace vines

@@ -9,14 +9,17 @@ namespace vines {
 
 namespace {
 
-// A chatter is over when the rest of it would last less than this: then its impacts, of which there are infinitely many,
-// can no longer be told from its limit at the accuracy that a result is read with. The relative speed is then near
-// 1e-12 of a typical one, far above anything that rounding does to it (guard.hpp, property 3).
+// A chatter is over when the rest of it would last less than this: then its impacts, of which there
+// are infinitely many, can no longer be told from its limit at the accuracy that a result is read
+// with. The relative speed is then near 1e-12 of a typical one, far above anything that rounding
+// does to it (guard.hpp, property 3).
 constexpr double chatter_rest = 1e-9;
-// The rest is summed as a geometric series, as if the acceleration stayed the same. It changes by less than this share.
+// The rest is summed as a geometric series, as if the acceleration stayed the same. It changes by
+// less than this share.
 constexpr double chatter_drift = 1e-4;
 
-// How often the stop function is asked, in events (a flight without a contact within its reach is one, too).
+// How often the stop function is asked, in events (a flight without a contact within its reach is
+// one, too).
 constexpr long events_per_look = 64;
 
 /// Time as a sum of two doubles, so that adding a million small steps loses nothing.
@@ -37,8 +40,15 @@ private:
 
 class Run {
 public:
-    Run(const Parameters& p, const State& start, const Limits& limits, std::span<Observer* const> observers)
-        : p_(p), limits_(limits), observers_(observers), free_(Flow::free(p)), clock_(limits.tau_start), y_(start.y), y_dot_(start.y_dot) {
+    Run(const Parameters& p, const State& start, const Limits& limits,
+        std::span<Observer* const> observers)
+        : p_(p),
+          limits_(limits),
+          observers_(observers),
+          free_(Flow::free(p)),
+          clock_(limits.tau_start),
+          y_(start.y),
+          y_dot_(start.y_dot) {
         const double theta = p.Omega * limits.tau_start + p.phi();
         lo_ = {start.x, start.x_dot, std::sin(theta), std::cos(theta)};
         side_ = wall_of(start, p.b);
@@ -50,7 +60,8 @@ public:
         if (side_ != 0) meet_wall_at_start();
         for (long events = 0; !end_; ++events) {
             if (std::max(impacts_, others_) >= limits_.max_impacts) end_ = End::max_impacts;
-            else if (limits_.stop && events % events_per_look == 0 && limits_.stop()) end_ = End::stopped;
+            else if (limits_.stop && events % events_per_look == 0 && limits_.stop())
+                end_ = End::stopped;
             else fly();
         }
         return {*end_, clock_.tau(), {lo_.x_dot, lo_.x, y_dot_, y_}, impacts_};
@@ -62,9 +73,12 @@ private:
         for (Observer* o : observers_) (o->*event)(arguments...);
     }
 
-    /// Emits a stretch of the given flow and moves the clock over it. The caller sets the state at its end.
+    /// Emits a stretch of the given flow and moves the clock over it. The caller sets the state at
+    /// its end.
     void pass(const Flow& flow, double duration, int stuck_side) {
-        if (duration > 0) tell(&Observer::on_stretch, {flow, clock_.tau(), duration, lo_, y_, y_dot_, stuck_side});
+        if (duration > 0)
+            tell(
+                &Observer::on_stretch, {flow, clock_.tau(), duration, lo_, y_, y_dot_, stuck_side});
         clock_.advance(duration);
     }
 
@@ -79,7 +93,8 @@ private:
         const FlightStart start{lo_, y_, y_dot_, side_, relative_speed_, zeros_};
         touches_.clear();
         // A contact whose tau rounds to tau_end belongs to the run.
-        const auto contact = next_contact(free_, start, p_.b, std::min(rest + end_rounding_, free_.reach()), touches_);
+        const auto contact = next_contact(
+            free_, start, p_.b, std::min(rest + end_rounding_, free_.reach()), touches_);
         for (const Touch& t : touches_) touch(clock_.tau() + t.s, t.side);
         pass(free_, contact ? contact->s : limit, 0);
         if (contact) {
@@ -117,35 +132,44 @@ private:
         leave_or_stick();
     }
 
-    /// On the wall side_ with a relative speed that is zero or leads away from it: which derivative of the gap leads.
+    /// On the wall side_ with a relative speed that is zero or leads away from it: which derivative
+    /// of the gap leads.
     void leave_or_stick() {
         const double press = side_ * free_.acceleration(lo_), press_rate = side_ * free_.jerk(lo_);
         hop_ = press > 0 ? longest_hop_ : 0;
         if (relative_speed_ != 0) {
             zeros_ = 1;
             const double R = p_.restitution(side_);
-            const double rest = 2 * std::abs(relative_speed_) / (press * (1 - R));  // geometric series of 2 w/press
-            if (press > 0 && R < 1 && rest < chatter_rest && std::abs(press_rate) * rest < chatter_drift * press) stick(rest, 0);
-        } else if (press > 0 || (press == 0 && press_rate >= 0)) {  // all three zero: at rest together, for good
+            // Geometric series of 2 w/press.
+            const double rest = 2 * std::abs(relative_speed_) / (press * (1 - R));
+            if (press > 0 && R < 1 && rest < chatter_rest &&
+                std::abs(press_rate) * rest < chatter_drift * press)
+                stick(rest, 0);
+            // All three zero: at rest together, for good.
+        } else if (press > 0 || (press == 0 && press_rate >= 0)) {
             stick(0, press == 0);
         } else {
             zeros_ = press < 0 ? 2 : 3;
         }
     }
 
-    /// The stuck phase up to its release. What is left of the chatter passes as a part of it: the centre of mass
-    /// moves by the same law. `zeros` as in next_release.
+    /// The stuck phase up to its release. What is left of the chatter passes as a part of it: the
+    /// centre of mass moves by the same law. `zeros` as in next_release.
     void stick(double chatter_left, int zeros) {
         ++others_;
         if (!stuck_) stuck_ = Flow::stuck(p_);
-        lo_.x_dot -= p_.epsilon / (1 + p_.epsilon) * relative_speed_;  // the velocity of the centre of mass
-        tell(&Observer::on_stick, {std::min(clock_.tau() + chatter_left, limits_.tau_end), side_, relative_speed_ == 0 && last_side_ != side_ ? 0 : chatter_});
+        // The velocity of the centre of mass.
+        lo_.x_dot -= p_.epsilon / (1 + p_.epsilon) * relative_speed_;
+        tell(
+            &Observer::on_stick, {std::min(clock_.tau() + chatter_left, limits_.tau_end), side_,
+                                  relative_speed_ == 0 && last_side_ != side_ ? 0 : chatter_});
         relative_speed_ = 0;
         last_side_ = 0;
         for (bool released = false; !released && !end_;) {
             y_ = lo_.x - side_ * p_.b;
             y_dot_ = lo_.x_dot;
-            const double rest = clock_.until(limits_.tau_end), limit = std::min(rest, stuck_->reach());
+            const double rest = clock_.until(limits_.tau_end),
+                         limit = std::min(rest, stuck_->reach());
             const auto release = next_release(*stuck_, lo_, side_, zeros, limit);
             const double s = release ? *release : limit;
             pass(*stuck_, s, side_);
@@ -170,16 +194,18 @@ private:
     Oscillation lo_;
     double y_, y_dot_;
     double end_rounding_;
-    int side_ = 0;                // the wall that the mass is at, 0 in flight
-    double relative_speed_ = 0;   // x' - y' at that wall
-    int zeros_ = 1;               // see FlightStart
-    int last_side_ = 0, chatter_ = 0;  // side and length of the current run of impacts on one side that its wall's pressing joins
-    // A flight that leaves a pressing wall and comes back to it while it presses, within half a cycle of the faster of forcing and
-    // oscillator, was pressed all along: it belongs to a chatter. `hop_`: how long the one at hand may last for that.
+    int side_ = 0;               // the wall that the mass is at, 0 in flight
+    double relative_speed_ = 0;  // x' - y' at that wall
+    int zeros_ = 1;              // see FlightStart
+    // Side and length of the current run of impacts on one side that its wall's pressing joins.
+    int last_side_ = 0, chatter_ = 0;
+    // A flight that leaves a pressing wall and comes back to it while it presses, within half a
+    // cycle of the faster of forcing and oscillator, was pressed all along: it belongs to a
+    // chatter. `hop_`: how long the one at hand may last for that.
     const double longest_hop_ = std::numbers::pi / std::max(1.0, p_.Omega);
     double hop_ = 0;
-    std::vector<Touch> touches_;       // of the flight at hand
-    long impacts_ = 0, others_ = 0;    // others: sticks and touches
+    std::vector<Touch> touches_;     // of the flight at hand
+    long impacts_ = 0, others_ = 0;  // others: sticks and touches
     std::optional<End> end_;
 };
 
@@ -191,7 +217,9 @@ State Stretch::at(double s) const {
     return {o.x_dot, o.x, y_dot, y + y_dot * s};
 }
 
-Outcome simulate(const Parameters& parameters, const State& start, const Limits& limits, std::span<Observer* const> observers) {
+Outcome simulate(
+    const Parameters& parameters, const State& start, const Limits& limits,
+    std::span<Observer* const> observers) {
     return Run(parameters, start, limits, observers).run();
 }
 

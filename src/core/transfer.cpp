@@ -37,9 +37,11 @@ int ImpactTransfer::rank() const {
 
 Moduli ImpactTransfer::J_moduli() const {
     Moduli moduli = {1, 1, 1, 1};
-    if (rank() == 4) {  // two blocks; that of the free mass is a Jordan block, which an eigenvalue solver would split
+    // Two blocks; that of the free mass is a Jordan block, which an eigenvalue solver would split.
+    if (rank() == 4) {
         for (const Leg& leg : legs) {
-            const double n = static_cast<double>(leg.parts), half_trace = 0.5 * std::abs(leg.oscillator.a11 + leg.oscillator.a22);
+            const double n = static_cast<double>(leg.parts),
+                         half_trace = 0.5 * std::abs(leg.oscillator.a11 + leg.oscillator.a22);
             const double d = half_trace * half_trace - std::exp(leg.log_det);
             const double large = d > 0 ? std::log(half_trace + std::sqrt(d)) : 0.5 * leg.log_det;
             moduli[2] = std::exp(n * large);
@@ -67,7 +69,12 @@ void TransferRecord::on_impact(const Impact& impact) {
     if (impact.tau < tau_start_ || impact.tau > tau_end_) return;
     if (begun_) {
         const auto legs = passage_.legs();
-        transfers.push_back({impact.tau, impact.R, parameters_.epsilon, saltation(parameters_, impact), {legs.begin(), legs.end()}});
+        transfers.push_back(
+            {impact.tau,
+             impact.R,
+             parameters_.epsilon,
+             saltation(parameters_, impact),
+             {legs.begin(), legs.end()}});
         keep_last(transfers, most_);
         ++seen;
     }

@@ -9,7 +9,9 @@ namespace vines {
 
 class Windows : public Observer {
 public:
-    Windows(const Parameters& parameters, const ExponentOptions& options) : parameters_(parameters), options_(options) {}
+    Windows(const Parameters& parameters, const ExponentOptions& options)
+        : parameters_(parameters),
+          options_(options) {}
     /// Before the run. The products come in the order of these calls.
     void add(double tau_start, double tau_end);
 
@@ -27,7 +29,8 @@ private:
     const Parameters parameters_;
     const ExponentOptions options_;
     std::vector<Window> windows_;
-    std::vector<Window*> waiting_;  // from the first impact on: those not begun, the latest start first
+    // From the first impact on: those not begun, the latest start first.
+    std::vector<Window*> waiting_;
     std::vector<Window*> open_;
     bool begun_ = false;
 };

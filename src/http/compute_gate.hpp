@@ -1,7 +1,8 @@
 // Bounds the computations that run at once: there are many I/O threads, but only so many cores.
 //
-// Urgent work (one simulation) queues up to a limit and is turned away beyond it. Patient work (the points of a sweep) waits
-// as long as it takes, gives way to urgent work whenever some waits, and so never makes it wait for more than a moment.
+// Urgent work (one simulation) queues up to a limit and is turned away beyond it. Patient work (the
+// points of a sweep) waits as long as it takes, gives way to urgent work whenever some waits, and
+// so never makes it wait for more than a moment.
 #pragma once
 
 #include <atomic>
@@ -14,11 +15,16 @@ namespace vines::http {
 class ComputeGate {
 public:
     /// So many run at once, so many more urgent ones wait, and so many sweeps share the rest.
-    ComputeGate(int running, int waiting, int sweeps) : threads_(running), free_(running), waiting_left_(waiting), sweeps_left_(sweeps) {}
+    ComputeGate(int running, int waiting, int sweeps)
+        : threads_(running),
+          free_(running),
+          waiting_left_(waiting),
+          sweeps_left_(sweeps) {}
 
     int threads() const { return threads_; }
 
-    /// A place to compute in, given back when it goes out of scope. Empty (false) where the queue was full.
+    /// A place to compute in, given back when it goes out of scope. Empty (false) where the queue
+    /// was full.
     class Place {
     public:
         explicit Place(ComputeGate& gate) : gate_(gate.enter() ? &gate : nullptr) {}
@@ -45,7 +51,8 @@ public:
         ++sweeps_left_;
     }
 
-    /// Waits for a place behind all urgent work. Returns without one (false) once `stop` is set or the gate closes.
+    /// Waits for a place behind all urgent work. Returns without one (false) once `stop` is set or
+    /// the gate closes.
     bool enter_patiently(const std::atomic<bool>& stop) {
         std::unique_lock lock(mutex_);
         while (free_ == 0 || urgent_ > 0) {

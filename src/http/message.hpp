@@ -28,7 +28,8 @@ struct Response {
     std::string content_type = "application/json";
     std::string body;
     std::vector<std::pair<std::string, std::string>> headers = {};
-    std::function<void(Writer&)> stream = {};  ///< in place of a body: writes it and returns at its end
+    /// In place of a body: writes it and returns at its end.
+    std::function<void(Writer&)> stream = {};
 };
 
 struct Route {

@@ -10,11 +10,12 @@
 namespace vines::http {
 
 struct RouteOptions {
-    double deadline;          ///< seconds of computing for one request
-    std::size_t sweep_points; ///< of one sweep, at most
-    std::size_t record_limit; ///< bytes of a measurement sent to /v1/identify
-    std::size_t answer_limit; ///< bytes of an answer's JSON
-    std::string web_dir;      ///< serve the page from this folder instead of the program; empty: do not
+    double deadline;           ///< seconds of computing for one request
+    std::size_t sweep_points;  ///< of one sweep, at most
+    std::size_t record_limit;  ///< bytes of a measurement sent to /v1/identify
+    std::size_t answer_limit;  ///< bytes of an answer's JSON
+    /// Serve the page from this folder instead of the program; empty: do not.
+    std::string web_dir;
 };
 
 /// All routes. `gate` outlives them.

@@ -11,9 +11,9 @@ namespace vines::http {
 
 struct ServerOptions {
     std::string host = "127.0.0.1";
-    int port = 8080;                           ///< 0: any free one
-    int threads = 64;                          ///< I/O threads: a slow client holds one
-    std::size_t payload_limit = 1 << 20;       ///< bytes of a request's body
+    int port = 8080;                      ///< 0: any free one
+    int threads = 64;                     ///< I/O threads: a slow client holds one
+    std::size_t payload_limit = 1 << 20;  ///< bytes of a request's body
 };
 
 class Server {
@@ -33,7 +33,8 @@ private:
     std::unique_ptr<Implementation> implementation_;
 };
 
-/// GET http://host:port/path: the status code, or 0 with no answer in time. For the container's health check.
+/// GET http://host:port/path: the status code, or 0 with no answer in time. For the container's
+/// health check.
 int get_status(const std::string& host, int port, const std::string& path);
 
 }  // namespace vines::http

@@ -64,7 +64,8 @@ public:
         }
         changed_.notify_one();
     }
-    /// What has come since the last call, after a while at most; sets how many lines there were in all, and whether that is all.
+    /// What has come since the last call, after a while at most; sets how many lines there were in
+    /// all, and whether that is all.
     std::string take(std::size_t& count, bool& finished) {
         std::unique_lock lock(mutex_);
         changed_.wait_for(lock, look, [this] { return !text_.empty() || finished_; });
@@ -82,10 +83,21 @@ private:
 };
 
 /// Of the lines; how long the rest will take follows from the runs.
-Json progress(std::size_t done, std::size_t of, std::size_t runs, std::size_t runs_of, double seconds) {
+Json progress(
+    std::size_t done, std::size_t of, std::size_t runs, std::size_t runs_of, double seconds) {
     const double rate = seconds > 0 ? static_cast<double>(done) / seconds : 0;
-    const double left = done < of && runs > 0 ? static_cast<double>(runs_of - std::min(runs, runs_of)) * seconds / static_cast<double>(runs) : 0;
-    return {{"type", "progress"}, {"done", done}, {"of", of}, {"per_second", rate}, {"seconds_left", runs > 0 ? Json(left) : Json(nullptr)}, {"runs", runs}, {"runs_of", runs_of}};
+    const double left = done < of && runs > 0
+                            ? static_cast<double>(runs_of - std::min(runs, runs_of)) * seconds /
+                                  static_cast<double>(runs)
+                            : 0;
+    return {
+        {"type", "progress"},
+        {"done", done},
+        {"of", of},
+        {"per_second", rate},
+        {"seconds_left", runs > 0 ? Json(left) : Json(nullptr)},
+        {"runs", runs},
+        {"runs_of", runs_of}};
 }
 
 void stream(const api::SweepRequest& request, ComputeGate& gate, Writer& out) {
@@ -100,7 +112,9 @@ void stream(const api::SweepRequest& request, ComputeGate& gate, Writer& out) {
 
     std::thread computing([&] {
         try {
-            warning = api::run_sweep(request, gate.threads(), pace, [&](std::size_t, const Json& line) { lines.push(line.dump()); });
+            warning = api::run_sweep(
+                request, gate.threads(), pace,
+                [&](std::size_t, const Json& line) { lines.push(line.dump()); });
         } catch (const std::exception& e) {
             failure = e.what();
         }
@@ -113,7 +127,11 @@ void stream(const api::SweepRequest& request, ComputeGate& gate, Writer& out) {
         std::string text = lines.take(done, finished);
         const auto now = Clock::now();
         if (now - reported >= report || finished) {
-            text += progress(done, of, pace.runs, runs_of, std::chrono::duration<double>(now - started).count()).dump() + "\n";
+            text += progress(
+                        done, of, pace.runs, runs_of,
+                        std::chrono::duration<double>(now - started).count())
+                        .dump() +
+                    "\n";
             reported = now;
         }
         present = present && out.present() && (text.empty() || out.write(text));
@@ -122,10 +140,13 @@ void stream(const api::SweepRequest& request, ComputeGate& gate, Writer& out) {
     computing.join();
     if (!present) return;
     if (done == of) {
-        if (!warning.empty()) out.write(Json{{"type", "warning"}, {"message", warning}}.dump() + "\n");
+        if (!warning.empty())
+            out.write(Json{{"type", "warning"}, {"message", warning}}.dump() + "\n");
         out.write(Json{{"type", "done"}, {"points", done}}.dump() + "\n");
     } else {
-        const std::string detail = !failure.empty() ? "the server failed at a point; its log says why" : "the server is stopping; ask again for the indices that are missing";
+        const std::string detail =
+            !failure.empty() ? "the server failed at a point; its log says why"
+                             : "the server is stopping; ask again for the indices that are missing";
         out.write(Json{{"type", "error"}, {"detail", detail}, {"points", done}}.dump() + "\n");
     }
 }
@@ -133,12 +154,16 @@ void stream(const api::SweepRequest& request, ComputeGate& gate, Writer& out) {
 }  // namespace
 
 Response stream_sweep(api::SweepRequest request, ComputeGate& gate) {
-    if (!gate.enter_sweep()) return problem_response(503, "as many sweeps as the server takes are running already; try again later");
+    if (!gate.enter_sweep())
+        return problem_response(
+            503, "as many sweeps as the server takes are running already; try again later");
     // The room is given back when the response is gone, whether or not it was ever sent.
     const std::shared_ptr<void> room(nullptr, [&gate](void*) { gate.leave_sweep(); });
     Response response{200, "application/x-ndjson", ""};
     response.headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}};
-    response.stream = [request = std::move(request), &gate, room](Writer& out) { stream(request, gate, out); };
+    response.stream = [request = std::move(request), &gate, room](Writer& out) {
+        stream(request, gate, out);
+    };
     return response;
 }
 

@@ -14,7 +14,9 @@ using namespace vines::api;
 
 namespace {
 
-Json answer(const char* text) { return simulate_answer(read_simulate_request(parse_object(text)), {}); }
+Json answer(const char* text) {
+    return simulate_answer(read_simulate_request(parse_object(text)), {});
+}
 
 /// The problem that a request is refused with.
 Problem refused(const std::string& text) {
@@ -46,7 +48,8 @@ TEST_CASE("an empty object is Table 1 from rest, with series, impacts and expone
     CHECK(a["exponents"]["qr"]["final"].size() == 4);
 }
 
-TEST_CASE("the worked example of the paper: first impact, one positive exponent, four in raw_product") {
+TEST_CASE(
+    "the worked example of the paper: first impact, one positive exponent, four in raw_product") {
     const Json a = answer(R"({"b":0.022,"damping":"closed_form","tau_end":1709})");
     CHECK(std::abs(a["impacts"]["tau"][0].get<double>() - 18.141025487377) < 1e-11);
     int positive = 0, raw = 0;
@@ -59,17 +62,21 @@ TEST_CASE("the worked example of the paper: first impact, one positive exponent,
     CHECK(a["exponents"]["window"][1] == a["impacts"]["tau"].back());
 }
 
-TEST_CASE("the answer holds no number that JSON cannot hold, and none that reads back differently") {
-    const Json a = answer(R"({"b":0.015,"damping":"closed_form"})");  // has a stick: two exponents are minus infinity
+TEST_CASE(
+    "the answer holds no number that JSON cannot hold, and none that reads back differently") {
+    // Has a stick: two exponents are minus infinity.
+    const Json a = answer(R"({"b":0.015,"damping":"closed_form"})");
     CHECK(a["exponents"]["qr"]["final"][3].is_null());
     CHECK(a["exponents"]["qr"]["status"] == Json({"ok", "ok", "minus_infinity", "minus_infinity"}));
-    CHECK(a["exponents"]["sum_rule_residual"] < 1e-10);  // at rank 2: of the area that two deviations span
+    // At rank 2: of the area that two deviations span.
+    CHECK(a["exponents"]["sum_rule_residual"] < 1e-10);
     CHECK(a["sticking"]["side"] == Json({1}));
     CHECK(Json::parse(a.dump()) == a);
 }
 
 TEST_CASE("SI fields are reduced by the paper's definitions") {
-    const Json a = answer(R"({"m1":4.168,"c1":3.02,"k1":11470,"m2":0.032,"F":0.00015355086372360845,"f":8.349067754204674,"include":[]})");
+    const Json a = answer(
+        R"({"m1":4.168,"c1":3.02,"k1":11470,"m2":0.032,"F":0.00015355086372360845,"f":8.349067754204674,"include":[]})");
     CHECK(a["parameters"]["epsilon"].get<double>() == doctest::Approx(0.00768).epsilon(1e-3));
     CHECK(a["parameters"]["lambda"].get<double>() == doctest::Approx(1.80).epsilon(1e-3));
     CHECK(a["parameters"]["Omega"].get<double>() == doctest::Approx(1));
@@ -78,10 +85,15 @@ TEST_CASE("SI fields are reduced by the paper's definitions") {
     CHECK_FALSE(a.contains("series"));
 }
 
-TEST_CASE("every field at fault is named with its pointer, value and range, unknown ones included") {
-    const Problem p = refused(R"({"b":-1,"Omga":2,"R":"x","samples_per_cycle":0,"max_impacts":1.5,"include":["series","plots"],"window":[5,1],"damping":"none"})");
+TEST_CASE(
+    "every field at fault is named with its pointer, value and range, unknown ones included") {
+    const Problem p = refused(
+        R"({"b":-1,"Omga":2,"R":"x","samples_per_cycle":0,"max_impacts":1.5,"include":["series","plots"],"window":[5,1],"damping":"none"})");
     CHECK(p.status == 422);
-    CHECK(pointers(p) == std::set<std::string>{"/b", "/Omga", "/R", "/samples_per_cycle", "/max_impacts", "/include/1", "/window", "/damping"});
+    CHECK(
+        pointers(p) == std::set<std::string>{
+                           "/b", "/Omga", "/R", "/samples_per_cycle", "/max_impacts", "/include/1",
+                           "/window", "/damping"});
     CHECK(p.errors[0].value == -1);
     CHECK(p.errors[0].range == Json({1e-9, 1000.0}));
     CHECK(p.errors[1].detail == "unknown field; did you mean Omega?");
@@ -92,31 +104,42 @@ TEST_CASE("every field at fault is named with its pointer, value and range, unkn
 }
 
 TEST_CASE("fields that exclude each other are refused") {
-    CHECK(pointers(refused(R"({"epsilon":0.01,"m1":4})")) == std::set<std::string>{"/epsilon", "/m1"});
+    CHECK(
+        pointers(refused(R"({"epsilon":0.01,"m1":4})")) ==
+        std::set<std::string>{"/epsilon", "/m1"});
     CHECK(pointers(refused(R"({"R":0.5,"R_plus":0.6})")) == std::set<std::string>{"/R", "/R_plus"});
-    CHECK(pointers(refused(R"({"tau_end":5,"cycles":6})")) == std::set<std::string>{"/tau_end", "/cycles"});
+    CHECK(
+        pointers(refused(R"({"tau_end":5,"cycles":6})")) ==
+        std::set<std::string>{"/tau_end", "/cycles"});
 }
 
 TEST_CASE("what only the whole of the fields can tell is refused at the field to change") {
     CHECK(pointers(refused(R"({"b":0.01,"y0":0.02})")) == std::set<std::string>{"/y0"});
     CHECK(pointers(refused(R"({"epsilon":1,"lambda":100})")) == std::set<std::string>{"/lambda"});
     CHECK(pointers(refused(R"({"cycles":1e6,"Omega":0.001})")) == std::set<std::string>{"/cycles"});
-    const Problem si = refused(R"({"preset":"table4","m1":1e-9})");  // epsilon = m2/m1: the field that was given is at fault, with its own value
+    // Epsilon = m2/m1: the field that was given is at fault, with its own value.
+    const Problem si = refused(R"({"preset":"table4","m1":1e-9})");
     CHECK(pointers(si) == std::set<std::string>{"/m1"});
     CHECK(si.errors[0].value == 1e-9);
     CHECK(si.errors[0].detail.find("epsilon must lie in") != std::string::npos);
-    CHECK(pointers(refused(R"({"tau_end":100,"window":[200,300]})")) == std::set<std::string>{"/window/0"});
+    CHECK(
+        pointers(refused(R"({"tau_end":100,"window":[200,300]})")) ==
+        std::set<std::string>{"/window/0"});
     CHECK(pointers(refused(R"({"preset":"fig99"})")) == std::set<std::string>{"/preset"});
 }
 
 TEST_CASE("text that is no JSON object of plain depth is refused with the place") {
-    for (const char* text : {"", "  ", "[1]", "3", "{\"b\":}", "{\"b\":1", "nonsense", "{\"b\":1}x", "{\"b\":1e999}", "{\"b\":NaN}"}) {
+    for (const char* text :
+         {"", "  ", "[1]", "3", "{\"b\":}", "{\"b\":1", "nonsense", "{\"b\":1}x", "{\"b\":1e999}",
+          "{\"b\":NaN}"}) {
         CAPTURE(text);
         CHECK(refused(text).status == 400);
     }
     CHECK(std::string(refused("{\"b\":}").what()).find("column") != std::string::npos);
     CHECK(refused(std::string(100000, '[')).status == 400);
-    CHECK(std::string(refused("{\"b\":1,\"b\":2}").what()) == "the name \"b\" comes twice in the same JSON object");
+    CHECK(
+        std::string(refused("{\"b\":1,\"b\":2}").what()) ==
+        "the name \"b\" comes twice in the same JSON object");
     CHECK(refused("{\"b\xff\":1}").status == 400);
     CHECK(refused(std::string("{\"b\":0.01}\0{\"b\":-1}", 19)).status == 400);
 }
@@ -132,7 +155,11 @@ TEST_CASE("a request with thousands of faults gets a short answer, soon") {
 
 TEST_CASE("a query is read by the same table") {
     const auto& fields = simulate_fields();
-    const Json q = from_query(fields, {{"b", "0.015"}, {"window", "10,20"}, {"include", "impacts,exponents"}, {"damping", "closed_form"}});
+    const Json q = from_query(
+        fields, {{"b", "0.015"},
+                 {"window", "10,20"},
+                 {"include", "impacts,exponents"},
+                 {"damping", "closed_form"}});
     CHECK(q["b"] == 0.015);
     CHECK(q["window"] == Json({10.0, 20.0}));
     CHECK(q["include"] == Json({"impacts", "exponents"}));
@@ -148,14 +175,20 @@ TEST_CASE("every preset runs, names its figure or table, and the request overrid
     std::set<std::string> sources;
     for (const Preset& p : presets()) {
         CAPTURE(p.name);
-        const Json a = simulate_answer(read_simulate_request({{"preset", p.name}, {"include", {"exponents"}}, {"exponents", {"qr"}}}), {});
+        const Json a = simulate_answer(
+            read_simulate_request(
+                {{"preset", p.name}, {"include", {"exponents"}}, {"exponents", {"qr"}}}),
+            {});
         CHECK(a["status"]["reason"] == "tau_end");
         CHECK(a["exponents"]["impacts"] > 50);
         sources.insert(p.source.substr(0, p.source.find(',')));
     }
-    for (int figure = 3; figure <= 24; ++figure) CHECK(sources.count("Fig. " + std::to_string(figure)) == 1);
-    for (int table = 1; table <= 4; ++table) CHECK(sources.count("Table " + std::to_string(table)) == 1);
-    const Json over = answer(R"({"preset":"fig15","b":0.012,"R_plus":0.7,"tau_end":50,"include":[]})");
+    for (int figure = 3; figure <= 24; ++figure)
+        CHECK(sources.count("Fig. " + std::to_string(figure)) == 1);
+    for (int table = 1; table <= 4; ++table)
+        CHECK(sources.count("Table " + std::to_string(table)) == 1);
+    const Json over =
+        answer(R"({"preset":"fig15","b":0.012,"R_plus":0.7,"tau_end":50,"include":[]})");
     CHECK(over["parameters"]["b"] == 0.012);
     CHECK(over["parameters"]["R_plus"] == 0.7);
     CHECK(over["parameters"]["R_minus"] == 0.85);
@@ -176,16 +209,24 @@ Json parameters_of(const std::string& preset, Json given) {
 std::set<std::string> differing(const Json& a, const Json& b) {
     std::set<std::string> names;
     for (const auto& [name, value] : a.items())
-        if (name != "derived" && name != "y0" && name != "cycles" && name != "time_end_s" && name != "window_s" && value != b.at(name)) names.insert(name);
+        if (name != "derived" && name != "y0" && name != "cycles" && name != "time_end_s" &&
+            name != "window_s" && value != b.at(name))
+            names.insert(name);
     return names;
 }
 
 }  // namespace
 
-TEST_CASE("a reduced field over a preset changes that field alone, in SI the quantities that follow from it") {
-    const Json fig20 = parameters_of("fig20", Json::object()), fig3 = parameters_of("fig3", Json::object());
+TEST_CASE(
+    "a reduced field over a preset changes that field alone, in SI the quantities that follow from "
+    "it") {
+    const Json fig20 = parameters_of("fig20", Json::object()),
+               fig3 = parameters_of("fig3", Json::object());
     const std::map<std::string, std::pair<double, std::set<std::string>>> fields = {
-        {"epsilon", {0.01, {"m2", "c1", "F"}}}, {"lambda", {1, {"c1"}}}, {"G", {0.015, {"F"}}}, {"Omega", {1.1, {"f"}}}};
+        {"epsilon", {0.01, {"m2", "c1", "F"}}},
+        {"lambda", {1, {"c1"}}},
+        {"G", {0.015, {"F"}}},
+        {"Omega", {1.1, {"f"}}}};
     for (const auto& field : fields) {
         const std::string& name = field.first;  // doctest's CAPTURE takes no structured binding
         const auto& change = field.second;
@@ -195,19 +236,28 @@ TEST_CASE("a reduced field over a preset changes that field alone, in SI the qua
         CHECK(differing(over, fig20) == std::set<std::string>{name, "si"});
         CHECK(differing(over["si"], fig20["si"]) == change.second);
         std::set<std::string> of_fig3 = {name};
-        if (name == "epsilon" || name == "lambda") of_fig3.insert("damping");  // its damping is that of its own oscillator
+        // Its damping is that of its own oscillator.
+        if (name == "epsilon" || name == "lambda") of_fig3.insert("damping");
         CHECK(differing(parameters_of("fig3", {{name, change.first}}), fig3) == of_fig3);
         const Json& si = over["si"];
-        const double omega0 = over["derived"]["omega0"], mass_ratio = si["m2"].get<double>() / si["m1"].get<double>();
+        const double omega0 = over["derived"]["omega0"],
+                     mass_ratio = si["m2"].get<double>() / si["m1"].get<double>();
         CHECK(mass_ratio == doctest::Approx(over["epsilon"].get<double>()).epsilon(1e-14));
-        CHECK(si["c1"].get<double>() / si["m2"].get<double>() / omega0 == doctest::Approx(over["lambda"].get<double>()).epsilon(1e-14));
-        CHECK(si["F"].get<double>() / mass_ratio == doctest::Approx(over["G"].get<double>()).epsilon(1e-14));
-        CHECK(2 * std::numbers::pi * si["f"].get<double>() / omega0 == doctest::Approx(over["Omega"].get<double>()).epsilon(1e-14));
+        CHECK(
+            si["c1"].get<double>() / si["m2"].get<double>() / omega0 ==
+            doctest::Approx(over["lambda"].get<double>()).epsilon(1e-14));
+        CHECK(
+            si["F"].get<double>() / mass_ratio ==
+            doctest::Approx(over["G"].get<double>()).epsilon(1e-14));
+        CHECK(
+            2 * std::numbers::pi * si["f"].get<double>() / omega0 ==
+            doctest::Approx(over["Omega"].get<double>()).epsilon(1e-14));
     }
     CHECK(parameters_of("fig20", {{"Omega", 1.0}}) == fig20);
 }
 
-TEST_CASE("an SI field over a preset changes that field alone, in reduced form what follows from it") {
+TEST_CASE(
+    "an SI field over a preset changes that field alone, in reduced form what follows from it") {
     const SiParameters table1;
     const Json fig3 = parameters_of("fig3", {{"m1", table1.m1}});
     CHECK(fig3["damping"] == "closed_form");
@@ -215,10 +265,15 @@ TEST_CASE("an SI field over a preset changes that field alone, in reduced form w
     CHECK(fig3["si"]["F"] == table1.F);
     CHECK(fig3["si"]["f"] == table1.f);
     const std::map<std::string, std::pair<double, std::set<std::string>>> fields = {
-        {"m1", {5, {"epsilon", "lambda", "G", "Omega"}}}, {"c1", {3, {"lambda"}}}, {"k1", {12e3, {"lambda", "Omega"}}},
-        {"m2", {0.04, {"epsilon", "lambda", "G"}}}, {"F", {1e-4, {"G"}}}, {"f", {9, {"Omega"}}}};
+        {"m1", {5, {"epsilon", "lambda", "G", "Omega"}}},
+        {"c1", {3, {"lambda"}}},
+        {"k1", {12e3, {"lambda", "Omega"}}},
+        {"m2", {0.04, {"epsilon", "lambda", "G"}}},
+        {"F", {1e-4, {"G"}}},
+        {"f", {9, {"Omega"}}}};
     for (const char* preset : {"fig3", "fig20"}) {
-        const Json before = parameters_of(preset, {{"m1", preset == std::string("fig3") ? table1.m1 : 4.168}});
+        const Json before =
+            parameters_of(preset, {{"m1", preset == std::string("fig3") ? table1.m1 : 4.168}});
         for (const auto& field : fields) {
             const std::string& name = field.first;
             const auto& change = field.second;
@@ -228,15 +283,23 @@ TEST_CASE("an SI field over a preset changes that field alone, in reduced form w
             CHECK(differing(over["si"], before["si"]) == std::set<std::string>{name});
             std::set<std::string> expected = change.second;
             expected.insert("si");
-            if (preset == std::string("fig3") && name != "F" && name != "f") expected.insert("damping");
+            if (preset == std::string("fig3") && name != "F" && name != "f")
+                expected.insert("damping");
             CHECK(differing(over, before) == expected);
         }
     }
 }
 
-TEST_CASE("R over a preset replaces both walls' coefficients, R_plus and R_minus that of one wall") {
-    CHECK(differing(parameters_of("fig20", {{"R_plus", 0.7}}), parameters_of("fig20", Json::object())) == std::set<std::string>{"R_plus"});
-    CHECK(differing(parameters_of("fig20", {{"R_minus", 0.7}}), parameters_of("fig20", Json::object())) == std::set<std::string>{"R_minus"});
+TEST_CASE(
+    "R over a preset replaces both walls' coefficients, R_plus and R_minus that of one wall") {
+    CHECK(
+        differing(
+            parameters_of("fig20", {{"R_plus", 0.7}}), parameters_of("fig20", Json::object())) ==
+        std::set<std::string>{"R_plus"});
+    CHECK(
+        differing(
+            parameters_of("fig20", {{"R_minus", 0.7}}), parameters_of("fig20", Json::object())) ==
+        std::set<std::string>{"R_minus"});
     CHECK(parameters_of("fig3", {{"R_plus", 0.7}})["R_minus"] == 0.6);
     const Json both = parameters_of("fig20", {{"R", 0.5}});
     CHECK(both["R_plus"] == 0.5);
@@ -250,18 +313,31 @@ TEST_CASE("the manifold of a preset is that of the fields over it") {
         return j;
     };
     const Json fig20 = parameters({{"preset", "fig20"}});
-    CHECK(differing(parameters({{"preset", "fig20"}, {"Omega", 1.1}}), fig20) == std::set<std::string>{"Omega", "si"});
-    CHECK(differing(parameters({{"preset", "fig20"}, {"m2", 0.04}}), fig20) == std::set<std::string>{"epsilon", "lambda", "G", "si"});
+    CHECK(
+        differing(parameters({{"preset", "fig20"}, {"Omega", 1.1}}), fig20) ==
+        std::set<std::string>{"Omega", "si"});
+    CHECK(
+        differing(parameters({{"preset", "fig20"}, {"m2", 0.04}}), fig20) ==
+        std::set<std::string>{"epsilon", "lambda", "G", "si"});
     CHECK(parameters({{"preset", "fig20"}, {"R_plus", 0.85}}) == fig20);  // R_minus is the preset's
 }
 
 TEST_CASE("a fault that follows from a preset and a field over it is that field's") {
     for (const char* preset : {"fig3", "fig20"}) {
         CAPTURE(preset);
-        CHECK(pointers(refused(R"({"preset":")" + std::string(preset) + R"(","m1":1e-9})")) == std::set<std::string>{"/m1"});
-        CHECK(pointers(refused(R"({"preset":")" + std::string(preset) + R"(","lambda":1e5})")) == std::set<std::string>{"/lambda"});
-        CHECK(pointers(refused(R"({"preset":")" + std::string(preset) + R"(","Omega":1,"f":9})")) == std::set<std::string>{"/Omega", "/f"});
-        CHECK(pointers(refused(R"({"preset":")" + std::string(preset) + R"(","R":0.5,"R_plus":0.6})")) == std::set<std::string>{"/R", "/R_plus"});
+        CHECK(
+            pointers(refused(R"({"preset":")" + std::string(preset) + R"(","m1":1e-9})")) ==
+            std::set<std::string>{"/m1"});
+        CHECK(
+            pointers(refused(R"({"preset":")" + std::string(preset) + R"(","lambda":1e5})")) ==
+            std::set<std::string>{"/lambda"});
+        CHECK(
+            pointers(refused(R"({"preset":")" + std::string(preset) + R"(","Omega":1,"f":9})")) ==
+            std::set<std::string>{"/Omega", "/f"});
+        CHECK(
+            pointers(
+                refused(R"({"preset":")" + std::string(preset) + R"(","R":0.5,"R_plus":0.6})")) ==
+            std::set<std::string>{"/R", "/R_plus"});
     }
 }
 
@@ -276,28 +352,39 @@ TEST_CASE("the field table describes exactly what a request takes") {
 }
 
 TEST_CASE("every part that can be asked for is there, its columns of one length") {
-    const Json a = answer(R"({"damping":"closed_form","tau_end":400,"include":["series","impacts","exponents","eigenvalues","matrices","section","energy","regime","manifold"]})");
+    const Json a = answer(
+        R"({"damping":"closed_form","tau_end":400,"include":["series","impacts","exponents","eigenvalues","matrices","section","energy","regime","manifold"]})");
     const std::size_t impacts = a["impacts"]["tau"].size();
-    for (const char* name : {"tau", "J", "M", "T", "M_condition"}) CHECK(a["eigenvalues"][name].size() == impacts - 1);
-    for (const char* name : {"tau", "J", "M", "T"}) CHECK(a["matrices"][name].size() == impacts - 1);
+    for (const char* name : {"tau", "J", "M", "T", "M_condition"})
+        CHECK(a["eigenvalues"][name].size() == impacts - 1);
+    for (const char* name : {"tau", "J", "M", "T"})
+        CHECK(a["matrices"][name].size() == impacts - 1);
     CHECK(a["eigenvalues"]["T"][0].size() == 4);
     CHECK(a["matrices"]["T"][0].size() == 4);
     CHECK(a["matrices"]["T"][0][0].size() == 4);
-    for (const auto& [name, column] : a["section"]["impact"].items()) CHECK(column.size() == impacts);
-    for (const auto& [name, column] : a["section"]["stroboscopic"].items()) CHECK(column.size() == 64);
+    for (const auto& [name, column] : a["section"]["impact"].items())
+        CHECK(column.size() == impacts);
+    for (const auto& [name, column] : a["section"]["stroboscopic"].items())
+        CHECK(column.size() == 64);
     CHECK(a["section"]["impact"]["time_difference"][0].is_null());
-    CHECK(a["section"]["impact"]["time_difference"][1] == a["impacts"]["tau"][1].get<double>() - a["impacts"]["tau"][0].get<double>());
+    CHECK(
+        a["section"]["impact"]["time_difference"][1] ==
+        a["impacts"]["tau"][1].get<double>() - a["impacts"]["tau"][0].get<double>());
     CHECK(a["manifold"]["points"]["C"].size() == a["manifold"]["points"]["V"].size());
     CHECK(a["manifold"]["points"]["tau"].size() == 127);
     const Json& e = a["energy"];
     CHECK(std::abs(e["residual"].get<double>()) < 1e-12 * e["input"].get<double>());
-    CHECK(e["input"].get<double>() == doctest::Approx(e["damper"].get<double>() + e["impacts"].get<double>() + e["stored"].get<double>()));
+    CHECK(
+        e["input"].get<double>() ==
+        doctest::Approx(
+            e["damper"].get<double>() + e["impacts"].get<double>() + e["stored"].get<double>()));
     CHECK(a["regime"]["type"] == "II");
     CHECK(Json::parse(a.dump()) == a);
 }
 
 TEST_CASE("the window holds for sections, matrices, energy and regime, too") {
-    const Json a = answer(R"({"damping":"closed_form","tau_end":400,"window":[100,200],"include":["impacts","eigenvalues","section","energy","regime","manifold"]})");
+    const Json a = answer(
+        R"({"damping":"closed_form","tau_end":400,"window":[100,200],"include":["impacts","eigenvalues","section","energy","regime","manifold"]})");
     for (const Json& tau : a["section"]["impact"]["tau"]) CHECK((tau >= 100 && tau <= 200));
     for (const Json& tau : a["eigenvalues"]["tau"]) CHECK((tau >= 100 && tau <= 200));
     for (const Json& tau : a["section"]["stroboscopic"]["tau"]) CHECK((tau >= 100 && tau <= 200));
@@ -307,17 +394,28 @@ TEST_CASE("the window holds for sections, matrices, energy and regime, too") {
 }
 
 TEST_CASE("several windows at once are those of one request each, with a verdict") {
-    const Json all = answer(R"({"preset":"table2_1","windows":[[18.13,1708.9],[1708.9,3652.7],[3652.7,5521.3]],"include":[],"exponents":["qr"]})");
+    const Json all = answer(
+        R"({"preset":"table2_1","windows":[[18.13,1708.9],[1708.9,3652.7],[3652.7,5521.3]],"include":[],"exponents":["qr"]})");
     REQUIRE(all["windows"].size() == 3);
     for (const Json& w : all["windows"]) {
-        const Json one = simulate_answer(read_simulate_request({{"preset", "table2_1"}, {"window", w["asked"]}, {"include", {"exponents"}}, {"exponents", {"qr"}}}), {});
+        const Json one = simulate_answer(
+            read_simulate_request(
+                {{"preset", "table2_1"},
+                 {"window", w["asked"]},
+                 {"include", {"exponents"}},
+                 {"exponents", {"qr"}}}),
+            {});
         CHECK(one["exponents"]["qr"]["final"] == w["qr"]["final"]);
         CHECK(w["verdict"] == "chaotic");
         CHECK(w["verdict_sigmas"] > 3);
         CHECK_FALSE(w["qr"].contains("history"));
     }
-    CHECK(pointers(refused(R"({"windows":[[1,2],[3,2],[5,6,7],"x",[1,2000]],"tau_end":100})")) == std::set<std::string>{"/windows/1", "/windows/2", "/windows/3"});
-    CHECK(pointers(refused(R"({"windows":[[1,2],[200,300]],"tau_end":100})")) == std::set<std::string>{"/windows/1/0"});
+    CHECK(
+        pointers(refused(R"({"windows":[[1,2],[3,2],[5,6,7],"x",[1,2000]],"tau_end":100})")) ==
+        std::set<std::string>{"/windows/1", "/windows/2", "/windows/3"});
+    CHECK(
+        pointers(refused(R"({"windows":[[1,2],[200,300]],"tau_end":100})")) ==
+        std::set<std::string>{"/windows/1/0"});
     const Json q = from_query(simulate_fields(), {{"windows", "1,2;3,4.5"}});
     CHECK(q["windows"] == Json::parse("[[1.0,2.0],[3.0,4.5]]"));
 }
@@ -330,23 +428,32 @@ TEST_CASE("a periodic response tells its period, symmetry, multipliers and where
     CHECK(r["impacts_per_period"] == 2);
     CHECK(r["symmetric"] == true);
     CHECK(r["multipliers"]["modulus"][0].get<double>() < 1);
-    CHECK(r["capture"]["exponents_after"]["final"][0].get<double>() == doctest::Approx(-0.0178).epsilon(0.01));
+    CHECK(
+        r["capture"]["exponents_after"]["final"][0].get<double>() ==
+        doctest::Approx(-0.0178).epsilon(0.01));
     const Json chaotic = answer(R"({"preset":"fig3","include":["regime"]})")["regime"];
     CHECK(chaotic["periodic"] == false);
-    for (const char* name : {"period_cycles", "impacts_per_period", "symmetric", "multipliers", "capture"}) CHECK(chaotic[name].is_null());
+    for (const char* name :
+         {"period_cycles", "impacts_per_period", "symmetric", "multipliers", "capture"})
+        CHECK(chaotic[name].is_null());
 }
 
-TEST_CASE("a free decay tells when half and a tenth of the energy are left and what the absorber took") {
+TEST_CASE(
+    "a free decay tells when half and a tenth of the energy are left and what the absorber took") {
     const Json e = answer(R"({"G":0,"x0":0.02,"y0":0.005,"include":["energy"]})")["energy"];
     CHECK(e["input"] == 0);
     CHECK(e["decay"]["tau_half"] < e["decay"]["tau_tenth"]);
     CHECK(e["share_impacts"].get<double>() > 0.1);
-    CHECK(answer(R"({"G":0,"x0":0.02,"tau_end":5,"include":["energy"]})")["energy"]["decay"]["tau_half"].is_null());
+    CHECK(
+        answer(
+            R"({"G":0,"x0":0.02,"tau_end":5,"include":["energy"]})")["energy"]["decay"]["tau_half"]
+            .is_null());
     CHECK_FALSE(answer(R"({"include":["energy"],"tau_end":50})")["energy"].contains("decay"));
 }
 
 TEST_CASE("a chaotic band beside a stable orbit is called chaotic, with the reason") {
-    const Json a = answer(R"({"damping":"closed_form","b":0.0046,"R":0.5,"cycles":20000,"exponents":["qr"],"include":["exponents","regime"]})");
+    const Json a = answer(
+        R"({"damping":"closed_form","b":0.0046,"R":0.5,"cycles":20000,"exponents":["qr"],"include":["exponents","regime"]})");
     CHECK(a["exponents"]["verdict"] == "chaotic");
     CHECK(a["exponents"]["verdict_sigmas"] > 3);
     CHECK(a["regime"]["periodic"] == false);
@@ -355,13 +462,16 @@ TEST_CASE("a chaotic band beside a stable orbit is called chaotic, with the reas
 }
 
 TEST_CASE("each window has its own verdict beside its own exponents") {
-    const Json a = answer(R"({"b":0.022000000999999998,"damping":"closed_form","tau_end":20000,"window":[4164,20000],"windows":[[0,1932],[0,3764],[4164,20000]],
+    const Json a = answer(
+        R"({"b":0.022000000999999998,"damping":"closed_form","tau_end":20000,"window":[4164,20000],"windows":[[0,1932],[0,3764],[4164,20000]],
                               "exponents":["qr"],"include":["exponents","regime"]})");
     CHECK(a["exponents"]["verdict"] == "regular");
     for (int i : {0, 1}) {
         CHECK(a["windows"][i]["verdict"] == "chaotic");
         CHECK(a["windows"][i]["qr"]["final"][0] > 0.05);
-        CHECK(a["windows"][i]["verdict_reason"].get<std::string>().find("captures the motion") != std::string::npos);
+        CHECK(
+            a["windows"][i]["verdict_reason"].get<std::string>().find("captures the motion") !=
+            std::string::npos);
     }
     CHECK(a["windows"][2]["verdict"] == "regular");
     CHECK(a["regime"]["capture"]["chaotic_before"] == true);
@@ -369,33 +479,48 @@ TEST_CASE("each window has its own verdict beside its own exponents") {
 
 TEST_CASE("nearly tangent means nearly tangent, at any restitution coefficient") {
     for (const char* R : {"1e-3", "0.02", "0"}) {
-        const Json a = answer((std::string(R"({"damping":"closed_form","tau_end":800,"include":["impacts"],"R":)") + R + "}").c_str());
-        for (const Json& warning : a["warnings"]) CHECK(warning.get<std::string>().find("nearly tangent") == std::string::npos);
+        const Json a = answer(
+            (std::string(R"({"damping":"closed_form","tau_end":800,"include":["impacts"],"R":)") +
+             R + "}")
+                .c_str());
+        for (const Json& warning : a["warnings"])
+            CHECK(warning.get<std::string>().find("nearly tangent") == std::string::npos);
     }
 }
 
 TEST_CASE("an impact next to a tangent contact is warned of") {
     // The gap opens at 1e-4 and is turned back by x'' = -.02, 5e-12 behind the wall.
-    const Json a = answer(R"({"G":0,"x0":0.02,"x_dot0":1e-4,"y0":-0.00199975002,"tau_end":60,"include":["impacts","eigenvalues"]})");
+    const Json a = answer(
+        R"({"G":0,"x0":0.02,"x_dot0":1e-4,"y0":-0.00199975002,"tau_end":60,"include":["impacts","eigenvalues"]})");
     REQUIRE(a["warnings"].size() == 1);
     CHECK(a["warnings"][0].get<std::string>().find("ill-conditioned") != std::string::npos);
-    CHECK(a["warnings"][0].get<std::string>().find("at 1 nearly tangent impact(s)") != std::string::npos);
+    CHECK(
+        a["warnings"][0].get<std::string>().find("at 1 nearly tangent impact(s)") !=
+        std::string::npos);
     // How near each impact of an ordinary run is to grazing: its relative speed over the median.
-    std::vector<double> ratios = answer(R"({"damping":"closed_form","include":["impacts"]})")["impacts"]["relative_speed_ratio"];
+    std::vector<double> ratios = answer(
+        R"({"damping":"closed_form","include":["impacts"]})")["impacts"]["relative_speed_ratio"];
     std::sort(ratios.begin(), ratios.end());
     CHECK(ratios[ratios.size() / 2] == 1);
     CHECK(ratios.front() < 0.5);
 }
 
-TEST_CASE("the manifold has its fold, its branches and a hint for b, by itself and with a run's half cycles") {
-    const Json m = manifold_answer(read_manifold_request(parse_object(R"({"preset":"fig11","points":50})")))["manifold"];
+TEST_CASE(
+    "the manifold has its fold, its branches and a hint for b, by itself and with a run's half "
+    "cycles") {
+    const Json m = manifold_answer(
+        read_manifold_request(parse_object(R"({"preset":"fig11","points":50})")))["manifold"];
     CHECK(m["fold"]["C"].get<double>() == doctest::Approx(0.157 * 0.015).epsilon(0.01));
     CHECK(m["activation_amplitude"] == m["fold"]["C"]);
-    for (const char* branch : {"stable", "unstable", "asymmetric"}) CHECK(m[branch]["C"].size() == 50);
+    for (const char* branch : {"stable", "unstable", "asymmetric"})
+        CHECK(m[branch]["C"].size() == 50);
     CHECK(m["stable"]["V"][0] == m["fold"]["V"]);
     const double b = m["b_at_free_amplitude"].get<double>();
-    const Json at_b = manifold_answer(read_manifold_request({{"b", b}, {"damping", "closed_form"}}))["manifold"];
-    CHECK(at_b["fold"]["C"].get<double>() == doctest::Approx(m["free_amplitude"].get<double>()).epsilon(1e-12));
+    const Json at_b =
+        manifold_answer(read_manifold_request({{"b", b}, {"damping", "closed_form"}}))["manifold"];
+    CHECK(
+        at_b["fold"]["C"].get<double>() ==
+        doctest::Approx(m["free_amplitude"].get<double>()).epsilon(1e-12));
     try {
         read_manifold_request(parse_object(R"({"R_plus":0.5,"R_minus":0.6})"));
         FAIL("not refused");
@@ -409,7 +534,9 @@ TEST_CASE("the manifold has its fold, its branches and a hint for b, by itself a
 }
 
 TEST_CASE("the manifold ends where the motion does, and says by what") {
-    const auto manifold = [](const Json& given) { return manifold_answer(read_manifold_request(given)); };
+    const auto manifold = [](const Json& given) {
+        return manifold_answer(read_manifold_request(given));
+    };
     const Json small = manifold({{"R", 0.05}, {"b", 0.02}})["manifold"];
     CHECK(small["stable_ends_by"] == "second_contact");
     CHECK(small["stable"]["V"].back() == small["second_contact"]["V"]);
@@ -419,16 +546,21 @@ TEST_CASE("the manifold ends where the motion does, and says by what") {
     const Json ordinary = manifold({{"R", 0.6}, {"b", 0.02}})["manifold"];
     CHECK(ordinary["stable_ends_by"] == "symmetry_breaking");
     CHECK(ordinary["stable"]["V"].back() == ordinary["symmetry_breaking"]["V"]);
-    CHECK(ordinary["asymmetric"]["V"].back() == 2 * ordinary["symmetry_breaking"]["V"].get<double>());
+    CHECK(
+        ordinary["asymmetric"]["V"].back() == 2 * ordinary["symmetry_breaking"]["V"].get<double>());
     const Json far = manifold({{"R", 0.6}, {"b", 0.02}, {"V_max", 1}});
     CHECK(far["manifold"]["asymmetric"]["V"].back() == far["manifold"]["second_contact"]["V"]);
     CHECK(far["warnings"].dump().find("before V_max") != std::string::npos);
-    CHECK(answer(R"({"R":0.05,"b":0.02,"tau_end":10,"include":["manifold"]})")["manifold"]["stable"] == small["stable"]);
+    CHECK(
+        answer(
+            R"({"R":0.05,"b":0.02,"tau_end":10,"include":["manifold"]})")["manifold"]["stable"] ==
+        small["stable"]);
 }
 
 TEST_CASE("what a long run would fill memory with is cut to its last max_points, and said to be") {
     CHECK(pointers(refused(R"({"Omega":100,"tau_end":1e6})")) == std::set<std::string>{"/tau_end"});
-    const Json a = answer(R"({"b":0.003,"tau_end":4000,"max_points":256,"include":["eigenvalues","matrices","section","regime","manifold","impacts"]})");
+    const Json a = answer(
+        R"({"b":0.003,"tau_end":4000,"max_points":256,"include":["eigenvalues","matrices","section","regime","manifold","impacts"]})");
     CHECK(a["eigenvalues"]["tau"].size() == 256);
     CHECK(a["matrices"]["T"].size() == 256);
     CHECK(a["eigenvalues"]["tau"].back() == a["impacts"]["tau"].back());
@@ -439,7 +571,8 @@ TEST_CASE("what a long run would fill memory with is cut to its last max_points,
     CHECK(a["manifold"]["points"]["C"].size() == 256);
     CHECK(a["regime"]["z_moving"]["tau"].size() <= 256);
     CHECK(a["warnings"].size() >= 2);
-    const Json early = answer(R"({"b":0.015,"max_impacts":5,"window":[1000,1709],"include":["regime","energy"]})");
+    const Json early =
+        answer(R"({"b":0.015,"max_impacts":5,"window":[1000,1709],"include":["regime","energy"]})");
     CHECK(early["warnings"].dump().find("before its window") != std::string::npos);
 }
 
@@ -451,22 +584,38 @@ TEST_CASE("caps end a run as a result that says so") {
     a = answer(R"({"samples_per_cycle":10000,"max_points":500,"include":["series"]})");
     CHECK(a["series"]["tau"].size() <= 501);
     CHECK(a["warnings"].size() == 1);
-    a = simulate_answer(read_simulate_request({{"tau_end", 1e7}, {"max_impacts", 2000000}, {"include", Json::array()}}), {[] { return true; }});
+    a = simulate_answer(
+        read_simulate_request(
+            {{"tau_end", 1e7}, {"max_impacts", 2000000}, {"include", Json::array()}}),
+        {[] { return true; }});
     CHECK(a["status"]["reason"] == "deadline");
 }
 
 namespace {
 
-const std::vector<std::string> all_parts = {"series", "impacts", "exponents", "eigenvalues", "matrices", "section", "energy", "regime", "manifold"};
+const std::vector<std::string> all_parts = {"series",      "impacts",  "exponents",
+                                            "eigenvalues", "matrices", "section",
+                                            "energy",      "regime",   "manifold"};
 
-Json within_bytes(const Json& given, std::size_t bytes) { return simulate_answer(read_simulate_request(given), {}, bytes); }
+Json within_bytes(const Json& given, std::size_t bytes) {
+    return simulate_answer(read_simulate_request(given), {}, bytes);
+}
 
-bool warns(const Json& a, const std::string& text) { return a["warnings"].dump().find(text) != std::string::npos; }
+bool warns(const Json& a, const std::string& text) {
+    return a["warnings"].dump().find(text) != std::string::npos;
+}
 
 }  // namespace
 
-TEST_CASE("an answer is no larger than its limit: lists are thinned or cut to their last entries, and it says so") {
-    Json given = {{"b", 0.003}, {"tau_end", 3000}, {"max_points", 100000}, {"include", all_parts}, {"windows", {{0, 100}, {0, 200}}}};
+TEST_CASE(
+    "an answer is no larger than its limit: lists are thinned or cut to their last entries, and it "
+    "says so") {
+    Json given = {
+        {"b", 0.003},
+        {"tau_end", 3000},
+        {"max_points", 100000},
+        {"include", all_parts},
+        {"windows", {{0, 100}, {0, 200}}}};
     const Json all = within_bytes(given, any_size);
     CHECK_FALSE(warns(all, "limit"));
     CHECK(all.dump().size() > 3000000);
@@ -478,11 +627,14 @@ TEST_CASE("an answer is no larger than its limit: lists are thinned or cut to th
         CHECK(warns(cut, "this server's limit of " + std::to_string(bytes) + " bytes"));
         CHECK(cut["impacts"]["tau"].size() < all["impacts"]["tau"].size());
         CHECK(cut["impacts"]["tau"].back() == all["impacts"]["tau"].back());
-        CHECK(warns(cut, "of " + std::to_string(all["impacts"]["tau"].size()) + " impacts the last " + std::to_string(cut["impacts"]["tau"].size()) + " are listed"));
+        CHECK(warns(
+            cut, "of " + std::to_string(all["impacts"]["tau"].size()) + " impacts the last " +
+                     std::to_string(cut["impacts"]["tau"].size()) + " are listed"));
         CHECK(cut["eigenvalues"]["T"].back() == all["eigenvalues"]["T"].back());
         CHECK(cut["eigenvalues"]["tau"].size() == cut["parameters"]["max_points"]);
         CHECK(cut["exponents"]["qr"]["final"] == all["exponents"]["qr"]["final"]);
-        CHECK(cut["series"]["tau"].size() <= cut["parameters"]["max_points"].get<std::size_t>() + 1);
+        CHECK(
+            cut["series"]["tau"].size() <= cut["parameters"]["max_points"].get<std::size_t>() + 1);
     }
     // What needs little keeps all: the impacts of a long series, the series of many impacts.
     given["include"] = {"impacts", "series"};
@@ -493,7 +645,12 @@ TEST_CASE("an answer is no larger than its limit: lists are thinned or cut to th
 }
 
 TEST_CASE("a list of sticks is bounded as well") {
-    const Json given = {{"R", 0}, {"b", 0.003}, {"tau_end", 3000}, {"max_impacts", 10000}, {"include", {"impacts"}}};
+    const Json given = {
+        {"R", 0},
+        {"b", 0.003},
+        {"tau_end", 3000},
+        {"max_impacts", 10000},
+        {"include", {"impacts"}}};
     const Json all = within_bytes(given, any_size), cut = within_bytes(given, 100000);
     CHECK(all["sticking"]["tau_start"].size() > 500);
     CHECK(cut.dump().size() < 100000);
@@ -504,19 +661,33 @@ TEST_CASE("a list of sticks is bounded as well") {
 TEST_CASE("parts for which no time is left are null, and the answer names them") {
     Stop stop;
     stop.late = [] { return true; };
-    const SimulateRequest request = read_simulate_request({{"b", 0.003}, {"tau_end", 1000}, {"include", all_parts}, {"windows", {{0, 100}}}});
+    const SimulateRequest request = read_simulate_request(
+        {{"b", 0.003}, {"tau_end", 1000}, {"include", all_parts}, {"windows", {{0, 100}}}});
     const Json a = simulate_answer(request, stop);
     for (const std::string& part : all_parts) CHECK((a.contains(part) && a[part].is_null()));
     CHECK(a["windows"].size() == 1);
-    CHECK(warns(a, "null: series, impacts, exponents, eigenvalues, matrices, section, energy, regime, manifold"));
+    CHECK(warns(
+        a,
+        "null: series, impacts, exponents, eigenvalues, matrices, section, energy, regime, "
+        "manifold"));
     // The eigenvalues of T, which take the longest, are those of the last impacts.
-    const SimulateRequest eigenvalues = read_simulate_request({{"b", 0.003}, {"tau_end", 1000}, {"include", {"eigenvalues"}}});
+    const SimulateRequest eigenvalues =
+        read_simulate_request({{"b", 0.003}, {"tau_end", 1000}, {"include", {"eigenvalues"}}});
     stop.late = [asked = 0]() mutable { return ++asked > 3; };
-    const Json some = simulate_answer(eigenvalues, stop)["eigenvalues"], every = simulate_answer(eigenvalues, {})["eigenvalues"];
+    const Json some = simulate_answer(eigenvalues, stop)["eigenvalues"],
+               every = simulate_answer(eigenvalues, {})["eigenvalues"];
     CHECK(some["T"].size() == 512);
     for (const auto& [name, column] : some.items()) {
         REQUIRE(column.size() == 512);
         CHECK(column == Json(std::vector<Json>(every[name].end() - 512, every[name].end())));
     }
-    CHECK(warns(simulate_answer(eigenvalues, [&] { Stop s; s.late = [asked = 0]() mutable { return ++asked > 3; }; return s; }()), "those of the last 512 impacts"));
+    CHECK(warns(
+        simulate_answer(
+            eigenvalues,
+            [&] {
+                Stop s;
+                s.late = [asked = 0]() mutable { return ++asked > 3; };
+                return s;
+            }()),
+        "those of the last 512 impacts"));
 }

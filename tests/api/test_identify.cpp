@@ -14,26 +14,44 @@ using namespace vines::api;
 
 namespace {
 
-/// A measurement of the preset's oscillator: what /v1/simulate says, sampled, each impact as a half sine of the acceleration.
+/// A measurement of the preset's oscillator: what /v1/simulate says, sampled, each impact as a half
+/// sine of the acceleration.
 std::string measured(const char* preset, double seconds, char separator = ',') {
-    const Json a = simulate_answer(read_simulate_request({{"preset", preset}, {"include", {"series", "impacts"}}, {"samples_per_cycle", 245}, {"cycles", seconds * 8.35}, {"max_points", 100000}}), {});
+    const Json a = simulate_answer(
+        read_simulate_request(
+            {{"preset", preset},
+             {"include", {"series", "impacts"}},
+             {"samples_per_cycle", 245},
+             {"cycles", seconds * 8.35},
+             {"max_points", 100000}}),
+        {});
     const Json& p = a["parameters"];
-    const double omega0 = p["derived"]["omega0"], zeta = p["derived"]["zeta"], force = p["epsilon"].get<double>() * p["derived"]["A"].get<double>(), phi = p["derived"]["phi"], pulse = 0.8e-3 * omega0;
-    std::string csv = std::string("time_s") + separator + "displacement_m" + separator + "acceleration_m_s2\n";
+    const double omega0 = p["derived"]["omega0"], zeta = p["derived"]["zeta"],
+                 force = p["epsilon"].get<double>() * p["derived"]["A"].get<double>(),
+                 phi = p["derived"]["phi"], pulse = 0.8e-3 * omega0;
+    std::string csv =
+        std::string("time_s") + separator + "displacement_m" + separator + "acceleration_m_s2\n";
     std::size_t next = 0;
     unsigned noise = 1;
     for (std::size_t k = 0; k < a["series"]["tau"].size(); ++k) {
-        const double tau = a["series"]["tau"][k], x = a["series"]["x"][k], x_dot = a["series"]["x_dot"][k];
+        const double tau = a["series"]["tau"][k], x = a["series"]["x"][k],
+                     x_dot = a["series"]["x_dot"][k];
         double x_ddot = -x - 2 * zeta * x_dot + force * std::sin(tau + phi);
-        const Json &times = a["impacts"]["tau"], &before = a["impacts"]["x_dot_before"], &after = a["impacts"]["x_dot_after"];
+        const Json &times = a["impacts"]["tau"], &before = a["impacts"]["x_dot_before"],
+                   &after = a["impacts"]["x_dot_after"];
         while (next < times.size() && times[next].get<double>() < tau - pulse) ++next;
         for (std::size_t i = next; i < times.size() && times[i].get<double>() < tau + pulse; ++i) {
             const double s = tau - times[i].get<double>();
-            if (std::abs(s) < 0.5 * pulse) x_ddot += (after[i].get<double>() - before[i].get<double>()) * 1.5707963 / pulse * std::cos(3.14159265 * s / pulse);
+            if (std::abs(s) < 0.5 * pulse)
+                x_ddot += (after[i].get<double>() - before[i].get<double>()) * 1.5707963 / pulse *
+                          std::cos(3.14159265 * s / pulse);
         }
         noise = noise * 1664525 + 1013904223;
         char line[96];
-        std::snprintf(line, sizeof line, "%.7f%c%.8e%c%.5e\n", tau / omega0, separator, x + 2e-6 * (noise / 2147483648.0 - 1), separator, x_ddot * omega0 * omega0 + 0.05 * (noise / 2147483648.0 - 1));
+        std::snprintf(
+            line, sizeof line, "%.7f%c%.8e%c%.5e\n", tau / omega0, separator,
+            x + 2e-6 * (noise / 2147483648.0 - 1), separator,
+            x_ddot * omega0 * omega0 + 0.05 * (noise / 2147483648.0 - 1));
         csv += line;
     }
     return csv;
@@ -67,7 +85,8 @@ TEST_CASE("a reduced field over a preset leaves a record its oscillator") {
         j.erase("origin");
         return j;
     };
-    const Json preset = parameters({{"preset", "fig15"}}), over = parameters({{"preset", "fig15"}, {"Omega", 1.0}});
+    const Json preset = parameters({{"preset", "fig15"}}),
+               over = parameters({{"preset", "fig15"}, {"Omega", 1.0}});
     CHECK(over == preset);
     const Json lambda = parameters({{"preset", "fig15"}, {"lambda", 1.7}});
     CHECK(lambda["lambda"] == 1.7);
@@ -75,7 +94,9 @@ TEST_CASE("a reduced field over a preset leaves a record its oscillator") {
     CHECK(lambda["derived"]["omega0"] == preset["derived"]["omega0"]);
 }
 
-TEST_CASE("a CSV file and the same record as JSON give the impacts, the restitution and the exponents of the motion") {
+TEST_CASE(
+    "a CSV file and the same record as JSON give the impacts, the restitution and the exponents of "
+    "the motion") {
     const std::string csv = measured("fig15", 12);
     const Json a = identify_answer(read_identify_request({{"preset", "fig15"}}, csv));
     CHECK(a["verdict"] == "regular");
@@ -85,13 +106,28 @@ TEST_CASE("a CSV file and the same record as JSON give the impacts, the restitut
     CHECK(a["slope"]["low"] < a["slope"]["high"]);
     CHECK(a["forward"]["impacts"]["tau"].size() > 100);
     const double omega0 = a["parameters"]["derived"]["omega0"];
-    CHECK(a["exponents"]["window_s"][0].get<double>() * omega0 == doctest::Approx(a["exponents"]["window"][0].get<double>()));
-    CHECK(a["exponents"]["stretches"]["time_start_s"].size() == a["exponents"]["stretches"]["tau_start"].size());
-    CHECK(a["impacts"]["x_velocity_before"][7].get<double>() == doctest::Approx(a["impacts"]["x_dot_before"][7].get<double>() * omega0).epsilon(1e-12).scale(0));
+    CHECK(
+        a["exponents"]["window_s"][0].get<double>() * omega0 ==
+        doctest::Approx(a["exponents"]["window"][0].get<double>()));
+    CHECK(
+        a["exponents"]["stretches"]["time_start_s"].size() ==
+        a["exponents"]["stretches"]["tau_start"].size());
+    CHECK(
+        a["impacts"]["x_velocity_before"][7].get<double>() ==
+        doctest::Approx(a["impacts"]["x_dot_before"][7].get<double>() * omega0)
+            .epsilon(1e-12)
+            .scale(0));
     // The paper's direct estimate agrees, and scatters more.
-    CHECK(a["direct"]["restitution"]["plus"]["R"].get<double>() == doctest::Approx(0.85).epsilon(0.02));
-    CHECK(a["direct"]["restitution"]["plus"]["standard_error"] > a["restitution"]["plus"]["standard_error"]);
-    CHECK(std::abs(a["direct"]["lambda"][0].get<double>() - a["exponents"]["qr"]["final"][0].get<double>()) < 0.02);
+    CHECK(
+        a["direct"]["restitution"]["plus"]["R"].get<double>() ==
+        doctest::Approx(0.85).epsilon(0.02));
+    CHECK(
+        a["direct"]["restitution"]["plus"]["standard_error"] >
+        a["restitution"]["plus"]["standard_error"]);
+    CHECK(
+        std::abs(
+            a["direct"]["lambda"][0].get<double>() -
+            a["exponents"]["qr"]["final"][0].get<double>()) < 0.02);
     CHECK(Json::parse(a.dump()) == a);
     Json record = Json::object();
     for (const CsvColumn& c : parse_csv(csv)) record[c.name] = c.values;
@@ -100,7 +136,12 @@ TEST_CASE("a CSV file and the same record as JSON give the impacts, the restitut
     std::string german = measured("fig15", 12, ';');
     std::replace(german.begin(), german.end(), '.', ',');
     german.replace(0, german.find('\n'), "Zeit;weg;\"acceleration (m/s^2)\"");
-    const Json b = identify_answer(read_identify_request({{"preset", "fig15"}, {"time_column", "Zeit"}, {"displacement_column", "weg"}, {"acceleration_column", "acceleration (m/s^2)"}}, german));
+    const Json b = identify_answer(read_identify_request(
+        {{"preset", "fig15"},
+         {"time_column", "Zeit"},
+         {"displacement_column", "weg"},
+         {"acceleration_column", "acceleration (m/s^2)"}},
+        german));
     CHECK(b["impacts"]["tau"] == a["impacts"]["tau"]);
 }
 
@@ -109,20 +150,29 @@ TEST_CASE("an edited list of moments is taken as it is") {
     const Json a = identify_answer(read_identify_request({{"preset", "fig15"}}, csv));
     CHECK(a["verdict"] == "not_decided");  // a chaotic motion may look like this for 6 s
     std::vector<double> times = a["impacts"]["time_s"];
-    const Json same = identify_answer(read_identify_request({{"preset", "fig15"}, {"impact_times_s", times}}, csv));
+    const Json same = identify_answer(
+        read_identify_request({{"preset", "fig15"}, {"impact_times_s", times}}, csv));
     CHECK(same["impacts"]["tau"].size() == times.size());
     CHECK(same["impacts"]["side"] == a["impacts"]["side"]);
     times.erase(times.begin() + 30);
-    const Json without = identify_answer(read_identify_request({{"preset", "fig15"}, {"impact_times_s", times}}, csv));
+    const Json without = identify_answer(
+        read_identify_request({{"preset", "fig15"}, {"impact_times_s", times}}, csv));
     CHECK(without["impacts"]["tau"].size() == times.size());
     CHECK(without["impacts"]["status"][30].get<std::string>().find("missing") != std::string::npos);
     CHECK(without["warnings"].dump().find("inconsistent") != std::string::npos);
 }
 
 TEST_CASE("impacts with their states give the exponents of the simulation that they come from") {
-    const Json a = simulate_answer(read_simulate_request(parse_object(R"({"preset":"fig20","include":["impacts","exponents"]})")), {});
-    const Json b = identify_answer(read_identify_request({{"preset", "fig20"}, {"impacts", a["impacts"]}}));
-    for (int k = 0; k < 4; ++k) CHECK(b["exponents"]["qr"]["final"][k].get<double>() == doctest::Approx(a["exponents"]["qr"]["final"][k].get<double>()).epsilon(1e-9));
+    const Json a = simulate_answer(
+        read_simulate_request(
+            parse_object(R"({"preset":"fig20","include":["impacts","exponents"]})")),
+        {});
+    const Json b =
+        identify_answer(read_identify_request({{"preset", "fig20"}, {"impacts", a["impacts"]}}));
+    for (int k = 0; k < 4; ++k)
+        CHECK(
+            b["exponents"]["qr"]["final"][k].get<double>() ==
+            doctest::Approx(a["exponents"]["qr"]["final"][k].get<double>()).epsilon(1e-9));
     Json broken = a["impacts"];
     broken.erase("phase");
     broken["tau"][3] = 0;
@@ -140,18 +190,34 @@ TEST_CASE("impacts with their states give the exponents of the simulation that t
 TEST_CASE("what is wrong with a record is named with its line and column") {
     const std::string csv = measured("fig15", 3);
     const Json fields = {{"preset", "fig15"}};
-    auto detail = [&](const std::string& text) { return std::string(refused(fields, text).what()); };
-    CHECK(detail(replaced_line(csv, 7, "0.003,abc,1")) == "line 7, column displacement_m: \"abc\" is no number");
-    CHECK(detail(replaced_line(csv, 7, "0.003,nan,1")) == "line 7, column displacement_m: the number is not finite");
+    auto detail = [&](const std::string& text) {
+        return std::string(refused(fields, text).what());
+    };
+    CHECK(
+        detail(replaced_line(csv, 7, "0.003,abc,1")) ==
+        "line 7, column displacement_m: \"abc\" is no number");
+    CHECK(
+        detail(replaced_line(csv, 7, "0.003,nan,1")) ==
+        "line 7, column displacement_m: the number is not finite");
     CHECK(detail(replaced_line(csv, 7, "0.003,1")) == "line 7: has 2 columns, the header has 3");
-    CHECK(detail(replaced_line(csv, 7, "0.003,,1")) == "line 7, column displacement_m: there is no number");
-    CHECK(detail(replaced_line(csv, 7, "0.0001,1e-3,1")).find("line 7, column of time: time must increase") == 0);
-    CHECK(detail(csv.substr(header.size())).find("line 1: the first line must name the columns") == 0);
+    CHECK(
+        detail(replaced_line(csv, 7, "0.003,,1")) ==
+        "line 7, column displacement_m: there is no number");
+    CHECK(
+        detail(replaced_line(csv, 7, "0.0001,1e-3,1"))
+            .find("line 7, column of time: time must increase") == 0);
+    CHECK(
+        detail(csv.substr(header.size())).find("line 1: the first line must name the columns") ==
+        0);
     CHECK(detail("") == "the record is empty: it needs a header and lines of numbers");
     CHECK(detail(header + "0,0,0\n1,0,0\n").find("at least 100") != std::string::npos);
-    CHECK(detail("time_s,temperature\n0,1\n").find("neither a displacement nor an acceleration") != std::string::npos);
+    CHECK(
+        detail("time_s,temperature\n0,1\n").find("neither a displacement nor an acceleration") !=
+        std::string::npos);
     CHECK(detail("speed,x\n0,1\n").find("no column time_s") != std::string::npos);
-    CHECK(refused({{"preset", "fig15"}, {"displacement_column", "weg"}}, csv).errors[0].pointer == "/displacement_column");
+    CHECK(
+        refused({{"preset", "fig15"}, {"displacement_column", "weg"}}, csv).errors[0].pointer ==
+        "/displacement_column");
     CHECK(refused({{"b", 0.009}}, csv).errors[0].pointer == "/m1");
     CHECK(refused({{"preset", "fig15"}, {"tau_end", 3}}, csv).errors[0].pointer == "/tau_end");
 }
@@ -160,23 +226,33 @@ TEST_CASE("a quiet record, a clipped one, gaps, slow sampling and a wrong b are 
     std::string quiet = header;
     for (int k = 0; k < 5000; ++k) {
         char line[80];
-        std::snprintf(line, sizeof line, "%.6f,%.7e,%.5e\n", k / 2048.0, 1e-3 * std::sin(k * 0.0256), -2.75 * std::sin(k * 0.0256) + 0.01 * std::sin(k * 1.7));
+        std::snprintf(
+            line, sizeof line, "%.6f,%.7e,%.5e\n", k / 2048.0, 1e-3 * std::sin(k * 0.0256),
+            -2.75 * std::sin(k * 0.0256) + 0.01 * std::sin(k * 1.7));
         quiet += line;
     }
-    CHECK(std::string(refused({{"preset", "fig15"}}, quiet).what()).find("nothing in the acceleration looks like impacts") == 0);
+    CHECK(
+        std::string(refused({{"preset", "fig15"}}, quiet).what())
+            .find("nothing in the acceleration looks like impacts") == 0);
 
     const std::string csv = measured("fig15", 6);
-    auto warnings = [&](const Json& fields, const std::string& text) { return identify_answer(read_identify_request(fields, text))["warnings"].dump(); };
+    auto warnings = [&](const Json& fields, const std::string& text) {
+        return identify_answer(read_identify_request(fields, text))["warnings"].dump();
+    };
     CHECK(warnings({{"preset", "fig15"}}, csv) == "[]");
-    CHECK(warnings({{"preset", "fig15"}, {"b", 0.011}}, csv).find("momentum fits b = 0.0090") != std::string::npos);
+    CHECK(
+        warnings({{"preset", "fig15"}, {"b", 0.011}}, csv).find("momentum fits b = 0.0090") !=
+        std::string::npos);
     std::string gap = header, slow = header, clipped = header;
     std::size_t number = 0;
-    for (std::size_t from = header.size(), end; (end = csv.find('\n', from)) != std::string::npos; from = end + 1, ++number) {
+    for (std::size_t from = header.size(), end; (end = csv.find('\n', from)) != std::string::npos;
+         from = end + 1, ++number) {
         const std::string line = csv.substr(from, end - from + 1);
         if (number < 3000 || number > 3040) gap += line;
         if (number % 4 == 0) slow += line;
         const std::size_t comma = line.rfind(',');
-        clipped += line.substr(0, comma + 1) + std::to_string(std::min(std::stod(line.substr(comma + 1)), 3.0)) + "\n";
+        clipped += line.substr(0, comma + 1) +
+                   std::to_string(std::min(std::stod(line.substr(comma + 1)), 3.0)) + "\n";
     }
     CHECK(warnings({{"preset", "fig15"}}, gap).find("1 gap(s)") != std::string::npos);
     CHECK(warnings({{"preset", "fig15"}}, clipped).find("clipped") != std::string::npos);
@@ -186,13 +262,17 @@ TEST_CASE("a quiet record, a clipped one, gaps, slow sampling and a wrong b are 
 namespace {
 
 /// The record with another header, its columns over these factors.
-std::string rescaled(const std::string& csv, const std::string& new_header, double time, double displacement, double acceleration) {
+std::string rescaled(
+    const std::string& csv, const std::string& new_header, double time, double displacement,
+    double acceleration) {
     std::string out = new_header + "\n";
-    for (std::size_t from = csv.find('\n') + 1, end; (end = csv.find('\n', from)) != std::string::npos; from = end + 1) {
+    for (std::size_t from = csv.find('\n') + 1, end;
+         (end = csv.find('\n', from)) != std::string::npos; from = end + 1) {
         double t, x, a;
         std::sscanf(csv.c_str() + from, "%lf,%lf,%lf", &t, &x, &a);
         char line[120];
-        std::snprintf(line, sizeof line, "%.12g,%.12g,%.12g\n", t / time, x / displacement, a / acceleration);
+        std::snprintf(
+            line, sizeof line, "%.12g,%.12g,%.12g\n", t / time, x / displacement, a / acceleration);
         out += line;
     }
     return out;
@@ -200,26 +280,49 @@ std::string rescaled(const std::string& csv, const std::string& new_header, doub
 
 }  // namespace
 
-TEST_CASE("a unit in a column's name is obeyed, in CSV and JSON, or refused where it is not known or contradicts the field") {
+TEST_CASE(
+    "a unit in a column's name is obeyed, in CSV and JSON, or refused where it is not known or "
+    "contradicts the field") {
     const std::string csv = measured("fig15", 3);
     const Json a = identify_answer(read_identify_request({{"preset", "fig15"}}, csv));
     const auto same = [&](const Json& b) {
         REQUIRE(b["impacts"]["side"] == a["impacts"]["side"]);
-        CHECK(b["signal"]["G"].get<double>() == doctest::Approx(a["signal"]["G"].get<double>()).epsilon(1e-6));
-        for (std::size_t i = 0; i < a["impacts"]["tau"].size(); ++i) CHECK(b["impacts"]["tau"][i].get<double>() == doctest::Approx(a["impacts"]["tau"][i].get<double>()).epsilon(1e-6));
+        CHECK(
+            b["signal"]["G"].get<double>() ==
+            doctest::Approx(a["signal"]["G"].get<double>()).epsilon(1e-6));
+        for (std::size_t i = 0; i < a["impacts"]["tau"].size(); ++i)
+            CHECK(
+                b["impacts"]["tau"][i].get<double>() ==
+                doctest::Approx(a["impacts"]["tau"][i].get<double>()).epsilon(1e-6));
     };
     constexpr double g = 9.80665;
-    for (const char* header : {"time_ms,displacement_mm,acceleration_g", "time (ms),displacement (mm),acceleration (g)", "Time [ms],Displacement [mm],Acceleration [g]", "t ms,x mm,a g", "t(ms),x[mm],a(g)"}) {
+    for (const char* header :
+         {"time_ms,displacement_mm,acceleration_g", "time (ms),displacement (mm),acceleration (g)",
+          "Time [ms],Displacement [mm],Acceleration [g]", "t ms,x mm,a g", "t(ms),x[mm],a(g)"}) {
         CAPTURE(header);
-        same(identify_answer(read_identify_request({{"preset", "fig15"}}, rescaled(csv, header, 1e-3, 1e-3, g))));
+        same(identify_answer(
+            read_identify_request({{"preset", "fig15"}}, rescaled(csv, header, 1e-3, 1e-3, g))));
     }
-    same(identify_answer(read_identify_request({{"preset", "fig15"}}, rescaled(csv, "time_s,displacement (\xc2\xb5m),acceleration (m/s\xc2\xb2)", 1, 1e-6, 1))));
-    same(identify_answer(read_identify_request({{"preset", "fig15"}, {"displacement_column", "laser_mm"}, {"displacement_unit", "mm"}}, rescaled(csv, "time_s,laser_mm,acceleration_m_s2", 1, 1e-3, 1))));
+    same(identify_answer(read_identify_request(
+        {{"preset", "fig15"}},
+        rescaled(csv, "time_s,displacement (\xc2\xb5m),acceleration (m/s\xc2\xb2)", 1, 1e-6, 1))));
+    same(identify_answer(read_identify_request(
+        {{"preset", "fig15"}, {"displacement_column", "laser_mm"}, {"displacement_unit", "mm"}},
+        rescaled(csv, "time_s,laser_mm,acceleration_m_s2", 1, 1e-3, 1))));
     // A name without a unit leaves it to the field.
-    same(identify_answer(read_identify_request({{"preset", "fig15"}, {"time_unit", "ms"}, {"displacement_column", "laser"}, {"displacement_unit", "um"}}, rescaled(csv, "t,laser,a", 1e-3, 1e-6, 1))));
-    same(identify_answer(read_identify_request({{"preset", "fig15"}, {"displacement_column", "laser_left"}}, rescaled(csv, "time,laser_left,acceleration_1", 1, 1, 1))));
+    same(identify_answer(read_identify_request(
+        {{"preset", "fig15"},
+         {"time_unit", "ms"},
+         {"displacement_column", "laser"},
+         {"displacement_unit", "um"}},
+        rescaled(csv, "t,laser,a", 1e-3, 1e-6, 1))));
+    same(identify_answer(read_identify_request(
+        {{"preset", "fig15"}, {"displacement_column", "laser_left"}},
+        rescaled(csv, "time,laser_left,acceleration_1", 1, 1, 1))));
     Json record = Json::object();
-    for (const CsvColumn& c : parse_csv(rescaled(csv, "time_ms,displacement_mm,acceleration_g", 1e-3, 1e-3, g))) record[c.name] = c.values;
+    for (const CsvColumn& c :
+         parse_csv(rescaled(csv, "time_ms,displacement_mm,acceleration_g", 1e-3, 1e-3, g)))
+        record[c.name] = c.values;
     same(identify_answer(read_identify_request({{"preset", "fig15"}, {"record", record}})));
 
     const auto fault = [&](Json fields, const char* header) {
@@ -232,32 +335,52 @@ TEST_CASE("a unit in a column's name is obeyed, in CSV and JSON, or refused wher
     CHECK(unknown.pointer == "/record/displacement_inch");
     CHECK(unknown.value == "inch");
     CHECK(unknown.range == Json({"m", "mm", "um"}));
-    CHECK(unknown.detail.find("column displacement_inch: the unit \"inch\" is not known; known are m, mm, um") == 0);
+    CHECK(
+        unknown.detail.find(
+            "column displacement_inch: the unit \"inch\" is not known; known are m, mm, um") == 0);
     CHECK(fault(Json::object(), "time (min),displacement_m,acceleration_m_s2").value == "min");
-    CHECK(fault({{"acceleration_column", "sensor [mV]"}, {"acceleration_unit", "g"}}, "time_s,displacement_m,sensor [mV]").pointer == "/record/sensor [mV]");
-    CHECK(fault({{"displacement_column", "laser_cm"}}, "time_s,laser_cm,acceleration_m_s2").value == "cm");
-    const FieldError contradiction = fault({{"displacement_unit", "mm"}}, "time_s,displacement_m,acceleration_m_s2");
+    CHECK(
+        fault(
+            {{"acceleration_column", "sensor [mV]"}, {"acceleration_unit", "g"}},
+            "time_s,displacement_m,sensor [mV]")
+            .pointer == "/record/sensor [mV]");
+    CHECK(
+        fault({{"displacement_column", "laser_cm"}}, "time_s,laser_cm,acceleration_m_s2").value ==
+        "cm");
+    const FieldError contradiction =
+        fault({{"displacement_unit", "mm"}}, "time_s,displacement_m,acceleration_m_s2");
     CHECK(contradiction.pointer == "/displacement_unit");
     CHECK(contradiction.value == "mm");
     CHECK(contradiction.detail == "displacement_unit is mm, but the column displacement_m says m");
 }
 
-TEST_CASE("impacts in a list are judged as those of a record: momentum over the typical jump, R within [0, 1], no missing one flown over") {
-    const Json simulated = simulate_answer(read_simulate_request({{"preset", "fig20"}, {"include", {"impacts"}}, {"cycles", 200}}), {});
+TEST_CASE(
+    "impacts in a list are judged as those of a record: momentum over the typical jump, R within "
+    "[0, 1], no missing one flown over") {
+    const Json simulated = simulate_answer(
+        read_simulate_request({{"preset", "fig20"}, {"include", {"impacts"}}, {"cycles", 200}}),
+        {});
     Json impacts = simulated["impacts"];
     const double epsilon = simulated["parameters"]["epsilon"];
     const std::size_t n = impacts["tau"].size();
     REQUIRE(n > 100);
     std::vector<double> jumps;
-    for (std::size_t i = 0; i < n; ++i) jumps.push_back(std::abs(impacts["x_dot_after"][i].get<double>() - impacts["x_dot_before"][i].get<double>()));
+    for (std::size_t i = 0; i < n; ++i)
+        jumps.push_back(std::abs(
+            impacts["x_dot_after"][i].get<double>() - impacts["x_dot_before"][i].get<double>()));
     std::sort(jumps.begin(), jumps.end());
     const double typical = 0.5 * (jumps[(n - 1) / 2] + jumps[n / 2]);
-    impacts["x_dot_after"][20] = impacts["x_dot_after"][20].get<double>() + 0.5 * typical;   // no momentum
-    impacts["y_dot_after"][30] = 2 * impacts["y_dot_after"][30].get<double>() - impacts["x_dot_after"][30].get<double>();  // R twice as large
-    const Json a = identify_answer(read_identify_request({{"preset", "fig20"}, {"impacts", impacts}}));
+    // No momentum.
+    impacts["x_dot_after"][20] = impacts["x_dot_after"][20].get<double>() + 0.5 * typical;
+    // R twice as large.
+    impacts["y_dot_after"][30] =
+        2 * impacts["y_dot_after"][30].get<double>() - impacts["x_dot_after"][30].get<double>();
+    const Json a =
+        identify_answer(read_identify_request({{"preset", "fig20"}, {"impacts", impacts}}));
     const Json& error = a["impacts"]["momentum_error"];
     CHECK(error[20].get<double>() == doctest::Approx(0.5).epsilon(0.01));
-    const double change = impacts["y_dot_after"][30].get<double>() - simulated["impacts"]["y_dot_after"][30].get<double>();
+    const double change = impacts["y_dot_after"][30].get<double>() -
+                          simulated["impacts"]["y_dot_after"][30].get<double>();
     CHECK(error[30].get<double>() == doctest::Approx(epsilon * change / typical).epsilon(0.01));
     CHECK(std::abs(error[10].get<double>()) < 1e-9);
     CHECK(a["impacts"]["status"][10] == "ok");
@@ -270,16 +393,21 @@ TEST_CASE("impacts in a list are judged as those of a record: momentum over the 
     const auto thinned = [&](std::size_t every) {
         Json rest = Json::object();
         for (const auto& [name, column] : simulated["impacts"].items())
-            for (std::size_t i = 0; i < n; ++i) if (i % every != every / 2) rest[name].push_back(column[i]);
+            for (std::size_t i = 0; i < n; ++i)
+                if (i % every != every / 2) rest[name].push_back(column[i]);
         return identify_answer(read_identify_request({{"preset", "fig20"}, {"impacts", rest}}));
     };
     const Json few = thinned(50), many = thinned(10);
     CHECK(few["verdict"] == "chaotic");
     CHECK(few["warnings"].dump().find("did not fly freely") != std::string::npos);
-    CHECK(few["exponents"]["duration"].get<double>() < few["exponents"]["window"][1].get<double>() - few["exponents"]["window"][0].get<double>());
+    CHECK(
+        few["exponents"]["duration"].get<double>() <
+        few["exponents"]["window"][1].get<double>() - few["exponents"]["window"][0].get<double>());
     CHECK(few["exponents"]["eigenvalues"]["window"][0] >= few["exponents"]["window"][0]);
     CHECK(many["verdict"] == "not_decided");
-    CHECK(many["verdict_reason"].get<std::string>().find("% of the impacts are left out or missing") != std::string::npos);
+    CHECK(
+        many["verdict_reason"].get<std::string>().find(
+            "% of the impacts are left out or missing") != std::string::npos);
 }
 
 TEST_CASE("there is no verdict and no advice where the motion does not explain the record") {
@@ -290,16 +418,25 @@ TEST_CASE("there is no verdict and no advice where the motion does not explain t
     CHECK(good["signal"]["misfit"]["displacement"] < 1.1);
     CHECK(good["signal"]["misfit"]["acceleration"] < 1.1);
     const double f = good["parameters"]["si"]["f"], k1 = good["parameters"]["si"]["k1"];
-    for (const Json& wrong : {Json{{"f", 1.002 * f}}, Json{{"f", 1.0005 * f}}, Json{{"k1", 1.02 * k1}}, Json{{"b", 0.011}}}) {
+    for (const Json& wrong :
+         {Json{{"f", 1.002 * f}}, Json{{"f", 1.0005 * f}}, Json{{"k1", 1.02 * k1}},
+          Json{{"b", 0.011}}}) {
         CAPTURE(wrong.dump());
         Json fields = wrong;
         fields["preset"] = "fig15";
         const Json a = identify_answer(read_identify_request(fields, csv));
         CHECK(a["verdict"] == "not_decided");
-        CHECK(a["warnings"].dump().find("no verdict: " + a["verdict_reason"].get<std::string>().substr(0, 20)) != std::string::npos);
+        CHECK(
+            a["warnings"].dump().find(
+                "no verdict: " + a["verdict_reason"].get<std::string>().substr(0, 20)) !=
+            std::string::npos);
         if (!a["b_fitted"]["b"].is_null()) CHECK(a["b_fitted"]["b"].get<double>() > 0.004);
-        else CHECK(a["warnings"].dump().find("no b is fitted to the impacts' momentum: ") != std::string::npos);
+        else
+            CHECK(
+                a["warnings"].dump().find("no b is fitted to the impacts' momentum: ") !=
+                std::string::npos);
         CHECK(a["warnings"].dump().find("fits b = -") == std::string::npos);
-        CHECK(a["warnings"].dump().find("sample at") == std::string::npos);  // the pulse is seen well
+        // The pulse is seen well.
+        CHECK(a["warnings"].dump().find("sample at") == std::string::npos);
     }
 }

@@ -12,7 +12,9 @@ using namespace vines::api;
 
 namespace {
 
-SweepRequest request(const std::string& text) { return read_sweep_request(parse_object(text), 100000); }
+SweepRequest request(const std::string& text) {
+    return read_sweep_request(parse_object(text), 100000);
+}
 
 std::set<std::string> refused(const std::string& text) {
     try {
@@ -38,13 +40,19 @@ std::map<std::size_t, Json> run(const SweepRequest& r, int threads = 2) {
     return lines;
 }
 
-const char* const plane = R"({"base":{"damping":"closed_form"},"axes":[{"parameter":"b","from":0.008,"to":0.02,"count":5},{"parameter":"R","values":[0.5,0.6]}],
+const char* const plane =
+    R"({"base":{"damping":"closed_form"},"axes":[{"parameter":"b","from":0.008,"to":0.02,"count":5},{"parameter":"R","values":[0.5,0.6]}],
     "cycles":60,"transient_cycles":20,"section":"impact","section_points":5)";
 
 }  // namespace
 
-TEST_CASE("a point's line depends on the request and its index alone: not on threads, order, shards or what else is asked for") {
-    for (const char* more : {"}", R"(,"carry_state":"up"})", R"(,"carry_state":"down"})", R"(,"starts":[{},{"x_dot0":0.01}]})", R"(,"carry_state":"up","starts":[{},{"x_dot0":0.01}]})"}) {
+TEST_CASE(
+    "a point's line depends on the request and its index alone: not on threads, order, shards or "
+    "what else is asked for") {
+    for (const char* more :
+         {"}", R"(,"carry_state":"up"})", R"(,"carry_state":"down"})",
+          R"(,"starts":[{},{"x_dot0":0.01}]})",
+          R"(,"carry_state":"up","starts":[{},{"x_dot0":0.01}]})"}) {
         CAPTURE(more);
         const SweepRequest r = request(std::string(plane) + more);
         const auto all = run(r);
@@ -76,24 +84,32 @@ TEST_CASE("a point tells its place, exponents, regime, amplitude, energy and sec
     CHECK(line["lambda"].size() == 4);
     CHECK(line["lambda"][0] < 0);
     CHECK(line["verdict"] == "regular");
-    for (const char* name : {"standard_error", "x_max", "x_rms", "x_rms_ratio", "share_impacts", "impacts", "sticks", "periodic", "period_cycles", "symmetric", "multiplier"}) CHECK(line.contains(name));
+    for (const char* name :
+         {"standard_error", "x_max", "x_rms", "x_rms_ratio", "share_impacts", "impacts", "sticks",
+          "periodic", "period_cycles", "symmetric", "multiplier"})
+        CHECK(line.contains(name));
     CHECK(line["section"]["x"].size() == 5);
     CHECK(Json::parse(line.dump()) == line);
 }
 
 TEST_CASE("continuation follows a branch that a fresh start does not find") {
-    // Down from 15 mm two symmetric impacts per cycle stay, wherever a fresh start goes; what is carried is the state, cavity and all.
-    const std::string text = R"({"base":{"damping":"closed_form"},"axes":[{"parameter":"b","values":[0.0072,0.01,0.015]}],"cycles":200)";
+    // Down from 15 mm two symmetric impacts per cycle stay, wherever a fresh start goes; what is
+    // carried is the state, cavity and all.
+    const std::string text =
+        R"({"base":{"damping":"closed_form"},"axes":[{"parameter":"b","values":[0.0072,0.01,0.015]}],"cycles":200)";
     const auto down = run(request(text + R"(,"carry_state":"down"})"));
     for (const auto& [index, line] : down) CHECK(line["regime"] == "III");
     Json afresh = run(request(text + "}")).at(0);
     for (const char* name : {"second_start", "depends_on_start"}) afresh.erase(name);
-    CHECK(run(request(text + R"(,"carry_state":"up"})")).at(0) == afresh);  // the first of a chain starts afresh
+    // The first of a chain starts afresh.
+    CHECK(run(request(text + R"(,"carry_state":"up"})")).at(0) == afresh);
     CHECK(down.at(1)["x_max"] != run(request(text + "}")).at(1)["x_max"]);
 }
 
-TEST_CASE("a long transient is run to its end, so that the phase of the forcing is right behind it") {
-    const std::string text = R"({"base":{"epsilon":1,"lambda":0.2,"R_plus":0.9,"R_minus":0.2,"G":0.1},"axes":[{"parameter":"b","values":[0.23152542372881355]}],"cycles":500,"transient_cycles":)";
+TEST_CASE(
+    "a long transient is run to its end, so that the phase of the forcing is right behind it") {
+    const std::string text =
+        R"({"base":{"epsilon":1,"lambda":0.2,"R_plus":0.9,"R_minus":0.2,"G":0.1},"axes":[{"parameter":"b","values":[0.23152542372881355]}],"cycles":500,"transient_cycles":)";
     for (const char* transient : {"17000", "20000"}) {
         CAPTURE(transient);
         const Json line = run(request(text + transient + "}")).at(0);
@@ -105,9 +121,14 @@ TEST_CASE("a long transient is run to its end, so that the phase of the forcing 
 
 TEST_CASE("a point whose transient does not end says so, and nothing else") {
     // In a cavity of 10 nm the mass bounces a million times a cycle.
-    const Json line = run(request(R"({"base":{"R":1},"axes":[{"parameter":"b","values":[1e-8]}],"cycles":5,"transient_cycles":5})")).at(0);
+    const Json line =
+        run(request(
+                R"({"base":{"R":1},"axes":[{"parameter":"b","values":[1e-8]}],"cycles":5,"transient_cycles":5})"))
+            .at(0);
     CHECK(line["reason"] == "transient_max_impacts");
-    for (const char* name : {"lambda", "status", "standard_error", "verdict", "z", "regime", "periodic", "x_max", "x_rms", "impacts"}) {
+    for (const char* name :
+         {"lambda", "status", "standard_error", "verdict", "z", "regime", "periodic", "x_max",
+          "x_rms", "impacts"}) {
         CAPTURE(name);
         CHECK(line.at(name).is_null());
     }
@@ -115,34 +136,49 @@ TEST_CASE("a point whose transient does not end says so, and nothing else") {
 }
 
 TEST_CASE("a state is carried at a whole cycle, or not at all") {
-    // The first point ends within a cycle, by max_impacts: its state is taken at the end of that cycle.
-    const std::string axes = R"("axes":[{"parameter":"b","values":[0.0151,0.015]}],"carry_state":"up","transient_cycles":0,)";
-    const auto carried = run(request("{" + axes + R"("base":{"damping":"closed_form","max_impacts":801},"cycles":1000})"));
+    // The first point ends within a cycle, by max_impacts: its state is taken at the end of that
+    // cycle.
+    const std::string axes =
+        R"("axes":[{"parameter":"b","values":[0.0151,0.015]}],"carry_state":"up","transient_cycles":0,)";
+    const auto carried = run(request(
+        "{" + axes + R"("base":{"damping":"closed_form","max_impacts":801},"cycles":1000})"));
     CHECK(carried.at(0)["reason"] == "max_impacts");
     CHECK(carried.at(1)["regime"] == "III");
     CHECK(carried.at(1)["capture_cycle"] == 0);  // it begins where the branch is
     CHECK_FALSE(carried.at(1).contains("carried"));
     // In a cavity of 10 nm the transient does not end.
-    const auto broken = run(request(R"({"axes":[{"parameter":"b","values":[1e-8,0.015]}],"carry_state":"up","base":{"R":1},"cycles":5,"transient_cycles":5})"));
+    const auto broken = run(request(
+        R"({"axes":[{"parameter":"b","values":[1e-8,0.015]}],"carry_state":"up","base":{"R":1},"cycles":5,"transient_cycles":5})"));
     CHECK(broken.at(1)["carried"] == false);
 }
 
 TEST_CASE("several starts at each point show coexisting attractors") {
     // A mass at rest in the middle of a wide cavity is never hit; one with a push is.
-    const auto lines = run(request(R"({"base":{"damping":"closed_form"},"axes":[{"parameter":"b","values":[0.03]}],"starts":[{"y0":0},{"y0":0,"y_dot0":0.02}],"cycles":200})"));
+    const auto lines = run(request(
+        R"({"base":{"damping":"closed_form"},"axes":[{"parameter":"b","values":[0.03]}],"starts":[{"y0":0},{"y0":0,"y_dot0":0.02}],"cycles":200})"));
     CHECK(lines.at(0)["start"] == 0);
     CHECK(lines.at(0)["regime"] == "none");
     CHECK(lines.at(1)["regime"] != "none");
 }
 
 TEST_CASE("axes are linear or logarithmic with exact ends, or a list") {
-    CHECK(request(R"({"axes":[{"parameter":"b","from":0.003,"to":0.04,"count":38}]})").axes[0].values[1] == doctest::Approx(0.004));
-    const Axis log = request(R"({"axes":[{"parameter":"epsilon","from":0.001,"to":0.1,"count":3,"scale":"log"}]})").axes[0];
+    CHECK(
+        request(R"({"axes":[{"parameter":"b","from":0.003,"to":0.04,"count":38}]})")
+            .axes[0]
+            .values[1] == doctest::Approx(0.004));
+    const Axis log =
+        request(
+            R"({"axes":[{"parameter":"epsilon","from":0.001,"to":0.1,"count":3,"scale":"log"}]})")
+            .axes[0];
     REQUIRE(log.values.size() == 3);
     CHECK(log.values[0] == 0.001);
     CHECK(log.values[1] == doctest::Approx(0.01));
     CHECK(log.values[2] == 0.1);
-    CHECK(request(R"({"axes":[{"parameter":"f","values":[8,9,10.5]}],"base":{"m1":4,"c1":3,"k1":11e3,"m2":0.03,"F":1e-4}})").axes[0].values == std::vector<double>{8, 9, 10.5});
+    CHECK(
+        request(
+            R"({"axes":[{"parameter":"f","values":[8,9,10.5]}],"base":{"m1":4,"c1":3,"k1":11e3,"m2":0.03,"F":1e-4}})")
+            .axes[0]
+            .values == std::vector<double>{8, 9, 10.5});
     CHECK(request(R"({"axes":[{"parameter":"x0","from":0,"to":0.01,"count":1}]})").points == 1);
 }
 
@@ -154,35 +190,87 @@ TEST_CASE("an axis over a preset changes that field alone, reduced, SI or of one
     };
     const SiParameters table4{4.168, 3.02, 11.47e3, 0.032, 0.01 * 0.032 / 4.168, 0};
     char reduced[200];
-    std::snprintf(reduced, sizeof reduced, R"("epsilon":%.17g,"lambda":%.17g,"G":%.17g,"b":0.015)", table4.epsilon(), table4.lambda(), table4.G());
-    const std::string Omega = R"({"parameter":"Omega","values":[1.01]})", R_plus = R"({"parameter":"R_plus","values":[0.8]})";
-    CHECK(point(R"({"preset":"fig20"})", Omega) == point(std::string("{") + reduced + R"(,"R":0.85})", Omega));
-    CHECK(point(R"({"preset":"fig20"})", R_plus) == point(std::string("{") + reduced + R"(,"R_minus":0.85})", R_plus));
-    CHECK(point(R"({"preset":"fig20","Omega":1.01})", R_plus) == point(std::string("{") + reduced + R"(,"Omega":1.01,"R_minus":0.85})", R_plus));
+    std::snprintf(
+        reduced, sizeof reduced, R"("epsilon":%.17g,"lambda":%.17g,"G":%.17g,"b":0.015)",
+        table4.epsilon(), table4.lambda(), table4.G());
+    const std::string Omega = R"({"parameter":"Omega","values":[1.01]})",
+                      R_plus = R"({"parameter":"R_plus","values":[0.8]})";
+    CHECK(
+        point(R"({"preset":"fig20"})", Omega) ==
+        point(std::string("{") + reduced + R"(,"R":0.85})", Omega));
+    CHECK(
+        point(R"({"preset":"fig20"})", R_plus) ==
+        point(std::string("{") + reduced + R"(,"R_minus":0.85})", R_plus));
+    CHECK(
+        point(R"({"preset":"fig20","Omega":1.01})", R_plus) ==
+        point(std::string("{") + reduced + R"(,"Omega":1.01,"R_minus":0.85})", R_plus));
     const std::string c1 = R"({"parameter":"c1","values":[3]})";
     CHECK(point(R"({"preset":"fig3"})", c1) == point(R"({"preset":"table1"})", c1));
-    CHECK(point(R"({"preset":"fig3"})", c1)["x_rms"] != point(R"({"preset":"fig3","damping":"closed_form"})", c1)["x_rms"]);  // another damper: eq. (1)'s damping
-    CHECK(refused(R"({"base":{"R":0.85},"axes":[{"parameter":"R_plus","values":[0.8]}]})") == std::set<std::string>{"/axes/0", "/base/R"});
-    CHECK(refused(R"({"base":{"preset":"fig20"},"axes":[{"parameter":"m1","values":[1e-9]}]})") == std::set<std::string>{"/axes/0"});
+    // Another damper: eq. (1)'s damping.
+    CHECK(
+        point(R"({"preset":"fig3"})", c1)["x_rms"] !=
+        point(R"({"preset":"fig3","damping":"closed_form"})", c1)["x_rms"]);
+    CHECK(
+        refused(R"({"base":{"R":0.85},"axes":[{"parameter":"R_plus","values":[0.8]}]})") ==
+        std::set<std::string>{"/axes/0", "/base/R"});
+    CHECK(
+        refused(R"({"base":{"preset":"fig20"},"axes":[{"parameter":"m1","values":[1e-9]}]})") ==
+        std::set<std::string>{"/axes/0"});
 }
 
 TEST_CASE("what is wrong with a sweep is named at its place") {
     CHECK(refused("{}") == std::set<std::string>{"/axes"});
     CHECK(refused(R"({"axes":[]})") == std::set<std::string>{"/axes"});
-    CHECK(refused(R"({"axes":[{"parameter":"bb","from":1,"to":2,"count":5}]})") == std::set<std::string>{"/axes/0/parameter"});
-    CHECK(refused(R"({"axes":[{"parameter":"b","from":1,"count":0}]})") == std::set<std::string>{"/axes/0/to", "/axes/0/count"});
-    CHECK(refused(R"({"axes":[{"parameter":"b","values":[1,"x"]}]})") == std::set<std::string>{"/axes/0/values/1"});
-    CHECK(refused(R"({"axes":[{"parameter":"b","values":[1],"from":1}]})") == std::set<std::string>{"/axes/0/from"});
-    CHECK(refused(R"({"axes":[{"parameter":"b","from":-1,"to":2,"count":5,"scale":"log"}]})") == std::set<std::string>{"/axes/0/from"});
-    CHECK(refused(R"({"axes":[{"parameter":"b","from":-1,"to":2,"count":5}]})") == std::set<std::string>{"/axes/0"});
-    CHECK(refused(R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5},{"parameter":"b","values":[1]}]})") == std::set<std::string>{"/axes/1/parameter"});
-    CHECK(refused(R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"base":{"b":0.01}})") == std::set<std::string>{"/base/b"});
-    CHECK(refused(R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"base":{"R":3,"tau_end":5}})") == std::set<std::string>{"/base/R", "/base/tau_end"});
-    CHECK(refused(R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"starts":[{"x0":0.5,"y0":0},{"z":1}]})") == std::set<std::string>{"/starts/1/z"});
-    CHECK(refused(R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"starts":[{"x0":0.5,"y0":0}]})") == std::set<std::string>{"/starts/0/y0"});
-    CHECK(refused(R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"indices":[0,5]})") == std::set<std::string>{"/indices"});
-    CHECK(refused(R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":1000},{"parameter":"R","from":0,"to":1,"count":1000}]})") == std::set<std::string>{"/axes"});
-    CHECK(refused(R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"cycles":0,"carry_state":"sideways"})") == std::set<std::string>{"/cycles", "/carry_state"});
+    CHECK(
+        refused(R"({"axes":[{"parameter":"bb","from":1,"to":2,"count":5}]})") ==
+        std::set<std::string>{"/axes/0/parameter"});
+    CHECK(
+        refused(R"({"axes":[{"parameter":"b","from":1,"count":0}]})") ==
+        std::set<std::string>{"/axes/0/to", "/axes/0/count"});
+    CHECK(
+        refused(R"({"axes":[{"parameter":"b","values":[1,"x"]}]})") ==
+        std::set<std::string>{"/axes/0/values/1"});
+    CHECK(
+        refused(R"({"axes":[{"parameter":"b","values":[1],"from":1}]})") ==
+        std::set<std::string>{"/axes/0/from"});
+    CHECK(
+        refused(R"({"axes":[{"parameter":"b","from":-1,"to":2,"count":5,"scale":"log"}]})") ==
+        std::set<std::string>{"/axes/0/from"});
+    CHECK(
+        refused(R"({"axes":[{"parameter":"b","from":-1,"to":2,"count":5}]})") ==
+        std::set<std::string>{"/axes/0"});
+    CHECK(
+        refused(
+            R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5},{"parameter":"b","values":[1]}]})") ==
+        std::set<std::string>{"/axes/1/parameter"});
+    CHECK(
+        refused(
+            R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"base":{"b":0.01}})") ==
+        std::set<std::string>{"/base/b"});
+    CHECK(
+        refused(
+            R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"base":{"R":3,"tau_end":5}})") ==
+        std::set<std::string>{"/base/R", "/base/tau_end"});
+    CHECK(
+        refused(
+            R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"starts":[{"x0":0.5,"y0":0},{"z":1}]})") ==
+        std::set<std::string>{"/starts/1/z"});
+    CHECK(
+        refused(
+            R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"starts":[{"x0":0.5,"y0":0}]})") ==
+        std::set<std::string>{"/starts/0/y0"});
+    CHECK(
+        refused(
+            R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"indices":[0,5]})") ==
+        std::set<std::string>{"/indices"});
+    CHECK(
+        refused(
+            R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":1000},{"parameter":"R","from":0,"to":1,"count":1000}]})") ==
+        std::set<std::string>{"/axes"});
+    CHECK(
+        refused(
+            R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"cycles":0,"carry_state":"sideways"})") ==
+        std::set<std::string>{"/cycles", "/carry_state"});
 }
 
 TEST_CASE("a sweep that is stopped hands out no point that is not complete") {
@@ -191,7 +279,8 @@ TEST_CASE("a sweep that is stopped hands out no point that is not complete") {
         bool stop_or_yield() override { return ++asked > 300; }
         std::atomic<long> asked = 0;
     } pace;
-    const SweepRequest r = request(R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":50}],"cycles":300})");
+    const SweepRequest r =
+        request(R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":50}],"cycles":300})");
     const auto all = run(r);
     std::size_t n = 0;
     run_sweep(r, 2, pace, [&](std::size_t index, const Json& line) {

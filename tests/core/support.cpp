@@ -11,19 +11,24 @@ Reference read_reference(const std::string& name) {
     std::ifstream file(REFERENCE_DIRECTORY + name + ".txt");
     if (!file) throw std::runtime_error("no reference " + name);
     Reference r;
-    r.parameters = table1(std::stod(name.substr(name.find("_b") + 2)), name[0] == 'c' ? Damping::closed_form : Damping::equation_of_motion);
+    r.parameters = table1(
+        std::stod(name.substr(name.find("_b") + 2)),
+        name[0] == 'c' ? Damping::closed_form : Damping::equation_of_motion);
     for (std::string line; std::getline(file, line);) {
         std::istringstream in(line);
         if (std::isdigit(static_cast<unsigned char>(line[0]))) {
             ReferenceImpact i;
-            in >> i.tau >> i.side >> i.x >> i.x_dot_before >> i.y_dot_before >> i.x_dot_after >> i.y_dot_after;
+            in >> i.tau >> i.side >> i.x >> i.x_dot_before >> i.y_dot_before >> i.x_dot_after >>
+                i.y_dot_after;
             r.impacts.push_back(i);
             continue;
         }
         std::string word, skip;
         in >> word;
-        if (word == "qr") for (double& v : r.qr) in >> v;
-        if (word == "eig") for (double& v : r.eigenvalues) in >> v;
+        if (word == "qr")
+            for (double& v : r.qr) in >> v;
+        if (word == "eig")
+            for (double& v : r.eigenvalues) in >> v;
         if (word == "#" && in >> word && word == "stick") {
             ReferenceStick s;
             in >> skip >> s.side >> skip >> s.start >> skip >> s.end;
@@ -33,13 +38,16 @@ Reference read_reference(const std::string& name) {
     return r;
 }
 
-Record record(const Parameters& p, const State& start, double tau_end, long max_impacts, std::vector<Observer*> observers) {
+Record record(
+    const Parameters& p, const State& start, double tau_end, long max_impacts,
+    std::vector<Observer*> observers) {
     ImpactRecord impacts;
     StickRecord sticks;
     TouchRecord touches;
     observers.insert(observers.end(), {&impacts, &sticks, &touches});
     const Outcome outcome = simulate(p, start, {tau_end, max_impacts, {}}, observers);
-    return {outcome, std::move(impacts.impacts), std::move(sticks.sticks), std::move(touches.touches)};
+    return {
+        outcome, std::move(impacts.impacts), std::move(sticks.sticks), std::move(touches.touches)};
 }
 
 Parameters table1(double b, Damping damping) {
@@ -49,7 +57,8 @@ Parameters table1(double b, Damping damping) {
     return p;
 }
 
-double uniform(std::mt19937_64& engine, double from, double to) {  // the library's distribution differs between implementations
+// The library's distribution differs between implementations.
+double uniform(std::mt19937_64& engine, double from, double to) {
     return from + (to - from) * static_cast<double>(engine() >> 11) * 0x1p-53;
 }
 

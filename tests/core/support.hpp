@@ -21,7 +21,8 @@ struct ReferenceStick {
     double start, end;
 };
 
-/// One file of reference/: a trajectory in 250-digit arithmetic from Table 1's initial state to tau = 1709.
+/// One file of reference/: a trajectory in 250-digit arithmetic from Table 1's initial state to tau
+/// = 1709.
 struct Reference {
     Parameters parameters;
     std::vector<ReferenceImpact> impacts;
@@ -36,11 +37,14 @@ struct Record {
     std::vector<StickRecord::Stick> sticks;
     std::vector<TouchRecord::Touch> touches;
 };
-Record record(const Parameters& parameters, const State& start, double tau_end, long max_impacts = 1000000, std::vector<Observer*> more = {});
+Record record(
+    const Parameters& parameters, const State& start, double tau_end, long max_impacts = 1000000,
+    std::vector<Observer*> more = {});
 
 Parameters table1(double b, Damping damping);
 
-/// A system and a start that validate, over the ranges that people study and well beyond; reproducible from the engine's seed.
+/// A system and a start that validate, over the ranges that people study and well beyond;
+/// reproducible from the engine's seed.
 struct System {
     Parameters parameters;
     State start;

@@ -17,7 +17,8 @@ TEST_CASE("the energy balance closes to rounding, whatever the system and the wi
         const double from = uniform(engine, 0, 40), to = from + uniform(engine, 1, 100);
         Energy energy(s.parameters, from, to);
         record(s.parameters, s.start, 150, 5000, {&energy});
-        const double turnover = std::abs(energy.input()) + energy.damper() + energy.impacts() + energy.at_start() + energy.at_end();
+        const double turnover = std::abs(energy.input()) + energy.damper() + energy.impacts() +
+                                energy.at_start() + energy.at_end();
         if (turnover > 0) worst = std::max(worst, std::abs(energy.residual()) / turnover);
     }
     CHECK(worst < 1e-12);
@@ -35,14 +36,16 @@ TEST_CASE("the residual of Table 1 is below 1e-9 of the input, with a stick in t
 
 TEST_CASE("an impact at the border of two windows belongs to the first alone") {
     Parameters p;
-    p.b = 0.0088, p.G = 0.0284, p.R_plus = p.R_minus = 0.367, p.Omega = 0.98, p.epsilon = 0.03356, p.lambda = 2.064;
+    p.b = 0.0088, p.G = 0.0284, p.R_plus = p.R_minus = 0.367, p.Omega = 0.98, p.epsilon = 0.03356,
+    p.lambda = 2.064;
     Energy whole(p, 0, 100);
     const Record run = record(p, default_state(p), 100, 1000000, {&whole});
     REQUIRE(run.impacts.size() > 20);
     for (const Impact& i : run.impacts) {
         Energy before(p, 0, i.tau), after(p, i.tau, 100);
         record(p, default_state(p), 100, 1000000, {&before, &after});
-        CHECK(before.impacts() + after.impacts() == doctest::Approx(whole.impacts()).epsilon(1e-12));
+        CHECK(
+            before.impacts() + after.impacts() == doctest::Approx(whole.impacts()).epsilon(1e-12));
         CHECK(before.input() + after.input() == doctest::Approx(whole.input()).epsilon(1e-10));
         CHECK(std::abs(after.residual()) < 1e-12 * whole.input());
     }
@@ -62,7 +65,8 @@ TEST_CASE("rms and peak of x are those of dense samples") {
         ++n;
     }
     CHECK(energy.duration() == doctest::Approx(300));
-    CHECK(energy.rms() == doctest::Approx(std::sqrt(squares / static_cast<double>(n))).epsilon(1e-5));
+    CHECK(
+        energy.rms() == doctest::Approx(std::sqrt(squares / static_cast<double>(n))).epsilon(1e-5));
     CHECK(energy.peak() >= peak);
     CHECK(energy.peak() == doctest::Approx(peak).epsilon(1e-6));
 }

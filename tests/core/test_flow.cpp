@@ -24,13 +24,18 @@ struct ClosedForm {
     double x, x_dot;
 };
 ClosedForm closed_form(const Parameters& p, const Oscillation& o, double s) {
-    const double z = p.zeta(), W = p.Omega, wd = std::sqrt(1 - z * z), a = p.epsilon * p.A(), theta = std::atan2(o.sin_theta, o.cos_theta);
-    const double D = (1 - W * W) * (1 - W * W) + 4 * z * z * W * W, X = a * (1 - W * W) / D, Y = -2 * z * W * a / D;
+    const double z = p.zeta(), W = p.Omega, wd = std::sqrt(1 - z * z), a = p.epsilon * p.A(),
+                 theta = std::atan2(o.sin_theta, o.cos_theta);
+    const double D = (1 - W * W) * (1 - W * W) + 4 * z * z * W * W, X = a * (1 - W * W) / D,
+                 Y = -2 * z * W * a / D;
     const double q = o.x - (X * std::sin(theta) + Y * std::cos(theta));
     const double r = (o.x_dot - W * (X * std::cos(theta) - Y * std::sin(theta)) + z * q) / wd;
-    const double e = std::exp(-z * s), c = std::cos(wd * s), n = std::sin(wd * s), t = theta + W * s;
-    return {e * (q * c + r * n) + X * std::sin(t) + Y * std::cos(t),
-            e * ((wd * r - z * q) * c - (wd * q + z * r) * n) + W * (X * std::cos(t) - Y * std::sin(t))};
+    const double e = std::exp(-z * s), c = std::cos(wd * s), n = std::sin(wd * s),
+                 t = theta + W * s;
+    return {
+        e * (q * c + r * n) + X * std::sin(t) + Y * std::cos(t),
+        e * ((wd * r - z * q) * c - (wd * q + z * r) * n) +
+            W * (X * std::cos(t) - Y * std::sin(t))};
 }
 
 const Oscillation start{0.003, -0.004, std::sin(0.7), std::cos(0.7)};
@@ -66,10 +71,12 @@ TEST_CASE("the transfer matrix is eq. (19), and the derivative of the flow by it
             CHECK(std::abs(t.a12 - -e / wd * n) < 1e-14);
             CHECK(std::abs(t.a21 - e / wd * n) < 1e-14);
             CHECK(std::abs(t.a22 - e * (zeta / wd * n + c)) < 1e-14);
-            Oscillation moved = start;  // the flow is linear: a difference quotient of any size is exact
+            // The flow is linear: a difference quotient of any size is exact.
+            Oscillation moved = start;
             moved.x_dot += 1;
             CHECK(std::abs(flow.after(moved, s).x - flow.after(start, s).x - t.a21) < 1e-14);
-            CHECK(std::abs(flow.after(moved, s).x_dot - flow.after(start, s).x_dot - t.a11) < 1e-14);
+            CHECK(
+                std::abs(flow.after(moved, s).x_dot - flow.after(start, s).x_dot - t.a11) < 1e-14);
         }
     }
 }
@@ -93,19 +100,27 @@ TEST_CASE("critical and over-critical damping are their closed forms") {
     Parameters p = with_zeta(1, 1);
     p.G = 0;
     for (double s : {0.05, 1.0, 5.0})  // x = e^-s (x0 + (v0 + x0) s)
-        CHECK(std::abs(Flow::free(p).after(start, s).x - std::exp(-s) * (start.x + (start.x_dot + start.x) * s)) < 1e-17);
+        CHECK(
+            std::abs(
+                Flow::free(p).after(start, s).x -
+                std::exp(-s) * (start.x + (start.x_dot + start.x) * s)) < 1e-17);
     p = with_zeta(3, 1);
     p.G = 0;
-    const double m1 = -3 + std::sqrt(8.0), m2 = -3 - std::sqrt(8.0), c1 = (start.x_dot - m2 * start.x) / (m1 - m2), c2 = start.x - c1;
+    const double m1 = -3 + std::sqrt(8.0), m2 = -3 - std::sqrt(8.0),
+                 c1 = (start.x_dot - m2 * start.x) / (m1 - m2), c2 = start.x - c1;
     for (double s : {0.01, 0.5, 4.0})
-        CHECK(std::abs(Flow::free(p).after(start, s).x - (c1 * std::exp(m1 * s) + c2 * std::exp(m2 * s))) < 1e-17);
+        CHECK(
+            std::abs(
+                Flow::free(p).after(start, s).x - (c1 * std::exp(m1 * s) + c2 * std::exp(m2 * s))) <
+            1e-17);
 }
 
 TEST_CASE("the bounds of the motion hold over the whole reach") {
     std::mt19937_64 engine(7);
     for (int n = 0; n < 200; ++n) {
         const System system = random_system(engine);
-        const Flow flow = engine() % 2 ? Flow::free(system.parameters) : Flow::stuck(system.parameters);
+        const Flow flow =
+            engine() % 2 ? Flow::free(system.parameters) : Flow::stuck(system.parameters);
         Oscillation o{system.start.x, system.start.x_dot, std::sin(n), std::cos(n)};
         const auto bounds = flow.bounds(o);
         double x = 0, a = 0, j = 0;

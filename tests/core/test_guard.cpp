@@ -10,7 +10,8 @@ using namespace vines::test;
 
 namespace {
 
-std::optional<double> crossing(std::vector<double> c, int zeros = 0, double h = 1, double noise = 0) {
+std::optional<double> crossing(
+    std::vector<double> c, int zeros = 0, double h = 1, double noise = 0) {
     std::optional<double> tangent;
     return first_crossing(c, zeros, h, noise, tangent);
 }
@@ -18,7 +19,8 @@ std::optional<double> crossing(std::vector<double> c, int zeros = 0, double h = 
 }  // namespace
 
 TEST_CASE("first_crossing finds the first of several roots") {
-    // (d - .2)(d - .3)(d - .9) rises through zero at .2; two crossings hide between equal signs at .1 and .5
+    // (d - .2)(d - .3)(d - .9) rises through zero at .2; two crossings hide between equal signs at
+    // .1 and .5
     const auto d = crossing({-0.054, 0.51, -1.4, 1});
     REQUIRE(d);
     CHECK(*d == doctest::Approx(0.2).epsilon(1e-15));
@@ -42,7 +44,8 @@ TEST_CASE("first_crossing divides out the contact at the start") {
 
 TEST_CASE("first_crossing tells a tangent contact from a crossing") {
     std::optional<double> tangent;
-    const std::vector<double> below = {-0.25 - 1e-15, 1, -1}, above = {-0.25 + 1e-12, 1, -1};  // -(d - .5)^2 and a little
+    // -(d - .5)^2 and a little.
+    const std::vector<double> below = {-0.25 - 1e-15, 1, -1}, above = {-0.25 + 1e-12, 1, -1};
     CHECK_FALSE(first_crossing(below, 0, 1, 1e-14, tangent));
     REQUIRE(tangent);
     CHECK(*tangent == doctest::Approx(0.5));
@@ -54,8 +57,9 @@ TEST_CASE("first_crossing tells a tangent contact from a crossing") {
 }
 
 TEST_CASE("no contact of a random flight is missed or early") {
-    // The second method: the flow itself at 4000 points of the flight, and Newton's steps on it. Two crossings can only hide
-    // between two of the points if g turns there, and then it stays within reach of the wall by less than the tolerance.
+    // The second method: the flow itself at 4000 points of the flight, and Newton's steps on it.
+    // Two crossings can only hide between two of the points if g turns there, and then it stays
+    // within reach of the wall by less than the tolerance.
     std::mt19937_64 engine(11);
     int contacts = 0;
     for (int n = 0; n < 3000; ++n) {
@@ -67,7 +71,9 @@ TEST_CASE("no contact of a random flight is missed or early") {
         if (n % 2) {  // from a wall, moving away from it
             start.side = engine() % 4 < 2 ? 1 : -1;
             start.y = lo.x - start.side * b;
-            start.relative_speed = -start.side * std::abs(s.start.x_dot - s.start.y_dot) * (n % 3 ? 1 : 1e-3) - start.side * 1e-9;
+            start.relative_speed =
+                -start.side * std::abs(s.start.x_dot - s.start.y_dot) * (n % 3 ? 1 : 1e-3) -
+                start.side * 1e-9;
             start.y_dot = lo.x_dot - start.relative_speed;
             start.zeros = 1;
         } else if (wall_of(s.start, b) != 0) {
@@ -105,7 +111,8 @@ TEST_CASE("a contact at the very end of the interval belongs to it, one just beh
 }
 
 TEST_CASE("a contact at a relative speed that rounding reaches is found once, at the wall") {
-    // Everything moves so slowly that the moment of the contact is known to no more than rounding over the speed.
+    // Everything moves so slowly that the moment of the contact is known to no more than rounding
+    // over the speed.
     std::mt19937_64 engine(31);
     int contacts = 0;
     for (int n = 0; n < 3000; ++n) {
@@ -113,8 +120,10 @@ TEST_CASE("a contact at a relative speed that rounding reaches is found once, at
         p.G = 0;
         const double speed = p.b * std::pow(10, uniform(engine, -15, -8));
         const Flow flow = Flow::free(p);
-        const double s = uniform(engine, 0, 0.9) * flow.reach(), x = uniform(engine, 0, 0.5) * speed * s;
-        const FlightStart start{{x, uniform(engine, -0.5, 0.5) * speed, 0, 1}, -p.b + speed * s, -speed, 0, 0, 0};
+        const double s = uniform(engine, 0, 0.9) * flow.reach(),
+                     x = uniform(engine, 0, 0.5) * speed * s;
+        const FlightStart start{
+            {x, uniform(engine, -0.5, 0.5) * speed, 0, 1}, -p.b + speed * s, -speed, 0, 0, 0};
         std::vector<Touch> touches;
         const auto contact = next_contact(flow, start, p.b, flow.reach(), touches);
         if (!contact) continue;
@@ -123,7 +132,8 @@ TEST_CASE("a contact at a relative speed that rounding reaches is found once, at
         CHECK(contact->s <= flow.reach());
         CHECK(contact->side == 1);
         CHECK(contact->relative_speed >= 0);
-        const double gap = flow.after(start.lo, contact->s).x - (start.y + start.y_dot * contact->s);
+        const double gap =
+            flow.after(start.lo, contact->s).x - (start.y + start.y_dot * contact->s);
         CHECK(std::abs(gap - p.b) < 8e-16 * p.b);
     }
     CHECK(contacts > 1000);

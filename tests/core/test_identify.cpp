@@ -20,24 +20,35 @@ struct Result {
     double lambda1;
     IdentifiedExponents judged;
 
-    Verdict verdict() const { return doubts.empty() && continuity.share <= Continuity::most ? judged.verdict : Verdict::not_decided; }
+    Verdict verdict() const {
+        return doubts.empty() && continuity.share <= Continuity::most ? judged.verdict
+                                                                      : Verdict::not_decided;
+    }
 };
 
 Result identified(const Measurement& m) {
-    RefinedImpacts refined = refine_impacts(m.parameters, m.record, find_spikes(m.record, 6).spikes, 6);
-    Identification found = identify_impacts(m.parameters, refined.motion, refined.side, refined.pulse);
+    RefinedImpacts refined =
+        refine_impacts(m.parameters, m.record, find_spikes(m.record, 6).spikes, 6);
+    Identification found =
+        identify_impacts(m.parameters, refined.motion, refined.side, refined.pulse);
     Parameters p = m.parameters;
     p.R_plus = found.plus.R, p.R_minus = found.minus.R;
     Continuity continuity = continuity_of(p, found.impacts, time_gaps(m.record));
-    const MeasuredExponents exponents(p, found.impacts, continuity.stretches, {true, false, false, 20000});
+    const MeasuredExponents exponents(
+        p, found.impacts, continuity.stretches, {true, false, false, 20000});
     const TransferProduct& all = exponents.all();
     std::vector<std::string> doubts = doubts_of(p, refined, found);
-    const IdentifiedExponents judged = judge_exponents(p, all.qr_history(), all.start_tau(), is_representative(found.impacts));
-    return {std::move(refined), std::move(found), std::move(continuity), std::move(doubts), all.qr()[0], judged};
+    const IdentifiedExponents judged =
+        judge_exponents(p, all.qr_history(), all.start_tau(), is_representative(found.impacts));
+    return {std::move(refined), std::move(found), std::move(continuity),
+            std::move(doubts),  all.qr()[0],      judged};
 }
 
 const Impact& nearest_impact(const Measurement& m, double tau) {
-    return *std::min_element(m.impacts.begin(), m.impacts.end(), [&](const Impact& a, const Impact& b) { return std::abs(a.tau - tau) < std::abs(b.tau - tau); });
+    return *std::min_element(
+        m.impacts.begin(), m.impacts.end(), [&](const Impact& a, const Impact& b) {
+            return std::abs(a.tau - tau) < std::abs(b.tau - tau);
+        });
 }
 
 void check(const Measurement& m, const Result& r) {
@@ -50,7 +61,11 @@ void check(const Measurement& m, const Result& r) {
         off.push_back(std::abs(nearest->tau - r.refined.tau[k]) / m.omega0);
         CHECK(off.back() < 2.5e-4);  // none is false
         CHECK(r.refined.side[k] == nearest->side);
-        speeds.push_back(std::max(std::abs(r.refined.motion.x_dot_before[k] - nearest->x_dot_before), std::abs(r.refined.motion.x_dot[k + 1] - nearest->x_dot_after)) / amplitude);
+        speeds.push_back(
+            std::max(
+                std::abs(r.refined.motion.x_dot_before[k] - nearest->x_dot_before),
+                std::abs(r.refined.motion.x_dot[k + 1] - nearest->x_dot_after)) /
+            amplitude);
     }
     std::sort(off.begin(), off.end());
     std::sort(speeds.begin(), speeds.end());
@@ -64,7 +79,8 @@ void check(const Measurement& m, const Result& r) {
 
 }  // namespace
 
-TEST_CASE("from a regular response every impact, the restitution of each wall and lambda1 are found") {
+TEST_CASE(
+    "from a regular response every impact, the restitution of each wall and lambda1 are found") {
     for (const auto& R : {std::pair(0.85, 0.85), std::pair(0.6, 0.9)}) {
         CAPTURE(R.first);
         Sensors sensors;
@@ -77,13 +93,18 @@ TEST_CASE("from a regular response every impact, the restitution of each wall an
     }
 }
 
-TEST_CASE("from a chaotic response lambda1 is found within 15 %, whatever the walls, the noise, the pulse and the sampling") {
+TEST_CASE(
+    "from a chaotic response lambda1 is found within 15 %, whatever the walls, the noise, the "
+    "pulse and the sampling") {
     struct Case {
         double R_plus, R_minus;
         Sensors sensors;
     };
-    for (const Case& c : {Case{0.85, 0.85, {}}, Case{0.7, 0.9, {}}, Case{0.85, 0.85, {.pulse = 2e-3}}, Case{0.85, 0.85, {.rate = 1000, .pulse = 2e-3}},
-                          Case{0.85, 0.85, {.rate = 5000, .pulse = 0.4e-3}}, Case{0.85, 0.85, {.rate = 4096, .pulse = 0.5e-3, .noise_x = 5e-6, .noise_a = 0.1}}}) {
+    for (const Case& c :
+         {Case{0.85, 0.85, {}}, Case{0.7, 0.9, {}}, Case{0.85, 0.85, {.pulse = 2e-3}},
+          Case{0.85, 0.85, {.rate = 1000, .pulse = 2e-3}},
+          Case{0.85, 0.85, {.rate = 5000, .pulse = 0.4e-3}},
+          Case{0.85, 0.85, {.rate = 4096, .pulse = 0.5e-3, .noise_x = 5e-6, .noise_a = 0.1}}}) {
         CAPTURE(c.sensors.rate);
         CAPTURE(c.sensors.pulse);
         const Measurement m = measured(0.015, c.R_plus, c.R_minus, c.sensors);
@@ -95,14 +116,17 @@ TEST_CASE("from a chaotic response lambda1 is found within 15 %, whatever the wa
     }
 }
 
-TEST_CASE("an impact whose pulse falls between two samples is found by the kink of the displacement") {
+TEST_CASE(
+    "an impact whose pulse falls between two samples is found by the kink of the displacement") {
     const Measurement m = measured(0.015, 0.85, 0.85, {.rate = 1024});
     const std::vector<Spike> spikes = find_spikes(m.record, 6).spikes;
     CHECK(static_cast<double>(spikes.size()) < 0.95 * static_cast<double>(m.impacts.size()));
     const Result r = identified(m);
     long found = 0;
     for (const Impact& i : m.impacts)
-        found += std::any_of(r.refined.tau.begin(), r.refined.tau.end(), [&](double tau) { return std::abs(tau - i.tau) < 5e-4 * m.omega0; });
+        found += std::any_of(r.refined.tau.begin(), r.refined.tau.end(), [&](double tau) {
+            return std::abs(tau - i.tau) < 5e-4 * m.omega0;
+        });
     CHECK(static_cast<double>(found) > 0.93 * static_cast<double>(m.impacts.size()));
     CHECK(r.lambda1 == doctest::Approx(m.lambda1).epsilon(0.15));
     CHECK(r.verdict() == Verdict::chaotic);
@@ -116,7 +140,8 @@ TEST_CASE("noise alone has no spikes") {
     CHECK(find_spikes(m.record, 6).spikes.empty());
 }
 
-TEST_CASE("a picked spike without a jump of the velocity is dropped, and one picked twice is left out") {
+TEST_CASE(
+    "a picked spike without a jump of the velocity is dropped, and one picked twice is left out") {
     Sensors sensors;
     sensors.seconds = 12;
     const Measurement m = measured(0.009, 0.85, 0.85, sensors);
@@ -130,14 +155,16 @@ TEST_CASE("a picked spike without a jump of the velocity is dropped, and one pic
     CHECK(refined.tau.size() == all);
 }
 
-TEST_CASE("a missing impact makes its neighbours inconsistent, and they are left out with a reason") {
+TEST_CASE(
+    "a missing impact makes its neighbours inconsistent, and they are left out with a reason") {
     Sensors sensors;
     sensors.seconds = 12;
     const Measurement m = measured(0.009, 0.85, 0.85, sensors);
     std::vector<Spike> spikes = find_spikes(m.record, 6).spikes;
     spikes.erase(spikes.begin() + 50);
     const RefinedImpacts refined = refine_impacts(m.parameters, m.record, spikes, 0);
-    const Identification found = identify_impacts(m.parameters, refined.motion, refined.side, refined.pulse);
+    const Identification found =
+        identify_impacts(m.parameters, refined.motion, refined.side, refined.pulse);
     CHECK_FALSE(found.impacts[49].fault.empty());
     CHECK_FALSE(found.impacts[50].fault.empty());
     CHECK(found.impacts[40].fault.empty());
@@ -158,7 +185,15 @@ namespace {
 std::vector<IdentifiedImpact> listed(const TrueMotion& motion) {
     std::vector<IdentifiedImpact> impacts;
     for (const Impact& i : motion.impacts)
-        impacts.push_back({.tau = i.tau, .side = i.side, .x = i.x, .x_dot_before = i.x_dot_before, .x_dot_after = i.x_dot_after, .x_ddot_before = i.x_ddot_before, .y_dot_before = i.y_dot_before, .y_dot_after = i.y_dot_after});
+        impacts.push_back(
+            {.tau = i.tau,
+             .side = i.side,
+             .x = i.x,
+             .x_dot_before = i.x_dot_before,
+             .x_dot_after = i.x_dot_after,
+             .x_ddot_before = i.x_ddot_before,
+             .y_dot_before = i.y_dot_before,
+             .y_dot_after = i.y_dot_after});
     return impacts;
 }
 
@@ -166,13 +201,16 @@ std::vector<IdentifiedImpact> listed(const TrueMotion& motion) {
 std::vector<IdentifiedImpact> without(const std::vector<IdentifiedImpact>& impacts, double share) {
     std::mt19937_64 engine(7);
     std::vector<IdentifiedImpact> rest;
-    for (const IdentifiedImpact& i : impacts) if (uniform(engine, 0, 1) >= share) rest.push_back(i);
+    for (const IdentifiedImpact& i : impacts)
+        if (uniform(engine, 0, 1) >= share) rest.push_back(i);
     return rest;
 }
 
 }  // namespace
 
-TEST_CASE("the product restarts behind a missing impact: lambda1 stays, the sum rule holds, and too many of them forbid a verdict") {
+TEST_CASE(
+    "the product restarts behind a missing impact: lambda1 stays, the sum rule holds, and too many "
+    "of them forbid a verdict") {
     for (const double b : {0.015, 0.009}) {
         CAPTURE(b);
         const TrueMotion motion = true_motion(b, 0.85, 0.85, 100);
@@ -183,16 +221,28 @@ TEST_CASE("the product restarts behind a missing impact: lambda1 stays, the sum 
             const Continuity c = continuity_of(motion.parameters, impacts, {});
             CHECK(c.left_out == 0);
             CHECK(c.share == doctest::Approx(share).epsilon(0.35));
-            const MeasuredExponents e(motion.parameters, impacts, c.stretches, {true, true, true, 256});
-            CHECK(std::abs(e.all().qr()[0] - motion.lambda1) < (b == 0.009 ? 3e-4 : 0.05 * motion.lambda1 * (1 + 10 * share)));
+            const MeasuredExponents e(
+                motion.parameters, impacts, c.stretches, {true, true, true, 256});
+            CHECK(
+                std::abs(e.all().qr()[0] - motion.lambda1) <
+                (b == 0.009 ? 3e-4 : 0.05 * motion.lambda1 * (1 + 10 * share)));
             CHECK(e.all().sum_rule_residual() < 1e-12);
-            // The clock stands still over the gaps: growth per impact is right however the history is thinned.
-            CHECK(e.moment(e.all().end_tau()) == doctest::Approx(impacts[c.stretches.back().last].tau).epsilon(1e-12));
-            const IdentifiedExponents judged = judge_exponents(motion.parameters, e.all().qr_history(), e.all().start_tau(), is_representative(impacts));
+            // The clock stands still over the gaps: growth per impact is right however the history
+            // is thinned.
+            CHECK(
+                e.moment(e.all().end_tau()) ==
+                doctest::Approx(impacts[c.stretches.back().last].tau).epsilon(1e-12));
+            const IdentifiedExponents judged = judge_exponents(
+                motion.parameters, e.all().qr_history(), e.all().start_tau(),
+                is_representative(impacts));
             CHECK(judged.verdict == (b == 0.009 ? Verdict::regular : Verdict::chaotic));
             CHECK(judged.slope == doctest::Approx(motion.lambda1).epsilon(b == 0.009 ? 0.05 : 0.2));
             // A product over a gap does not exist: these are of the longest stretch.
-            const KnownStretch longest = *std::max_element(c.stretches.begin(), c.stretches.end(), [&](auto& l, auto& r) { return impacts[l.last].tau - impacts[l.first].tau < impacts[r.last].tau - impacts[r.first].tau; });
+            const KnownStretch longest =
+                *std::max_element(c.stretches.begin(), c.stretches.end(), [&](auto& l, auto& r) {
+                    return impacts[l.last].tau - impacts[l.first].tau <
+                           impacts[r.last].tau - impacts[r.first].tau;
+                });
             CHECK(e.longest().start_tau() == impacts[longest.first].tau);
             CHECK(e.longest().impacts() == static_cast<long>(longest.last - longest.first + 1));
         }
@@ -207,10 +257,18 @@ TEST_CASE("a chaotic motion that is in step for a while is not called regular") 
             for (std::size_t from = 0; from + n < all.size(); from += n / 2) {
                 CAPTURE(n);
                 CAPTURE(from);
-                std::vector<IdentifiedImpact> some(all.begin() + static_cast<std::ptrdiff_t>(from), all.begin() + static_cast<std::ptrdiff_t>(from + n));
+                std::vector<IdentifiedImpact> some(
+                    all.begin() + static_cast<std::ptrdiff_t>(from),
+                    all.begin() + static_cast<std::ptrdiff_t>(from + n));
                 complete_impacts(motion.parameters, some, 0);
-                const MeasuredExponents e(motion.parameters, some, continuity_of(motion.parameters, some, {}).stretches, {true, false, false, 256});
-                CHECK(judge_exponents(motion.parameters, e.all().qr_history(), e.all().start_tau(), is_representative(some)).verdict != Verdict::regular);
+                const MeasuredExponents e(
+                    motion.parameters, some, continuity_of(motion.parameters, some, {}).stretches,
+                    {true, false, false, 256});
+                CHECK(
+                    judge_exponents(
+                        motion.parameters, e.all().qr_history(), e.all().start_tau(),
+                        is_representative(some))
+                        .verdict != Verdict::regular);
             }
     }
 }
@@ -220,19 +278,25 @@ TEST_CASE("a gap of the record breaks the product where an impact could hide in 
     std::vector<IdentifiedImpact> impacts = listed(motion);
     complete_impacts(motion.parameters, impacts, 0);
     const double from = impacts[100].tau, flight = impacts[101].tau - from;
-    CHECK(continuity_of(motion.parameters, impacts, {{from + 0.5 * flight, from + 0.52 * flight}}).stretches.size() == 1);
-    const Continuity broken = continuity_of(motion.parameters, impacts, {{from + 0.3 * flight, from + 0.6 * flight}});
+    CHECK(
+        continuity_of(motion.parameters, impacts, {{from + 0.5 * flight, from + 0.52 * flight}})
+            .stretches.size() == 1);
+    const Continuity broken =
+        continuity_of(motion.parameters, impacts, {{from + 0.3 * flight, from + 0.6 * flight}});
     REQUIRE(broken.stretches.size() == 2);
     CHECK(broken.stretches[0].last == 100);
     CHECK(broken.stretches[1].first == 101);
     CHECK(broken.missing == 1);
 }
 
-TEST_CASE("momentum is weighed by the typical jump, and an impact that does not keep it is left out whatever its own jump") {
+TEST_CASE(
+    "momentum is weighed by the typical jump, and an impact that does not keep it is left out "
+    "whatever its own jump") {
     const TrueMotion motion = true_motion(0.009, 0.85, 0.85, 10);
     std::vector<IdentifiedImpact> impacts = listed(motion);
     std::vector<double> jumps;
-    for (const IdentifiedImpact& i : impacts) jumps.push_back(std::abs(i.x_dot_after - i.x_dot_before));
+    for (const IdentifiedImpact& i : impacts)
+        jumps.push_back(std::abs(i.x_dot_after - i.x_dot_before));
     std::sort(jumps.begin(), jumps.end());
     const double typical = 0.5 * (jumps[(jumps.size() - 1) / 2] + jumps[jumps.size() / 2]);
     impacts[20].x_dot_after += 0.2 * typical;
@@ -249,7 +313,8 @@ namespace {
 
 /// What came of several records of one kind.
 struct Tally {
-    long impacts = 0, found = 0, false_ones = 0, flipped = 0, records = 0, not_decided = 0, wrong = 0;
+    long impacts = 0, found = 0, false_ones = 0, flipped = 0, records = 0, not_decided = 0,
+         wrong = 0;
     double worst = 0;  ///< of lambda1, where there is a verdict
     void add(const Measurement& m, const Result& r) {
         ++records;
@@ -266,17 +331,23 @@ struct Tally {
             ++found;
             flipped += r.refined.side[k] != nearest.side;
         }
-        const Verdict truth = m.parameters.b > 0.01 ? Verdict::chaotic : Verdict::regular;  // in the long run
+        // In the long run.
+        const Verdict truth = m.parameters.b > 0.01 ? Verdict::chaotic : Verdict::regular;
         if (r.verdict() == Verdict::not_decided) ++not_decided;
-        else wrong += r.verdict() != truth, worst = std::max(worst, std::abs(r.lambda1 - m.lambda1));
+        else
+            wrong += r.verdict() != truth, worst = std::max(worst, std::abs(r.lambda1 - m.lambda1));
     }
     void print(const char* name, double b) const {
-        std::printf("%-22s b %.3f: %4ld records, %6ld impacts, found %.4f, false %ld, sides flipped %ld, not decided %ld, wrong %ld, lambda1 off by %.4f at most\n", name, b, records, impacts,
-                    static_cast<double>(found) / static_cast<double>(impacts), false_ones, flipped, not_decided, wrong, worst);
+        std::printf(
+            "%-22s b %.3f: %4ld records, %6ld impacts, found %.4f, false %ld, sides flipped %ld, "
+            "not decided %ld, wrong %ld, lambda1 off by %.4f at most\n",
+            name, b, records, impacts, static_cast<double>(found) / static_cast<double>(impacts),
+            false_ones, flipped, not_decided, wrong, worst);
     }
 };
 
-/// Seeds per kind of record: 200 take some minutes, VINES_SEEDS=200 build/release/tests/test_core -tc='*seed*'.
+/// Seeds per kind of record: 200 take some minutes, VINES_SEEDS=200 build/release/tests/test_core
+/// -tc='*seed*'.
 int seeds(int few) {
     const char* asked = std::getenv("VINES_SEEDS");
     return asked ? std::atoi(asked) : few;
@@ -291,8 +362,11 @@ TEST_CASE("no seed of the noise flips a side") {
         Sensors sensors;
     };
     for (const double b : {0.015, 0.009})
-        for (const Kind& kind : {Kind{"clean", 0.85, 0.85, {}}, Kind{"20 um of noise", 0.85, 0.85, {.noise_x = 20e-6}}, Kind{"3 outliers", 0.85, 0.85, {.outliers = 3}}, Kind{"R .9 and .5", 0.9, 0.5, {}}}) {
-            const TrueMotion motion = true_motion(b, kind.R_plus, kind.R_minus, std::getenv("VINES_SEEDS") ? 12 : 4);
+        for (const Kind& kind :
+             {Kind{"clean", 0.85, 0.85, {}}, Kind{"20 um of noise", 0.85, 0.85, {.noise_x = 20e-6}},
+              Kind{"3 outliers", 0.85, 0.85, {.outliers = 3}}, Kind{"R .9 and .5", 0.9, 0.5, {}}}) {
+            const TrueMotion motion =
+                true_motion(b, kind.R_plus, kind.R_minus, std::getenv("VINES_SEEDS") ? 12 : 4);
             Tally tally;
             for (int seed = 1; seed <= seeds(5); ++seed) {
                 Sensors sensors = kind.sensors;
@@ -316,12 +390,27 @@ TEST_CASE("no seed of what a laboratory does to a record gets a wrong verdict") 
         Sensors sensors;
     };
     const std::vector<Kind> kinds = {
-        {"offset of 10 um", true, {.offset = 10e-6}}, {"offset of 5 mm", false, {.offset = 5e-3}}, {"drift of 50 um", true, {.drift = 50e-6}}, {"f off by .2 %", true, {.frequency_error = 0.002}},
-        {"f off by .05 %", false, {.frequency_error = 0.0005}}, {"f off by .01 %", false, {.frequency_error = 0.0001}}, {"Butterworth at .4 fs", false, {.low_pass = 0.4}}, {"delay of 1 ms", true, {.delay = 1e-3}},
-        {"delay of .2 ms", false, {.delay = 0.2e-3}}, {"gain 3 % off", true, {.gain = 0.03}}, {"gain 1 % off", false, {.gain = 0.01}}, {"displacement clipped", true, {.clip_x = 0.2}},
-        {"a little clipped", false, {.clip_x = 0.05}}, {"acceleration clipped", false, {.clip_a = 0.5}}, {"half of it clipped off", false, {.clip_a = 0.7}}, {"1 % missed pulses", false, {.missed_pulses = 0.01}},
-        {"10 % missed pulses", false, {.missed_pulses = 0.1}}, {"the same at 10 kHz", false, {.rate = 10000, .missed_pulses = 0.01}}, {"20 % lost samples", false, {.lost_samples = 0.2}},
-        {"a second is missing", false, {.gap_from = 3, .gap = 1}}, {"k1 off by 1 %", false, {.stiffness_error = 0.01}}};
+        {"offset of 10 um", true, {.offset = 10e-6}},
+        {"offset of 5 mm", false, {.offset = 5e-3}},
+        {"drift of 50 um", true, {.drift = 50e-6}},
+        {"f off by .2 %", true, {.frequency_error = 0.002}},
+        {"f off by .05 %", false, {.frequency_error = 0.0005}},
+        {"f off by .01 %", false, {.frequency_error = 0.0001}},
+        {"Butterworth at .4 fs", false, {.low_pass = 0.4}},
+        {"delay of 1 ms", true, {.delay = 1e-3}},
+        {"delay of .2 ms", false, {.delay = 0.2e-3}},
+        {"gain 3 % off", true, {.gain = 0.03}},
+        {"gain 1 % off", false, {.gain = 0.01}},
+        {"displacement clipped", true, {.clip_x = 0.2}},
+        {"a little clipped", false, {.clip_x = 0.05}},
+        {"acceleration clipped", false, {.clip_a = 0.5}},
+        {"half of it clipped off", false, {.clip_a = 0.7}},
+        {"1 % missed pulses", false, {.missed_pulses = 0.01}},
+        {"10 % missed pulses", false, {.missed_pulses = 0.1}},
+        {"the same at 10 kHz", false, {.rate = 10000, .missed_pulses = 0.01}},
+        {"20 % lost samples", false, {.lost_samples = 0.2}},
+        {"a second is missing", false, {.gap_from = 3, .gap = 1}},
+        {"k1 off by 1 %", false, {.stiffness_error = 0.01}}};
     for (const double b : {0.015, 0.009}) {
         const TrueMotion motion = true_motion(b, 0.85, 0.85, std::getenv("VINES_SEEDS") ? 12 : 6);
         for (const Kind& kind : kinds) {

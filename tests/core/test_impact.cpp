@@ -15,7 +15,11 @@ namespace {
 Impact random_impact(std::mt19937_64& engine, Parameters& p) {
     p = random_system(engine).parameters;
     p.R_plus = p.R_minus = uniform(engine, 0.1, 1);
-    Contact c{1, engine() % 2 ? 1 : -1, {uniform(engine, -.01, .01), uniform(engine, -.01, .01), std::sin(1.0), std::cos(1.0)}, 0};
+    Contact c{
+        1,
+        engine() % 2 ? 1 : -1,
+        {uniform(engine, -.01, .01), uniform(engine, -.01, .01), std::sin(1.0), std::cos(1.0)},
+        0};
     c.relative_speed = c.side * uniform(engine, 1e-4, 0.02);
     return impact_at(p, c, Flow::free(p).acceleration(c.lo), 1);
 }
@@ -27,9 +31,15 @@ TEST_CASE("an impact keeps momentum and reverses the relative velocity with fact
     for (int n = 0; n < 1000; ++n) {
         Parameters p;
         const Impact i = random_impact(engine, p);
-        CHECK(std::abs(i.x_dot_after + p.epsilon * i.y_dot_after - i.x_dot_before - p.epsilon * i.y_dot_before) < 1e-17);
-        CHECK(std::abs(i.x_dot_after - i.y_dot_after + i.R * (i.x_dot_before - i.y_dot_before)) < 1e-17);
-        CHECK(i.impulse(p.epsilon) == doctest::Approx(i.x_dot_before - i.x_dot_after).epsilon(1e-9));
+        CHECK(
+            std::abs(
+                i.x_dot_after + p.epsilon * i.y_dot_after - i.x_dot_before -
+                p.epsilon * i.y_dot_before) < 1e-17);
+        CHECK(
+            std::abs(i.x_dot_after - i.y_dot_after + i.R * (i.x_dot_before - i.y_dot_before)) <
+            1e-17);
+        CHECK(
+            i.impulse(p.epsilon) == doctest::Approx(i.x_dot_before - i.x_dot_after).epsilon(1e-9));
     }
 }
 
@@ -39,14 +49,19 @@ TEST_CASE("the saltation matrix is eq. (27) with f from the flow") {
         Parameters p;
         const Impact i = random_impact(engine, p);
         const Saltation m = saltation(p, i);
-        const double x_ddot_after = i.x_ddot_before - 2 * p.zeta() * (i.x_dot_after - i.x_dot_before);
-        const Eigen::Vector4d before(i.x_ddot_before, i.x_dot_before, 0, i.y_dot_before), after(x_ddot_after, i.x_dot_after, 0, i.y_dot_after);
+        const double x_ddot_after =
+            i.x_ddot_before - 2 * p.zeta() * (i.x_dot_after - i.x_dot_before);
+        const Eigen::Vector4d before(i.x_ddot_before, i.x_dot_before, 0, i.y_dot_before),
+            after(x_ddot_after, i.x_dot_after, 0, i.y_dot_after);
         Matrix4 S;
         const double e = p.epsilon, R = i.R;
-        S << (1 - R * e) / (1 + e), 0, (e + R * e) / (1 + e), 0, 0, 1, 0, 0, (1 + R) / (1 + e), 0, (e - R) / (1 + e), 0, 0, 0, 0, 1;
-        const Matrix4 M = S - (S * before - after) * gap_gradient().transpose() / gap_gradient().dot(before);
+        S << (1 - R * e) / (1 + e), 0, (e + R * e) / (1 + e), 0, 0, 1, 0, 0, (1 + R) / (1 + e), 0,
+            (e - R) / (1 + e), 0, 0, 0, 0, 1;
+        const Matrix4 M =
+            S - (S * before - after) * gap_gradient().transpose() / gap_gradient().dot(before);
         CHECK((m.matrix() - M).norm() < 1e-12 * M.norm());
-        CHECK((M * before - after).norm() < 1e-14);  // the flow's own direction goes over into itself
+        // The flow's own direction goes over into itself.
+        CHECK((M * before - after).norm() < 1e-14);
     }
 }
 
@@ -60,7 +75,8 @@ TEST_CASE("|det M| = R^2 and the moduli of its eigenvalues are 1, 1, R, R") {
         Eigen::Vector4d moduli = eigenvalues_of(M).cwiseAbs();
         std::sort(moduli.begin(), moduli.end());
         const Eigen::Vector4d expected(i.R, i.R, 1, 1);
-        CHECK((moduli - expected).cwiseAbs().maxCoeff() < 1e-5 * M.norm());  // double eigenvalues: the root of the rounding
+        // Double eigenvalues: the root of the rounding.
+        CHECK((moduli - expected).cwiseAbs().maxCoeff() < 1e-5 * M.norm());
     }
 }
 

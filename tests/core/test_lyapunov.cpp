@@ -28,9 +28,11 @@ Windows windows(double b, int count, double length, double start) {
     int n = 0;
     for (int k = 1; k <= count; ++k) {
         while (i + 1 < h.tau.size() && h.tau[i + 1] <= from + k * length) ++i;
-        if (h.tau[i] <= tau_before) continue;  // a sparse response may fly through a whole window: it joins the next one
+        // a sparse response may fly through a whole window: it joins the next one.
+        if (h.tau[i] <= tau_before) continue;
         ++n;
-        const double log = h.lambda[i][0] * (h.tau[i] - from), mean = (log - log_before) / (h.tau[i] - tau_before);
+        const double log = h.lambda[i][0] * (h.tau[i] - from),
+                     mean = (log - log_before) / (h.tau[i] - tau_before);
         log_before = log;
         tau_before = h.tau[i];
         sum += mean;
@@ -43,7 +45,8 @@ Windows windows(double b, int count, double length, double start) {
 }  // namespace
 
 TEST_CASE("lambda1 over 100 windows of 1700 is the known one of each response") {
-    const std::pair<double, double> chaotic[] = {{0.034, 0.149}, {0.025, 0.120}, {0.017, 0.049}, {0.003, 0.189}};
+    const std::pair<double, double> chaotic[] = {
+        {0.034, 0.149}, {0.025, 0.120}, {0.017, 0.049}, {0.003, 0.189}};
     for (const auto& known : chaotic) {
         const double b = known.first, lambda1 = known.second;
         CAPTURE(b);
@@ -67,7 +70,8 @@ TEST_CASE("the sum rule holds to 1e-10 in every window without a stick") {
             std::vector<std::unique_ptr<Lyapunov>> all;
             std::vector<Observer*> observers;
             for (int k = 0; k < 30; ++k) {
-                all.push_back(std::make_unique<Lyapunov>(p, 1700.0 * k, 1700.0 * (k + 1), ExponentOptions{true, false, false, 256}));
+                all.push_back(std::make_unique<Lyapunov>(
+                    p, 1700.0 * k, 1700.0 * (k + 1), ExponentOptions{true, false, false, 256}));
                 observers.push_back(all.back().get());
             }
             record(p, default_state(p), 1700 * 30, 1000000, observers);
@@ -90,7 +94,12 @@ TEST_CASE("the sum rule holds through nearly grazing impacts, where entries of M
         for (int n = 0; n < 300; ++n) {
             const double s = uniform(engine, 0.5, 5);
             tau += s;
-            Contact c{0, n % 2 ? 1 : -1, {uniform(engine, -.005, .005), uniform(engine, -.005, .005), std::sin(n), std::cos(n)}, 0};
+            Contact c{
+                0,
+                n % 2 ? 1 : -1,
+                {uniform(engine, -.005, .005), uniform(engine, -.005, .005), std::sin(n),
+                 std::cos(n)},
+                0};
             c.relative_speed = c.side * (n % 10 == 0 ? speed : uniform(engine, 0.002, 0.02));
             const Impact i = impact_at(p, c, Flow::free(p).acceleration(c.lo), tau);
             const Leg flight = leg_of(Flow::free(p), s, false);
@@ -113,14 +122,17 @@ TEST_CASE("J and M carry a deviation as the trajectory itself does") {
         const Record run = record(p, s.start, 40, 4);
         if (run.impacts.size() < 4 || !run.sticks.empty()) continue;
         bool steep = false;
-        for (const Impact& i : run.impacts) steep = steep || std::abs(i.x_ddot_before / i.relative_speed_before) > 20;
+        for (const Impact& i : run.impacts)
+            steep = steep || std::abs(i.x_ddot_before / i.relative_speed_before) > 20;
         if (steep) continue;
         const double tau = run.impacts.back().tau + 1e-3;
 
         Matrix4 product = Matrix4::Identity();
         double before = 0;
         for (const Impact& i : run.impacts) {
-            product = saltation(p, i).matrix() * transfer_of(leg_of(Flow::free(p), i.tau - before, false), p.epsilon) * product;
+            product = saltation(p, i).matrix() *
+                      transfer_of(leg_of(Flow::free(p), i.tau - before, false), p.epsilon) *
+                      product;
             before = i.tau;
         }
         product = transfer_of(leg_of(Flow::free(p), tau - before, false), p.epsilon) * product;
@@ -138,7 +150,8 @@ TEST_CASE("J and M carry a deviation as the trajectory itself does") {
                 if (!same_impacts) break;
                 const Record other = record(p, moved, tau);
                 same_impacts = same_impacts && other.impacts.size() == 4;
-                end[sign] << other.outcome.state.x_dot, other.outcome.state.x, other.outcome.state.y_dot, other.outcome.state.y;
+                end[sign] << other.outcome.state.x_dot, other.outcome.state.x,
+                    other.outcome.state.y_dot, other.outcome.state.y;
             }
             if (!same_impacts) break;
             differences.col(k) = (end[1] - end[0]) / (2 * d);
@@ -150,9 +163,11 @@ TEST_CASE("J and M carry a deviation as the trajectory itself does") {
     CHECK(compared >= 60);
 }
 
-TEST_CASE("a deviation through a stick is that of the trajectory: only the centre of mass is left") {
+TEST_CASE(
+    "a deviation through a stick is that of the trajectory: only the centre of mass is left") {
     const Parameters p = table1(0.015, Damping::closed_form);
-    const State start{0.0003, -0.004, 0, -0.004 - 0.015 + 2e-5};  // just before a chatter that presses at x - y = +b
+    // Just before a chatter that presses at x - y = +b.
+    const State start{0.0003, -0.004, 0, -0.004 - 0.015 + 2e-5};
     struct Product : Observer {
         explicit Product(const Parameters& parameters) : p(parameters) {}
         void on_stretch(const Stretch& s) override {
@@ -182,7 +197,8 @@ TEST_CASE("a deviation through a stick is that of the trajectory: only the centr
     CHECK((differences - product.m).norm() < 1e-6 * product.m.norm());
 }
 
-TEST_CASE("on a periodic orbit the eigenvalues estimator and QR agree with the orbit's multipliers") {
+TEST_CASE(
+    "on a periodic orbit the eigenvalues estimator and QR agree with the orbit's multipliers") {
     // closed form, b = 15 mm: two symmetric impacts a cycle once the transient is over.
     const Parameters p = table1(0.015, Damping::closed_form);
     const Record run = record(p, default_state(p), 6000);
@@ -190,7 +206,8 @@ TEST_CASE("on a periodic orbit the eigenvalues estimator and QR agree with the o
     Matrix4 cycle = Matrix4::Identity();
     for (std::size_t k = last - 1; k <= last; ++k) {
         const double s = run.impacts[k].tau - run.impacts[k - 1].tau;
-        cycle = saltation(p, run.impacts[k]).matrix() * transfer_of(leg_of(Flow::free(p), s, false), p.epsilon) * cycle;
+        cycle = saltation(p, run.impacts[k]).matrix() *
+                transfer_of(leg_of(Flow::free(p), s, false), p.epsilon) * cycle;
     }
     const double period = run.impacts[last].tau - run.impacts[last - 2].tau;
     CHECK(period == doctest::Approx(2 * 3.14159265358979323846).epsilon(1e-9));
@@ -201,12 +218,15 @@ TEST_CASE("on a periodic orbit the eigenvalues estimator and QR agree with the o
     record(p, default_state(p), 6000, 1000000, {&lyapunov});
     const Exponents eigenvalues = lyapunov.product().eigenvalues(), qr = lyapunov.product().qr();
     for (int k = 0; k < 4; ++k) {
-        CHECK(std::abs(eigenvalues[k] - multipliers(k)) < 1e-8);  // 200 whole cycles: the same number exactly
-        CHECK(std::abs(qr[k] - multipliers(k)) < 0.01);           // QR differs by what the frame takes to turn in
+        // 200 whole cycles: the same number exactly.
+        CHECK(std::abs(eigenvalues[k] - multipliers(k)) < 1e-8);
+        // QR differs by what the frame takes to turn in.
+        CHECK(std::abs(qr[k] - multipliers(k)) < 0.01);
     }
 }
 
-TEST_CASE("raw_product shows the paper's four positive exponents, three of them its rounding floor") {
+TEST_CASE(
+    "raw_product shows the paper's four positive exponents, three of them its rounding floor") {
     const Parameters p = table1(0.022, Damping::closed_form);
     Lyapunov lyapunov(p, 0, 1709, {});
     record(p, default_state(p), 1709, 100000, {&lyapunov});
@@ -240,7 +260,8 @@ TEST_CASE("after a stick two exponents are minus infinity, after R = 0 one is") 
         CHECK(status_of(e[2]) == Status::minus_infinity);
         CHECK(status_of(e[3]) == Status::minus_infinity);
     }
-    CHECK(stick.product().sum_rule_residual() < 1e-10);  // the rule says nothing at rank 2; the area that two deviations span does
+    // The rule says nothing at rank 2; the area that two deviations span does.
+    CHECK(stick.product().sum_rule_residual() < 1e-10);
     Lyapunov before(p, 0, 70, {});
     record(p, default_state(p), 1709, 100000, {&before});
     CHECK(before.product().rank() == 4);
@@ -263,7 +284,8 @@ TEST_CASE("a window with fewer than two impacts has no exponents") {
 
 TEST_CASE("a thinned history keeps every second, fourth, ... impact and ends near the end") {
     const Parameters p = table1(0.008, Damping::closed_form);
-    Lyapunov full(p, 0, 1e9, {true, false, false, 100000}), thin(p, 0, 1e9, {true, false, false, 256});
+    Lyapunov full(p, 0, 1e9, {true, false, false, 100000}),
+        thin(p, 0, 1e9, {true, false, false, 256});
     record(p, default_state(p), 3000, 100000, {&full, &thin});
     const ExponentHistory &f = full.product().qr_history(), &t = thin.product().qr_history();
     CHECK(f.tau.size() == static_cast<std::size_t>(full.product().impacts() - 1));
@@ -276,7 +298,8 @@ TEST_CASE("a thinned history keeps every second, fourth, ... impact and ends nea
 
 namespace {
 
-/// How lambda1 of 100 runs of 1709 spreads, over what one of them states; that spread itself is known to 7 %.
+/// How lambda1 of 100 runs of 1709 spreads, over what one of them states; that spread itself is
+/// known to 7 %.
 struct Calibration {
     double ratio;
     int decided;
@@ -299,10 +322,14 @@ Calibration calibrated(const Parameters& p, double apart) {
 
 }  // namespace
 
-TEST_CASE("the standard error of a window is the spread of lambda1 over runs from neighbouring starts") {
+TEST_CASE(
+    "the standard error of a window is the spread of lambda1 over runs from neighbouring starts") {
     // By eq. (1) the motion is regular below 19.6 mm.
-    const std::pair<Damping, std::vector<double>> chaotic[] = {{Damping::closed_form, {0.0165, 0.017, 0.018, 0.020, 0.022, 0.025, 0.028, 0.031, 0.034, 0.040}},
-                                                              {Damping::equation_of_motion, {0.0205, 0.021, 0.022, 0.025, 0.0265, 0.028, 0.031, 0.034, 0.037, 0.040}}};
+    const std::pair<Damping, std::vector<double>> chaotic[] = {
+        {Damping::closed_form,
+         {0.0165, 0.017, 0.018, 0.020, 0.022, 0.025, 0.028, 0.031, 0.034, 0.040}},
+        {Damping::equation_of_motion,
+         {0.0205, 0.021, 0.022, 0.025, 0.0265, 0.028, 0.031, 0.034, 0.037, 0.040}}};
     for (const auto& [damping, values] : chaotic)
         for (const double b : values) {
             CAPTURE(b);
@@ -314,8 +341,12 @@ TEST_CASE("the standard error of a window is the spread of lambda1 over runs fro
 }
 
 TEST_CASE("the standard error holds at the onset of chaos, too") {
-    // With lambda1 = .02 starts that are 1e-9 apart give one and the same run for half of the time: these are further apart.
-    for (const auto& known : {std::pair(Damping::equation_of_motion, 0.020), std::pair(Damping::equation_of_motion, 0.0205), std::pair(Damping::closed_form, 0.0165)}) {
+    // With lambda1 = .02 starts that are 1e-9 apart give one and the same run for half of the time:
+    // these are further apart.
+    for (const auto& known :
+         {std::pair(Damping::equation_of_motion, 0.020),
+          std::pair(Damping::equation_of_motion, 0.0205),
+          std::pair(Damping::closed_form, 0.0165)}) {
         const double b = known.second;
         CAPTURE(b);
         const Calibration c = calibrated(table1(b, known.first), 2e-4);
@@ -326,7 +357,8 @@ TEST_CASE("the standard error holds at the onset of chaos, too") {
 
 namespace {
 
-/// A run whose tangent was recomputed with a hundred digits and more, the trajectory with it: exponents of the whole run.
+/// A run whose tangent was recomputed with a hundred digits and more, the trajectory with it:
+/// exponents of the whole run.
 struct StrongDamping {
     const char* what;
     double epsilon, lambda;
@@ -346,29 +378,121 @@ constexpr double none = -std::numeric_limits<double>::infinity();
 TEST_CASE("under strong damping all four exponents are right, at any rank") {
     constexpr Damping closed = Damping::closed_form, eom = Damping::equation_of_motion;
     const StrongDamping known[] = {
-        {"zeta 10", 0.05, 200, closed, 20, 0.3, 0.9, 0.9, 0.3, {0, 0, 0, 0.95 * 0.3}, 40, 100000, 4,
-         {0.0056723236839369, -0.12984378119204, -2.6680087027799, -17.232506894841}, {0.070372431439586, -0.050132058578645, -0.11973908807599, -19.925188339914}},
-        {"zeta 8.6", 0.80917866769974689, 21.363503334655736, eom, 0.26780170460853864, 0.21131234520997721, 0.81772560131210015, 0.81772560131210015, 0.07112859158384742,
-         {-0.0031710484321584775, 0.0029965901031818623, -0.065598170880527967, -0.0041769171892573828}, 2366.1655901038775, 35, 4,
-         {-0.34366741113086, -1.6135158820599, -2.9607132928161, -13.953785470029}, {0.040390259097347, -0.058209029265579, -2.2499438291075, -16.60391945676}},
-        {"zeta 5.6, unequal walls", 0.15064434455945627, 73.960004802397734, eom, 0.0086122554350312082, 0.33739170999697005, 0.90235070591500022, 0.84645249893577612, 0.00037441434807136936,
-         {-0.00040230575317433512, 0.00090751325457271164, -0.00084329953683750245, 0.00074916792598473867}, 1481.9569811140002, 40, 4,
-         {-0.032690384256406, -0.12600170652154, -0.2180006222215, -10.833989923581}, {-0.013869373448737, -0.090602251398699, -0.21744948660788, -10.888761525125}},
-        {"a stick", 0.024276304435937958, 294.85623717481195, closed, 0.0014247957227879831, 0.54562696648383391, 0.48324236909615015, 0.48324236909615015, 1.8598019189242804e-06,
-         {9.680602585311668e-06, 2.378384782140888e-07, 1.6699791909377704e-05, 6.4177043543955012e-07}, 916.37699511469111, 35, 2,
-         {-0.33118025668333, -5.9743513608014, none, none}, {-0.070204260802211, -1.6171952809562, none, none}},
-        {"R+ = 0", 0.052667565342183663, 229.59525056812129, eom, 0.11437367683122851, 0.29326411690417381, 0, 0.80022174105769761, 0.00091501298544069117,
-         {0.00039746910119850011, 0.0015260214031807325, 0.0023582740947381883, 0.001599835056365465}, 300, 5, 3,
-         {-0.058072070404582, -0.41083814072606, -2.9950275161035, none}, {0.16052985541372, -0.083302379384022, -0.69334846528586, none}},
-        {"zeta 1", 2, 1, eom, 0.5, 0.8, 0.9, 0.95, 0.2, {0, 0, 0, 0.95 * 0.2}, 100, 100000, 4,
-         {-0.15183909027258, -0.31160048928563, -0.32179478866042, -1.4993668652669}, {-0.15541299039932, -0.29526281326432, -0.3218819275795, -1.5120435022424}},
-        {"R+ = 0 and sticks", 0.2, 40, eom, 0.5, 1.8, 0, 1, 0.01, {0, 0, 0, 0.95 * 0.01}, 60, 100000, 2,
-         {-0.15656933619226, -3.119792010623, none, none}, {-0.12743595432885, -3.1563190620616, none, none}},
+        {"zeta 10",
+         0.05,
+         200,
+         closed,
+         20,
+         0.3,
+         0.9,
+         0.9,
+         0.3,
+         {0, 0, 0, 0.95 * 0.3},
+         40,
+         100000,
+         4,
+         {0.0056723236839369, -0.12984378119204, -2.6680087027799, -17.232506894841},
+         {0.070372431439586, -0.050132058578645, -0.11973908807599, -19.925188339914}},
+        {"zeta 8.6",
+         0.80917866769974689,
+         21.363503334655736,
+         eom,
+         0.26780170460853864,
+         0.21131234520997721,
+         0.81772560131210015,
+         0.81772560131210015,
+         0.07112859158384742,
+         {-0.0031710484321584775, 0.0029965901031818623, -0.065598170880527967,
+          -0.0041769171892573828},
+         2366.1655901038775,
+         35,
+         4,
+         {-0.34366741113086, -1.6135158820599, -2.9607132928161, -13.953785470029},
+         {0.040390259097347, -0.058209029265579, -2.2499438291075, -16.60391945676}},
+        {"zeta 5.6, unequal walls",
+         0.15064434455945627,
+         73.960004802397734,
+         eom,
+         0.0086122554350312082,
+         0.33739170999697005,
+         0.90235070591500022,
+         0.84645249893577612,
+         0.00037441434807136936,
+         {-0.00040230575317433512, 0.00090751325457271164, -0.00084329953683750245,
+          0.00074916792598473867},
+         1481.9569811140002,
+         40,
+         4,
+         {-0.032690384256406, -0.12600170652154, -0.2180006222215, -10.833989923581},
+         {-0.013869373448737, -0.090602251398699, -0.21744948660788, -10.888761525125}},
+        {"a stick",
+         0.024276304435937958,
+         294.85623717481195,
+         closed,
+         0.0014247957227879831,
+         0.54562696648383391,
+         0.48324236909615015,
+         0.48324236909615015,
+         1.8598019189242804e-06,
+         {9.680602585311668e-06, 2.378384782140888e-07, 1.6699791909377704e-05,
+          6.4177043543955012e-07},
+         916.37699511469111,
+         35,
+         2,
+         {-0.33118025668333, -5.9743513608014, none, none},
+         {-0.070204260802211, -1.6171952809562, none, none}},
+        {"R+ = 0",
+         0.052667565342183663,
+         229.59525056812129,
+         eom,
+         0.11437367683122851,
+         0.29326411690417381,
+         0,
+         0.80022174105769761,
+         0.00091501298544069117,
+         {0.00039746910119850011, 0.0015260214031807325, 0.0023582740947381883,
+          0.001599835056365465},
+         300,
+         5,
+         3,
+         {-0.058072070404582, -0.41083814072606, -2.9950275161035, none},
+         {0.16052985541372, -0.083302379384022, -0.69334846528586, none}},
+        {"zeta 1",
+         2,
+         1,
+         eom,
+         0.5,
+         0.8,
+         0.9,
+         0.95,
+         0.2,
+         {0, 0, 0, 0.95 * 0.2},
+         100,
+         100000,
+         4,
+         {-0.15183909027258, -0.31160048928563, -0.32179478866042, -1.4993668652669},
+         {-0.15541299039932, -0.29526281326432, -0.3218819275795, -1.5120435022424}},
+        {"R+ = 0 and sticks",
+         0.2,
+         40,
+         eom,
+         0.5,
+         1.8,
+         0,
+         1,
+         0.01,
+         {0, 0, 0, 0.95 * 0.01},
+         60,
+         100000,
+         2,
+         {-0.15656933619226, -3.119792010623, none, none},
+         {-0.12743595432885, -3.1563190620616, none, none}},
     };
     for (const StrongDamping& k : known) {
         CAPTURE(k.what);
         Parameters p;
-        p.epsilon = k.epsilon, p.lambda = k.lambda, p.damping = k.damping, p.G = k.G, p.Omega = k.Omega, p.R_plus = k.R_plus, p.R_minus = k.R_minus, p.b = k.b;
+        p.epsilon = k.epsilon, p.lambda = k.lambda, p.damping = k.damping, p.G = k.G,
+        p.Omega = k.Omega, p.R_plus = k.R_plus, p.R_minus = k.R_minus, p.b = k.b;
         Lyapunov lyapunov(p, 0, k.tau_end, {});
         record(p, k.start, k.tau_end, k.max_impacts, {&lyapunov});
         const TransferProduct& product = lyapunov.product();
@@ -392,11 +516,16 @@ TEST_CASE("areas and volumes are carried as the deviations that span them") {
     for (int n = 0; n < 300; ++n) {
         System s = random_system(engine);
         const Parameters& p = s.parameters;
-        Contact c{0, n % 2 ? 1 : -1, {uniform(engine, -1, 1), uniform(engine, -1, 1), std::sin(n), std::cos(n)}, 0};
+        Contact c{
+            0,
+            n % 2 ? 1 : -1,
+            {uniform(engine, -1, 1), uniform(engine, -1, 1), std::sin(n), std::cos(n)},
+            0};
         c.relative_speed = c.side * uniform(engine, 0.1, 1);
         const Impact impact = impact_at(p, c, uniform(engine, -1, 1), 0);
         const Saltation M = saltation(p, impact);
-        const Leg leg = leg_of(n % 3 ? Flow::free(p) : Flow::stuck(p), uniform(engine, 0, 0.5), n % 3 == 0);
+        const Leg leg =
+            leg_of(n % 3 ? Flow::free(p) : Flow::stuck(p), uniform(engine, 0, 0.5), n % 3 == 0);
         Eigen::Matrix4d v;
         for (int i = 0; i < 16; ++i) v(i / 4, i % 4) = uniform(engine, -1, 1);
         auto area = [](const Eigen::Matrix4d& of) {
@@ -417,10 +546,18 @@ TEST_CASE("areas and volumes are carried as the deviations that span them") {
         Eigen::Matrix4d after_leg = v;
         carry(after_leg, leg, p.epsilon);
         const Eigen::Matrix4d after_impact = M.matrix() * v;
-        CHECK((carried(area(v), leg, p.epsilon) - area(after_leg)).norm() < 1e-12 * (1 + after_leg.squaredNorm()));
-        CHECK((carried(volume(v), leg).normal - volume(after_leg).normal).norm() < 1e-12 * (1 + std::pow(after_leg.norm(), 3)));
-        CHECK((carried(area(v), M, impact.R) - area(after_impact)).norm() < 1e-12 * (1 + after_impact.squaredNorm()));
-        CHECK((carried(volume(v), M, impact.R).normal - volume(after_impact).normal).norm() < 1e-12 * (1 + std::pow(after_impact.norm(), 3)));
+        CHECK(
+            (carried(area(v), leg, p.epsilon) - area(after_leg)).norm() <
+            1e-12 * (1 + after_leg.squaredNorm()));
+        CHECK(
+            (carried(volume(v), leg).normal - volume(after_leg).normal).norm() <
+            1e-12 * (1 + std::pow(after_leg.norm(), 3)));
+        CHECK(
+            (carried(area(v), M, impact.R) - area(after_impact)).norm() <
+            1e-12 * (1 + after_impact.squaredNorm()));
+        CHECK(
+            (carried(volume(v), M, impact.R).normal - volume(after_impact).normal).norm() <
+            1e-12 * (1 + std::pow(after_impact.norm(), 3)));
     }
 }
 

@@ -13,7 +13,8 @@ using namespace vines::test;
 
 namespace {
 
-/// Moduli of the eigenvalues of one cycle of symmetric impacts with speed V, with a free mass that is too light to be felt.
+/// Moduli of the eigenvalues of one cycle of symmetric impacts with speed V, with a free mass that
+/// is too light to be felt.
 Moduli cycle_moduli(double R, double Omega, double b, double V) {
     Parameters p;
     p.epsilon = 1e-9, p.lambda = 0, p.G = 0, p.b = b, p.R_plus = p.R_minus = R, p.Omega = Omega;
@@ -27,13 +28,14 @@ Moduli cycle_moduli(double R, double Omega, double b, double V) {
     return eigenvalue_moduli(record_of.transfers[1].T() * record_of.transfers[0].T());
 }
 
-/// How far the mass stays off both walls during the flight of a symmetric motion, least over a dense grid that leaves out
-/// its ends; negative: it would pass a wall.
+/// How far the mass stays off both walls during the flight of a symmetric motion, least over a
+/// dense grid that leaves out its ends; negative: it would pass a wall.
 double clearance(double R, double b, double V) {
     const double k = (1 - R) / (1 + R), x = b - std::numbers::pi / 2 * V;
     double least = b;
     for (int i = 1; i < 20000; ++i) {
-        const double t = std::numbers::pi * i / 20000, gap = x * std::cos(t) + k * V * std::sin(t) - (x - b + V * t);
+        const double t = std::numbers::pi * i / 20000,
+                     gap = x * std::cos(t) + k * V * std::sin(t) - (x - b + V * t);
         least = std::min(least, b - std::abs(gap));
     }
     return least;
@@ -54,7 +56,9 @@ std::vector<Impact> impacts_on_manifold(double R, double b, double V, double eps
 TEST_CASE("the manifold ends where the mass meets the wall that it comes from a second time") {
     CHECK(manifold_second_contact(0.001, 1, 0.02).V == doctest::Approx(0.0134).epsilon(5e-3));
     CHECK(manifold_second_contact(0.05, 1, 0.02).V == doctest::Approx(0.0186).epsilon(5e-3));
-    CHECK(manifold_second_contact(0, 1, 0.02).V == doctest::Approx(0.02 * 2 / std::numbers::pi).epsilon(1e-12));
+    CHECK(
+        manifold_second_contact(0, 1, 0.02).V ==
+        doctest::Approx(0.02 * 2 / std::numbers::pi).epsilon(1e-12));
     for (double R : {0.0, 1e-9, 1e-3, 0.05, 0.1, 0.3, 0.6, 0.9, 1.0}) {
         CAPTURE(R);
         const double V = manifold_second_contact(R, 1, 0.02).V;
@@ -72,7 +76,8 @@ TEST_CASE("a run started on the manifold alternates walls below its second conta
         for (double R : {0.001, 0.05}) {
             CAPTURE(R);
             const double V = manifold_second_contact(R, 1, 0.02).V;
-            const auto below = impacts_on_manifold(R, 0.02, 0.99 * V, epsilon), above = impacts_on_manifold(R, 0.02, 1.01 * V, epsilon);
+            const auto below = impacts_on_manifold(R, 0.02, 0.99 * V, epsilon),
+                       above = impacts_on_manifold(R, 0.02, 1.01 * V, epsilon);
             REQUIRE(below.size() == 3);
             for (std::size_t i = 0; i < 3; ++i) CHECK(below[i].side == (i % 2 == 0 ? -1 : 1));
             REQUIRE(above.size() > 0);
@@ -87,25 +92,34 @@ TEST_CASE("the fold is where C is smallest, and b can be chosen to put it at an 
         for (double Omega : {0.5, 1.0, 2.0}) {
             const ManifoldPoint fold = manifold_fold(R, Omega, 0.02);
             CHECK(manifold_C(R, Omega, 0.02, fold.V) == doctest::Approx(fold.C).epsilon(1e-12));
-            for (double factor : {0.9, 0.99, 1.01, 1.1}) CHECK(manifold_C(R, Omega, 0.02, factor * fold.V) > fold.C);
+            for (double factor : {0.9, 0.99, 1.01, 1.1})
+                CHECK(manifold_C(R, Omega, 0.02, factor * fold.V) > fold.C);
             CHECK(manifold_b(R, fold.C) == doctest::Approx(0.02).epsilon(1e-12));
         }
     }
     CHECK(manifold_fold(0.6, 1, 1).C == doctest::Approx(0.157).epsilon(0.01));  // in units of b
 }
 
-TEST_CASE("the motion on the manifold is stable between the fold and the loss of symmetry, and nowhere else") {
+TEST_CASE(
+    "the motion on the manifold is stable between the fold and the loss of symmetry, and nowhere "
+    "else") {
     for (double R : {0.3, 0.6, 0.85}) {
         CAPTURE(R);
-        const double fold = manifold_fold(R, 1, 0.02).V, breaking = manifold_symmetry_breaking(R, 1, 0.02).V;
+        const double fold = manifold_fold(R, 1, 0.02).V,
+                     breaking = manifold_symmetry_breaking(R, 1, 0.02).V;
         // The oscillator, which nothing damps, keeps two multipliers of modulus 1.
-        for (double share : {0.05, 0.5, 0.95}) CHECK(cycle_moduli(R, 1, 0.02, fold + share * (breaking - fold))[0] == doctest::Approx(1).epsilon(1e-6));
+        for (double share : {0.05, 0.5, 0.95})
+            CHECK(
+                cycle_moduli(R, 1, 0.02, fold + share * (breaking - fold))[0] ==
+                doctest::Approx(1).epsilon(1e-6));
         CHECK(cycle_moduli(R, 1, 0.02, 0.97 * fold)[0] > 1.01);
         CHECK(cycle_moduli(R, 1, 0.02, 1.03 * breaking)[0] > 1.01);
     }
 }
 
-TEST_CASE("a run with two symmetric impacts per cycle lies on the manifold, the closer the lighter the absorber") {
+TEST_CASE(
+    "a run with two symmetric impacts per cycle lies on the manifold, the closer the lighter the "
+    "absorber") {
     // Deviations of C as measured independently: -1.3 % and -.13 %.
     for (const double epsilon : {0.0084, 0.00084}) {
         Parameters p = table1(0.015, Damping::closed_form);
@@ -120,7 +134,9 @@ TEST_CASE("a run with two symmetric impacts per cycle lies on the manifold, the 
     }
 }
 
-TEST_CASE("half cycles hold the mean speed of the mass and the peak of the oscillator, stuck phases included") {
+TEST_CASE(
+    "half cycles hold the mean speed of the mass and the peak of the oscillator, stuck phases "
+    "included") {
     const Parameters p = table1(0.015, Damping::closed_form);
     HalfCycles points(p, 0, 60);  // with the stick at 11.8
     SeriesRecord series(1e-4);
@@ -128,7 +144,8 @@ TEST_CASE("half cycles hold the mean speed of the mass and the peak of the oscil
     for (std::size_t k = 0; k < points.points.size(); ++k) {
         double path = 0, peak = 0;
         for (std::size_t i = 0; i + 1 < series.tau.size(); ++i) {
-            if (series.tau[i] < points.tau[k] - std::numbers::pi || series.tau[i] > points.tau[k]) continue;
+            if (series.tau[i] < points.tau[k] - std::numbers::pi || series.tau[i] > points.tau[k])
+                continue;
             path += std::abs(series.y[i + 1] - series.y[i]);
             peak = std::max(peak, std::abs(series.x[i]));
         }

@@ -11,13 +11,17 @@ using namespace vines::test;
 
 namespace {
 
-/// How far the impacts agree with the reference to 1e-9 in tau and 1e-8 of a typical speed; in a chatter the nearest one counts.
+/// How far the impacts agree with the reference to 1e-9 in tau and 1e-8 of a typical speed; in a
+/// chatter the nearest one counts.
 double agreement(const Reference& reference, const Record& run) {
     std::size_t j = 0;
     for (const ReferenceImpact& r : reference.impacts) {
-        while (j + 1 < run.impacts.size() && std::abs(run.impacts[j + 1].tau - r.tau) <= std::abs(run.impacts[j].tau - r.tau)) ++j;
+        while (j + 1 < run.impacts.size() &&
+               std::abs(run.impacts[j + 1].tau - r.tau) <= std::abs(run.impacts[j].tau - r.tau))
+            ++j;
         const Impact& i = run.impacts[j];
-        if (std::abs(i.tau - r.tau) > 1e-9 || i.side != r.side || std::abs(i.x - r.x) > 1e-10) return r.tau;
+        if (std::abs(i.tau - r.tau) > 1e-9 || i.side != r.side || std::abs(i.x - r.x) > 1e-10)
+            return r.tau;
     }
     return 1709;
 }
@@ -28,19 +32,29 @@ TEST_CASE("impacts follow the reference to the end where the motion is regular")
     for (const char* name : {"closed_b0.008", "closed_b0.015", "eom_b0.008", "eom_b0.018"}) {
         CAPTURE(name);
         const Reference reference = read_reference(name);
-        CHECK(agreement(reference, record(reference.parameters, default_state(reference.parameters), 1709)) == 1709);
+        CHECK(
+            agreement(
+                reference,
+                record(reference.parameters, default_state(reference.parameters), 1709)) == 1709);
     }
 }
 
 TEST_CASE("impacts follow the reference until chaos has magnified the rounding of the input") {
     // The relative rounding of b alone, 1e-16, grows to 1e-9 over these times.
-    const std::pair<const char*, double> cases[] = {{"closed_b0.003", 110}, {"closed_b0.018", 180}, {"closed_b0.022", 100}, {"eom_b0.022", 240}};
+    const std::pair<const char*, double> cases[] = {
+        {"closed_b0.003", 110},
+        {"closed_b0.018", 180},
+        {"closed_b0.022", 100},
+        {"eom_b0.022", 240}};
     for (const auto& known : cases) {
         const char* const name = known.first;
         const double until = known.second;
         CAPTURE(name);
         const Reference reference = read_reference(name);
-        CHECK(agreement(reference, record(reference.parameters, default_state(reference.parameters), 1709)) > until);
+        CHECK(
+            agreement(
+                reference,
+                record(reference.parameters, default_state(reference.parameters), 1709)) > until);
     }
 }
 
@@ -52,8 +66,10 @@ TEST_CASE("every velocity before and after every impact is the reference's") {
     for (std::size_t k = 0; k < run.impacts.size(); ++k) {
         const Impact& i = run.impacts[k];
         const ReferenceImpact& r = reference.impacts[k];
-        worst = std::max({worst, std::abs(i.x_dot_before - r.x_dot_before), std::abs(i.y_dot_before - r.y_dot_before),
-                          std::abs(i.x_dot_after - r.x_dot_after), std::abs(i.y_dot_after - r.y_dot_after)});
+        worst = std::max(
+            {worst, std::abs(i.x_dot_before - r.x_dot_before),
+             std::abs(i.y_dot_before - r.y_dot_before), std::abs(i.x_dot_after - r.x_dot_after),
+             std::abs(i.y_dot_after - r.y_dot_after)});
     }
     CHECK(worst < 1e-13);
 }
@@ -73,12 +89,15 @@ TEST_CASE("all four exponents of a stick-free regular window are the reference's
         CAPTURE(name);
         const Reference reference = read_reference(name);
         Lyapunov lyapunov(reference.parameters, 0, 1709, {});
-        record(reference.parameters, default_state(reference.parameters), 1709, 1000000, {&lyapunov});
-        const Exponents qr = lyapunov.product().qr(), eigenvalues = lyapunov.product().eigenvalues();
+        record(
+            reference.parameters, default_state(reference.parameters), 1709, 1000000, {&lyapunov});
+        const Exponents qr = lyapunov.product().qr(),
+                        eigenvalues = lyapunov.product().eigenvalues();
         for (int k = 0; k < 4; ++k) {
             CAPTURE(k);
             CHECK(std::abs(qr[k] - reference.qr[k]) < 1e-11);
-            if (reference.eigenvalues[k] > -575 / 1700.0)  // the reference loses a smallest eigenvalue beyond e^-575
+            // The reference loses a smallest eigenvalue beyond e^-575.
+            if (reference.eigenvalues[k] > -575 / 1700.0)
                 CHECK(std::abs(eigenvalues[k] - reference.eigenvalues[k]) < 1e-11);
         }
     }
@@ -89,5 +108,8 @@ TEST_CASE("the eigenvalues of a product too wide for the reference add up to its
     Lyapunov lyapunov(reference.parameters, 0, 1709, {});
     record(reference.parameters, default_state(reference.parameters), 1709, 1000000, {&lyapunov});
     const Exponents eigenvalues = lyapunov.product().eigenvalues();
-    CHECK(std::abs(eigenvalues[0] + eigenvalues[1] + eigenvalues[2] + eigenvalues[3] - -0.460519228019486) < 1e-12);
+    CHECK(
+        std::abs(
+            eigenvalues[0] + eigenvalues[1] + eigenvalues[2] + eigenvalues[3] -
+            -0.460519228019486) < 1e-12);
 }

@@ -10,26 +10,34 @@ using namespace vines::test;
 
 namespace {
 
-double energy(const Parameters& p, const State& s) { return (s.x_dot * s.x_dot + s.x * s.x + p.epsilon * s.y_dot * s.y_dot) / 2; }
+double energy(const Parameters& p, const State& s) {
+    return (s.x_dot * s.x_dot + s.x * s.x + p.epsilon * s.y_dot * s.y_dot) / 2;
+}
 
-/// Work of the forcing and of the damper over each stretch by Gauss quadrature: a second way to the energy at its end.
+/// Work of the forcing and of the damper over each stretch by Gauss quadrature: a second way to the
+/// energy at its end.
 struct PowerBalance : Observer {
     explicit PowerBalance(const Parameters& parameters) : p(parameters) {}
     void on_stretch(const Stretch& stretch) override {
-        static constexpr double node[4] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
-        static constexpr double weight[4] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
-        const int parts = std::max(1, static_cast<int>(stretch.duration / stretch.flow.cell() / 4) + 1);
+        static constexpr double node[4] = {
+            0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
+        static constexpr double weight[4] = {
+            0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
+        const int parts =
+            std::max(1, static_cast<int>(stretch.duration / stretch.flow.cell() / 4) + 1);
         const double half = stretch.duration / parts / 2;
         for (int k = 0; k < parts; ++k)
             for (int j = 0; j < 8; ++j) {
                 const double s = (2 * k + 1 + (j < 4 ? -node[j] : node[j - 4])) * half;
                 const Oscillation o = stretch.flow.after(stretch.start, s);
-                work += weight[j % 4] * half * (p.epsilon * p.A() * o.sin_theta - 2 * p.zeta() * o.x_dot) * o.x_dot;
+                work += weight[j % 4] * half *
+                        (p.epsilon * p.A() * o.sin_theta - 2 * p.zeta() * o.x_dot) * o.x_dot;
                 scale += weight[j % 4] * half * std::abs(p.epsilon * p.A() * o.sin_theta * o.x_dot);
             }
     }
     void on_impact(const Impact& i) override {
-        lost += (1 - i.R * i.R) * i.relative_speed_before * i.relative_speed_before * p.epsilon / (2 * (1 + p.epsilon));
+        lost += (1 - i.R * i.R) * i.relative_speed_before * i.relative_speed_before * p.epsilon /
+                (2 * (1 + p.epsilon));
     }
     const Parameters& p;
     double work = 0, lost = 0, scale = 0;
@@ -44,14 +52,21 @@ struct Invariants : Observer {
         for (int k = 0; k <= 16; ++k) {
             const State at = s.at(s.duration * k / 16);
             outside = std::max(outside, std::abs(at.x - at.y) - p.b);
-            if (s.stuck_side != 0) apart = std::max(apart, std::abs(at.x - at.y - s.stuck_side * p.b));
+            if (s.stuck_side != 0)
+                apart = std::max(apart, std::abs(at.x - at.y - s.stuck_side * p.b));
         }
     }
     void on_impact(const Impact& i) override {
         ordered = ordered && i.tau >= last_impact;
         last_impact = i.tau;
-        momentum = std::max(momentum, std::abs(i.x_dot_after + p.epsilon * i.y_dot_after - i.x_dot_before - p.epsilon * i.y_dot_before));
-        restitution = std::max(restitution, std::abs(i.x_dot_after - i.y_dot_after + p.restitution(i.side) * (i.x_dot_before - i.y_dot_before)));
+        momentum = std::max(
+            momentum, std::abs(
+                          i.x_dot_after + p.epsilon * i.y_dot_after - i.x_dot_before -
+                          p.epsilon * i.y_dot_before));
+        restitution = std::max(
+            restitution, std::abs(
+                             i.x_dot_after - i.y_dot_after +
+                             p.restitution(i.side) * (i.x_dot_before - i.y_dot_before)));
         towards = towards && i.side * i.relative_speed_before > 0;
     }
     const Parameters& p;
@@ -73,22 +88,27 @@ TEST_CASE("thousands of random systems keep every invariant of the motion") {
         const Record run = record(s.parameters, s.start, 150, 2000, {&power, &invariants});
         impacts += run.outcome.impacts;
         sticks += static_cast<long>(run.sticks.size());
-        const double speed = 0.05 + s.parameters.b + run.outcome.impacts * 1e-6;  // typical length and speed
+        // Typical length and speed.
+        const double speed = 0.05 + s.parameters.b + run.outcome.impacts * 1e-6;
         CHECK(invariants.ordered);
         CHECK(invariants.towards);
         CHECK(invariants.outside < 1e-13 * speed * 100);
         CHECK(invariants.apart < 1e-13 * speed * 100);
         CHECK(invariants.momentum < 1e-15);
         CHECK(invariants.restitution < 1e-15);
-        const double change = energy(s.parameters, run.outcome.state) - energy(s.parameters, s.start);
-        CHECK(std::abs(change - power.work + power.lost) < 1e-11 * (power.scale + energy(s.parameters, s.start) + power.lost) + 1e-19);
+        const double change =
+            energy(s.parameters, run.outcome.state) - energy(s.parameters, s.start);
+        CHECK(
+            std::abs(change - power.work + power.lost) <
+            1e-11 * (power.scale + energy(s.parameters, s.start) + power.lost) + 1e-19);
     }
     CHECK(impacts > 100000);
     CHECK(sticks > 1000);
 }
 
 TEST_CASE("the run agrees with plain numerical integration") {
-    // The second method: classical Runge-Kutta of eq. (2) with 400 steps per unit of tau, contacts by bisection of its steps.
+    // The second method: classical Runge-Kutta of eq. (2) with 400 steps per unit of tau, contacts
+    // by bisection of its steps.
     std::mt19937_64 engine(5);
     for (int n = 0; n < 40; ++n) {
         CAPTURE(n);
@@ -100,16 +120,21 @@ TEST_CASE("the run agrees with plain numerical integration") {
         if (run.impacts.size() < 6 || !run.sticks.empty()) continue;
         double x = s.start.x, v = s.start.x_dot, y = s.start.y, u = s.start.y_dot, tau = 0;
         const double h = 1.0 / 400;
-        auto acceleration = [&](double t, double q, double w) { return p.epsilon * p.A() * std::sin(p.Omega * t + p.phi()) - q - 2 * p.zeta() * w; };
+        auto acceleration = [&](double t, double q, double w) {
+            return p.epsilon * p.A() * std::sin(p.Omega * t + p.phi()) - q - 2 * p.zeta() * w;
+        };
         auto step = [&](double d, double& q, double& w) {
-            const double k1 = acceleration(tau, q, w), k2 = acceleration(tau + d / 2, q + d / 2 * w, w + d / 2 * k1),
-                         k3 = acceleration(tau + d / 2, q + d / 2 * w + d * d / 4 * k1, w + d / 2 * k2),
+            const double k1 = acceleration(tau, q, w),
+                         k2 = acceleration(tau + d / 2, q + d / 2 * w, w + d / 2 * k1),
+                         k3 = acceleration(
+                             tau + d / 2, q + d / 2 * w + d * d / 4 * k1, w + d / 2 * k2),
                          k4 = acceleration(tau + d, q + d * w + d * d / 2 * k2, w + d * k3);
             q += d * w + d * d / 6 * (k1 + k2 + k3);
             w += d / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
         };
         for (const Impact& i : run.impacts) {
-            if (std::abs(i.relative_speed_before) < 1e-4) break;  // a grazing or chattering contact magnifies the integrator's error
+            // a grazing or chattering contact magnifies the integrator's error.
+            if (std::abs(i.relative_speed_before) < 1e-4) break;
             for (;;) {
                 double q = x, w = v;
                 step(h, q, w);
@@ -128,7 +153,8 @@ TEST_CASE("the run agrees with plain numerical integration") {
             y += u * low, tau += low;
             REQUIRE(std::abs(tau - i.tau) < 1e-6);
             CHECK(std::abs(v - i.x_dot_before) < 1e-7);
-            x = i.x, v = i.x_dot_after, u = i.y_dot_after, y = i.x - i.side * p.b, tau = i.tau;  // do not let its error add up
+            // Do not let its error add up.
+            x = i.x, v = i.x_dot_after, u = i.y_dot_after, y = i.x - i.side * p.b, tau = i.tau;
             double q = x, w = v;
             step(1e-5, q, w);
             x = q, v = w, y += u * 1e-5, tau += 1e-5;  // off the wall
@@ -146,7 +172,9 @@ TEST_CASE("a run ends at tau_end, and a contact there belongs to it") {
     CHECK(all.outcome.tau == 100);
 }
 
-TEST_CASE("a start on a wall: into it is an impact at once, away from it is a flight, pressed against it is a stick") {
+TEST_CASE(
+    "a start on a wall: into it is an impact at once, away from it is a flight, pressed against it "
+    "is a stick") {
     Parameters p = table1(0.01, Damping::closed_form);
     Record run = record(p, {0.01, 0, 0, -0.01}, 1);  // x - y = b, moving in
     REQUIRE(!run.impacts.empty());
@@ -155,7 +183,8 @@ TEST_CASE("a start on a wall: into it is an impact at once, away from it is a fl
     run = record(p, {-0.01, 0, 0, -0.01}, 0.5);
     CHECK(run.impacts.empty());
     CHECK(run.sticks.empty());
-    run = record(p, {0, -0.005, 0, -0.015}, 1);  // at rest relative to each other, x'' > 0 presses at x - y = +b
+    // At rest relative to each other, x'' > 0 presses at x - y = +b.
+    run = record(p, {0, -0.005, 0, -0.015}, 1);
     REQUIRE(run.sticks.size() == 1);
     CHECK(run.sticks[0].start.tau == 0);
     CHECK(run.sticks[0].start.impacts == 0);
@@ -202,16 +231,20 @@ TEST_CASE("a chatter's impacts follow each other by their geometric law down to 
     CHECK(run.sticks[0].start.impacts > 30);
     CHECK(run.sticks[0].start.impacts < 60);
     std::size_t last = 0;
-    while (run.impacts[last].tau <= run.sticks[0].start.tau && last + 1 < run.impacts.size()) ++last;
+    while (run.impacts[last].tau <= run.sticks[0].start.tau && last + 1 < run.impacts.size())
+        ++last;
     --last;
     for (std::size_t k = last - 10; k < last; ++k) {
-        CHECK(run.impacts[k + 1].relative_speed_before / run.impacts[k].relative_speed_before == doctest::Approx(0.6).epsilon(1e-6));
+        CHECK(
+            run.impacts[k + 1].relative_speed_before / run.impacts[k].relative_speed_before ==
+            doctest::Approx(0.6).epsilon(1e-6));
         CHECK_FALSE(run.impacts[k].grazing);
     }
 }
 
 TEST_CASE("a tangent contact is reported and does not end the flight") {
-    // The free mass rests in the middle; the undamped, unforced oscillator swings with amplitude b but for rounding.
+    // The free mass rests in the middle; the undamped, unforced oscillator swings with amplitude b
+    // but for rounding.
     Parameters p = table1(0.01, Damping::closed_form);
     p.lambda = 0;
     p.G = 0;
@@ -227,7 +260,8 @@ TEST_CASE("a tangent contact is reported and does not end the flight") {
 TEST_CASE("a stop function ends a run with what it has") {
     const Parameters p = table1(0.022, Damping::closed_form);
     long asked = 0;
-    const Outcome outcome = simulate(p, default_state(p), {1e7, 1000000000, [&] { return ++asked > 10; }}, {});
+    const Outcome outcome =
+        simulate(p, default_state(p), {1e7, 1000000000, [&] { return ++asked > 10; }}, {});
     CHECK(outcome.reason == End::stopped);
     CHECK(outcome.tau < 1e5);
 }
@@ -242,13 +276,16 @@ TEST_CASE("the series is the motion between the impacts, at equal steps and at t
     CHECK(series.tau.back() == 100.1);
     CHECK(series.x.back() == run.outcome.state.x);
     const Flow flow = Flow::free(p);
-    const Oscillation o = flow.after({0, 0, std::sin(p.phi()), std::cos(p.phi())}, 18);  // before the first impact
+    // Before the first impact.
+    const Oscillation o = flow.after({0, 0, std::sin(p.phi()), std::cos(p.phi())}, 18);
     CHECK(std::abs(series.x[72] - o.x) < 1e-16);
     CHECK(std::abs(series.y[72] - 0.95 * p.b) < 1e-16);
-    for (std::size_t k = 0; k < series.tau.size(); ++k) CHECK(std::abs(series.x[k] - series.y[k]) < p.b + 1e-15);
+    for (std::size_t k = 0; k < series.tau.size(); ++k)
+        CHECK(std::abs(series.x[k] - series.y[k]) < p.b + 1e-15);
 }
 
-TEST_CASE("two symmetric impacts per cycle lie on the slow invariant manifold as epsilon vanishes") {
+TEST_CASE(
+    "two symmetric impacts per cycle lie on the slow invariant manifold as epsilon vanishes") {
     // C^2 = (pi V/2 - b)^2 + k^2 V^2, k = (1 - R)/(1 + R)
     double error[2];
     for (int n = 0; n < 2; ++n) {
@@ -260,14 +297,19 @@ TEST_CASE("two symmetric impacts per cycle lie on the slow invariant manifold as
             double C = 0, from;
             void on_stretch(const Stretch& s) override {
                 if (s.tau > from)
-                    for (int k = 0; k <= 64; ++k) C = std::max(C, std::abs(s.at(s.duration * k / 64).x));
+                    for (int k = 0; k <= 64; ++k)
+                        C = std::max(C, std::abs(s.at(s.duration * k / 64).x));
             }
         } amplitude;
         amplitude.from = run.outcome.tau - 50;
         record(p, default_state(p), run.outcome.tau, 1000000, {&amplitude});
         C = amplitude.C;
         const double V = std::abs(run.impacts.back().y_dot_after), k = 0.4 / 1.6;
-        error[n] = std::sqrt((std::numbers::pi * V / 2 - p.b) * (std::numbers::pi * V / 2 - p.b) + k * k * V * V) / C - 1;
+        error[n] = std::sqrt(
+                       (std::numbers::pi * V / 2 - p.b) * (std::numbers::pi * V / 2 - p.b) +
+                       k * k * V * V) /
+                       C -
+                   1;
     }
     CHECK(std::abs(error[0]) < 0.03);
     CHECK(std::abs(error[1]) < 0.003);

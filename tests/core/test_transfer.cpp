@@ -20,7 +20,10 @@ TEST_CASE("J has the moduli e^(-zeta s) twice and 1 twice, T has the determinant
         if (t.rank() < 4) continue;
         const double decay = std::exp(-p.zeta() * (t.tau - run.impacts[i].tau));
         const Moduli J = t.J_moduli(), T = t.T_moduli();
-        CHECK(std::abs(J[0] - 1) + std::abs(J[1] - 1) + std::abs(J[2] - decay) + std::abs(J[3] - decay) < 1e-13);
+        CHECK(
+            std::abs(J[0] - 1) + std::abs(J[1] - 1) + std::abs(J[2] - decay) +
+                std::abs(J[3] - decay) <
+            1e-13);
         CHECK(T[0] * T[1] * T[2] * T[3] == doctest::Approx(decay * decay * 0.36).epsilon(1e-9));
         const Moduli plain = eigenvalue_moduli(t.T());
         for (int k = 0; k < 4; ++k) CHECK(T[k] == doctest::Approx(plain[k]).epsilon(1e-6));
@@ -61,7 +64,8 @@ TEST_CASE("the condition number of M is that of its singular values, and grows t
         const Saltation m = saltation(p, i);
         const Matrix4 M = m.matrix();
         CHECK(m.condition(i.R) >= before);
-        if (speed > 1e-3) CHECK(m.condition(i.R) == doctest::Approx(M.norm() * M.inverse().norm()).epsilon(1e-6));
+        if (speed > 1e-3)
+            CHECK(m.condition(i.R) == doctest::Approx(M.norm() * M.inverse().norm()).epsilon(1e-6));
         before = m.condition(i.R);
     }
     CHECK(before > 1e8);

@@ -30,8 +30,8 @@ struct Window {
     double residual;  ///< of the sum rule, or of what stands for it at a lower rank
 };
 
-/// The run's first impacts, as many as asked for or as the digits suffice for; none where these are too few, or
-/// where double precision leaves the true run.
+/// The run's first impacts, as many as asked for or as the digits suffice for; none where these are
+/// too few, or where double precision leaves the true run.
 std::optional<Window> window_of(const System& system, int most) {
     const auto& [p, start] = system;
     const double longest = 500 / p.Omega;
@@ -40,22 +40,25 @@ std::optional<Window> window_of(const System& system, int most) {
         Lyapunov lyapunov(p, 0, longest, {true, true, false, 256});
         Observer* const observers[] = {&record, &lyapunov};
         simulate(p, start, {longest, most, {}}, observers);
-        while (!record.events.empty() && record.events.back().kind != Event::impact) record.events.pop_back();
+        while (!record.events.empty() && record.events.back().kind != Event::impact)
+            record.events.pop_back();
         const TransferProduct& product = lyapunov.product();
         if (product.impacts() < fewest_impacts(p)) return std::nullopt;
         const Retraced run = retrace(p, start, record.events);
         if (!(run.departure < most_departure)) return std::nullopt;
         if (!exact_exponents_possible(digits_lost(p, run))) continue;
         char more[100];
-        std::snprintf(more, sizeof more, "\"tau_end\":%.17g,\"max_impacts\":%d,\"include\":[\"exponents\"]",
-                      longest, most);
-        return Window{request(system, more),
-                      exact_exponents(p, run),
-                      product.qr(),
-                      product.eigenvalues(),
-                      static_cast<int>(product.impacts()),
-                      product.rank(),
-                      product.sum_rule_residual()};
+        std::snprintf(
+            more, sizeof more, "\"tau_end\":%.17g,\"max_impacts\":%d,\"include\":[\"exponents\"]",
+            longest, most);
+        return Window{
+            request(system, more),
+            exact_exponents(p, run),
+            product.qr(),
+            product.eigenvalues(),
+            static_cast<int>(product.impacts()),
+            product.rank(),
+            product.sum_rule_residual()};
     }
     return std::nullopt;
 }
@@ -66,13 +69,14 @@ Window random_window(std::uint64_t seed, int number) {
     for (;;) {
         const System system = strongly_damped(engine);
         const int fewest = fewest_impacts(system.parameters), most = fewest == 3 ? 5 : most_impacts;
-        if (auto window = window_of(system, fewest + static_cast<int>(engine() % (most - fewest + 1))))
+        if (auto window =
+                window_of(system, fewest + static_cast<int>(engine() % (most - fewest + 1))))
             return *window;
     }
 }
 
-/// The largest difference of two spectra, each in descending order; infinite where one has a number and the other
-/// has none.
+/// The largest difference of two spectra, each in descending order; infinite where one has a number
+/// and the other has none.
 double difference(Exponents a, Exponents b) {
     double most = 0;
     std::sort(a.begin(), a.end(), std::greater<>());
@@ -93,13 +97,15 @@ void print(const char* name, Exponents e) {
 
 bool hunt_exponents(int systems, std::uint64_t seed, int threads) {
     std::vector<std::optional<Window>> windows(static_cast<std::size_t>(systems));
-    parallel(windows.size(), threads,
-             [&](std::size_t i) { windows[i] = random_window(seed, static_cast<int>(i)); });
+    parallel(windows.size(), threads, [&](std::size_t i) {
+        windows[i] = random_window(seed, static_cast<int>(i));
+    });
     int of_rank[5] = {}, wrong_qr = 0, wrong_eigenvalues = 0, wrong_rank = 0, wrong_residual = 0;
     double worst = 0;
     for (const auto& window : windows) {
         const auto& [request, exact, qr, eigenvalues, impacts, rank, residual] = *window;
-        const double of_qr = difference(qr, exact.qr), of_eigenvalues = difference(eigenvalues, exact.eigenvalues);
+        const double of_qr = difference(qr, exact.qr),
+                     of_eigenvalues = difference(eigenvalues, exact.eigenvalues);
         const bool rank_is_wrong = rank != exact.rank || impacts != exact.impacts,
                    residual_is_wrong = !(residual < tolerance);
         ++of_rank[exact.rank];
@@ -108,19 +114,22 @@ bool hunt_exponents(int systems, std::uint64_t seed, int threads) {
         wrong_qr += of_qr > tolerance;
         wrong_eigenvalues += of_eigenvalues > tolerance;
         worst = std::max({worst, of_qr, of_eigenvalues});
-        if (!rank_is_wrong && !residual_is_wrong && std::max(of_qr, of_eigenvalues) <= tolerance) continue;
-        std::printf("WRONG  exponents: %d impacts (%d), rank %d (%d), sum rule residual %.3g\n    %s\n", impacts,
-                    exact.impacts, rank, exact.rank, residual, request.c_str());
+        if (!rank_is_wrong && !residual_is_wrong && std::max(of_qr, of_eigenvalues) <= tolerance)
+            continue;
+        std::printf(
+            "WRONG  exponents: %d impacts (%d), rank %d (%d), sum rule residual %.3g\n    %s\n",
+            impacts, exact.impacts, rank, exact.rank, residual, request.c_str());
         print("qr", qr);
         print("qr, exact", exact.qr);
         print("eigenvalues", eigenvalues);
         print("eigenvalues, exact", exact.eigenvalues);
     }
     std::printf(
-        "%d strongly damped systems (rank 4: %d, 3: %d, 2: %d): %d wrong qr, %d wrong eigenvalues, %d wrong ranks, "
+        "%d strongly damped systems (rank 4: %d, 3: %d, 2: %d): %d wrong qr, %d wrong eigenvalues, "
+        "%d wrong ranks, "
         "%d residuals above 1e-6; worst difference %.2g\n",
-        systems, of_rank[4], of_rank[3], of_rank[2], wrong_qr, wrong_eigenvalues, wrong_rank, wrong_residual,
-        worst);
+        systems, of_rank[4], of_rank[3], of_rank[2], wrong_qr, wrong_eigenvalues, wrong_rank,
+        wrong_residual, worst);
     return wrong_qr + wrong_eigenvalues + wrong_rank + wrong_residual == 0;
 }
 

@@ -5,8 +5,8 @@
 
 namespace vines::hunt {
 
-/// Compares the exponents of so many random strongly damped runs with those of the exact product. True if all
-/// agree; says what it finds on standard output.
+/// Compares the exponents of so many random strongly damped runs with those of the exact product.
+/// True if all agree; says what it finds on standard output.
 bool hunt_exponents(int systems, std::uint64_t seed, int threads);
 
 }  // namespace vines::hunt

@@ -27,7 +27,8 @@ Square<Real> product_of(const Parameters& p, std::span<const PreciseEvent> windo
     auto P = Square<Real>::identity(4);
     for (const PreciseEvent& e : window) {
         const Real s(e.since);
-        if (e.kind == Event::impact) P = strike(e.collision.as<Real>(), epsilon) * (flight(free, s) * P);
+        if (e.kind == Event::impact)
+            P = strike(e.collision.as<Real>(), epsilon) * (flight(free, s) * P);
         else P = together(stuck, epsilon, s) * P;
     }
     return P;
@@ -62,7 +63,8 @@ Square<Real> minors(const Square<Real>& P, int k) {
             if (bits >> i & 1) chosen.push_back(i);
         if (static_cast<int>(chosen.size()) == k) choices.push_back(chosen);
     }
-    const auto determinant = [&](auto&& self, std::vector<int> rows, const std::vector<int>& columns) -> Real {
+    const auto determinant = [&](auto&& self, std::vector<int> rows,
+                                 const std::vector<int>& columns) -> Real {
         if (rows.empty()) return 1;
         const int row = rows.back();
         rows.pop_back();
@@ -87,7 +89,8 @@ template <class Real>
 double log_radius(const Square<Real>& C) {
     Square<Precise> power(C.n);
     const Real size = C.largest();
-    for (std::size_t i = 0; i < C.entries.size(); ++i) power.entries[i] = Precise(C.entries[i] / size);
+    for (std::size_t i = 0; i < C.entries.size(); ++i)
+        power.entries[i] = Precise(C.entries[i] / size);
     Precise log_radius = log(Precise(size)), share = 1;
     for (int k = 0; k < 60; ++k) {
         power = power * power;
@@ -125,13 +128,15 @@ ExactExponents exponents_in(const Parameters& p, const Retraced& run, double los
 
 constexpr unsigned few_digits = 250, many_digits = 1000;
 
-/// Digits enough for a product that loses so many, and for telling a length that is nothing from one that is small.
+/// Digits enough for a product that loses so many, and for telling a length that is nothing from
+/// one that is small.
 double digits_for(double lost) { return lost + 60; }
 
 }  // namespace
 
 double digits_lost(const Parameters& p, const Retraced& run) {
-    // The condition number of each factor: of J through det J = e^(-2 zeta s), of M through its determinant R^2.
+    // The condition number of each factor: of J through det J = e^(-2 zeta s), of M through its
+    // determinant R^2.
     double digits = 0;
     const double zeta = p.zeta();
     for (const PreciseEvent& e : window_of(run)) {
@@ -140,7 +145,8 @@ double digits_lost(const Parameters& p, const Retraced& run) {
         if (e.kind != Event::impact) continue;
         const Collision<Precise>& c = e.collision;
         const double kappa =
-            static_cast<double>(abs(c.x_ddot_before / (c.x_dot_before - c.y_dot_before))) + 2 * zeta;
+            static_cast<double>(abs(c.x_ddot_before / (c.x_dot_before - c.y_dot_before))) +
+            2 * zeta;
         digits += 2 * std::log10(2 + kappa) - (c.R > 0 ? std::log10(static_cast<double>(c.R)) : 0);
     }
     return digits;

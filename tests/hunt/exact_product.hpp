@@ -1,5 +1,5 @@
-// The Lyapunov exponents of a run from the plain product of all its transfer matrices, in so many digits that
-// nothing of it is lost.
+// The Lyapunov exponents of a run from the plain product of all its transfer matrices, in so many
+// digits that nothing of it is lost.
 #pragma once
 
 #include "core/lyapunov.hpp"

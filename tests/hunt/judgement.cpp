@@ -10,13 +10,13 @@ namespace {
 
 // The periods that must be found.
 constexpr int longest_sought = 64;
-// Next to an orbit, in units of the motion's size: so near that what follows is its pull; and as far as a capture
-// may be said.
+// Next to an orbit, in units of the motion's size: so near that what follows is its pull; and as
+// far as a capture may be said.
 constexpr double next_to = 0.01, around = 0.5;
 // The moment is a matter of the norm: a hundredth of it more is no fault.
 constexpr double moment_share = 0.01;
-// A deviation that has grown by less, in e-folds over the whole long run, has not grown as in chaos: on a torus it
-// grows as the number of cycles, in a slow approach not even that.
+// A deviation that has grown by less, in e-folds over the whole long run, has not grown as in
+// chaos: on a torus it grows as the number of cycles, in a slow approach not even that.
 constexpr double least_growth = 25;
 constexpr double sigmas = 5;
 
@@ -40,80 +40,98 @@ const char* type_expected(int period, int impacts, bool symmetric) {
     return period == 1 && symmetric ? "III" : "IV";
 }
 
-void judge_orbit(const Parameters& p, const Statement& s, const LongRun& run, int period,
-                 std::vector<std::string>& wrong) {
+void judge_orbit(
+    const Parameters& p, const Statement& s, const LongRun& run, int period,
+    std::vector<std::string>& wrong) {
     const int end = run.cycles();
     if (period == 0) {
         if (chaotic(run, s.cycles, end)) {
             const auto exponent = run.exponent(s.cycles, end);
-            wrong.push_back(
-                sentence("periodic (%d cycles) is said, but the run stays irregular: lambda1 = %.4g +- %.2g over "
-                         "the next %d cycles",
-                         s.period, exponent.lambda1, exponent.error, end - s.cycles));
-        } else if (end > s.period &&
-                   run.miss(end, s.period) > std::max(1e-3, run.miss(s.cycles, std::min(s.period, s.cycles)))) {
-            wrong.push_back(
-                sentence("periodic (%d cycles) is said, but the run does not return: it misses by %.2g then, by "
-                         "%.2g at the end of the long run",
-                         s.period, run.miss(s.cycles, std::min(s.period, s.cycles)), run.miss(end, s.period)));
+            wrong.push_back(sentence(
+                "periodic (%d cycles) is said, but the run stays irregular: lambda1 = %.4g +- %.2g "
+                "over "
+                "the next %d cycles",
+                s.period, exponent.lambda1, exponent.error, end - s.cycles));
+        } else if (
+            end > s.period &&
+            run.miss(end, s.period) >
+                std::max(1e-3, run.miss(s.cycles, std::min(s.period, s.cycles)))) {
+            wrong.push_back(sentence(
+                "periodic (%d cycles) is said, but the run does not return: it misses by %.2g "
+                "then, by "
+                "%.2g at the end of the long run",
+                s.period, run.miss(s.cycles, std::min(s.period, s.cycles)),
+                run.miss(end, s.period)));
         }
         return;
     }
     const int captured = run.captured_from(period, around);
     if (s.captured_at && captured > s.cycles) {
-        wrong.push_back(
-            sentence("periodic (%d cycles) is said, but the run is captured only at cycle %d, by %d cycles",
-                     s.period, captured, period));
+        wrong.push_back(sentence(
+            "periodic (%d cycles) is said, but the run is captured only at cycle %d, by %d cycles",
+            s.period, captured, period));
     } else if (s.period != period) {
         wrong.push_back(sentence("a period of %d cycles is said, it is %d", s.period, period));
     } else {
         if (s.captured_at && captured > *s.captured_at + 1 + moment_share * captured)
-            wrong.push_back(sentence("a capture at cycle %.0f is said, but the run leaves the orbit until cycle %d",
-                                     *s.captured_at, captured));
+            wrong.push_back(sentence(
+                "a capture at cycle %.0f is said, but the run leaves the orbit until cycle %d",
+                *s.captured_at, captured));
         const auto contacts = run.contacts_at_end(period);
         // Behind a complete chatter the walls' R are forgotten, but not in it.
         const bool walls_differ = p.R_plus != p.R_minus && contacts.impacts > 0,
                    symmetric = !walls_differ && run.ends_symmetric(period);
         if (s.symmetric != symmetric)
-            wrong.push_back(sentence("symmetric: %d is said of a period of %d cycles, it is the other way round",
-                                     s.symmetric, period));
+            wrong.push_back(sentence(
+                "symmetric: %d is said of a period of %d cycles, it is the other way round",
+                s.symmetric, period));
         const char* type = p.G > 0 ? type_expected(period, contacts.impacts, symmetric) : "none";
         if (contacts.sticks == 0 && s.type != type)
-            wrong.push_back(sentence("type %s is said of %d impacts in %d cycles, it is %s", s.type.c_str(),
-                                     contacts.impacts, period, type));
+            wrong.push_back(sentence(
+                "type %s is said of %d impacts in %d cycles, it is %s", s.type.c_str(),
+                contacts.impacts, period, type));
     }
 }
 
-void judge_verdict(const Statement& s, const LongRun& run, int period, std::vector<std::string>& wrong) {
+void judge_verdict(
+    const Statement& s, const LongRun& run, int period, std::vector<std::string>& wrong) {
     const int end = run.cycles(), captured = period > 0 ? run.captured_from(period, next_to) : end;
     if (s.verdict == Verdict::regular) {
         if (chaotic(run, 0, captured) && captured > s.cycles) {
             const auto exponent = run.exponent(0, captured);
-            wrong.push_back(
-                sentence("regular is said, but the run is irregular up to cycle %d: lambda1 = %.4g +- %.2g",
-                         captured, exponent.lambda1, exponent.error));
+            wrong.push_back(sentence(
+                "regular is said, but the run is irregular up to cycle %d: lambda1 = %.4g +- %.2g",
+                captured, exponent.lambda1, exponent.error));
         }
     } else if (s.verdict == Verdict::chaotic) {
         if (period > 0 && captured <= 1)
-            wrong.push_back(
-                sentence("chaotic is said of a run that is on an orbit of %d cycles all along", period));
-        else if (run.growth(0, captured) < least_growth && (captured <= s.cycles || captured == end))
             wrong.push_back(sentence(
-                "chaotic is said, but a deviation grows by %.1f e-folds only in the %d cycles up to %s",
-                run.growth(0, captured), captured, period > 0 ? "the capture" : "the end of the long run"));
+                "chaotic is said of a run that is on an orbit of %d cycles all along", period));
+        else if (
+            run.growth(0, captured) < least_growth && (captured <= s.cycles || captured == end))
+            wrong.push_back(sentence(
+                "chaotic is said, but a deviation grows by %.1f e-folds only in the %d cycles up "
+                "to %s",
+                run.growth(0, captured), captured,
+                period > 0 ? "the capture" : "the end of the long run"));
         else if (run.growth(0, std::min(captured, s.cycles)) <= 0)
-            wrong.push_back(sentence("chaotic is said, but a deviation has shrunk by %.1f e-folds",
-                                     -run.growth(0, std::min(captured, s.cycles))));
+            wrong.push_back(sentence(
+                "chaotic is said, but a deviation has shrunk by %.1f e-folds",
+                -run.growth(0, std::min(captured, s.cycles))));
         else if (!chaotic(run, 0, captured) && run.returns_all_along(0, s.cycles))
             wrong.push_back("chaotic is said of a motion that returns all along");
     }
-    if (s.verdict == Verdict::regular && s.lambda1 > verdict_sigmas * s.error && !s.chaotic_before && !s.periodic)
-        wrong.push_back(sentence("regular is said beside lambda1 = %.4g +- %.2g", s.lambda1, s.error));
+    if (s.verdict == Verdict::regular && s.lambda1 > verdict_sigmas * s.error &&
+        !s.chaotic_before && !s.periodic)
+        wrong.push_back(
+            sentence("regular is said beside lambda1 = %.4g +- %.2g", s.lambda1, s.error));
     if (s.verdict == Verdict::chaotic && s.lambda1 < 0)
-        wrong.push_back(sentence("chaotic is said beside lambda1 = %.4g +- %.2g", s.lambda1, s.error));
+        wrong.push_back(
+            sentence("chaotic is said beside lambda1 = %.4g +- %.2g", s.lambda1, s.error));
     if (s.verdict == Verdict::chaotic && s.periodic && !s.chaotic_before)
         wrong.push_back("chaotic is said of a periodic motion, and no chaos before its capture");
-    if (s.verdict == Verdict::none && s.type != "none") wrong.push_back("no verdict is given of a motion of type " + s.type);
+    if (s.verdict == Verdict::none && s.type != "none")
+        wrong.push_back("no verdict is given of a motion of type " + s.type);
     if (!s.periodic && (s.type == "III" || s.type == "IV" || s.type == "V"))
         wrong.push_back("type " + s.type + ", a periodic one, is said of a motion that is not");
 }
@@ -142,10 +160,13 @@ std::vector<std::string> contradictions(const std::vector<Statement>& runs, cons
     for (std::size_t i = 1; i < runs.size(); ++i) {
         const Statement &shorter = runs[i - 1], &longer = runs[i];
         if (shorter.verdict == Verdict::regular && longer.verdict == Verdict::chaotic)
-            wrong.push_back(sentence("regular after %d cycles, chaotic after %d", shorter.cycles, longer.cycles));
-        if (shorter.verdict == Verdict::chaotic && longer.verdict == Verdict::regular && captured > longer.cycles)
-            wrong.push_back(sentence("chaotic after %d cycles, regular after %d, without a capture", shorter.cycles,
-                                     longer.cycles));
+            wrong.push_back(sentence(
+                "regular after %d cycles, chaotic after %d", shorter.cycles, longer.cycles));
+        if (shorter.verdict == Verdict::chaotic && longer.verdict == Verdict::regular &&
+            captured > longer.cycles)
+            wrong.push_back(sentence(
+                "chaotic after %d cycles, regular after %d, without a capture", shorter.cycles,
+                longer.cycles));
     }
     return wrong;
 }

@@ -10,14 +10,17 @@
 namespace vines::hunt {
 
 struct Judgement {
-    std::vector<std::string> wrong;  ///< sentences on what is said with confidence and does not hold
-    int recurrent = 0;    ///< the period, of up to 64 cycles, that the run itself returns with at its end
+    /// Sentences on what is said with confidence and does not hold.
+    std::vector<std::string> wrong;
+    /// The period, of up to 64 cycles, that the run itself returns with at its end.
+    int recurrent = 0;
     bool missed = false;  ///< and which was not found
 };
 
 Judgement judge(const Parameters& parameters, const Statement& statement, const LongRun& run);
 
 /// What contradicts itself among statements on longer and longer runs from the same start.
-std::vector<std::string> contradictions(const std::vector<Statement>& longer_and_longer, const LongRun& run);
+std::vector<std::string> contradictions(
+    const std::vector<Statement>& longer_and_longer, const LongRun& run);
 
 }  // namespace vines::hunt

@@ -22,9 +22,12 @@ constexpr long most_impacts = 600000;
 /// The states at half cycles.
 class HalfCycleStates : public Observer {
 public:
-    HalfCycleStates(const Parameters& p, std::vector<State>& states) : half_(0.5 * p.cycle()), states_(states) {}
+    HalfCycleStates(const Parameters& p, std::vector<State>& states)
+        : half_(0.5 * p.cycle()),
+          states_(states) {}
     void on_stretch(const Stretch& stretch) override {
-        for (double tau; (tau = static_cast<double>(states_.size()) * half_) < stretch.tau + stretch.duration;)
+        for (double tau;
+             (tau = static_cast<double>(states_.size()) * half_) < stretch.tau + stretch.duration;)
             states_.push_back(stretch.at(std::max(0.0, tau - stretch.tau)));
     }
 
@@ -36,7 +39,9 @@ private:
 /// A deviation carried along, and what happens in each cycle.
 class Deviation : public Observer {
 public:
-    Deviation(const Parameters& p, std::vector<double>& growth, std::vector<int>& impacts, std::vector<int>& sticks)
+    Deviation(
+        const Parameters& p, std::vector<double>& growth, std::vector<int>& impacts,
+        std::vector<int>& sticks)
         : p_(p),
           free_(Oscillator<double>::free(p)),
           stuck_(Oscillator<double>::stuck(p)),
@@ -45,16 +50,20 @@ public:
           sticks_(sticks) {}
 
     void on_stretch(const Stretch& stretch) override {
-        carry(stretch.stuck_side == 0 ? flight(free_, stretch.duration)
-                                      : together(stuck_, p_.epsilon, stretch.duration));
+        carry(
+            stretch.stuck_side == 0 ? flight(free_, stretch.duration)
+                                    : together(stuck_, p_.epsilon, stretch.duration));
         const auto cycle = static_cast<std::size_t>((stretch.tau + stretch.duration) / p_.cycle());
         while (growth_.size() <= cycle) growth_.push_back(log_);
     }
     void on_impact(const Impact& i) override {
-        const double x_ddot_after = i.x_ddot_before - free_.damping * (i.x_dot_after - i.x_dot_before);
-        carry(strike(Collision<double>{i.R, i.x_dot_before, i.x_dot_after, i.y_dot_before, i.y_dot_after,
-                                       i.x_ddot_before, x_ddot_after},
-                     p_.epsilon));
+        const double x_ddot_after =
+            i.x_ddot_before - free_.damping * (i.x_dot_after - i.x_dot_before);
+        carry(strike(
+            Collision<double>{
+                i.R, i.x_dot_before, i.x_dot_after, i.y_dot_before, i.y_dot_after, i.x_ddot_before,
+                x_ddot_after},
+            p_.epsilon));
         count(impacts_, i.tau);
     }
     void on_stick(const StickStart& s) override { count(sticks_, s.tau); }
@@ -122,8 +131,9 @@ LongRun::Scale LongRun::scale_at(int cycle) const {
 
 double LongRun::distance(const State& a, const State& b, const Scale& scale) const {
     const double gap = (a.x - a.y) - (b.x - b.y);
-    return std::max({std::abs(a.x - b.x) / scale.x, std::abs(a.x_dot - b.x_dot) / scale.x,
-                     std::abs(a.y_dot - b.y_dot) / scale.y_dot, std::abs(gap) / scale.gap});
+    return std::max(
+        {std::abs(a.x - b.x) / scale.x, std::abs(a.x_dot - b.x_dot) / scale.x,
+         std::abs(a.y_dot - b.y_dot) / scale.y_dot, std::abs(gap) / scale.gap});
 }
 
 int LongRun::period_at(int at) const {
@@ -131,16 +141,18 @@ int LongRun::period_at(int at) const {
     const auto returns = [&](int period, double tolerance) {
         const int looked_at = std::max(2 * period, 10);
         for (int k = 0; k < looked_at; ++k)
-            if (at - k < period || !(distance(at_cycle(at - k), at_cycle(at - k - period), scale) < tolerance))
+            if (at - k < period ||
+                !(distance(at_cycle(at - k), at_cycle(at - k - period), scale) < tolerance))
                 return false;
         return true;
     };
-    // A shorter return may be spoilt by the rounding in a chatter, or still be converging: the slower of two
-    // multipliers.
+    // A shorter return may be spoilt by the rounding in a chatter, or still be converging: the
+    // slower of two multipliers.
     const auto returns_in_the_end = [&](int period) {
         if (returns(period, 100 * returned)) return true;
         const int before = at - at / 4;
-        return before > period && miss(at, period) < 1e-4 && miss(at, period) < 0.98 * miss(before, period);
+        return before > period && miss(at, period) < 1e-4 &&
+               miss(at, period) < 0.98 * miss(before, period);
     };
     for (int period = 1; period <= std::min(longest_period, at / 3); ++period) {
         if (!returns(period, returned)) continue;
@@ -170,14 +182,17 @@ double LongRun::miss(int at, int period) const {
 int LongRun::captured_from(int period, double within) const {
     const Scale scale = scale_at(cycles_);
     int k = cycles_ - period;
-    while (k >= 0 && distance(at_cycle(k), at_cycle(cycles_ - (cycles_ - k) % period), scale) < within) --k;
+    while (k >= 0 &&
+           distance(at_cycle(k), at_cycle(cycles_ - (cycles_ - k) % period), scale) < within)
+        --k;
     return k + 1;
 }
 
 bool LongRun::ends_symmetric(int period) const {
     if (period % 2 == 0) return false;  // half a period on, the forcing is the same
-    const State now = at_cycle(cycles_),
-                half = states_[2 * static_cast<std::size_t>(cycles_) - static_cast<std::size_t>(period)];
+    const State
+        now = at_cycle(cycles_),
+        half = states_[2 * static_cast<std::size_t>(cycles_) - static_cast<std::size_t>(period)];
     return distance(now, {-half.x_dot, -half.x, -half.y_dot, -half.y}, scale_at(cycles_)) < 1e-6;
 }
 
@@ -189,8 +204,9 @@ LongRun::PeriodContacts LongRun::contacts_at_end(int period) const {
         sum.impacts += impacts_[k];
         sum.sticks += sticks_[k];
     }
-    return {static_cast<int>(std::lround(1.0 * sum.impacts / periods)),
-            static_cast<int>(std::lround(1.0 * sum.sticks / periods))};
+    return {
+        static_cast<int>(std::lround(1.0 * sum.impacts / periods)),
+        static_cast<int>(std::lround(1.0 * sum.sticks / periods))};
 }
 
 double LongRun::growth(int from, int to) const { return growth_[to] - growth_[from]; }
@@ -200,7 +216,8 @@ LongRun::Exponent LongRun::exponent(int from, int to) const {
     const double length = static_cast<double>(to - from) / blocks;
     double sum = 0, squares = 0;
     for (int k = 0; k < blocks; ++k) {
-        const int begin = from + static_cast<int>(k * length), end = from + static_cast<int>((k + 1) * length);
+        const int begin = from + static_cast<int>(k * length),
+                  end = from + static_cast<int>((k + 1) * length);
         const double mean = growth(begin, end) / std::max(1, end - begin) / parameters_.cycle();
         sum += mean;
         squares += mean * mean;

@@ -1,4 +1,5 @@
-// Hunts for statements of the product that are wrong with confidence. scripts/hunt builds and runs it.
+// Hunts for statements of the product that are wrong with confidence. scripts/hunt builds and runs
+// it.
 #include <CLI/CLI.hpp>
 #include <cstdint>
 
@@ -7,17 +8,21 @@
 
 int main(int count, char** arguments) {
     CLI::App app(
-        "Hunts for statements that are wrong with confidence. Every system it reports is a request that repeats "
+        "Hunts for statements that are wrong with confidence. Every system it reports is a request "
+        "that repeats "
         "it.");
     app.option_defaults()->always_capture_default();
     int systems = 2000, damped = 200, first = 0, threads = 2;
     std::uint64_t seed = 1;
-    app.add_option("--systems", systems,
-                   "random systems whose verdicts and periods are judged by runs twenty times as long");
-    app.add_option("--damped", damped,
-                   "strongly damped systems whose exponents are compared with multi-precision ones");
-    app.add_option("--first", first,
-                   "the first system of the seed to be judged: --damped 0 --systems 1 --first 61 repeats one");
+    app.add_option(
+        "--systems", systems,
+        "random systems whose verdicts and periods are judged by runs twenty times as long");
+    app.add_option(
+        "--damped", damped,
+        "strongly damped systems whose exponents are compared with multi-precision ones");
+    app.add_option(
+        "--first", first,
+        "the first system of the seed to be judged: --damped 0 --systems 1 --first 61 repeats one");
     app.add_option("--seed", seed, "of both");
     app.add_option("--threads", threads);
     CLI11_PARSE(app, count, arguments);

@@ -1,5 +1,6 @@
-// The forced oscillator in closed form, in any arithmetic: x'' = -stiffness x - damping x' + forcing sin(theta),
-// theta' = Omega. Written from the equations alone, so that it shares nothing with the flow that it judges.
+// The forced oscillator in closed form, in any arithmetic: x'' = -stiffness x - damping x' +
+// forcing sin(theta), theta' = Omega. Written from the equations alone, so that it shares nothing
+// with the flow that it judges.
 #pragma once
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
@@ -11,8 +12,8 @@ namespace vines::hunt {
 
 /// A binary number of so many decimal digits.
 template <unsigned digits>
-using Decimal =
-    boost::multiprecision::number<boost::multiprecision::cpp_bin_float<digits>, boost::multiprecision::et_off>;
+using Decimal = boost::multiprecision::number<
+    boost::multiprecision::cpp_bin_float<digits>, boost::multiprecision::et_off>;
 
 template <class Real>
 struct Oscillator {
@@ -52,7 +53,8 @@ struct Oscillator {
         using std::cos, std::sin;
         const Real detuning = stiffness - Omega * Omega, loss = damping * Omega,
                    D = detuning * detuning + loss * loss;
-        const Real X = forcing * detuning / D, Y = -forcing * loss / D, s = sin(theta), c = cos(theta);
+        const Real X = forcing * detuning / D, Y = -forcing * loss / D, s = sin(theta),
+                   c = cos(theta);
         return {X * s + Y * c, Omega * (X * c - Y * s)};
     }
     /// The motion s after a moment where the phase was theta.
@@ -68,7 +70,8 @@ struct Oscillator {
     }
     Real jerk(const Motion& m, const Real& theta) const {
         using std::cos;
-        return -stiffness * m.x_dot - damping * acceleration(m, theta) + forcing * Omega * cos(theta);
+        return -stiffness * m.x_dot - damping * acceleration(m, theta) +
+               forcing * Omega * cos(theta);
     }
 
 private:
@@ -76,8 +79,9 @@ private:
         using std::sqrt;
         const Real zeta = Real(p.epsilon) * p.lambda / (p.damping == Damping::closed_form ? 1 : 2),
                    c1 = Real(p.lambda) * p.epsilon * p.Omega;
-        return {1 / mass, 2 * zeta / mass, Real(p.epsilon) * p.G * sqrt(1 + c1 * c1) / mass,
-                p.Omega};  // A: eq. (3)
+        return {
+            1 / mass, 2 * zeta / mass, Real(p.epsilon) * p.G * sqrt(1 + c1 * c1) / mass,
+            p.Omega};  // A: eq. (3)
     }
 };
 

@@ -6,8 +6,8 @@ namespace vines::hunt {
 
 namespace {
 
-/// The zero of a function next to a guess: Newton's method, each step doubling the digits. {value, slope} =
-/// function(s).
+/// The zero of a function next to a guess: Newton's method, each step doubling the digits. {value,
+/// slope} = function(s).
 template <class Function>
 Precise zero_near(Precise s, Function function) {
     for (int step = 0; step < 12; ++step) {
@@ -23,7 +23,8 @@ Precise zero_near(Precise s, Function function) {
 
 Retraced retrace(const Parameters& p, const State& start, const std::vector<Event>& events) {
     const auto free = Oscillator<Precise>::free(p), stuck = Oscillator<Precise>::stuck(p);
-    const Precise share = Precise(p.epsilon) / (1 + Precise(p.epsilon));  // of the absorber in the whole mass
+    // Of the absorber in the whole mass.
+    const Precise share = Precise(p.epsilon) / (1 + Precise(p.epsilon));
     Oscillator<Precise>::Motion lo{start.x, start.x_dot};
     Precise y = start.y, y_dot = start.y_dot, theta = phase_at_start<Precise>(p), tau = 0;
     Retraced result{{}, 0};
@@ -35,14 +36,16 @@ Retraced retrace(const Parameters& p, const State& start, const std::vector<Even
             if (event.tau > 0)
                 e.since = zero_near(guess, [&](const Precise& s) {
                     const auto at = free.after(lo, theta, s);
-                    return std::pair{Precise(at.x - y - y_dot * s - event.side * Precise(p.b)),
-                                     Precise(at.x_dot - y_dot)};
+                    return std::pair{
+                        Precise(at.x - y - y_dot * s - event.side * Precise(p.b)),
+                        Precise(at.x_dot - y_dot)};
                 });
         } else if (event.kind == Event::release) {
             e.since = zero_near(guess, [&](const Precise& s) {
                 const auto at = stuck.after(lo, theta, s);
-                return std::pair{stuck.acceleration(at, theta + stuck.Omega * s),
-                                 stuck.jerk(at, theta + stuck.Omega * s)};
+                return std::pair{
+                    stuck.acceleration(at, theta + stuck.Omega * s),
+                    stuck.jerk(at, theta + stuck.Omega * s)};
             });
         }
         const auto& law = event.kind == Event::release ? stuck : free;
@@ -57,7 +60,8 @@ Retraced retrace(const Parameters& p, const State& start, const std::vector<Even
             c.y_dot_before = y_dot;
             c.x_ddot_before = free.acceleration(lo, theta);
             // Eq. (4): the momentum stays, the relative speed is reversed with factor R.
-            const Precise momentum = lo.x_dot + p.epsilon * y_dot, leaving = -c.R * (lo.x_dot - y_dot);
+            const Precise momentum = lo.x_dot + p.epsilon * y_dot,
+                          leaving = -c.R * (lo.x_dot - y_dot);
             y_dot = c.y_dot_after = (momentum - leaving) / (1 + Precise(p.epsilon));
             lo.x_dot = c.x_dot_after = y_dot + leaving;
             c.x_ddot_after = free.acceleration(lo, theta);
@@ -65,7 +69,8 @@ Retraced retrace(const Parameters& p, const State& start, const std::vector<Even
             lo.x_dot += share * (y_dot - lo.x_dot);  // the velocity of the centre of mass
         }
         if (event.kind != Event::impact) y_dot = lo.x_dot;
-        result.departure = std::max(result.departure, std::abs(static_cast<double>(tau - event.tau)));
+        result.departure =
+            std::max(result.departure, std::abs(static_cast<double>(tau - event.tau)));
         result.events.push_back(e);
     }
     return result;

@@ -1,5 +1,5 @@
-// A run's events once more in 100 digits. The run in double precision says only which event comes next and about
-// when.
+// A run's events once more in 100 digits. The run in double precision says only which event comes
+// next and about when.
 #pragma once
 
 #include <vector>
@@ -22,7 +22,9 @@ class EventRecord : public Observer {
 public:
     void on_impact(const Impact& i) override { events.push_back({Event::impact, i.tau, i.side}); }
     void on_stick(const StickStart& s) override { events.push_back({Event::stick, s.tau, s.side}); }
-    void on_release(double tau) override { events.push_back({Event::release, tau, events.back().side}); }
+    void on_release(double tau) override {
+        events.push_back({Event::release, tau, events.back().side});
+    }
 
     std::vector<Event> events;
 };
@@ -39,6 +41,7 @@ struct Retraced {
     double departure;  ///< largest |tau - tau in double precision|
 };
 
-Retraced retrace(const Parameters& parameters, const State& start, const std::vector<Event>& events);
+Retraced retrace(
+    const Parameters& parameters, const State& start, const std::vector<Event>& events);
 
 }  // namespace vines::hunt

@@ -12,7 +12,10 @@ constexpr long most_impacts = 500000;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 Verdict verdict_named(const api::Json& name) {
-    return name.is_null() ? Verdict::none : name == "chaotic" ? Verdict::chaotic : name == "regular" ? Verdict::regular : Verdict::not_decided;
+    return name.is_null()      ? Verdict::none
+           : name == "chaotic" ? Verdict::chaotic
+           : name == "regular" ? Verdict::regular
+                               : Verdict::not_decided;
 }
 
 double number(const api::Json& value) { return value.is_number() ? value.get<double>() : nan; }
@@ -28,8 +31,10 @@ Statement sweep_point(const System& system, int transient, int cycles) {
     const PointResult r = measure(p, system.start, options, {});
     Statement s{};
     s.door = "sweep, " + std::to_string(transient) + " + " + std::to_string(cycles) + " cycles";
-    s.start =
-        simulate(p, system.start, {transient * p.cycle(), transient * transient_impacts_per_cycle, {}}, {}).state;
+    s.start = simulate(
+                  p, system.start,
+                  {transient * p.cycle(), transient * transient_impacts_per_cycle, {}}, {})
+                  .state;
     s.cycles = cycles;
     s.complete = r.measured && r.outcome.reason == End::tau_end;
     s.verdict = r.verdict;
@@ -46,7 +51,8 @@ Statement sweep_point(const System& system, int transient, int cycles) {
     }
     s.type = name_of(r.regime.type);
     s.request = request(
-        system, "\"transient_cycles\":" + std::to_string(transient) + ",\"cycles\":" + std::to_string(cycles));
+        system, "\"transient_cycles\":" + std::to_string(transient) +
+                    ",\"cycles\":" + std::to_string(cycles));
     return s;
 }
 
@@ -55,10 +61,12 @@ Statement simulation(const System& system, int cycles) {
     s.door = "simulation, " + std::to_string(cycles) + " cycles";
     s.start = system.start;
     s.cycles = cycles;
-    s.request = request(system, "\"cycles\":" + std::to_string(cycles) +
-                                    ",\"max_impacts\":" + std::to_string(most_impacts) +
-                                    ",\"include\":[\"exponents\",\"regime\"],\"exponents\":[\"qr\"]");
-    const api::Json answer = api::simulate_answer(api::read_simulate_request(api::Json::parse(s.request)), {});
+    s.request = request(
+        system, "\"cycles\":" + std::to_string(cycles) +
+                    ",\"max_impacts\":" + std::to_string(most_impacts) +
+                    ",\"include\":[\"exponents\",\"regime\"],\"exponents\":[\"qr\"]");
+    const api::Json answer =
+        api::simulate_answer(api::read_simulate_request(api::Json::parse(s.request)), {});
     const api::Json &exponents = answer["exponents"], &regime = answer["regime"];
     s.complete = answer["status"]["reason"] == "tau_end";
     s.verdict = verdict_named(exponents["verdict"]);

@@ -1,4 +1,5 @@
-// What the product says of a run, through its two doors: a sweep's point and the answer to a simulation.
+// What the product says of a run, through its two doors: a sweep's point and the answer to a
+// simulation.
 #pragma once
 
 #include <optional>

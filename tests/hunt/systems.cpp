@@ -92,15 +92,9 @@ System neutral(std::mt19937_64& engine) {
     System system = wide(engine);
     Parameters& p = system.parameters;
     switch (engine() % 4) {
-        case 0:
-            p.R_plus = p.R_minus = 1;
-            break;
-        case 1:
-            p.R_plus = 1;
-            break;
-        case 2:
-            p.lambda = 0;
-            break;
+        case 0: p.R_plus = p.R_minus = 1; break;
+        case 1: p.R_plus = 1; break;
+        case 2: p.lambda = 0; break;
         case 3:  // not touched
             p.b = free_amplitude(p) * uniform(engine, 1.5, 5);
             system.start = {0, 0, 0, 0};
@@ -112,8 +106,9 @@ System neutral(std::mt19937_64& engine) {
 }  // namespace
 
 std::mt19937_64 engine_of(std::uint64_t seed, int number) {
-    std::seed_seq all{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
-                      static_cast<std::uint32_t>(number)};
+    std::seed_seq all{
+        static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
+        static_cast<std::uint32_t>(number)};
     return std::mt19937_64(all);
 }
 
@@ -135,16 +130,11 @@ namespace {
 
 System any_system(Kind kind, std::mt19937_64& engine) {
     switch (kind) {
-        case Kind::wide:
-            return wide(engine);
-        case Kind::table:
-            return table(engine);
-        case Kind::band:
-            return band(engine);
-        case Kind::contracting:
-            return contracting(engine);
-        case Kind::neutral:
-            return neutral(engine);
+        case Kind::wide: return wide(engine);
+        case Kind::table: return table(engine);
+        case Kind::band: return band(engine);
+        case Kind::contracting: return contracting(engine);
+        case Kind::neutral: return neutral(engine);
     }
     return {};
 }
@@ -179,12 +169,15 @@ System strongly_damped(std::mt19937_64& engine) {
 std::string request(const System& system, const std::string& more) {
     const auto& [p, s] = system;
     char text[700];
-    std::snprintf(text, sizeof text,
-                  "{\"epsilon\":%.17g,\"lambda\":%.17g,\"damping\":\"%s\",\"G\":%.17g,\"Omega\":%.17g,\"R_plus\":%."
-                  "17g,\"R_minus\":%.17g,\"b\":%.17g,"
-                  "\"x0\":%.17g,\"x_dot0\":%.17g,\"y0\":%.17g,\"y_dot0\":%.17g",
-                  p.epsilon, p.lambda, p.damping == Damping::closed_form ? "closed_form" : "equation_of_motion",
-                  p.G, p.Omega, p.R_plus, p.R_minus, p.b, s.x, s.x_dot, s.y, s.y_dot);
+    std::snprintf(
+        text, sizeof text,
+        "{\"epsilon\":%.17g,\"lambda\":%.17g,\"damping\":\"%s\",\"G\":%.17g,\"Omega\":%.17g,\"R_"
+        "plus\":%."
+        "17g,\"R_minus\":%.17g,\"b\":%.17g,"
+        "\"x0\":%.17g,\"x_dot0\":%.17g,\"y0\":%.17g,\"y_dot0\":%.17g",
+        p.epsilon, p.lambda,
+        p.damping == Damping::closed_form ? "closed_form" : "equation_of_motion", p.G, p.Omega,
+        p.R_plus, p.R_minus, p.b, s.x, s.x_dot, s.y, s.y_dot);
     return text + ("," + more) + "}";
 }
 

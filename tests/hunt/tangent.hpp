@@ -1,5 +1,6 @@
-// How deviations [x' x y' y] are carried by flights, stuck phases and impacts, in any arithmetic. Derived anew from
-// the equations of motion, so that it shares nothing with the matrices that it judges.
+// How deviations [x' x y' y] are carried by flights, stuck phases and impacts, in any arithmetic.
+// Derived anew from the equations of motion, so that it shares nothing with the matrices that it
+// judges.
 #pragma once
 
 #include <vector>
@@ -18,7 +19,9 @@ struct Square {
         return m;
     }
     Real& operator()(int i, int j) { return entries[static_cast<std::size_t>(i) * n + j]; }
-    const Real& operator()(int i, int j) const { return entries[static_cast<std::size_t>(i) * n + j]; }
+    const Real& operator()(int i, int j) const {
+        return entries[static_cast<std::size_t>(i) * n + j];
+    }
     Square operator*(const Square& right) const {
         Square product(n);
         for (int i = 0; i < n; ++i)
@@ -74,8 +77,8 @@ struct Collision {
     }
 };
 
-/// M of an impact: a deviation d meets the wall later by -(g d)/(g f-), g = [0 1 0 -1]; until then it moves by f-,
-/// from then on by f+: M = S + (f+ - S f-) g/(g f-), f = [x'' x' 0 y'].
+/// M of an impact: a deviation d meets the wall later by -(g d)/(g f-), g = [0 1 0 -1]; until then
+/// it moves by f-, from then on by f+: M = S + (f+ - S f-) g/(g f-), f = [x'' x' 0 y'].
 template <class Real>
 Square<Real> strike(const Collision<Real>& c, const Real& epsilon) {
     const Real gain = (1 + c.R) / (1 + epsilon);

@@ -21,14 +21,17 @@ struct Findings {
     int recurrent = 0, missed = 0, longest = 0;
 };
 
-void add(Findings& f, const char* kind, const Statement& s, const std::vector<std::string>& sentences) {
+void add(
+    Findings& f, const char* kind, const Statement& s, const std::vector<std::string>& sentences) {
     for (const std::string& sentence : sentences) {
         ++f.wrong;
-        f.report += "WRONG  " + s.door + ", " + kind + ": " + sentence + "\n    " + s.request + "\n";
+        f.report +=
+            "WRONG  " + s.door + ", " + kind + ": " + sentence + "\n    " + s.request + "\n";
     }
 }
 
-void judge_statement(const Parameters& p, const Statement& s, const LongRun& run, const char* kind, Findings& f) {
+void judge_statement(
+    const Parameters& p, const Statement& s, const LongRun& run, const char* kind, Findings& f) {
     if (!s.complete || run.cycles() <= s.cycles) {
         ++f.unjudged;
         return;
@@ -41,8 +44,8 @@ void judge_statement(const Parameters& p, const Statement& s, const LongRun& run
     f.longest = std::max(f.longest, j.recurrent);
     if (!j.missed) return;
     ++f.missed;
-    f.report += "MISSED " + s.door + ", " + kind + ": the state returns every " + std::to_string(j.recurrent) +
-                " cycles\n    " + s.request + "\n";
+    f.report += "MISSED " + s.door + ", " + kind + ": the state returns every " +
+                std::to_string(j.recurrent) + " cycles\n    " + s.request + "\n";
 }
 
 Findings hunt_one(std::uint64_t seed, int number) {
@@ -51,8 +54,9 @@ Findings hunt_one(std::uint64_t seed, int number) {
     const System system = random_system(kind, engine);
     Findings f;
     const Statement point = sweep_point(system, transient, measured);
-    judge_statement(system.parameters, point, LongRun(system.parameters, point.start, longer * measured),
-                    name_of(kind), f);
+    judge_statement(
+        system.parameters, point, LongRun(system.parameters, point.start, longer * measured),
+        name_of(kind), f);
 
     const LongRun from_start(system.parameters, system.start, longer * measured);
     std::vector<Statement> runs;
@@ -89,10 +93,11 @@ bool hunt_verdicts(int systems, std::uint64_t seed, int first, int threads) {
         for (int k = 0; k < 4; ++k) all.verdicts[k] += f.verdicts[k];
     }
     std::printf(
-        "%d systems, %d statements (chaotic %d, regular %d, not decided %d, nothing to judge %d; %d runs cut short and not judged): %d "
+        "%d systems, %d statements (chaotic %d, regular %d, not decided %d, nothing to judge %d; "
+        "%d runs cut short and not judged): %d "
         "wrong with confidence in %d systems, %d of %d periodic orbits missed\n",
-        systems, all.statements, all.verdicts[0], all.verdicts[1], all.verdicts[2], all.verdicts[3], all.unjudged, all.wrong,
-        systems_wrong, all.missed, all.recurrent);
+        systems, all.statements, all.verdicts[0], all.verdicts[1], all.verdicts[2], all.verdicts[3],
+        all.unjudged, all.wrong, systems_wrong, all.missed, all.recurrent);
     return all.wrong == 0 && 1000L * all.missed <= all.recurrent;
 }
 
