@@ -5,10 +5,10 @@
 #include <span>
 
 #include "api/request.hpp"
-#include "core/energy.hpp"
-#include "core/manifold.hpp"
-#include "core/recommend.hpp"
-#include "core/regime.hpp"
+#include "core/measures/energy.hpp"
+#include "core/measures/manifold.hpp"
+#include "core/measures/regime.hpp"
+#include "core/sweep/recommend.hpp"
 
 namespace vines::api {
 

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "api/fields.hpp"
-#include "core/parameters.hpp"
+#include "core/motion/parameters.hpp"
 
 namespace vines::api {
 

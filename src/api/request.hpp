@@ -2,7 +2,7 @@
 #pragma once
 
 #include "api/system.hpp"
-#include "core/lyapunov.hpp"
+#include "core/stability/lyapunov.hpp"
 
 namespace vines::api {
 

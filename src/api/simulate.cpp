@@ -5,7 +5,7 @@
 
 #include "api/describe.hpp"
 #include "api/si_columns.hpp"
-#include "core/windows.hpp"
+#include "core/stability/windows.hpp"
 
 namespace vines::api {
 

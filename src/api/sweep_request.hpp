@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "api/request.hpp"
-#include "core/sweep.hpp"
+#include "core/sweep/sweep.hpp"
 
 namespace vines::api {
 
