@@ -192,11 +192,11 @@ int run(const SweepOptions& o) {
     api::SweepRequest request =
         api::read_sweep_request(api::parse_object(read_all(o.files.input)), most_points);
     const auto [shard, shards] = shard_numbers(o);
-    request.indices = api::shard_of(request, shard, shards);
-    const std::size_t of = request.indices.size();
+    request.plan.lines = api::shard_of(request, shard, shards);
+    const std::size_t of = request.plan.lines.size();
     const bool to_file = !standard(o.files.output);
     SweepFile file = resumed(o, api::sweep_start(request).dump());
-    std::erase_if(request.indices, [&](std::size_t i) { return file.points.contains(i); });
+    std::erase_if(request.plan.lines, [&](std::size_t i) { return file.points.contains(i); });
 
     // Without what a killed run left half written.
     if (to_file) {
@@ -206,7 +206,7 @@ int run(const SweepOptions& o) {
     }
     std::optional<Appending> out;
     if (to_file) out.emplace(o.files.output);
-    Bar bar(of - request.indices.size(), of);
+    Bar bar(of - request.plan.lines.size(), of);
     SignalPace pace;
     const int threads = o.threads > 0
                             ? o.threads

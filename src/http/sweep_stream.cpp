@@ -105,7 +105,7 @@ void stream(const api::SweepRequest& request, ComputeGate& gate, Writer& out) {
     Lines lines;
     std::string failure, warning;
     const auto started = Clock::now();
-    const std::size_t of = request.indices.size(), runs_of = api::runs_of(request);
+    const std::size_t of = request.plan.lines.size(), runs_of = request.plan.runs();
     Json start = api::sweep_start(request);
     start["of"] = of;
     if (!out.write(start.dump() + "\n")) return;

@@ -136,6 +136,26 @@ double Energy::rms() const {
     return duration_ > 0 ? std::sqrt(integrals_.x_squared / duration_) : 0;
 }
 
+EnergyBalance balance_of(const Parameters& p, const Energy& e, const Interval& window) {
+    const double dissipated = e.impacts() + e.damper();
+    return {
+        .window = window,
+        .input = p.G == 0 ? 0 : e.input(),
+        .damper = e.damper(),
+        .impacts = e.impacts(),
+        .stored = e.stored(),
+        .residual = e.residual(),
+        .at_start = e.at_start(),
+        .at_end = e.at_end(),
+        .share_impacts = ratio(e.impacts(), dissipated),
+        .rms = e.rms(),
+        .peak = e.peak()};
+}
+
+std::optional<double> ratio(double of, double to) {
+    return to > 0 ? std::optional(of / to) : std::nullopt;
+}
+
 std::optional<double> free_amplitude(const Parameters& p) {
     const double detuning = (1 - p.Omega) * (1 + p.Omega),
                  D = detuning * detuning + 4 * p.zeta() * p.zeta() * p.Omega * p.Omega;

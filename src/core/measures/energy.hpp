@@ -65,6 +65,19 @@ private:
     double duration_ = 0, peak_ = 0, impacts_ = 0, start_ = 0, end_ = 0;
 };
 
+/// The energy balance of a window, and the amplitudes of x in it. Energies per unit of m1, in m^2.
+struct EnergyBalance {
+    Interval window;  ///< what of it the run has reached
+    double input, damper, impacts, stored, residual, at_start, at_end;
+    std::optional<double> share_impacts;  ///< of what is dissipated; none where nothing is
+    double rms, peak;                     ///< of x, m
+};
+EnergyBalance balance_of(
+    const Parameters& parameters, const Energy& energy, const Interval& window);
+
+/// None where there is nothing positive to divide by.
+std::optional<double> ratio(double of, double to);
+
 /// E of a state.
 double energy_of(const Parameters& parameters, const State& state);
 

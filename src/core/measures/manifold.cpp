@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/measures/energy.hpp"
+
 namespace vines {
 
 namespace {
@@ -58,6 +60,31 @@ std::vector<ManifoldPoint> manifold_branch(
         points.push_back({manifold_C(R, Omega, b, V), V});
     }
     return points;
+}
+
+Manifold manifold_of(const Parameters& p, double V_max, std::size_t points) {
+    const double R = p.R_plus;
+    const ManifoldPoint fold = manifold_fold(R, p.Omega, p.b),
+                        breaking = manifold_symmetry_breaking(R, p.Omega, p.b),
+                        contact = manifold_second_contact(R, p.Omega, p.b);
+    const double last = std::min(V_max > 0 ? V_max : 2 * breaking.V, contact.V);
+    auto branch = [&](double from, double to) {
+        return from < to ? manifold_branch(R, p.Omega, p.b, from, to, points)
+                         : std::vector<ManifoldPoint>{};
+    };
+    const auto free = free_amplitude(p);
+    return {
+        .R = R,
+        .Omega = p.Omega,
+        .b = p.b,
+        .fold = fold,
+        .symmetry_breaking = breaking.V < contact.V ? std::optional(breaking) : std::nullopt,
+        .second_contact = contact,
+        .stable = branch(fold.V, std::min(breaking.V, contact.V)),
+        .unstable = branch(0, fold.V),
+        .asymmetric = branch(breaking.V, last),
+        .free_amplitude = free,
+        .b_at_free_amplitude = free && R < 1 ? std::optional(manifold_b(R, *free)) : std::nullopt};
 }
 
 HalfCycles::HalfCycles(const Parameters& p, double tau_start, double tau_end, std::size_t most)

@@ -21,6 +21,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "core/motion/record.hpp"
@@ -48,6 +49,20 @@ double manifold_b(double R, double C);
 /// `count` points from V_from to V_to, evenly spaced in V.
 std::vector<ManifoldPoint> manifold_branch(
     double R, double Omega, double b, double V_from, double V_to, std::size_t count);
+
+/// The manifold as a curve, and its limits.
+struct Manifold {
+    double R, Omega, b;
+    ManifoldPoint fold;
+    std::optional<ManifoldPoint> symmetry_breaking;  ///< none where the second contact comes first
+    ManifoldPoint second_contact;
+    std::vector<ManifoldPoint> stable, unstable, asymmetric;
+    /// The amplitude that the oscillator has without absorber, and the b whose fold lies there.
+    std::optional<double> free_amplitude, b_at_free_amplitude;
+};
+/// Of walls with one R, with `points` points on each branch that there is, up to V_max (0: twice
+/// the speed of the symmetry breaking) or to where the motion ends.
+Manifold manifold_of(const Parameters& parameters, double V_max, std::size_t points);
 
 /// What a run has in place of (C, V): in each half cycle of the forcing, the largest |x| and the
 /// mean of |y'|. It keeps up to half more than the last `most` of them.

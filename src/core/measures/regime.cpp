@@ -256,17 +256,6 @@ RegimeType type_of(const Regime& r) {
 
 }  // namespace
 
-void ContactRecord::on_impact(const Impact& impact) {
-    ++impacts;
-    contacts.push_back({impact.tau, impact.side});
-}
-
-void ContactRecord::on_stick(const StickStart& start) {
-    sticks.push_back({start.tau, start.tau});
-    if (start.impacts > 1)
-        contacts.resize(contacts.size() - static_cast<std::size_t>(start.impacts - 1));
-}
-
 const char* name_of(RegimeType type) {
     constexpr const char* names[] = {"none", "I", "II", "III", "IV", "V", "VI"};
     return names[static_cast<int>(type)];

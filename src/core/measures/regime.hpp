@@ -5,32 +5,12 @@
 #include <optional>
 #include <vector>
 
+#include "core/motion/contacts.hpp"
 #include "core/motion/record.hpp"
 #include "core/stability/orbit.hpp"
 #include "core/stability/verdict.hpp"
 
 namespace vines {
-
-/// An impact, or a whole chatter that ended in a stick: one meeting of the two masses.
-struct Contacts {
-    double tau;
-    int side;
-};
-
-class ContactRecord : public Observer {
-public:
-    struct Stick {
-        double tau_start, tau_end;
-    };
-
-    void on_impact(const Impact& impact) override;
-    void on_stick(const StickStart& start) override;
-    void on_release(double tau) override { sticks.back().tau_end = tau; }
-
-    std::vector<Contacts> contacts;
-    std::vector<Stick> sticks;
-    long impacts = 0;
-};
 
 /// none: no impact at all, or no forcing. I: sparse, irregular. II: strongly modulated, stretches
 /// of two impacts per cycle between others. III: two symmetric impacts per cycle, periodic. IV: two

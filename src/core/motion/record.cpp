@@ -2,13 +2,13 @@
 
 namespace vines {
 
-void SeriesRecord::add(double at, const State& s, double acceleration) {
-    tau.push_back(at);
-    x.push_back(s.x);
-    x_dot.push_back(s.x_dot);
-    y.push_back(s.y);
-    y_dot.push_back(s.y_dot);
-    x_ddot.push_back(acceleration);
+void SeriesRecord::add(double at, const State& state, double acceleration) {
+    series.tau.push_back(at);
+    series.x.push_back(state.x);
+    series.x_dot.push_back(state.x_dot);
+    series.y.push_back(state.y);
+    series.y_dot.push_back(state.y_dot);
+    series.x_ddot.push_back(acceleration);
 }
 
 void SeriesRecord::on_stretch(const Stretch& stretch) {
@@ -20,7 +20,8 @@ void SeriesRecord::on_stretch(const Stretch& stretch) {
 }
 
 void SeriesRecord::finish(const Outcome& outcome) {
-    if (tau.empty() || tau.back() < outcome.tau) add(outcome.tau, outcome.state, x_ddot_at_end_);
+    if (series.tau.empty() || series.tau.back() < outcome.tau)
+        add(outcome.tau, outcome.state, x_ddot_at_end_);
 }
 
 void StroboscopicRecord::on_stretch(const Stretch& stretch) {

@@ -25,14 +25,19 @@ void trim_to_last(Entries& entries, std::size_t most) {
         entries.erase(entries.begin(), entries.end() - static_cast<std::ptrdiff_t>(most));
 }
 
-/// The motion at tau = 0, step, 2 step, ... and at the end of the run. Units as in State.
+/// The motion at some moments: columns of equal length. x and y in m, derivatives in tau.
+struct Series {
+    std::vector<double> tau, x, x_dot, y, y_dot, x_ddot;
+};
+
+/// The motion at tau = 0, step, 2 step, ... and at the end of the run.
 class SeriesRecord : public Observer {
 public:
     explicit SeriesRecord(double step) : step_(step) {}
     void on_stretch(const Stretch&) override;
     void finish(const Outcome& outcome);
 
-    std::vector<double> tau, x, x_dot, y, y_dot, x_ddot;
+    Series series;
 
 private:
     void add(double tau, const State& state, double x_ddot);

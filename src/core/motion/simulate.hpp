@@ -50,10 +50,15 @@ public:
 
 /// What ends a run. Reaching any of them is a result, not an error.
 struct Limits {
-    double tau_end = 1709;       ///< contacts at tau_end itself belong to the run
-    long max_impacts = 100000;   ///< and as many sticks and touches together
-    std::function<bool()> stop;  ///< asked every few events; true ends the run
-    double tau_start = 0;        ///< moment of the start: it sets the phase of the forcing
+    double tau_end = 1709;            ///< contacts at tau_end itself belong to the run
+    long max_impacts = 100000;        ///< and as many sticks and touches together
+    std::function<bool()> stop = {};  ///< asked every few events; true ends the run
+    double tau_start = 0;             ///< moment of the start: it sets the phase of the forcing
+};
+
+/// Of tau.
+struct Interval {
+    double from, to;
 };
 
 enum class End { tau_end, max_impacts, stopped };

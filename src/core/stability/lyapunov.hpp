@@ -119,6 +119,8 @@ public:
     void on_impact(const Impact&) override;
 
     const TransferProduct& product() const { return product_; }
+    /// After the run.
+    TransferProduct take() { return std::move(product_); }
 
 private:
     const Parameters parameters_;

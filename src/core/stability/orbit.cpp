@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/measures/regime.hpp"
+#include "core/motion/contacts.hpp"
 #include "core/motion/record.hpp"
 #include "core/stability/linear.hpp"
 

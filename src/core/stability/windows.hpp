@@ -20,6 +20,8 @@ public:
 
     std::size_t size() const { return windows_.size(); }
     const TransferProduct& product(std::size_t i) const { return windows_[i].lyapunov.product(); }
+    /// After the run.
+    TransferProduct take(std::size_t i) { return windows_[i].lyapunov.take(); }
 
 private:
     struct Window {

@@ -10,7 +10,8 @@
 
 #include <optional>
 
-#include "core/sweep/sweep.hpp"
+#include "core/sweep/point.hpp"
+#include "core/sweep/starts.hpp"
 
 namespace vines {
 

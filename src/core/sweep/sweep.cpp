@@ -1,185 +1,254 @@
 #include "core/sweep/sweep.hpp"
 
 #include <algorithm>
-#include <atomic>
-#include <cmath>
-#include <exception>
-#include <mutex>
-#include <numbers>
-#include <thread>
 
-#include "core/measures/energy.hpp"
+#include "core/sweep/parallel.hpp"
 
 namespace vines {
 
 namespace {
 
-/// The last points of a section at impact.
-class ImpactSection : public Observer {
-public:
-    explicit ImpactSection(std::size_t most) : most_(most) {}
-    void on_impact(const Impact& i) override {
-        if (most_ > 0) {
-            if (points_.size() < most_) points_.emplace_back();
-            points_[count_ % most_] = {
-                i.side,        i.phase(),          i.x, i.x_dot_after, i.x - i.side * b,
-                i.y_dot_after, i.tau - tau_before_};
-        }
-        tau_before_ = i.tau;
-        ++count_;
-    }
-    /// In order of time.
-    std::vector<SectionPoint> take() {
-        if (points_.size() == most_ && most_ > 0)
-            std::rotate(
-                points_.begin(), points_.begin() + static_cast<std::ptrdiff_t>(count_ % most_),
-                points_.end());
-        return std::move(points_);
-    }
-    double b = 0;
+struct Stopped {};
 
-private:
-    const std::size_t most_;
-    std::size_t count_ = 0;
-    double tau_before_ = std::nan("");
-    std::vector<SectionPoint> points_;
+/// A second start is tried at about so many points of a sweep with a single one.
+constexpr std::size_t second_starts = 16;
+
+/// Points that follow each other along the inner axis, and the lines that are wanted of them.
+struct Row {
+    Place place;
+    std::vector<std::size_t> wanted;
+    std::vector<SweepPoint> points;
 };
 
-std::vector<SectionPoint> stroboscopic_section(
-    const StroboscopicRecord& record, double phi, std::size_t most) {
-    std::vector<SectionPoint> points;
-    const auto& states = record.states;
-    for (std::size_t k = states.size() - std::min(states.size(), most); k < states.size(); ++k)
-        points.push_back(
-            {0, phi, states[k].x, states[k].x_dot, states[k].y, states[k].y_dot, std::nan("")});
-    return points;
-}
+/// A place in the computing that is held while it is in scope.
+class Turn {
+public:
+    explicit Turn(Pace& pace) : pace_(pace) { pace_.begin(); }
+    ~Turn() { pace_.end(); }
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+
+private:
+    Pace& pace_;
+};
+
+class Sweep {
+public:
+    Sweep(const SweepPlan& plan, int threads, Pace& pace, SweepSink& sink)
+        : plan_(plan),
+          threads_(threads),
+          pace_(pace),
+          sink_(sink),
+          every_((plan.grid.points() + second_starts - 1) / second_starts) {}
+
+    void run() {
+        if (plan_.by_rows()) return run_rows();
+        parallel(plan_.lines.size(), threads_, [&](std::size_t i) {
+            const std::size_t line = plan_.lines[i];
+            SweepPoint point = begun(plan_.grid.place_of(line));
+            if (point.system) run_single(point, line);
+            hand_out(line, point);
+        });
+    }
+
+    StartTrial trial() const { return {tried_, elsewhere_}; }
+
+private:
+    SweepPoint begun(const Place& place) const {
+        SweepPoint point;
+        point.system = plan_.system_at(place);
+        return point;
+    }
+
+    PointResult run_from(const PointSystem& system, const State& start) {
+        const Turn turn(pace_);
+        if (pace_.stop_or_yield()) throw Stopped();
+        PointOptions options = plan_.options;
+        options.max_impacts = system.max_impacts;
+        PointResult result =
+            measure(system.parameters, start, options, [this] { return pace_.stop_or_yield(); });
+        if (result.outcome.reason == End::stopped || pace_.stop_or_yield()) throw Stopped();
+        ++pace_.runs;
+        return result;
+    }
+
+    /// From its own start, and, at every so many points, from another one.
+    void run_single(SweepPoint& point, std::size_t count) {
+        const State& start = point.system->start;
+        point.motions.push_back({"", start, run_from(*point.system, start)});
+        if (plan_.grid.starts == 1 && count % every_ == 0) try_second(point);
+    }
+
+    /// From the middle, or where that was the start, from the wall.
+    void try_second(SweepPoint& point) {
+        const auto starts = default_starts(point.system->parameters);
+        const State& first = point.system->start;
+        const bool from_middle =
+            first.x == 0 && first.x_dot == 0 && first.y == 0 && first.y_dot == 0;
+        const NamedStart& other = starts[from_middle ? 1 : 0];
+        point.second = Motion{other.name, other.state, run_from(*point.system, other.state)};
+    }
+
+    void run_rows() {
+        std::vector<Row> rows = wanted_rows();
+        // Rows are kept while they are computed: only so many as keep the threads busy.
+        const std::size_t at_once = static_cast<std::size_t>(std::max(threads_, 1));
+        for (std::size_t from = 0; from < rows.size(); from += at_once) {
+            const std::span<Row> block =
+                std::span(rows).subspan(from, std::min(at_once, rows.size() - from));
+            run_fresh(block);
+            if (plan_.default_set) follow_neighbours(block);
+            else if (plan_.carry != Carry::none)
+                parallel(block.size(), threads_, [&](std::size_t i) { carry_along(block[i]); });
+            for (Row& row : block) {
+                if (plan_.grid.reduced) hand_out(row);
+                row = {};
+            }
+        }
+    }
+
+    std::vector<Row> wanted_rows() const {
+        std::vector<Row> rows;
+        const std::size_t chain = plan_.chain();
+        for (std::size_t i = 0; i < plan_.lines.size(); ++i) {
+            const std::size_t line = plan_.lines[i];
+            if (i == 0 || line / chain != plan_.lines[i - 1] / chain)
+                rows.push_back({plan_.grid.place_of(line), {}, {}});
+            rows.back().wanted.push_back(line);
+        }
+        return rows;
+    }
+
+    /// The points' systems, and their motions from the starts that do not wait for a neighbour.
+    void run_fresh(std::span<Row> rows) {
+        const std::size_t n = plan_.grid.row();
+        for (Row& row : rows) row.points.resize(n);
+        parallel(rows.size() * n, threads_, [&](std::size_t task) {
+            Row& row = rows[task / n];
+            const std::size_t k = task % n;
+            Place place = row.place;
+            place.at[plan_.grid.inner()] = k;
+            SweepPoint& point = row.points[k] = begun(place);
+            if (!point.system || plan_.carry != Carry::none) return;
+            if (!plan_.default_set) return run_single(point, row.wanted[0] * n + k);
+            for (const NamedStart& start : default_starts(point.system->parameters))
+                point.motions.push_back(
+                    {start.name, start.state, run_from(*point.system, start.state)});
+        });
+    }
+
+    /// Up and down are independent of each other, so they may run at the same time.
+    void follow_neighbours(std::span<Row> rows) {
+        std::vector<std::vector<std::optional<Motion>>> found(2 * rows.size());
+        parallel(found.size(), threads_, [&](std::size_t task) {
+            found[task] = follow(rows[task / 2].points, task % 2 == 0);
+        });
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            Row& row = rows[i];
+            for (std::size_t k = 0; k < row.points.size(); ++k)
+                for (auto* pass : {&found[2 * i], &found[2 * i + 1]})
+                    if ((*pass)[k]) row.points[k].motions.push_back(std::move(*(*pass)[k]));
+            if (plan_.grid.reduced) continue;
+            for (const std::size_t line : row.wanted)
+                hand_out(line, row.points[line % row.points.size()]);
+        }
+    }
+
+    struct Carried {
+        Parameters parameters;
+        State state;
+    };
+
+    /// One motion of each point: where its neighbour's has led to. Each line is handed out at once,
+    /// up to the last that is wanted.
+    void carry_along(Row& row) {
+        const std::size_t n = row.points.size();
+        std::optional<Carried> before;
+        std::size_t left = row.wanted.size();
+        for (std::size_t step = 0; step < n && left > 0; ++step) {
+            const std::size_t k = plan_.carry == Carry::up ? step : n - 1 - step;
+            SweepPoint& point = row.points[k];
+            if (point.system) {
+                const Parameters& p = point.system->parameters;
+                point.afresh = step > 0 && !before;
+                const State start =
+                    before ? carried(before->state, before->parameters, p) : point.system->start;
+                point.motions.push_back({"", start, run_from(*point.system, start)});
+                const auto& end = point.motions[0].result.at_end;
+                before = end ? std::optional(Carried{p, *end}) : std::nullopt;
+            }
+            if (plan_.grid.reduced) continue;
+            const std::size_t line = row.wanted[0] / n * n + k;
+            if (!std::binary_search(row.wanted.begin(), row.wanted.end(), line)) continue;
+            hand_out(line, point);
+            point = {};
+            --left;
+        }
+    }
+
+    /// From each point's worst motion, the ones found here among them, to the next point.
+    std::vector<std::optional<Motion>> follow(const std::vector<SweepPoint>& points, bool up) {
+        const std::size_t n = points.size();
+        std::vector<std::optional<Motion>> found(n);
+        std::optional<Carried> before;
+        for (std::size_t step = 0; step < n; ++step) {
+            const std::size_t k = up ? step : n - 1 - step;
+            if (!points[k].system) continue;
+            const Parameters& p = points[k].system->parameters;
+            if (before) {
+                const State start = carried(before->state, before->parameters, p);
+                found[k] =
+                    Motion{up ? "previous" : "next", start, run_from(*points[k].system, start)};
+            }
+            const Motion* worst = found[k] && found[k]->result.at_end ? &*found[k] : nullptr;
+            for (const Motion& m : points[k].motions)
+                if (m.result.at_end && (!worst || m.result.x_max > worst->result.x_max)) worst = &m;
+            before = worst ? std::optional(Carried{p, *worst->result.at_end}) : std::nullopt;
+        }
+        return found;
+    }
+
+    void hand_out(std::size_t line, const SweepPoint& point) {
+        if (point.system && !plan_.default_set) count(depends_on_start(point, false));
+        sink_.point(line, point);
+    }
+
+    void hand_out(const Row& row) {
+        const RowSummary summary = summary_of(row.points, plan_.largest, plan_.default_set);
+        if (!plan_.default_set) count(summary.depends_on_start);
+        sink_.row(row.wanted[0], summary);
+    }
+
+    void count(std::optional<bool> elsewhere) {
+        tried_ += elsewhere.has_value();
+        elsewhere_ += elsewhere == true;
+    }
+
+    const SweepPlan& plan_;
+    const int threads_;
+    Pace& pace_;
+    SweepSink& sink_;
+    const std::size_t every_;
+    std::atomic<std::size_t> tried_ = 0, elsewhere_ = 0;
+};
 
 }  // namespace
 
-PointResult measure(
-    const Parameters& p, const State& start, const PointOptions& o,
-    const std::function<bool()>& stop) {
-    const double tau_end = std::round(o.cycles) * p.cycle(),
-                 transient = std::round(o.transient_cycles);
-    // From a state at a whole cycle: the phase of the forcing is that of tau = 0 again.
-    auto pass = [&](const State& s, double from, double cycles) -> Outcome {
-        return simulate(
-            p, s,
-            {from + cycles * p.cycle(),
-             static_cast<long>(std::ceil(cycles)) * transient_impacts_per_cycle, stop, from},
-            {});
-    };
-    PointResult r;
-    State begin = start;
-    if (transient > 0) {
-        r.outcome = pass(start, 0, transient);
-        if (r.outcome.reason != End::tau_end) return r;
-        begin = r.outcome.state;
-    }
-
-    Lyapunov lyapunov(p, 0, tau_end, {true, false, false, 256});
-    ContactRecord contacts;
-    StroboscopicRecord stroboscopic(p), shifted(p, 0, o.section_phase);
-    Energy energy(p, 0, tau_end);
-    ImpactSection section(o.section == Section::impact ? o.section_points : 0);
-    section.b = p.b;
-    std::vector<Observer*> observers = {&lyapunov, &contacts, &stroboscopic, &energy};
-    if (o.section == Section::impact) observers.push_back(&section);
-    if (o.section == Section::stroboscopic) observers.push_back(&shifted);
-    r.outcome = simulate(p, begin, {tau_end, o.max_impacts, stop}, observers);
-    r.measured = true;
-
-    const TransferProduct& product = lyapunov.product();
-    const Growth growth = growth_of(product);
-    r.lambda = product.qr();
-    r.standard_error = growth.standard_error;
-    r.regime = regime_of(
-        p, begin, {contacts, stroboscopic, 0, r.outcome.tau, verdict_by_exponents(growth), stop},
-        false);
-    // A row of points is kept in memory: of the regime its numbers, not its lists.
-    for (auto* list : {&r.regime.moving_tau, &r.regime.moving_z, &r.regime.cycles_with}) *list = {};
-    r.regime.stretches = {};
-    // Of what the motion ends in: a capture outweighs the transient before it.
-    r.verdict = judge(growth, r.regime, 0).verdict;
-    if (r.regime.capture && r.verdict != Verdict::none)
-        r.verdict = r.regime.type == RegimeType::none ? Verdict::none : Verdict::regular;
-    r.x_max = energy.peak();
-    r.x_rms = energy.rms();
-    r.x_free = free_amplitude(p);
-    r.x_rms_ratio = r.x_rms / (r.x_free && *r.x_free > 0 ? *r.x_free / std::numbers::sqrt2
-                                                         : unattached_rms(p, begin, r.outcome.tau));
-    r.share_impacts = energy.impacts() / (energy.impacts() + energy.damper());
-    r.impacts = contacts.impacts;
-    r.sticks = static_cast<long>(contacts.sticks.size());
-    if (o.section == Section::impact) r.section = section.take();
-    if (o.section == Section::stroboscopic)
-        r.section = stroboscopic_section(shifted, p.phi() + o.section_phase, o.section_points);
-
-    if (!o.carry) return r;
-    // A run that ended within a cycle goes on to the end of it.
-    Outcome end = r.outcome;
-    if (end.reason == End::max_impacts) {
-        const double into = end.tau / p.cycle();
-        end = pass(end.state, end.tau, std::ceil(into) - into);
-    }
-    if (end.reason == End::tau_end) r.at_end = end.state;
-    return r;
+std::size_t SweepPlan::runs() const {
+    if (!by_rows()) return lines.size();
+    const std::size_t of_chain = chain();
+    std::size_t rows = 0;
+    for (std::size_t i = 0; i < lines.size(); ++i)
+        rows += i == 0 || lines[i] / of_chain != lines[i - 1] / of_chain;
+    return rows * grid.row() * runs_per_point();
 }
 
-std::vector<NamedStart> default_starts(const Parameters& p) {
-    std::vector<NamedStart> starts = {{"middle", {}}, {"wall", default_state(p)}};
-    const auto amplitude = free_amplitude(p);
-    if (!amplitude || *amplitude == 0) return starts;
-    // x = C sin(tau' - delta), tan(delta) = 2 zeta Omega/(1 - Omega^2): the steady motion at theta
-    // = phi.
-    const double delta = std::atan2(2 * p.zeta() * p.Omega, (1 - p.Omega) * (1 + p.Omega)),
-                 theta = p.phi() - delta;
-    const double x = *amplitude * std::sin(theta);
-    const double x_dot = *amplitude * p.Omega * std::cos(theta);
-    starts.push_back({"moving", {x_dot, x, 0, x}});
-    if (*amplitude < p.b) starts.push_back({"untouched", {x_dot, x, 0, 0}});
-    return starts;
-}
-
-bool ends_elsewhere(const PointResult& one, const PointResult& other) {
-    const Regime &a = one.regime, &b = other.regime;
-    // Without impacts there is one motion.
-    if (a.type == RegimeType::none || b.type == RegimeType::none) return a.type != b.type;
-    auto apart = [&](double share) {
-        return std::abs(one.x_rms - other.x_rms) > share * std::max(one.x_rms, other.x_rms);
-    };
-    if (a.orbit && b.orbit)
-        return a.orbit->cycles != b.orbit->cycles || a.orbit->contacts != b.orbit->contacts ||
-               apart(0.01);
-    return apart(0.25);
-}
-
-State carried(const State& s, const Parameters& from, const Parameters& to) {
-    State next = s;
-    next.y = s.x + (s.y - s.x) * (to.b / from.b);
-    return next;
-}
-
-void parallel(std::size_t count, int threads, const std::function<void(std::size_t)>& task) {
-    std::atomic<std::size_t> next = 0;
-    std::exception_ptr failure;
-    std::mutex failing;
-    const auto work = [&] {
-        try {
-            for (std::size_t i; (i = next++) < count;) task(i);
-        } catch (...) {
-            next = count;
-            const std::lock_guard lock(failing);
-            if (!failure) failure = std::current_exception();
-        }
-    };
-    std::vector<std::thread> others;
-    const std::size_t wanted = std::min(count, static_cast<std::size_t>(std::max(threads, 1)));
-    for (std::size_t t = 1; t < wanted; ++t) others.emplace_back(work);
-    work();
-    for (std::thread& t : others) t.join();
-    if (failure) std::rethrow_exception(failure);
+StartTrial run_sweep(const SweepPlan& plan, int threads, Pace& pace, SweepSink& sink) {
+    Sweep sweep(plan, threads, pace, sink);
+    try {
+        sweep.run();
+    } catch (const Stopped&) {}
+    return sweep.trial();
 }
 
 }  // namespace vines
