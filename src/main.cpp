@@ -15,6 +15,7 @@
 #include "cli/commands.hpp"
 #include "http/routes.hpp"
 #include "http/server.hpp"
+#include "report/markdown.hpp"
 #include "report/reproduce.hpp"
 
 namespace {
@@ -144,8 +145,8 @@ int serve(const ServeOptions& options, const sigset_t& signals) {
 }
 
 int reproduce(const std::string& folder) {
-    const vines::report::Reproduction result = vines::report::reproduce(folder);
-    std::fputs(result.table().c_str(), stdout);
+    const vines::report::Report result = vines::report::reproduce(folder);
+    std::fputs(vines::report::markdown_table(result.findings).c_str(), stdout);
     if (!folder.empty())
         std::fprintf(stderr, "vines: wrote %s/report.md and its plots\n", folder.c_str());
     if (!result.holds()) std::fprintf(stderr, "vines: a number has left its band\n");
