@@ -10,22 +10,39 @@ export class Problem extends Error {
 }
 
 async function read(response) {
-  const body = await response.json().catch(() => ({title: `the server answered ${response.status} without JSON`}));
+  const body = await response
+    .json()
+    .catch(() => ({title: `the server answered ${response.status} without JSON`}));
   if (!response.ok) throw new Problem({status: response.status, ...body});
   return body;
 }
 
 export const get = async (path) => read(await fetch(path));
 
-const post = (path, fields, signal) => fetch(path, {method: "POST", headers: {"Content-Type": "application/json"}, body: JSON.stringify(fields), signal});
+const post = (path, fields, signal) =>
+  fetch(path, {
+    method: "POST",
+    headers: {"Content-Type": "application/json"},
+    body: JSON.stringify(fields),
+    signal,
+  });
 
 export const simulate = async (fields, signal) => read(await post("v1/simulate", fields, signal));
 
 /** query: the fields; record: a file of CSV, sent as it is. */
-export const identify = async (query, record, signal) => read(await fetch(`v1/identify?${query}`, {method: "POST", headers: {"Content-Type": "text/csv"}, body: record, signal}));
+export const identify = async (query, record, signal) =>
+  read(
+    await fetch(`v1/identify?${query}`, {
+      method: "POST",
+      headers: {"Content-Type": "text/csv"},
+      body: record,
+      signal,
+    }),
+  );
 
 /** The same with all in JSON. */
-export const identifyJson = async (fields, signal) => read(await post("v1/identify", fields, signal));
+export const identifyJson = async (fields, signal) =>
+  read(await post("v1/identify", fields, signal));
 
 /** A sweep's answer, a stream of lines. */
 export async function sweep(request, signal) {
@@ -40,4 +57,5 @@ const whole = (path) => new URL(path, location.href.split("?")[0]);
 export const asCurl = (path, fields, flags = "-s") =>
   `curl ${flags} ${whole(path)} -d ${quoted(JSON.stringify(fields))}`;
 
-export const recordAsCurl = (query, name) => `curl -s ${quoted(`${whole("v1/identify")}?${query}`)} -H 'Content-Type: text/csv' --data-binary ${quoted(`@${name}`)}`;
+export const recordAsCurl = (query, name) =>
+  `curl -s ${quoted(`${whole("v1/identify")}?${query}`)} -H 'Content-Type: text/csv' --data-binary ${quoted(`@${name}`)}`;

@@ -4,5 +4,10 @@ import {$} from "./dom.js";
 export async function showModel() {
   $("model").open = matchMedia("(min-width: 1001px)").matches;
   const text = await (await fetch("system.svg")).text();
-  $("model-sketch").append(document.importNode(new DOMParser().parseFromString(text, "image/svg+xml").documentElement, true));
+  $("model-sketch").append(
+    document.importNode(
+      new DOMParser().parseFromString(text, "image/svg+xml").documentElement,
+      true,
+    ),
+  );
 }

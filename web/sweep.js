@@ -4,16 +4,22 @@ import {$, element} from "./dom.js";
 import {HeatMap} from "./heatmap.js";
 import {showPeaks} from "./peaks.js";
 import {coordinates, menuOf, otherMotion, regimes, symbolOf} from "./quantities.js";
-import {SweepData} from "./sweep_data.js";
-import {SweepForm, examples} from "./sweep_form.js";
-import {SweepPlots, startKeys} from "./sweep_plots.js";
 import {listWarnings} from "./summary.js";
+import {SweepData} from "./sweep_data.js";
+import {examples, SweepForm} from "./sweep_form.js";
+import {SweepPlots, startKeys} from "./sweep_plots.js";
 import {follow} from "./sweep_stream.js";
 import {onUnits, unitsSwitch} from "./units.js";
 
-const cyclesOfPoint = 272;  // of the simulation of a point: the paper's tau of 1709
+const cyclesOfPoint = 272; // of the simulation of a point: the paper's tau of 1709
 
-let form, plots, map, data = null, running = null, shown = null, changed = () => {};
+let form;
+let plots;
+let map;
+let data = null;
+let running = null;
+let shown = null;
+let changed = () => {};
 
 function say(text, fault = false) {
   $("sweep-message").textContent = text;
@@ -22,8 +28,14 @@ function say(text, fault = false) {
 
 // The menus, by their name in the query. Their first entry needs no mention there.
 const menus = {coordinate: "sweep-coordinate", beside: "sweep-quantity", map: "sweep-mapped"};
-const choice = () => ({coordinate: $("sweep-coordinate").value, quantity: $("sweep-quantity").value, map: $("sweep-mapped").value,
-  start: Number($("sweep-start").value) || 0, best: $("sweep-start").value === "best", slice: Number($("sweep-slice").value)});
+const choice = () => ({
+  coordinate: $("sweep-coordinate").value,
+  quantity: $("sweep-quantity").value,
+  map: $("sweep-mapped").value,
+  start: Number($("sweep-start").value) || 0,
+  best: $("sweep-start").value === "best",
+  slice: Number($("sweep-slice").value),
+});
 
 function fillMenu(id, entries, wanted) {
   $(id).replaceChildren(...entries.map(([value, text]) => new Option(text, value)));
@@ -40,7 +52,9 @@ function wish(id) {
 /** The query of the sweep that is shown, or null before the first. */
 export function query() {
   if (shown === null) return null;
-  const menu = Object.entries(menus).filter(([, id]) => $(id).selectedIndex > 0).map(([name, id]) => `${name}=${$(id).value}`);
+  const menu = Object.entries(menus)
+    .filter(([, id]) => $(id).selectedIndex > 0)
+    .map(([name, id]) => `${name}=${$(id).value}`);
   return [shown, ...menu].join("&");
 }
 
@@ -49,14 +63,25 @@ const grouped = (n) => String(n).replace(/\B(?=(\d{3})+$)/g, " ");
 function showSize() {
   const {counts, starts, points, cycles} = form.size();
   const product = [...counts, ...(starts > 1 ? [`${starts} starts`] : [])].join(" × ");
-  $("sweep-size").textContent = Number.isFinite(points) ? `${counts.length + (starts > 1) > 1 ? `${product} = ` : ""}${grouped(points)} points, ${grouped(cycles)} cycles` : "";
+  $("sweep-size").textContent = Number.isFinite(points)
+    ? `${counts.length + (starts > 1) > 1 ? `${product} = ` : ""}${grouped(points)} points, ${grouped(cycles)} cycles`
+    : "";
 }
 
-const time = (seconds) => seconds < 1 ? "less than a second" : seconds < 90 ? `${seconds.toFixed(0)} s` : seconds < 5400 ? `${(seconds / 60).toFixed(0)} min` : `${(seconds / 3600).toFixed(1)} h`;
+const time = (seconds) =>
+  seconds < 1
+    ? "less than a second"
+    : seconds < 90
+      ? `${seconds.toFixed(0)} s`
+      : seconds < 5400
+        ? `${(seconds / 60).toFixed(0)} min`
+        : `${(seconds / 3600).toFixed(1)} h`;
 
 function progress({per_second: rate, seconds_left: left}) {
   if (left == null) return showCount();
-  showCount(` · ${rate < 10 ? rate.toFixed(1) : rate.toFixed(0)} per second${data.complete ? "" : ` · ${time(left)} left`}`);
+  showCount(
+    ` · ${rate < 10 ? rate.toFixed(1) : rate.toFixed(0)} per second${data.complete ? "" : ` · ${time(left)} left`}`,
+  );
 }
 
 function showCount(more = "") {
@@ -66,8 +91,11 @@ function showCount(more = "") {
 }
 
 // At most ten drawings a second, and no more than a fifth of the time.
-let waiting = 0, cost = 0;
-function drawSoon() { waiting ||= setTimeout(draw, Math.max(100, 4 * cost)); }
+let waiting = 0;
+let cost = 0;
+function drawSoon() {
+  waiting ||= setTimeout(draw, Math.max(100, 4 * cost));
+}
 
 function draw() {
   clearTimeout(waiting);
@@ -78,15 +106,20 @@ function draw() {
   showPeaks(data, unitsOfParameter);
   showMotions();
   countRegimes();
-  setTimeout(() => { cost = performance.now() - began; });  // uPlot paints after this function
+  setTimeout(() => {
+    cost = performance.now() - began;
+  }); // uPlot paints after this function
 }
 
 /** The keys of the worst and the best motion, or of one from another start, where there are any. */
 function showMotions() {
   const {defaultSet} = data;
-  $("sweep-motions").hidden = data.axes.length !== 1 || !(defaultSet || (data.starts === 1 && data.points.some(otherMotion)));
+  $("sweep-motions").hidden =
+    data.axes.length !== 1 || !(defaultSet || (data.starts === 1 && data.points.some(otherMotion)));
   $("sweep-worst").hidden = !defaultSet;
-  $("sweep-other").textContent = defaultSet ? "the best, where they end apart" : "from another start, where it was tried and ends elsewhere";
+  $("sweep-other").textContent = defaultSet
+    ? "the best, where they end apart"
+    : "from another start, where it was tried and ends elsewhere";
 }
 
 function countRegimes() {
@@ -103,7 +136,9 @@ function countRegimes() {
 function present(fresh) {
   data = fresh;
   shown = String(SweepForm.toQuery(data.request));
-  const {section, defaultSet, reduced} = data, starts = defaultSet ? [] : data.request.starts ?? [], [, , third] = data.axes;
+  const {section, defaultSet, reduced} = data;
+  const starts = defaultSet ? [] : (data.request.starts ?? []);
+  const [, , third] = data.axes;
   $("sweep-stack").hidden = data.axes.length !== 1;
   $("sweep-map").hidden = data.axes.length < 2;
   $("figure-sweep-section").hidden = section === "none";
@@ -111,17 +146,34 @@ function present(fresh) {
   $("sweep-units").hidden = !data.parameters.si;
   form.base.showOrigins(data.parameters);
   $("sweep-where").textContent = section === "impact" ? "at impact:" : "once a cycle:";
-  fillMenu("sweep-coordinate", Object.entries(coordinates[section] ?? {}).map(([name, {title}]) => [name, title]), wish("sweep-coordinate"));
+  fillMenu(
+    "sweep-coordinate",
+    Object.entries(coordinates[section] ?? {}).map(([name, {title}]) => [name, title]),
+    wish("sweep-coordinate"),
+  );
   for (const id of ["sweep-quantity", "sweep-mapped"]) fillMenu(id, menuOf(data), wish(id));
-  fillMenu("sweep-start", defaultSet ? [["0", "worst"], ["best", "best"]] : (starts.length ? starts : [0]).map((_, s) => [String(s), String(s + 1)]), $("sweep-start").value);
+  fillMenu(
+    "sweep-start",
+    defaultSet
+      ? [
+          ["0", "worst"],
+          ["best", "best"],
+        ]
+      : (starts.length ? starts : [0]).map((_, s) => [String(s), String(s + 1)]),
+    $("sweep-start").value,
+  );
   $("sweep-start-of").hidden = starts.length < 2 && !defaultSet;
   $("sweep-start-word").textContent = defaultSet ? "of the start that is" : "from start";
-  fillMenu("sweep-slice", third ? third.values.map((v, m) => [String(m), String(Number(v.toPrecision(6)))]) : [["0", ""]], $("sweep-slice").value);
+  fillMenu(
+    "sweep-slice",
+    third ? third.values.map((v, m) => [String(m), String(Number(v.toPrecision(6)))]) : [["0", ""]],
+    $("sweep-slice").value,
+  );
   $("sweep-slice-of").hidden = !third;
   $("sweep-slice-word").textContent = third ? `where ${symbolOf(third.parameter)} =` : "";
   $("sweep-starts").hidden = starts.length < 2;
   listWarnings($("sweep-warnings"), [...data.warnings]);
-  $("sweep-verdicts").hidden = starts.length > 1;  // the colours are those of the starts, then
+  $("sweep-verdicts").hidden = starts.length > 1; // the colours are those of the starts, then
   $("sweep-starts").replaceChildren(...startKeys(starts).map((key) => element("li", {}, key)));
   $("sweep-keys").hidden = false;
   $("sweep-download").hidden = false;
@@ -131,7 +183,9 @@ function present(fresh) {
   changed();
 }
 
-function showFreeKey() { $("sweep-free").hidden = $("sweep-quantity").value !== "x_max"; }
+function showFreeKey() {
+  $("sweep-free").hidden = $("sweep-quantity").value !== "x_max";
+}
 
 function busy(is) {
   $("sweep-run").disabled = is;
@@ -143,30 +197,46 @@ function busy(is) {
 /** What is worth saying of a complete sweep. */
 function remarks() {
   const faults = [...data.faults].map(([fault, n]) => `${grouped(n)} points failed: ${fault}`);
-  return [...faults, ...(data.early ? [`${grouped(data.early)} points ended early, at max_impacts`] : [])].join("; ");
+  return [
+    ...faults,
+    ...(data.early ? [`${grouped(data.early)} points ended early, at max_impacts`] : []),
+  ].join("; ");
 }
 
 /** The points that `into` still lacks. */
 async function receive(into) {
   running?.abort();
-  const mine = running = new AbortController();
+  const mine = (running = new AbortController());
   busy(true);
   const heard = (line) => {
     if (running !== mine) return;
-    if (line.type === "start") { if (data !== into) present(into); say(""); showCount(); }
-    else if (line.type === "progress") progress(line);
+    if (line.type === "start") {
+      if (data !== into) present(into);
+      say("");
+      showCount();
+    } else if (line.type === "progress") progress(line);
     else drawSoon();
   };
-  const broken = (error, seconds) => { if (running === mine) say(`${error.message}; asking again in ${seconds} s`, true); };
+  const broken = (error, seconds) => {
+    if (running === mine) say(`${error.message}; asking again in ${seconds} s`, true);
+  };
   try {
     await follow(into.request, into, mine.signal, {heard, broken});
-    if (running === mine) { say(remarks()); listWarnings($("sweep-warnings"), [...into.warnings]); finish(); }
+    if (running === mine) {
+      say(remarks());
+      listWarnings($("sweep-warnings"), [...into.warnings]);
+      finish();
+    }
   } catch (error) {
     if (running !== mine) return;
     if (data) showCount();
     const left = error instanceof Problem ? form.showErrors(error.errors) : [];
     if (mine.signal.aborted) say("cancelled");
-    else say([error.message, ...left.map((e) => e.detail).filter((d) => d !== error.message)].join("; "), true);
+    else
+      say(
+        [error.message, ...left.map((e) => e.detail).filter((d) => d !== error.message)].join("; "),
+        true,
+      );
   } finally {
     if (running === mine) {
       running = null;
@@ -176,11 +246,14 @@ async function receive(into) {
   }
 }
 
-function finish() { $("sweep-results").dataset.done = String(Number($("sweep-results").dataset.done ?? 0) + 1); }
+function finish() {
+  $("sweep-results").dataset.done = String(Number($("sweep-results").dataset.done ?? 0) + 1);
+}
 
 /** Where the plots lie below the form, one who asks for them is led there. */
 function lead() {
-  if ($("sweep-results").offsetLeft < $("sweep-form").offsetLeft + $("sweep-form").offsetWidth) $("sweep-results").scrollIntoView();
+  if ($("sweep-results").offsetLeft < $("sweep-form").offsetLeft + $("sweep-form").offsetWidth)
+    $("sweep-results").scrollIntoView();
 }
 
 function run() {
@@ -188,9 +261,15 @@ function run() {
   return receive(new SweepData(form.request(), form.halfPeriod));
 }
 
-const sorted = (text) => { const q = new URLSearchParams(text); q.sort(); return String(q); };
+const sorted = (text) => {
+  const q = new URLSearchParams(text);
+  q.sort();
+  return String(q);
+};
 const exampleOf = (query) => examples.findIndex(([, q]) => sorted(q) === sorted(query));
-const markExample = () => { $("sweep-example").value = String(exampleOf(SweepForm.toQuery(form.request()))); };
+const markExample = () => {
+  $("sweep-example").value = String(exampleOf(SweepForm.toQuery(form.request())));
+};
 
 /** Shows what a query asks for; without one the first example. */
 export async function open(given) {
@@ -202,7 +281,8 @@ export async function open(given) {
     rest.delete(name);
   }
   if (String(rest) === shown) return;
-  const first = new URLSearchParams(examples[0][1]), wanted = rest.size ? rest : first;
+  const first = new URLSearchParams(examples[0][1]);
+  const wanted = rest.size ? rest : first;
   form.setQuery(wanted, exampleOf(wanted) >= 0);
   markExample();
   showSize();
@@ -216,18 +296,37 @@ export function redraw() {
 
 function download() {
   const url = URL.createObjectURL(data.file());
-  element("a", {href: url, download: `sweep-${data.request.axes.map((a) => a.parameter).join("-")}.ndjson`}).click();
+  element("a", {
+    href: url,
+    download: `sweep-${data.request.axes.map((a) => a.parameter).join("-")}.ndjson`,
+  }).click();
   setTimeout(() => URL.revokeObjectURL(url), 10000);
 }
 
 async function copy() {
   const command = asCurl("v1/sweep", form.request(), "-sN");
-  try { await navigator.clipboard.writeText(command); say("copied"); } catch { say(command); }
+  try {
+    await navigator.clipboard.writeText(command);
+    say("copied");
+  } catch {
+    say(command);
+  }
 }
 
 function legend() {
-  $("sweep-regimes").replaceChildren(...Object.entries(regimes).map(([regime, what]) => element("li", {title: `Type ${regime}`},
-    element("span", {className: `key regime regime-${regime}`, textContent: regime === "none" ? what : `${regime} ${what}`}), element("small", {id: `sweep-regime-${regime}`}))));
+  $("sweep-regimes").replaceChildren(
+    ...Object.entries(regimes).map(([regime, what]) =>
+      element(
+        "li",
+        {title: `Type ${regime}`},
+        element("span", {
+          className: `key regime regime-${regime}`,
+          textContent: regime === "none" ? what : `${regime} ${what}`,
+        }),
+        element("small", {id: `sweep-regime-${regime}`}),
+      ),
+    ),
+  );
 }
 
 /** The unit of a parameter, as in " (m)". */
@@ -239,29 +338,60 @@ function unitsOfParameter(parameter) {
 /** tables: the answer of /v1/parameters; tell: called when there is another query; simulate(fields): shows the run of a point. */
 export function start(tables, tell, simulate) {
   changed = tell;
-  form = new SweepForm($("sweep-fields"), tables, () => { showSize(); markExample(); });
-  const units = unitsOfParameter, openPoint = (index) => simulate({...data.fields(index), cycles: cyclesOfPoint});
-  plots = new SweepPlots($("sweep-stack"), {section: $("plot-sweep-section"), lambda: $("plot-sweep-lambda"), other: $("plot-sweep-other")}, units, openPoint);
+  form = new SweepForm($("sweep-fields"), tables, () => {
+    showSize();
+    markExample();
+  });
+  const units = unitsOfParameter;
+  const openPoint = (index) => simulate({...data.fields(index), cycles: cyclesOfPoint});
+  plots = new SweepPlots(
+    $("sweep-stack"),
+    {
+      section: $("plot-sweep-section"),
+      lambda: $("plot-sweep-lambda"),
+      other: $("plot-sweep-other"),
+    },
+    units,
+    openPoint,
+  );
   map = new HeatMap($("sweep-map"), $("plot-sweep-map"), units, openPoint);
   legend();
   $("sweep-keys").hidden = true;
-  $("sweep-example").append(new Option("own sweep", "-1"), ...examples.map(([title], i) => new Option(title, String(i))));
+  $("sweep-example").append(
+    new Option("own sweep", "-1"),
+    ...examples.map(([title], i) => new Option(title, String(i))),
+  );
   for (const id of [...Object.values(menus), "sweep-start", "sweep-slice"])
-    $(id).addEventListener("change", () => { if (!data) return; (data.axes.length > 1 ? map : plots).choose(choice()); showFreeKey(); changed(); });
+    $(id).addEventListener("change", () => {
+      if (!data) return;
+      (data.axes.length > 1 ? map : plots).choose(choice());
+      showFreeKey();
+      changed();
+    });
   unitsSwitch($("sweep-units"));
-  onUnits(() => { if (data?.axes) plots.recreate(); });
+  onUnits(() => {
+    if (data?.axes) plots.recreate();
+  });
   $("sweep-example").addEventListener("change", () => {
     const example = examples[$("sweep-example").value];
     if (!example) return;
-    for (const [name, wanted] of Object.entries(example[2] ?? {})) $(menus[name]).dataset.wanted = wanted;
+    for (const [name, wanted] of Object.entries(example[2] ?? {}))
+      $(menus[name]).dataset.wanted = wanted;
     form.setQuery(new URLSearchParams(example[1]), true);
     showSize();
     run();
     lead();
   });
-  $("sweep-form").addEventListener("submit", (event) => { event.preventDefault(); run(); lead(); });
+  $("sweep-form").addEventListener("submit", (event) => {
+    event.preventDefault();
+    run();
+    lead();
+  });
   $("sweep-cancel").addEventListener("click", () => running?.abort());
   $("sweep-resume").addEventListener("click", () => receive(data));
-  $("sweep-download").addEventListener("click", (event) => { event.preventDefault(); download(); });
+  $("sweep-download").addEventListener("click", (event) => {
+    event.preventDefault();
+    download();
+  });
   $("sweep-copy").addEventListener("click", copy);
 }

@@ -10,16 +10,34 @@ export class Tip {
 
   /** rows: [term, value]; left, top: where, in the container; act: {label, run}, a button for those who have no pointer to click with. */
   show(left, top, rows, note, act) {
-    const list = element("dl", {}, ...rows.flatMap(([term, value]) => [element("dt", {textContent: term}), element("dd", {textContent: value})]));
-    const last = act ? element("button", {type: "button", textContent: act.label, onclick: act.run, onmousedown: (event) => event.preventDefault()}) : element("p", {textContent: note});
+    const list = element(
+      "dl",
+      {},
+      ...rows.flatMap(([term, value]) => [
+        element("dt", {textContent: term}),
+        element("dd", {textContent: value}),
+      ]),
+    );
+    const last = act
+      ? element("button", {
+          type: "button",
+          textContent: act.label,
+          onclick: act.run,
+          onmousedown: (event) => event.preventDefault(),
+        })
+      : element("p", {textContent: note});
     this.node.replaceChildren(list, last);
     this.node.hidden = false;
     this.node.classList.toggle("pinned", Boolean(act));
-    const {offsetWidth: width, offsetHeight: height} = this.node, gap = 14, room = this.container.clientWidth;
+    const {offsetWidth: width, offsetHeight: height} = this.node;
+    const gap = 14;
+    const room = this.container.clientWidth;
     const beside = left + gap + width <= room ? left + gap : left - gap - width;
     this.node.style.left = `${Math.max(0, Math.min(beside, room - width))}px`;
     this.node.style.top = `${Math.max(0, Math.min(top - height / 2, this.container.clientHeight - height))}px`;
   }
 
-  hide() { this.node.hidden = true; }
+  hide() {
+    this.node.hidden = true;
+  }
 }
