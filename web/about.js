@@ -34,10 +34,9 @@ export function mark(preset) {
   const names = plotsOf[preset?.name.split("_")[0]] ?? []; // the rows of a table show the same
   const figures = names.map((name) => $(`figure-${name}`)).filter((figure) => !figure.hidden);
   for (const figure of figures) {
+    const tag = element("span", {className: "tag", textContent: preset.source.split(",")[0]});
     figure.classList.add("about");
-    figure
-      .querySelector("figcaption")
-      .prepend(element("span", {className: "tag", textContent: preset.source.split(",")[0]}));
+    figure.querySelector("figcaption").prepend(tag);
   }
   return figures;
 }

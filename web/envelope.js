@@ -15,7 +15,8 @@ export function envelope(values) {
     if (v > high[k]) high[k] = v;
   });
   return (u, series, from, to) => {
-    if (to - from < 2 * size * u.bbox.width) return exact(u, series, from, to); // a block would be wider than half a pixel
+    const narrow = to - from >= 2 * size * u.bbox.width; // a block is at most half a pixel wide
+    if (!narrow) return exact(u, series, from, to);
     const stroke = new Path2D();
     const t = u.data[0];
     for (let k = Math.floor(from / size); k <= Math.floor(to / size); ++k) {

@@ -1,4 +1,5 @@
-// The page: its tabs, and the address, which names the tab and holds its request. So a link shows the same, and Back leads back.
+// The page: its tabs, and the address, which names the tab and holds its request. So a link shows
+// the same, and Back leads back.
 import {get} from "./api.js";
 import {$} from "./dom.js";
 import * as measurement from "./measurement.js";
@@ -11,8 +12,10 @@ const panes = {simulation, sweep, measurement};
 const scrolled = {};
 let current = null;
 
-const address = (name, query) =>
-  `?${name === "simulation" ? query : [`tab=${name}`, query].filter(Boolean).join("&")}`;
+function address(name, query) {
+  if (name === "simulation") return `?${query}`;
+  return query ? `?tab=${name}&${query}` : `?tab=${name}`;
+}
 
 function show(name) {
   if (current === name) return;

@@ -1,5 +1,6 @@
-// The tab of a measurement: a file and its fields in, one request, what was identified out; the list of impacts can be edited and sent again.
-import {identify, identifyJson, Problem, recordAsCurl} from "./api.js";
+// The tab of a measurement: a file and its fields in, one request, what was identified out; the
+// list of impacts can be edited and sent again.
+import {identify, identifyJson, Problem, recordAsCurl, wholeMessage} from "./api.js";
 import {$, element} from "./dom.js";
 import {Form} from "./form.js";
 import {ImpactList} from "./impact_list.js";
@@ -34,7 +35,10 @@ function say(message, fault = false) {
   $("measure-message").classList.toggle("fault", fault);
 }
 
-/** The service's fields as this form shows them: names of columns are typed in or taken from the file's header; the forcing's amplitude is fitted. */
+/**
+ * The service's fields as this form shows them: names of columns are typed in or taken from the
+ * file's header; the forcing's amplitude is fitted.
+ */
 const changes = {
   threshold: {group: "system", unit: "sd of the noise"},
   R: {default_note: "estimated"},
@@ -42,31 +46,20 @@ const changes = {
   k1: {default_note: "required"},
   f: {default_note: "its own"},
 };
+const isColumn = (f) => f.type === "choice" && !f.choices && f.name !== "preset";
 const fieldsOf = (fields) =>
   fields
     .filter((f) => !["impact_times_s", "F"].includes(f.name))
-    .map((f) => ({
-      ...f,
-      ...(f.type === "choice" && !f.choices && f.name !== "preset" ? {type: "text"} : {}),
-      ...changes[f.name],
-    }));
+    .map((f) => ({...f, ...(isColumn(f) ? {type: "text"} : {}), ...changes[f.name]}));
 
 const preset = () => presets.find((p) => p.name === $("measure-preset").value);
-const base = () =>
-  Object.fromEntries(
-    Object.entries(preset()?.parameters ?? {}).filter(([name]) => !estimated.has(name)),
-  );
+function base() {
+  const parameters = Object.entries(preset()?.parameters ?? {});
+  return Object.fromEntries(parameters.filter(([name]) => !estimated.has(name)));
+}
 
-/** Fields as a query; the commas of lists stay readable. */
-const asQuery = (fields) =>
-  String(
-    new URLSearchParams(
-      Object.entries(fields).map(([name, value]) => [
-        name,
-        Array.isArray(value) ? value.join(",") : value,
-      ]),
-    ),
-  ).replaceAll("%2C", ",");
+/** Fields as a query, a list as its values with commas, which stay readable. */
+const asQuery = (fields) => String(new URLSearchParams(fields)).replaceAll("%2C", ",");
 
 export const query = () => shown;
 
@@ -101,15 +94,18 @@ function drawFile() {
   for (const id of ["measure-parts", "measure-list", "measure-add-at"]) $(id).hidden = !record;
   if (!record) return;
   drawRecord(record, addAt);
-  list.set(answer?.impacts ?? {time_s: []}, [record.t[0], record.t.at(-1)]); // a record whose impacts cannot be found has them given by hand
+  // A record whose impacts cannot be found has them given by hand.
+  list.set(answer?.impacts ?? {time_s: []}, [record.t[0], record.t.at(-1)]);
 }
 
 function edited() {
-  $("measure-again").disabled = $("measure-reset").disabled = !list.edited;
+  for (const id of ["measure-again", "measure-reset"]) $(id).disabled = !list.edited;
   mark(record, list.rows, answer);
 }
 
-/** A click on the acceleration adds the impact whose spike is there, if that is what it is for now. */
+/**
+ * A click on the acceleration adds the impact whose spike is there, if that is what it is for now.
+ */
 function addAt(t, reach) {
   if ($("measure-add-at").getAttribute("aria-pressed") !== "true") return;
   const at = spikeNear(record, t, reach);
@@ -131,13 +127,11 @@ function quoteLine(detail) {
   for (let n = 1, from = 0; n <= line + 1 && from <= text.length; ++n) {
     const at = text.indexOf("\n", from);
     const to = at < 0 ? text.length : at;
-    if (n >= line - 1)
-      lines.push(
-        element("span", {
-          className: n === line ? "at-fault" : "",
-          textContent: `${String(n).padStart(7)}  ${text.slice(from, Math.min(to, from + 120)).trimEnd()}\n`,
-        }),
-      );
+    if (n >= line - 1) {
+      const beginning = text.slice(from, Math.min(to, from + 120)).trimEnd();
+      const textContent = `${String(n).padStart(7)}  ${beginning}\n`;
+      lines.push(element("span", {className: n === line ? "at-fault" : "", textContent}));
+    }
     from = to + 1;
   }
   $("measure-lines").replaceChildren(...lines);
@@ -149,24 +143,23 @@ function quoteLine(detail) {
 async function take(chosen) {
   if (!chosen) return;
   running?.abort();
-  const mine = (file = chosen);
+  file = chosen;
   answer = record = sent = null;
   for (const node of document.querySelectorAll(".identified")) node.hidden = true;
-  $("measure-about").textContent =
-    `${mine.name}, ${(mine.size / 1e6).toFixed(mine.size < 1e5 ? 3 : 1)} MB`;
+  const megabytes = (chosen.size / 1e6).toFixed(chosen.size < 1e5 ? 3 : 1);
+  $("measure-about").textContent = `${chosen.name}, ${megabytes} MB`;
   $("measure-run").disabled = false;
   quoteLine("");
   say("reading …");
-  reading = mine.text().then((all) => {
-    if (file === mine) text = all;
+  reading = chosen.text().then((all) => {
+    if (file === chosen) text = all;
     return parse(all);
   });
   try {
     const parsed = await reading;
-    if (file !== mine) return;
-    $("measure-columns").replaceChildren(
-      ...parsed.names.map((value) => element("option", {value})),
-    );
+    if (file !== chosen) return;
+    const options = parsed.names.map((value) => element("option", {value}));
+    $("measure-columns").replaceChildren(...options);
     record = recordOf(parsed, form.values());
     $("measure-about").textContent += `, ${parsed.columns[0]?.length ?? 0} samples`;
     drawFile();
@@ -178,20 +171,11 @@ async function take(chosen) {
 
 /** What is sent: the file as it is, or, where the address would be too long, all as JSON. */
 async function request(fields, signal) {
-  const text = asQuery(fields);
-  if (text.length <= longestQuery) return identify(text, file, signal);
-  return identifyJson(
-    {
-      ...fields,
-      record: Object.fromEntries(
-        Object.entries(recordOf(await reading, fields).sent).map(([name, column]) => [
-          name,
-          [...column],
-        ]),
-      ),
-    },
-    signal,
-  );
+  const asked = asQuery(fields);
+  if (asked.length <= longestQuery) return identify(asked, file, signal);
+  const columns = Object.entries(recordOf(await reading, fields).sent);
+  const lists = Object.fromEntries(columns.map(([name, column]) => [name, [...column]]));
+  return identifyJson({...fields, record: lists}, signal);
 }
 
 async function run(more = {}) {
@@ -201,7 +185,8 @@ async function run(more = {}) {
     return;
   }
   running?.abort();
-  const mine = (running = new AbortController());
+  const mine = new AbortController();
+  running = mine;
   const fields = {...form.values(), ...more};
   form.showErrors([]);
   quoteLine("");
@@ -222,10 +207,7 @@ async function run(more = {}) {
     if (running !== mine) return;
     if (mine.signal.aborted) return say("cancelled");
     const left = error instanceof Problem ? form.showErrors(error.errors) : [];
-    say(
-      [error.message, ...left.map((e) => e.detail).filter((d) => d !== error.message)].join("; "),
-      true,
-    );
+    say(wholeMessage(error, left), true);
     quoteLine(error.message);
   } finally {
     if (running === mine) {
@@ -243,21 +225,16 @@ function busy(is) {
 
 /** Where the plots lie below the form, one who asks for them is led there. */
 function lead() {
-  if (
-    file &&
-    $("measure-results").offsetLeft < $("measure-form").offsetLeft + $("measure-form").offsetWidth
-  )
-    $("measure-results").scrollIntoView();
+  const panel = $("measure-form");
+  const results = $("measure-results");
+  if (file && results.offsetLeft < panel.offsetLeft + panel.offsetWidth) results.scrollIntoView();
 }
 
 function download() {
-  const url = URL.createObjectURL(
-    new Blob([JSON.stringify(answer, null, 1)], {type: "application/json"}),
-  );
-  element("a", {
-    href: url,
-    download: `${file.name.replace(/\.[^.]*$/, "")}-identified.json`,
-  }).click();
+  const text = JSON.stringify(answer, null, 1);
+  const url = URL.createObjectURL(new Blob([text], {type: "application/json"}));
+  const name = file.name.replace(/\.[^.]*$/, "");
+  element("a", {href: url, download: `${name}-identified.json`}).click();
   setTimeout(() => URL.revokeObjectURL(url), 10000);
 }
 
@@ -309,6 +286,11 @@ export function start(fields, all, changed) {
     new Option("own oscillator", ""),
     ...presets.map((p) => new Option(`Table 4, ${p.title.replace("experiment, ", "")}`, p.name)),
   );
+  listen();
+  listenToFiles();
+}
+
+function listen() {
   $("measure-preset").addEventListener("change", () => {
     choosePreset($("measure-preset").value);
     remember();
@@ -327,9 +309,9 @@ export function start(fields, all, changed) {
     lead();
   });
   $("measure-cancel").addEventListener("click", () => running?.abort());
-  $("measure-again").addEventListener("click", () =>
-    run({impact_times_s: list.times().map((t) => Number(t.toFixed(7)))}),
-  );
+  $("measure-again").addEventListener("click", () => {
+    run({impact_times_s: list.times().map((t) => Number(t.toFixed(7)))});
+  });
   $("measure-reset").addEventListener("click", () => list.reset());
   $("measure-add-at").addEventListener("click", ({currentTarget: button}) => {
     const on = button.getAttribute("aria-pressed") !== "true";
@@ -338,5 +320,4 @@ export function start(fields, all, changed) {
   });
   $("measure-download").addEventListener("click", download);
   $("measure-copy").addEventListener("click", copy);
-  listenToFiles();
 }

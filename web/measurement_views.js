@@ -1,6 +1,7 @@
 // The plots of a measurement: the record with its impacts, and what was identified from them.
 import {$} from "./dom.js";
 import {envelope} from "./envelope.js";
+import {exponentSeries} from "./exponents.js";
 import {isLeftOut} from "./impact_list.js";
 import {LinePlot, ScatterPlot} from "./plots.js";
 import {sampleAt, spikeNear} from "./record.js";
@@ -20,31 +21,21 @@ export function redraw() {
 
 // How an impact is marked: by its wall, or because it is left out or edited.
 const kinds = {plus: "plus", minus: "minus", left: "wall", removed: "soft", edited: "c4"};
-const kindOf = (row) =>
-  row.removed
-    ? "removed"
-    : row.t !== row.found
-      ? "edited"
-      : isLeftOut(row.status)
-        ? "left"
-        : row.side > 0
-          ? "plus"
-          : "minus";
+function kindOf(row) {
+  if (row.removed) return "removed";
+  if (row.t !== row.found) return "edited";
+  if (isLeftOut(row.status)) return "left";
+  return row.side > 0 ? "plus" : "minus";
+}
 
 /** The rows of the list as marks at heights: y(row). */
 function marks(rows, y, shape, size) {
   return Object.entries(kinds)
     .map(([kind, colour]) => {
       const mine = rows.filter((row) => kindOf(row) === kind);
-      return {
-        x: mine.map((row) => row.t),
-        y: mine.map(y),
-        colour,
-        shape,
-        ...(kind === "plus" || kind === "minus"
-          ? {size, width: 1.3}
-          : {size: size * 1.6, width: 2}),
-      };
+      const usual = kind === "plus" || kind === "minus";
+      const stroke = usual ? {size, width: 1.3} : {size: size * 1.6, width: 2};
+      return {x: mine.map((row) => row.t), y: mine.map(y), colour, shape, ...stroke};
     })
     .filter((group) => group.x.length);
 }
@@ -56,7 +47,10 @@ function valueAt({t}, column, moment) {
   return column[i - 1] + (column[i] - column[i - 1]) * Math.min(Math.max(share, 0), 1);
 }
 
-/** The impacts of the list on the plots of the record, with its edits; answer: null before there is one. */
+/**
+ * The impacts of the list on the plots of the record, with its edits; answer: null before there is
+ * one.
+ */
 export function mark(record, rows, answer) {
   if (record.a) {
     const step = (record.t.at(-1) - record.t[0]) / (record.t.length - 1);
@@ -99,7 +93,10 @@ export function drawRecord(record, click) {
     });
 }
 
-/** Columns over the impacts' time, from the record's start to its end, so that all plots lie under each other. */
+/**
+ * Columns over the impacts' time, from the record's start to its end, so that all plots lie under
+ * each other.
+ */
 function overRecord(t, columns, [start, end]) {
   const before = !(t[0] <= start);
   const after = !(t[t.length - 1] >= end);
@@ -127,62 +124,37 @@ function rangeOf(histories, others) {
 function drawExponents({exponents: {qr, raw_product: raw}, slope, parameters}, span) {
   const omega0 = parameters.derived.omega0;
   const histories = [qr, raw].map((estimator) => estimator?.history).filter((h) => h?.tau.length);
-  const range = rangeOf(
-    histories,
-    [slope.lambda1, slope.low, slope.high].filter((v) => v != null),
-  );
+  const told = [slope.lambda1, slope.low, slope.high].filter((v) => v != null);
+  const common = {span, omega0, range: rangeOf(histories, told)};
+  const known = slope.lambda1 != null;
+  const level = known ? [{y: slope.lambda1, colour: "before"}] : [];
+  const layers = known ? [{from: slope.low, to: slope.high, colour: "interval"}] : [];
   $("figure-measured-raw").hidden = !raw;
-  for (const [name, estimator] of [
-    ["qr", qr],
-    ["raw", raw],
-  ]) {
-    const history = estimator?.history;
-    if (!history?.tau.length) {
-      plots[name].draw({
-        series: [{label: "λ", colour: "c1"}],
-        data: [span, [null, null]],
-        label: "λ",
-        x: seconds,
-      });
-      continue;
-    }
-    const keys = [
-      "lambda1",
-      "lambda2",
-      "lambda3",
-      "lambda4",
-      ...(history.rounding_floor ? ["rounding_floor"] : []),
-    ];
-    const t = history.tau.map((tau) => tau / omega0);
-    const series = keys.map((k, i) =>
-      k === "rounding_floor"
-        ? {label: "floor", colour: "soft", dash: [5, 4]}
-        : {label: `λ${"₁₂₃₄"[i]}`, colour: `c${i + 1}`, width: 1.5},
-    );
-    const known = name === "qr" && slope.lambda1 != null;
-    plots[name].draw({
-      series,
-      data: overRecord(
-        t,
-        keys.map((k) => history[k]),
-        span,
-      ),
-      range,
-      label: "λ",
-      x: seconds,
-      levels: [{y: 0, colour: "soft"}, ...(known ? [{y: slope.lambda1, colour: "before"}] : [])],
-      layers: known ? [{from: slope.low, to: slope.high, colour: "interval"}] : [],
-      marks: [
-        {
-          x: estimator.final.map(() => t.at(-1)),
-          y: estimator.final,
-          colour: "text",
-          shape: "ring",
-          size: 3.5,
-        },
-      ],
-    });
+  drawHistory(plots.qr, qr, common, level, layers);
+  drawHistory(plots.raw, raw, common);
+}
+
+/** An estimator's exponents over the impacts, and as rings where they end. */
+function drawHistory(plot, estimator, {span, omega0, range}, level = [], layers = []) {
+  const history = estimator?.history;
+  const shared = {label: "λ", x: seconds};
+  if (!history?.tau.length) {
+    plot.draw({...shared, series: [{label: "λ", colour: "c1"}], data: [span, [null, null]]});
+    return;
   }
+  const {series, columns} = exponentSeries(history);
+  const t = history.tau.map((tau) => tau / omega0);
+  const {final} = estimator;
+  const end = {x: final.map(() => t.at(-1)), y: final, colour: "text", shape: "ring", size: 3.5};
+  plot.draw({
+    ...shared,
+    series,
+    data: overRecord(t, columns, span),
+    range,
+    levels: [{y: 0, colour: "soft"}, ...level],
+    layers,
+    marks: [end],
+  });
 }
 
 /** R of each impact; one that is not consistent lies where it fits, or at the edge. */
@@ -191,17 +163,16 @@ function drawRestitution({impacts, restitution: {plus, minus}}, span) {
   const low = good.reduce((a, v) => Math.min(a, v), Infinity);
   const high = good.reduce((a, v) => Math.max(a, v), -Infinity);
   const margin = Math.max((high - low) * 0.15, 0.004);
-  const of = (side, colour) =>
+  const of = (side) =>
     impacts.R.map((R, i) => (impacts.side[i] === side && impacts.status[i] === "ok" ? R : null));
   const left = impacts.time_s
     .map((t, i) => ({t, R: impacts.R[i], status: impacts.status[i]}))
     .filter(({R, status}) => isLeftOut(status) && R != null);
+  const crosses = {x: left.map(({t}) => t), y: left.map(({R}) => R), colour: "wall"};
   const levels = [
-    [plus, "plus"],
-    [minus, "minus"],
-  ]
-    .filter(([{R}]) => R != null)
-    .map(([{R}, colour]) => ({y: R, colour}));
+    {y: plus.R, colour: "plus"},
+    {y: minus.R, colour: "minus"},
+  ];
   plots.R.draw({
     series: [
       {label: "R at +b", colour: "plus", dots: 4.5},
@@ -211,17 +182,8 @@ function drawRestitution({impacts, restitution: {plus, minus}}, span) {
     range: good.length ? [low - margin, high + margin] : [0, 1],
     label: "R",
     x: seconds,
-    levels,
-    marks: [
-      {
-        x: left.map(({t}) => t),
-        y: left.map(({R}) => R),
-        colour: "wall",
-        shape: "cross",
-        size: 5,
-        width: 2,
-      },
-    ],
+    levels: levels.filter(({y}) => y != null),
+    marks: [{...crosses, shape: "cross", size: 5, width: 2}],
   });
 }
 

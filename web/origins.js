@@ -1,6 +1,10 @@
-// Where the values of a run come from: `parameters` of an answer, by the names of the form's fields.
+// Where the values of a run come from: `parameters` of an answer, by the names of the form's
+// fields.
 
-/** A field that stands for another one: which of both was given shows in where the other follows from. */
+/**
+ * A field that stands for another one: which of both was given shows in where the other follows
+ * from.
+ */
 const standing = {
   f0: "k1",
   damping_ratio: "c1",
@@ -12,11 +16,9 @@ const standing = {
 function ofStanding(name, origin) {
   const other = standing[name];
   const text = origin[other] ?? "";
-  return text.startsWith(`follows from ${name}`)
-    ? "given"
-    : text === "default"
-      ? text
-      : `follows from ${other}${name === "f0" || name === "mass_ratio" ? ", m1" : ""}`;
+  if (text.startsWith(`follows from ${name}`)) return "given";
+  if (text === "default") return text;
+  return `follows from ${other}${name === "f0" || name === "mass_ratio" ? ", m1" : ""}`;
 }
 
 /** {values, origins} by name. */
@@ -33,10 +35,10 @@ export function resolved({si, derived = {}, origin = {}, ...own}) {
 }
 
 /** As the form shows it: nothing for what was typed. */
-export const originText = (origin) =>
-  !origin || origin === "given"
-    ? ""
-    : origin
-        .replace(/^preset /, "")
-        .replace(/^follows from/, "from")
-        .replace(/^swept:.*/, "swept");
+export function originText(origin) {
+  if (!origin || origin === "given") return "";
+  return origin
+    .replace(/^preset /, "")
+    .replace(/^follows from/, "from")
+    .replace(/^swept:.*/, "swept");
+}

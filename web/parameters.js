@@ -79,16 +79,19 @@ const derivedOrigins = {
   window_s: "follows from window, omega0",
 };
 
-const precise = (value) =>
-  Array.isArray(value)
-    ? value.map(precise).join(" to ")
-    : typeof value === "number"
-      ? String(Number(value.toPrecision(6))).replace("-", "−")
-      : String(value).replaceAll("_", " ");
-const inMm = (value, unit) =>
-  unit === "m" && typeof value === "number" && value !== 0
-    ? ` (${precise(Number((value * 1000).toPrecision(5)))} mm)`
-    : "";
+function precise(value) {
+  if (Array.isArray(value)) return value.map(precise).join(" to ");
+  if (typeof value === "number") return String(Number(value.toPrecision(6))).replace("-", "−");
+  return String(value).replaceAll("_", " ");
+}
+
+/** A unit behind a value, and a length in m in mm, too. */
+function unitText(value, unit) {
+  if (!unit) return "";
+  const isLength = unit === "m" && typeof value === "number" && value !== 0;
+  const inMm = isLength ? ` (${precise(Number((value * 1000).toPrecision(5)))} mm)` : "";
+  return ` ${unit.replace("tau", "τ")}${inMm}`;
+}
 
 /** A name that may break after its underscores. */
 const breakable = (name) => name.split(/(?<=_)/).flatMap((part) => [part, element("wbr")]);
@@ -98,36 +101,22 @@ export function listParameters(parameters, fieldOf) {
   const all = {...parameters.derived, ...values};
   const row = (name) => {
     const unit = (fieldOf[name]?.unit ?? derivedUnits[name] ?? "").replace("dimensionless", "");
-    const value = element(
-      "td",
-      {},
-      precise(all[name]),
-      element("span", {
-        className: "unit",
-        textContent: unit ? ` ${unit.replace("tau", "τ")}${inMm(all[name], unit)}` : "",
-      }),
-    );
+    const shown = element("span", {className: "unit", textContent: unitText(all[name], unit)});
     const origin = (origins[name] ?? derivedOrigins[name] ?? "").replace("follows from", "from");
     const cells = [
       element("td", {}, ...breakable(name)),
       element("td", {textContent: symbols[name] ?? ""}),
-      value,
+      element("td", {}, precise(all[name]), shown),
       element("td", {textContent: origin}),
     ];
     return element("tr", {title: fieldOf[name]?.description ?? ""}, ...cells);
   };
   const table = ([title, names]) => {
     const present = names.filter((name) => all[name] != null);
-    return present.length
-      ? [
-          element(
-            "table",
-            {className: "table parameters"},
-            element("caption", {textContent: title}),
-            element("tbody", {}, ...present.map(row)),
-          ),
-        ]
-      : [];
+    if (!present.length) return [];
+    const caption = element("caption", {textContent: title});
+    const body = element("tbody", {}, ...present.map(row));
+    return [element("table", {className: "table parameters"}, caption, body)];
   };
   $("parameters-tables").replaceChildren(...Object.entries(parts).flatMap(table));
 }

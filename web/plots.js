@@ -1,13 +1,15 @@
-// Line plots over tau (uPlot) and scatter plots (a canvas). Colours come from the style sheet, so that they follow the
-// colour scheme. A plot that has no width, as in a closed part of the page in some browsers, is drawn when it gets one.
+// Line plots over tau (uPlot) and scatter plots (a canvas). Colours come from the style sheet, so
+// that they follow the colour scheme. A plot that has no width, as in a closed part of the page in
+// some browsers, is drawn when it gets one.
 import uPlot from "./uPlot.esm.js";
 
 export const colour = (name) =>
   getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
-const plain = (value) =>
-  Math.abs(value) >= 1e5 || (value !== 0 && Math.abs(value) < 1e-3)
-    ? value.toExponential(2).replace(/\.?0+e\+?/, "e")
-    : Number(value.toPrecision(5)).toString();
+function plain(value) {
+  const far = Math.abs(value) >= 1e5 || (value !== 0 && Math.abs(value) < 1e-3);
+  if (far) return value.toExponential(2).replace(/\.?0+e\+?/, "e");
+  return Number(value.toPrecision(5)).toString();
+}
 export const short = (value) => (value == null ? "–" : plain(value).replace("-", "−"));
 
 const patience = 250; // ms in which a second click makes a double-click
@@ -37,14 +39,17 @@ function symbol(c, shape, x, y, r) {
   }
 }
 
-/** The labels of a logarithmic axis: powers of ten (not all, if there are many), and 2 and 5 between them if there are few. */
+/**
+ * The labels of a logarithmic axis: powers of ten (not all, if there are many), and 2 and 5 between
+ * them if there are few.
+ */
 export function logTicks(min, max) {
   const from = Math.floor(Math.log10(min));
   const to = Math.ceil(Math.log10(max));
   const step = Math.ceil((to - from) / 8);
+  const factors = to - from < 4 ? [1, 2, 5] : [1];
   const list = [];
-  for (let k = from; k <= to; k += step)
-    for (const m of to - from < 4 ? [1, 2, 5] : [1]) list.push(m * 10 ** k);
+  for (let k = from; k <= to; k += step) for (const m of factors) list.push(m * 10 ** k);
   return list.filter((v) => v >= min && v <= max);
 }
 
@@ -55,6 +60,32 @@ export const axisStyle = () => ({
   font: "12px system-ui",
   labelFont: "12px system-ui",
   labelGap: 0,
+});
+
+function lineAxes(x, y, log) {
+  const axis = {...axisStyle(), values: (_, list) => list.map(short)};
+  const logAxis = {
+    splits: (u) => logTicks(u.scales.y.min, u.scales.y.max),
+    filter: (_, list) => list,
+  };
+  return [
+    {...axis, size: 24, gap: 2, label: x, labelSize: 16},
+    {...axis, size: 52, gap: 3, label: y, labelSize: 18, ...(log ? logAxis : {})},
+  ];
+}
+
+const legendValue = (_, v) => short(v);
+
+/** A series as uPlot has it. One of dots alone has no path. */
+const lineStyle = ({label, colour: name, width, dash, dots, paths}) => ({
+  label,
+  stroke: colour(name),
+  width: width ?? 1,
+  dash,
+  points: {show: false},
+  value: legendValue,
+  spanGaps: false,
+  ...(paths || (dots && !width) ? {paths: paths ?? (() => null)} : {}),
 });
 
 export class LinePlot {
@@ -79,9 +110,12 @@ export class LinePlot {
   }
 
   /**
-   * series: [{label, colour, dash, width, dots, paths}], dots: their size, and no line unless there is a width; paths: as uPlot has it; range: of y; log: of y;
-   * levels: of y, each in the colour levelColour or as {y, colour}; lines: moments of tau; bands: intervals of tau, calm: those of the other shade;
-   * marks: [{x, y, colour, shape, size}] over the lines; layers: [{from, to, colour}], of y, below them; x: the name of the axis, instead of tau; click(x, reach): called where one clicks, reach: a few pixels in units of x.
+   * series: [{label, colour, dash, width, dots, paths}], dots: their size, and no line unless there
+   * is a width; paths: as uPlot has it; range: of y; log: of y; levels: of y, each in the colour
+   * levelColour or as {y, colour}; lines: moments of tau; bands: intervals of tau, calm: those of
+   * the other shade; marks: [{x, y, colour, shape, size, width}] over the lines; layers: [{from,
+   * to, colour}], of y, below them; x: the name of the axis, instead of tau; click(x, reach):
+   * called where one clicks, reach: a few pixels in units of x.
    */
   draw(options) {
     this.last = options;
@@ -93,26 +127,7 @@ export class LinePlot {
     if (this.container.clientWidth) this.create(options);
   }
 
-  create({
-    series,
-    data,
-    range,
-    label,
-    log = false,
-    levels = [],
-    levelColour = "soft",
-    lines = [],
-    bands = [],
-    calm = [],
-    layers = [],
-    x = "τ",
-    click,
-  }) {
-    const axis = axisStyle();
-    const logAxis = log
-      ? {splits: (u) => logTicks(u.scales.y.min, u.scales.y.max), filter: (_, splits) => splits}
-      : {};
-    const values = (_, ticks) => ticks.map(short);
+  create({series, data, range, label, log = false, x = "τ", click}) {
     const options = {
       padding: [8, 12, 0, 0],
       width: this.container.clientWidth,
@@ -121,23 +136,8 @@ export class LinePlot {
         x: {time: false},
         y: {...(range ? {range: () => range} : {}), ...(log ? {distr: 3} : {})},
       },
-      axes: [
-        {...axis, size: 24, gap: 2, label: x, labelSize: 16, values},
-        {...axis, size: 52, gap: 3, label, labelSize: 18, values, ...logAxis},
-      ],
-      series: [
-        {label: x, value: (_, v) => short(v)},
-        ...series.map((s) => ({
-          label: s.label,
-          stroke: colour(s.colour),
-          width: s.width ?? 1,
-          dash: s.dash,
-          points: {show: false},
-          value: (_, v) => short(v),
-          spanGaps: false,
-          ...(s.paths || (s.dots && !s.width) ? {paths: s.paths ?? (() => null)} : {}),
-        })),
-      ],
+      axes: lineAxes(x, label, log),
+      series: [{label: x, value: legendValue}, ...series.map(lineStyle)],
       cursor: {
         sync: this.synced ? {key: this.synced} : undefined,
         drag: {x: true, y: false},
@@ -145,33 +145,35 @@ export class LinePlot {
       },
       legend: {live: true},
       hooks: {
-        drawClear: [
-          (u) => {
-            for (const layer of layers) this.layer(u, layer);
-            this.shade(u, calm, "calm");
-            this.shade(u, bands, "shade");
-          },
-        ],
-        draw: [
-          (u) => {
-            this.rule(u, levels, levelColour, lines);
-            series.forEach((s, i) => {
-              if (s.dots) this.dot(u, s, i + 1);
-            });
-            for (const group of this.last.marks ?? []) this.symbols(u, group);
-          },
-        ],
-        setScale: [
-          (u, key) => {
-            if (this.synced && key === "x") zoomAll(u, this.synced);
-          },
-        ],
+        drawClear: [(u) => this.drawBelow(u)],
+        draw: [(u) => this.drawAbove(u)],
+        setScale: [(u, key) => this.zoomed(u, key)],
       },
     };
     this.plot = new uPlot(options, data, this.container);
     requestAnimationFrame(() => this.resize()); // when the legend has its final height
     if (this.synced) together[this.synced].add(this.plot);
     if (click) this.listen(this.plot, click);
+  }
+
+  zoomed(u, key) {
+    if (this.synced && key === "x") zoomAll(u, this.synced);
+  }
+
+  drawBelow(u) {
+    const {layers = [], calm = [], bands = []} = this.last;
+    for (const layer of layers) this.layer(u, layer);
+    this.shade(u, calm, "calm");
+    this.shade(u, bands, "shade");
+  }
+
+  drawAbove(u) {
+    const {series, marks = []} = this.last;
+    this.rule(u, this.last);
+    series.forEach((s, i) => {
+      if (s.dots) this.dot(u, s, i + 1);
+    });
+    for (const group of marks) this.symbols(u, group);
   }
 
   /** The end of a drag is no click, nor is half of a double-click. */
@@ -227,7 +229,7 @@ export class LinePlot {
     u.ctx.clip();
   }
 
-  rule(u, levels, levelColour, lines) {
+  rule(u, {levels = [], levelColour = "soft", lines = []}) {
     this.clip(u);
     u.ctx.lineWidth = devicePixelRatio;
     u.ctx.setLineDash([]);
@@ -252,17 +254,17 @@ export class LinePlot {
     u.ctx.restore();
   }
 
-  /** The values as dots, smaller where there are many; those that would fall on the last one drawn are left out. */
+  /**
+   * The values as dots, smaller where there are many; those that would fall on the last one drawn
+   * are left out.
+   */
   dot(u, {colour: name, dots}, index) {
     if (!u.series[index].show) return;
     const tau = u.data[0];
     const values = u.data[index];
     const [from, to] = u.series[0].idxs ?? [0, tau.length - 1];
-    const size =
-      Math.max(
-        dots * Math.min(1, Math.sqrt((2 * this.container.clientWidth) / (to - from + 1))),
-        1.5,
-      ) * devicePixelRatio;
+    const room = Math.sqrt((2 * this.container.clientWidth) / (to - from + 1));
+    const size = Math.max(dots * Math.min(1, room), 1.5) * devicePixelRatio;
     this.clip(u);
     u.ctx.fillStyle = colour(name);
     let lastX = NaN;
@@ -272,7 +274,8 @@ export class LinePlot {
       const x = Math.round(u.valToPos(tau[i], "x", true) - size / 2);
       const y = Math.round(u.valToPos(values[i], "y", true) - size / 2);
       if (x === lastX && y === lastY) continue;
-      u.ctx.fillRect((lastX = x), (lastY = y), size, size);
+      u.ctx.fillRect(x, y, size, size);
+      [lastX, lastY] = [x, y];
     }
     u.ctx.restore();
   }
@@ -284,7 +287,8 @@ export class LinePlot {
     const ratio = devicePixelRatio;
     const c = u.ctx;
     const shown = x.reduce((n, v) => n + (v >= min && v <= max), 0);
-    const r = size * ratio * Math.min(Math.max(Math.sqrt(w / ratio / (4 * shown)), 0.5), 1); // smaller where there are many
+    const room = Math.sqrt(w / ratio / (4 * shown));
+    const r = size * ratio * Math.min(Math.max(room, 0.5), 1); // smaller where there are many
     const flat = shape === "dot" || shown > 2000; // crosses that hide each other take long to draw
     c.save();
     c.beginPath();
@@ -342,31 +346,16 @@ export class ScatterPlot {
   }
 
   /**
-   * groups: [{x, y, colour, size, alpha, shape}], shape: ring, cross or else a dot; curves: [{x, y, colour, dash}]; levels: [{y, colour, label}]; extent: {x, y}, else that of the groups;
-   * equal: the same scale on both axes; xLabel, yLabel; empty: what to say if there are no points.
+   * groups: [{x, y, colour, size, alpha, shape}], shape: ring, cross or else a dot; curves: [{x, y,
+   * colour, dash}]; levels: [{y, colour, label}]; extent: {x, y}, else that of the groups; equal:
+   * the same scale on both axes; xLabel, yLabel; empty: what to say if there are no points.
    */
   draw(options) {
     this.last = options;
-    const {
-      groups,
-      curves = [],
-      levels = [],
-      xLabel,
-      yLabel,
-      equal = false,
-      empty = "no impacts",
-    } = options;
-    const {canvas} = this;
-    const ratio = devicePixelRatio;
-    const width = canvas.clientWidth;
-    const height = canvas.clientHeight;
+    const {groups, curves = [], levels = [], equal = false, empty = "no impacts"} = options;
+    const {clientWidth: width, clientHeight: height} = this.canvas;
     if (!width) return;
-    canvas.width = width * ratio;
-    canvas.height = height * ratio;
-    const c = canvas.getContext("2d");
-    c.scale(ratio, ratio);
-    c.font = "12px system-ui";
-    c.fillStyle = colour("soft");
+    const c = this.blank(width, height);
     const box = {left: 58, top: 8, right: width - 10, bottom: height - 38};
     let ex = options.extent?.x ?? extentOf(groups, "x");
     let ey = options.extent?.y ?? extentOf(groups, "y");
@@ -378,7 +367,7 @@ export class ScatterPlot {
     if (equal) [ex, ey] = sameScale(ex, ey, box);
     const px = (v) => box.left + ((v - ex[0]) / (ex[1] - ex[0])) * (box.right - box.left);
     const py = (v) => box.bottom - ((v - ey[0]) / (ey[1] - ey[0])) * (box.bottom - box.top);
-    this.axes(c, box, ex, ey, px, py, xLabel, yLabel);
+    this.axes(c, box, [ex, px, options.xLabel], [ey, py, options.yLabel]);
     c.save();
     c.beginPath();
     c.rect(box.left, box.top, box.right - box.left, box.bottom - box.top);
@@ -389,7 +378,20 @@ export class ScatterPlot {
     c.restore();
   }
 
-  axes(c, box, ex, ey, px, py, xLabel, yLabel) {
+  /** The canvas, emptied, in CSS pixels. */
+  blank(width, height) {
+    const ratio = devicePixelRatio;
+    this.canvas.width = width * ratio;
+    this.canvas.height = height * ratio;
+    const c = this.canvas.getContext("2d");
+    c.scale(ratio, ratio);
+    c.font = "12px system-ui";
+    c.fillStyle = colour("soft");
+    return c;
+  }
+
+  /** Each axis as [extent, pixel of a value, label]. */
+  axes(c, box, [ex, px, xLabel], [ey, py, yLabel]) {
     const line = (x0, y0, x1, y1) => {
       c.beginPath();
       c.moveTo(x0, y0);
@@ -427,9 +429,10 @@ export class ScatterPlot {
       c.beginPath();
       for (let i = 0; i < x.length; ++i) symbol(c, shape, px(x[i]), py(y[i]), size);
       c.stroke();
-    } else
+    } else {
       for (let i = 0; i < x.length; ++i)
         c.fillRect(px(x[i]) - size / 2, py(y[i]) - size / 2, size, size);
+    }
     c.globalAlpha = 1;
   }
 

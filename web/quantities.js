@@ -1,4 +1,5 @@
-// What the points of a sweep tell: one table for menus, axes, colours and tooltips. Lengths are drawn in mm.
+// What the points of a sweep tell: one table for menus, axes, colours and tooltips. Lengths are
+// drawn in mm.
 import {short} from "./plots.js";
 
 export const regimes = {
@@ -19,7 +20,10 @@ export const verdictColour = (p) =>
 
 const mm = (metres) => (metres == null ? null : metres * 1000);
 
-/** of: the value at a point; from0: its axis begins at 0; levels: lines across the plot; free: the same without the absorber; diverging: its colours change sides at 0. */
+/**
+ * of: the value at a point; from0: its axis begins at 0; levels: lines across the plot; free: the
+ * same without the absorber; diverging: its colours change sides at 0.
+ */
 export const quantities = {
   lambda1: {
     label: "λ₁",
@@ -81,39 +85,32 @@ export const overTwoAxes = [
 const reducedTo = ["x_max", "where", "z"];
 
 /** A quantity of a sweep's points; `where` is that of the axis that a reduction folds. */
-export const quantityOf = (name, data) =>
-  name !== "where"
-    ? quantities[name]
-    : {
-        label: `${symbolOf(data.reduced)} of the peak`,
-        title: `${symbolOf(data.reduced)} of the peak`,
-        of: (p) => p.where ?? null,
-      };
+export function quantityOf(name, data) {
+  if (name !== "where") return quantities[name];
+  const label = `${symbolOf(data.reduced)} of the peak`;
+  return {label, title: label, of: (p) => p.where ?? null};
+}
 
 /** What the menus of a sweep offer: [name, title] each. */
-export const menuOf = (data) => {
-  const names =
-    data.axes.length > 1
-      ? data.reduced
-        ? [...reducedTo, "regime"]
-        : overTwoAxes
-      : data.reduced
-        ? reducedTo
-        : besideLambda;
+export function menuOf(data) {
+  const map = data.axes.length > 1;
+  const whole = map ? overTwoAxes : besideLambda;
+  const reduced = map ? [...reducedTo, "regime"] : reducedTo;
+  const names = data.reduced ? reduced : whole;
   return names.map((name) => [name, quantityOf(name, data).title]);
-};
-
-/** The best of the motions that a point was started to, or one that ends elsewhere, as a point of its own; null where all end alike. */
-export function otherMotion(p) {
-  const m = !p?.depends_on_start ? null : (p.best ?? p.second_start);
-  return m && m.x_max != null
-    ? {
-        ...m,
-        lambda: m.lambda1 == null ? null : [m.lambda1],
-        x_rms_ratio: p.x_rms ? (p.x_rms_ratio * m.x_rms) / p.x_rms : null,
-      }
-    : null;
 }
+
+/**
+ * The best of the motions that a point was started to, or one that ends elsewhere, as a point of
+ * its own; null where all end alike.
+ */
+export function otherMotion(p) {
+  const m = p?.depends_on_start ? (p.best ?? p.second_start) : null;
+  if (m?.x_max == null) return null;
+  const lambda = m.lambda1 == null ? null : [m.lambda1];
+  return {...m, lambda, x_rms_ratio: p.x_rms ? (p.x_rms_ratio * m.x_rms) / p.x_rms : null};
+}
+
 /** The best motion of a point, whether or not the others are the same. */
 export const bestMotion = (p) => otherMotion(p) ?? p;
 
@@ -132,8 +129,11 @@ const columns =
     names.map((name) => section[name]);
 const thousandfold = (name) => ({columns: columns(name), value: (v) => v * 1000});
 
-/** The coordinates of a section. columns: what they are computed from, by value, which also gets half a forcing period;
-    seconds: its column in m/s, where there is one; least: the smallest that is drawn, as chatter goes down to nothing. */
+/**
+ * The coordinates of a section. columns: what they are computed from, by value, which also gets
+ * half a forcing period; seconds: its column in m/s, where there is one; least: the smallest that
+ * is drawn, as chatter goes down to nothing.
+ */
 export const coordinates = {
   impact: {
     phase: {
@@ -212,57 +212,55 @@ const symbols = {
 };
 export const symbolOf = (parameter) => symbols[parameter] ?? parameter;
 
-const period = (p) =>
-  `period ${p.period_cycles} cycle${p.period_cycles === 1 ? "" : "s"}, ${p.impacts_per_period} impact${p.impacts_per_period === 1 ? "" : "s"}${p.symmetric ? ", symmetric" : ""}`;
+/** A number of things: 1 impact, 2 impacts. */
+export const count = (n, noun) => `${n} ${noun}${n === 1 ? "" : "s"}`;
+
+function period({period_cycles: cycles, impacts_per_period: impacts, symmetric}) {
+  const counts = `${count(cycles, "cycle")}, ${count(impacts, "impact")}`;
+  return `period ${counts}${symmetric ? ", symmetric" : ""}`;
+}
+
+/** A regime's type and description; that without impacts has no type. */
+export const regimeText = (regime) =>
+  `${regime === "none" ? "" : `${regime}, `}${regimes[regime] ?? ""}`;
 
 const inMm = (metres) => (metres == null ? "–" : `${short(Number(mm(metres).toPrecision(4)))} mm`);
 const named = (regime) => (regime === "none" ? regimes.none : `Type ${regime}`);
 
+/** Where a peak lies on the axis that is folded, as where() names it. */
+const placeOf = (m, where) => (where && m.where != null ? ` at ${where(m.where)}` : "");
+
 /** The motions from several starts in words; where: names the place of a peak. */
 function describeStarts(p, where) {
-  const place = (m) => (where && m.where != null ? ` at ${where(m.where)}` : "");
-  const motion = (m) =>
-    m.x_max == null ? "not measured" : `${inMm(m.x_max)}${place(m)}, ${named(m.regime)}`;
+  const peak = (m) => `${inMm(m.x_max)}${placeOf(m, where)}`;
+  const motion = (m) => (m.x_max == null ? "not measured" : `${peak(m)}, ${named(m.regime)}`);
   if (p.starts) return p.starts.map((m) => [startNames[m.start] ?? m.start, motion(m)]);
-  return p.second_start && p.depends_on_start
-    ? [[`from the ${p.second_start.start}`, `elsewhere: ${motion(p.second_start)}`]]
-    : [];
+  const second = p.depends_on_start ? p.second_start : null;
+  return second ? [[`from the ${second.start}`, `elsewhere: ${motion(second)}`]] : [];
 }
+
+/** The largest exponent and its standard error. */
+function exponentText({lambda, status, standard_error: errors}) {
+  if (status?.[0] === "minus_infinity") return "−∞";
+  if (lambda[0] == null) return "–";
+  const value = short(Number(lambda[0].toPrecision(4)));
+  return errors?.[0] == null ? value : `${value} ± ${short(Number(errors[0].toPrecision(2)))}`;
+}
+
+const rmsText = ({x_rms: rms, x_rms_ratio: ratio}) =>
+  ratio == null ? `${short(mm(rms))} mm` : `${(ratio * 100).toFixed(0)} % of that without`;
 
 /** A point in words: [term, value] each. */
 export function describe(p, where) {
   if (p.error) return [["failed", p.error]];
   if (p.regime == null) return [["", "not measured: max_impacts ended it"]];
-  const rows = [
-    ["regime", `${p.regime === "none" ? "" : `${p.regime}, `}${regimes[p.regime] ?? ""}`],
-  ];
+  const rows = [["regime", regimeText(p.regime)]];
   if (p.periodic && p.impacts_per_period) rows.push(["", period(p)]);
   rows.push(["z", short(p.z)]);
-  if (p.lambda) {
-    const error =
-      p.standard_error?.[0] == null
-        ? ""
-        : ` ± ${short(Number(p.standard_error[0].toPrecision(2)))}`;
-    rows.push([
-      "λ₁",
-      p.status?.[0] === "minus_infinity"
-        ? "−∞"
-        : p.lambda[0] == null
-          ? "–"
-          : short(Number(p.lambda[0].toPrecision(4))) + error,
-    ]);
-  }
+  if (p.lambda) rows.push(["λ₁", exponentText(p)]);
   rows.push(["", verdicts[p.verdict] ?? ""]);
-  rows.push([
-    "rms of x",
-    p.x_rms_ratio == null
-      ? `${short(mm(p.x_rms))} mm`
-      : `${(p.x_rms_ratio * 100).toFixed(0)} % of that without`,
-  ]);
-  rows.push([
-    "largest |x|",
-    inMm(p.x_max) + (where && p.where != null ? ` at ${where(p.where)}` : ""),
-  ]);
+  rows.push(["rms of x", rmsText(p)]);
+  rows.push(["largest |x|", `${inMm(p.x_max)}${placeOf(p, where)}`]);
   if (p.x_free != null) rows.push(["without", inMm(p.x_free)]);
   if (p.share_impacts != null)
     rows.push(["by impacts", `${(p.share_impacts * 100).toFixed(0)} % of the dissipation`]);

@@ -4,15 +4,18 @@ import {coordinates} from "./quantities.js";
 
 const ascending = (values) => values.map((_, i) => i).sort((a, b) => values[a] - values[b]);
 
-/** The borders between ascending values and around them: the middles, of the logarithms where the axis is logarithmic. */
+/**
+ * The borders between ascending values and around them: the middles, of the logarithms where the
+ * axis is logarithmic.
+ */
 function borders(values, log) {
   const to = log ? Math.log : (v) => v;
   const from = log ? Math.exp : (v) => v;
   const at = values.map(to);
   const n = at.length;
-  const half = n > 1 ? 0 : log ? 0.05 : Math.abs(at[0]) * 0.05 || 0.5;
-  const first = n > 1 ? at[0] - (at[1] - at[0]) / 2 : at[0] - half;
-  const last = n > 1 ? at[n - 1] + (at[n - 1] - at[n - 2]) / 2 : at[0] + half;
+  const alone = log ? 0.05 : Math.abs(at[0]) * 0.05 || 0.5; // around the only value
+  const first = n > 1 ? at[0] - (at[1] - at[0]) / 2 : at[0] - alone;
+  const last = n > 1 ? at[n - 1] + (at[n - 1] - at[n - 2]) / 2 : at[0] + alone;
   return [first, ...at.slice(1).map((v, i) => (v + at[i]) / 2), last].map(from);
 }
 
@@ -24,7 +27,10 @@ function arrange({parameter, values}, scale) {
   return {parameter, log, order, given: values, values: sorted, borders: borders(sorted, log)};
 }
 
-/** A line of a reduction, and each motion in it, as a point whose largest |x| is the peak: `where` along the axis that is folded. */
+/**
+ * A line of a reduction, and each motion in it, as a point whose largest |x| is the peak: `where`
+ * along the axis that is folded.
+ */
 function unfold({worst, best, starts, ...line}, parameter) {
   const peak = ({x_peak, x_free_peak, ...rest}) => ({
     ...rest,
@@ -32,10 +38,8 @@ function unfold({worst, best, starts, ...line}, parameter) {
     x_free: x_free_peak ?? null,
     where: rest[parameter],
   });
-  return {
-    ...peak(line),
-    ...(best ? {worst: peak(worst), best: peak(best), starts: starts.map(peak)} : {}),
-  };
+  const motions = best ? {worst: peak(worst), best: peak(best), starts: starts.map(peak)} : {};
+  return {...peak(line), ...motions};
 }
 
 const enough = 500; // lines that are kept as texts before they go into a Blob
@@ -48,7 +52,8 @@ export class SweepData {
     this.section = request.section ?? "none";
     this.defaultSet = request.starts === defaultSet;
     this.starts = this.defaultSet ? 1 : Math.max(1, request.starts?.length ?? 0);
-    this.reduced = /^(?:max|min) over (.+)$/.exec(request.reduce ?? "")?.[1] ?? null; // the parameter of the axis that is folded
+    // The parameter of the axis that is folded.
+    this.reduced = /^(?:max|min) over (.+)$/.exec(request.reduce ?? "")?.[1] ?? null;
     this.axes = null; // those that are left
     this.parameters = null;
     this.warnings = new Set();
@@ -63,6 +68,7 @@ export class SweepData {
   get total() {
     return this.points.length;
   }
+
   get complete() {
     return this.axes !== null && this.received === this.total;
   }
@@ -71,11 +77,7 @@ export class SweepData {
     if (line.type === "start") {
       for (const warning of line.warnings) this.warnings.add(warning);
       if (this.axes) return; // of a stream that brings the rest
-      this.axes = line.axes
-        .map((axis, i) => arrange(axis, this.request.axes[i].scale))
-        .filter((axis) => axis.parameter !== this.reduced);
-      this.parameters = line.parameters;
-      this.points = new Array(line.points).fill(null);
+      this.begin(line);
     } else if (line.type === "point") {
       if (this.points[line.index]) return;
       this.points[line.index] = this.trim(line);
@@ -89,7 +91,18 @@ export class SweepData {
       this.blobs = [...this.blobs, new Blob(this.texts.splice(0))];
   }
 
-  /** A point with the coordinates of its section as columns of floats; over two axes there is no place for them. */
+  /** The axes, and places for the points. */
+  begin({axes, parameters, points}) {
+    const arranged = axes.map((axis, i) => arrange(axis, this.request.axes[i].scale));
+    this.axes = arranged.filter((axis) => axis.parameter !== this.reduced);
+    this.parameters = parameters;
+    this.points = new Array(points).fill(null);
+  }
+
+  /**
+   * A point with the coordinates of its section as columns of floats; over two axes there is no
+   * place for them.
+   */
   trim(point) {
     if (point.error) this.faults.set(point.error, (this.faults.get(point.error) ?? 0) + 1);
     if (point.reason && point.reason !== "complete") ++this.early;
@@ -112,16 +125,18 @@ export class SweepData {
     return this.points.flatMap((point, i) => (point ? [] : [i]));
   }
 
-  /** The index of the point at positions k, l, m of the (ascending) axes. The first axis counts fastest, then the starts, then the others. */
+  /**
+   * The index of the point at positions k, l, m of the (ascending) axes. The first axis counts
+   * fastest, then the starts, then the others.
+   */
   index(k = 0, l = 0, start = 0, m = 0) {
     const [first, second, third] = this.axes;
     const size = (axis) => axis?.values.length ?? 1;
     const entry = (axis, i) => (axis ? axis.order[i] : 0);
-    return (
-      ((entry(third, m) * size(second) + entry(second, l)) * this.starts + start) * size(first) +
-      entry(first, k)
-    );
+    const before = entry(third, m) * size(second) + entry(second, l);
+    return (before * this.starts + start) * size(first) + entry(first, k);
   }
+
   at(k, l, start, m) {
     return this.points[this.index(k, l, start, m)];
   }

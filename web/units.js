@@ -1,4 +1,5 @@
-// The units in which an answer is shown. Where its system was given in SI: s, mm/s, m/s², N s and J, or as one likes those of tau = omega0 t; else those of tau.
+// The units in which an answer is shown. Where its system was given in SI: s, mm/s, m/s², N s and
+// J, or as one likes those of tau = omega0 t; else those of tau.
 import {element} from "./dom.js";
 
 const key = "vines-units";
@@ -6,20 +7,21 @@ const tau = "τ";
 const seconds = "s, mm/s";
 
 /** What is remembered, where the browser lets us. */
-const recall = () => {
+function recall() {
   try {
     return localStorage.getItem(key);
   } catch {
     return null;
   }
-};
-const remember = (value) => {
+}
+
+function remember(value) {
   try {
     localStorage.setItem(key, value);
   } catch {
-    /* then it holds for this page alone */
+    // Then it holds for this page alone.
   }
-};
+}
 
 let chosen = recall() === tau ? tau : seconds;
 const heard = new Set();
@@ -76,7 +78,10 @@ const ofTau = {
   energy: quantity(1e6, "mm²"),
 };
 
-/** The units for an answer with these parameters. x: the name of the axis of time; at(tau): a moment in words. */
+/**
+ * The units for an answer with these parameters. x: the name of the axis of time; at(tau): a moment
+ * in words.
+ */
 export function unitsOf({si, derived}) {
   if (!si || !inSeconds()) return ofTau;
   const omega0 = derived.omega0;

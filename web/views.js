@@ -1,5 +1,6 @@
 // The plots: what each of them shows of an answer, in the units that are chosen.
 import {$} from "./dom.js";
+import {exponentSeries} from "./exponents.js";
 import {LinePlot, ScatterPlot} from "./plots.js";
 
 const mm = (metres) => metres.map((v) => v * 1000);
@@ -61,7 +62,10 @@ function relativeDisplacement({series, impacts, parameters}) {
   return [tau, gap];
 }
 
-/** A range for a logarithmic axis that holds all values and 1; a value that is not positive has no place on it. */
+/**
+ * A range for a logarithmic axis that holds all values and 1; a value that is not positive has no
+ * place on it.
+ */
 function logRange(columns) {
   let min = 1;
   let max = 1;
@@ -78,8 +82,8 @@ const positive = (v) => (v > 0 ? v : null);
 
 function drawMotion(answer, marks, units) {
   const {series, eigenvalues, regime, parameters, status} = answer;
-  const t = over(series.tau, units.time);
   const time = (tau) => over(tau, units.time);
+  const t = time(series.tau);
   const end = units.time.of(status.tau);
   plots.x.draw({
     ...marks,
@@ -126,7 +130,10 @@ function drawMotion(answer, marks, units) {
   });
 }
 
-/** The exponents differ by little once they have settled: the range that shows that, and what led there leaves it. */
+/**
+ * The exponents differ by little once they have settled: the range that shows that, and what led
+ * there leaves it.
+ */
 function exponentRange(exponents) {
   const values = [0];
   for (const name of estimators) {
@@ -147,29 +154,18 @@ function drawExponents(exponents, end, units) {
   const range = exponentRange(exponents);
   for (const name of estimators) {
     const history = exponents[name]?.history;
-    const keys = [
-      "lambda1",
-      "lambda2",
-      "lambda3",
-      "lambda4",
-      ...(history?.rounding_floor ? ["rounding_floor"] : []),
-    ];
+    const {series, columns} = exponentSeries(history);
     const data = history?.tau.length
-      ? ascending(
-          over(history.tau, units.time),
-          keys.map((k) => history[k]),
-        )
-      : [[0, end], ...keys.map(() => [null, null])];
-    const series = keys.map((k, i) =>
-      k === "rounding_floor"
-        ? {label: "floor", colour: "soft", dash: [5, 4]}
-        : {label: `λ${"₁₂₃₄"[i]}`, colour: `c${i + 1}`, width: 1.5},
-    );
+      ? ascending(over(history.tau, units.time), columns)
+      : [[0, end], ...columns.map(() => [null, null])];
     plots[name].draw({series, data, range, x: units.x, label: units.lambda, levels: [0]});
   }
 }
 
-/** Four moduli an impact. Those of a pair coincide: the later ones are smaller, so that the earlier ones show around them. */
+/**
+ * Four moduli an impact. Those of a pair coincide: the later ones are smaller, so that the earlier
+ * ones show around them.
+ */
 function drawMatrices(eigenvalues, end, marks, units) {
   const series = [0, 1, 2, 3].map((k) => ({
     label: `|μ${"₁₂₃₄"[k]}|`,
@@ -193,27 +189,23 @@ function drawMatrices(eigenvalues, end, marks, units) {
   }
 }
 
-/** The points of a section, the first half of the run paler: what is left of the start recedes behind what lasts. */
+/**
+ * The points of a section, the first half of the run paler: what is left of the start recedes
+ * behind what lasts.
+ */
 function halves(x, y, velocity, colour, keep = () => true) {
   const middle = x.length / 2;
-  const part = (alpha, size, wanted) => ({
-    colour,
-    alpha,
-    size,
-    x: mm(x.filter((_, i) => keep(i) && wanted(i))),
-    y: over(
-      y.filter((_, i) => keep(i) && wanted(i)),
-      velocity,
-    ),
-  });
+  const part = (alpha, size, wanted) => {
+    const of = (column) => column.filter((_, i) => keep(i) && wanted(i));
+    return {colour, alpha, size, x: mm(of(x)), y: over(of(y), velocity)};
+  };
   return [part(0.35, 2.4, (i) => i < middle), part(1, 3, (i) => i >= middle)];
 }
 
-function drawSections({impacts, section, regime, parameters, status}, marks, units) {
+/** The states at the impacts, before and after them. */
+function drawImpacts(impacts, {velocity}) {
   const before = {colour: "before"};
   const after = {colour: "after"};
-  const {impact, stroboscopic} = section;
-  const {velocity} = units;
   const name = (symbol) => `${symbol} (${velocity.unit})`;
   const speeds = (column) => over(column, velocity);
   plots.portrait.draw({
@@ -232,33 +224,37 @@ function drawSections({impacts, section, regime, parameters, status}, marks, uni
     xLabel: name("x′"),
     yLabel: name("y′"),
   });
+}
+
+function drawSections({impact, stroboscopic}, {velocity}) {
   const side = (sign, colour) =>
     halves(impact.x, impact.x_dot_after, velocity, colour, (i) => impact.side[i] === sign);
   plots.section.draw({
     groups: [...side(1, "plus"), ...side(-1, "minus")],
     xLabel: "x (mm)",
-    yLabel: name("x′ after"),
+    yLabel: `x′ after (${velocity.unit})`,
   });
   plots.stroboscopic.draw({
     groups: halves(stroboscopic.x, stroboscopic.x_dot, velocity, "c1"),
     xLabel: "x (mm)",
-    yLabel: name("x′"),
+    yLabel: `x′ (${velocity.unit})`,
     empty: "no whole cycle in the window",
   });
-  const inHalfPeriods = impact.time_difference.map((d) =>
-    d === null ? null : (d * parameters.Omega) / Math.PI,
-  );
-  const most = inHalfPeriods.reduce((a, d) => Math.max(a, d ?? 0), 2); // chatter falls below the axis
+}
+
+/** The time between impacts. Chatter falls below the axis. */
+function drawDifferences({tau, time_difference: differences}, Omega, end, marks, {time}) {
+  const inHalfPeriods = differences.map((d) => (d === null ? null : (d * Omega) / Math.PI));
+  const most = inHalfPeriods.reduce((a, d) => Math.max(a, d ?? 0), 2);
   plots.differences.draw({
     ...marks,
     series: [{label: "time since the last impact", colour: "c1", dots: 3.5}],
-    data: overRun(over(impact.tau, units.time), [inHalfPeriods], units.time.of(status.tau)),
+    data: overRun(over(tau, time), [inHalfPeriods], end),
     log: true,
     range: [0.1, most * 1.3],
     label: "half periods",
     levels: [1],
   });
-  drawMultipliers(regime);
 }
 
 const circle = Array.from({length: 181}, (_, i) => (i * Math.PI) / 90);
@@ -278,28 +274,23 @@ function drawMultipliers({periodic, contacts, multipliers}) {
   });
 }
 
-/** The branches reach far beyond most runs: the plot shows what lies near the run's points, the fold and the free amplitude. */
-function drawManifold(
-  {points, stable, unstable, asymmetric, fold, free_amplitude: free},
-  {velocity},
-) {
-  const groups = [
-    {x: over(points.V, velocity), y: mm(points.C), colour: "after", size: 2.2, alpha: 0.6},
+/**
+ * The branches reach far beyond most runs: the plot shows what lies near the run's points, the fold
+ * and the free amplitude.
+ */
+function drawManifold(manifold, {velocity}) {
+  const {points, fold, free_amplitude: free} = manifold;
+  const place = ({V, C}) => ({x: over(V, velocity), y: mm(C)});
+  const groups = [{...place(points), colour: "after", size: 2.2, alpha: 0.6}];
+  if (fold) groups.push({...place({V: [fold.V], C: [fold.C]}), colour: "wall", size: 8, alpha: 1});
+  const branches = [
+    {branch: manifold.stable, colour: "c2"},
+    {branch: manifold.unstable, colour: "c3", dash: [5, 4]},
+    {branch: manifold.asymmetric, colour: "c4", dash: [5, 4]},
   ];
-  const curves = [
-    [stable, "c2"],
-    [unstable, "c3", [5, 4]],
-    [asymmetric, "c4", [5, 4]],
-  ]
-    .filter(([branch]) => branch)
-    .map(([branch, colour, dash]) => ({
-      x: over(branch.V, velocity),
-      y: mm(branch.C),
-      colour,
-      dash,
-    }));
-  if (fold)
-    groups.push({x: [velocity.of(fold.V)], y: [fold.C * 1000], colour: "wall", size: 8, alpha: 1});
+  const curves = branches
+    .filter(({branch}) => branch)
+    .map(({branch, ...style}) => ({...place(branch), ...style}));
   const most = (values, quantity, ...others) =>
     quantity.of(values.reduce((a, v) => Math.max(a, v), Math.max(...others))) * 1.15 || 1;
   const length = {of: (v) => v * 1000};
@@ -321,22 +312,22 @@ export function draw(answer, units) {
   const {sticking, exponents, regime, windows = [], request, status} = answer;
   const {stretches} = regime;
   const end = units.time.of(status.tau);
-  const pairs = (from, to) => from.map((tau, i) => [units.time.of(tau), units.time.of(to[i])]);
+  const pairs = ({tau_start: from, tau_end: to}) =>
+    from.map((tau, i) => [units.time.of(tau), units.time.of(to[i])]);
+  const window = exponents.window && request.window ? exponents.window : [];
+  const borders = [...window, ...windows.flatMap((w) => w.asked)];
   const marks = {
     x: units.x,
-    bands: pairs(sticking.tau_start, sticking.tau_end),
-    calm: pairs(stretches.tau_start, stretches.tau_end).filter((_, i) => stretches.synchronised[i]),
-    lines: over(
-      [
-        ...(exponents.window && request.window ? exponents.window : []),
-        ...windows.flatMap((w) => w.asked),
-      ],
-      units.time,
-    ),
+    bands: pairs(sticking),
+    calm: pairs(stretches).filter((_, i) => stretches.synchronised[i]),
+    lines: over(borders, units.time),
   };
   drawMotion(answer, marks, units);
   drawExponents(exponents, end, units);
   drawMatrices(answer.eigenvalues, end, {x: marks.x, lines: marks.lines}, units);
-  drawSections(answer, marks, units);
+  drawImpacts(answer.impacts, units);
+  drawSections(answer.section, units);
+  drawDifferences(answer.section.impact, answer.parameters.Omega, end, marks, units);
+  drawMultipliers(regime);
   drawManifold(answer.manifold, units);
 }

@@ -1,4 +1,5 @@
-// Writes down what the program answers, one file for each request, so that two builds can be held against each other:
+// Writes down what the program answers, one file for each request, so that two builds can be held
+// against each other:
 //   node tests/golden/golden.mjs record FOLDER     of the program that VINES names
 //   node tests/golden/golden.mjs compare BEFORE AFTER
 // The version is left out, and of a sweep's stream the progress; its points are put in order.
@@ -27,10 +28,8 @@ const ordered = (text) => {
 const asText = (body) => (typeof body === "string" ? body : JSON.stringify(body));
 
 async function answerOf(url, {path, body, type}) {
-  const options =
-    body === undefined
-      ? {}
-      : {method: "POST", body: asText(body), headers: {"Content-Type": type ?? "application/json"}};
+  const headers = {"Content-Type": type ?? "application/json"};
+  const options = body === undefined ? {} : {method: "POST", body: asText(body), headers};
   const response = await fetch(url + path, options);
   const text = await response.text();
   const kind = response.headers.get("content-type");
@@ -71,10 +70,10 @@ async function record(folder) {
   };
   const service = await startService(["--deadline", "600"]);
   const small = await startService(["--answer-limit", "2000000"]);
-  const ask = async (body) =>
-    (
-      await fetch(`${service.url}/v1/simulate`, {method: "POST", body: JSON.stringify(body)})
-    ).json();
+  const ask = async (fields) => {
+    const body = JSON.stringify(fields);
+    return (await fetch(`${service.url}/v1/simulate`, {method: "POST", body})).json();
+  };
   for (const request of [...requests, ...(await identifications(ask))])
     await keep(request.name, await answerOf(request.limited ? small.url : service.url, request));
   await Promise.all([service.stop(), small.stop()]);
@@ -96,10 +95,8 @@ async function compare(before, after) {
     }
     let at = 0;
     while (one[at] === other[at]) ++at;
-    const from = Math.max(0, at - 60);
-    console.log(
-      `${name}: differs at byte ${at}\n  - ${JSON.stringify(one.slice(from, at + 100))}\n  + ${JSON.stringify(other.slice(from, at + 100))}`,
-    );
+    const around = (text) => JSON.stringify(text.slice(Math.max(0, at - 60), at + 100));
+    console.log(`${name}: differs at byte ${at}\n  - ${around(one)}\n  + ${around(other)}`);
   }
   console.log(`${names.length - different} of ${names.length} answers are equal, byte for byte`);
   process.exitCode = different ? 1 : 0;

@@ -1,7 +1,8 @@
-// Requests over all routes and subcommands, whose answers a change of the program's inside must not move by a bit.
+// Requests over all routes and subcommands, whose answers a change of the program's inside must not
+// move by a bit.
 //
-// {name, path, body?, type?, method?}: of the service. {name, args, input?, environment?, files?}: of a subcommand, run in a folder of
-// its own, whose `files` are a part of the answer.
+// {name, path, body?, type?, method?}: of the service. {name, args, input?, environment?, files?}:
+// of a subcommand, run in a folder of its own, whose `files` are a part of the answer.
 
 const machine = {
   m1: 12,
@@ -306,7 +307,8 @@ const faults = [
   get("/v1/nothing"),
 ];
 
-// A record that is made here: what an accelerometer and a displacement sensor see of a run, by linear interpolation, with pulses.
+// A record that is made here: what an accelerometer and a displacement sensor see of a run, by
+// linear interpolation, with pulses.
 const record = (series, impacts, omega0, rate, seconds) => {
   const lines = ["time_s,displacement_m,acceleration_m_s2"];
   const pulse = 0.001;
@@ -319,13 +321,12 @@ const record = (series, impacts, omega0, rate, seconds) => {
     const of = (column) =>
       series[column][i - 1] + share * (series[column][i] - series[column][i - 1]);
     let a = of("x_ddot") * omega0 ** 2;
-    impacts.tau.forEach((at, n) => {
+    for (const [n, at] of impacts.tau.entries()) {
       const phase = (t - at / omega0) / pulse + 0.5;
-      if (phase > 0 && phase < 1)
-        a +=
-          (((impacts.x_dot_after[n] - impacts.x_dot_before[n]) * omega0 * Math.PI) / 2 / pulse) *
-          Math.sin(Math.PI * phase);
-    });
+      const jump = impacts.x_dot_after[n] - impacts.x_dot_before[n];
+      const peak = (jump * omega0 * Math.PI) / 2 / pulse;
+      if (phase > 0 && phase < 1) a += peak * Math.sin(Math.PI * phase);
+    }
     lines.push(`${t.toFixed(6)},${of("x").toFixed(7)},${a.toFixed(4)}`);
   }
   return `${lines.join("\n")}\n`;
@@ -340,21 +341,13 @@ export const identifications = async (ask) => {
     max_points: 100000,
     include: ["series", "impacts"],
   });
-  const impacts = fig20.impacts;
-  const csv = record(fig20.series, fig20.impacts, fig20.parameters.derived.omega0, 2048, 6);
-  const columns = Object.fromEntries(
-    ["time_s", "displacement_m", "acceleration_m_s2"].map((name, k) => [
-      name,
-      csv
-        .trim()
-        .split("\n")
-        .slice(1)
-        .map((line) => Number(line.split(",")[k])),
-    ]),
-  );
-  const without = Object.fromEntries(
-    Object.entries(columns).filter(([name]) => name !== "acceleration_m_s2"),
-  );
+  const {impacts} = fig20;
+  const {omega0} = fig20.parameters.derived;
+  const csv = record(fig20.series, impacts, omega0, 2048, 6);
+  const [header, ...lines] = csv.trim().split("\n");
+  const column = (k) => lines.map((line) => Number(line.split(",")[k]));
+  const columns = Object.fromEntries(header.split(",").map((name, k) => [name, column(k)]));
+  const {acceleration_m_s2: _, ...without} = columns;
   const as = (name, path, body, type) => ({name: `identify ${name}`, path, body, type});
   return [
     as("CSV", "/v1/identify?preset=fig20&b=0.015", csv, "text/csv"),
@@ -371,9 +364,7 @@ export const identifications = async (ask) => {
       preset: "fig20",
       b: 0.015,
       record: without,
-      impact_times_s: fig20.impacts.tau
-        .filter((t) => t < 5 * fig20.parameters.derived.omega0)
-        .map((t) => t / fig20.parameters.derived.omega0),
+      impact_times_s: impacts.tau.filter((tau) => tau < 5 * omega0).map((tau) => tau / omega0),
     }),
     as("impacts", "/v1/identify", {preset: "fig20", impacts}),
     as("impacts without SI", "/v1/identify", {b: 0.015, R: 0.85, impacts, max_points: 300}),

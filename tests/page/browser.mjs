@@ -11,7 +11,10 @@ const {chromium} = require("playwright-core");
 const readAsStream = (request) =>
   request.url().endsWith("/v1/sweep") && request.failure().errorText === "net::ERR_ABORTED";
 
-/** Chromium with a profile of its own; what its pages write to the console as errors, and what they refuse to load, is collected. */
+/**
+ * Chromium with a profile of its own; what its pages write to the console as errors, and what they
+ * refuse to load, is collected.
+ */
 export async function startBrowser() {
   const profile = await mkdtemp(join(tmpdir(), "vines-page-"));
   const context = await chromium.launchPersistentContext(profile, {
@@ -38,17 +41,17 @@ export async function startBrowser() {
         complaints.push(`${request.url()}: ${request.failure().errorText}`);
     });
   });
-  return {
-    context,
-    complaints,
-    stop: async () => {
-      await context.close();
-      await rm(profile, {recursive: true, force: true});
-    },
+  const stop = async () => {
+    await context.close();
+    await rm(profile, {recursive: true, force: true});
   };
+  return {context, complaints, stop};
 }
 
-/** Opens a page and waits until its first answer is drawn: of a simulation, or of a whole sweep; or until a record can be chosen. */
+/**
+ * Opens a page and waits until its first answer is drawn: of a simulation, or of a whole sweep; or
+ * until a record can be chosen.
+ */
 export async function open(context, url, options = {}) {
   const page = await context.newPage();
   if (options.viewport) await page.setViewportSize(options.viewport);
