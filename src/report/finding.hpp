@@ -27,7 +27,7 @@ struct Finding {
 };
 
 inline const std::string reproduced = "reproduced";
-/// By eq. (1) it would not be: see README, "What the paper says and what holds".
+/// By eq. (1) it would not be: see docs/paper.md.
 inline const std::string reproduced_with_closed_form = "reproduced with the closed-form damping";
 inline std::string not_reproduced(const std::string& reason) { return "not reproduced: " + reason; }
 

@@ -39,7 +39,7 @@ Series series_until(double b, double tau_end);
 
 /// lambda over many windows as long as the paper's: stretches of several runs, of which each starts
 /// a little different and ends, at the latest, where a periodic orbit captures it (b = 22 mm:
-/// README, "What the paper says and what holds").
+/// docs/paper.md).
 struct Ensemble {
     static constexpr int runs = 12;
     static constexpr int windows_per_run = 11;  ///< the first holds the transient from rest

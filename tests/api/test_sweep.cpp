@@ -56,17 +56,17 @@ TEST_CASE(
         CAPTURE(more);
         const SweepRequest r = request(std::string(plane) + more);
         const auto all = run(r);
-        CHECK(all.size() == r.points);
+        CHECK(all.size() == r.plan.grid.lines());
         CHECK(run(r, 1) == all);
         std::map<std::size_t, Json> united;
         for (std::size_t shard = 0; shard < 3; ++shard) {
             SweepRequest part = r;
-            part.indices = shard_of(r, shard, 3);
+            part.plan.lines = shard_of(r, shard, 3);
             united.merge(run(part, 3));
         }
         CHECK(united == all);
         SweepRequest some = r;
-        some.indices = {1, 3, 8};
+        some.plan.lines = {1, 3, 8};
         const auto few = run(some);
         CHECK(few.size() == 3);
         for (const auto& [index, line] : few) CHECK(line == all.at(index));
@@ -179,7 +179,9 @@ TEST_CASE("axes are linear or logarithmic with exact ends, or a list") {
             R"({"axes":[{"parameter":"f","values":[8,9,10.5]}],"base":{"m1":4,"c1":3,"k1":11e3,"m2":0.03,"F":1e-4}})")
             .axes[0]
             .values == std::vector<double>{8, 9, 10.5});
-    CHECK(request(R"({"axes":[{"parameter":"x0","from":0,"to":0.01,"count":1}]})").points == 1);
+    CHECK(
+        request(R"({"axes":[{"parameter":"x0","from":0,"to":0.01,"count":1}]})")
+            .plan.grid.lines() == 1);
 }
 
 TEST_CASE("an axis over a preset changes that field alone, reduced, SI or of one wall") {

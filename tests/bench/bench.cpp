@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "core/stability/lyapunov.hpp"
-#include "core/sweep/sweep.hpp"
+#include "core/sweep/parallel.hpp"
+#include "core/sweep/point.hpp"
 
 using namespace vines;
 

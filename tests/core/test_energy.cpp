@@ -58,10 +58,10 @@ TEST_CASE("rms and peak of x are those of dense samples") {
     record(p, default_state(p), 400, 1000000, {&energy, &series});
     double squares = 0, peak = 0;
     long n = 0;
-    for (std::size_t i = 0; i < series.tau.size(); ++i) {
-        if (series.tau[i] < 100) continue;
-        squares += series.x[i] * series.x[i];
-        peak = std::max(peak, std::abs(series.x[i]));
+    for (std::size_t i = 0; i < series.series.tau.size(); ++i) {
+        if (series.series.tau[i] < 100) continue;
+        squares += series.series.x[i] * series.series.x[i];
+        peak = std::max(peak, std::abs(series.series.x[i]));
         ++n;
     }
     CHECK(energy.duration() == doctest::Approx(300));

@@ -143,11 +143,12 @@ TEST_CASE(
     record(p, default_state(p), 60, 1000000, {&points, &series});
     for (std::size_t k = 0; k < points.points.size(); ++k) {
         double path = 0, peak = 0;
-        for (std::size_t i = 0; i + 1 < series.tau.size(); ++i) {
-            if (series.tau[i] < points.tau[k] - std::numbers::pi || series.tau[i] > points.tau[k])
+        for (std::size_t i = 0; i + 1 < series.series.tau.size(); ++i) {
+            if (series.series.tau[i] < points.tau[k] - std::numbers::pi ||
+                series.series.tau[i] > points.tau[k])
                 continue;
-            path += std::abs(series.y[i + 1] - series.y[i]);
-            peak = std::max(peak, std::abs(series.x[i]));
+            path += std::abs(series.series.y[i + 1] - series.series.y[i]);
+            peak = std::max(peak, std::abs(series.series.x[i]));
         }
         CHECK(points.points[k].V == doctest::Approx(path / std::numbers::pi).epsilon(2e-3));
         CHECK(points.points[k].C == doctest::Approx(peak).epsilon(1e-4));

@@ -271,17 +271,17 @@ TEST_CASE("the series is the motion between the impacts, at equal steps and at t
     SeriesRecord series(0.25);
     const Record run = record(p, default_state(p), 100.1, 1000, {&series});
     series.finish(run.outcome);
-    REQUIRE(series.tau.size() == 402);
-    CHECK(series.tau[400] == 100);
-    CHECK(series.tau.back() == 100.1);
-    CHECK(series.x.back() == run.outcome.state.x);
+    REQUIRE(series.series.tau.size() == 402);
+    CHECK(series.series.tau[400] == 100);
+    CHECK(series.series.tau.back() == 100.1);
+    CHECK(series.series.x.back() == run.outcome.state.x);
     const Flow flow = Flow::free(p);
     // Before the first impact.
     const Oscillation o = flow.after({0, 0, std::sin(p.phi()), std::cos(p.phi())}, 18);
-    CHECK(std::abs(series.x[72] - o.x) < 1e-16);
-    CHECK(std::abs(series.y[72] - 0.95 * p.b) < 1e-16);
-    for (std::size_t k = 0; k < series.tau.size(); ++k)
-        CHECK(std::abs(series.x[k] - series.y[k]) < p.b + 1e-15);
+    CHECK(std::abs(series.series.x[72] - o.x) < 1e-16);
+    CHECK(std::abs(series.series.y[72] - 0.95 * p.b) < 1e-16);
+    for (std::size_t k = 0; k < series.series.tau.size(); ++k)
+        CHECK(std::abs(series.series.x[k] - series.series.y[k]) < p.b + 1e-15);
 }
 
 TEST_CASE(

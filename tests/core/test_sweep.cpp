@@ -4,7 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/sweep/sweep.hpp"
+#include "core/sweep/parallel.hpp"
+#include "core/sweep/point.hpp"
+#include "core/sweep/starts.hpp"
 #include "support.hpp"
 
 using namespace vines;
@@ -13,7 +15,7 @@ using namespace vines::test;
 TEST_CASE("a point of a sweep measures what the whole run would, after its transient") {
     const Parameters p = table1(0.015, Damping::closed_form);
     PointOptions options;
-    options.section = Section::impact;
+    options.section = SectionKind::impact;
     options.section_points = 10;
     const PointResult r = measure(p, default_state(p), options, {});
     CHECK(r.regime.type == RegimeType::III);
@@ -24,10 +26,10 @@ TEST_CASE("a point of a sweep measures what the whole run would, after its trans
     CHECK(r.lambda[0] == doctest::Approx(-0.0178).epsilon(0.02));
     CHECK(r.x_max == doctest::Approx(0.00262).epsilon(0.01));
     CHECK(r.share_impacts > 0.5);
-    REQUIRE(r.section.size() == 10);
+    REQUIRE(r.sections.impact.size() == 10);
     for (std::size_t i = 1; i < 10; ++i) {
-        CHECK(r.section[i].side == -r.section[i - 1].side);
-        CHECK(r.section[i].time_difference == doctest::Approx(3.14159265).epsilon(1e-6));
+        CHECK(r.sections.impact[i].impact.side == -r.sections.impact[i - 1].impact.side);
+        CHECK(r.sections.impact[i].since == doctest::Approx(3.14159265).epsilon(1e-6));
     }
 }
 
@@ -36,18 +38,19 @@ TEST_CASE("a section keeps the last points in order of time, at whole cycles too
     PointOptions options;
     options.transient_cycles = 0;
     options.cycles = 50;
-    options.section = Section::stroboscopic;
+    options.section = SectionKind::stroboscopic;
     options.section_points = 7;
     const PointResult few = measure(p, default_state(p), options, {});
     options.section_points = 1000;
     const PointResult all = measure(p, default_state(p), options, {});
-    REQUIRE(few.section.size() == 7);
-    REQUIRE(all.section.size() == 51);
-    for (std::size_t i = 0; i < 7; ++i) CHECK(few.section[i].x == all.section[44 + i].x);
-    options.section = Section::impact;
+    REQUIRE(few.sections.states.size() == 7);
+    REQUIRE(all.sections.states.size() == 51);
+    for (std::size_t i = 0; i < 7; ++i)
+        CHECK(few.sections.states[i].x == all.sections.states[44 + i].x);
+    options.section = SectionKind::impact;
     const PointResult impacts = measure(p, default_state(p), options, {});
-    CHECK(impacts.section.size() == static_cast<std::size_t>(impacts.impacts));
-    CHECK(std::isnan(impacts.section[0].time_difference));
+    CHECK(impacts.sections.impact.size() == static_cast<std::size_t>(impacts.impacts));
+    CHECK(std::isnan(impacts.sections.impact[0].since));
 }
 
 TEST_CASE("a carried state keeps the mass at its place in the cavity") {

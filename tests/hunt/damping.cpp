@@ -6,7 +6,7 @@
 #include <functional>
 #include <optional>
 
-#include "core/sweep/sweep.hpp"
+#include "core/sweep/parallel.hpp"
 #include "exact_product.hpp"
 #include "systems.hpp"
 

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdio>
 
+#include "core/sweep/parallel.hpp"
 #include "judgement.hpp"
 
 namespace vines::hunt {

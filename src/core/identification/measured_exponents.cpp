@@ -68,7 +68,8 @@ MeasuredExponents::MeasuredExponents(
     const std::vector<KnownStretch>& stretches, const ExponentOptions& o)
     : all_(p.epsilon, {true, false, false, o.history}),
       longest_(p.epsilon, {false, o.eigenvalues, o.raw_product, o.history}) {
-    const Flow flow = Flow::free(p);
+    const auto table = Flow::shared_free(p);
+    const Flow& flow = *table;
     const auto feed = [&](const KnownStretch& s, TransferProduct& product) {
         if (product.impacts() == 0) product.start(impacts[s.first].tau);
         for (std::size_t i = s.first + 1; i <= s.last; ++i)

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/motion/last_used.hpp"
+
 namespace vines {
 
 namespace {
@@ -61,6 +63,11 @@ Quadrature::Quadrature(const Flow& flow) : flow_(flow) {
     }
 }
 
+std::shared_ptr<const Quadrature> Quadrature::shared(const Flow& flow) {
+    thread_local LastUsed<Flow::Coefficients, Quadrature> quadratures;
+    return quadratures.get(flow.coefficients(), [&flow] { return Quadrature(flow); });
+}
+
 Quadrature::Integrals Quadrature::over_part(const Oscillation& start, double duration) const {
     const Flow::Series series = flow_.series(start);
     Integrals sum;
@@ -99,16 +106,17 @@ Energy::Energy(const Parameters& p, double tau_start, double tau_end)
     : parameters_(p),
       tau_start_(tau_start),
       tau_end_(tau_end),
-      free_(Flow::free(p)) {}
+      free_(Quadrature::shared(*Flow::shared_free(p))) {}
 
 void Energy::on_stretch(const Stretch& stretch) {
     const double from = std::max(0.0, tau_start_ - stretch.tau),
                  to = std::min(stretch.duration, tau_end_ - stretch.tau);
     if (!(from < to)) return;
-    if (stretch.stuck_side != 0 && !stuck_) stuck_.emplace(Flow::stuck(parameters_));
+    if (stretch.stuck_side != 0 && !stuck_)
+        stuck_ = Quadrature::shared(*Flow::shared_stuck(parameters_));
     if (duration_ == 0) start_ = energy_of(parameters_, stretch.at(from));
     const Oscillation begin = from > 0 ? stretch.flow.after(stretch.start, from) : stretch.start;
-    integrals_ += (stretch.stuck_side == 0 ? free_ : *stuck_).over(begin, to - from);
+    integrals_ += (stretch.stuck_side == 0 ? free_ : stuck_)->over(begin, to - from);
     peak_ = std::max(peak_, excursion(stretch.flow, begin, to - from).peak);
     duration_ += to - from;
     end_ = energy_of(parameters_, stretch.at(to));
@@ -165,18 +173,21 @@ std::optional<double> free_amplitude(const Parameters& p) {
 
 double unattached_rms(const Parameters& p, const State& start, double duration) {
     const Quadrature::Integrals sum =
-        Quadrature(Flow::free(p))
-            .over({start.x, start.x_dot, std::sin(p.phi()), std::cos(p.phi())}, duration);
+        Quadrature::shared(*Flow::shared_free(p))
+            ->over({start.x, start.x_dot, std::sin(p.phi()), std::cos(p.phi())}, duration);
     return std::sqrt(sum.x_squared / duration);
 }
 
 Unattached unattached(const Parameters& p, const State& start, double tau_start, double tau_end) {
-    const Flow flow = Flow::free(p);
+    const auto table = Flow::shared_free(p);
+    const Flow& flow = *table;
     const Oscillation o{start.x, start.x_dot, std::sin(p.phi()), std::cos(p.phi())};
     const Oscillation begin = flow.after(o, tau_start);
     const double duration = tau_end - tau_start;
     return {
-        duration > 0 ? std::sqrt(Quadrature(flow).over(begin, duration).x_squared / duration) : 0,
+        duration > 0
+            ? std::sqrt(Quadrature::shared(flow)->over(begin, duration).x_squared / duration)
+            : 0,
         excursion(flow, begin, duration).peak, free_amplitude(p)};
 }
 

@@ -4,6 +4,7 @@
 // Energies are per unit of m1, in m^2 (time is dimensionless): E = x'^2/2 + x^2/2 + epsilon y'^2/2.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -15,6 +16,8 @@ namespace vines {
 class Quadrature {
 public:
     explicit Quadrature(const Flow& flow);
+    /// The same, as the thread has made it before where it can.
+    static std::shared_ptr<const Quadrature> shared(const Flow& flow);
 
     struct Integrals {
         double x_squared = 0, x_dot_squared = 0, x_dot_sin = 0;  ///< of x^2, x'^2 and x' sin(theta)
@@ -59,8 +62,8 @@ public:
 private:
     const Parameters parameters_;
     const double tau_start_, tau_end_;
-    const Quadrature free_;
-    std::optional<Quadrature> stuck_;
+    const std::shared_ptr<const Quadrature> free_;
+    std::shared_ptr<const Quadrature> stuck_;  // from the first stretch of a stick on
     Quadrature::Integrals integrals_;
     double duration_ = 0, peak_ = 0, impacts_ = 0, start_ = 0, end_ = 0;
 };

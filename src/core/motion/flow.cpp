@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/motion/last_used.hpp"
+
 namespace vines {
 
 namespace {
@@ -74,11 +76,34 @@ Flow::Flow(double stiffness, double damping, double forcing, double Omega)
     }
 }
 
-Flow Flow::free(const Parameters& p) { return Flow(1, 2 * p.zeta(), p.epsilon * p.A(), p.Omega); }
+namespace {
 
-Flow Flow::stuck(const Parameters& p) {
+Flow::Coefficients free_coefficients(const Parameters& p) {
+    return {1, 2 * p.zeta(), p.epsilon * p.A(), p.Omega};
+}
+
+Flow::Coefficients stuck_coefficients(const Parameters& p) {
     const double mass = 1 + p.epsilon;
-    return Flow(1 / mass, 2 * p.zeta() / mass, p.epsilon * p.A() / mass, p.Omega);
+    return {1 / mass, 2 * p.zeta() / mass, p.epsilon * p.A() / mass, p.Omega};
+}
+
+Flow of(const Flow::Coefficients& c) { return Flow(c[0], c[1], c[2], c[3]); }
+
+std::shared_ptr<const Flow> shared(const Flow::Coefficients& c) {
+    thread_local LastUsed<Flow::Coefficients, Flow> flows;
+    return flows.get(c, [&c] { return of(c); });
+}
+
+}  // namespace
+
+Flow Flow::free(const Parameters& p) { return of(free_coefficients(p)); }
+Flow Flow::stuck(const Parameters& p) { return of(stuck_coefficients(p)); }
+
+std::shared_ptr<const Flow> Flow::shared_free(const Parameters& p) {
+    return shared(free_coefficients(p));
+}
+std::shared_ptr<const Flow> Flow::shared_stuck(const Parameters& p) {
+    return shared(stuck_coefficients(p));
 }
 
 namespace {

@@ -10,6 +10,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <memory>
 #include <vector>
 
 #include "core/motion/parameters.hpp"
@@ -38,6 +40,9 @@ public:
     using Series = Eigen::Array<double, degree + 1, 1>;
     using Block = Eigen::Array<double, block, 1>;
 
+    /// Stiffness, damping, forcing, Omega: all that a flow depends on.
+    using Coefficients = std::array<double, 4>;
+
     Flow(double stiffness, double damping, double forcing, double Omega);
 
     /// The oscillator of eq. (2), where the absorber's mass flies freely.
@@ -45,6 +50,12 @@ public:
     /// Both masses as one: (1 + epsilon) x'' + 2 zeta x' + x = epsilon A sin(theta).
     static Flow stuck(const Parameters& parameters);
 
+    /// The same, as the thread has made them before where it can: a table serves all systems of one
+    /// forcing and damping, and every run of one system.
+    static std::shared_ptr<const Flow> shared_free(const Parameters& parameters);
+    static std::shared_ptr<const Flow> shared_stuck(const Parameters& parameters);
+
+    Coefficients coefficients() const { return {stiffness_, damping_, forcing_, Omega_}; }
     double cell() const { return h_; }  ///< width h of a cell
     /// Longest time that one look at the grid can bridge.
     double reach() const { return h_ * cells; }

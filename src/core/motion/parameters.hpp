@@ -10,8 +10,7 @@
 
 namespace vines {
 
-/// Which damping ratio zeta the motion has. The paper uses both: see README, "What the paper says
-/// and what holds".
+/// Which damping ratio zeta the motion has. The paper uses both: see docs/paper.md.
 enum class Damping {
     equation_of_motion,  ///< 2 zeta = epsilon lambda, eqs. (1), (6), (17): what c1 means
     /// Zeta = epsilon lambda, eqs. (8)-(11), (19), (20): what the paper's numbers were computed

@@ -45,7 +45,8 @@ public:
         : p_(p),
           limits_(limits),
           observers_(observers),
-          free_(Flow::free(p)),
+          free_table_(Flow::shared_free(p)),
+          free_(*free_table_),
           clock_(limits.tau_start),
           y_(start.y),
           y_dot_(start.y_dot) {
@@ -157,7 +158,7 @@ private:
     /// centre of mass moves by the same law. `zeros` as in next_release.
     void stick(double chatter_left, int zeros) {
         ++others_;
-        if (!stuck_) stuck_ = Flow::stuck(p_);
+        if (!stuck_) stuck_ = Flow::shared_stuck(p_);
         // The velocity of the centre of mass.
         lo_.x_dot -= p_.epsilon / (1 + p_.epsilon) * relative_speed_;
         tell(
@@ -188,8 +189,9 @@ private:
     const Parameters& p_;
     const Limits& limits_;
     std::span<Observer* const> observers_;
-    Flow free_;
-    std::optional<Flow> stuck_;
+    const std::shared_ptr<const Flow> free_table_;
+    const Flow& free_;
+    std::shared_ptr<const Flow> stuck_;  // from the first stick on
     Clock clock_;
     Oscillation lo_;
     double y_, y_dot_;
