@@ -12,7 +12,7 @@ before(async () => { folder = await mkdtemp(join(tmpdir(), "vines-cli-")); });
 after(() => rm(folder, {recursive: true}));
 const at = (name) => join(folder, name);
 
-/** Runs the program to its end, or sends it one signal once `until` says so: {code, out, errors}. */
+/** Runs the program to its end, or sends it one signal once `until`, given its process's number, says so: {code, out, errors}. */
 const run = (args, {input = "", env = {}, signal, until} = {}) => new Promise((resolve) => {
   const child = spawn(program, args, {env: {...process.env, ...env}});
   let out = "", errors = "";
@@ -23,14 +23,14 @@ const run = (args, {input = "", env = {}, signal, until} = {}) => new Promise((r
   child.stdin.end(input);
   const look = async () => {  // one look after the other: a second signal would end the program at once
     if (child.exitCode !== null) return;
-    if (await until()) child.kill(signal);
+    if (await until(child.pid)) child.kill(signal);
     else setTimeout(look, 5);
   };
   if (signal) look();
 });
 
 const sweep = JSON.stringify({base: {damping: "closed_form"}, axes: [{parameter: "b", from: 0.008, to: 0.03, count: 40}], cycles: 60, section: "impact", section_points: 5});
-const long = JSON.stringify({...JSON.parse(sweep), cycles: 20000});
+const long = JSON.stringify({...JSON.parse(sweep), cycles: 100000});  // longer than a look at its file may take on any machine
 const lines = async (name) => (await readFile(at(name), "utf8").catch(() => "")).split("\n").length - 1;
 
 test("simulate answers as the service does, from a file or stdin to a file or stdout", async () => {
@@ -53,6 +53,14 @@ test("identify takes a CSV file with its fields as a query, or the service's JSO
   const refused = await run(["identify", at("record.csv"), "-q", "preset=fig20&b=0.015"]);
   assert.equal(refused.code, 2);
   assert.equal(JSON.parse(refused.errors).detail, 'line 3, column a: "x" is no number');
+});
+
+test("identify decodes its query as the service does a URL's", async () => {
+  const identify = async (query) => JSON.parse((await run(["identify", "-q", query], {input: "time_s,the x,a\n0,1,2\n0.001,1,3\n"})).errors);
+  const {errors} = await identify("preset=fig20&displacement_column=no%20x+%2Cor%3D&");
+  assert.deepEqual(errors.map((e) => [e.pointer, e.value]), [["/displacement_column", "no x ,or="]]);
+  for (const column of ["the x", "the%20x", "the+x", "%74he%20x"]) assert.match((await identify(`preset=fig20&displacement_column=${column}`)).detail, /^the record has 2 samples/);  // the column was found
+  assert.equal((await identify("preset=fig20&displacement_column=50%zz%2")).errors[0].value, "50%zz%2");
 });
 
 test("a sweep whose motion depends on the start says so on stderr, one with the default set of starts has the worst and the best in its lines", async () => {
@@ -81,9 +89,11 @@ test("a request at fault is a problem document on stderr and exit code 2, a file
   assert.equal((await run(["sweep", "--shard", "auto"], {input: sweep})).code, 2);
 });
 
+/** Whether a process has SIGINT blocked: it waits for it then. */
+const waitsForSignals = async (pid) => (BigInt(`0x${(await readFile(`/proc/${pid}/status`, "utf8")).match(/^SigBlk:\s+(\w+)/m)[1]}`) & 2n) !== 0n;
+
 test("an interrupted simulation answers with what it has and exit code 3", async () => {
-  const started = Date.now();
-  const {code, out} = await run(["simulate"], {input: '{"R":1,"tau_end":1e7,"max_impacts":2000000,"include":[]}', signal: "SIGINT", until: () => Date.now() - started > 100});
+  const {code, out} = await run(["simulate"], {input: '{"b":0.003,"R":1,"tau_end":1e7,"max_impacts":2000000,"include":["exponents"]}', signal: "SIGINT", until: waitsForSignals});
   assert.equal(code, 3);
   assert.equal(JSON.parse(out).status.reason, "interrupted");
 });
