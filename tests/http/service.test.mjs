@@ -139,16 +139,21 @@ test("points come while the sweep runs, and a client that leaves stops it", asyn
 test("a simulation is answered in the middle of a sweep's point, where one thread computes both", async () => {
   const one = await startService(["--compute-threads", "1"]);
   const leaving = new AbortController();
-  // One run of 3 million impacts, which writes its line at its end.
-  const request = {base: {b: 0.015, damping: "closed_form"}, axes: [{parameter: "R", values: [0.6]}], starts: [{}, {x0: 0.001}], indices: [0], cycles: 1000000, transient_cycles: 500000};
+  // One run of some seconds, which writes its line at its end.
+  const request = {base: {b: 0.008, max_impacts: 2000000}, axes: [{parameter: "R", values: [0.6]}], starts: [{}, {x0: 0.001}], indices: [0], cycles: 1000000, transient_cycles: 1000000};
   const reader = (await postSweep(request, {signal: leaving.signal}, one.url)).body.getReader();
   let text = "";
   const reading = (async () => {
     for (let part; !(part = await reader.read()).done;) text += new TextDecoder().decode(part.value);
   })().catch(() => {});
-  while (!text.includes('"progress"')) await new Promise((resolve) => setTimeout(resolve, 5));
+  const reports = async (count) => {
+    const enough = text.split('"progress"').length + count;
+    while (text.split('"progress"').length < enough && !text.includes('"point"')) await new Promise((resolve) => setTimeout(resolve, 5));
+  };
+  await reports(1);
   const answer = await (await fetch(`${one.url}/v1/simulate?tau_end=200&include=exponents`)).json();
   assert.equal(answer.status.reason, "tau_end");
+  await reports(2);  // it was not the point's end that let the simulation in
   assert.doesNotMatch(text, /"point"/);
   leaving.abort();
   await reading;

@@ -63,6 +63,28 @@ TEST_CASE("patient work that gives its place back gets it again behind the urgen
     }
 }
 
+TEST_CASE(
+    "of two places that come free at once patient work gets the one that urgent work leaves") {
+    const std::stop_source stop;
+    for (int round = 0; round < 1000; ++round) {
+        ComputeGate gate({.running = 2});
+        ComputeGate::Place first = gate.enter(), second = gate.enter();
+        std::atomic<bool> patient_inside = false;
+        std::thread patient(
+            [&] { patient_inside = gate.enter_patiently(stop.get_token()) != nullptr; });
+        std::thread urgent([&] {
+            const ComputeGate::Place own = gate.enter();
+            wait_until([&] { return patient_inside.load(); });  // with its place kept
+        });
+        wait_until([&] { return gate.wanted(); });
+        first.reset();
+        second.reset();
+        patient.join();
+        urgent.join();
+        CHECK(patient_inside);
+    }
+}
+
 TEST_CASE("a stop ends patient work's wait, before it as well as in it") {
     ComputeGate gate({.running = 1});
     const ComputeGate::Place held = gate.enter();
