@@ -24,12 +24,12 @@ struct AnswerSize {
 AnswerSize size_of(const SimulateRequest& r) {
     AnswerSize size;
     const double si = r.system.si ? number : 0;  // of each column that has a twin in SI
-    size.fixed += window * static_cast<double>(r.windows.size());
+    size.fixed += window * static_cast<double>(r.wanted.windows.size());
     if (r.includes("series")) size.point += 6 * number + 4 * si;
     if (r.includes("exponents")) {  // tau and four exponents, and the floor
-        if (r.estimators.qr) size.point += 5 * number + si;
-        if (r.estimators.raw_product) size.point += 6 * number + si;
-        if (r.estimators.eigenvalues) size.fixed += eigenvalue_history * (5 * number + si);
+        if (r.wanted.estimators.qr) size.point += 5 * number + si;
+        if (r.wanted.estimators.raw_product) size.point += 6 * number + si;
+        if (r.wanted.estimators.eigenvalues) size.fixed += eigenvalue_history * (5 * number + si);
     }
     if (r.includes("eigenvalues")) size.point += 14 * number + si + 3 * bracket;
     if (r.includes("matrices")) size.point += 49 * number + si + 15 * bracket;
@@ -45,29 +45,24 @@ AnswerSize size_of(const SimulateRequest& r) {
 
 }  // namespace
 
-std::string limit_of(std::size_t bytes) {
-    return ", so that the answer is no larger than this server's limit of " +
-           std::to_string(bytes) + " bytes";
-}
-
 void fit_answer(SimulateRequest& r, std::size_t bytes, Warnings& warnings) {
     const AnswerSize size = size_of(r);
     const double room = std::max(0.0, static_cast<double>(bytes) - size.fixed);
-    const double points = static_cast<double>(r.max_points) * size.point,
-                 impacts = static_cast<double>(r.listed_impacts) * size.impact;
+    const double points = static_cast<double>(r.wanted.most_points) * size.point,
+                 impacts = static_cast<double>(r.wanted.most_listed) * size.impact;
     if (points + impacts <= room) return;
     // What needs less than half of the room gets all that it needs.
     const double for_points = std::min(
                      points, std::max({room / 2, room - impacts, fewest_points * size.point})),
                  for_impacts = room - for_points;
     if (impacts > for_impacts)
-        r.listed_impacts = static_cast<std::size_t>(std::max(1.0, for_impacts / size.impact));
+        r.wanted.most_listed = static_cast<std::size_t>(std::max(1.0, for_impacts / size.impact));
     if (points <= for_points) return;
     const std::size_t fit = static_cast<std::size_t>(for_points / size.point);
     warnings.push_back(
-        "max_points is " + std::to_string(fit) + " instead of " + std::to_string(r.max_points) +
-        limit_of(bytes));
-    r.max_points = r.estimators.history = fit;
+        "max_points is " + std::to_string(fit) + " instead of " +
+        std::to_string(r.wanted.most_points) + limit_of(bytes));
+    r.wanted.most_points = r.wanted.estimators.history = fit;
 }
 
 }  // namespace vines::api

@@ -4,7 +4,8 @@
 
 #include <limits>
 
-#include "api/describe.hpp"
+#include "api/request.hpp"
+#include "api/warning_text.hpp"
 
 namespace vines::api {
 
@@ -15,8 +16,5 @@ inline constexpr std::size_t any_size = std::numeric_limits<std::size_t>::max();
 /// than so many bytes of JSON; a warning says so of max_points. It does not fall below its own
 /// minimum: then the answer may still be too large.
 void fit_answer(SimulateRequest& request, std::size_t bytes, Warnings& warnings);
-
-/// Why: the end of a warning.
-std::string limit_of(std::size_t bytes);
 
 }  // namespace vines::api

@@ -1,8 +1,9 @@
 #include "api/describe.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace vines::api {
 
@@ -34,22 +35,23 @@ Json describe_history(const ExponentHistory& history) {
 }
 
 std::string reason_of(const Judgement& judgement, const Growth& g, const Regime& r) {
-    const std::string sigmas = "lambda1 = " + digits("%.3g", g.lambda1) + " lies " +
-                               digits("%.1f", std::abs(g.lambda1 / g.standard_error[0])) +
-                               " standard errors " + (g.lambda1 > 0 ? "above" : "below") + " zero";
+    const std::string sigmas = fmt::format(
+        "lambda1 = {:.3g} lies {:.1f} standard errors {} zero", g.lambda1,
+        std::abs(g.lambda1 / g.standard_error[0]), g.lambda1 > 0 ? "above" : "below");
     auto orbit = [&] {
-        return "a stable periodic orbit, whose largest multiplier has the modulus " +
-               digits("%.4g", std::abs(r.orbit->multipliers[0]));
+        return fmt::format(
+            "a stable periodic orbit, whose largest multiplier has the modulus {:.4g}",
+            std::abs(r.orbit->multipliers[0]));
     };
     auto captured = [&] {
-        return " a periodic orbit captures the motion " +
-               (r.capture->tau ? "at tau = " + digits("%.1f", *r.capture->tau)
+        return "a periodic orbit captures the motion " +
+               (r.capture->tau ? fmt::format("at tau = {:.1f}", *r.capture->tau)
                                : "after the run's end");
     };
     switch (judgement.reason) {
         case VerdictReason::growth:
-            return sigmas + "; at least " + digits("%.0f", verdict_sigmas) + " decide" +
-                   (r.capture ? ", but" + captured() : "");
+            return fmt::format("{}; at least {:.0f} decide", sigmas, verdict_sigmas) +
+                   (r.capture ? ", but " + captured() : "");
         case VerdictReason::on_orbit: return "the motion is on " + orbit();
         case VerdictReason::settling: return "the motion ends on " + orbit();
         case VerdictReason::free_decay:
@@ -57,33 +59,26 @@ std::string reason_of(const Judgement& judgement, const Growth& g, const Regime&
         case VerdictReason::untouched:
             return "the free mass meets no wall in the end: there are no exponents to judge";
         case VerdictReason::transient:
-            return "the window begins in a chaotic transient;" + captured();
+            return "the window begins in a chaotic transient; " + captured();
         case VerdictReason::not_known_before:
-            return captured().substr(1) +
-                   "; the time limit left none to see whether it was chaotic before";
+            return captured() + "; the time limit left none to see whether it was chaotic before";
         case VerdictReason::no_error: return "too few impacts for a standard error of lambda1";
         case VerdictReason::within_error:
-            return sigmas + "; less than " + digits("%.0f", verdict_sigmas) + " decide nothing";
+            return fmt::format("{}; less than {:.0f} decide nothing", sigmas, verdict_sigmas);
         case VerdictReason::little_growth:
-            return sigmas + ", but deviations grow by no more than e^" + digits("%.1f", g.whole) +
-                   " in this window, as they may while one unstable orbit is left; e^" +
-                   digits("%.0f", least_growth) + " decides";
+            return fmt::format(
+                "{}, but deviations grow by no more than e^{:.1f} in this window, as they may "
+                "while one unstable orbit is left; e^{:.0f} decides",
+                sigmas, g.whole, least_growth);
         case VerdictReason::algebraic_growth:
-            return sigmas + ", but deviations grow by no more than e^" + digits("%.1f", g.late) +
-                   " in the second half of this window: that may be algebraic growth beside a "
-                   "torus";
+            return fmt::format(
+                "{}, but deviations grow by no more than e^{:.1f} in the second half of this "
+                "window: that may be algebraic growth beside a torus",
+                sigmas, g.late);
         case VerdictReason::negative:
             return sigmas + ", but no stable periodic orbit was found that the motion comes to";
     }
     return "";
-}
-
-/// What the window's motion is, and what that rests on.
-void add_verdict(Json& j, const Growth& growth, const Regime& regime, double tau_start) {
-    const Judgement judgement = judge(growth, regime, tau_start);
-    j["verdict"] = word(judgement.verdict);
-    j["verdict_sigmas"] = finite_or_null(growth.lambda1 / growth.standard_error[0]);
-    j["verdict_reason"] = reason_of(judgement, growth, regime);
 }
 
 /// A period's multipliers, by descending modulus.
@@ -116,44 +111,13 @@ Json describe_matrix(const Matrix4& m) {
 
 }  // namespace
 
-const char* word(Status status) {
-    switch (status) {
-        case Status::ok: return "ok";
-        case Status::minus_infinity: return "minus_infinity";
-        case Status::not_converged: return "not_converged";
-    }
-    return "";
-}
-
-Json word(Verdict verdict) {
-    switch (verdict) {
-        case Verdict::chaotic: return "chaotic";
-        case Verdict::regular: return "regular";
-        case Verdict::not_decided: return "not_decided";
-        case Verdict::none: return nullptr;
-    }
-    return nullptr;
-}
-
-std::string digits(const char* format, double value) {
-    char text[64];
-    std::snprintf(text, sizeof text, format, value);
-    return text;
-}
-
 Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json describe_system(const System& system) {
     const Parameters& p = system.parameters;
     Json j = {
-        {"epsilon", p.epsilon},
-        {"lambda", p.lambda},
-        {"G", p.G},
-        {"Omega", p.Omega},
-        {"R_plus", p.R_plus},
-        {"R_minus", p.R_minus},
-        {"b", p.b},
-        {"damping", p.damping == Damping::closed_form ? "closed_form" : "equation_of_motion"}};
+        {"epsilon", p.epsilon}, {"lambda", p.lambda},   {"G", p.G}, {"Omega", p.Omega},
+        {"R_plus", p.R_plus},   {"R_minus", p.R_minus}, {"b", p.b}, {"damping", word(p.damping)}};
     j["origin"] = system.origin;
     if (system.si) {
         const SiParameters& si = *system.si;
@@ -184,7 +148,7 @@ Json describe_derived(const System& system) {
     return j;
 }
 
-Json describe_series(SeriesRecord&& s) {
+Json describe_series(Series&& s) {
     return {{"tau", std::move(s.tau)},     {"x", std::move(s.x)},
             {"x_dot", std::move(s.x_dot)}, {"y", std::move(s.y)},
             {"y_dot", std::move(s.y_dot)}, {"x_ddot", std::move(s.x_ddot)}};
@@ -225,197 +189,146 @@ Json describe_touches(const std::vector<TouchRecord::Touch>& touches) {
         {"side", column(touches, [](const auto& t) { return t.side; })}};
 }
 
-Json describe_exponents(
-    const TransferProduct& product, const Growth& growth, const ExponentOptions& estimators,
-    const Regime& regime, bool histories, Warnings& warnings) {
-    const double start = product.start_tau(), T = product.end_tau() - start;
-    Json j = {
-        {"window", product.impacts() > 0 ? Json::array({start, product.end_tau()}) : Json(nullptr)},
+Json describe_window(const TransferProduct& product) {
+    return {
+        {"window", product.impacts() > 0 ? Json::array({product.start_tau(), product.end_tau()})
+                                         : Json(nullptr)},
         {"impacts", product.impacts()},
         {"sum_rule_residual", finite_or_null(product.sum_rule_residual())}};
-    if (estimators.qr) {
-        add_verdict(j, growth, regime, start);
+}
+
+void add_estimators(
+    Json& j, const TransferProduct& product, const Growth& growth, const ExponentOptions& shown,
+    bool histories) {
+    if (shown.qr) {
         Json qr = with_status(product.qr());
         qr["standard_error"] = four(growth.standard_error);
         if (histories) qr["history"] = describe_history(product.qr_history());
         j["qr"] = std::move(qr);
     }
-    if (estimators.eigenvalues) {
+    if (shown.eigenvalues) {
         j["eigenvalues"] = with_status(product.eigenvalues());
         if (histories)
             j["eigenvalues"]["history"] = describe_history(product.eigenvalues_history());
     }
-    if (estimators.raw_product) {
-        const Exponents final = product.raw_product();
-        Json raw = with_status(final);
-        raw["rounding_floor"] = finite_or_null(rounding_floor(final[0], T));
-        if (histories) {
-            const ExponentHistory& history = product.raw_product_history();
-            raw["history"] = describe_history(history);
-            Json& floor = raw["history"]["rounding_floor"] = Json::array();
-            for (std::size_t i = 0; i < history.tau.size(); ++i)
-                floor.push_back(
-                    finite_or_null(rounding_floor(history.lambda[i][0], history.tau[i] - start)));
-        }
-        j["raw_product"] = std::move(raw);
-        if (histories && product.impacts() > 1 && std::isnan(final[0]))
-            warnings.push_back(
-                "raw_product overflows in this window: the unscaled product leaves the range of "
-                "double near T = 709/lambda1");
+    if (!shown.raw_product) return;
+    const double start = product.start_tau();
+    const Exponents final = product.raw_product();
+    Json raw = with_status(final);
+    raw["rounding_floor"] = finite_or_null(rounding_floor(final[0], product.end_tau() - start));
+    if (histories) {
+        const ExponentHistory& history = product.raw_product_history();
+        raw["history"] = describe_history(history);
+        Json& floor = raw["history"]["rounding_floor"] = Json::array();
+        for (std::size_t i = 0; i < history.tau.size(); ++i)
+            floor.push_back(
+                finite_or_null(rounding_floor(history.lambda[i][0], history.tau[i] - start)));
     }
-    if (product.sum_rule_residual() > most_residual)
-        warnings.push_back(
-            "the exponents of qr in [" + digits("%.6g", start) + ", " +
-            digits("%.6g", product.end_tau()) + "] miss the sum rule by " +
-            digits("%.2g", product.sum_rule_residual()) +
-            ": those that rounding has reached are not_converged");
-    if (!histories) return j;
-    if (product.impacts() < 2)
-        warnings.push_back(
-            "there are fewer than two impacts in the window, so there are no exponents");
-    if (product.rank() == 2)
-        warnings.push_back(
-            "a stick falls in the window: only deviations of the centre of mass survive it, "
-            "lambda3 and lambda4 are minus infinity");
-    if (product.rank() == 3)
-        warnings.push_back(
-            "R = 0 removes every deviation of x - y at its impacts: lambda4 is minus infinity");
+    j["raw_product"] = std::move(raw);
+}
+
+Json describe_exponents(
+    const WindowExponents& w, const ExponentOptions& shown, const Regime& regime, bool histories) {
+    Json j = describe_window(w.product);
+    if (shown.qr) {
+        j["verdict"] = word(w.judgement.verdict);
+        j["verdict_sigmas"] = finite_or_null(w.growth.lambda1 / w.growth.standard_error[0]);
+        j["verdict_reason"] = reason_of(w.judgement, w.growth, regime);
+    }
+    add_estimators(j, w.product, w.growth, shown, histories);
     return j;
 }
 
-Json describe_eigenvalues(
-    std::span<const ImpactTransfer> transfers, const std::function<bool()>& late,
-    Warnings& warnings) {
-    constexpr std::size_t per_look = 256;
-    std::vector<Moduli> T;  // from the last on
-    for (std::size_t i = transfers.size(); i > 0 && !(T.size() % per_look == 0 && late && late());
-         --i)
-        T.push_back(transfers[i - 1].T_moduli());
-    if (T.size() < transfers.size())
-        warnings.push_back(
-            "eigenvalues are those of the last " + std::to_string(T.size()) +
-            " impacts: the time limit was over before those of the others");
-    std::reverse(T.begin(), T.end());
-    transfers = transfers.last(T.size());
-    return {
-        {"tau", column(transfers, [](const ImpactTransfer& t) { return t.tau; })},
-        {"J", column(transfers, [](const ImpactTransfer& t) { return t.J_moduli(); })},
-        {"M", column(transfers, [](const ImpactTransfer& t) { return t.M_moduli(); })},
-        {"T", column(T, [](const Moduli& moduli) { return moduli; })},
-        {"M_condition", column(transfers, [](const ImpactTransfer& t) {
-             return finite_or_null(t.M.condition(t.R));
-         })}};
-}
-
-Json describe_matrices(const std::vector<ImpactTransfer>& transfers) {
-    return {
-        {"tau", column(transfers, [](const ImpactTransfer& t) { return t.tau; })},
-        {"order", {"x_dot", "x", "y_dot", "y"}},
-        {"J", column(transfers, [](const ImpactTransfer& t) { return describe_matrix(t.J()); })},
-        {"M",
-         column(transfers, [](const ImpactTransfer& t) { return describe_matrix(t.M.matrix()); })},
-        {"T", column(transfers, [](const ImpactTransfer& t) { return describe_matrix(t.T()); })}};
-}
-
-Json describe_section(
-    SectionRecord& section, const StroboscopicRecord& stroboscopic, const Interval& window,
-    std::size_t most, Warnings& warnings) {
-    std::size_t first = 0, end = stroboscopic.states.size();
-    while (first < end && stroboscopic.tau(first) < window.from) ++first;
-    while (end > first && stroboscopic.tau(end - 1) > window.to) --end;
-    const std::size_t cycles = end - first;
-    if (section.seen > static_cast<long>(most) || cycles > most)
-        warnings.push_back(
-            "the sections hold their last " + std::to_string(most) + " points (max_points), of " +
-            std::to_string(section.seen) + " impacts and " + std::to_string(cycles) + " cycles");
-    if (cycles > most) first = end - most;
-    trim_to_last(section.points, most);
-    std::vector<double> tau;
-    for (std::size_t k = first; k < end; ++k) tau.push_back(stroboscopic.tau(k));
-    const std::span<const State> states =
-        std::span(stroboscopic.states).subspan(first, end - first);
-    const std::vector<SectionRecord::Point>& points = section.points;
-    return {
-        {"impact",
-         {{"tau", column(points, [](const auto& p) { return p.impact.tau; })},
-          {"side", column(points, [](const auto& p) { return p.impact.side; })},
-          {"phase", column(points, [](const auto& p) { return p.impact.phase(); })},
-          {"x", column(points, [](const auto& p) { return p.impact.x; })},
-          {"x_dot_after", column(points, [](const auto& p) { return p.impact.x_dot_after; })},
-          {"y_dot_after", column(points, [](const auto& p) { return p.impact.y_dot_after; })},
-          {"time_difference",
-           column(points, [](const auto& p) { return finite_or_null(p.since); })}}},
-        {"stroboscopic",
-         {{"tau", std::move(tau)},
-          {"x", column(states, [](const State& s) { return s.x; })},
-          {"x_dot", column(states, [](const State& s) { return s.x_dot; })},
-          {"y", column(states, [](const State& s) { return s.y; })},
-          {"y_dot", column(states, [](const State& s) { return s.y_dot; })}}}};
-}
-
-/// When a half and a tenth of the energy are left, with the absorber and without it; null where the
-/// run, or an undamped motion, does not come to it.
-Json describe_decay(const Parameters& p, const State& start, const Decay& decay, double tau_start) {
-    auto moments = [](const std::vector<std::optional<double>>& tau) {
-        auto moment = [&](std::size_t k) { return tau[k] ? Json(*tau[k]) : Json(nullptr); };
-        return Json{{"tau_half", moment(0)}, {"tau_tenth", moment(1)}};
+Json describe_moduli(const TransferModuli& m) {
+    auto moduli = [](const std::vector<Moduli>& list) {
+        return column(list, [](const Moduli& of_one) { return of_one; });
     };
-    Json j = moments(decay.tau);
-    j["without_absorber"] = moments(unattached_decay(p, start, tau_start, decay_shares));
-    return j;
+    return {
+        {"tau", m.tau},
+        {"J", moduli(m.J)},
+        {"M", moduli(m.M)},
+        {"T", moduli(m.T)},
+        {"M_condition", column(m.M_condition, finite_or_null)}};
 }
 
-Json describe_energy(
-    const Parameters& p, const State& start, const Energy& e, const Decay& decay,
-    const Interval& window) {
-    const Unattached alone = unattached(p, start, window.from, window.to);
-    const double dissipated = e.impacts() + e.damper();
-    auto ratio = [](double of, double to) { return to > 0 ? Json(of / to) : Json(nullptr); };
+Json describe_matrices(const TransferMatrices& m) {
+    return {
+        {"tau", m.tau},
+        {"order", {"x_dot", "x", "y_dot", "y"}},
+        {"J", column(m.J, describe_matrix)},
+        {"M", column(m.M, describe_matrix)},
+        {"T", column(m.T, describe_matrix)}};
+}
+
+Json describe_impact_section(const std::vector<SectionRecord::Point>& points) {
+    return {
+        {"tau", column(points, [](const auto& p) { return p.impact.tau; })},
+        {"side", column(points, [](const auto& p) { return p.impact.side; })},
+        {"phase", column(points, [](const auto& p) { return p.impact.phase(); })},
+        {"x", column(points, [](const auto& p) { return p.impact.x; })},
+        {"x_dot_after", column(points, [](const auto& p) { return p.impact.x_dot_after; })},
+        {"y_dot_after", column(points, [](const auto& p) { return p.impact.y_dot_after; })},
+        {"time_difference", column(points, [](const auto& p) { return finite_or_null(p.since); })}};
+}
+
+Json describe_states(const std::vector<State>& states) {
+    return {
+        {"x", column(states, [](const State& s) { return s.x; })},
+        {"x_dot", column(states, [](const State& s) { return s.x_dot; })},
+        {"y", column(states, [](const State& s) { return s.y; })},
+        {"y_dot", column(states, [](const State& s) { return s.y_dot; })}};
+}
+
+Json describe_sections(const Sections& s) {
+    Json stroboscopic = {{"tau", s.tau}};
+    stroboscopic.update(describe_states(s.states));
+    return {
+        {"impact", describe_impact_section(s.impact)}, {"stroboscopic", std::move(stroboscopic)}};
+}
+
+Json describe_energy(const EnergyResult& e) {
+    const EnergyBalance& b = e.balance;
     Json j = {
-        {"window", {window.from, window.to}},
-        {"input", p.G == 0 ? 0 : e.input()},
-        {"damper", e.damper()},
-        {"impacts", e.impacts()},
-        {"stored", e.stored()},
-        {"residual", e.residual()},
-        {"share_impacts", ratio(e.impacts(), dissipated)},
-        {"at_start", e.at_start()},
-        {"at_end", e.at_end()},
-        {"rms", e.rms()},
-        {"peak", e.peak()},
+        {"window", {b.window.from, b.window.to}},
+        {"input", b.input},
+        {"damper", b.damper},
+        {"impacts", b.impacts},
+        {"stored", b.stored},
+        {"residual", b.residual},
+        {"share_impacts", or_null(b.share_impacts)},
+        {"at_start", b.at_start},
+        {"at_end", b.at_end},
+        {"rms", b.rms},
+        {"peak", b.peak},
         {"without_absorber",
-         {{"rms", alone.rms},
-          {"peak", alone.peak},
-          {"amplitude", alone.amplitude ? Json(*alone.amplitude) : Json(nullptr)}}},
-        {"rms_ratio", ratio(e.rms(), alone.rms)},
-        {"peak_ratio", ratio(e.peak(), alone.peak)}};
-    if (p.G == 0) j["decay"] = describe_decay(p, start, decay, window.from);
+         {{"rms", e.unattached->rms},
+          {"peak", e.unattached->peak},
+          {"amplitude", or_null(e.unattached->amplitude)}}},
+        {"rms_ratio", or_null(e.rms_ratio)},
+        {"peak_ratio", or_null(e.peak_ratio)}};
+    if (!e.decay) return j;
+    auto moments = [](const DecayMoments& m) {
+        return Json{{"tau_half", or_null(m.half)}, {"tau_tenth", or_null(m.tenth)}};
+    };
+    j["decay"] = moments(e.decay->with_absorber);
+    j["decay"]["without_absorber"] = moments(e.decay->without);
     return j;
 }
 
-Json describe_regime(Regime r, std::size_t most, Warnings& warnings) {
-    const std::size_t every = r.moving_tau.size() / most + 1;
-    for (auto* column : {&r.moving_tau, &r.moving_z}) {
-        for (std::size_t k = 0; k * every < column->size(); ++k)
-            (*column)[k] = (*column)[k * every];
-        column->resize((column->size() + every - 1) / every);
-    }
-    if (r.stretches.size() > most)
-        warnings.push_back(
-            "of " + std::to_string(r.stretches.size()) + " stretches the last " +
-            std::to_string(most) + " are listed (max_points)");
-    trim_to_last(r.stretches, most);
-    if (r.search_stopped)
-        warnings.push_back(
-            "the search for a periodic orbit was ended by the time limit: periodic is not decided");
-    Json j = {{"type", name_of(r.type)},
-              {"description", describe_type(r)},
-              {"z", r.z},
-              {"z_overall", r.z_overall},
-              {"contacts", r.contacts},
-              {"periodic", r.orbit.has_value()}};
+namespace {
+
+Json describe_capture(const Capture& c) {
+    return {
+        {"tau", or_null(c.tau)},
+        {"status", c.tau ? "captured" : "on_its_way"},
+        {"chaotic_before", or_null(c.chaotic_before)},
+        {"exponents_before", with_status(c.before)},
+        {"exponents_after", with_status(c.after)}};
+}
+
+void add_orbit(Json& j, const std::optional<PeriodicOrbit>& orbit) {
     auto of_orbit = [&](const char* name, auto value) {
-        j[name] = r.orbit ? Json(value(*r.orbit)) : Json(nullptr);
+        j[name] = orbit ? Json(value(*orbit)) : Json(nullptr);
     };
     of_orbit("period_cycles", [](const PeriodicOrbit& o) { return o.cycles; });
     of_orbit("impacts_per_period", [](const PeriodicOrbit& o) { return o.contacts; });
@@ -435,59 +348,67 @@ Json describe_regime(Regime r, std::size_t most, Warnings& warnings) {
             {"y_dot", o.state.y_dot},
             {"y", o.state.y}};
     });
-    j["capture"] = r.capture ? Json{{"tau", r.capture->tau ? Json(*r.capture->tau) : Json(nullptr)}, {"status", r.capture->tau ? "captured" : "on_its_way"}, {"chaotic_before", r.capture->chaotic_before ? Json(*r.capture->chaotic_before) : Json(nullptr)}, {"exponents_before", with_status(r.capture->before)}, {"exponents_after", with_status(r.capture->after)}}
-                             : Json(nullptr);
-    if (r.capture && r.capture->chaotic_before == true)
-        warnings.push_back(
-            "a chaotic transient (lambda1 = " + digits("%.3g", r.capture->before[0]) +
-            ") was captured by a periodic orbit " +
-            (r.capture->tau ? "at tau = " + digits("%.1f", *r.capture->tau)
-                            : "after the run's end") +
-            " (lambda1 = " + digits("%.3g", r.capture->after[0]) +
-            "): exponents of a window that reaches over it average both");
+}
+
+}  // namespace
+
+Json describe_regime(const Regime& r) {
+    Json j = {{"type", name_of(r.type)},
+              {"description", describe_type(r)},
+              {"z", r.z},
+              {"z_overall", r.z_overall},
+              {"contacts", r.contacts},
+              {"periodic", r.orbit.has_value()}};
+    add_orbit(j, r.orbit);
+    j["capture"] = r.capture ? describe_capture(*r.capture) : Json(nullptr);
     j["cycles_with"] = r.cycles_with;
     j["share_two_impacts"] = r.cycles_with.size() > 2 ? r.cycles_with[2] : 0;
     j["z_moving"] = {{"tau", r.moving_tau}, {"z", r.moving_z}};
     j["synchronised"] = {
         {"share", r.synchronised}, {"longest_half_cycles", r.longest_synchronised}};
+    const auto& stretches = r.stretches;
     j["stretches"] = {
-        {"tau_start", column(r.stretches, [](const auto& s) { return s.tau_start; })},
-        {"tau_end", column(r.stretches, [](const auto& s) { return s.tau_end; })},
-        {"synchronised", column(r.stretches, [](const auto& s) { return s.synchronised; })},
-        {"contacts", column(r.stretches, [](const auto& s) { return s.contacts; })}};
+        {"tau_start", column(stretches, [](const auto& s) { return s.tau_start; })},
+        {"tau_end", column(stretches, [](const auto& s) { return s.tau_end; })},
+        {"synchronised", column(stretches, [](const auto& s) { return s.synchronised; })},
+        {"contacts", column(stretches, [](const auto& s) { return s.contacts; })}};
     return j;
 }
 
-Json describe_manifold(const Parameters& p, double V_max, std::size_t points) {
-    const double R = p.R_plus;
-    const ManifoldPoint fold = manifold_fold(R, p.Omega, p.b),
-                        breaking = manifold_symmetry_breaking(R, p.Omega, p.b),
-                        contact = manifold_second_contact(R, p.Omega, p.b);
-    const bool breaks = breaking.V < contact.V;  // before the motion ends altogether
-    const double last = std::min(V_max > 0 ? V_max : 2 * breaking.V, contact.V);
-    const auto free = free_amplitude(p);
-    auto point = [](const ManifoldPoint& m) { return Json{{"C", m.C}, {"V", m.V}}; };
-    auto branch = [&](double from, double to) {
-        const auto list = from < to ? manifold_branch(R, p.Omega, p.b, from, to, points)
-                                    : std::vector<ManifoldPoint>{};
-        return Json{
-            {"C", column(list, [](const auto& m) { return m.C; })},
-            {"V", column(list, [](const auto& m) { return m.V; })}};
-    };
+namespace {
+
+Json describe_points(const std::vector<ManifoldPoint>& points) {
     return {
-        {"R", R},
-        {"Omega", p.Omega},
-        {"b", p.b},
-        {"fold", point(fold)},
-        {"activation_amplitude", fold.C},
-        {"symmetry_breaking", breaks ? point(breaking) : Json(nullptr)},
-        {"second_contact", point(contact)},
+        {"C", column(points, [](const ManifoldPoint& m) { return m.C; })},
+        {"V", column(points, [](const ManifoldPoint& m) { return m.V; })}};
+}
+
+}  // namespace
+
+Json describe_manifold(const Manifold& m) {
+    auto point = [](const ManifoldPoint& of) { return Json{{"C", of.C}, {"V", of.V}}; };
+    const bool breaks = m.symmetry_breaking.has_value();
+    return {
+        {"R", m.R},
+        {"Omega", m.Omega},
+        {"b", m.b},
+        {"fold", point(m.fold)},
+        {"activation_amplitude", m.fold.C},
+        {"symmetry_breaking", breaks ? point(*m.symmetry_breaking) : Json(nullptr)},
+        {"second_contact", point(m.second_contact)},
         {"stable_ends_by", breaks ? "symmetry_breaking" : "second_contact"},
-        {"stable", branch(fold.V, std::min(breaking.V, contact.V))},
-        {"unstable", branch(0, fold.V)},
-        {"asymmetric", branch(breaking.V, last)},
-        {"free_amplitude", free ? Json(*free) : Json(nullptr)},
-        {"b_at_free_amplitude", free && R < 1 ? Json(manifold_b(R, *free)) : Json(nullptr)}};
+        {"stable", describe_points(m.stable)},
+        {"unstable", describe_points(m.unstable)},
+        {"asymmetric", describe_points(m.asymmetric)},
+        {"free_amplitude", or_null(m.free_amplitude)},
+        {"b_at_free_amplitude", or_null(m.b_at_free_amplitude)}};
+}
+
+Json describe_manifold(const ManifoldResult& m) {
+    Json j = m.manifold ? describe_manifold(*m.manifold) : Json::object();
+    j["points"] = {{"tau", m.tau}};
+    j["points"].update(describe_points(m.points));
+    return j;
 }
 
 Json describe_recommendation(const std::optional<Recommendation>& r) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/parameters.hpp"
+#include "core/motion/parameters.hpp"
 
 namespace vines::api {
 

@@ -1,9 +1,12 @@
 #include "api/identify.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "api/answer_size.hpp"
 #include "api/describe.hpp"
 #include "api/record_columns.hpp"
 #include "api/si_columns.hpp"
@@ -37,8 +40,8 @@ void check_record(
     if (!gaps.empty())
         notes.push_back(
             "the record has " + std::to_string(gaps.size()) + " gap(s), the first of " +
-            digits("%.4g", (gaps[0].to - gaps[0].from) / omega0) + " s at " +
-            digits("%.6g", gaps[0].from / omega0) + " s: an impact in one is not seen");
+            fmt::format("{:.4g}", (gaps[0].to - gaps[0].from) / omega0) + " s at " +
+            fmt::format("{:.6g}", gaps[0].from / omega0) + " s: an impact in one is not seen");
     // A clipped signal repeats its extreme value.
     for (const auto& [name, column] :
          {std::pair("displacement", &r.x), std::pair("acceleration", &r.x_ddot)}) {
@@ -306,31 +309,37 @@ std::string sampling_advice(const RefinedImpacts& refined, double step, double o
     if (refined.tau.empty() || refined.pulse >= step) return "";
     constexpr double most = 4;
     const double rate = omega0 / step * std::min(most, 2 * step / refined.pulse);
-    return "the impacts' pulses last about " + digits("%.3g", 1000 * refined.pulse / omega0) +
-           " ms, the samples are " + digits("%.3g", 1000 * step / omega0) +
+    return "the impacts' pulses last about " +
+           fmt::format("{:.3g}", 1000 * refined.pulse / omega0) + " ms, the samples are " +
+           fmt::format("{:.3g}", 1000 * step / omega0) +
            " ms apart: pulses may fall between samples; sample at " +
-           digits("%.4g", std::ceil(rate)) + " Hz or more";
+           fmt::format("{:.4g}", std::ceil(rate)) + " Hz or more";
 }
 
 /// The exponents as of a simulation, in the record's time.
 Json describe_measured(
     const MeasuredExponents& e, const ExponentOptions& estimators, const Continuity& c,
     const std::vector<IdentifiedImpact>& impacts, Warnings& warnings) {
-    Json j = describe_exponents(
-        e.all(), growth_of(e.all()), {true, false, false, estimators.history}, Regime{}, true,
-        warnings);
-    // The record's own follows.
-    for (const char* of_a_simulation : {"verdict", "verdict_sigmas", "verdict_reason"})
-        j.erase(of_a_simulation);
+    const ExponentOptions of_all = {
+        .qr = true, .eigenvalues = false, .raw_product = false, .history = estimators.history};
+    const ExponentOptions of_longest = {
+        .qr = false,
+        .eigenvalues = estimators.eigenvalues,
+        .raw_product = estimators.raw_product,
+        .history = estimators.history};
+    Json j = describe_window(e.all());
+    add_estimators(j, e.all(), growth_of(e.all()), of_all, true);
     for (Json& tau : j["qr"]["history"]["tau"]) tau = e.moment(tau);
-    Warnings of_longest;
-    const Json longest = describe_exponents(
-        e.longest(), growth_of(e.longest()),
-        {false, estimators.eigenvalues, estimators.raw_product, estimators.history}, Regime{}, true,
-        of_longest);
-    for (const std::string& warning : of_longest)
-        if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end())
-            warnings.push_back(warning);
+    std::vector<Warning> odd;
+    add_warnings(e.all(), of_all, true, odd);
+    add_warnings(e.longest(), of_longest, true, odd);
+    for (const Warning& w : odd) {
+        const std::string text = text_of(w, any_size);
+        if (std::find(warnings.begin(), warnings.end(), text) == warnings.end())
+            warnings.push_back(text);
+    }
+    Json longest = describe_window(e.longest());
+    add_estimators(longest, e.longest(), growth_of(e.longest()), of_longest, true);
     for (const char* name : {"eigenvalues", "raw_product"})
         if (longest.contains(name)) {
             j[name] = longest[name];
@@ -428,8 +437,8 @@ Json identify_answer(const IdentifyRequest& r) {
                 422,
                 "nothing in the acceleration looks like impacts: " +
                     std::to_string(spikes.spikes.size()) + " spike(s) rise above threshold = " +
-                    digits("%.3g", r.threshold) + " standard deviations of the noise (" +
-                    digits("%.3g", spikes.noise * omega0 * omega0) + " m/s^2)",
+                    fmt::format("{:.3g}", r.threshold) + " standard deviations of the noise (" +
+                    fmt::format("{:.3g}", spikes.noise * omega0 * omega0) + " m/s^2)",
                 {{"/threshold", r.threshold, Json::array({3, 1000}),
                   "lower it, or give impact_times_s"}});
         refined = refine_impacts(p, r.record, spikes.spikes, r.moments.empty() ? r.threshold : 0);
@@ -438,7 +447,7 @@ Json identify_answer(const IdentifyRequest& r) {
             warnings.push_back(
                 std::to_string(refined.dropped.size()) +
                 " spike(s) without a jump of the velocity were dropped, the first at " +
-                digits("%.6g", refined.dropped[0].tau / omega0) + " s");
+                fmt::format("{:.6g}", refined.dropped[0].tau / omega0) + " s");
         signal = {
             {"samples", r.record.tau.size()},
             {"sampling_rate", omega0 / step},
@@ -455,8 +464,9 @@ Json identify_answer(const IdentifyRequest& r) {
         p.G = signal["G"];
         if (!b_agrees(p, found))
             warnings.push_back(
-                "the impacts' momentum fits b = " + digits("%.4g", found.b_fitted) +
-                " m, not b = " + digits("%.4g", p.b) + " m (" + r.system.origin.at("b") + ")");
+                "the impacts' momentum fits b = " + fmt::format("{:.4g}", found.b_fitted) +
+                " m, not b = " + fmt::format("{:.4g}", p.b) + " m (" + r.system.origin.at("b") +
+                ")");
         if (!std::isfinite(found.b_fitted))
             warnings.push_back("no b is fitted to the impacts' momentum: " + found.b_fault);
         doubts = doubts_of(p, refined, found);
@@ -491,9 +501,9 @@ Json identify_answer(const IdentifyRequest& r) {
             "longest");
     if (continuity.share > Continuity::most)
         doubts.insert(
-            doubts.begin(), digits("%.3g", 100 * continuity.share) +
+            doubts.begin(), fmt::format("{:.3g}", 100 * continuity.share) +
                                 " % of the impacts are left out or missing, more than " +
-                                digits("%.3g", 100 * Continuity::most) + " %");
+                                fmt::format("{:.3g}", 100 * Continuity::most) + " %");
 
     const MeasuredExponents exponents(p, found.impacts, continuity.stretches, r.estimators);
     IdentifiedExponents judged = judge_exponents(

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "api/request.hpp"
-#include "core/identify.hpp"
+#include "core/identification/identify.hpp"
 
 namespace vines::api {
 

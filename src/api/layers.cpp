@@ -74,26 +74,7 @@ const Preset& preset_named(const std::string& name) {
         {{"/preset", name, names, "there is no preset of this name; GET /v1/presets lists them"}});
 }
 
-double number_of(const Json& fields, const char* name, double fallback) {
-    return fields.contains(name) ? fields[name].get<double>() : fallback;
-}
-
 }  // namespace
-
-SiParameters si_of(const Json& fields) {
-    SiParameters si;
-    si.m1 = number_of(fields, "m1", si.m1);
-    const double omega0 = 2 * std::numbers::pi * number_of(fields, "f0", 0);
-    si.k1 = fields.contains("f0") ? si.m1 * omega0 * omega0 : number_of(fields, "k1", si.k1);
-    si.m2 = fields.contains("mass_ratio") ? fields["mass_ratio"].get<double>() * si.m1
-                                          : number_of(fields, "m2", si.m2);
-    si.c1 = fields.contains("damping_ratio")
-                ? 2 * fields["damping_ratio"].get<double>() * si.m1 * si.omega0()
-                : number_of(fields, "c1", si.c1);
-    si.F = number_of(fields, "F", 0.02 * si.epsilon());
-    si.f = number_of(fields, "f", si.f0());
-    return si;
-}
 
 Json fields_of(const SiParameters& si) {
     return {{"m1", si.m1}, {"c1", si.c1}, {"k1", si.k1}, {"m2", si.m2}, {"F", si.F}, {"f", si.f}};
@@ -106,8 +87,8 @@ namespace {
 /// Reduced ones over SI leave m1 and k1, which set the scale.
 void restate_system(Json& preset, const Json& given) {
     if (!present(given, si_names).empty()) {
-        preset.update(fields_of(si_of(preset)));
-        const SiParameters si = si_of(preset);
+        preset.update(fields_of(si_of(system_fields(preset))));
+        const SiParameters si = si_of(system_fields(preset));
         const Json others = {{"c1", si.damping_ratio()}, {"k1", si.f0()}, {"m2", si.epsilon()}};
         for (const auto& line : si_lines)
             if (line.size() > 1 && given.contains(line[1])) {
@@ -115,7 +96,7 @@ void restate_system(Json& preset, const Json& given) {
                 preset.erase(line[0]);
             }
     } else if (!present(given, reduced_names).empty()) {
-        const SiParameters si = si_of(preset);
+        const SiParameters si = si_of(system_fields(preset));
         const bool in_si = !present(preset, si_names).empty();
         for (const std::string& name : si_names) preset.erase(name);
         if (in_si) preset.update({{"m1", si.m1}, {"k1", si.k1}});

@@ -4,13 +4,10 @@
 #include <set>
 
 #include "api/fields.hpp"
-#include "core/parameters.hpp"
+#include "api/system_fields.hpp"
+#include "core/motion/simulate.hpp"
 
 namespace vines::api {
-
-struct Interval {
-    double from, to;  ///< tau
-};
 
 /// A request's fields, each checked by itself, over those of its preset.
 struct Layered {
@@ -51,9 +48,6 @@ extern const std::vector<std::string> si_names;
 /// Those of the names that an object has.
 std::vector<std::string> present(const Json& object, const std::vector<std::string>& names);
 
-/// A system in SI from its fields, of which those left out are Table 1's; F and f then follow from
-/// the rest.
-SiParameters si_of(const Json& fields);
 /// m1, c1, k1, m2, F, f.
 Json fields_of(const SiParameters& si);
 

@@ -1,6 +1,6 @@
 #include "api/presets.hpp"
 
-#include "core/parameters.hpp"
+#include "core/motion/parameters.hpp"
 
 namespace vines::api {
 

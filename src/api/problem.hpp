@@ -42,6 +42,10 @@ std::string_view reason_phrase(int status);
 /// twice (of which it would keep the last).
 Json parse_object(std::string_view text);
 
+/// Adds the errors of a nested object to all, at their place in the request.
+void add_errors(
+    const std::string& where, std::vector<FieldError> nested, std::vector<FieldError>& all);
+
 /// Throws a Problem 422 that lists the errors.
 [[noreturn]] void refuse(std::vector<FieldError> errors);
 

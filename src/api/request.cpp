@@ -16,6 +16,48 @@ void check_window(
              "the window begins after the run's end, tau_end = " + Json(tau_end).dump()});
 }
 
+/// How long to run, by whichever of the two fields is given; a fault where that is too long.
+double read_tau_end(const Layered& l, double cycle, std::vector<FieldError>& errors) {
+    const bool by_cycles = l.has("cycles");
+    const double tau_end = by_cycles ? l.number("cycles") * cycle : l.number("tau_end"),
+                 longest = std::min(longest_run, most_cycles * cycle);
+    if (errors.empty() && tau_end > longest) {  // of an Omega in its range
+        const double most = by_cycles ? longest / cycle : longest;
+        errors.push_back(
+            {by_cycles ? "/cycles" : "/tau_end", by_cycles ? l.fields["cycles"] : Json(tau_end),
+             Json::array({1e-6, most}),
+             "a run may be as long as tau = 1e7 and 2e6 cycles of 2 pi/Omega: here at most " +
+                 Json(most).dump()});
+    }
+    return tau_end;
+}
+
+Parts parts_of(const std::set<std::string>& include) {
+    auto includes = [&](const char* part) { return include.contains(part); };
+    return {
+        .series = includes("series"),
+        .impacts = includes("impacts"),
+        .exponents = includes("exponents"),
+        .moduli = includes("eigenvalues"),
+        .matrices = includes("matrices"),
+        .section = includes("section"),
+        .energy = includes("energy"),
+        .unattached = includes("energy"),
+        .regime = includes("regime"),
+        .before_capture = true,
+        .manifold = includes("manifold")};
+}
+
+/// Where the values of a run come from.
+void add_origins(std::map<std::string, std::string>& origin, const Layered& l) {
+    for (const char* name :
+         {"tau_end", "cycles", "window", "samples_per_cycle", "section_phase", "max_points",
+          "max_impacts"})
+        origin[name] = l.origin(name);
+    if (l.has("cycles")) origin["tau_end"] = "follows from cycles";
+    else origin["cycles"] = "follows from tau_end";
+}
+
 }  // namespace
 
 SimulateRequest read_simulate_request(const Json& given) {
@@ -23,44 +65,32 @@ SimulateRequest read_simulate_request(const Json& given) {
 
     SimulateRequest r;
     r.system = read_system(l);
-    r.start = read_start(l, r.system);
-    const Parameters& p = r.system.parameters;
-
-    std::vector<FieldError> errors = field_errors(validate(p, r.start), l);
-    const double cycle = p.cycle(), longest = std::min(longest_run, most_cycles * cycle);
-    r.tau_end = l.has("cycles") ? l.number("cycles") * cycle : l.number("tau_end");
-    if (errors.empty() && r.tau_end > longest) {  // of an Omega in its range
-        const bool by_cycles = l.has("cycles");
-        const double most = by_cycles ? longest / cycle : longest;
-        errors.push_back(
-            {by_cycles ? "/cycles" : "/tau_end", by_cycles ? l.fields["cycles"] : Json(r.tau_end),
-             Json::array({1e-6, most}),
-             "a run may be as long as tau = 1e7 and 2e6 cycles of 2 pi/Omega: here at most " +
-                 Json(most).dump()});
-    }
-    r.window = l.has("window") ? l.interval("window") : Interval{0, r.tau_end};
-    check_window("/window", r.window, r.tau_end, errors);
-    r.windows = l.intervals("windows");
-    for (std::size_t i = 0; i < r.windows.size(); ++i)
-        check_window("/windows/" + std::to_string(i), r.windows[i], r.tau_end, errors);
+    Wanted& w = r.wanted;
+    w.parameters = r.system.parameters;
+    w.start = read_start(l, r.system);
+    std::vector<FieldError> errors = field_errors(validate(w.parameters, w.start), l);
+    w.tau_end = read_tau_end(l, w.parameters.cycle(), errors);
+    w.window = l.has("window") ? l.interval("window") : Interval{0, w.tau_end};
+    check_window("/window", w.window, w.tau_end, errors);
+    w.windows = l.intervals("windows");
+    for (std::size_t i = 0; i < w.windows.size(); ++i)
+        check_window("/windows/" + std::to_string(i), w.windows[i], w.tau_end, errors);
     if (!errors.empty()) refuse(std::move(errors));
 
-    r.samples_per_cycle = l.number("samples_per_cycle");
-    r.section_phase = l.number("section_phase");
-    r.max_points = static_cast<std::size_t>(l.number("max_points"));
-    r.max_impacts = static_cast<long>(l.number("max_impacts"));
-    r.listed_impacts = static_cast<std::size_t>(r.max_impacts);
     r.include = l.words("include");
+    w.parts = parts_of(r.include);
+    w.samples_per_cycle = l.number("samples_per_cycle");
+    w.section_phase = l.number("section_phase");
+    w.most_points = static_cast<std::size_t>(l.number("max_points"));
+    w.max_impacts = static_cast<long>(l.number("max_impacts"));
+    w.most_listed = static_cast<std::size_t>(w.max_impacts);
     const std::set<std::string> estimators = l.words("exponents");
-    r.estimators = {
-        estimators.contains("qr"), estimators.contains("eigenvalues"),
-        estimators.contains("raw_product"), r.max_points};
-    for (const char* name : {"tau_end", "cycles"}) r.system.origin[name] = l.origin(name);
-    if (l.has("cycles")) r.system.origin["tau_end"] = "follows from cycles";
-    else r.system.origin["cycles"] = "follows from tau_end";
-    for (const char* name :
-         {"window", "samples_per_cycle", "section_phase", "max_points", "max_impacts"})
-        r.system.origin[name] = l.origin(name);
+    w.estimators = {
+        .qr = estimators.contains("qr"),
+        .eigenvalues = estimators.contains("eigenvalues"),
+        .raw_product = estimators.contains("raw_product"),
+        .history = w.most_points};
+    add_origins(r.system.origin, l);
     return r;
 }
 

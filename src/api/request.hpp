@@ -2,24 +2,14 @@
 #pragma once
 
 #include "api/system.hpp"
-#include "core/lyapunov.hpp"
+#include "core/analysis/analysis.hpp"
 
 namespace vines::api {
 
 struct SimulateRequest {
     System system;
-    State start;
-    double tau_end;
-    Interval window;
-    std::vector<Interval> windows;
-    double samples_per_cycle, section_phase;
-    std::size_t max_points;
-    long max_impacts;
-    /// The last so many impacts, sticks and touches are listed: all, unless the answer's size is
-    /// limited.
-    std::size_t listed_impacts;
-    std::set<std::string> include;
-    ExponentOptions estimators;
+    Wanted wanted;                  ///< of the run: its parameters are the system's
+    std::set<std::string> include;  ///< parts of the answer
 
     bool includes(const char* part) const { return include.contains(part); }
 };

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "api/problem.hpp"
-#include "core/parameters.hpp"
+#include "core/motion/parameters.hpp"
 
 namespace vines::api {
 

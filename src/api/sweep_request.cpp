@@ -1,104 +1,13 @@
 #include "api/sweep_request.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
+
+#include "api/words.hpp"
 
 namespace vines::api {
 
 namespace {
-
-/// Errors of a nested object, at their place in the request.
-void add_errors(
-    const std::string& where, std::vector<FieldError> errors, std::vector<FieldError>& all) {
-    for (FieldError& e : errors) {
-        e.pointer = where + e.pointer;
-        all.push_back(std::move(e));
-    }
-}
-
-bool is_parameter(const std::string& name) {
-    const auto& fields = sweep_base_fields();
-    return std::any_of(fields.begin(), fields.end(), [&](const Field& f) {
-        return f.name == name && f.type == FieldType::number;
-    });
-}
-
-std::vector<std::string> parameter_names() {
-    std::vector<std::string> names;
-    for (const Field& f : sweep_base_fields())
-        if (f.type == FieldType::number) names.push_back(f.name);
-    return names;
-}
-
-/// from, ..., to in `count` steps. The ends are exact.
-std::vector<double> spaced(double from, double to, std::size_t count, bool logarithmic) {
-    std::vector<double> values;
-    for (std::size_t i = 0; i < count; ++i) {
-        const double share =
-            count > 1 ? static_cast<double>(i) / static_cast<double>(count - 1) : 0;
-        values.push_back(
-            logarithmic ? from * std::pow(to / from, share) : from + share * (to - from));
-    }
-    if (count > 1) values.back() = to;
-    return values;
-}
-
-Axis read_axis(
-    const Json& j, const std::string& where, std::size_t most, std::vector<FieldError>& errors) {
-    Axis axis;
-    if (!j.is_object()) {
-        errors.push_back(
-            {where, j, nullptr,
-             "an axis is {parameter, from, to, count, scale} or {parameter, values}"});
-        return axis;
-    }
-    std::vector<FieldError> own = check(axis_fields(), j);
-    if (!j.contains("parameter"))
-        own.push_back({"/parameter", nullptr, parameter_names(), "an axis needs its parameter"});
-    else if (j["parameter"].is_string() && !is_parameter(j["parameter"]))
-        own.push_back(
-            {"/parameter", j["parameter"], parameter_names(),
-             "there is no parameter of this name to sweep"});
-    if (j.contains("values")) {
-        for (const char* name : {"from", "to", "count", "scale"})
-            if (j.contains(name))
-                own.push_back(
-                    {std::string("/") + name, j[name], nullptr,
-                     "values and from, to, count, scale exclude each other"});
-        if (j["values"].is_array()) {
-            if (j["values"].empty())
-                own.push_back(
-                    {"/values", j["values"], nullptr, "values must hold at least one number"});
-            if (j["values"].size() > most)
-                own.push_back(
-                    {"/values", j["values"].size(), Json::array({1, most}),
-                     "values may hold " + std::to_string(most) + " numbers"});
-        }
-    } else {
-        for (const char* name : {"from", "to", "count"})
-            if (!j.contains(name))
-                own.push_back(
-                    {std::string("/") + name, nullptr, nullptr,
-                     "an axis needs from, to and count, or values"});
-    }
-    const bool logarithmic = own.empty() && j.value("scale", "linear") == "log";
-    if (logarithmic && !(j["from"].get<double>() > 0 && j["to"].get<double>() > 0))
-        own.push_back(
-            {j["from"].get<double>() > 0 ? "/to" : "/from",
-             j[j["from"].get<double>() > 0 ? "to" : "from"], nullptr,
-             "a logarithmic axis runs between positive numbers"});
-    if (own.empty()) {
-        axis.parameter = j["parameter"];
-        axis.values = j.contains("values")
-                          ? j["values"].get<std::vector<double>>()
-                          : spaced(
-                                j["from"].get<double>(), j["to"].get<double>(),
-                                static_cast<std::size_t>(j["count"].get<double>()), logarithmic);
-    }
-    add_errors(where, std::move(own), errors);
-    return axis;
-}
 
 constexpr std::size_t most_axes = 3;
 
@@ -138,70 +47,23 @@ void check_corners(const SweepRequest& r, std::vector<FieldError>& errors) {
 }
 
 /// "max over f": which axis, and whether its largest or its smallest peak.
-std::optional<Reduction> read_reduction(
-    const SweepRequest& r, const std::string& text, std::vector<FieldError>& errors) {
+void read_reduction(SweepRequest& r, const std::string& text, std::vector<FieldError>& errors) {
     Json known = Json::array();
     for (std::size_t a = 0; a < r.axes.size(); ++a)
         for (const bool largest : {true, false}) {
             known.push_back((largest ? "max over " : "min over ") + r.axes[a].parameter);
-            if (known.back() == text) return Reduction{a, largest};
+            if (known.back() != text) continue;
+            r.plan.grid.reduced = a;
+            r.plan.largest = largest;
+            return;
         }
     errors.push_back(
         {"/reduce", text, known,
          "reduce is the largest or the smallest x_max over one of the axes"});
-    return std::nullopt;
 }
 
-std::size_t steps_between(const SweepRequest& r, std::size_t axis) {
-    return r.reduce && r.reduce->axis == axis ? 1 : r.axes[axis].values.size();
-}
-
-}  // namespace
-
-Place place_of(const SweepRequest& r, std::size_t index) {
-    Place place{0, std::vector<std::size_t>(r.axes.size(), 0)};
-    auto take = [&](std::size_t n) {
-        const std::size_t at = index % n;
-        index /= n;
-        return at;
-    };
-    bool starts_counted = false;
-    for (std::size_t a = 0; a < r.axes.size(); ++a) {
-        if (r.reduce && r.reduce->axis == a) continue;
-        place.at[a] = take(steps_between(r, a));
-        if (!starts_counted) place.start = take(r.starts.size());
-        starts_counted = true;
-    }
-    if (!starts_counted) place.start = take(r.starts.size());
-    return place;
-}
-
-Json fields_of(const SweepRequest& r, const Place& place) {
-    Json object = r.base;
-    object.update(r.starts[place.start]);
-    for (std::size_t a = 0; a < r.axes.size(); ++a)
-        object[r.axes[a].parameter] = r.axes[a].values[place.at[a]];
-    return object;
-}
-
-std::size_t chain_length(const SweepRequest& r) {
-    return r.by_rows() && !r.reduce ? r.axes[0].values.size() : 1;
-}
-
-SweepRequest read_sweep_request(const Json& given, std::size_t most_points) {
-    std::vector<FieldError> errors = check(sweep_fields(), given);
-    if (!given.contains("axes"))
-        errors.push_back(
-            {"/axes", nullptr, nullptr,
-             "a sweep needs axes: one to three of {parameter, from, to, count} or {parameter, "
-             "values}"});
-    if (!errors.empty()) refuse(std::move(errors));
-
-    SweepRequest r;
-    r.given = given;
-    r.given.erase("indices");
-    r.base = field(given, "base");
-    const Json& axes = given["axes"];
+void read_axes(
+    SweepRequest& r, const Json& axes, std::size_t most_points, std::vector<FieldError>& errors) {
     if (axes.empty() || axes.size() > most_axes)
         errors.push_back(
             {"/axes", axes.size(), Json::array({1, most_axes}), "a sweep has one to three axes"});
@@ -213,9 +75,11 @@ SweepRequest read_sweep_request(const Json& given, std::size_t most_points) {
                 errors.push_back(
                     {"/axes/" + std::to_string(i) + "/parameter", r.axes[i].parameter, nullptr,
                      "two axes have the same parameter"});
-    add_errors("/base", check(sweep_base_fields(), r.base), errors);
-    const Json starts = field(given, "starts").is_string() ? Json::array() : field(given, "starts");
-    r.default_set = field(given, "starts") == default_set_of_starts;
+}
+
+void read_starts(SweepRequest& r, const Json& given, std::vector<FieldError>& errors) {
+    r.plan.default_set = given == default_set_of_starts;
+    const Json starts = given.is_string() ? Json::array() : given;
     for (std::size_t i = 0; i < starts.size() && errors.size() < most_errors; ++i) {
         const std::string where = "/starts/" + std::to_string(i);
         if (starts[i].is_object()) add_errors(where, check(start_fields(), starts[i]), errors);
@@ -223,6 +87,10 @@ SweepRequest read_sweep_request(const Json& given, std::size_t most_points) {
         r.starts.push_back(starts[i]);
     }
     if (r.starts.empty()) r.starts.push_back(Json::object());
+}
+
+/// What is swept must not be set elsewhere, nor what the default set of starts sets.
+void check_overlaps(const SweepRequest& r, std::vector<FieldError>& errors) {
     for (const Axis& a : r.axes) {
         if (r.base.contains(a.parameter))
             errors.push_back(
@@ -234,73 +102,125 @@ SweepRequest read_sweep_request(const Json& given, std::size_t most_points) {
                     {"/starts/" + std::to_string(s) + "/" + a.parameter, r.starts[s][a.parameter],
                      nullptr, a.parameter + " is swept; a start must not set it"});
     }
-    if (r.default_set)
-        for (const Field& f : start_fields()) {
-            if (r.base.contains(f.name))
+    if (!r.plan.default_set) return;
+    for (const Field& f : start_fields()) {
+        const std::string detail = "the default set of starts sets " + f.name;
+        if (r.base.contains(f.name))
+            errors.push_back({"/base/" + f.name, r.base[f.name], nullptr, detail});
+        for (std::size_t a = 0; a < r.axes.size(); ++a)
+            if (r.axes[a].parameter == f.name)
                 errors.push_back(
-                    {"/base/" + f.name, r.base[f.name], nullptr,
-                     "the default set of starts sets " + f.name});
-            for (std::size_t a = 0; a < r.axes.size(); ++a)
-                if (r.axes[a].parameter == f.name)
-                    errors.push_back(
-                        {"/axes/" + std::to_string(a) + "/parameter", f.name, nullptr,
-                         "the default set of starts sets " + f.name});
-        }
-    if (!errors.empty()) refuse(std::move(errors));
+                    {"/axes/" + std::to_string(a) + "/parameter", f.name, nullptr, detail});
+    }
+}
 
-    if (given.contains("reduce")) r.reduce = read_reduction(r, given["reduce"], errors);
-    std::size_t computed = r.starts.size();
-    for (const Axis& a : r.axes) computed *= a.values.size();
+void read_options(SweepRequest& r, const Json& given, std::vector<FieldError>& errors) {
+    SweepPlan& plan = r.plan;
+    const std::string section = field(given, "section"), carry = field(given, "carry_state");
+    plan.carry = value_of<Carry>(carry);
+    plan.options = {
+        .transient_cycles = field(given, "transient_cycles").get<double>(),
+        .cycles = field(given, "cycles").get<double>(),
+        .section = value_of<SectionKind>(section),
+        .section_points = static_cast<std::size_t>(field(given, "section_points").get<double>()),
+        .section_phase = field(given, "section_phase").get<double>(),
+        .carry = plan.default_set || plan.carry != Carry::none};
+    if (plan.default_set && plan.carry != Carry::none)
+        errors.push_back(
+            {"/carry_state", carry, Json::array({"none"}),
+             "the default set of starts goes on from both neighbours already"});
+    if (plan.options.section != SectionKind::none && (plan.default_set || plan.grid.reduced))
+        errors.push_back(
+            {"/section", section, Json::array({"none"}),
+             "a section belongs to one motion: the default set of starts and reduce tell the worst "
+             "of several"});
+}
+
+void read_indices(SweepRequest& r, const Json& given, std::vector<FieldError>& errors) {
+    std::vector<std::size_t>& lines = r.plan.lines;
+    const std::size_t all = r.plan.grid.lines();
+    if (!given.contains("indices")) {
+        lines.resize(all);
+        std::iota(lines.begin(), lines.end(), 0);
+        return;
+    }
+    lines = given["indices"].get<std::vector<std::size_t>>();
+    std::sort(lines.begin(), lines.end());
+    lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
+    if (!lines.empty() && lines.back() >= all)
+        errors.push_back(
+            {"/indices", lines.back(), Json::array({0, all - 1}),
+             "the sweep has " + std::to_string(all) + " points, from 0 on"});
+}
+
+void refuse_any(std::vector<FieldError>& errors) {
+    if (!errors.empty()) refuse(std::move(errors));
+}
+
+/// Of a request whose corners are valid: then only an axis' values can make a point invalid.
+std::shared_ptr<const SweepSystems> systems_of(const SweepRequest& r) {
+    std::vector<SystemFields> bases;
+    long max_impacts = 0;
+    for (std::size_t start = 0; start < r.starts.size(); ++start) {
+        const Layered l = layered(
+            sweep_base_fields(), fields_of(r, {start, std::vector<std::size_t>(r.axes.size(), 0)}));
+        bases.push_back(system_fields(l.fields));
+        max_impacts = static_cast<long>(l.number("max_impacts"));
+    }
+    return std::make_shared<const SweepSystems>(std::move(bases), r.axes, max_impacts);
+}
+
+}  // namespace
+
+Json fields_of(const SweepRequest& r, const Place& place) {
+    Json object = r.base;
+    object.update(r.starts[place.start]);
+    for (std::size_t a = 0; a < r.axes.size(); ++a)
+        object[r.axes[a].parameter] = r.axes[a].values[place.at[a]];
+    return object;
+}
+
+SweepRequest read_sweep_request(const Json& given, std::size_t most_points) {
+    std::vector<FieldError> errors = check(sweep_fields(), given);
+    if (!given.contains("axes"))
+        errors.push_back(
+            {"/axes", nullptr, nullptr,
+             "a sweep needs axes: one to three of {parameter, from, to, count} or {parameter, "
+             "values}"});
+    refuse_any(errors);
+
+    SweepRequest r;
+    r.given = given;
+    r.given.erase("indices");
+    r.base = field(given, "base");
+    read_axes(r, given["axes"], most_points, errors);
+    add_errors("/base", check(sweep_base_fields(), r.base), errors);
+    read_starts(r, field(given, "starts"), errors);
+    check_overlaps(r, errors);
+    refuse_any(errors);
+
+    r.plan.grid = {.steps = {}, .starts = r.starts.size()};
+    for (const Axis& a : r.axes) r.plan.grid.steps.push_back(a.values.size());
+    if (given.contains("reduce")) read_reduction(r, given["reduce"], errors);
+    const std::size_t computed = r.plan.grid.points();
     if (computed > most_points)
         refuse(
             {{"/axes", computed, Json::array({1, most_points}),
               "the sweep has " + std::to_string(computed) + " points; at most " +
                   std::to_string(most_points) + " are computed at once"}});
-    r.points = r.starts.size();
-    for (std::size_t a = 0; a < r.axes.size(); ++a) r.points *= steps_between(r, a);
     check_corners(r, errors);
-    r.options.cycles = field(given, "cycles").get<double>();
-    r.options.transient_cycles = field(given, "transient_cycles").get<double>();
-    const std::string section = field(given, "section"), carry = field(given, "carry_state");
-    r.options.section = section == "impact"         ? Section::impact
-                        : section == "stroboscopic" ? Section::stroboscopic
-                                                    : Section::none;
-    r.options.section_phase = field(given, "section_phase").get<double>();
-    r.options.section_points =
-        static_cast<std::size_t>(field(given, "section_points").get<double>());
-    r.carry = carry == "up"     ? SweepRequest::Carry::up
-              : carry == "down" ? SweepRequest::Carry::down
-                                : SweepRequest::Carry::none;
-    r.options.carry = r.default_set || r.carry != SweepRequest::Carry::none;
-    if (r.default_set && r.carry != SweepRequest::Carry::none)
-        errors.push_back(
-            {"/carry_state", carry, Json::array({"none"}),
-             "the default set of starts goes on from both neighbours already"});
-    if (r.options.section != Section::none && (r.default_set || r.reduce))
-        errors.push_back(
-            {"/section", section, Json::array({"none"}),
-             "a section belongs to one motion: the default set of starts and reduce tell the worst "
-             "of several"});
-    if (given.contains("indices")) {
-        r.indices = given["indices"].get<std::vector<std::size_t>>();
-        std::sort(r.indices.begin(), r.indices.end());
-        r.indices.erase(std::unique(r.indices.begin(), r.indices.end()), r.indices.end());
-        if (!r.indices.empty() && r.indices.back() >= r.points)
-            errors.push_back(
-                {"/indices", r.indices.back(), Json::array({0, r.points - 1}),
-                 "the sweep has " + std::to_string(r.points) + " points, from 0 on"});
-    } else {
-        r.indices.resize(r.points);
-        std::iota(r.indices.begin(), r.indices.end(), 0);
-    }
-    if (!errors.empty()) refuse(std::move(errors));
+    read_options(r, given, errors);
+    read_indices(r, given, errors);
+    refuse_any(errors);
+    r.systems = systems_of(r);
+    r.plan.system_at = [systems = r.systems](const Place& place) { return systems->at(place); };
     return r;
 }
 
 std::vector<std::size_t> shard_of(const SweepRequest& r, std::size_t shard, std::size_t shards) {
     std::vector<std::size_t> own;
-    for (std::size_t index : r.indices)
-        if (index / chain_length(r) % shards == shard) own.push_back(index);
+    for (const std::size_t line : r.plan.lines)
+        if (line / r.plan.chain() % shards == shard) own.push_back(line);
     return own;
 }
 

@@ -131,64 +131,35 @@ std::vector<FieldError> field_errors(const std::vector<Fault>& faults, const Lay
 }
 
 System read_system(const Layered& l, bool forcing_fitted) {
-    System system;
-    Parameters& p = system.parameters;
-    const bool si = !present(l.fields, si_names).empty();
-    if (si && present(l.fields, reduced_names).empty()) {
-        check_si_is_whole(l, forcing_fitted);
-        system.si = si_of(l.fields);
-        p.epsilon = system.si->epsilon();
-        p.lambda = system.si->lambda();
-        p.G = system.si->G();
-        p.Omega = system.si->Omega();
-    } else {
-        p.epsilon = l.number("epsilon");
-        p.lambda = l.number("lambda");
-        p.G = l.number("G");
-        p.Omega = l.number("Omega");
-        if (si) system.si = in_si(p, l.number("m1"), l.number("k1"));
-    }
-    p.b = l.number("b");
-    p.R_plus = l.number("R_plus", l.number("R"));
-    p.R_minus = l.number("R_minus", l.number("R"));
-    p.damping =
-        l.word("damping") == "closed_form" ? Damping::closed_form : Damping::equation_of_motion;
+    const SystemFields fields = system_fields(l.fields);
+    if (fields.is_in_si() && !fields.is_reduced()) check_si_is_whole(l, forcing_fitted);
+    const ResolvedSystem resolved = resolve(fields);
+    System system{resolved.parameters, resolved.si, {}, {}};
     system.origin = origins_of(l, system);
     system.notes = notes_on(l, system);
     return system;
 }
 
-/// Velocities in m/s need the time scale of a system in SI; those in m per unit of tau are worth a
-/// word beside one.
 State read_start(const Layered& l, System& system) {
-    const Parameters& p = system.parameters;
+    for (const char* name : {"x0", "x_dot0", "y0", "y_dot0"}) system.origin[name] = l.origin(name);
     std::vector<FieldError> errors;
     auto velocity = [&](const std::string& in_tau, const std::string& in_SI) {
-        if (!l.has(in_SI)) {
-            const double value = l.number(in_tau);
-            if (system.si && value != 0 && l.has(in_tau))
-                system.notes.push_back(
-                    in_tau + " = " + Json(value).dump() + " is in m per unit of tau, here " +
-                    Json(value * system.si->omega0()).dump() + " m/s; " + in_SI + " is in m/s");
-            return value;
-        }
-        if (!system.si) {
+        if (l.has(in_SI) && !system.si)
             errors.push_back(
                 {"/" + in_SI, l.fields[in_SI], nullptr,
                  in_SI +
                      " is in m/s and needs a system in SI (m1, k1 or f0, ...); without one it is " +
                      in_tau + ", in m per unit of tau"});
-            return 0.0;
-        }
-        system.origin[in_tau] = "follows from " + in_SI;
-        return l.number(in_SI) / system.si->omega0();
+        else if (l.has(in_SI)) system.origin[in_tau] = "follows from " + in_SI;
+        else if (const double value = l.number(in_tau); system.si && value != 0 && l.has(in_tau))
+            system.notes.push_back(
+                in_tau + " = " + Json(value).dump() + " is in m per unit of tau, here " +
+                Json(value * system.si->omega0()).dump() + " m/s; " + in_SI + " is in m/s");
     };
-    for (const char* name : {"x0", "x_dot0", "y0", "y_dot0"}) system.origin[name] = l.origin(name);
-    const State start{
-        velocity("x_dot0", "x_velocity0"), l.number("x0"), velocity("y_dot0", "y_velocity0"),
-        l.number("y0", default_state(p).y)};
+    velocity("x_dot0", "x_velocity0");
+    velocity("y_dot0", "y_velocity0");
     if (!errors.empty()) refuse(std::move(errors));
-    return start;
+    return start_of(system_fields(l.fields), {system.parameters, system.si});
 }
 
 System read_system_alone(const Layered& l, bool forcing_fitted) {

@@ -44,7 +44,7 @@ api::SweepRequest read_request(const SweepOptions& o) {
     api::SweepRequest request =
         api::read_sweep_request(api::parse_object(read_all(o.files.input)), most_points);
     const Shard shard = read_shard(o.shard, o.shards);
-    request.indices = api::shard_of(request, shard.index, shard.of);
+    request.plan.lines = api::shard_of(request, shard.index, shard.of);
     return request;
 }
 
@@ -72,7 +72,7 @@ std::string compute(
         write_all(o.files.output, file.lines());  // without what a killed run left half written
         out.emplace(o.files.output);
     }
-    ProgressBar bar(of - request.indices.size(), of);
+    ProgressBar bar(of - request.plan.lines.size(), of);
     SignalPace pace;
     const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     return api::run_sweep(
@@ -87,9 +87,9 @@ std::string compute(
 
 int sweep(const SweepOptions& o) {
     api::SweepRequest request = read_request(o);
-    const std::size_t of = request.indices.size();
+    const std::size_t of = request.plan.lines.size();
     SweepFile file = resumed(o, api::sweep_start(request).dump());
-    std::erase_if(request.indices, [&](std::size_t i) { return file.points.contains(i); });
+    std::erase_if(request.plan.lines, [&](std::size_t i) { return file.points.contains(i); });
 
     const std::string warning = compute(o, request, of, file);
     if (!warning.empty()) tell(warning);

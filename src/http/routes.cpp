@@ -61,7 +61,8 @@ ComputeGate::Place place_in(ComputeGate& gate) {
         503, "as many requests as the server takes are waiting already; try again in a second");
 }
 
-// A run that its deadline ends is made up into an answer in this share of it more.
+// A run that its deadline ends is analysed and made up into an answer in this share of it more, the
+// first half of that for the analysis.
 constexpr double time_to_write = 0.2;
 
 Response simulate(const Json& object, const RouteOptions& options, ComputeGate& gate) {
@@ -72,6 +73,9 @@ Response simulate(const Json& object, const RouteOptions& options, ComputeGate& 
     const std::chrono::duration<double> time(options.deadline);
     api::Stop stop;
     stop.asked = [deadline = now + time] { return Clock::now() > deadline; };
+    stop.analysis_late = [deadline = now + (1 + time_to_write / 2) * time] {
+        return Clock::now() > deadline;
+    };
     stop.late = [deadline = now + (1 + time_to_write) * time] { return Clock::now() > deadline; };
     return limited_response(
         api::simulate_answer(request, stop, options.answer_limit), options.answer_limit);

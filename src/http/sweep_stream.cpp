@@ -86,7 +86,7 @@ std::string ending(std::size_t done, std::size_t of, const std::string& warning,
 std::size_t write_lines(
     LineQueue& lines, const api::SweepRequest& request, GatePace& pace, Writer& out,
     bool& present) {
-    const std::size_t of = request.indices.size(), runs_of = api::runs_of(request);
+    const std::size_t of = request.plan.lines.size(), runs_of = request.plan.runs();
     const auto started = Clock::now();
     auto reported = started;
     LineQueue::Taken taken;
@@ -110,7 +110,7 @@ void stream(const api::SweepRequest& request, ComputeGate& gate, Writer& out) {
     std::exception_ptr failure;
     std::string warning;
     Json start = api::sweep_start(request);
-    start["of"] = request.indices.size();
+    start["of"] = request.plan.lines.size();
     if (!out.write(line_of(start))) return;
 
     std::thread computing([&] {
@@ -127,7 +127,7 @@ void stream(const api::SweepRequest& request, ComputeGate& gate, Writer& out) {
     const std::size_t done = write_lines(lines, request, pace, out, present);
     computing.join();
     if (failure) log_failure("/v1/sweep", failure);
-    if (present) out.write(ending(done, request.indices.size(), warning, failure != nullptr));
+    if (present) out.write(ending(done, request.plan.lines.size(), warning, failure != nullptr));
 }
 
 }  // namespace

@@ -10,10 +10,10 @@
 #include <random>
 #include <stdexcept>
 
-#include "core/manifold.hpp"
-#include "core/regime.hpp"
-#include "core/transfer.hpp"
-#include "core/windows.hpp"
+#include "core/measures/manifold.hpp"
+#include "core/measures/regime.hpp"
+#include "core/stability/transfer.hpp"
+#include "core/stability/windows.hpp"
 #include "report/svg.hpp"
 
 namespace vines::report {

@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <vector>
 
-#include "core/lyapunov.hpp"
-#include "core/sweep.hpp"
+#include "core/stability/lyapunov.hpp"
+#include "core/sweep/sweep.hpp"
 
 using namespace vines;
 

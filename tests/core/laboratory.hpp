@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/identify.hpp"
+#include "core/identification/identify.hpp"
 #include "support.hpp"
 
 namespace vines::test {

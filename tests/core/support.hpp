@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/lyapunov.hpp"
-#include "core/record.hpp"
+#include "core/motion/record.hpp"
+#include "core/stability/lyapunov.hpp"
 
 namespace vines::test {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/energy.hpp"
+#include "core/measures/energy.hpp"
 #include "support.hpp"
 
 using namespace vines;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/linear.hpp"
+#include "core/stability/linear.hpp"
 #include "support.hpp"
 
 using namespace vines;

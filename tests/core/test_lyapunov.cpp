@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/linear.hpp"
-#include "core/verdict.hpp"
+#include "core/stability/linear.hpp"
+#include "core/stability/verdict.hpp"
 #include "support.hpp"
 
 using namespace vines;

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/manifold.hpp"
-#include "core/transfer.hpp"
+#include "core/measures/manifold.hpp"
+#include "core/stability/transfer.hpp"
 #include "support.hpp"
 
 using namespace vines;

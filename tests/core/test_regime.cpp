@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/regime.hpp"
-#include "core/sweep.hpp"
+#include "core/measures/regime.hpp"
+#include "core/sweep/sweep.hpp"
 #include "support.hpp"
 
 using namespace vines;

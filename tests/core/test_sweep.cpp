@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/sweep.hpp"
+#include "core/sweep/sweep.hpp"
 #include "support.hpp"
 
 using namespace vines;

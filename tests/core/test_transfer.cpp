@@ -3,7 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "core/transfer.hpp"
+#include "core/stability/transfer.hpp"
 #include "support.hpp"
 
 using namespace vines;

@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include "core/windows.hpp"
+#include "core/stability/windows.hpp"
 #include "support.hpp"
 
 using namespace vines;

@@ -5,7 +5,7 @@
 import {spawn} from "node:child_process";
 import {mkdir, mkdtemp, readFile, readdir, rm, stat, writeFile} from "node:fs/promises";
 import {tmpdir} from "node:os";
-import {join} from "node:path";
+import {join, resolve} from "node:path";
 import {program, startService} from "../service.mjs";
 import {commands, identifications, requests} from "./requests.mjs";
 
@@ -41,7 +41,7 @@ async function contents(folder, name) {
 
 async function outcomeOf({args, input, environment, files = []}) {
   const folder = await mkdtemp(join(tmpdir(), "vines-golden-"));
-  const child = spawn(program, args, {cwd: folder, env: {...process.env, ...environment}});
+  const child = spawn(resolve(program), args, {cwd: folder, env: {...process.env, ...environment}});
   let out = "", errors = "";
   child.stdout.on("data", (data) => out += data);
   child.stderr.on("data", (data) => errors += data);

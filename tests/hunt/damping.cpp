@@ -6,7 +6,7 @@
 #include <functional>
 #include <optional>
 
-#include "core/sweep.hpp"
+#include "core/sweep/sweep.hpp"
 #include "exact_product.hpp"
 #include "systems.hpp"
 

@@ -2,7 +2,7 @@
 // digits that nothing of it is lost.
 #pragma once
 
-#include "core/lyapunov.hpp"
+#include "core/stability/lyapunov.hpp"
 #include "retrace.hpp"
 
 namespace vines::hunt {

@@ -6,7 +6,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 
-#include "core/parameters.hpp"
+#include "core/motion/parameters.hpp"
 
 namespace vines::hunt {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "core/simulate.hpp"
+#include "core/motion/simulate.hpp"
 #include "tangent.hpp"
 
 namespace vines::hunt {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "core/sweep.hpp"
+#include "core/sweep/sweep.hpp"
 #include "systems.hpp"
 
 namespace vines::hunt {

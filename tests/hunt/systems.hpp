@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "core/parameters.hpp"
+#include "core/motion/parameters.hpp"
 
 namespace vines::hunt {
 

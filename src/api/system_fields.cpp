@@ -1,0 +1,103 @@
+#include "api/system_fields.hpp"
+
+#include <map>
+#include <numbers>
+
+#include "api/words.hpp"
+
+namespace vines::api {
+
+namespace {
+
+using S = SystemFields;
+const std::map<std::string, SystemNumber> numbers = {
+    {"b", &S::b},
+    {"R", &S::R},
+    {"R_plus", &S::R_plus},
+    {"R_minus", &S::R_minus},
+    {"epsilon", &S::epsilon},
+    {"lambda", &S::lambda},
+    {"G", &S::G},
+    {"Omega", &S::Omega},
+    {"m1", &S::m1},
+    {"k1", &S::k1},
+    {"f0", &S::f0},
+    {"c1", &S::c1},
+    {"damping_ratio", &S::damping_ratio},
+    {"m2", &S::m2},
+    {"mass_ratio", &S::mass_ratio},
+    {"F", &S::F},
+    {"f", &S::f},
+    {"x0", &S::x0},
+    {"x_dot0", &S::x_dot0},
+    {"x_velocity0", &S::x_velocity0},
+    {"y0", &S::y0},
+    {"y_dot0", &S::y_dot0},
+    {"y_velocity0", &S::y_velocity0},
+};
+
+}  // namespace
+
+SystemNumber system_number(const std::string& name) {
+    const auto found = numbers.find(name);
+    return found == numbers.end() ? nullptr : found->second;
+}
+
+SystemFields system_fields(const Json& fields) {
+    SystemFields s;
+    for (const auto& [name, value] : fields.items())
+        if (const SystemNumber number = system_number(name)) s.*number = value.get<double>();
+    if (fields.contains("damping"))
+        s.damping = value_of<Damping>(fields["damping"].get<std::string>());
+    return s;
+}
+
+SiParameters si_of(const SystemFields& s) {
+    SiParameters si;
+    si.m1 = s.m1.value_or(si.m1);
+    const double omega0 = 2 * std::numbers::pi * s.f0.value_or(0);
+    si.k1 = s.f0 ? si.m1 * omega0 * omega0 : s.k1.value_or(si.k1);
+    si.m2 = s.mass_ratio ? *s.mass_ratio * si.m1 : s.m2.value_or(si.m2);
+    si.c1 = s.damping_ratio ? 2 * *s.damping_ratio * si.m1 * si.omega0() : s.c1.value_or(si.c1);
+    si.F = s.F.value_or(Parameters{}.G * si.epsilon());
+    si.f = s.f.value_or(si.f0());
+    return si;
+}
+
+ResolvedSystem resolve(const SystemFields& s) {
+    ResolvedSystem system;
+    Parameters& p = system.parameters;
+    if (s.is_in_si() && !s.is_reduced()) {
+        system.si = si_of(s);
+        p.epsilon = system.si->epsilon();
+        p.lambda = system.si->lambda();
+        p.G = system.si->G();
+        p.Omega = system.si->Omega();
+    } else {
+        p.epsilon = s.epsilon.value_or(p.epsilon);
+        p.lambda = s.lambda.value_or(p.lambda);
+        p.G = s.G.value_or(p.G);
+        p.Omega = s.Omega.value_or(p.Omega);
+        // A preset in SI leaves its scale to reduced fields.
+        if (s.is_in_si()) system.si = in_si(p, s.m1.value_or(0), s.k1.value_or(0));
+    }
+    p.b = s.b.value_or(p.b);
+    const double R = s.R.value_or(p.R_plus);
+    p.R_plus = s.R_plus.value_or(R);
+    p.R_minus = s.R_minus.value_or(R);
+    p.damping = s.damping;
+    return system;
+}
+
+State start_of(const SystemFields& s, const ResolvedSystem& system) {
+    auto velocity = [&](std::optional<double> in_tau, std::optional<double> in_si) {
+        return in_si && system.si ? *in_si / system.si->omega0() : in_tau.value_or(0);
+    };
+    return {
+        .x_dot = velocity(s.x_dot0, s.x_velocity0),
+        .x = s.x0.value_or(0),
+        .y_dot = velocity(s.y_dot0, s.y_velocity0),
+        .y = s.y0.value_or(default_state(system.parameters).y)};
+}
+
+}  // namespace vines::api

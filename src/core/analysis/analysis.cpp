@@ -1,0 +1,323 @@
+#include "core/analysis/analysis.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/stability/windows.hpp"
+
+namespace vines {
+
+namespace {
+
+/// |x''/(x'- - y'-)| from which on an impact is nearly tangent: without the wall the mass would
+/// have turned back within 1/1800 of a unit of tau. M's condition number is then about 14
+/// (x''/(x'- - y'-))^2 at Table 1's R = .6, so that a relative error of one ulp in what M acts on
+/// is one of 1e-8 in what it gives.
+constexpr double nearly_tangent = 1800;
+
+/// Points on each branch of the manifold beside a run: a smooth curve on a screen.
+constexpr std::size_t manifold_points = 200;
+
+/// Exponents that are not shown have a history for their standard error alone.
+constexpr std::size_t unseen_history = shortest_history;
+
+const std::vector<double> decay_shares = {0.5, 0.1};
+
+/// A cycle's samples are further apart where the series would be too long.
+double series_step(const Wanted& w) {
+    const double asked = w.parameters.cycle() / w.samples_per_cycle;
+    return std::max(asked, w.tau_end / static_cast<double>(w.most_points - 1));
+}
+
+/// Verdict and regime rest on qr, whether or not it is shown.
+bool is_judged(const Wanted& w) {
+    return w.parts.regime || w.parts.exponents || !w.windows.empty();
+}
+
+ExponentOptions main_estimators(const Wanted& w) {
+    const ExponentOptions& e = w.estimators;
+    return {
+        .qr = true,
+        .eigenvalues = e.eigenvalues && w.parts.exponents,
+        .raw_product = e.raw_product && w.parts.exponents,
+        .history = e.history};
+}
+
+ExponentOptions window_estimators(const Wanted& w) {
+    ExponentOptions options = w.estimators;
+    options.history = unseen_history;
+    return options;
+}
+
+/// All that one pass over the motion is observed by.
+struct Observers {
+    explicit Observers(const Wanted& w)
+        : series(series_step(w)),
+          impacts(w.most_listed),
+          section(w.window.from, w.window.to, w.most_points),
+          sticks(w.most_listed),
+          touches(w.most_listed),
+          lyapunov(w.parameters, w.window.from, w.window.to, main_estimators(w)),
+          windows(w.parameters, window_estimators(w)),
+          transfers(w.parameters, w.window.from, w.window.to, w.most_points),
+          whole_cycles(w.parameters),
+          stroboscopic(w.parameters, 0, w.section_phase),
+          decay(w.parameters, w.window.from, decay_shares),
+          half_cycles(w.parameters, w.window.from, w.window.to, w.most_points) {
+        for (const Interval& window : w.windows) windows.add(window.from, window.to);
+        if (w.parts.energy) energy.emplace(w.parameters, w.window.from, w.window.to);
+    }
+
+    std::vector<Observer*> wanted(const Wanted& w) {
+        std::vector<Observer*> list = {&sticks, &touches};
+        auto observe = [&](bool wanted, auto&... observer) {
+            if (wanted) (list.push_back(&observer), ...);
+        };
+        observe(w.parts.series, series);
+        observe(w.parts.impacts || w.parts.section, impacts);
+        observe(w.parts.section, section, stroboscopic);
+        observe(is_judged(w), lyapunov, whole_cycles, contacts);
+        observe(!w.windows.empty(), windows);
+        observe(w.parts.moduli || w.parts.matrices, transfers);
+        if (energy) list.push_back(&*energy);
+        observe(w.parts.energy && w.parameters.G == 0, decay);
+        observe(w.parts.manifold, half_cycles);
+        return list;
+    }
+
+    SeriesRecord series;
+    ImpactRecord impacts;
+    SectionRecord section;
+    StickRecord sticks;
+    TouchRecord touches;
+    Lyapunov lyapunov;
+    Windows windows;
+    TransferRecord transfers;
+    StroboscopicRecord whole_cycles, stroboscopic;
+    std::optional<Energy> energy;  // its tables take their time
+    Decay decay;
+    ContactRecord contacts;
+    HalfCycles half_cycles;
+};
+
+/// From observers to the parts of the result, in its order: each function is one part.
+class Conclusion {
+public:
+    Conclusion(const Wanted& w, const Interrupt& interrupt, Observers& o, Analysis& a)
+        : w_(w),
+          interrupt_(interrupt),
+          o_(o),
+          a_(a) {}
+
+    void conclude() {
+        if (a_.outcome.tau <= w_.window.from) warn(warning::WindowNotReached{w_.window.from});
+        if (w_.parts.series) series();
+        lists();
+        if (is_judged(w_)) exponents();
+        if (w_.parts.impacts || w_.parts.section) grazing();
+        transfers();
+        if (w_.parts.section) sections();
+        if (w_.parts.energy) energy();
+        if (w_.parts.regime) regime();
+        if (w_.parts.manifold) manifold();
+    }
+
+private:
+    void warn(Warning warning) { a_.warnings.push_back(std::move(warning)); }
+
+    void series() {
+        o_.series.finish(a_.outcome);
+        a_.series = std::move(o_.series.series);
+        const double step = series_step(w_), cycle = w_.parameters.cycle();
+        if (step > cycle / w_.samples_per_cycle)
+            warn(warning::SeriesThinned{cycle / step, w_.samples_per_cycle, w_.most_points});
+    }
+
+    /// The last entries of a list, and a warning where there were more.
+    template <class Entries>
+    Entries last_of(Entries& entries, long seen, const char* name) {
+        trim_to_last(entries, w_.most_listed);
+        if (seen > static_cast<long>(entries.size()))
+            warn(warning::ListCut{name, seen, entries.size()});
+        return std::move(entries);
+    }
+
+    void lists() {
+        if (w_.parts.impacts) {
+            a_.impacts = last_of(o_.impacts.impacts, o_.impacts.seen, "impacts");
+            a_.touches = last_of(o_.touches.touches, o_.touches.seen, "touches");
+        } else {
+            a_.impacts = std::move(o_.impacts.impacts);
+        }
+        a_.stick_count = o_.sticks.seen;
+        a_.sticks = last_of(o_.sticks.sticks, o_.sticks.seen, "sticks");
+        a_.typical_speed = median_speed(a_.impacts);
+        if (!a_.touches.empty()) warn(warning::Touched{});
+    }
+
+    static double median_speed(const std::vector<Impact>& impacts) {
+        if (impacts.empty()) return 1;
+        std::vector<double> speeds;
+        for (const Impact& i : impacts) speeds.push_back(std::abs(i.relative_speed_before));
+        const auto middle = speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / 2);
+        std::nth_element(speeds.begin(), middle, speeds.end());
+        return *middle;
+    }
+
+    void exponents() {
+        const Verdict by_exponents = verdict_by_exponents(growth_of(o_.lyapunov.product()));
+        a_.regime = regime_of(
+            w_.parameters, w_.start,
+            {.contacts = o_.contacts,
+             .stroboscopic = o_.whole_cycles,
+             .tau_start = a_.reached.from,
+             .tau_end = a_.reached.to,
+             .by_exponents = by_exponents,
+             .stop = interrupt_.run},
+            w_.parts.before_capture);
+        a_.exponents.emplace(window_exponents(w_.window, o_.lyapunov.take(), *a_.regime));
+        if (w_.parts.exponents)
+            add_warnings(a_.exponents->product, w_.estimators, true, a_.warnings);
+        a_.windows.reserve(w_.windows.size());
+        for (std::size_t i = 0; i < w_.windows.size(); ++i) {
+            a_.windows.push_back(window_exponents(w_.windows[i], o_.windows.take(i), *a_.regime));
+            add_warnings(a_.windows[i].product, w_.estimators, false, a_.warnings);
+        }
+    }
+
+    /// Impacts next to a tangent contact, which shift the eigenvalues of every product that they
+    /// are in. Those of a chatter (the wall presses: side x'' > 0) are slow as well, but no
+    /// neighbouring motion misses them.
+    void grazing() {
+        long count = 0;
+        const Impact* nearest = nullptr;
+        for (const Impact& i : a_.impacts) {
+            if (i.side * i.x_ddot_before > 0 || i.tau < w_.window.from || i.tau > w_.window.to)
+                continue;
+            const double speed = std::abs(i.relative_speed_before);
+            if (!(std::abs(i.x_ddot_before) > nearly_tangent * speed)) continue;
+            ++count;
+            if (!nearest || speed < std::abs(nearest->relative_speed_before)) nearest = &i;
+        }
+        if (count > 0)
+            warn(warning::NearlyTangent{
+                count, nearest->tau, std::abs(nearest->relative_speed_before) / a_.typical_speed});
+    }
+
+    void transfers() {
+        auto& transfers = o_.transfers.transfers;
+        trim_to_last(transfers, w_.most_points);
+        if (o_.transfers.seen > static_cast<long>(transfers.size()))
+            warn(warning::TransfersCut{w_.most_points, o_.transfers.seen});
+        if (w_.parts.moduli) moduli(transfers);
+        if (!w_.parts.matrices) return;
+        TransferMatrices& m = a_.matrices.emplace();
+        for (const ImpactTransfer& t : transfers) {
+            m.tau.push_back(t.tau);
+            m.J.push_back(t.J());
+            m.M.push_back(t.M.matrix());
+            m.T.push_back(t.T());
+        }
+    }
+
+    /// Those of T take their time: once it is late, only the last impacts have them.
+    void moduli(std::span<const ImpactTransfer> transfers) {
+        constexpr std::size_t per_look = 256;
+        TransferModuli& m = a_.moduli.emplace();
+        auto late = [&] {
+            return m.T.size() % per_look == 0 && interrupt_.late && interrupt_.late();
+        };
+        for (std::size_t i = transfers.size(); i > 0 && !late(); --i)
+            m.T.push_back(transfers[i - 1].T_moduli());
+        if (m.T.size() < transfers.size()) warn(warning::ModuliCut{m.T.size()});
+        std::reverse(m.T.begin(), m.T.end());
+        for (const ImpactTransfer& t : transfers.last(m.T.size())) {
+            m.tau.push_back(t.tau);
+            m.J.push_back(t.J_moduli());
+            m.M.push_back(t.M_moduli());
+            m.M_condition.push_back(t.M.condition(t.R));
+        }
+    }
+
+    void sections() {
+        const StroboscopicRecord& record = o_.stroboscopic;
+        std::size_t first = 0, end = record.states.size();
+        while (first < end && record.tau(first) < w_.window.from) ++first;
+        while (end > first && record.tau(end - 1) > w_.window.to) --end;
+        const std::size_t cycles = end - first, most = w_.most_points;
+        if (o_.section.seen > static_cast<long>(most) || cycles > most)
+            warn(warning::SectionsCut{most, o_.section.seen, cycles});
+        if (cycles > most) first = end - most;
+        trim_to_last(o_.section.points, most);
+        Sections& s = a_.sections.emplace();
+        s.impact = std::move(o_.section.points);
+        for (std::size_t k = first; k < end; ++k) {
+            s.tau.push_back(record.tau(k));
+            s.states.push_back(record.states[k]);
+        }
+    }
+
+    void energy() {
+        const Parameters& p = w_.parameters;
+        EnergyResult& e = a_.energy.emplace();
+        e.balance = balance_of(p, *o_.energy, a_.reached);
+        if (!w_.parts.unattached) return;
+        e.unattached = unattached(p, w_.start, a_.reached.from, a_.reached.to);
+        e.rms_ratio = ratio(e.balance.rms, e.unattached->rms);
+        e.peak_ratio = ratio(e.balance.peak, e.unattached->peak);
+        if (p.G != 0) return;
+        const auto alone = unattached_decay(p, w_.start, a_.reached.from, decay_shares);
+        e.decay = {
+            .with_absorber = {o_.decay.tau[0], o_.decay.tau[1]}, .without = {alone[0], alone[1]}};
+    }
+
+    /// The verdicts have used all of it; of what is shown the moving z is thinned to most_points.
+    void regime() {
+        Regime& r = *a_.regime;
+        const std::size_t every = r.moving_tau.size() / w_.most_points + 1;
+        for (auto* column : {&r.moving_tau, &r.moving_z}) {
+            for (std::size_t k = 0; k * every < column->size(); ++k)
+                (*column)[k] = (*column)[k * every];
+            column->resize((column->size() + every - 1) / every);
+        }
+        if (r.stretches.size() > w_.most_points)
+            warn(warning::StretchesCut{r.stretches.size(), w_.most_points});
+        trim_to_last(r.stretches, w_.most_points);
+        if (r.search_stopped) warn(warning::OrbitSearchStopped{});
+        if (r.capture && r.capture->chaotic_before == true)
+            warn(warning::CapturedTransient{
+                r.capture->before[0], r.capture->after[0], r.capture->tau});
+    }
+
+    void manifold() {
+        ManifoldResult& m = a_.manifold.emplace();
+        if (w_.parameters.R_plus == w_.parameters.R_minus)
+            m.manifold = manifold_of(w_.parameters, 0, manifold_points);
+        else warn(warning::NoManifold{});
+        trim_to_last(o_.half_cycles.tau, w_.most_points);
+        trim_to_last(o_.half_cycles.points, w_.most_points);
+        m.tau = std::move(o_.half_cycles.tau);
+        m.points = std::move(o_.half_cycles.points);
+    }
+
+    const Wanted& w_;
+    const Interrupt& interrupt_;
+    Observers& o_;
+    Analysis& a_;
+};
+
+}  // namespace
+
+Analysis analyse(const Wanted& w, const Interrupt& interrupt) {
+    Observers observers(w);
+    Analysis a;
+    a.outcome = simulate(
+        w.parameters, w.start,
+        {.tau_end = w.tau_end, .max_impacts = w.max_impacts, .stop = interrupt.run},
+        observers.wanted(w));
+    a.reached = {std::min(w.window.from, a.outcome.tau), std::min(w.window.to, a.outcome.tau)};
+    Conclusion(w, interrupt, observers, a).conclude();
+    return a;
+}
+
+}  // namespace vines

@@ -1,0 +1,28 @@
+#include "core/analysis/window_exponents.hpp"
+
+#include <cmath>
+
+namespace vines {
+
+WindowExponents window_exponents(
+    const Interval& asked, TransferProduct&& product, const Regime& regime) {
+    const Growth growth = growth_of(product);
+    const Judgement judgement = judge(growth, regime, product.start_tau());
+    return {asked, std::move(product), growth, judgement};
+}
+
+void add_warnings(
+    const TransferProduct& product, const ExponentOptions& shown, bool histories,
+    std::vector<Warning>& warnings) {
+    if (histories && shown.raw_product && product.impacts() > 1 &&
+        std::isnan(product.raw_product()[0]))
+        warnings.push_back(warning::RawProductOverflows{});
+    if (product.sum_rule_residual() > most_residual)
+        warnings.push_back(warning::SumRuleMissed{
+            product.start_tau(), product.end_tau(), product.sum_rule_residual()});
+    if (!histories) return;
+    if (product.impacts() < 2) warnings.push_back(warning::NoExponents{});
+    if (product.rank() < 4) warnings.push_back(warning::RankLost{product.rank()});
+}
+
+}  // namespace vines

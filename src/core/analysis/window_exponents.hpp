@@ -1,0 +1,27 @@
+// The exponents of one window of a run, and what they say.
+#pragma once
+
+#include <vector>
+
+#include "core/analysis/warning.hpp"
+#include "core/measures/regime.hpp"
+
+namespace vines {
+
+struct WindowExponents {
+    Interval asked;
+    TransferProduct product;  ///< of the estimators that were asked for
+    Growth growth;            ///< by qr; NaN without it
+    Judgement judgement;
+};
+
+/// `regime`: of the run.
+WindowExponents window_exponents(
+    const Interval& asked, TransferProduct&& product, const Regime& regime);
+
+/// What is worth a warning where the histories are shown as well: all; else the sum rule alone.
+void add_warnings(
+    const TransferProduct& product, const ExponentOptions& shown, bool histories,
+    std::vector<Warning>& warnings);
+
+}  // namespace vines

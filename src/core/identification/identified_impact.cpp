@@ -1,0 +1,80 @@
+#include "core/identification/identified_impact.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/identification/robust.hpp"
+
+namespace vines {
+
+namespace {
+
+// What an impact of a real measurement may miss R in [0, 1] and the balance of momentum by, before
+// it is left out. Where the others keep momentum better than that, ten times their scatter is
+// enough: flown over two missing impacts it is off by a third.
+constexpr double R_tolerance = 0.15, momentum_tolerance = 0.35, least_momentum_tolerance = 0.1;
+// What a flight may miss of its speed, and of the way between the walls.
+constexpr double flight_tolerance = 0.1;
+
+std::string fault_of(const IdentifiedImpact& i, double since, double pulse, double tolerance) {
+    if (since < pulse)
+        return "closer to the impact before it than the length of a pulse: one spike picked twice?";
+    if (!std::isnan(i.y_dot_before) && !(i.side * (i.x_dot_before - i.y_dot_before) > 0))
+        return "the mass would move away from the wall that it meets: is an impact beside it "
+               "missing, or b wrong?";
+    if (std::isnan(i.x_dot_before) || std::isnan(i.x_dot_after))
+        return "too few samples beside it for a velocity";
+    // The first and the last: the flight on one side is not known, and R with it.
+    if (std::isnan(i.R)) return "";
+    if (i.R < -R_tolerance || i.R > 1 + R_tolerance)
+        return "R lies outside [0, 1]: is an impact beside it missing, or b wrong?";
+    if (!(std::abs(i.momentum_error) < tolerance))
+        return "momentum is not kept: is an impact beside it missing or false, or b wrong?";
+    return "";
+}
+
+}  // namespace
+
+void complete_impacts(const Parameters& p, std::vector<IdentifiedImpact>& impacts, double pulse) {
+    std::vector<double> jumps, errors;
+    for (const IdentifiedImpact& i : impacts)
+        jumps.push_back(std::abs(i.x_dot_after - i.x_dot_before));
+    const double typical = median(jumps);
+    for (IdentifiedImpact& i : impacts) {
+        i.R = -(i.x_dot_after - i.y_dot_after) / (i.x_dot_before - i.y_dot_before);
+        i.momentum_error =
+            (i.x_dot_after - i.x_dot_before + p.epsilon * (i.y_dot_after - i.y_dot_before)) /
+            typical;
+        errors.push_back(i.momentum_error);
+    }
+    const double tolerance = std::min(
+        std::max(least_momentum_tolerance, 10 * robust_deviation(errors)), momentum_tolerance);
+    for (std::size_t k = 0; k < impacts.size(); ++k)
+        impacts[k].fault = fault_of(
+            impacts[k],
+            k > 0 ? impacts[k].tau - impacts[k - 1].tau : std::numeric_limits<double>::infinity(),
+            pulse, tolerance);
+}
+
+bool flight_fits(
+    const Parameters& p, const IdentifiedImpact& from, const IdentifiedImpact& to,
+    double typical_speed) {
+    const double way = to.x - to.side * p.b - (from.x - from.side * p.b),
+                 flown = to.y_dot_before * (to.tau - from.tau);
+    return std::abs(to.y_dot_before - from.y_dot_after) < flight_tolerance * typical_speed &&
+           std::abs(way - flown) < flight_tolerance * p.b;
+}
+
+Restitution restitution_of(const std::vector<IdentifiedImpact>& impacts, int side) {
+    std::vector<double> R, off;
+    for (const IdentifiedImpact& i : impacts)
+        if (i.side == side && i.fault.empty() && !std::isnan(i.R)) R.push_back(i.R);
+    const double centre = median(R);
+    for (double r : R) off.push_back(r - centre);
+    // The median of n values scatters by 1.25 times what their mean would.
+    return {
+        centre, 1.25 * robust_deviation(off) / std::sqrt(static_cast<double>(R.size())),
+        static_cast<long>(R.size())};
+}
+
+}  // namespace vines

@@ -1,0 +1,46 @@
+// What a measurement says of each impact, whichever way its velocities were found: R, what is
+// missing in the balance of momentum, and why it is left out.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/motion/parameters.hpp"
+
+namespace vines {
+
+/// One impact with what follows from the flights on both of its sides. What is not known is NaN.
+struct IdentifiedImpact {
+    double tau;
+    int side;
+    double x, x_dot_before, x_dot_after, x_ddot_before;
+    /// NaN where there is no impact on that side.
+    double y_dot_before = std::numeric_limits<double>::quiet_NaN();
+    double y_dot_after = std::numeric_limits<double>::quiet_NaN();
+    double R = std::numeric_limits<double>::quiet_NaN();  ///< (4)
+    /// Of x' + epsilon y', over the typical (median) jump of x'.
+    double momentum_error = std::numeric_limits<double>::quiet_NaN();
+    /// Why it is left out; empty if it is not.
+    std::string fault = "";
+};
+
+/// Fills R, momentum_error and fault of each impact from its velocities. Two impacts closer than
+/// `pulse` are one picked twice.
+void complete_impacts(
+    const Parameters& parameters, std::vector<IdentifiedImpact>& impacts, double pulse);
+
+/// Whether the mass can have flown freely from one impact to the next: with one velocity, from wall
+/// to wall. If not, an impact between them is missing, or they stuck together.
+bool flight_fits(
+    const Parameters& parameters, const IdentifiedImpact& from, const IdentifiedImpact& to,
+    double typical_speed);
+
+struct Restitution {
+    double R, error;  ///< median and its standard error; NaN without an impact
+    long impacts;
+};
+/// Of the impacts at one wall that are not left out.
+Restitution restitution_of(const std::vector<IdentifiedImpact>& impacts, int side);
+
+}  // namespace vines

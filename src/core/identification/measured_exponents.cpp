@@ -1,0 +1,169 @@
+#include "core/identification/measured_exponents.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "core/identification/robust.hpp"
+
+namespace vines {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double hiding_gap = 0.1;  // of a typical flight
+
+/// T over the flight to impact i from the one before it, which the caller knows to fit.
+void append(
+    const Parameters& p, const Flow& flow, const IdentifiedImpact& i, double duration,
+    TransferProduct& product) {
+    Impact impact{};
+    impact.R = p.restitution(i.side);
+    impact.relative_speed_before = i.x_dot_before - i.y_dot_before;
+    impact.x_ddot_before = i.x_ddot_before;
+    const Leg flight = leg_of(flow, duration, false);
+    product.append({&flight, 1}, saltation(p, impact), impact.R, product.end_tau() + duration);
+}
+
+}  // namespace
+
+Continuity continuity_of(
+    const Parameters& p, const std::vector<IdentifiedImpact>& impacts,
+    const std::vector<TimeGap>& gaps) {
+    Continuity c;
+    std::vector<double> flights, speeds;
+    for (std::size_t i = 1; i < impacts.size(); ++i) {
+        flights.push_back(impacts[i].tau - impacts[i - 1].tau);
+        speeds.push_back(std::abs(impacts[i].y_dot_before));
+    }
+    const double typical_flight = median(flights), typical_speed = median(speeds);
+    const auto over_gap = [&](double from, double to) {
+        return std::any_of(gaps.begin(), gaps.end(), [&](const TimeGap& g) {
+            return g.to - g.from > hiding_gap * typical_flight && g.from < to && g.to > from;
+        });
+    };
+    for (std::size_t i = 0; i < impacts.size(); ++i) {
+        if (!impacts[i].fault.empty()) {
+            ++c.left_out;
+            continue;
+        }
+        const bool follows = i > 0 && impacts[i - 1].fault.empty();
+        const bool known = follows && flight_fits(p, impacts[i - 1], impacts[i], typical_speed) &&
+                           !over_gap(impacts[i - 1].tau, impacts[i].tau);
+        if (known && !c.stretches.empty() && c.stretches.back().last == i - 1)
+            c.stretches.back().last = i;
+        else if (known) c.stretches.push_back({i - 1, i});
+        else if (follows) ++c.missing;
+    }
+    if (!impacts.empty())
+        c.share = static_cast<double>(c.left_out + c.missing) /
+                  static_cast<double>(static_cast<long>(impacts.size()) + c.missing);
+    return c;
+}
+
+MeasuredExponents::MeasuredExponents(
+    const Parameters& p, const std::vector<IdentifiedImpact>& impacts,
+    const std::vector<KnownStretch>& stretches, const ExponentOptions& o)
+    : all_(p.epsilon, {true, false, false, o.history}),
+      longest_(p.epsilon, {false, o.eigenvalues, o.raw_product, o.history}) {
+    const Flow flow = Flow::free(p);
+    const auto feed = [&](const KnownStretch& s, TransferProduct& product) {
+        if (product.impacts() == 0) product.start(impacts[s.first].tau);
+        for (std::size_t i = s.first + 1; i <= s.last; ++i)
+            append(p, flow, impacts[i], impacts[i].tau - impacts[i - 1].tau, product);
+    };
+    const auto length = [&](const KnownStretch& s) {
+        return impacts[s.last].tau - impacts[s.first].tau;
+    };
+    for (const KnownStretch& s : stretches) {
+        starts_.push_back(
+            {starts_.empty() ? impacts[s.first].tau : all_.end_tau(), impacts[s.first].tau});
+        feed(s, all_);
+    }
+    const auto longest = std::max_element(
+        stretches.begin(), stretches.end(),
+        [&](const auto& a, const auto& b) { return length(a) < length(b); });
+    if (longest != stretches.end()) feed(*longest, longest_);
+}
+
+double MeasuredExponents::moment(double clock) const {
+    // The end of a stretch and the start of the next have one time of the clock: it is the end's.
+    auto after = std::lower_bound(
+        starts_.begin(), starts_.end(), clock,
+        [](const Start& s, double c) { return s.clock < c; });
+    if (after != starts_.begin()) --after;
+    return after == starts_.end() ? nan : after->tau + (clock - after->clock);
+}
+
+bool is_representative(const std::vector<IdentifiedImpact>& impacts) {
+    constexpr std::size_t enough = 200, enough_if_alike = 80;
+    std::vector<double> jumps[2], off;
+    std::size_t known = 0;
+    for (const IdentifiedImpact& i : impacts) known += i.fault.empty();
+    if (known >= enough || known < enough_if_alike) return known >= enough;
+    for (std::size_t k = impacts.size() / 2; k < impacts.size(); ++k)
+        if (impacts[k].fault.empty())
+            jumps[impacts[k].side > 0].push_back(
+                std::abs(impacts[k].x_dot_after - impacts[k].x_dot_before));
+    for (const auto& of_side : jumps)
+        for (const double jump : of_side) off.push_back(jump / median(of_side) - 1);
+    return quantile_of_moduli(off, 0.9) <
+           0.02 + 0.001 * static_cast<double>(known - enough_if_alike);
+}
+
+bool dies_out(const std::vector<IdentifiedImpact>& impacts) {
+    constexpr std::size_t fewest = 20;
+    constexpr double least_fall = 2;
+    if (impacts.size() < fewest) return false;
+    // Of a chatter only the first impact tells how strong it was.
+    std::array<double, 4> largest{};
+    const double start = impacts.front().tau, duration = impacts.back().tau - start;
+    for (const IdentifiedImpact& i : impacts) {
+        double& of_quarter =
+            largest[static_cast<std::size_t>(std::min(3.0, 4 * (i.tau - start) / duration))];
+        if (i.fault.empty())
+            of_quarter = std::max(of_quarter, std::abs(i.x_dot_after - i.x_dot_before));
+    }
+    return std::is_sorted(largest.rbegin(), largest.rend()) && largest[3] > 0 &&
+           largest[3] * least_fall < largest[0];
+}
+
+IdentifiedExponents judge_exponents(
+    const Parameters& p, const ExponentHistory& qr, double tau_start, bool representative) {
+    std::vector<double> log, duration;  // growth from impact to impact, without the first tenth
+    for (std::size_t i = 1 + qr.tau.size() / 10; i < qr.tau.size(); ++i) {
+        duration.push_back(qr.tau[i] - qr.tau[i - 1]);
+        log.push_back(
+            qr.lambda[i][0] * (qr.tau[i] - tau_start) -
+            qr.lambda[i - 1][0] * (qr.tau[i - 1] - tau_start));
+    }
+    IdentifiedExponents e{nan, nan, nan, Verdict::not_decided};
+    const std::size_t n = log.size();
+    if (n < 20) return e;
+    double sum = 0, time = 0;
+    for (std::size_t i = 0; i < n; ++i) sum += log[i], time += duration[i];
+    e.slope = sum / time;
+    // Blocks as long as the memory of the motion, some impacts, drawn anew a thousand times; always
+    // the same ones.
+    const auto block =
+        static_cast<std::size_t>(std::clamp(std::cbrt(static_cast<double>(n)) * 2, 4.0, 20.0));
+    std::mt19937_64 engine(2018);
+    std::vector<double> slopes;
+    for (int draw = 0; draw < 1000; ++draw) {
+        double s = 0, t = 0;
+        for (std::size_t got = 0; got < n; got += block) {
+            const std::size_t from = engine() % (n - block + 1);
+            for (std::size_t i = from; i < from + block; ++i) s += log[i], t += duration[i];
+        }
+        slopes.push_back(s / t);
+    }
+    std::sort(slopes.begin(), slopes.end());
+    e.low = slopes[50], e.high = slopes[949];
+    if (e.low > p.zeta()) e.verdict = Verdict::chaotic;
+    if (e.high < p.zeta() && representative) e.verdict = Verdict::regular;
+    return e;
+}
+
+}  // namespace vines

@@ -1,0 +1,57 @@
+#include "core/identification/robust.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace vines {
+
+double median(std::vector<double> v) {
+    std::erase_if(v, [](double x) { return std::isnan(x); });
+    if (v.empty()) return std::numeric_limits<double>::quiet_NaN();
+    const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+    std::nth_element(v.begin(), middle, v.end());
+    return v.size() % 2 ? *middle : 0.5 * (*middle + *std::max_element(v.begin(), middle));
+}
+
+double quantile_of_moduli(std::vector<double> v, double share) {
+    std::erase_if(v, [](double x) { return std::isnan(x); });
+    if (v.empty()) return std::numeric_limits<double>::quiet_NaN();
+    for (double& x : v) x = std::abs(x);
+    const auto at =
+        v.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(v.size() - 1));
+    std::nth_element(v.begin(), at, v.end());
+    return *at;
+}
+
+double robust_deviation(std::vector<double> v) {
+    for (double& x : v) x = std::abs(x);
+    return 1.4826 * median(std::move(v));
+}
+
+double difference_noise(
+    const std::vector<double>& tau, const std::vector<double>& v,
+    const std::vector<char>& spoiled) {
+    if (v.size() < 4) return std::numeric_limits<double>::quiet_NaN();
+    const double step = (tau.back() - tau.front()) / static_cast<double>(tau.size() - 1);
+    std::vector<double> third;
+    for (std::size_t i = 3; i < v.size(); ++i) {
+        // One sample may be missing among the four.
+        if (tau[i] - tau[i - 3] > 4.5 * step) continue;
+        double difference = 0, variance = 0;
+        bool clean = true;
+        for (std::size_t j = i - 3; j <= i; ++j) {
+            double product = 1;
+            for (std::size_t k = i - 3; k <= i; ++k)
+                if (k != j) product *= (tau[j] - tau[k]) / step;
+            difference += v[j] / product;
+            variance += 1 / (product * product);
+            clean = clean && (spoiled.empty() || !spoiled[j]);
+        }
+        if (clean) third.push_back(difference / std::sqrt(variance));
+    }
+    return robust_deviation(std::move(third));
+}
+
+}  // namespace vines

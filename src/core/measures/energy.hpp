@@ -1,0 +1,119 @@
+// Where the energy goes: input of the forcing, damper, impacts, what is stored; amplitudes of the
+// linear oscillator.
+//
+// Energies are per unit of m1, in m^2 (time is dimensionless): E = x'^2/2 + x^2/2 + epsilon y'^2/2.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/motion/simulate.hpp"
+
+namespace vines {
+
+/// Integrals over the motion of the oscillator, by tables over the flow's grid: exact to rounding.
+class Quadrature {
+public:
+    explicit Quadrature(const Flow& flow);
+
+    struct Integrals {
+        double x_squared = 0, x_dot_squared = 0, x_dot_sin = 0;  ///< of x^2, x'^2 and x' sin(theta)
+        Integrals& operator+=(const Integrals& more);
+    };
+    /// Over 0 <= s <= duration from a state.
+    Integrals over(Oscillation start, double duration) const;
+
+private:
+    using Form = Eigen::Matrix4d;  // symmetric, of (x, x', sin theta, cos theta)
+    struct Forms {
+        Form x_squared, x_dot_squared, x_dot_sin;
+    };
+    Integrals over_grid(const Oscillation& start, int cells) const;
+    Integrals over_part(const Oscillation& start, double duration) const;
+
+    const Flow flow_;
+    std::vector<Forms> from_start_;  // to each point of the grid
+};
+
+/// The energy balance and the amplitude of x over [tau_start, tau_end].
+class Energy : public Observer {
+public:
+    Energy(const Parameters& parameters, double tau_start, double tau_end);
+
+    void on_stretch(const Stretch&) override;
+    void on_impact(const Impact&) override;
+
+    double duration() const { return duration_; }
+    /// Work of the forcing epsilon A sin(theta) on x'.
+    double input() const;
+    double damper() const;  ///< dissipated by 2 zeta x'
+    /// Dissipated in impacts: (1 - R^2)(x'- - y'-)^2 epsilon/(2 (1 + epsilon)) each.
+    double impacts() const { return impacts_; }
+    double stored() const { return end_ - start_; }
+    double at_start() const { return start_; }
+    double at_end() const { return end_; }
+    double residual() const { return input() - damper() - impacts() - stored(); }
+    double rms() const;                    ///< of x, m
+    double peak() const { return peak_; }  ///< of |x|, m
+
+private:
+    const Parameters parameters_;
+    const double tau_start_, tau_end_;
+    const Quadrature free_;
+    std::optional<Quadrature> stuck_;
+    Quadrature::Integrals integrals_;
+    double duration_ = 0, peak_ = 0, impacts_ = 0, start_ = 0, end_ = 0;
+};
+
+/// The energy balance of a window, and the amplitudes of x in it. Energies per unit of m1, in m^2.
+struct EnergyBalance {
+    Interval window;  ///< what of it the run has reached
+    double input, damper, impacts, stored, residual, at_start, at_end;
+    std::optional<double> share_impacts;  ///< of what is dissipated; none where nothing is
+    double rms, peak;                     ///< of x, m
+};
+EnergyBalance balance_of(
+    const Parameters& parameters, const Energy& energy, const Interval& window);
+
+/// None where there is nothing positive to divide by.
+std::optional<double> ratio(double of, double to);
+
+/// E of a state.
+double energy_of(const Parameters& parameters, const State& state);
+
+/// The linear oscillator without its absorber, forced as it is, from a start over [tau_start,
+/// tau_end].
+struct Unattached {
+    double rms, peak;  ///< of x over the interval, m
+    /// epsilon A/sqrt((1 - Omega^2)^2 + 4 zeta^2 Omega^2) once it is steady, m; none undamped at
+    /// resonance.
+    std::optional<double> amplitude;
+};
+Unattached unattached(
+    const Parameters& parameters, const State& start, double tau_start, double tau_end);
+/// Its rms alone, from tau = 0 on: the cheaper part.
+double unattached_rms(const Parameters& parameters, const State& start, double duration);
+std::optional<double> free_amplitude(const Parameters& parameters);
+
+/// When the energy of a free decay (G = 0) first falls to a share of what it was at tau_start.
+class Decay : public Observer {
+public:
+    Decay(const Parameters& parameters, double tau_start, std::vector<double> shares);
+    void on_stretch(const Stretch&) override;
+
+    /// One for each share; none where the run ended before.
+    std::vector<std::optional<double>> tau;
+
+private:
+    const Parameters parameters_;
+    const double tau_start_;
+    std::optional<double> at_start_;
+    const std::vector<double> shares_;
+};
+
+/// The same of the linear oscillator without its absorber; none where it is undamped or at rest.
+std::vector<std::optional<double>> unattached_decay(
+    const Parameters& parameters, const State& start, double tau_start,
+    const std::vector<double>& shares);
+
+}  // namespace vines

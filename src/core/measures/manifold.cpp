@@ -1,0 +1,121 @@
+#include "core/measures/manifold.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/measures/energy.hpp"
+
+namespace vines {
+
+namespace {
+
+constexpr double quarter_turn = std::numbers::pi / 2;
+
+double k_of(double R) { return (1 - R) / (1 + R); }
+
+}  // namespace
+
+double manifold_C(double R, double Omega, double b, double V) {
+    const double W = V / Omega;
+    return std::hypot(quarter_turn * W - b, k_of(R) * W);
+}
+
+ManifoldPoint manifold_fold(double R, double Omega, double b) {
+    const double k = k_of(R), norm = quarter_turn * quarter_turn + k * k;
+    return {b * k / std::sqrt(norm), Omega * quarter_turn * b / norm};
+}
+
+ManifoldPoint manifold_symmetry_breaking(double R, double Omega, double b) {
+    const double V = Omega * quarter_turn * b / (quarter_turn * quarter_turn - 1);
+    return {manifold_C(R, Omega, b, V), V};
+}
+
+ManifoldPoint manifold_second_contact(double R, double Omega, double b) {
+    // Half the moment of the contact, where tan(u) = (1 + R) u; tan(u)/u >= 1 + u^2/3 bounds it
+    // from above.
+    double below = 0, u = std::min(quarter_turn, std::sqrt(3 * R));
+    for (double middle = u / 2; middle > below && middle < u; middle = below + (u - below) / 2)
+        (std::sin(middle) < (1 + R) * middle * std::cos(middle) ? below : u) = middle;
+    // The minimum itself, (1 - k cos t)/sin t there, written so that nothing cancels; with R = 0
+    // the mass stays on the wall from t = 0 on.
+    const double sin_u = std::sin(u),
+                 q = u > 0 ? (R / (1 + R) + k_of(R) * sin_u * sin_u) / (sin_u * std::cos(u)) : 0;
+    const double V = Omega * b / (quarter_turn - q);
+    return {manifold_C(R, Omega, b, V), V};
+}
+
+double manifold_b(double R, double C) {
+    const double k = k_of(R);
+    return k > 0 ? C * std::sqrt(quarter_turn * quarter_turn + k * k) / k : 0;
+}
+
+std::vector<ManifoldPoint> manifold_branch(
+    double R, double Omega, double b, double from, double to, std::size_t count) {
+    std::vector<ManifoldPoint> points;
+    for (std::size_t i = 0; i < count; ++i) {
+        // Exact at both ends.
+        const double V =
+            std::lerp(from, to, static_cast<double>(i) / static_cast<double>(count - 1));
+        points.push_back({manifold_C(R, Omega, b, V), V});
+    }
+    return points;
+}
+
+Manifold manifold_of(const Parameters& p, double V_max, std::size_t points) {
+    const double R = p.R_plus;
+    const ManifoldPoint fold = manifold_fold(R, p.Omega, p.b),
+                        breaking = manifold_symmetry_breaking(R, p.Omega, p.b),
+                        contact = manifold_second_contact(R, p.Omega, p.b);
+    const double last = std::min(V_max > 0 ? V_max : 2 * breaking.V, contact.V);
+    auto branch = [&](double from, double to) {
+        return from < to ? manifold_branch(R, p.Omega, p.b, from, to, points)
+                         : std::vector<ManifoldPoint>{};
+    };
+    const auto free = free_amplitude(p);
+    return {
+        .R = R,
+        .Omega = p.Omega,
+        .b = p.b,
+        .fold = fold,
+        .symmetry_breaking = breaking.V < contact.V ? std::optional(breaking) : std::nullopt,
+        .second_contact = contact,
+        .stable = branch(fold.V, std::min(breaking.V, contact.V)),
+        .unstable = branch(0, fold.V),
+        .asymmetric = branch(breaking.V, last),
+        .free_amplitude = free,
+        .b_at_free_amplitude = free && R < 1 ? std::optional(manifold_b(R, *free)) : std::nullopt};
+}
+
+HalfCycles::HalfCycles(const Parameters& p, double tau_start, double tau_end, std::size_t most)
+    : half_cycle_(std::numbers::pi / p.Omega),
+      tau_end_(tau_end),
+      most_(most),
+      next_(static_cast<long>(std::ceil(tau_start / half_cycle_)) + 1),
+      begun_((next_ - 1) * half_cycle_) {}
+
+void HalfCycles::on_stretch(const Stretch& stretch) {
+    for (double from = std::max(0.0, begun_ - stretch.tau); from < stretch.duration;) {
+        const double end = next_ * half_cycle_ - stretch.tau;
+        pass(stretch, from, std::min(end, stretch.duration));
+        if (end > stretch.duration) return;
+        if (next_ * half_cycle_ <= tau_end_ * (1 + 1e-12)) {
+            tau.push_back(next_ * half_cycle_);
+            points.push_back({peak_, path_ / half_cycle_});
+            keep_last(tau, most_);
+            keep_last(points, most_);
+        }
+        peak_ = path_ = 0;
+        ++next_;
+        from = std::max(end, 0.0);
+    }
+}
+
+void HalfCycles::pass(const Stretch& stretch, double from, double to) {
+    if (!(from < to)) return;
+    const Excursion x = excursion(stretch.flow, stretch.flow.after(stretch.start, from), to - from);
+    peak_ = std::max(peak_, x.peak);
+    path_ += stretch.stuck_side == 0 ? std::abs(stretch.y_dot) * (to - from) : x.path;
+}
+
+}  // namespace vines

@@ -1,0 +1,31 @@
+// Where the two masses meet: what the regimes and the orbits count.
+#pragma once
+
+#include <vector>
+
+#include "core/motion/simulate.hpp"
+
+namespace vines {
+
+/// An impact, or a whole chatter that ended in a stick: one meeting of the two masses.
+struct Contacts {
+    double tau;
+    int side;
+};
+
+class ContactRecord : public Observer {
+public:
+    struct Stick {
+        double tau_start, tau_end;
+    };
+
+    void on_impact(const Impact& impact) override;
+    void on_stick(const StickStart& start) override;
+    void on_release(double tau) override { sticks.back().tau_end = tau; }
+
+    std::vector<Contacts> contacts;
+    std::vector<Stick> sticks;
+    long impacts = 0;
+};
+
+}  // namespace vines

@@ -1,0 +1,237 @@
+#include "core/motion/flow.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace vines {
+
+namespace {
+
+// 42 cells a period (2 pi/h) keep the empty-cell proof of guard.hpp sharp: its margin M2 h^2/8 is
+// .3 % of the amplitude.
+constexpr double cells_per_period = 42;
+
+}  // namespace
+
+Flow::Flow(double stiffness, double damping, double forcing, double Omega)
+    : stiffness_(stiffness),
+      damping_(damping),
+      forcing_(forcing),
+      Omega_(Omega),
+      h_(2 * std::numbers::pi / cells_per_period / std::max({1.0, Omega, damping})),
+      root_inverse_(1 / std::sqrt(stiffness)),
+      decay_(0.5 * damping + std::sqrt(std::max(0.0, 0.25 * damping * damping - stiffness))) {
+    // In extended precision: the tables are right to the last ulp of double.
+    using Real = long double;
+    struct State4 {
+        Real x, v, s, c;
+    };
+    const State4 unit[4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
+    // The n-th Taylor coefficient of the state from the one before.
+    auto next_term = [&](const State4& t, int n) -> State4 {
+        return {
+            t.v / n, (-(Real)stiffness * t.x - (Real)damping * t.v + (Real)forcing * t.s) / n,
+            (Real)Omega * t.c / n, -(Real)Omega * t.s / n};
+    };
+
+    Series* const from[4] = {&from_x_, &from_x_dot_, &from_sin_, &from_cos_};
+    State4 over_cell[4];  // the exponential over one cell
+    for (int j = 0; j < 4; ++j) {
+        State4 term = unit[j];
+        Real power = 1;
+        over_cell[j] = unit[j];
+        (*from[j])(0) = (double)term.x;
+        for (int n = 1; n <= 26; ++n) {
+            term = next_term(term, n);
+            power *= h_;
+            over_cell[j] = {
+                over_cell[j].x + term.x * power, over_cell[j].v + term.v * power,
+                over_cell[j].s + term.s * power, over_cell[j].c + term.c * power};
+            if (n <= degree) (*from[j])(n) = (double)term.x;
+        }
+    }
+
+    const int rows = cells + block;  // so that a block may begin at the last cell
+    for (auto* column :
+         {&x_x_, &x_v_, &x_s_, &x_c_, &v_x_, &v_v_, &v_s_, &v_c_, &time_, &cos_, &sin_})
+        column->reserve(rows);
+    State4 z[4] = {unit[0], unit[1], unit[2], unit[3]};
+    for (int k = 0; k < rows; ++k) {
+        x_x_.push_back((double)z[0].x), x_v_.push_back((double)z[1].x),
+            x_s_.push_back((double)z[2].x), x_c_.push_back((double)z[3].x);
+        v_x_.push_back((double)z[0].v), v_v_.push_back((double)z[1].v),
+            v_s_.push_back((double)z[2].v), v_c_.push_back((double)z[3].v);
+        time_.push_back(k * h_), cos_.push_back((double)z[3].c), sin_.push_back((double)z[3].s);
+        for (State4& column : z) {
+            const Real part[4] = {column.x, column.v, column.s, column.c};
+            column = {0, 0, 0, 0};
+            for (int j = 0; j < 4; ++j)
+                column = {
+                    column.x + over_cell[j].x * part[j], column.v + over_cell[j].v * part[j],
+                    column.s + over_cell[j].s * part[j], column.c + over_cell[j].c * part[j]};
+        }
+    }
+}
+
+Flow Flow::free(const Parameters& p) { return Flow(1, 2 * p.zeta(), p.epsilon * p.A(), p.Omega); }
+
+Flow Flow::stuck(const Parameters& p) {
+    const double mass = 1 + p.epsilon;
+    return Flow(1 / mass, 2 * p.zeta() / mass, p.epsilon * p.A() / mass, p.Omega);
+}
+
+namespace {
+
+/// The phasor turned by an angle. One Newton step keeps its length 1 over millions of turns.
+void turn(Oscillation& o, double c, double s) {
+    const double sin_theta = o.sin_theta * c + o.cos_theta * s,
+                 cos_theta = o.cos_theta * c - o.sin_theta * s;
+    const double shrink = 1.5 - 0.5 * (sin_theta * sin_theta + cos_theta * cos_theta);
+    o.sin_theta = sin_theta * shrink;
+    o.cos_theta = cos_theta * shrink;
+}
+
+}  // namespace
+
+Oscillation Flow::at(const Oscillation& o, int k) const {
+    Oscillation next = o;
+    turn(next, cos_[k], sin_[k]);
+    next.x = x_x_[k] * o.x + x_v_[k] * o.x_dot + x_s_[k] * o.sin_theta + x_c_[k] * o.cos_theta;
+    next.x_dot = v_x_[k] * o.x + v_v_[k] * o.x_dot + v_s_[k] * o.sin_theta + v_c_[k] * o.cos_theta;
+    return next;
+}
+
+Oscillation Flow::turned(const Oscillation& o, double d) const {
+    // cos and sin of 0 <= a <= 2 pi/42 by their series: the first terms left out are below 1e-18.
+    const double a = Omega_ * d, q = a * a;
+    const double cos =
+        1 + q * (-1.0 / 2 +
+                 q * (1.0 / 24 + q * (-1.0 / 720 + q * (1.0 / 40320 + q * (-1.0 / 3628800)))));
+    const double sin =
+        a *
+        (1 + q * (-1.0 / 6 + q * (1.0 / 120 +
+                                  q * (-1.0 / 5040 + q * (1.0 / 362880 + q * (-1.0 / 39916800))))));
+    Oscillation next = o;
+    turn(next, cos, sin);
+    return next;
+}
+
+SeriesValue value_at(const Flow::Series& c, double d) {
+    // Even and odd coefficients apart: two short chains of operations for each value instead of a
+    // long one.
+    static_assert(Flow::degree % 2 == 1);
+    const double q = d * d;
+    constexpr int n = Flow::degree;
+    double x[2] = {c[n - 1], c[n]}, v[2] = {n * c[n], (n - 1) * c[n - 1]},
+           a[2] = {0, n * (n - 1) / 2 * c[n]};
+    for (int k = n - 3; k >= 0; k -= 2) {
+        x[0] = x[0] * q + c[k];
+        x[1] = x[1] * q + c[k + 1];
+        v[0] = v[0] * q + (k + 1) * c[k + 1];
+        a[0] = a[0] * q + (k + 2) * (k + 1) / 2 * c[k + 2];
+        if (k > 0) {
+            v[1] = v[1] * q + k * c[k];
+            a[1] = a[1] * q + (k + 1) * k / 2 * c[k + 1];
+        }
+    }
+    return {x[0] + d * x[1], v[0] + d * v[1], a[0] + d * a[1]};
+}
+
+Oscillation Flow::along(const Series& c, const Oscillation& o, double d) const {
+    Oscillation next = turned(o, d);
+    const SeriesValue value = value_at(c, d);
+    next.x = value.x;
+    next.x_dot = value.x_dot;
+    return next;
+}
+
+Oscillation Flow::after(Oscillation o, double s) const {
+    for (; s >= reach(); s -= reach()) o = at(o, cells);
+    const int k = static_cast<int>(s / h_);
+    o = at(o, k);
+    return along(series(o), o, std::max(0.0, s - k * h_));
+}
+
+Transfer Flow::transfer(double s) const {
+    Transfer j;
+    auto then = [&j](const Transfer& t) {
+        j = {
+            t.a11 * j.a11 + t.a12 * j.a21, t.a11 * j.a12 + t.a12 * j.a22,
+            t.a21 * j.a11 + t.a22 * j.a21, t.a21 * j.a12 + t.a22 * j.a22};
+    };
+    auto row = [&](int k) { return Transfer{v_v_[k], v_x_[k], x_v_[k], x_x_[k]}; };
+    for (; s >= reach(); s -= reach()) then(row(cells));
+    const int k = static_cast<int>(s / h_);
+    const double d = std::max(0.0, s - k * h_);
+    then(row(k));
+
+    // Within a cell: with u the unforced motion from (x', x) = (1, 0), that from (0, 1) is u' +
+    // damping u.
+    const SeriesValue u = value_at(from_x_dot_, d);
+    then({u.x_dot, -stiffness_ * u.x, u.x, u.x_dot + damping_ * u.x});
+    return j;
+}
+
+Flow::Bounds Flow::bounds(const Oscillation& o) const {
+    // d/ds (stiffness x^2 + x'^2)/2 = x' (forcing sin theta - damping x') <= |x'| |forcing|
+    const double speed =
+        std::sqrt(stiffness_ * o.x * o.x + o.x_dot * o.x_dot) + std::abs(forcing_) * reach();
+    const double x = speed * root_inverse_;
+    const double x_ddot = stiffness_ * x + damping_ * speed + std::abs(forcing_);
+    return {x, x_ddot, stiffness_ * speed + damping_ * x_ddot + std::abs(forcing_) * Omega_};
+}
+
+namespace {
+
+/// Where x' = 0 in (0, d), between two states of opposite x': Newton's method on the series, kept
+/// inside.
+double turning_point(const Flow::Series& series, double d, double x_dot, double x_dot_end) {
+    double s = d * x_dot / (x_dot - x_dot_end);
+    for (int step = 0; step < 3; ++step) {
+        const SeriesValue at = value_at(series, s);
+        if (at.half_x_ddot != 0) s = std::clamp(s - at.x_dot / (2 * at.half_x_ddot), 0.0, d);
+    }
+    return s;
+}
+
+}  // namespace
+
+Excursion excursion(const Flow& flow, Oscillation o, double duration) {
+    Excursion e{std::abs(o.x), 0};
+    double last = o.x;
+    auto visit = [&](double x) {
+        e.peak = std::max(e.peak, std::abs(x));
+        e.path += std::abs(x - last);
+        last = x;
+    };
+    // Within a cell x' changes its sign once, or so little that rounding cannot tell.
+    auto cell = [&](const Oscillation& left, double d, double x_dot, double x_dot_end) {
+        if (x_dot * x_dot_end < 0) {
+            const Flow::Series series = flow.series(left);
+            visit(value_at(series, turning_point(series, d, x_dot, x_dot_end)).x);
+        }
+    };
+    while (duration > 0) {
+        const double part = std::min(duration, flow.reach());
+        const int cells = std::min(static_cast<int>(part / flow.cell()), Flow::cells);
+        double before = o.x_dot;
+        for (int from = 1; from <= cells; from += Flow::block) {
+            const Flow::Block speeds = flow.speeds(o, from);
+            for (int k = from; k < from + Flow::block && k <= cells; ++k) {
+                const double now = speeds[k - from];
+                if (before * now < 0) cell(flow.at(o, k - 1), flow.cell(), before, now);
+                before = now;
+            }
+        }
+        const Oscillation left = flow.at(o, cells);
+        const double d = std::max(0.0, part - cells * flow.cell());
+        o = flow.along(flow.series(left), left, d);
+        cell(left, d, before, o.x_dot);
+        visit(o.x);
+        duration -= part;
+    }
+    return e;
+}
+
+}  // namespace vines

@@ -1,0 +1,127 @@
+// The motion between events: a harmonically forced linear oscillator, alone (free) or with the
+// absorber's mass glued to it (stuck), as a function of the time s since the last event.
+//
+// Instead of the closed form (8)-(11), which divides by omega_d and by the distance to resonance,
+// the flow is kept as the exponential of the matrix of (x, x', sin theta, cos theta): a table of it
+// on a grid of s, and a Taylor series within a cell. That is the same function, to the last ulp,
+// for every zeta >= 0 and every Omega: undamped, at resonance (secular growth), critically damped
+// and overdamped need no case of their own. No absolute time enters; the forcing phase is carried
+// as the phasor (sin theta, cos theta), so it is reduced modulo 2 pi by construction.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/motion/parameters.hpp"
+
+namespace vines {
+
+/// The linear oscillator's state and the phasor of the forcing phase theta = Omega tau + phi.
+struct Oscillation {
+    double x, x_dot;
+    double sin_theta, cos_theta;
+};
+
+/// The 2x2 block [a11 a12; a21 a22] of the transfer matrix J (19), in the order (x', x).
+struct Transfer {
+    double a11 = 1, a12 = 0, a21 = 0, a22 = 1;
+};
+
+/// x'' = -stiffness x - damping x' + forcing sin(theta), theta' = Omega.
+class Flow {
+public:
+    /// The grid reaches 3 periods of the faster of forcing and oscillator.
+    static constexpr int cells = 128;
+    /// Of the Taylor series within a cell: its remainder is below 1e-20 of the motion.
+    static constexpr int degree = 13;
+    static constexpr int block = 4;  ///< grid points that gaps() evaluates at once
+    using Series = Eigen::Array<double, degree + 1, 1>;
+    using Block = Eigen::Array<double, block, 1>;
+
+    Flow(double stiffness, double damping, double forcing, double Omega);
+
+    /// The oscillator of eq. (2), where the absorber's mass flies freely.
+    static Flow free(const Parameters& parameters);
+    /// Both masses as one: (1 + epsilon) x'' + 2 zeta x' + x = epsilon A sin(theta).
+    static Flow stuck(const Parameters& parameters);
+
+    double cell() const { return h_; }  ///< width h of a cell
+    /// Longest time that one look at the grid can bridge.
+    double reach() const { return h_ * cells; }
+    /// The transfer matrix over s has the determinant e^(-damping s)
+    double damping() const { return damping_; }
+    /// Rate at which the unforced motion dies out, its faster part.
+    double fastest_decay() const { return decay_; }
+
+    double acceleration(const Oscillation& o) const {
+        return -stiffness_ * o.x - damping_ * o.x_dot + forcing_ * o.sin_theta;
+    }
+    double jerk(const Oscillation& o) const {
+        return -stiffness_ * o.x_dot - damping_ * acceleration(o) + forcing_ * Omega_ * o.cos_theta;
+    }
+
+    /// x - y at the grid times k h, ..., (k + block - 1) h, for y = y0 + y_dot s: five
+    /// multiply-adds each. k <= cells.
+    Block gaps(const Oscillation& o, double y0, double y_dot, int k) const {
+        const auto from = [k](const std::vector<double>& column) {
+            return Eigen::Map<const Block>(column.data() + k);
+        };
+        return from(x_x_) * o.x + from(x_v_) * o.x_dot + from(x_s_) * o.sin_theta +
+               from(x_c_) * o.cos_theta - (y0 + from(time_) * y_dot);
+    }
+    /// x' at the same grid times.
+    Block speeds(const Oscillation& o, int k) const {
+        const auto from = [k](const std::vector<double>& column) {
+            return Eigen::Map<const Block>(column.data() + k);
+        };
+        return from(v_x_) * o.x + from(v_v_) * o.x_dot + from(v_s_) * o.sin_theta +
+               from(v_c_) * o.cos_theta;
+    }
+    /// The whole state at grid time k h.
+    Oscillation at(const Oscillation& o, int k) const;
+    /// Taylor coefficients of x(s + d) in d.
+    Series series(const Oscillation& o) const {
+        return from_x_ * o.x + from_x_dot_ * o.x_dot + from_sin_ * o.sin_theta +
+               from_cos_ * o.cos_theta;
+    }
+    /// The state with its phasor turned by 0 <= d <= h; x and x' stay.
+    Oscillation turned(const Oscillation& o, double d) const;
+    /// The state that `series` (made at o) has after 0 <= d <= h.
+    Oscillation along(const Series& series, const Oscillation& o, double d) const;
+    /// The state after any s >= 0.
+    Oscillation after(Oscillation o, double s) const;
+    /// The transfer matrix over any s >= 0, eq. (19).
+    Transfer transfer(double s) const;
+
+    /// Upper bounds of |x|, |x''| and |x'''| over the reach, from the growth of the energy:
+    /// sqrt(stiffness x^2 + x'^2) rises no faster than the forcing, for any damping >= 0.
+    struct Bounds {
+        double x, x_ddot, x_dddot;
+    };
+    Bounds bounds(const Oscillation& o) const;
+
+private:
+    double stiffness_, damping_, forcing_, Omega_, h_;
+    double root_inverse_;  // of the stiffness
+    double decay_;
+    // x(k h) and x'(k h) from x, x', sin theta, cos theta at 0; k h; cos and sin of Omega k h: each
+    // a column over k.
+    std::vector<double> x_x_, x_v_, x_s_, x_c_, v_x_, v_v_, v_s_, v_c_, time_, cos_, sin_;
+    // Taylor coefficients of x from each part of the state.
+    Series from_x_, from_x_dot_, from_sin_, from_cos_;
+};
+
+/// x, x' and x''/2 of a Taylor series at d.
+struct SeriesValue {
+    double x, x_dot, half_x_ddot;
+};
+SeriesValue value_at(const Flow::Series& series, double d);
+
+/// How far x goes over 0 <= s <= duration: its largest modulus, and the length of its path up and
+/// down.
+struct Excursion {
+    double peak = 0, path = 0;
+};
+Excursion excursion(const Flow& flow, Oscillation start, double duration);
+
+}  // namespace vines

@@ -1,0 +1,71 @@
+#include "core/motion/impact.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace vines {
+
+double Impact::phase() const {
+    const double theta = std::atan2(sin_theta, cos_theta);
+    return theta < 0 ? theta + 2 * std::numbers::pi : theta;
+}
+
+Impact impact_at(const Parameters& p, const Contact& contact, double x_ddot, double tau) {
+    const double R = p.restitution(contact.side), w = contact.relative_speed;
+    Impact i;
+    i.tau = tau;
+    i.side = contact.side;
+    i.sin_theta = contact.lo.sin_theta;
+    i.cos_theta = contact.lo.cos_theta;
+    i.x = contact.lo.x;
+    i.x_dot_before = contact.lo.x_dot;
+    i.y_dot_before = contact.lo.x_dot - w;
+    i.relative_speed_before = w;
+    i.relative_speed_after = -R * w;
+    i.x_dot_after = i.x_dot_before - (1 + R) * p.epsilon / (1 + p.epsilon) * w;
+    i.y_dot_after = i.x_dot_after - i.relative_speed_after;
+    i.x_ddot_before = x_ddot;
+    i.R = R;
+    // The gap is b + w s + x'' s^2/2 (times side) near the contact: depth w^2/(2 |x''|), if x''
+    // turns it back at all.
+    i.grazing = contact.side * x_ddot < 0 && w * w < 2 * std::abs(x_ddot) * grazing_depth * p.b;
+    return i;
+}
+
+Eigen::Vector4d gap_gradient() { return {0, 1, 0, -1}; }
+
+Matrix4 Saltation::matrix() const { return S + r * gap_gradient().transpose(); }
+
+Matrix4 Saltation::times(const Matrix4& d) const {
+    Matrix4 out;
+    for (int k = 0; k < 4; ++k) {
+        const double gap = d(1, k) - d(3, k);
+        out(0, k) = S(0, 0) * d(0, k) + S(0, 2) * d(2, k) + r(0) * gap;
+        out(1, k) = d(1, k) + r(1) * gap;
+        out(2, k) = S(2, 0) * d(0, k) + S(2, 2) * d(2, k) + r(2) * gap;
+        out(3, k) = d(3, k) + r(3) * gap;
+    }
+    return out;
+}
+
+double Saltation::condition(double R) const {
+    // M^-1 = S^-1 - S^-1 r g^T S^-1/(1 + g^T S^-1 r). S leaves positions alone and g sees nothing
+    // else, so that g^T S^-1 = g^T and 1 + g^T r = -R: no large entry of r is left to cancel.
+    if (R == 0) return std::numeric_limits<double>::infinity();
+    const Matrix4 S_inverse = S.inverse();
+    return matrix().norm() * (S_inverse + S_inverse * r * gap_gradient().transpose() / R).norm();
+}
+
+Saltation saltation(const Parameters& p, const Impact& i) {
+    const double mu = p.epsilon / (1 + p.epsilon), nu = 1 / (1 + p.epsilon), e = 1 + i.R;
+    const double kappa = i.x_ddot_before / i.relative_speed_before;
+    Saltation m;
+    m.S << 1 - e * mu, 0, e * mu, 0, 0, 1, 0, 0, e * nu, 0, 1 - e * nu, 0, 0, 0, 0, 1;
+    // x'' jumps by -2 zeta (x'+ - x'-); the velocities by their share of (1 + R)(x'- - y'-).
+    m.r << e * mu * (kappa + 2 * p.zeta()), -e * mu, -e * nu * kappa, e * nu;
+    return m;
+}
+
+}  // namespace vines

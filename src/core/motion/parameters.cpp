@@ -1,0 +1,93 @@
+#include "core/motion/parameters.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace vines {
+
+namespace {
+
+// x0 and y0 are decimal numbers rounded to double: their difference may miss b by some ulps of the
+// largest of the three.
+double wall_tolerance(const State& s, double b) {
+    return 8 * std::numeric_limits<double>::epsilon() * std::max({std::abs(s.x), std::abs(s.y), b});
+}
+
+// Above this damping ratio the cells of the search (flow.cpp) would be so short that nobody wants
+// to wait for the answer.
+constexpr double zeta_maximum = 10;
+
+constexpr ParameterRange ranges[] = {
+    {"epsilon", &Parameters::epsilon, nullptr, 1e-9, 10},
+    {"lambda", &Parameters::lambda, nullptr, 0, 1e9},
+    {"G", &Parameters::G, nullptr, 0, 1e3},
+    {"Omega", &Parameters::Omega, nullptr, 1e-3, 100},
+    {"R_plus", &Parameters::R_plus, nullptr, 0, 1},
+    {"R_minus", &Parameters::R_minus, nullptr, 0, 1},
+    {"b", &Parameters::b, nullptr, 1e-9, 1e3},
+    {"x0", nullptr, &State::x, -1e3, 1e3},
+    {"x_dot0", nullptr, &State::x_dot, -1e3, 1e3},
+    {"y0", nullptr, &State::y, -2e3, 2e3},
+    {"y_dot0", nullptr, &State::y_dot, -1e3, 1e3},
+};
+
+std::string format(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value);
+    return text;
+}
+
+}  // namespace
+
+SiParameters in_si(const Parameters& p, double m1, double k1) {
+    SiParameters si{m1, 0, k1, p.epsilon * m1, p.G * p.epsilon, 0};
+    si.c1 = p.lambda * si.m2 * si.omega0();
+    si.f = p.Omega * si.f0();
+    return si;
+}
+
+double Parameters::zeta() const {
+    return damping == Damping::closed_form ? epsilon * lambda : 0.5 * epsilon * lambda;
+}
+
+double Parameters::A() const { return G * std::hypot(1.0, lambda * epsilon * Omega); }
+
+double Parameters::phi() const { return std::atan(lambda * epsilon * Omega); }
+
+State default_state(const Parameters& parameters) { return {0, 0, 0, 0.95 * parameters.b}; }
+
+std::span<const ParameterRange> parameter_ranges() { return ranges; }
+
+int wall_of(const State& s, double b) {
+    if (std::abs(std::abs(s.x - s.y) - b) > wall_tolerance(s, b)) return 0;
+    return s.x > s.y ? 1 : -1;
+}
+
+std::vector<Fault> validate(const Parameters& p, const State& start) {
+    std::vector<Fault> faults;
+    auto check = [&](const std::string& field, double value, double minimum, double maximum,
+                     const std::string& what) {
+        if (value >= minimum && value <= maximum) return;  // false for NaN, too
+        faults.push_back(
+            {field, value, minimum, maximum,
+             what + " must lie in [" + format(minimum) + ", " + format(maximum) + "]"});
+    };
+    for (const ParameterRange& r : ranges)
+        check(r.name, r.parameter ? p.*r.parameter : start.*r.state, r.minimum, r.maximum, r.name);
+    if (!faults.empty()) return faults;  // what follows is computed from numbers that are in range
+
+    if (p.zeta() > zeta_maximum)
+        check(
+            "lambda", p.lambda, 0, p.lambda / p.zeta() * zeta_maximum,
+            "lambda, which with this epsilon gives a damping ratio zeta of " + format(p.zeta()) +
+                ",");
+    if (!wall_of(start, p.b))
+        check(
+            "y0", start.y, start.x - p.b, start.x + p.b,
+            "y0, so that the free mass starts inside its cavity (|x0 - y0| <= b),");
+    return faults;
+}
+
+}  // namespace vines

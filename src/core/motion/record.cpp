@@ -1,0 +1,61 @@
+#include "core/motion/record.hpp"
+
+namespace vines {
+
+void SeriesRecord::add(double at, const State& state, double acceleration) {
+    series.tau.push_back(at);
+    series.x.push_back(state.x);
+    series.x_dot.push_back(state.x_dot);
+    series.y.push_back(state.y);
+    series.y_dot.push_back(state.y_dot);
+    series.x_ddot.push_back(acceleration);
+}
+
+void SeriesRecord::on_stretch(const Stretch& stretch) {
+    for (double at = next_ * step_; at < stretch.tau + stretch.duration; at = ++next_ * step_) {
+        const double s = std::max(0.0, at - stretch.tau);
+        add(at, stretch.at(s), stretch.x_ddot(s));
+    }
+    x_ddot_at_end_ = stretch.x_ddot(stretch.duration);
+}
+
+void SeriesRecord::finish(const Outcome& outcome) {
+    if (series.tau.empty() || series.tau.back() < outcome.tau)
+        add(outcome.tau, outcome.state, x_ddot_at_end_);
+}
+
+void StroboscopicRecord::on_stretch(const Stretch& stretch) {
+    const double end = stretch.tau + stretch.duration;
+    // One at the very end of a stretch is taken before whatever happens there.
+    while (tau(states.size()) <= end)
+        states.push_back(stretch.at(std::max(0.0, tau(states.size()) - stretch.tau)));
+}
+
+void ImpactRecord::on_impact(const Impact& impact) {
+    impacts.push_back(impact);
+    keep_last(impacts, most_);
+    ++seen;
+}
+
+void SectionRecord::on_impact(const Impact& impact) {
+    if (impact.tau >= tau_start_ && impact.tau <= tau_end_) {
+        points.push_back({impact, impact.tau - before_});
+        keep_last(points, most_);
+        ++seen;
+    }
+    before_ = impact.tau;
+}
+
+void StickRecord::on_stick(const StickStart& start) {
+    sticks.push_back({start, start.tau});
+    keep_last(sticks, most_);
+    ++seen;
+}
+
+void TouchRecord::on_touch(double tau, int side) {
+    touches.push_back({tau, side});
+    keep_last(touches, most_);
+    ++seen;
+}
+
+}  // namespace vines

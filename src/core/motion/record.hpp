@@ -1,0 +1,138 @@
+// Observers that write down what a run does: the sampled motion, the impacts, the stuck phases.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "core/motion/simulate.hpp"
+
+namespace vines {
+
+/// Of a record that keeps all of its entries.
+inline constexpr std::size_t everything = std::numeric_limits<std::size_t>::max() / 2;
+
+/// Cuts a growing record down to its last `most` entries, at half of them more: each entry is moved
+/// once at most.
+template <class Entries>
+void keep_last(Entries& entries, std::size_t most) {
+    if (entries.size() >= most + most / 2 + 1)
+        entries.erase(entries.begin(), entries.end() - static_cast<std::ptrdiff_t>(most));
+}
+/// The same at the end of the run.
+template <class Entries>
+void trim_to_last(Entries& entries, std::size_t most) {
+    if (entries.size() > most)
+        entries.erase(entries.begin(), entries.end() - static_cast<std::ptrdiff_t>(most));
+}
+
+/// The motion at some moments: columns of equal length. x and y in m, derivatives in tau.
+struct Series {
+    std::vector<double> tau, x, x_dot, y, y_dot, x_ddot;
+};
+
+/// The motion at tau = 0, step, 2 step, ... and at the end of the run.
+class SeriesRecord : public Observer {
+public:
+    explicit SeriesRecord(double step) : step_(step) {}
+    void on_stretch(const Stretch&) override;
+    void finish(const Outcome& outcome);
+
+    Series series;
+
+private:
+    void add(double tau, const State& state, double x_ddot);
+    double step_, x_ddot_at_end_ = 0;
+    long next_ = 0;
+};
+
+/// The states at one phase of the forcing, once a cycle: at tau = (k + phase/(2 pi)) 2 pi/Omega, k
+/// = first, first + 1, ... So theta = phi + phase.
+class StroboscopicRecord : public Observer {
+public:
+    explicit StroboscopicRecord(const Parameters& parameters, long first = 0, double phase = 0)
+        : cycle_(parameters.cycle()),
+          after_(phase / parameters.Omega),
+          first_(first) {}
+    void on_stretch(const Stretch&) override;
+
+    double tau(std::size_t k) const {
+        return static_cast<double>(first_ + static_cast<long>(k)) * cycle_ + after_;
+    }
+    std::vector<State> states;  ///< the k-th at tau(k)
+
+private:
+    const double cycle_, after_;
+    const long first_;
+};
+
+/// Like the two below it keeps up to half more than its last `most`; `seen` counts all of them.
+class ImpactRecord : public Observer {
+public:
+    explicit ImpactRecord(std::size_t most = everything) : most_(most) {}
+    void on_impact(const Impact& impact) override;
+
+    std::vector<Impact> impacts;
+    long seen = 0;
+
+private:
+    const std::size_t most_;
+};
+
+/// The impacts in [tau_start, tau_end], each with the time since the impact before it, whether that
+/// is in the window or not.
+class SectionRecord : public Observer {
+public:
+    SectionRecord(double tau_start, double tau_end, std::size_t most)
+        : tau_start_(tau_start),
+          tau_end_(tau_end),
+          most_(most) {}
+    void on_impact(const Impact& impact) override;
+
+    struct Point {
+        Impact impact;
+        double since;  ///< NaN at the first impact of the run
+    };
+    std::vector<Point> points;
+    long seen = 0;
+
+private:
+    const double tau_start_, tau_end_;
+    const std::size_t most_;
+    double before_ = std::numeric_limits<double>::quiet_NaN();
+};
+
+class StickRecord : public Observer {
+public:
+    explicit StickRecord(std::size_t most = everything) : most_(most) {}
+    void on_stick(const StickStart& start) override;
+    void on_release(double tau) override { sticks.back().tau_end = tau; }
+
+    struct Stick {
+        StickStart start;
+        double tau_end;
+    };
+    std::vector<Stick> sticks;
+    long seen = 0;
+
+private:
+    const std::size_t most_;
+};
+
+/// Tangent contacts without an impact.
+class TouchRecord : public Observer {
+public:
+    explicit TouchRecord(std::size_t most = everything) : most_(most) {}
+    void on_touch(double tau, int side) override;
+
+    struct Touch {
+        double tau;
+        int side;
+    };
+    std::vector<Touch> touches;
+    long seen = 0;
+
+private:
+    const std::size_t most_;
+};
+
+}  // namespace vines

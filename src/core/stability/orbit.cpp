@@ -1,0 +1,316 @@
+#include "core/stability/orbit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/motion/contacts.hpp"
+#include "core/motion/record.hpp"
+#include "core/stability/linear.hpp"
+
+namespace vines {
+
+namespace {
+
+// A period with more impacts than this is not looked for.
+constexpr long most_impacts = 20000;
+// Newton's method has found the orbit when its return misses it by no more, in units of the scale.
+constexpr double closed = 1e-10;
+
+Eigen::Vector4d vector(const State& s) { return {s.x_dot, s.x, s.y_dot, s.y}; }
+State state(const Eigen::Vector4d& v) { return {v(0), v(1), v(2), v(3)}; }
+
+/// The product of all transfer matrices of a run, as a matrix and by its exterior powers.
+class Monodromy : public Observer {
+public:
+    explicit Monodromy(const Parameters& p) : p_(p), powers_(p.epsilon) {}
+    void on_stretch(const Stretch& stretch) override {
+        const Leg leg = leg_of(stretch.flow, stretch.duration, stretch.stuck_side != 0);
+        matrix_ = transfer_of(leg, p_.epsilon) * matrix_;
+        powers_.pass(leg);
+    }
+    void on_impact(const Impact& impact) override {
+        const Saltation M = saltation(p_, impact);
+        matrix_ = M.times(matrix_);
+        powers_.strike(M, impact.R);
+    }
+    const Matrix4& matrix() const { return matrix_; }
+    /// Eigenvalues by descending modulus. The solver's error is one of the largest: small ones get
+    /// their moduli from the exterior powers.
+    std::array<std::complex<double>, 4> multipliers() const {
+        const Eigen::Vector4cd eigenvalues = eigenvalues_of(matrix_);
+        std::array<std::complex<double>, 4> values;
+        for (int k = 0; k < 4; ++k) values[k] = eigenvalues(k);
+        std::stable_sort(
+            values.begin(), values.end(), [](auto a, auto b) { return std::abs(a) > std::abs(b); });
+        const auto logs = powers_.log_moduli();
+        for (int k = 0; k < 4; ++k) {
+            const double modulus = std::abs(values[k]);
+            if (k >= powers_.rank() || modulus == 0) values[k] = 0;
+            else if (modulus < 1e-6 * std::abs(values[0]) && std::isfinite(logs[k]))
+                values[k] *= std::exp(logs[k]) / modulus;
+        }
+        return values;
+    }
+
+private:
+    const Parameters p_;
+    Matrix4 matrix_ = Matrix4::Identity();
+    PowerProduct powers_;
+};
+
+using Stop = std::function<bool()>;
+
+/// The middle of the longest flight within one cycle from a state at a whole cycle: a moment with
+/// no event nearby.
+double quiet_moment(const Parameters& p, const State& start, const Stop& stop) {
+    ImpactRecord impacts;
+    StickRecord sticks;
+    Observer* const observers[] = {&impacts, &sticks};
+    const double cycle = p.cycle();
+    follow(p, start, 0, cycle, stop, observers);
+    double from = 0, length = 0, middle = 0.5 * cycle;
+    std::size_t stick = 0;
+    auto flight_to = [&](double tau) {
+        // What is left of a chatter, and the stuck phase behind it, are no flight.
+        for (; stick < sticks.sticks.size() && sticks.sticks[stick].start.tau <= tau; ++stick)
+            from = std::max(from, sticks.sticks[stick].tau_end);
+        if (tau - from > length) length = tau - from, middle = 0.5 * (from + tau);
+        from = std::max(from, tau);
+    };
+    for (const Impact& i : impacts.impacts) flight_to(i.tau);
+    flight_to(cycle);
+    return middle;
+}
+
+struct Return {
+    State state;
+    Monodromy monodromy;
+};
+std::optional<Return> after_period(
+    const Parameters& p, const State& s, double tau, int cycles, const Stop& stop) {
+    if (std::abs(s.x - s.y) > p.b) return std::nullopt;
+    Monodromy monodromy(p);
+    Observer* const observers[] = {&monodromy};
+    const auto end = follow(p, s, tau, cycles * p.cycle(), stop, observers);
+    if (!end) return std::nullopt;
+    return Return{*end, monodromy};
+}
+
+/// Newton's method, in coordinates scaled to order one.
+std::optional<State> close(
+    const Parameters& p, State s, double tau, int cycles, const State& scale, double reach,
+    const Stop& stop) {
+    const State guess = s;
+    const Eigen::Vector4d unit = vector(scale);
+    double miss_before = std::numeric_limits<double>::infinity();
+    for (int step = 0, worse = 0; step < 25; ++step) {
+        const auto back = after_period(p, s, tau, cycles, stop);
+        if (!back) return std::nullopt;
+        const Eigen::Vector4d miss = (vector(back->state) - vector(s)).cwiseQuotient(unit);
+        const double size = miss.cwiseAbs().maxCoeff();
+        // Near the orbit each step squares the miss, until rounding stops it.
+        if (size < 1e-14 || (size < closed && size > 0.1 * miss_before)) return s;
+        if (size > miss_before && ++worse > 2) return std::nullopt;
+        miss_before = size;
+        const Matrix4 D = unit.asDiagonal().inverse() *
+                          (back->monodromy.matrix() - Matrix4::Identity()) * unit.asDiagonal();
+        // Neutral directions (a mass at rest that is never hit) are left as they are: the smallest
+        // step solves.
+        Eigen::Vector4d correction = -smallest_solution(D, miss);
+        State next = state(vector(s) + correction.cwiseProduct(unit));
+        for (int half = 0; half < 6 && std::abs(next.x - next.y) > p.b; ++half) {
+            correction *= 0.5;
+            next = state(vector(s) + correction.cwiseProduct(unit));
+        }
+        s = next;
+        if (!(distance(s, guess, scale) < reach)) return std::nullopt;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+State scale_of(const Parameters& p, std::span<const State> states) {
+    // The free mass is never slower, by order of magnitude, than b per half cycle where it meets
+    // both walls.
+    State scale{1e-9 * p.b, 1e-9 * p.b, 0.1 * p.b, p.b};
+    for (const State& s : states)
+        scale = {
+            std::max(scale.x_dot, std::abs(s.x_dot)), std::max(scale.x, std::abs(s.x)),
+            std::max(scale.y_dot, std::abs(s.y_dot)), scale.y};
+    // At one phase of the forcing either may pass through zero.
+    scale.x = scale.x_dot = std::max(scale.x, scale.x_dot);
+    return scale;
+}
+
+double distance(const State& a, const State& b, const State& scale) {
+    return (vector(a) - vector(b)).cwiseQuotient(vector(scale)).cwiseAbs().maxCoeff();
+}
+
+Exponents PeriodicOrbit::exponents(const Parameters& p) const {
+    Exponents lambda;
+    // Multipliers below what rounding leaves of a zero are zero: the orbit sticks, or R = 0.
+    for (int k = 0; k < 4; ++k)
+        lambda[k] = std::log(std::abs(multipliers[k])) / (cycles * p.cycle());
+    return lambda;
+}
+
+std::optional<State> follow(
+    const Parameters& p, const State& start, double tau, double duration, const Stop& stop,
+    std::span<Observer* const> observers) {
+    const Outcome outcome =
+        simulate(p, start, {tau + duration, most_impacts, stop, tau}, observers);
+    if (outcome.reason != End::tau_end) return std::nullopt;
+    return outcome.state;
+}
+
+std::optional<PeriodicOrbit> find_orbit(
+    const Parameters& p, const State& at_whole_cycle, int cycles, const State& scale, double reach,
+    const Stop& stop) {
+    const double tau = quiet_moment(p, at_whole_cycle, stop), cycle = p.cycle();
+    const auto guess = follow(p, at_whole_cycle, 0, tau, stop);
+    if (!guess) return std::nullopt;
+    const auto found = close(p, *guess, tau, cycles, scale, reach, stop);
+    if (!found) return std::nullopt;
+
+    PeriodicOrbit orbit{};
+    orbit.tau = tau;
+    orbit.state = *found;
+    // The smallest period: a divisor after which the state is back.
+    for (int divisor = 1; divisor <= cycles; ++divisor) {
+        if (cycles % divisor != 0) continue;
+        auto back = after_period(p, *found, tau, divisor, stop);
+        if (!back) return std::nullopt;
+        orbit.closure = distance(back->state, *found, scale);
+        if (divisor < cycles && orbit.closure > 1e3 * closed) continue;
+        orbit.cycles = divisor;
+        orbit.monodromy = back->monodromy.matrix();
+        orbit.multipliers = back->monodromy.multipliers();
+        break;
+    }
+
+    // Three periods, of which one is counted from the first contact after a release: a chatter must
+    // not be cut in two.
+    ContactRecord contacts;
+    ImpactRecord impacts;
+    Observer* const observers[] = {&contacts, &impacts};
+    const double period = orbit.cycles * cycle;
+    if (!follow(p, *found, tau, 3 * period, stop, observers)) return std::nullopt;
+    double from = contacts.sticks.empty() ? tau : contacts.sticks[0].tau_end;
+    for (const Contacts& c : contacts.contacts)
+        if (c.tau >= from) {
+            from = c.tau;
+            break;
+        }
+    // The rounding of a contact's tau must not count it twice.
+    const double to = from + period * (1 - 1e-9);
+    const auto within = [&](double t) { return t >= from && t < to; };
+    orbit.contacts = std::count_if(
+        contacts.contacts.begin(), contacts.contacts.end(),
+        [&](const Contacts& c) { return within(c.tau); });
+    orbit.impacts = std::count_if(
+        impacts.impacts.begin(), impacts.impacts.end(),
+        [&](const Impact& i) { return within(i.tau); });
+    orbit.sticks = std::count_if(
+        contacts.sticks.begin(), contacts.sticks.end(),
+        [&](const auto& s) { return within(s.tau_start); });
+    // Half a period on, the forcing has the opposite sign only where the period is an odd number of
+    // cycles. Walls that differ may leave the motion between their chatters the same, but not the
+    // chatters.
+    if (orbit.cycles % 2 == 1 && (p.R_plus == p.R_minus || orbit.impacts == 0)) {
+        const auto half = follow(p, *found, tau, 0.5 * orbit.cycles * cycle, stop);
+        orbit.symmetric = half && distance(state(-vector(*half)), *found, scale) < 1e-6;
+    }
+    return orbit;
+}
+
+namespace {
+
+/// Deviations from an orbit in the eigenvectors of its monodromy matrix: there a small one shrinks,
+/// period by period, by the multipliers' moduli, however far from orthogonal the eigenvectors are.
+class EigenCoordinates {
+public:
+    EigenCoordinates(const PeriodicOrbit& orbit, const State& scale, bool oscillator_alone)
+        : at_(vector(orbit.state)),
+          unit_(vector(scale)) {
+        Matrix4 D = unit_.asDiagonal().inverse() * orbit.monodromy * unit_.asDiagonal();
+        if (oscillator_alone) D.bottomRows<2>().setZero(), D.rightCols<2>().setZero();
+        base_ = eigen_base_of(D);
+    }
+    Eigen::Vector4cd of(const State& s) const {
+        return base_.to_coordinates * (vector(s) - at_).cwiseQuotient(unit_);
+    }
+    Eigen::Vector4cd after(Eigen::Vector4cd deviation, int periods) const {
+        for (int k = 0; k < 4; ++k) deviation(k) *= std::pow(base_.values(k), periods);
+        return deviation;
+    }
+    bool usable() const { return base_.to_coordinates.allFinite(); }
+
+private:
+    const Eigen::Vector4d at_, unit_;
+    EigenBase base_;
+};
+
+// So close, in units of the scale, the motion is on the orbit: from order one a chance return would
+// need 1e16 cycles or more.
+constexpr double there = 1e-8;
+// From order one to there takes this many times the contraction's own time, and some more while it
+// is not linear yet.
+constexpr double decay_times = 24;
+constexpr int more_periods = 20;
+// A motion is followed for so many cycles at most, but for so many periods at least.
+constexpr int most_cycles = 4000, least_periods = 30;
+// Where that is too short, it must move as the orbit's linear map says, in each of so many spans,
+// to this share of what the map contracts in the span.
+constexpr int spans = 3;
+constexpr double linear_share = 0.2;
+
+}  // namespace
+
+bool attracts(
+    const Parameters& p, const PeriodicOrbit& orbit, const State& at_whole_cycle,
+    const State& scale, const Stop& stop) {
+    // Without an impact nothing pulls the free mass back: its two multipliers are 1, and it is the
+    // oscillator that converges.
+    const bool untouched = orbit.contacts == 0 && orbit.state.y_dot == 0;
+    const double largest = untouched ? spectral_radius(orbit.monodromy.topLeftCorner<2, 2>())
+                                     : std::abs(orbit.multipliers[0]);
+    const double per_period = -std::log(largest);
+    if (!(per_period > 1e-9)) return false;  // nothing contracts, but for rounding
+    std::optional<State> s = follow(p, at_whole_cycle, 0, orbit.tau, stop);
+    auto distant = [&] { return distance(*s, orbit.state, scale); };
+    auto pass = [&](int periods) {
+        for (int k = 0; k < periods && s && distant() >= there; ++k)
+            s = follow(p, *s, orbit.tau, orbit.cycles * p.cycle(), stop);
+        return s.has_value();
+    };
+    if (!s) return false;
+
+    const int most_periods = std::max(most_cycles / orbit.cycles, least_periods);
+    const double needed = decay_times / per_period + more_periods;
+    if (needed <= most_periods) return pass(static_cast<int>(needed)) && distant() < there;
+
+    const EigenCoordinates coordinates(orbit, scale, untouched);
+    if (!coordinates.usable()) return false;
+    const int periods = most_periods / spans;
+    const double contraction = 1 - std::pow(largest, periods);
+    for (int span = 0; span < spans; ++span) {
+        const Eigen::Vector4cd before = coordinates.of(*s),
+                               linear = coordinates.after(before, periods);
+        if (!pass(periods)) return false;
+        if (distant() < there) return true;
+        if ((coordinates.of(*s) - linear).norm() > linear_share * contraction * before.norm())
+            return false;
+    }
+    return true;
+}
+
+std::vector<State> whole_cycle_states(const Parameters& p, const PeriodicOrbit& orbit) {
+    StroboscopicRecord record(p, 1);
+    Observer* const observers[] = {&record};
+    follow(p, orbit.state, orbit.tau, (orbit.cycles + 0.5) * p.cycle(), {}, observers);
+    record.states.resize(orbit.cycles);
+    return record.states;
+}
+
+}  // namespace vines

@@ -1,0 +1,84 @@
+#include "core/stability/standard_error.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace vines {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// The growth of a window is looked at in so many equal steps of tau, and steps that are up to this
+// many apart are taken to depend on each other: a bit more than a quarter of the window. A
+// modulated response needs that much: its growth goes up and down with each modulation, so that
+// shorter blocks, taken as independent, promise up to 2.5 times too little.
+constexpr int error_steps = 128, error_lags = 40;
+
+/// The sum of logarithms (lambda times its window) at evenly spaced tau up to the last entry of the
+/// history, for one exponent.
+std::array<double, error_steps + 1> evenly_spaced(
+    const ExponentHistory& h, double start, std::size_t last, std::size_t stride, int exponent) {
+    std::array<double, error_steps + 1> sums{};
+    double tau_before = start, sum_before = 0;
+    std::size_t i = 0;
+    auto sum_at = [&](std::size_t k) { return h.lambda[k][exponent] * (h.tau[k] - start); };
+    for (int step = 1; step <= error_steps; ++step) {
+        const double tau = start + (h.tau[last] - start) * step / error_steps;
+        for (; i < last && h.tau[i] < tau; i += stride)
+            tau_before = h.tau[i], sum_before = sum_at(i);
+        const double width = h.tau[i] - tau_before;
+        sums[step] = width > 0 ? sum_before + (sum_at(i) - sum_before) *
+                                                  std::min(1.0, (tau - tau_before) / width)
+                               : sum_at(i);
+    }
+    return sums;
+}
+
+}  // namespace
+
+std::size_t ExponentHistory::coarse_stride() const {
+    std::size_t stride = 1;
+    while ((tau.size() + stride - 1) / stride > shortest_history) stride *= 2;
+    return stride;
+}
+
+Exponents standard_error(const ExponentHistory& h, double start) {
+    if (h.tau.size() < 32 || !(h.tau.back() > start)) return {nan, nan, nan, nan};
+    const std::size_t stride = h.coarse_stride(), last = (h.tau.size() - 1) / stride * stride;
+    const double length = h.tau[last] - start;
+    // Tukey and Hanning's estimate of the spectrum of the growth at frequency zero, times the
+    // length: the variance of the sum.
+    std::array<double, error_lags + 1> weights;
+    double taken = 1;
+    for (int lag = 0; lag <= error_lags; ++lag) {
+        weights[lag] = 0.5 * (1 + std::cos(std::numbers::pi * lag / error_lags));
+        if (lag > 0) taken += 2 * weights[lag];
+    }
+    // The mean that is removed takes its share of white growth's variance, and about half of it
+    // where growth goes up and down.
+    const double left = 1 - 0.5 * taken / error_steps;
+    Exponents error;
+    for (int k = 0; k < 4; ++k) {
+        const auto sums = evenly_spaced(h, start, last, stride, k);
+        std::array<double, error_steps> off;
+        for (int i = 0; i < error_steps; ++i)
+            off[i] = sums[i + 1] - sums[i] - sums[error_steps] / error_steps;
+        auto covariance = [&](int lag) {
+            double sum = 0;
+            for (int i = 0; i + lag < error_steps; ++i) sum += off[i] * off[i + lag];
+            return sum;
+        };
+        double variance = covariance(0);
+        const double least = 0.02 * variance;  // the window's estimate may come out below zero
+        for (int lag = 1; lag <= error_lags; ++lag) variance += 2 * weights[lag] * covariance(lag);
+        error[k] =
+            std::isfinite(variance) ? std::sqrt(std::max(variance, least) / left) / length : nan;
+    }
+    return error;
+}
+
+}  // namespace vines

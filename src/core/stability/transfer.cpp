@@ -1,0 +1,85 @@
+#include "core/stability/transfer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/stability/linear.hpp"
+
+namespace vines {
+
+void Passage::extend(const Stretch& stretch) {
+    const bool stuck = stretch.stuck_side != 0;
+    double duration = stretch.duration;
+    if (!legs_.empty() && legs_.back().stuck == stuck) {
+        duration += legs_.back().duration * static_cast<double>(legs_.back().parts);
+        legs_.pop_back();
+    }
+    legs_.push_back(leg_of(stretch.flow, duration, stuck));
+}
+
+Moduli eigenvalue_moduli(const Matrix4& m) {
+    const Eigen::Vector4cd eigenvalues = eigenvalues_of(m);
+    Moduli moduli;
+    for (int k = 0; k < 4; ++k) moduli[k] = std::abs(eigenvalues(k));
+    std::sort(moduli.begin(), moduli.end(), std::greater<>());
+    return moduli;
+}
+
+Matrix4 ImpactTransfer::J() const {
+    Matrix4 J = Matrix4::Identity();
+    for (const Leg& leg : legs) J = transfer_of(leg, epsilon) * J;
+    return J;
+}
+
+int ImpactTransfer::rank() const {
+    return std::any_of(legs.begin(), legs.end(), [](const Leg& leg) { return leg.stuck; }) ? 2 : 4;
+}
+
+Moduli ImpactTransfer::J_moduli() const {
+    Moduli moduli = {1, 1, 1, 1};
+    // Two blocks; that of the free mass is a Jordan block, which an eigenvalue solver would split.
+    if (rank() == 4) {
+        for (const Leg& leg : legs) {
+            const double n = static_cast<double>(leg.parts),
+                         half_trace = 0.5 * std::abs(leg.oscillator.a11 + leg.oscillator.a22);
+            const double d = half_trace * half_trace - std::exp(leg.log_det);
+            const double large = d > 0 ? std::log(half_trace + std::sqrt(d)) : 0.5 * leg.log_det;
+            moduli[2] = std::exp(n * large);
+            moduli[3] = std::exp(n * (leg.log_det - large));
+        }
+        return moduli;
+    }
+    PowerProduct product(epsilon);
+    for (const Leg& leg : legs) product.pass(leg);
+    moduli = product.log_moduli();
+    for (double& m : moduli) m = std::exp(m);
+    return moduli;
+}
+
+Moduli ImpactTransfer::T_moduli() const {
+    PowerProduct product(epsilon);
+    for (const Leg& leg : legs) product.pass(leg);
+    product.strike(M, R);
+    Moduli moduli = product.log_moduli();
+    for (double& m : moduli) m = std::exp(m);
+    return moduli;
+}
+
+void TransferRecord::on_impact(const Impact& impact) {
+    if (impact.tau < tau_start_ || impact.tau > tau_end_) return;
+    if (begun_) {
+        const auto legs = passage_.legs();
+        transfers.push_back(
+            {impact.tau,
+             impact.R,
+             parameters_.epsilon,
+             saltation(parameters_, impact),
+             {legs.begin(), legs.end()}});
+        keep_last(transfers, most_);
+        ++seen;
+    }
+    begun_ = true;
+    passage_.reset();
+}
+
+}  // namespace vines

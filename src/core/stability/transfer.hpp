@@ -1,0 +1,71 @@
+// Transfer matrices of the deviations: J over flights (19), projections over stuck phases, M at
+// impacts (27), T = M J (30).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/motion/record.hpp"
+#include "core/stability/exterior.hpp"
+
+namespace vines {
+
+/// The legs of the way since some moment, collected stretch by stretch. Free flights that follow
+/// each other are one.
+class Passage {
+public:
+    void extend(const Stretch& stretch);
+    void reset() { legs_.clear(); }
+    std::span<const Leg> legs() const { return legs_; }
+
+private:
+    std::vector<Leg> legs_;
+};
+
+Moduli eigenvalue_moduli(const Matrix4& m);
+
+/// The three matrices of one impact: J from the impact before it, its own M, and T = M J.
+struct ImpactTransfer {
+    double tau;
+    double R, epsilon;
+    Saltation M;
+    std::vector<Leg> legs;  ///< from the impact before it
+
+    Matrix4 J() const;
+    int rank() const;  ///< of J: 4, or 2 after a stick
+    Matrix4 T() const { return M.times(J()); }
+    Moduli J_moduli() const;
+    /// Exactly 1, 1, R, R (section 4): in the coordinates of the centre of mass and of x - y, M is
+    /// triangular.
+    Moduli M_moduli() const { return {1, 1, R, R}; }
+    /// By the exterior powers, so that all four are right however strong the damping, however large
+    /// the entries of M.
+    Moduli T_moduli() const;
+};
+
+/// The matrices of the impacts in [tau_start, tau_end], from the second one on; up to half more
+/// than the last `most` of them.
+class TransferRecord : public Observer {
+public:
+    TransferRecord(
+        const Parameters& parameters, double tau_start, double tau_end,
+        std::size_t most = everything)
+        : parameters_(parameters),
+          tau_start_(tau_start),
+          tau_end_(tau_end),
+          most_(most) {}
+    void on_stretch(const Stretch& stretch) override { passage_.extend(stretch); }
+    void on_impact(const Impact& impact) override;
+
+    std::vector<ImpactTransfer> transfers;
+    long seen = 0;  ///< all of them, kept or not
+
+private:
+    const Parameters parameters_;
+    const double tau_start_, tau_end_;
+    const std::size_t most_;
+    Passage passage_;
+    bool begun_ = false;
+};
+
+}  // namespace vines

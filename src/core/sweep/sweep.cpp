@@ -1,0 +1,254 @@
+#include "core/sweep/sweep.hpp"
+
+#include <algorithm>
+
+#include "core/sweep/parallel.hpp"
+
+namespace vines {
+
+namespace {
+
+struct Stopped {};
+
+/// A second start is tried at about so many points of a sweep with a single one.
+constexpr std::size_t second_starts = 16;
+
+/// Points that follow each other along the inner axis, and the lines that are wanted of them.
+struct Row {
+    Place place;
+    std::vector<std::size_t> wanted;
+    std::vector<SweepPoint> points;
+};
+
+/// A place in the computing that is held while it is in scope.
+class Turn {
+public:
+    explicit Turn(Pace& pace) : pace_(pace) { pace_.begin(); }
+    ~Turn() { pace_.end(); }
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+
+private:
+    Pace& pace_;
+};
+
+class Sweep {
+public:
+    Sweep(const SweepPlan& plan, int threads, Pace& pace, SweepSink& sink)
+        : plan_(plan),
+          threads_(threads),
+          pace_(pace),
+          sink_(sink),
+          every_((plan.grid.points() + second_starts - 1) / second_starts) {}
+
+    void run() {
+        if (plan_.by_rows()) return run_rows();
+        parallel(plan_.lines.size(), threads_, [&](std::size_t i) {
+            const std::size_t line = plan_.lines[i];
+            SweepPoint point = begun(plan_.grid.place_of(line));
+            if (point.system) run_single(point, line);
+            hand_out(line, point);
+        });
+    }
+
+    StartTrial trial() const { return {tried_, elsewhere_}; }
+
+private:
+    SweepPoint begun(const Place& place) const {
+        SweepPoint point;
+        point.system = plan_.system_at(place);
+        return point;
+    }
+
+    PointResult run_from(const PointSystem& system, const State& start) {
+        const Turn turn(pace_);
+        if (pace_.stop_or_yield()) throw Stopped();
+        PointOptions options = plan_.options;
+        options.max_impacts = system.max_impacts;
+        PointResult result =
+            measure(system.parameters, start, options, [this] { return pace_.stop_or_yield(); });
+        if (result.outcome.reason == End::stopped || pace_.stop_or_yield()) throw Stopped();
+        ++pace_.runs;
+        return result;
+    }
+
+    /// From its own start, and, at every so many points, from another one.
+    void run_single(SweepPoint& point, std::size_t count) {
+        const State& start = point.system->start;
+        point.motions.push_back({"", start, run_from(*point.system, start)});
+        if (plan_.grid.starts == 1 && count % every_ == 0) try_second(point);
+    }
+
+    /// From the middle, or where that was the start, from the wall.
+    void try_second(SweepPoint& point) {
+        const auto starts = default_starts(point.system->parameters);
+        const State& first = point.system->start;
+        const bool from_middle =
+            first.x == 0 && first.x_dot == 0 && first.y == 0 && first.y_dot == 0;
+        const NamedStart& other = starts[from_middle ? 1 : 0];
+        point.second = Motion{other.name, other.state, run_from(*point.system, other.state)};
+    }
+
+    void run_rows() {
+        std::vector<Row> rows = wanted_rows();
+        // Rows are kept while they are computed: only so many as keep the threads busy.
+        const std::size_t at_once = static_cast<std::size_t>(std::max(threads_, 1));
+        for (std::size_t from = 0; from < rows.size(); from += at_once) {
+            const std::span<Row> block =
+                std::span(rows).subspan(from, std::min(at_once, rows.size() - from));
+            run_fresh(block);
+            if (plan_.default_set) follow_neighbours(block);
+            else if (plan_.carry != Carry::none)
+                parallel(block.size(), threads_, [&](std::size_t i) { carry_along(block[i]); });
+            for (Row& row : block) {
+                if (plan_.grid.reduced) hand_out(row);
+                row = {};
+            }
+        }
+    }
+
+    std::vector<Row> wanted_rows() const {
+        std::vector<Row> rows;
+        const std::size_t chain = plan_.chain();
+        for (std::size_t i = 0; i < plan_.lines.size(); ++i) {
+            const std::size_t line = plan_.lines[i];
+            if (i == 0 || line / chain != plan_.lines[i - 1] / chain)
+                rows.push_back({plan_.grid.place_of(line), {}, {}});
+            rows.back().wanted.push_back(line);
+        }
+        return rows;
+    }
+
+    /// The points' systems, and their motions from the starts that do not wait for a neighbour.
+    void run_fresh(std::span<Row> rows) {
+        const std::size_t n = plan_.grid.row();
+        for (Row& row : rows) row.points.resize(n);
+        parallel(rows.size() * n, threads_, [&](std::size_t task) {
+            Row& row = rows[task / n];
+            const std::size_t k = task % n;
+            Place place = row.place;
+            place.at[plan_.grid.inner()] = k;
+            SweepPoint& point = row.points[k] = begun(place);
+            if (!point.system || plan_.carry != Carry::none) return;
+            if (!plan_.default_set) return run_single(point, row.wanted[0] * n + k);
+            for (const NamedStart& start : default_starts(point.system->parameters))
+                point.motions.push_back(
+                    {start.name, start.state, run_from(*point.system, start.state)});
+        });
+    }
+
+    /// Up and down are independent of each other, so they may run at the same time.
+    void follow_neighbours(std::span<Row> rows) {
+        std::vector<std::vector<std::optional<Motion>>> found(2 * rows.size());
+        parallel(found.size(), threads_, [&](std::size_t task) {
+            found[task] = follow(rows[task / 2].points, task % 2 == 0);
+        });
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            Row& row = rows[i];
+            for (std::size_t k = 0; k < row.points.size(); ++k)
+                for (auto* pass : {&found[2 * i], &found[2 * i + 1]})
+                    if ((*pass)[k]) row.points[k].motions.push_back(std::move(*(*pass)[k]));
+            if (plan_.grid.reduced) continue;
+            for (const std::size_t line : row.wanted)
+                hand_out(line, row.points[line % row.points.size()]);
+        }
+    }
+
+    struct Carried {
+        Parameters parameters;
+        State state;
+    };
+
+    /// One motion of each point: where its neighbour's has led to. Each line is handed out at once,
+    /// up to the last that is wanted.
+    void carry_along(Row& row) {
+        const std::size_t n = row.points.size();
+        std::optional<Carried> before;
+        std::size_t left = row.wanted.size();
+        for (std::size_t step = 0; step < n && left > 0; ++step) {
+            const std::size_t k = plan_.carry == Carry::up ? step : n - 1 - step;
+            SweepPoint& point = row.points[k];
+            if (point.system) {
+                const Parameters& p = point.system->parameters;
+                point.afresh = step > 0 && !before;
+                const State start =
+                    before ? carried(before->state, before->parameters, p) : point.system->start;
+                point.motions.push_back({"", start, run_from(*point.system, start)});
+                const auto& end = point.motions[0].result.at_end;
+                before = end ? std::optional(Carried{p, *end}) : std::nullopt;
+            }
+            if (plan_.grid.reduced) continue;
+            const std::size_t line = row.wanted[0] / n * n + k;
+            if (!std::binary_search(row.wanted.begin(), row.wanted.end(), line)) continue;
+            hand_out(line, point);
+            point = {};
+            --left;
+        }
+    }
+
+    /// From each point's worst motion, the ones found here among them, to the next point.
+    std::vector<std::optional<Motion>> follow(const std::vector<SweepPoint>& points, bool up) {
+        const std::size_t n = points.size();
+        std::vector<std::optional<Motion>> found(n);
+        std::optional<Carried> before;
+        for (std::size_t step = 0; step < n; ++step) {
+            const std::size_t k = up ? step : n - 1 - step;
+            if (!points[k].system) continue;
+            const Parameters& p = points[k].system->parameters;
+            if (before) {
+                const State start = carried(before->state, before->parameters, p);
+                found[k] =
+                    Motion{up ? "previous" : "next", start, run_from(*points[k].system, start)};
+            }
+            const Motion* worst = found[k] && found[k]->result.at_end ? &*found[k] : nullptr;
+            for (const Motion& m : points[k].motions)
+                if (m.result.at_end && (!worst || m.result.x_max > worst->result.x_max)) worst = &m;
+            before = worst ? std::optional(Carried{p, *worst->result.at_end}) : std::nullopt;
+        }
+        return found;
+    }
+
+    void hand_out(std::size_t line, const SweepPoint& point) {
+        if (point.system && !plan_.default_set) count(depends_on_start(point, false));
+        sink_.point(line, point);
+    }
+
+    void hand_out(const Row& row) {
+        const RowSummary summary = summary_of(row.points, plan_.largest, plan_.default_set);
+        if (!plan_.default_set) count(summary.depends_on_start);
+        sink_.row(row.wanted[0], summary);
+    }
+
+    void count(std::optional<bool> elsewhere) {
+        tried_ += elsewhere.has_value();
+        elsewhere_ += elsewhere == true;
+    }
+
+    const SweepPlan& plan_;
+    const int threads_;
+    Pace& pace_;
+    SweepSink& sink_;
+    const std::size_t every_;
+    std::atomic<std::size_t> tried_ = 0, elsewhere_ = 0;
+};
+
+}  // namespace
+
+std::size_t SweepPlan::runs() const {
+    if (!by_rows()) return lines.size();
+    const std::size_t of_chain = chain();
+    std::size_t rows = 0;
+    for (std::size_t i = 0; i < lines.size(); ++i)
+        rows += i == 0 || lines[i] / of_chain != lines[i - 1] / of_chain;
+    return rows * grid.row() * runs_per_point();
+}
+
+StartTrial run_sweep(const SweepPlan& plan, int threads, Pace& pace, SweepSink& sink) {
+    Sweep sweep(plan, threads, pace, sink);
+    try {
+        sweep.run();
+    } catch (const Stopped&) {}
+    return sweep.trial();
+}
+
+}  // namespace vines

@@ -1,0 +1,73 @@
+// Sweeps: all points of a grid on all cores, in chains where one goes on from its neighbour.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <vector>
+
+#include "core/sweep/grid.hpp"
+#include "core/sweep/motions.hpp"
+#include "core/sweep/starts.hpp"
+
+namespace vines {
+
+/// Whether a point goes on from the last state of its neighbour on the first axis.
+enum class Carry { none, up, down };
+
+struct SweepPlan {
+    Grid grid;
+    PointOptions options = {};
+    bool default_set = false;  ///< every point from default_starts() and from both neighbours
+    Carry carry = Carry::none;
+    bool largest = true;                  ///< of a reduced axis the highest peak, else the lowest
+    std::vector<std::size_t> lines = {};  ///< those wanted, ascending
+    /// The system of a point, or none where its values make none. Called from several threads.
+    std::function<std::optional<PointSystem>(const Place&)> system_at;
+
+    /// Whether the points of a row are computed together.
+    bool by_rows() const { return default_set || grid.reduced || carry != Carry::none; }
+    /// How many lines belong together: a row where its points are computed together and each has a
+    /// line, else one.
+    std::size_t chain() const { return by_rows() && !grid.reduced ? grid.row() : 1; }
+    /// How many runs the wanted lines take, about: where rows are computed together their lines
+    /// come late, and only the runs tell how far it is.
+    std::size_t runs() const;
+    /// The same for all lines of the grid.
+    std::size_t runs_of_all() const { return grid.points() * runs_per_point(); }
+
+private:
+    std::size_t runs_per_point() const { return default_set ? most_starts : 1; }
+};
+
+/// What a sweep asks of the place that it runs in.
+class Pace {
+public:
+    virtual ~Pace() = default;
+    virtual void begin() {}  ///< before a run, on the thread that does it
+    virtual void end() {}
+    /// Asked every few events; true stops the sweep.
+    virtual bool stop_or_yield() { return false; }
+
+    std::atomic<std::size_t> runs = 0;  ///< that are done: of SweepPlan::runs()
+};
+
+/// Takes what was computed, from several threads at once: a point for each line, or, where an axis
+/// is reduced, what is to be told of a row of them.
+class SweepSink {
+public:
+    virtual ~SweepSink() = default;
+    virtual void point(std::size_t line, const SweepPoint& point) = 0;
+    virtual void row(std::size_t line, const RowSummary& row) = 0;
+};
+
+/// In how many of the lines where another start was tried the motion depends on it.
+struct StartTrial {
+    std::size_t tried = 0, elsewhere = 0;
+};
+
+/// Computes the wanted lines on so many threads and hands them out in the order in which they come.
+/// What a line holds depends on the plan and its number alone. Ends early, without those that are
+/// left, once the pace says stop.
+StartTrial run_sweep(const SweepPlan& plan, int threads, Pace& pace, SweepSink& sink);
+
+}  // namespace vines
