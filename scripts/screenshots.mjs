@@ -1,34 +1,53 @@
 #!/usr/bin/env -S node
-// scripts/screenshots FOLDER [QUERY]: pictures of the page, wide and narrow, light and dark: the first screen and the whole page.
-// Without a query: of the first simulation, the first sweep, a map and a measurement. With VINES_WEB_DIR=web they show the page in that folder
-// instead of the one compiled in.
-import {startBrowser, open, identified} from "../tests/page/browser.mjs";
+// scripts/screenshots FOLDER [QUERY]: pictures of the page, wide and narrow, light and dark: the
+// first screen and the whole page. Without a query: of the first simulation, the first sweep, a map
+// and a measurement. With VINES_WEB_DIR=web they show the page in that folder instead of the one
+// compiled in.
+import {identified, open, startBrowser} from "../tests/page/browser.mjs";
 import {measured} from "../tests/page/record.mjs";
 import {startService} from "../tests/service.mjs";
 
 const [folder = ".", query] = process.argv.slice(2);
-const views = query !== undefined ? {"": query} : {
-  "": "", "sweep-": "?tab=sweep", "map-": "?tab=sweep&axis1=b,0.003,0.04,120&axis2=R,0.3,0.9,80&cycles=200&transient_cycles=100&damping=closed_form&map=regime",
+const map =
+  "?tab=sweep&axis1=b,0.003,0.04,120&axis2=R,0.3,0.9,80&cycles=200&transient_cycles=100" +
+  "&damping=closed_form&map=regime";
+const usual = {
+  "": "",
+  "sweep-": "?tab=sweep",
+  "map-": map,
   "measurement-": "?tab=measurement&preset=fig20",
 };
+const views = query === undefined ? usual : {"": query};
+const screens = [
+  {name: "wide", viewport: {width: 1400, height: 1250}},
+  {name: "narrow", viewport: {width: 390, height: 844}},
+];
 const service = await startService();
 const browser = await startBrowser();
-const record = {name: "record.csv", mimeType: "text/csv", buffer: Buffer.from(await measured(service.url, "fig20", 20))};
+const record = {
+  name: "record.csv",
+  mimeType: "text/csv",
+  buffer: Buffer.from(await measured(service.url, "fig20", 20)),
+};
+
+async function picture(address, options, path) {
+  const page = await open(browser.context, `${service.url}/${address}`, options);
+  if (address.includes("tab=measurement")) {
+    await page.setInputFiles("#measure-file", record);
+    await page.click("#measure-run");
+    await identified(page, 1);
+  }
+  await page.waitForTimeout(300); // the legends have their final height
+  await page.screenshot({path: `${path}.png`});
+  await page.screenshot({path: `${path}-whole.png`, fullPage: true});
+  await page.close();
+}
+
 try {
   for (const [view, address] of Object.entries(views))
     for (const colorScheme of ["light", "dark"])
-      for (const [name, width, height] of [["wide", 1400, 1250], ["narrow", 390, 844]]) {
-        const page = await open(browser.context, `${service.url}/${address}`, {viewport: {width, height}, colorScheme});
-        if (address.includes("tab=measurement")) {
-          await page.setInputFiles("#measure-file", record);
-          await page.click("#measure-run");
-          await identified(page, 1);
-        }
-        await page.waitForTimeout(300);  // the legends have their final height
-        await page.screenshot({path: `${folder}/${view}${name}-${colorScheme}.png`});
-        await page.screenshot({path: `${folder}/${view}${name}-${colorScheme}-whole.png`, fullPage: true});
-        await page.close();
-      }
+      for (const {name, viewport} of screens)
+        await picture(address, {viewport, colorScheme}, `${folder}/${view}${name}-${colorScheme}`);
   if (browser.complaints.length) console.error(browser.complaints.join("\n"));
 } finally {
   await browser.stop();

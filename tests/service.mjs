@@ -1,19 +1,31 @@
 // A running service for the tests that talk to one.
 import {spawn} from "node:child_process";
 
-export const program = process.env.VINES ?? new URL("../build/release/vines", import.meta.url).pathname;
+export const program =
+  process.env.VINES ?? new URL("../build/release/vines", import.meta.url).pathname;
 
-/** Starts `vines serve` on a free port; resolves to {url, pid, stop}, where stop resolves to the exit code. */
+/**
+ * Starts `vines serve` on a free port; resolves to {url, pid, stop}, where stop resolves to the
+ * exit code.
+ */
 export async function startService(flags = [], environment = {}, freePort = true) {
-  const child = spawn(program, ["serve", ...(freePort ? ["--port", "0"] : []), ...flags], {stdio: ["ignore", "pipe", "ignore"], env: {...process.env, ...environment}});
+  const child = spawn(program, ["serve", ...(freePort ? ["--port", "0"] : []), ...flags], {
+    stdio: ["ignore", "pipe", "ignore"],
+    env: {...process.env, ...environment},
+  });
   const ended = new Promise((resolve) => child.on("exit", resolve));
   const url = await new Promise((resolve, reject) => {
     let text = "";
     child.stdout.on("data", (data) => {
-      const found = (text += data).match(/listens on (\S+)/);
+      text += data;
+      const found = text.match(/listens on (\S+)/);
       if (found) resolve(found[1]);
     });
     ended.then((code) => reject(new Error(`${program} ended with ${code}: ${text}`)));
   });
-  return {url, pid: child.pid, stop: () => { child.kill("SIGTERM"); return ended; }};
+  const stop = () => {
+    child.kill("SIGTERM");
+    return ended;
+  };
+  return {url, pid: child.pid, stop};
 }

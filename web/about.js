@@ -4,16 +4,26 @@ import {$, element} from "./dom.js";
 const each = (presets, plots) => Object.fromEntries(presets.map((p) => [p, plots]));
 
 const plotsOf = {
-  fig3: ["x"], fig4: ["relative"], fig5: ["qr", "raw_product"], fig6: ["J"], fig7: ["M"], fig8: ["T"], fig9: ["x", "largest"],
+  fig3: ["x"],
+  fig4: ["relative"],
+  fig5: ["qr", "raw_product"],
+  fig6: ["J"],
+  fig7: ["M"],
+  fig8: ["T"],
+  fig9: ["x", "largest"],
   ...each(["fig10", "fig11", "fig12", "fig13", "fig14"], ["relative", "qr", "raw_product"]),
   ...each(["fig15", "fig16", "fig20", "fig21"], ["x"]),
   ...each(["fig17", "fig22"], ["portrait"]),
   ...each(["fig18", "fig23"], ["section"]),
   ...each(["fig19", "fig24"], ["qr"]),
-  table2: ["qr", "windows"], table3: ["qr"],
+  table2: ["qr", "windows"],
+  table3: ["qr"],
 };
 
-const outside = (node) => { const {top, bottom} = node.getBoundingClientRect(); return top < 0 || bottom > innerHeight; };
+const outside = (node) => {
+  const {top, bottom} = node.getBoundingClientRect();
+  return top < 0 || bottom > innerHeight;
+};
 
 /** Marks the plots that the preset is about; returns those that are on the page. */
 export function mark(preset) {
@@ -21,11 +31,12 @@ export function mark(preset) {
     old.classList.remove("about");
     old.querySelector(".tag").remove();
   }
-  const names = plotsOf[preset?.name.split("_")[0]] ?? [];  // the rows of a table show the same
+  const names = plotsOf[preset?.name.split("_")[0]] ?? []; // the rows of a table show the same
   const figures = names.map((name) => $(`figure-${name}`)).filter((figure) => !figure.hidden);
   for (const figure of figures) {
+    const tag = element("span", {className: "tag", textContent: preset.source.split(",")[0]});
     figure.classList.add("about");
-    figure.querySelector("figcaption").prepend(element("span", {className: "tag", textContent: preset.source.split(",")[0]}));
+    figure.querySelector("figcaption").prepend(tag);
   }
   return figures;
 }

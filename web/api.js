@@ -1,6 +1,9 @@
 // The service's routes, relative to the page, so that it works behind a path prefix too.
 
-/** A problem document (RFC 9457) as an Error: .errors holds {pointer, value, range, detail} for each field at fault. */
+/**
+ * A problem document (RFC 9457) as an Error: .errors holds {pointer, value, range, detail} for each
+ * field at fault.
+ */
 export class Problem extends Error {
   constructor(document) {
     super(document.detail ?? document.title);
@@ -9,23 +12,35 @@ export class Problem extends Error {
   }
 }
 
+/** An error's message, and of the faults those details that it does not say already. */
+export const wholeMessage = (error, faults) =>
+  [error.message, ...faults.map((e) => e.detail).filter((d) => d !== error.message)].join("; ");
+
 async function read(response) {
-  const body = await response.json().catch(() => ({title: `the server answered ${response.status} without JSON`}));
+  const noJson = () => ({title: `the server answered ${response.status} without JSON`});
+  const body = await response.json().catch(noJson);
   if (!response.ok) throw new Problem({status: response.status, ...body});
   return body;
 }
 
 export const get = async (path) => read(await fetch(path));
 
-const post = (path, fields, signal) => fetch(path, {method: "POST", headers: {"Content-Type": "application/json"}, body: JSON.stringify(fields), signal});
+function post(path, fields, signal) {
+  const headers = {"Content-Type": "application/json"};
+  return fetch(path, {method: "POST", headers, body: JSON.stringify(fields), signal});
+}
 
 export const simulate = async (fields, signal) => read(await post("v1/simulate", fields, signal));
 
 /** query: the fields; record: a file of CSV, sent as it is. */
-export const identify = async (query, record, signal) => read(await fetch(`v1/identify?${query}`, {method: "POST", headers: {"Content-Type": "text/csv"}, body: record, signal}));
+export async function identify(query, record, signal) {
+  const headers = {"Content-Type": "text/csv"};
+  return read(await fetch(`v1/identify?${query}`, {method: "POST", headers, body: record, signal}));
+}
 
 /** The same with all in JSON. */
-export const identifyJson = async (fields, signal) => read(await post("v1/identify", fields, signal));
+export const identifyJson = async (fields, signal) =>
+  read(await post("v1/identify", fields, signal));
 
 /** A sweep's answer, a stream of lines. */
 export async function sweep(request, signal) {
@@ -40,4 +55,7 @@ const whole = (path) => new URL(path, location.href.split("?")[0]);
 export const asCurl = (path, fields, flags = "-s") =>
   `curl ${flags} ${whole(path)} -d ${quoted(JSON.stringify(fields))}`;
 
-export const recordAsCurl = (query, name) => `curl -s ${quoted(`${whole("v1/identify")}?${query}`)} -H 'Content-Type: text/csv' --data-binary ${quoted(`@${name}`)}`;
+export function recordAsCurl(query, name) {
+  const address = quoted(`${whole("v1/identify")}?${query}`);
+  return `curl -s ${address} -H 'Content-Type: text/csv' --data-binary ${quoted(`@${name}`)}`;
+}

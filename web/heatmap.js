@@ -1,33 +1,64 @@
-// A sweep over two axes, or a slice of one over three: a quantity as colours, with its scale beside it.
-import uPlot from "./uPlot.esm.js";
+// A sweep over two axes, or a slice of one over three: a quantity as colours, with its scale beside
+// it.
 import {colour, short} from "./plots.js";
-import {bestMotion, describe, quantityOf, regimeColour, symbolOf} from "./quantities.js";
-import {clipped, nameOf, plotAxis, point, wholeOrZoomed} from "./sweep_axes.js";
+import {bestMotion, describe, quantityOf, regimeColour} from "./quantities.js";
+import {
+  afresh,
+  clipped,
+  coordinate,
+  nameOf,
+  plotAxis,
+  point,
+  whereOf,
+  wholeOrZoomed,
+} from "./sweep_axes.js";
 import {Tip} from "./tip.js";
+import uPlot from "./uPlot.esm.js";
 
 const hex = (text) => [1, 3, 5].map((i) => parseInt(text.slice(i, i + 2), 16));
 const stops = (name) => colour(name).split(/\s+/).map(hex);
 
 /** The colour at share t in [0, 1] between stops. */
 function between(list, t) {
-  const at = Math.min(Math.max(t, 0), 1) * (list.length - 1), i = Math.min(Math.floor(at), list.length - 2), part = at - i;
+  const at = Math.min(Math.max(t, 0), 1) * (list.length - 1);
+  const i = Math.min(Math.floor(at), list.length - 2);
+  const part = at - i;
   return list[i].map((v, k) => Math.round(v + (list[i + 1][k] - v) * part));
 }
 
-/** The colours of a quantity's values: share(v) in [0, 1] along `stops`. A diverging one has 0 in its middle, and its sides have scales of their own. */
+/**
+ * The colours of a quantity's values: share(v) in [0, 1] along `stops`. A diverging one has 0 in
+ * its middle, and its sides have scales of their own.
+ */
 function scaleOf(quantity, values) {
-  let min = Infinity, max = -Infinity;
-  for (const v of values) { if (v < min) min = v; if (v > max) max = v; }
+  let min = Infinity;
+  let max = -Infinity;
+  for (const v of values) {
+    if (v < min) min = v;
+    if (v > max) max = v;
+  }
   if (!(min <= max)) [min, max] = [0, 1];
   if (quantity.diverging) {
-    const low = Math.min(min, 0) || -Math.abs(max) || -1, high = Math.max(max, 0) || -low;
-    return {stops: stops("diverging"), marks: [low, low / 2, 0, high / 2, high], share: (v) => v < 0 ? 0.5 - 0.5 * v / low : 0.5 + 0.5 * v / high};
+    const low = Math.min(min, 0) || -Math.abs(max) || -1;
+    const high = Math.max(max, 0) || -low;
+    return {
+      stops: stops("diverging"),
+      marks: [low, low / 2, 0, high / 2, high],
+      share: (v) => (v < 0 ? 0.5 - (0.5 * v) / low : 0.5 + (0.5 * v) / high),
+    };
   }
   if (min === max) max = min + (Math.abs(min) || 1);
-  return {stops: stops("sequential"), marks: [0, 0.25, 0.5, 0.75, 1].map((t) => min + t * (max - min)), share: (v) => (v - min) / (max - min)};
+  return {
+    stops: stops("sequential"),
+    marks: [0, 0.25, 0.5, 0.75, 1].map((t) => min + t * (max - min)),
+    share: (v) => (v - min) / (max - min),
+  };
 }
 
-const room = 74;  // px for the scale of the colours beside the map
+/** Moves of the keyboard over the cells. */
+const moves = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
+
+const room = 74; // px for the scale of the colours beside the map
 
 export class HeatMap {
   /** units(parameter): as in " (m)"; open(index): a cell was chosen. */
@@ -36,10 +67,15 @@ export class HeatMap {
     this.tip = new Tip(root);
     new ResizeObserver(() => this.resize()).observe(container);
     root.addEventListener("keydown", (event) => this.key(event));
-    root.addEventListener("focusout", (event) => { if (!root.contains(event.relatedTarget)) this.leave(); });
+    root.addEventListener("focusout", (event) => {
+      if (!root.contains(event.relatedTarget)) this.leave();
+    });
   }
 
-  /** choice: {map: the quantity, start, best: the best motion in place of the worst, slice: along the third axis}. */
+  /**
+   * choice: {map: the quantity, start, best: the best motion in place of the worst, slice: along
+   * the third axis}.
+   */
   show(data, choice) {
     this.data = data;
     this.choice = choice;
@@ -55,7 +91,7 @@ export class HeatMap {
 
   choose(choice) {
     this.choice = choice;
-    this.plot?.redraw(false, true);  // there may be a scale of the colours now, or none
+    this.plot?.redraw(false, true); // there may be a scale of the colours now, or none
     this.refresh();
   }
 
@@ -73,57 +109,114 @@ export class HeatMap {
     this.plot.setSize({width: this.container.clientWidth, height: this.container.clientHeight});
   }
 
-  quantity() { return quantityOf(this.choice.map, this.data); }
+  quantity() {
+    return quantityOf(this.choice.map, this.data);
+  }
 
   create() {
     const [first, second] = this.data.axes;
     this.image = null;
     const options = {
-      width: this.container.clientWidth, height: this.container.clientHeight, padding: [8, () => this.quantity().categories ? 12 : room, 0, 0], legend: {show: false},
-      scales: {x: {time: false, distr: first.log ? 3 : 1, range: wholeOrZoomed(first)}, y: {distr: second.log ? 3 : 1, range: () => [second.borders[0], second.borders.at(-1)]}},
-      axes: [plotAxis({size: 24, gap: 2, label: nameOf(first, this.units), labelSize: 16, grid: {show: false}}, {log: () => first.log}),
-        plotAxis({side: 3, size: 52, gap: 3, label: nameOf(second, this.units), labelSize: 18, grid: {show: false}}, {log: () => second.log})],
+      width: this.container.clientWidth,
+      height: this.container.clientHeight,
+      padding: [8, () => (this.quantity().categories ? 12 : room), 0, 0],
+      legend: {show: false},
+      scales: {
+        x: {time: false, distr: first.log ? 3 : 1, range: wholeOrZoomed(first)},
+        y: {distr: second.log ? 3 : 1, range: () => [second.borders[0], second.borders.at(-1)]},
+      },
+      axes: [
+        this.axis(first, {size: 24, gap: 2, labelSize: 16}),
+        this.axis(second, {side: 3, size: 52, gap: 3, labelSize: 18}),
+      ],
       series: [{}, {paths: () => null, points: {show: false}}],
       cursor: {drag: {x: true, y: true, uni: 20}, points: {show: false}},
-      hooks: {draw: [(u) => { clipped(u, () => this.paint(u)); if (!this.quantity().categories) this.bar(u); }]},
+      hooks: {draw: [(u) => this.draw(u)]},
     };
     this.plot = new uPlot(options, [first.values, first.values.map(() => null)], this.container);
     point(this.plot.over, {
-      move: (left, top) => this.tell(...this.place(left, top)), leave: () => this.leave(),
-      open: (left, top) => this.open(this.indexAt(...this.place(left, top))), touch: (left, top) => this.tell(...this.place(left, top), true),
+      move: (left, top) => this.tell(...this.place(left, top)),
+      leave: () => this.leave(),
+      open: (left, top) => this.open(this.indexAt(...this.place(left, top))),
+      touch: (left, top) => this.tell(...this.place(left, top), true),
     });
   }
 
+  axis(axis, options) {
+    const label = nameOf(axis, this.units);
+    return plotAxis({...options, label, grid: {show: false}}, {log: () => axis.log});
+  }
+
+  draw(u) {
+    clipped(u, () => this.paint(u));
+    if (!this.quantity().categories) this.bar(u);
+  }
+
   place(left, top) {
-    const {borders} = this.data.axes[1], v = this.plot.posToVal(top, "y");
+    const {borders} = this.data.axes[1];
+    const v = this.plot.posToVal(top, "y");
     const l = borders.findIndex((border) => border > v) - 1;
     return [this.plot.posToIdx(left), Math.max(0, l === -2 ? borders.length - 2 : l)];
   }
-  indexAt(k, l) { return this.data.index(k, l, this.choice.start, this.choice.slice); }
+
+  indexAt(k, l) {
+    return this.data.index(k, l, this.choice.start, this.choice.slice);
+  }
+
+  pointAt(k, l) {
+    return this.data.at(k, l, this.choice.start, this.choice.slice);
+  }
+
+  /** {k, l, value} of each cell whose point has come; null where it has no value. */
+  *values() {
+    const {of} = this.quantity();
+    const motion = this.choice.best ? bestMotion : (p) => p;
+    const [first, second] = this.data.axes;
+    for (let l = 0; l < second.values.length; ++l)
+      for (let k = 0; k < first.values.length; ++k) {
+        const p = this.pointAt(k, l);
+        if (p) yield {k, l, value: p.error ? null : (of(motion(p)) ?? null)};
+      }
+  }
+
+  /** The colour of a value, as bytes; this.scale: of one that is no category. */
+  colours(cells) {
+    const quantity = this.quantity();
+    const nothing = hex(colour("nothing"));
+    if (quantity.categories) {
+      this.scale = null;
+      const named = quantity.categories.map((name) => [name, hex(colour(regimeColour(name)))]);
+      const colours = Object.fromEntries(named);
+      return (v) => (v === null ? nothing : colours[v]);
+    }
+    const values = cells.map(({value}) => value).filter((v) => v !== null);
+    const scale = scaleOf(quantity, values);
+    this.scale = scale;
+    return (v) => (v === null ? nothing : between(scale.stops, scale.share(v)));
+  }
 
   /** A pixel for each cell, from the top down. */
   cells() {
-    const {data, choice} = this, quantity = this.quantity(), [first, second] = data.axes, n = first.values.length, m = second.values.length;
-    const motion = choice.best ? bestMotion : (p) => p;
-    const at = (k, l) => { const p = data.at(k, l, choice.start, choice.slice); return p && { value: p.error ? null : quantity.of(motion(p)) ?? null }; };
-    const values = [];
-    if (!quantity.categories) for (let l = 0; l < m; ++l) for (let k = 0; k < n; ++k) { const v = at(k, l)?.value; if (v != null) values.push(v); }
-    this.scale = quantity.categories ? null : scaleOf(quantity, values);
-    const colours = quantity.categories && Object.fromEntries(quantity.categories.map((name) => [name, hex(colour(regimeColour(name)))]));
-    const colourOf = (v) => v === null ? hex(colour("nothing")) : colours ? colours[v] : between(this.scale.stops, this.scale.share(v));
+    const [first, second] = this.data.axes;
+    const n = first.values.length;
+    const m = second.values.length;
+    const cells = [...this.values()];
+    const colourOf = this.colours(cells);
     const image = new ImageData(n, m);
-    for (let l = 0; l < m; ++l) for (let k = 0; k < n; ++k) {
-      const cell = at(k, l);
-      if (cell) image.data.set([...colourOf(cell.value), 255], 4 * ((m - 1 - l) * n + k));
-    }
+    for (const {k, l, value} of cells)
+      image.data.set([...colourOf(value), 255], 4 * ((m - 1 - l) * n + k));
     const canvas = new OffscreenCanvas(n, m);
     canvas.getContext("2d").putImageData(image, 0, 0);
     return canvas;
   }
 
   paint(u) {
-    const [first, second] = this.data.axes, pos = (v, scale) => Math.round(u.valToPos(v, scale, true));
-    const left = pos(first.borders[0], "x"), right = pos(first.borders.at(-1), "x"), top = pos(second.borders.at(-1), "y"), bottom = pos(second.borders[0], "y");
+    const [first, second] = this.data.axes;
+    const pos = (v, scale) => Math.round(u.valToPos(v, scale, true));
+    const left = pos(first.borders[0], "x");
+    const right = pos(first.borders.at(-1), "x");
+    const top = pos(second.borders.at(-1), "y");
+    const bottom = pos(second.borders[0], "y");
     this.image ??= this.cells();
     u.ctx.imageSmoothingEnabled = false;
     u.ctx.drawImage(this.image, left, top, right - left, bottom - top);
@@ -131,7 +224,10 @@ export class HeatMap {
 
   /** The scale of the colours. */
   bar(u) {
-    const {ctx, bbox} = u, ratio = devicePixelRatio, left = bbox.left + bbox.width + 12 * ratio, width = 12 * ratio;
+    const {ctx, bbox} = u;
+    const ratio = devicePixelRatio;
+    const left = bbox.left + bbox.width + 12 * ratio;
+    const width = 12 * ratio;
     for (let y = 0; y < bbox.height; ++y) {
       ctx.fillStyle = `rgb(${between(this.scale.stops, 1 - y / bbox.height)})`;
       ctx.fillRect(left, bbox.top + y, width, 1);
@@ -139,39 +235,57 @@ export class HeatMap {
     ctx.fillStyle = colour("soft");
     ctx.font = `${12 * ratio}px system-ui`;
     Object.assign(ctx, {textAlign: "left", textBaseline: "middle"});
+    const top = bbox.top + 6 * ratio;
+    const bottom = bbox.top + bbox.height - 6 * ratio;
     for (const mark of this.scale.marks) {
       const y = bbox.top + (1 - this.scale.share(mark)) * bbox.height;
-      ctx.fillText(short(Number(mark.toPrecision(2))), left + width + 5 * ratio, Math.max(bbox.top + 6 * ratio, Math.min(bbox.top + bbox.height - 6 * ratio, y)));
+      const within = Math.max(top, Math.min(bottom, y));
+      ctx.fillText(short(Number(mark.toPrecision(2))), left + width + 5 * ratio, within);
     }
   }
 
-  /** A value of the axis that is folded, in words. */
-  where = (value) => `${symbolOf(this.data.reduced)} = ${Number(value.toPrecision(6))}${this.units(this.data.reduced).replace(/[()]/g, "")}`;
-
-  leave() { this.current = null; this.tip.hide(); }
+  leave() {
+    this.current = null;
+    this.tip.hide();
+  }
 
   tell(k, l, act = false) {
-    const {data, plot: u} = this, [first, second] = data.axes, p = data.at(k, l, this.choice.start, this.choice.slice);
+    const {data, plot: u} = this;
+    const [first, second] = data.axes;
+    const p = this.pointAt(k, l);
     this.current = [k, l, act];
-    const coordinate = (axis, i) => [symbolOf(axis.parameter), `${Number(axis.values[i].toPrecision(6))}${this.units(axis.parameter).replace(/[()]/g, "")}`];
-    const rows = [coordinate(first, k), coordinate(second, l), ...(p ? describe(p, data.reduced && this.where) : [["", "still to come"]])];
-    const box = this.root.getBoundingClientRect(), over = u.over.getBoundingClientRect();
-    const afresh = (data.request.carry_state ?? "none") === "none" ? "" : ", afresh: not from its neighbour's last state";
-    this.tip.show(over.left - box.left + u.valToPos(first.values[k], "x"), over.top - box.top + u.valToPos(second.values[l], "y"), rows, `Click: simulate it${afresh}`,
-      act ? {label: "Simulate this point", run: () => this.open(this.indexAt(k, l))} : null);
+    const rows = [
+      coordinate(first, k, this.units),
+      coordinate(second, l, this.units),
+      ...(p ? describe(p, whereOf(data, this.units)) : [["", "still to come"]]),
+    ];
+    const box = this.root.getBoundingClientRect();
+    const over = u.over.getBoundingClientRect();
+    const left = over.left - box.left + u.valToPos(first.values[k], "x");
+    const top = over.top - box.top + u.valToPos(second.values[l], "y");
+    const open = {label: "Simulate this point", run: () => this.open(this.indexAt(k, l))};
+    this.tip.show(left, top, rows, `Click: simulate it${afresh(data)}`, act ? open : null);
   }
 
   key(event) {
     if (!this.plot || event.target !== this.root) return;
-    const [k, l] = this.current ?? [0, 0], within = (v, axis) => Math.max(0, Math.min(axis.values.length - 1, v)), [first, second] = this.data.axes;
-    const moves = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]}, move = moves[event.key];
-    if (move) {
-      const next = [within(k + move[0], first), within(l + move[1], second)];
-      this.plot.setCursor({left: this.plot.valToPos(first.values[next[0]], "x"), top: this.plot.valToPos(second.values[next[1]], "y")}, false);
-      this.tell(...next, true);
-    } else if (event.key === "Enter" && this.current) this.open(this.indexAt(k, l));
+    const [k, l] = this.current ?? [0, 0];
+    const move = moves[event.key];
+    if (move) this.moveTo(k + move[0], l + move[1]);
+    else if (event.key === "Enter" && this.current) this.open(this.indexAt(k, l));
     else if (event.key === "Escape") this.leave();
     else return;
     event.preventDefault();
+  }
+
+  /** Tells of the cell that is next to these positions. */
+  moveTo(k, l) {
+    const [first, second] = this.data.axes;
+    const within = (i, axis) => Math.max(0, Math.min(axis.values.length - 1, i));
+    const next = [within(k, first), within(l, second)];
+    const left = this.plot.valToPos(first.values[next[0]], "x");
+    const top = this.plot.valToPos(second.values[next[1]], "y");
+    this.plot.setCursor({left, top}, false);
+    this.tell(...next, true);
   }
 }

@@ -1,4 +1,5 @@
-// The page: its tabs, and the address, which names the tab and holds its request. So a link shows the same, and Back leads back.
+// The page: its tabs, and the address, which names the tab and holds its request. So a link shows
+// the same, and Back leads back.
 import {get} from "./api.js";
 import {$} from "./dom.js";
 import * as measurement from "./measurement.js";
@@ -11,7 +12,10 @@ const panes = {simulation, sweep, measurement};
 const scrolled = {};
 let current = null;
 
-const address = (name, query) => `?${name === "simulation" ? query : [`tab=${name}`, query].filter(Boolean).join("&")}`;
+function address(name, query) {
+  if (name === "simulation") return `?${query}`;
+  return query ? `?tab=${name}&${query}` : `?tab=${name}`;
+}
 
 function show(name) {
   if (current === name) return;
@@ -23,7 +27,8 @@ function show(name) {
 
 /** Follows the address. */
 function follow() {
-  const query = new URLSearchParams(location.search), name = Object.hasOwn(panes, query.get("tab")) ? query.get("tab") : "simulation";
+  const query = new URLSearchParams(location.search);
+  const name = Object.hasOwn(panes, query.get("tab")) ? query.get("tab") : "simulation";
   query.delete("tab");
   show(name);
   return panes[name].open(query);
@@ -34,7 +39,9 @@ function go(name, query) {
   return follow();
 }
 
-const keep = (name) => () => { if (current === name) history.replaceState(null, "", address(name, panes[name].query())); };
+const keep = (name) => () => {
+  if (current === name) history.replaceState(null, "", address(name, panes[name].query()));
+};
 
 /** The run of one of a sweep's points, from its first impacts on. */
 function simulatePoint(fields) {
@@ -43,16 +50,27 @@ function simulatePoint(fields) {
 }
 
 async function start() {
-  const [fields, {presets}, version] = await Promise.all([get("v1/parameters"), get("v1/presets"), get("version")]);
+  const [fields, {presets}, version] = await Promise.all([
+    get("v1/parameters"),
+    get("v1/presets"),
+    get("version"),
+  ]);
   $("version").textContent = `vines ${version.version}`;
   simulation.start(fields.fields, presets, keep("simulation"));
   sweep.start(fields, keep("sweep"), simulatePoint);
   measurement.start(fields.identify_fields, presets, keep("measurement"));
-  showModel().catch(() => {});  // the equations are there without the sketch
-  tabs.listen((name) => { if (name !== current) go(name, panes[name].query() ?? ""); });
+  showModel().catch(() => {}); // the equations are there without the sketch
+  tabs.listen((name) => {
+    if (name !== current) go(name, panes[name].query() ?? "");
+  });
   addEventListener("popstate", follow);
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { for (const pane of Object.values(panes)) pane.redraw(); });
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    for (const pane of Object.values(panes)) pane.redraw();
+  });
   await follow();
 }
 
-start().catch((error) => { $("message").textContent = `the page could not start: ${error.message}`; $("message").classList.add("fault"); });
+start().catch((error) => {
+  $("message").textContent = `the page could not start: ${error.message}`;
+  $("message").classList.add("fault");
+});

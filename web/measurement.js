@@ -1,5 +1,6 @@
-// The tab of a measurement: a file and its fields in, one request, what was identified out; the list of impacts can be edited and sent again.
-import {identify, identifyJson, Problem, recordAsCurl} from "./api.js";
+// The tab of a measurement: a file and its fields in, one request, what was identified out; the
+// list of impacts can be edited and sent again.
+import {identify, identifyJson, Problem, recordAsCurl, wholeMessage} from "./api.js";
 import {$, element} from "./dom.js";
 import {Form} from "./form.js";
 import {ImpactList} from "./impact_list.js";
@@ -7,33 +8,66 @@ import {summariseMeasurement} from "./measurement_summary.js";
 import {draw, drawRecord, mark, redraw} from "./measurement_views.js";
 import {parse, recordOf, spikeNear} from "./record.js";
 
-const groups = {system: ["System", true], SI: ["Oscillator", true], record: ["Columns and units", false]};
-const experiments = ["fig15", "fig20"];  // those of Table 4
-const estimated = new Set(["R", "F", "cycles"]);  // the presets' values are of the simulation
-const longestQuery = 6000;  // servers and proxies take 8 kB of address
+const groups = {
+  system: ["System", true],
+  SI: ["Oscillator", true],
+  record: ["Columns and units", false],
+};
+const experiments = ["fig15", "fig20"]; // those of Table 4
+const estimated = new Set(["R", "F", "cycles"]); // the presets' values are of the simulation
+const longestQuery = 6000; // servers and proxies take 8 kB of address
 
-let form, list, presets = [], file = null, text = "", reading = Promise.resolve(null), record = null, answer = null, sent = null, running = null, shown = null, remembered = () => {};
+let form;
+let list;
+let presets = [];
+let file = null;
+let text = "";
+let reading = Promise.resolve(null);
+let record = null;
+let answer = null;
+let sent = null;
+let running = null;
+let shown = null;
+let remembered = () => {};
 
 function say(message, fault = false) {
   $("measure-message").textContent = message;
   $("measure-message").classList.toggle("fault", fault);
 }
 
-/** The service's fields as this form shows them: names of columns are typed in or taken from the file's header; the forcing's amplitude is fitted. */
-const changes = {threshold: {group: "system", unit: "sd of the noise"}, R: {default_note: "estimated"}, m1: {default_note: "required"}, k1: {default_note: "required"}, f: {default_note: "its own"}};
-const fieldsOf = (fields) => fields.filter((f) => !["impact_times_s", "F"].includes(f.name)).map((f) => ({...f, ...(f.type === "choice" && !f.choices && f.name !== "preset" ? {type: "text"} : {}), ...changes[f.name]}));
+/**
+ * The service's fields as this form shows them: names of columns are typed in or taken from the
+ * file's header; the forcing's amplitude is fitted.
+ */
+const changes = {
+  threshold: {group: "system", unit: "sd of the noise"},
+  R: {default_note: "estimated"},
+  m1: {default_note: "required"},
+  k1: {default_note: "required"},
+  f: {default_note: "its own"},
+};
+const isColumn = (f) => f.type === "choice" && !f.choices && f.name !== "preset";
+const fieldsOf = (fields) =>
+  fields
+    .filter((f) => !["impact_times_s", "F"].includes(f.name))
+    .map((f) => ({...f, ...(isColumn(f) ? {type: "text"} : {}), ...changes[f.name]}));
 
 const preset = () => presets.find((p) => p.name === $("measure-preset").value);
-const base = () => Object.fromEntries(Object.entries(preset()?.parameters ?? {}).filter(([name]) => !estimated.has(name)));
+function base() {
+  const parameters = Object.entries(preset()?.parameters ?? {});
+  return Object.fromEntries(parameters.filter(([name]) => !estimated.has(name)));
+}
 
-/** Fields as a query; the commas of lists stay readable. */
-const asQuery = (fields) => String(new URLSearchParams(Object.entries(fields).map(([name, value]) => [name, Array.isArray(value) ? value.join(",") : value]))).replaceAll("%2C", ",");
+/** Fields as a query, a list as its values with commas, which stay readable. */
+const asQuery = (fields) => String(new URLSearchParams(fields)).replaceAll("%2C", ",");
 
 export const query = () => shown;
 
 /** The form as a query for a link; the file stays with who has it. */
 function remember() {
-  const given = base(), values = form.values(), start = preset() ? {preset: preset().name} : {};
+  const given = base();
+  const values = form.values();
+  const start = preset() ? {preset: preset().name} : {};
   const differing = Object.entries(values).filter(([name, value]) => value !== given[name]);
   shown = asQuery({...start, ...Object.fromEntries(differing)});
   remembered();
@@ -60,15 +94,18 @@ function drawFile() {
   for (const id of ["measure-parts", "measure-list", "measure-add-at"]) $(id).hidden = !record;
   if (!record) return;
   drawRecord(record, addAt);
-  list.set(answer?.impacts ?? {time_s: []}, [record.t[0], record.t.at(-1)]);  // a record whose impacts cannot be found has them given by hand
+  // A record whose impacts cannot be found has them given by hand.
+  list.set(answer?.impacts ?? {time_s: []}, [record.t[0], record.t.at(-1)]);
 }
 
 function edited() {
-  $("measure-again").disabled = $("measure-reset").disabled = !list.edited;
+  for (const id of ["measure-again", "measure-reset"]) $(id).disabled = !list.edited;
   mark(record, list.rows, answer);
 }
 
-/** A click on the acceleration adds the impact whose spike is there, if that is what it is for now. */
+/**
+ * A click on the acceleration adds the impact whose spike is there, if that is what it is for now.
+ */
 function addAt(t, reach) {
   if ($("measure-add-at").getAttribute("aria-pressed") !== "true") return;
   const at = spikeNear(record, t, reach);
@@ -85,10 +122,16 @@ function present(milliseconds) {
 
 /** The lines around one that is at fault. */
 function quoteLine(detail) {
-  const line = Number(/^line (\d+)/.exec(detail)?.[1]), lines = [];
+  const line = Number(/^line (\d+)/.exec(detail)?.[1]);
+  const lines = [];
   for (let n = 1, from = 0; n <= line + 1 && from <= text.length; ++n) {
-    const at = text.indexOf("\n", from), to = at < 0 ? text.length : at;
-    if (n >= line - 1) lines.push(element("span", {className: n === line ? "at-fault" : "", textContent: `${String(n).padStart(7)}  ${text.slice(from, Math.min(to, from + 120)).trimEnd()}\n`}));
+    const at = text.indexOf("\n", from);
+    const to = at < 0 ? text.length : at;
+    if (n >= line - 1) {
+      const beginning = text.slice(from, Math.min(to, from + 120)).trimEnd();
+      const textContent = `${String(n).padStart(7)}  ${beginning}\n`;
+      lines.push(element("span", {className: n === line ? "at-fault" : "", textContent}));
+    }
     from = to + 1;
   }
   $("measure-lines").replaceChildren(...lines);
@@ -100,18 +143,23 @@ function quoteLine(detail) {
 async function take(chosen) {
   if (!chosen) return;
   running?.abort();
-  const mine = file = chosen;
+  file = chosen;
   answer = record = sent = null;
   for (const node of document.querySelectorAll(".identified")) node.hidden = true;
-  $("measure-about").textContent = `${mine.name}, ${(mine.size / 1e6).toFixed(mine.size < 1e5 ? 3 : 1)} MB`;
+  const megabytes = (chosen.size / 1e6).toFixed(chosen.size < 1e5 ? 3 : 1);
+  $("measure-about").textContent = `${chosen.name}, ${megabytes} MB`;
   $("measure-run").disabled = false;
   quoteLine("");
   say("reading …");
-  reading = mine.text().then((all) => { if (file === mine) text = all; return parse(all); });
+  reading = chosen.text().then((all) => {
+    if (file === chosen) text = all;
+    return parse(all);
+  });
   try {
     const parsed = await reading;
-    if (file !== mine) return;
-    $("measure-columns").replaceChildren(...parsed.names.map((value) => element("option", {value})));
+    if (file !== chosen) return;
+    const options = parsed.names.map((value) => element("option", {value}));
+    $("measure-columns").replaceChildren(...options);
     record = recordOf(parsed, form.values());
     $("measure-about").textContent += `, ${parsed.columns[0]?.length ?? 0} samples`;
     drawFile();
@@ -123,22 +171,32 @@ async function take(chosen) {
 
 /** What is sent: the file as it is, or, where the address would be too long, all as JSON. */
 async function request(fields, signal) {
-  const text = asQuery(fields);
-  if (text.length <= longestQuery) return identify(text, file, signal);
-  return identifyJson({...fields, record: Object.fromEntries(Object.entries(recordOf(await reading, fields).sent).map(([name, column]) => [name, [...column]]))}, signal);
+  const asked = asQuery(fields);
+  if (asked.length <= longestQuery) return identify(asked, file, signal);
+  const columns = Object.entries(recordOf(await reading, fields).sent);
+  const lists = Object.fromEntries(columns.map(([name, column]) => [name, [...column]]));
+  return identifyJson({...fields, record: lists}, signal);
 }
 
 async function run(more = {}) {
-  if (!file) { say("choose a file first", true); $("measure-file").focus(); return; }
+  if (!file) {
+    say("choose a file first", true);
+    $("measure-file").focus();
+    return;
+  }
   running?.abort();
-  const mine = running = new AbortController(), fields = {...form.values(), ...more};
+  const mine = new AbortController();
+  running = mine;
+  const fields = {...form.values(), ...more};
   form.showErrors([]);
   quoteLine("");
   busy(true);
   say("identifying …");
   const began = performance.now();
   try {
-    const got = await request(fields, mine.signal), milliseconds = performance.now() - began, parsed = await reading;
+    const got = await request(fields, mine.signal);
+    const milliseconds = performance.now() - began;
+    const parsed = await reading;
     if (running !== mine) return;
     [answer, sent, record] = [got, fields, recordOf(parsed, fields)];
     remember();
@@ -149,7 +207,7 @@ async function run(more = {}) {
     if (running !== mine) return;
     if (mine.signal.aborted) return say("cancelled");
     const left = error instanceof Problem ? form.showErrors(error.errors) : [];
-    say([error.message, ...left.map((e) => e.detail).filter((d) => d !== error.message)].join("; "), true);
+    say(wholeMessage(error, left), true);
     quoteLine(error.message);
   } finally {
     if (running === mine) {
@@ -167,26 +225,45 @@ function busy(is) {
 
 /** Where the plots lie below the form, one who asks for them is led there. */
 function lead() {
-  if (file && $("measure-results").offsetLeft < $("measure-form").offsetLeft + $("measure-form").offsetWidth) $("measure-results").scrollIntoView();
+  const panel = $("measure-form");
+  const results = $("measure-results");
+  if (file && results.offsetLeft < panel.offsetLeft + panel.offsetWidth) results.scrollIntoView();
 }
 
 function download() {
-  const url = URL.createObjectURL(new Blob([JSON.stringify(answer, null, 1)], {type: "application/json"}));
-  element("a", {href: url, download: `${file.name.replace(/\.[^.]*$/, "")}-identified.json`}).click();
+  const text = JSON.stringify(answer, null, 1);
+  const url = URL.createObjectURL(new Blob([text], {type: "application/json"}));
+  const name = file.name.replace(/\.[^.]*$/, "");
+  element("a", {href: url, download: `${name}-identified.json`}).click();
   setTimeout(() => URL.revokeObjectURL(url), 10000);
 }
 
 async function copy() {
   const command = recordAsCurl(asQuery(sent ?? form.values()), file?.name ?? "record.csv");
-  try { await navigator.clipboard.writeText(command); say("copied"); } catch { say(command); }
+  try {
+    await navigator.clipboard.writeText(command);
+    say("copied");
+  } catch {
+    say(command);
+  }
 }
 
 function listenToFiles() {
-  const panel = $("panel-measurement"), over = (is) => $("measure-drop").classList.toggle("over", is);
+  const panel = $("panel-measurement");
+  const over = (is) => $("measure-drop").classList.toggle("over", is);
   $("measure-file").addEventListener("change", () => take($("measure-file").files[0]));
-  panel.addEventListener("dragover", (event) => { event.preventDefault(); over(true); });
-  panel.addEventListener("dragleave", (event) => { if (!panel.contains(event.relatedTarget)) over(false); });
-  panel.addEventListener("drop", (event) => { event.preventDefault(); over(false); take(event.dataTransfer.files[0]); });
+  panel.addEventListener("dragover", (event) => {
+    event.preventDefault();
+    over(true);
+  });
+  panel.addEventListener("dragleave", (event) => {
+    if (!panel.contains(event.relatedTarget)) over(false);
+  });
+  panel.addEventListener("drop", (event) => {
+    event.preventDefault();
+    over(false);
+    take(event.dataTransfer.files[0]);
+  });
 }
 
 /** changed: called when there is another query. */
@@ -194,18 +271,47 @@ export function start(fields, all, changed) {
   remembered = changed;
   presets = all.filter((p) => experiments.includes(p.name));
   form = new Form($("measure-fields"), fieldsOf(fields), {prefix: "measure-", grouped: groups});
-  for (const name of ["time_column", "displacement_column", "acceleration_column"]) form.inputs.get(name).setAttribute("list", "measure-columns");
-  list = new ImpactList({body: $("measure-impacts"), note: $("measure-list-note"), adding: $("measure-add"), doubtful: $("measure-doubtful")}, edited);
-  $("measure-preset").append(new Option("own oscillator", ""), ...presets.map((p) => new Option(`Table 4, ${p.title.replace("experiment, ", "")}`, p.name)));
-  $("measure-preset").addEventListener("change", () => { choosePreset($("measure-preset").value); remember(); });
+  for (const name of ["time_column", "displacement_column", "acceleration_column"])
+    form.inputs.get(name).setAttribute("list", "measure-columns");
+  list = new ImpactList(
+    {
+      body: $("measure-impacts"),
+      note: $("measure-list-note"),
+      adding: $("measure-add"),
+      doubtful: $("measure-doubtful"),
+    },
+    edited,
+  );
+  $("measure-preset").append(
+    new Option("own oscillator", ""),
+    ...presets.map((p) => new Option(`Table 4, ${p.title.replace("experiment, ", "")}`, p.name)),
+  );
+  listen();
+  listenToFiles();
+}
+
+function listen() {
+  $("measure-preset").addEventListener("change", () => {
+    choosePreset($("measure-preset").value);
+    remember();
+  });
   $("measure-fields").addEventListener("change", async () => {
     remember();
     const parsed = await reading.catch(() => null);
-    if (parsed && !answer) { record = recordOf(parsed, form.values()); drawFile(); }
+    if (parsed && !answer) {
+      record = recordOf(parsed, form.values());
+      drawFile();
+    }
   });
-  $("measure-form").addEventListener("submit", (event) => { event.preventDefault(); run(); lead(); });
+  $("measure-form").addEventListener("submit", (event) => {
+    event.preventDefault();
+    run();
+    lead();
+  });
   $("measure-cancel").addEventListener("click", () => running?.abort());
-  $("measure-again").addEventListener("click", () => run({impact_times_s: list.times().map((t) => Number(t.toFixed(7)))}));
+  $("measure-again").addEventListener("click", () => {
+    run({impact_times_s: list.times().map((t) => Number(t.toFixed(7)))});
+  });
   $("measure-reset").addEventListener("click", () => list.reset());
   $("measure-add-at").addEventListener("click", ({currentTarget: button}) => {
     const on = button.getAttribute("aria-pressed") !== "true";
@@ -214,5 +320,4 @@ export function start(fields, all, changed) {
   });
   $("measure-download").addEventListener("click", download);
   $("measure-copy").addEventListener("click", copy);
-  listenToFiles();
 }

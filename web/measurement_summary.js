@@ -1,9 +1,10 @@
 // What a measurement came to, in words and numbers.
 import {$} from "./dom.js";
 import {isLeftOut} from "./impact_list.js";
-import {cards, count, digits, listWarnings, verdicts} from "./summary.js";
+import {count, verdicts} from "./quantities.js";
+import {cards, digits, listWarnings} from "./summary.js";
 
-const about = (value, n) => value == null ? "–" : Number(value.toPrecision(n)).toString();
+const about = (value, n) => (value == null ? "–" : Number(value.toPrecision(n)).toString());
 
 /** Of a value and its error, to two digits of the error. */
 function withError(value, error, n) {
@@ -13,23 +14,77 @@ function withError(value, error, n) {
   return `${value.toFixed(places)} ± ${error.toFixed(places)}`;
 }
 
-const wall = (name, {R, standard_error: error, impacts}) => [`R at ${name}`, withError(R, error, 4), count(impacts, "impact")];
+const wall = (name, {R, standard_error: error, impacts}) => [
+  `R at ${name}`,
+  withError(R, error, 4),
+  count(impacts, "impact"),
+];
 
-export function summariseMeasurement({parameters, signal: s, impacts, restitution, b_fitted: b, exponents, slope, verdict, verdict_reason: reason, forward, warnings}, milliseconds) {
-  const left = impacts.status.filter(isLeftOut).length, unknown = impacts.status.filter((status) => status === "R is not known").length;
-  const error = exponents.qr?.standard_error[0], b0 = parameters.b * 1000, off = b.b == null ? null : (b.b * 1000 / b0 - 1) * 100;
+function exponentCards({parameters, exponents, slope, verdict, verdict_reason: reason, forward}) {
+  const error = exponents.qr?.standard_error[0];
+  const damping = `damping ζ = ${digits(parameters.derived.zeta, 4)}`;
+  return [
+    ["verdict", verdicts[verdict] ?? "–", reason.replace("damping zeta", damping)],
+    [
+      "λ₁ (qr)",
+      exponents.qr ? digits(exponents.qr.final[0]) : "–",
+      error == null ? "" : `± ${digits(error)}, at the last impact`,
+    ],
+    [
+      "slope of λ₁ τ",
+      slope.lambda1 == null ? "–" : digits(slope.lambda1),
+      slope.low == null ? "" : `90 %: ${digits(slope.low)} to ${digits(slope.high)}`,
+    ],
+    [
+      "λ₁ of the identified system",
+      forward ? digits(forward.lambda[0]) : "–",
+      forward ? "run forward from the first known state" : "no state is known",
+    ],
+  ];
+}
+
+function impactsCard({status, tau}) {
+  const left = status.filter(isLeftOut).length;
+  const unknown = status.filter((text) => text === "R is not known").length;
+  const ends = unknown ? `; R of ${unknown} not known, at the ends` : "";
+  return ["impacts", String(tau.length), `${left} left out${ends}`];
+}
+
+/** The half clearance that the impacts fit, beside the given one, in mm. */
+function clearanceCard({b, standard_error: error}, given) {
+  const remark = `given ${about(given, 5)} mm`;
+  if (b == null) return ["b fitted", "–", remark];
+  const off = ((b * 1000) / given - 1) * 100;
+  const judged = Math.abs(off) < 0.05 ? "agrees" : `off by ${digits(off, 1)} %`;
+  return ["b fitted", `${withError(b * 1000, error * 1000, 2)} mm`, `${remark}, ${judged}`];
+}
+
+function signalCards(signal, milliseconds) {
+  const {noise_displacement: x, noise_acceleration: a, pulse_s: pulse} = signal;
+  const {samples, sampling_rate: rate} = signal;
+  const seconds = (samples / rate).toFixed(1);
+  const answered = `answered in ${milliseconds.toFixed(0)} ms`;
+  return [
+    ["forcing G", `${about(signal.G * 1000, 4)} mm`, "fitted"],
+    ["noise", x == null ? "–" : `${about(x * 1e6, 3)} µm`, a == null ? "" : `${about(a, 3)} m/s²`],
+    [
+      "pulse of an impact",
+      `${about(pulse * 1000, 3)} ms`,
+      `${about(pulse * rate, 2)} samples long`,
+    ],
+    ["sampling", `${about(rate, 5)} Hz`, `${count(samples, "sample")}, ${seconds} s; ${answered}`],
+  ];
+}
+
+export function summariseMeasurement(answer, milliseconds) {
+  const {parameters, impacts, restitution, b_fitted: fitted, signal, warnings} = answer;
   cards($("measure-summary"), [
-    ["verdict", verdicts[verdict] ?? "–", reason.replace("damping zeta", `damping ζ = ${digits(parameters.derived.zeta, 4)}`)],
-    ["λ₁ (qr)", exponents.qr ? digits(exponents.qr.final[0]) : "–", error == null ? "" : `± ${digits(error)}, at the last impact`],
-    ["slope of λ₁ τ", slope.lambda1 == null ? "–" : digits(slope.lambda1), slope.low == null ? "" : `90 %: ${digits(slope.low)} to ${digits(slope.high)}`],
-    ["λ₁ of the identified system", forward ? digits(forward.lambda[0]) : "–", forward ? "run forward from the first known state" : "no state is known"],
-    ["impacts", String(impacts.tau.length), `${left} left out${unknown ? `; R of ${unknown} not known, at the ends` : ""}`],
-    wall("+b", restitution.plus), wall("−b", restitution.minus),
-    ["b fitted", b.b == null ? "–" : `${withError(b.b * 1000, b.standard_error * 1000, 2)} mm`, `given ${about(b0, 5)} mm${off == null ? "" : `, ${Math.abs(off) < 0.05 ? "agrees" : `off by ${digits(off, 1)} %`}`}`],
-    ["forcing G", `${about(s.G * 1000, 4)} mm`, "fitted"],
-    ["noise", s.noise_displacement == null ? "–" : `${about(s.noise_displacement * 1e6, 3)} µm`, s.noise_acceleration == null ? "" : `${about(s.noise_acceleration, 3)} m/s²`],
-    ["pulse of an impact", `${about(s.pulse_s * 1000, 3)} ms`, `${about(s.pulse_s * s.sampling_rate, 2)} samples long`],
-    ["sampling", `${about(s.sampling_rate, 5)} Hz`, `${count(s.samples, "sample")}, ${(s.samples / s.sampling_rate).toFixed(1)} s; answered in ${milliseconds.toFixed(0)} ms`],
+    ...exponentCards(answer),
+    impactsCard(impacts),
+    wall("+b", restitution.plus),
+    wall("−b", restitution.minus),
+    clearanceCard(fitted, parameters.b * 1000),
+    ...signalCards(signal, milliseconds),
   ]);
   listWarnings($("measure-warnings"), warnings);
 }

@@ -4,5 +4,6 @@ import {$} from "./dom.js";
 export async function showModel() {
   $("model").open = matchMedia("(min-width: 1001px)").matches;
   const text = await (await fetch("system.svg")).text();
-  $("model-sketch").append(document.importNode(new DOMParser().parseFromString(text, "image/svg+xml").documentElement, true));
+  const drawing = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
+  $("model-sketch").append(document.importNode(drawing, true));
 }

@@ -1,37 +1,62 @@
 // A record, read as the service reads it, to be drawn. What is at fault in it the service says.
 
-const atOnce = 50000;  // lines between two looks at the clock of the page
+const atOnce = 50000; // lines between two looks at the clock of the page
 
 const trimmed = (cell) => cell.replace(/^[\s"]+|[\s"]+$/g, "");
-const pause = () => new Promise((resolve) => { setTimeout(resolve); });
+const pause = () =>
+  new Promise((resolve) => {
+    setTimeout(resolve);
+  });
 
-/** The columns of a CSV text: {names, columns}, columns of numbers; lines that the service would refuse are left out. */
+/** The character between the columns, as the first line has it. */
+function separatorOf(header) {
+  if (header.includes(";")) return ";";
+  return header.includes("\t") ? "\t" : ",";
+}
+
+/** A cell as a number, NaN for what is none. A decimal comma needs another separator. */
+function numberOf(text, separator) {
+  const value = Number(text);
+  if (Number.isFinite(value) && value !== 0) return value;
+  const cell = trimmed(text); // a zero may be an empty cell
+  if (cell === "") return NaN;
+  return Number(separator === "," ? cell : cell.replaceAll(",", "."));
+}
+
+/**
+ * The columns of a CSV text: {names, columns}, columns of numbers; lines that the service would
+ * refuse are left out.
+ */
 export async function parse(text) {
-  let separator = ",", names = null, columns = [], rows = 0, from = text.charCodeAt(0) === 0xfeff ? 1 : 0;
+  let separator = ",";
+  let names = null;
+  let columns = [];
+  let rows = 0;
+  let from = text.charCodeAt(0) === 0xfeff ? 1 : 0;
   for (let line = 1; from < text.length; ++line) {
-    const at = text.indexOf("\n", from), to = at < 0 ? text.length : at, cells = text.slice(from, to);
+    const at = text.indexOf("\n", from);
+    const to = at < 0 ? text.length : at;
+    const cells = text.slice(from, to);
     from = to + 1;
     if (line % atOnce === 0) await pause();
     if (!cells.trim() || cells[0] === "#") continue;
     if (!names) {
-      separator = cells.includes(";") ? ";" : cells.includes("\t") ? "\t" : ",";
+      separator = separatorOf(cells);
       names = cells.split(separator).map(trimmed);
-      columns = names.map(() => new Float64Array(Math.ceil((text.length - to) / (2 * names.length)) + 1));  // a number takes two characters at least
+      // A number takes two characters at least.
+      const most = Math.ceil((text.length - to) / (2 * names.length)) + 1;
+      columns = names.map(() => new Float64Array(most));
       continue;
     }
     const parts = cells.split(separator);
     if (parts.length !== names.length) continue;
     let good = true;
     for (let k = 0; k < parts.length; ++k) {
-      let value = Number(parts[k]);
-      if (!Number.isFinite(value) || value === 0) {  // a zero may be an empty cell
-        const cell = trimmed(parts[k]);
-        value = cell === "" ? NaN : Number(separator === "," ? cell : cell.replaceAll(",", "."));
-      }
+      const value = numberOf(parts[k], separator);
       columns[k][rows] = value;
       good &&= Number.isFinite(value);
     }
-    rows += good;
+    if (good) ++rows;
   }
   return {names: names ?? [], columns: columns.map((column) => column.slice(0, rows))};
 }
@@ -42,17 +67,40 @@ function find(names, asked, name, beginnings) {
   const exact = lower.indexOf(name);
   if (exact >= 0) return exact;
   for (const b of beginnings) {
-    const at = lower.findIndex((n) => n === b || ["_", " ", "(", "["].some((end) => n.startsWith(b + end)));
+    const starts = (n) => ["_", " ", "(", "["].some((end) => n.startsWith(b + end));
+    const at = lower.findIndex((n) => n === b || starts(n));
     if (at >= 0) return at;
   }
   return -1;
 }
 
 const units = {s: 1, ms: 1e-3, m: 1e3, mm: 1, um: 1e-3, "m/s2": 1, g: 9.80665};
-const spellings = {s: "s", sec: "s", ms: "ms", msec: "ms", m: "m", mm: "mm", um: "um", "m/s2": "m/s2", m_s2: "m/s2", "ms-2": "m/s2", "m/s/s": "m/s2", g: "g"};
-const spelling = (text) => text.toLowerCase().replace(/[\u00b5\u03bc]/g, "u").replace(/\u00b2/g, "2").replace(/\u207b/g, "-").replace(/[ ^*\u00b7]/g, "");
+const spellings = {
+  s: "s",
+  sec: "s",
+  ms: "ms",
+  msec: "ms",
+  m: "m",
+  mm: "mm",
+  um: "um",
+  "m/s2": "m/s2",
+  m_s2: "m/s2",
+  "ms-2": "m/s2",
+  "m/s/s": "m/s2",
+  g: "g",
+};
+const spelling = (text) =>
+  text
+    .toLowerCase()
+    .replace(/[\u00b5\u03bc]/g, "u")
+    .replace(/\u00b2/g, "2")
+    .replace(/\u207b/g, "-")
+    .replace(/[ ^*\u00b7]/g, "");
 
-/** The unit that a column's name says, in brackets or behind a blank or underscore; undefined where it says none. */
+/**
+ * The unit that a column's name says, in brackets or behind a blank or underscore; undefined where
+ * it says none.
+ */
 export function unitIn(name) {
   const brackets = /[([]([^)\]]*)/.exec(name);
   if (brackets) return spellings[spelling(brackets[1])];
@@ -62,38 +110,69 @@ export function unitIn(name) {
   }
 }
 
-const scaled = (column, unit) => units[unit] === 1 ? column : column.map((v) => v * units[unit]);
+/** What leaves those samples of a column out whose time does not lie behind all before it. */
+function whereAscending(t) {
+  let keep = null;
+  let last = t[0];
+  for (let i = 1; i < t.length; ++i) {
+    if (t[i] > last) {
+      last = t[i];
+    } else {
+      keep ??= new Uint8Array(t.length).fill(1);
+      keep[i] = 0;
+    }
+  }
+  return (column) => (keep ? column.filter((_, i) => keep[i]) : column);
+}
 
-/** What the fields make of the columns: {t (s), x (mm), a (m/s^2)}, null for one that is not there; sent: those columns by name, in the record's units. */
+const scaled = (column, unit) => (units[unit] === 1 ? column : column.map((v) => v * units[unit]));
+
+/**
+ * What the fields make of the columns: {t (s), x (mm), a (m/s^2)}, null for one that is not there;
+ * sent: those columns by name, in the record's units.
+ */
 export function recordOf({names, columns}, fields) {
   const time = find(names, fields.time_column, "time_s", ["time", "t"]);
   const x = find(names, fields.displacement_column, "displacement_m", ["displacement", "x"]);
   const a = find(names, fields.acceleration_column, "acceleration_m_s2", ["acceleration", "a"]);
   if (time < 0 || !columns[time].length || (x < 0 && a < 0)) return null;
   const unit = (k, asked, usual) => unitIn(names[k]) ?? asked ?? usual;
-  let t = scaled(columns[time], unit(time, fields.time_unit, "s")), keep = null;
-  for (let i = 1, last = t[0]; i < t.length; ++i) {
-    if (t[i] > last) last = t[i];
-    else (keep ??= new Uint8Array(t.length).fill(1))[i] = 0;
-  }
-  const kept = (column) => keep ? column.filter((_, i) => keep[i]) : column;  // the plots need an ascending time
-  const sent = Object.fromEntries([time, x, a].filter((k) => k >= 0).map((k) => [names[k], columns[k]]));
-  return {t: kept(t), x: x < 0 ? null : kept(scaled(columns[x], unit(x, fields.displacement_unit, "m"))), a: a < 0 ? null : kept(scaled(columns[a], unit(a, fields.acceleration_unit, "m/s2"))), sent};
+  const t = scaled(columns[time], unit(time, fields.time_unit, "s"));
+  const kept = whereAscending(t); // as the plots need it
+  const present = [time, x, a].filter((k) => k >= 0);
+  const sent = Object.fromEntries(present.map((k) => [names[k], columns[k]]));
+  return {
+    t: kept(t),
+    x: x < 0 ? null : kept(scaled(columns[x], unit(x, fields.displacement_unit, "m"))),
+    a: a < 0 ? null : kept(scaled(columns[a], unit(a, fields.acceleration_unit, "m/s2"))),
+    sent,
+  };
 }
 
 /** The index of the first sample at t or later. */
 export function sampleAt(t, moment) {
-  let low = 0, high = t.length;
-  while (low < high) { const middle = (low + high) >> 1; if (t[middle] < moment) low = middle + 1; else high = middle; }
+  let low = 0;
+  let high = t.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (t[middle] < moment) low = middle + 1;
+    else high = middle;
+  }
   return low;
 }
 
-/** The sample within reach of a moment where the acceleration lies farthest from what is around it: where the eye sees the spike. */
+/**
+ * The sample within reach of a moment where the acceleration lies farthest from what is around it:
+ * where the eye sees the spike.
+ */
 export function spikeNear({t, a}, moment, reach) {
-  const from = sampleAt(t, moment - reach), to = Math.max(sampleAt(t, moment + reach), from + 1);
+  const from = sampleAt(t, moment - reach);
+  const to = Math.max(sampleAt(t, moment + reach), from + 1);
   if (!a || from >= t.length) return null;
-  const around = a.slice(Math.max(0, from - 8), Math.min(t.length, to + 8)).sort(), centre = around[around.length >> 1];
+  const around = a.slice(Math.max(0, from - 8), Math.min(t.length, to + 8)).sort();
+  const centre = around[around.length >> 1];
   let best = from;
-  for (let i = from; i < Math.min(to, t.length); ++i) if (Math.abs(a[i] - centre) > Math.abs(a[best] - centre)) best = i;
+  for (let i = from; i < Math.min(to, t.length); ++i)
+    if (Math.abs(a[i] - centre) > Math.abs(a[best] - centre)) best = i;
   return best;
 }

@@ -1,90 +1,186 @@
-// What a run came to, in words and numbers: the cards above the plots, the windows' table and where the energy went.
+// What a run came to, in words and numbers: the cards above the plots, the windows' table and where
+// the energy went.
 import {$, element} from "./dom.js";
+import {count, verdicts} from "./quantities.js";
 
 export const minus = (text) => text.replace("-", "−");
-export const digits = (value, n = 4) => value == null ? "–" : minus(Math.abs(value) < 1e-3 && value !== 0 ? value.toExponential(2) : value.toFixed(n));
-export const percent = (value) => value == null ? "–" : `${(value * 100).toFixed(value < 0.1 && value >= 0.0005 ? 1 : 0)} %`;
-export const count = (n, noun) => `${n} ${noun}${n === 1 ? "" : "s"}`;
-const positives = (estimator) => !estimator || estimator.final[0] == null ? null : estimator.final.filter((v) => v > 0).length;
-export const verdicts = {chaotic: "chaotic", regular: "regular", not_decided: "not decided"};
-
-/** An exponent in a word where it has no value. */
-const exponent = ({final, status}, k) => status[k] === "minus_infinity" ? "−∞" : digits(final[k]);
-
-function regimeCards(r, units) {
-  const captured = r.capture?.chaotic_before ? `; captured ${r.capture.tau === null ? "behind the run's end" : `at ${units.at(r.capture.tau)}`} after a chaotic transient` : "";
-  const chatter = r.chatter_impacts_per_period ? `, ${r.chatter_impacts_per_period} of chatter` : "";
-  const sticks = r.sticks_per_period ? `, ${count(r.sticks_per_period, "stick")}` : "";
-  const rhythm = !r.contacts ? "" : r.periodic
-    ? `period ${count(r.period_cycles, "cycle")}: ${count(r.impacts_per_period, "impact")}${chatter}${sticks}, ${r.symmetric ? "symmetric" : "asymmetric"}${r.stable ? "" : ", unstable"}`
-    : `${percent(r.synchronised.share)} of the contacts synchronised`;
-  return [["regime", r.type === "none" ? "none" : `Type ${r.type}`, r.description + captured], ["impacts per cycle, z", digits(r.z, 3), rhythm]];
+export function digits(value, n = 4) {
+  if (value == null) return "–";
+  const small = Math.abs(value) < 1e-3 && value !== 0;
+  return minus(small ? value.toExponential(2) : value.toFixed(n));
+}
+export function percent(value) {
+  if (value == null) return "–";
+  return `${(value * 100).toFixed(value < 0.1 && value >= 0.0005 ? 1 : 0)} %`;
 }
 
-function verdictCards(e, r, {time}) {
-  const error = e.qr?.standard_error[0], exact = positives(e.qr), raw = positives(e.raw_product);
-  const orbit = r.periodic && r.contacts && e.verdict === "not_decided" ? `; the motion ends on a ${r.stable ? "stable" : "unstable"} periodic orbit` : "";
+const positives = (estimator) =>
+  !estimator || estimator.final[0] == null ? null : estimator.final.filter((v) => v > 0).length;
+
+/** An exponent in a word where it has no value. */
+const exponent = ({final, status}, k) => (status[k] === "minus_infinity" ? "−∞" : digits(final[k]));
+
+function regimeCard({type, description, capture}, units) {
+  const name = type === "none" ? "none" : `Type ${type}`;
+  if (!capture?.chaotic_before) return ["regime", name, description];
+  const when = capture.tau === null ? "behind the run's end" : `at ${units.at(capture.tau)}`;
+  return ["regime", name, `${description}; captured ${when} after a chaotic transient`];
+}
+
+/** How the impacts follow each other, in words. */
+function rhythm(r) {
+  if (!r.contacts) return "";
+  if (!r.periodic) return `${percent(r.synchronised.share)} of the contacts synchronised`;
+  const chatter = r.chatter_impacts_per_period;
+  const sticks = r.sticks_per_period;
   return [
-    ["verdict", verdicts[e.verdict] ?? "–", (e.verdict_reason?.replace("lambda1", "λ₁").replace("= -", "= −") ?? "needs the estimator qr") + orbit],
-    ["λ₁ (qr)", e.qr ? digits(e.qr.final[0]) : "–", (error == null ? "" : `± ${digits(error)}`) + (time.unit ? " per unit of τ" : "")],
-    ["positive exponents (qr)", String(exact ?? "–"), raw == null ? "" : raw === exact ? "raw_product agrees" : `raw_product shows ${raw}, as the paper counted`],
-    ["sum rule residual", e.sum_rule_residual == null ? "–" : minus(e.sum_rule_residual.toExponential(1)), e.qr && e.sum_rule_residual == null && e.impacts > 1 ? "not defined after a stick" : ""],
-    ["window", e.window ? `${e.window.map((t) => time.of(t).toFixed(1)).join(" to ")} ${time.unit}`.trim() : "–", count(e.impacts, "impact")],
-  ];
+    `period ${count(r.period_cycles, "cycle")}: ${count(r.impacts_per_period, "impact")}`,
+    ...(chatter ? [`${chatter} of chatter`] : []),
+    ...(sticks ? [count(sticks, "stick")] : []),
+    r.symmetric ? "symmetric" : "asymmetric",
+    ...(r.stable ? [] : ["unstable"]),
+  ].join(", ");
+}
+
+function verdictCard({verdict, verdict_reason: given}, r) {
+  const told = given?.replace("lambda1", "λ₁").replace("= -", "= −");
+  const reason = told ?? "needs the estimator qr";
+  const name = verdicts[verdict] ?? "–";
+  if (!r.periodic || !r.contacts || verdict !== "not_decided") return ["verdict", name, reason];
+  const orbit = `a ${r.stable ? "stable" : "unstable"} periodic orbit`;
+  return ["verdict", name, `${reason}; the motion ends on ${orbit}`];
+}
+
+function lambdaCard({qr}, {time}) {
+  const error = qr?.standard_error[0];
+  const remark = error == null ? "" : `± ${digits(error)}`;
+  const unit = time.unit ? " per unit of τ" : "";
+  return ["λ₁ (qr)", qr ? digits(qr.final[0]) : "–", remark + unit];
+}
+
+function positivesCard({qr, raw_product: product}) {
+  const exact = positives(qr);
+  const raw = positives(product);
+  const differs = `raw_product shows ${raw}, as the paper counted`;
+  const remark = raw === exact ? "raw_product agrees" : differs;
+  return ["positive exponents (qr)", String(exact ?? "–"), raw == null ? "" : remark];
+}
+
+function residualCard({qr, sum_rule_residual: residual, impacts}) {
+  if (residual != null) return ["sum rule residual", minus(residual.toExponential(1)), ""];
+  return ["sum rule residual", "–", qr && impacts > 1 ? "not defined after a stick" : ""];
+}
+
+function windowCard({window, impacts}, {time}) {
+  const ends = window?.map((t) => time.of(t).toFixed(1)).join(" to ");
+  return ["window", window ? `${ends} ${time.unit}`.trim() : "–", count(impacts, "impact")];
 }
 
 /** entries: [term, value, a remark]. */
 export function cards(list, entries) {
-  list.replaceChildren(...entries.map(([term, value, small]) => element("div", {},
-    element("dt", {textContent: term}), element("dd", {}, value, element("small", {textContent: small ? ` ${small}` : ""})))));
+  const card = ([term, value, remark]) => {
+    const small = element("small", {textContent: remark ? ` ${remark}` : ""});
+    const name = element("dt", {textContent: term});
+    return element("div", {}, name, element("dd", {}, value, small));
+  };
+  list.replaceChildren(...entries.map(card));
 }
 
-export const listWarnings = (list, warnings) => list.replaceChildren(...warnings.map((w) => element("li", {textContent: w})));
+export const listWarnings = (list, warnings) =>
+  list.replaceChildren(...warnings.map((w) => element("li", {textContent: w})));
 
 const millimetres = (metres, n = 1) => `${digits(metres * 1000, n)} mm`;
 const most = (values) => values.reduce((a, v) => Math.max(a, Math.abs(v)), 0);
-const median = (values) => values.length ? [...values].sort((a, b) => a - b)[values.length >> 1] : null;
-const rounded = (value) => value == null ? "–" : minus(Number(value.toPrecision(3)).toString());
+const median = (values) =>
+  values.length ? [...values].sort((a, b) => a - b)[values.length >> 1] : null;
+const rounded = (value) => (value == null ? "–" : minus(Number(value.toPrecision(3)).toString()));
+
+function forcingCard({si, derived}) {
+  const ratio = Number((si.f / derived.f0).toPrecision(4));
+  const amplitude = Number((si.F * 1000).toPrecision(3));
+  return ["forcing", `${rounded(si.f)} Hz`, `${ratio} of f₀; base ± ${amplitude} mm`];
+}
+
+function impactSpeedCard({relative_speed: speed, impulse}, units) {
+  const {unit} = units.velocity;
+  if (!speed.length) return ["impact speed", `– ${unit}`, ""];
+  const hit = (of) => rounded(units.velocity.of(of(speed)));
+  const blow = rounded(units.impulse.of(median(impulse.map(Math.abs))));
+  const remark = `median; at most ${hit(most)}; impulse ${blow} ${units.impulse.unit}`;
+  return ["impact speed", `${hit(median)} ${unit}`, remark];
+}
 
 /** What a laboratory measures. */
-function engineeringCards({energy, impacts, series, parameters: {si, derived}}, {velocity, impulse, acceleration}) {
-  const free = energy.without_absorber.amplitude, speed = impacts.relative_speed, hit = (of) => speed.length ? rounded(velocity.of(of(speed))) : "–";
-  const blow = () => `impulse ${rounded(impulse.of(median(impacts.impulse.map(Math.abs))))} ${impulse.unit}`;
+function engineeringCards({energy, impacts, series, parameters}, units) {
+  const free = energy.without_absorber.amplitude;
+  const {of, unit} = units.acceleration;
+  const acceleration = `${rounded(of(most(series.x_ddot)))} ${unit}`;
   return [
-    ["amplitude without absorber", free == null ? "–" : millimetres(free), `with it |x| comes to ${millimetres(energy.peak)}`],
-    ["forcing", `${rounded(si.f)} Hz`, `${Number((si.f / derived.f0).toPrecision(4))} of f₀; base ± ${Number((si.F * 1000).toPrecision(3))} mm`],
-    ["impact speed", `${hit(median)} ${velocity.unit}`, speed.length ? `median; at most ${hit(most)}; ${blow()}` : ""],
-    ["peak acceleration", `${rounded(acceleration.of(most(series.x_ddot)))} ${acceleration.unit}`, "of m₁ between the impacts"],
+    [
+      "amplitude without absorber",
+      free == null ? "–" : millimetres(free),
+      `with it |x| comes to ${millimetres(energy.peak)}`,
+    ],
+    forcingCard(parameters),
+    impactSpeedCard(impacts, units),
+    ["peak acceleration", acceleration, "of m₁ between the impacts"],
   ];
+}
+
+function rmsCard({rms_ratio: ratio, without_absorber: {amplitude}}, units) {
+  const told = units.si || amplitude == null; // on a card of its own, or not there
+  const remark = told ? "" : `, whose amplitude is ${millimetres(amplitude)}`;
+  return ["rms of x", percent(ratio), `of that without absorber${remark}`];
 }
 
 export function summarise(answer, milliseconds, units) {
   const {exponents, regime, energy, impacts, sticking, parameters, warnings} = answer;
-  const [type, z] = regimeCards(regime, units), [verdict, lambda, positive, residual, window] = verdictCards(exponents, regime, units);
-  const free = energy.without_absorber.amplitude;
-  const entries = [
-    type, z, verdict, lambda,
+  const stuck = sticking.side.length;
+  const damping = `damping ζ = ${digits(parameters.derived.zeta, 5)}`;
+  cards($("summary"), [
+    regimeCard(regime, units),
+    ["impacts per cycle, z", digits(regime.z, 3), rhythm(regime)],
+    verdictCard(exponents, regime),
+    lambdaCard(exponents, units),
     ["taken by the impacts", percent(energy.share_impacts), "of the energy that is dissipated"],
-    ["rms of x", percent(energy.rms_ratio), `of that without absorber${units.si || free == null ? "" : `, whose amplitude is ${millimetres(free)}`}`],
+    rmsCard(energy, units),
     ["impacts", String(impacts.tau.length), "chatter included"],
-    ["stuck phases", String(sticking.side.length), sticking.side.length ? "shaded in the plots" : ""],
+    ["stuck phases", String(stuck), stuck ? "shaded in the plots" : ""],
     ...(units.si ? engineeringCards(answer, units) : []),
-    positive, residual, window,
-    ["answered in", `${milliseconds.toFixed(0)} ms`, `damping ζ = ${digits(parameters.derived.zeta, 5)}`],
-  ];
-  cards($("summary"), entries);
+    positivesCard(exponents),
+    residualCard(exponents),
+    windowCard(exponents, units),
+    ["answered in", `${milliseconds.toFixed(0)} ms`, damping],
+  ]);
   listWarnings($("warnings"), warnings);
 }
 
 /** The exponents of each window asked for. */
 export function tabulate(windows = [], {time}) {
   $("figure-windows").hidden = !windows.length;
-  const row = (tag, cells) => element("tr", {}, ...cells.map((textContent) => element(tag, {textContent})));
-  const head = row("th", [time.unit ? "from (s)" : "τ from", time.unit ? "to (s)" : "to", "impacts", "λ₁", "λ₂", "λ₃", "λ₄", "verdict"]);
+  const row = (tag, cells) =>
+    element("tr", {}, ...cells.map((textContent) => element(tag, {textContent})));
+  const head = row("th", [
+    time.unit ? "from (s)" : "τ from",
+    time.unit ? "to (s)" : "to",
+    "impacts",
+    "λ₁",
+    "λ₂",
+    "λ₃",
+    "λ₄",
+    "verdict",
+  ]);
   const rows = windows.map((w) => {
-    const lambda = [0, 1, 2, 3].map((k) => w.qr ? exponent(w.qr, k) : "–"), error = w.qr?.standard_error[0];
-    const asked = w.asked.map((t) => time.unit ? time.of(t).toFixed(2) : String(t));
-    return row("td", [...asked, String(w.impacts), error == null ? lambda[0] : `${lambda[0]} ± ${digits(error)}`, ...lambda.slice(1), verdicts[w.verdict] ?? "–"]);
+    const lambda = [0, 1, 2, 3].map((k) => (w.qr ? exponent(w.qr, k) : "–"));
+    const error = w.qr?.standard_error[0];
+    const asked = w.asked.map((t) => (time.unit ? time.of(t).toFixed(2) : String(t)));
+    return row("td", [
+      ...asked,
+      String(w.impacts),
+      error == null ? lambda[0] : `${lambda[0]} ± ${digits(error)}`,
+      ...lambda.slice(1),
+      verdicts[w.verdict] ?? "–",
+    ]);
   });
   $("windows").replaceChildren(element("thead", {}, head), element("tbody", {}, ...rows));
 }
@@ -99,29 +195,75 @@ function bar(share, className) {
 /** One amount beside another, as bars of one scale. */
 function compare(term, withAbsorber, without) {
   const whole = Math.max(withAbsorber, without) || 1;
-  const line = (name, value, className) => [element("span", {className: "name", textContent: name}), element("span", {className: "track"}, bar(value / whole, className)), element("span", {className: "amount", textContent: `${digits(value * 1000, 2)} mm`})];
-  return element("div", {className: "compare"}, element("b", {textContent: term}), ...line("with absorber", withAbsorber, "with"), ...line("without", without, "without"));
+  const line = (name, value, className) => [
+    element("span", {className: "name", textContent: name}),
+    element("span", {className: "track"}, bar(value / whole, className)),
+    element("span", {className: "amount", textContent: `${digits(value * 1000, 2)} mm`}),
+  ];
+  return element(
+    "div",
+    {className: "compare"},
+    element("b", {textContent: term}),
+    ...line("with absorber", withAbsorber, "with"),
+    ...line("without", without, "without"),
+  );
+}
+
+function amount(value, {of, unit}) {
+  const small = value !== 0 && Math.abs(of(value)) < 1e-3;
+  return `${small ? digits(of(value)) : rounded(of(value))} ${unit}`;
+}
+
+/** Where the energy came from, and how a free decay went. */
+function energyNote({input, at_start: start, decay}, units) {
+  const supply = [
+    ...(input ? [`${amount(input, units.energy)} from the base`] : []),
+    ...(start ? [`${amount(start, units.energy)} there at the start`] : []),
+  ].join(", ");
+  return [...(supply ? [supply] : []), ...(decay ? decayTimes(decay, units) : [])].join("; ");
 }
 
 /** When a half and a tenth of a free decay's energy are left, with the absorber and without it. */
 function decayTimes(decay, {at}) {
-  const moment = (tau) => tau == null ? "not in this run" : at(tau);
-  const line = (what, name) => decay[name] == null && decay.without_absorber[name] == null ? []
-    : [`${what} is left ${decay[name] == null ? "" : "at "}${moment(decay[name])} (without absorber: ${moment(decay.without_absorber[name])})`];
+  const moment = (tau) => (tau == null ? "not in this run" : at(tau));
+  const line = (what, name) => {
+    const withIt = decay[name];
+    const without = decay.without_absorber[name];
+    if (withIt == null && without == null) return [];
+    const left = `${withIt == null ? "" : "at "}${moment(withIt)}`;
+    return [`${what} is left ${left} (without absorber: ${moment(without)})`];
+  };
   return [...line("half", "tau_half"), ...line("a tenth", "tau_tenth")];
 }
 
-/** What was supplied (by the base, or there at the start) went into the damper, the impacts, or is still there. */
-export function accountEnergy({input, at_start, damper, impacts, at_end, rms, peak, without_absorber, decay}, units) {
-  const supplied = damper + impacts + at_end || 1, {of, unit} = units.energy;
-  const parts = [["damper", damper], ["impacts", impacts], ["left", at_end]];
-  const names = {damper: "damper", impacts: "impacts", left: "left at the end"};
-  const amount = (value) => `${value !== 0 && Math.abs(of(value)) < 1e-3 ? digits(of(value)) : rounded(of(value))} ${unit}`;
-  const stack = element("div", {className: "stack"}, ...parts.map(([name, value]) => bar(value / supplied, name)));
-  const legend = element("ul", {className: "parts"}, ...parts.map(([name, value]) => element("li", {},
-    element("span", {className: `key ${name}`, textContent: names[name]}), element("b", {textContent: percent(value / supplied)}), element("small", {textContent: amount(value)}))));
-  const source = [input && `${amount(input)} from the base`, at_start && `${amount(at_start)} there at the start`].filter(Boolean).join(", ");
+/**
+ * What was supplied (by the base, or there at the start) went into the damper, the impacts, or is
+ * still there.
+ */
+export function accountEnergy(energy, units) {
+  const {damper, impacts, at_end: left, without_absorber: without} = energy;
+  const supplied = damper + impacts + left || 1;
+  const parts = [
+    {className: "damper", name: "damper", value: damper},
+    {className: "impacts", name: "impacts", value: impacts},
+    {className: "left", name: "left at the end", value: left},
+  ];
+  const bars = parts.map(({className, value}) => bar(value / supplied, className));
+  const keys = parts.map(({className, name, value}) =>
+    element(
+      "li",
+      {},
+      element("span", {className: `key ${className}`, textContent: name}),
+      element("b", {textContent: percent(value / supplied)}),
+      element("small", {textContent: amount(value, units.energy)}),
+    ),
+  );
   $("energy-scale").hidden = units.si;
-  $("energy").replaceChildren(stack, legend, element("p", {className: "note", textContent: [source, ...(decay ? decayTimes(decay, units) : [])].filter(Boolean).join("; ")}),
-    compare("rms of x", rms, without_absorber.rms), compare("peak of |x|", peak, without_absorber.peak));
+  $("energy").replaceChildren(
+    element("div", {className: "stack"}, ...bars),
+    element("ul", {className: "parts"}, ...keys),
+    element("p", {className: "note", textContent: energyNote(energy, units)}),
+    compare("rms of x", energy.rms, without.rms),
+    compare("peak of |x|", energy.peak, without.peak),
+  );
 }

@@ -1,31 +1,44 @@
-// A sweep's points as they come. A stream that breaks is asked again for what it did not bring, a few times.
+// A sweep's points as they come. A stream that breaks is asked again for what it did not bring, a
+// few times.
 import {Problem, sweep} from "./api.js";
 
-/** The lines of a stream of JSON lines as {text, value}; a line may lie across chunks, and a character, too. */
+/**
+ * The lines of a stream of JSON lines as {text, value}; a line may lie across chunks, and a
+ * character, too.
+ */
 export async function* jsonLines(stream) {
-  const reader = stream.getReader(), decoder = new TextDecoder();
-  let rest = "", ended = false;
+  const reader = stream.getReader();
+  const decoder = new TextDecoder();
+  let rest = "";
+  let ended = false;
   try {
     while (!ended) {
       const {done, value} = await reader.read();
-      const texts = (rest + (done ? decoder.decode() : decoder.decode(value, {stream: true}))).split("\n");
+      const more = done ? decoder.decode() : decoder.decode(value, {stream: true});
+      const texts = `${rest}${more}`.split("\n");
       rest = texts.pop();
       for (const text of texts) if (text) yield {text, value: JSON.parse(text)};
-      ended = done;  // what has no end of line then is half a line
+      ended = done; // what has no end of line then is half a line
     }
   } finally {
     if (!ended) reader.cancel().catch(() => {});
   }
 }
 
-const pauses = [1, 2, 4, 8];  // seconds between tries that bring nothing
+const pauses = [1, 2, 4, 8]; // seconds between tries that bring nothing
 
-const sleep = (seconds, signal) => new Promise((resolve, reject) => {
-  const timer = setTimeout(resolve, seconds * 1000);
-  signal.addEventListener("abort", () => { clearTimeout(timer); reject(signal.reason); }, {once: true});
-});
+const sleep = (seconds, signal) =>
+  new Promise((resolve, reject) => {
+    const timer = setTimeout(resolve, seconds * 1000);
+    const stop = () => {
+      clearTimeout(timer);
+      reject(signal.reason);
+    };
+    signal.addEventListener("abort", stop, {once: true});
+  });
 
-const hopeless = (error) => error instanceof Problem && error.status !== 503;  // the same request would be refused again
+/** Whether the same request would be refused again. */
+const hopeless = (error) => error instanceof Problem && error.status !== 503;
 
 /** One stream into data (SweepData); throws if it ends before all is there. */
 async function receive(request, data, signal, heard) {
@@ -38,9 +51,12 @@ async function receive(request, data, signal, heard) {
   if (!data.complete) throw new Error("the answer ended before its end");
 }
 
-/** The whole sweep. heard(line): each line; broken(error, seconds): a stream broke and is asked for the rest after so many. */
+/**
+ * The whole sweep. heard(line): each line; broken(error, seconds): a stream broke and is asked for
+ * the rest after so many.
+ */
 export async function follow(request, data, signal, {heard, broken}) {
-  for (let tries = 0; !data.complete;) {
+  for (let tries = 0; !data.complete; ) {
     const before = data.received;
     try {
       await receive(request, data, signal, heard);

@@ -1,5 +1,14 @@
-// A box beside the pointer that says what is there. Its button does not take the focus: without it the box would vanish under the click.
+// A box beside the pointer that says what is there.
 import {element} from "./dom.js";
+
+/** It does not take the focus: without it the box would vanish under the click. */
+const buttonFor = ({label, run}) =>
+  element("button", {
+    type: "button",
+    textContent: label,
+    onclick: run,
+    onmousedown: (event) => event.preventDefault(),
+  });
 
 export class Tip {
   constructor(container) {
@@ -8,18 +17,30 @@ export class Tip {
     container.append(this.node);
   }
 
-  /** rows: [term, value]; left, top: where, in the container; act: {label, run}, a button for those who have no pointer to click with. */
+  /**
+   * rows: [term, value]; left, top: where, in the container; act: {label, run}, a button for those
+   * who have no pointer to click with.
+   */
   show(left, top, rows, note, act) {
-    const list = element("dl", {}, ...rows.flatMap(([term, value]) => [element("dt", {textContent: term}), element("dd", {textContent: value})]));
-    const last = act ? element("button", {type: "button", textContent: act.label, onclick: act.run, onmousedown: (event) => event.preventDefault()}) : element("p", {textContent: note});
+    const entry = ([term, value]) => [
+      element("dt", {textContent: term}),
+      element("dd", {textContent: value}),
+    ];
+    const list = element("dl", {}, ...rows.flatMap(entry));
+    const last = act ? buttonFor(act) : element("p", {textContent: note});
     this.node.replaceChildren(list, last);
     this.node.hidden = false;
     this.node.classList.toggle("pinned", Boolean(act));
-    const {offsetWidth: width, offsetHeight: height} = this.node, gap = 14, room = this.container.clientWidth;
+    const {offsetWidth: width, offsetHeight: height} = this.node;
+    const gap = 14;
+    const room = this.container.clientWidth;
     const beside = left + gap + width <= room ? left + gap : left - gap - width;
+    const lowest = this.container.clientHeight - height;
     this.node.style.left = `${Math.max(0, Math.min(beside, room - width))}px`;
-    this.node.style.top = `${Math.max(0, Math.min(top - height / 2, this.container.clientHeight - height))}px`;
+    this.node.style.top = `${Math.max(0, Math.min(top - height / 2, lowest))}px`;
   }
 
-  hide() { this.node.hidden = true; }
+  hide() {
+    this.node.hidden = true;
+  }
 }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "program/tell.hpp"
+#include "report/markdown.hpp"
 #include "report/reproduce.hpp"
 
 namespace vines::report {
@@ -14,8 +15,8 @@ namespace vines::report {
 namespace {
 
 int run(const std::string& folder) {
-    const Reproduction result = reproduce(folder);
-    std::fputs(result.table().c_str(), stdout);
+    const Report result = reproduce(folder);
+    std::fputs(markdown_table(result.findings).c_str(), stdout);
     if (!folder.empty()) tell(fmt::format("wrote {}/report.md and its plots", folder));
     if (!result.holds()) tell("a number has left its band");
     return result.holds() ? 0 : 1;

@@ -1,19 +1,18 @@
 #include "report/svg.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <iterator>
 
 namespace vines::report {
 
 namespace {
 
-std::string format(const char* pattern, double value) {
-    char text[48];
-    std::snprintf(text, sizeof text, pattern, value);
-    return text;
-}
-std::string pixel(double v) { return format("%.1f", v); }
+constexpr const char* grid = R"(stroke="#e4e7ea")";
+constexpr const char* level_line = R"(stroke="#8a939b")";
+constexpr const char* moment_line = R"(stroke="#b3261e" stroke-dasharray="6 4")";
 
 std::string escaped(const std::string& text) {
     std::string out;
@@ -58,6 +57,13 @@ Range x_range(const std::vector<Plot>& plots) {
     return widened(x, dots ? 0.03 : 0);
 }
 
+std::string tick_label(double t) { return fmt::format("{:g}", std::abs(t) < 1e-12 ? 0 : t); }
+
+/// The attribute, if any, with a space before it.
+std::string dashed(const Curve& c) {
+    return c.dash.empty() ? "" : fmt::format(R"( stroke-dasharray="{}")", c.dash);
+}
+
 class Canvas {
 public:
     Canvas(const Plot& plot, const Range& x, int width, int height, int top)
@@ -80,6 +86,9 @@ public:
     }
 
     std::string draw() {
+        shade_bands();
+        draw_grid();
+        mark_levels_and_moments();
         frame();
         for (const Curve& c : plot_.curves) c.dots ? dots(c) : line(c);
         legend();
@@ -98,67 +107,80 @@ private:
         return x >= x_.first && x <= x_.second && v >= y_.first && v <= y_.second;
     }
 
+    template <class... Values>
+    void add(fmt::format_string<Values...> pattern, Values&&... values) {
+        fmt::format_to(std::back_inserter(out_), pattern, std::forward<Values>(values)...);
+        out_ += '\n';
+    }
     void text(
-        double x, double y, const std::string& anchor, const std::string& what,
+        double x, double y, const char* anchor, const std::string& what,
         const std::string& more = "") {
-        out_ += "<text x=\"" + pixel(x) + "\" y=\"" + pixel(y) + "\" text-anchor=\"" + anchor +
-                "\"" + more + ">" + escaped(what) + "</text>\n";
+        add(R"(<text x="{:.1f}" y="{:.1f}" text-anchor="{}"{}>{}</text>)", x, y, anchor, more,
+            escaped(what));
     }
     void rule(double x1, double y1, double x2, double y2, const std::string& style) {
-        out_ += "<line x1=\"" + pixel(x1) + "\" y1=\"" + pixel(y1) + "\" x2=\"" + pixel(x2) +
-                "\" y2=\"" + pixel(y2) + "\" " + style + "/>\n";
+        add(R"(<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" {}/>)", x1, y1, x2, y2, style);
+    }
+    void box(double x, double y, double width, double height, const char* style) {
+        add(R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" {}/>)", x, y, width,
+            height, style);
+    }
+    void dot(double x, double y, const char* radius, const std::string& colour) {
+        add(R"(<circle cx="{:.1f}" cy="{:.1f}" r="{}" fill="{}"/>)", x, y, radius, colour);
     }
 
-    void frame() {
+    void shade_bands() {
         for (const auto& [from, to] : plot_.bands) {
-            const double a = std::max(px(from), double(left_)),
-                         b = std::min(px(to), double(right_));
+            const double a = std::max(px(from), left_), b = std::min(px(to), right_);
             if (b > a)
-                out_ += "<rect x=\"" + pixel(a) + "\" y=\"" + pixel(top_) + "\" width=\"" +
-                        pixel(std::max(b - a, 0.5)) + "\" height=\"" + pixel(bottom_ - top_) +
-                        "\" fill=\"#2e8b57\" fill-opacity=\".16\"/>\n";
+                box(a, top_, std::max(b - a, 0.5), bottom_ - top_,
+                    R"(fill="#2e8b57" fill-opacity=".16")");
         }
+    }
+
+    void draw_grid() {
         for (double t : ticks(x_, 8)) {
-            rule(px(t), top_, px(t), bottom_, "stroke=\"#e4e7ea\"");
-            text(px(t), bottom_ + 15, "middle", format("%g", std::abs(t) < 1e-12 ? 0 : t));
+            rule(px(t), top_, px(t), bottom_, grid);
+            text(px(t), bottom_ + 15, "middle", tick_label(t));
         }
         for (double t : ticks(y_, plot_.logarithmic ? 4 : 5)) {
             if (plot_.logarithmic && t != std::floor(t)) continue;
-            rule(left_, py(t), right_, py(t), "stroke=\"#e4e7ea\"");
-            text(
-                left_ - 6, py(t) + 4, "end",
-                (plot_.logarithmic ? "1e" : "") + format("%g", std::abs(t) < 1e-12 ? 0 : t));
+            rule(left_, py(t), right_, py(t), grid);
+            text(left_ - 6, py(t) + 4, "end", (plot_.logarithmic ? "1e" : "") + tick_label(t));
         }
+    }
+
+    void mark_levels_and_moments() {
         for (double level : plot_.levels)
             if (inside(x_.first, value(level)))
-                rule(left_, py(value(level)), right_, py(value(level)), "stroke=\"#8a939b\"");
+                rule(left_, py(value(level)), right_, py(value(level)), level_line);
         for (double m : plot_.moments)
-            if (m >= x_.first && m <= x_.second)
-                rule(px(m), top_, px(m), bottom_, "stroke=\"#b3261e\" stroke-dasharray=\"6 4\"");
-        out_ += "<rect x=\"" + pixel(left_) + "\" y=\"" + pixel(top_) + "\" width=\"" +
-                pixel(right_ - left_) + "\" height=\"" + pixel(bottom_ - top_) +
-                "\" fill=\"none\" stroke=\"#b9c0c6\"/>\n";
+            if (m >= x_.first && m <= x_.second) rule(px(m), top_, px(m), bottom_, moment_line);
+    }
+
+    void frame() {
+        box(left_, top_, right_ - left_, bottom_ - top_, R"(fill="none" stroke="#b9c0c6")");
         text(0.5 * (left_ + right_), bottom_ + 31, "middle", plot_.x_label);
         const double middle = 0.5 * (top_ + bottom_);
         text(
             14, middle, "middle", plot_.y_label,
-            " transform=\"rotate(-90 14 " + pixel(middle) + ")\"");
+            fmt::format(" transform=\"rotate(-90 14 {:.1f})\"", middle));
+    }
+
+    void polyline(const Curve& c, const std::string& points) {
+        if (points.empty()) return;
+        add(R"(<polyline fill="none" stroke="{}" stroke-width="1.1"{} points="{}"/>)", c.colour,
+            dashed(c), points);
     }
 
     void line(const Curve& c) {
         std::string points;
-        auto flush = [&] {
-            if (!points.empty())
-                out_ += "<polyline fill=\"none\" stroke=\"" + c.colour + "\" stroke-width=\"1.1\"" +
-                        (c.dash.empty() ? "" : " stroke-dasharray=\"" + c.dash + "\"") +
-                        " points=\"" + points + "\"/>\n";
-            points.clear();
-        };
         // Of all points in one column of half a pixel the first, the lowest, the highest and the
         // last: the same picture.
         for (std::size_t i = 0; i < c.x.size();) {
             if (!std::isfinite(value(c.y[i]))) {
-                flush();
+                polyline(c, points);
+                points.clear();
                 ++i;
                 continue;
             }
@@ -173,23 +195,24 @@ private:
             std::size_t wanted[] = {i, std::min(low, high), std::max(low, high), last};
             const auto end = std::unique(std::begin(wanted), std::end(wanted));
             for (auto k = std::begin(wanted); k != end; ++k)
-                points += pixel(px(c.x[*k])) + "," +
-                          pixel(std::clamp(py(value(c.y[*k])), top_ - 1.0, bottom_ + 1.0)) + " ";
+                fmt::format_to(
+                    std::back_inserter(points), "{:.1f},{:.1f} ", px(c.x[*k]),
+                    std::clamp(py(value(c.y[*k])), top_ - 1.0, bottom_ + 1.0));
             i = last + 1;
         }
-        flush();
+        polyline(c, points);
     }
 
     void dots(const Curve& c) {
+        const char* const radius = c.x.size() > 100 ? "1.3" : "3";
         for (std::size_t i = 0; i < c.x.size(); ++i) {
-            const double v = value(c.y[i]);
+            const double x = px(c.x[i]), v = value(c.y[i]);
             if (!std::isfinite(v) || !inside(c.x[i], v)) continue;
             if (!c.error.empty())
                 rule(
-                    px(c.x[i]), py(v - c.error[i]), px(c.x[i]), py(v + c.error[i]),
-                    "stroke=\"" + c.colour + "\"");
-            out_ += "<circle cx=\"" + pixel(px(c.x[i])) + "\" cy=\"" + pixel(py(v)) + "\" r=\"" +
-                    (c.x.size() > 100 ? "1.3" : "3") + "\" fill=\"" + c.colour + "\"/>\n";
+                    x, py(v - c.error[i]), x, py(v + c.error[i]),
+                    fmt::format(R"(stroke="{}")", c.colour));
+            dot(x, py(v), radius, c.colour);
         }
     }
 
@@ -199,16 +222,13 @@ private:
             if (c.label.empty()) continue;
             // Behind the words, so that they can be read over curves.
             const double width = 26 + 6.3 * static_cast<double>(c.label.size());
-            out_ += "<rect x=\"" + pixel(x - 3) + "\" y=\"" + pixel(top_ + 3) + "\" width=\"" +
-                    pixel(width) + "\" height=\"16\" fill=\"#fff\" fill-opacity=\".8\"/>\n";
-            if (c.dots)
-                out_ += "<circle cx=\"" + pixel(x + 7) + "\" cy=\"" + pixel(top_ + 11) +
-                        "\" r=\"3\" fill=\"" + c.colour + "\"/>\n";
+            add(R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="16" {}/>)", x - 3, top_ + 3,
+                width, R"(fill="#fff" fill-opacity=".8")");
+            if (c.dots) dot(x + 7, top_ + 11, "3", c.colour);
             else
                 rule(
                     x, top_ + 11, x + 14, top_ + 11,
-                    "stroke=\"" + c.colour + "\" stroke-width=\"2\"" +
-                        (c.dash.empty() ? "" : " stroke-dasharray=\"" + c.dash + "\""));
+                    fmt::format(R"(stroke="{}" stroke-width="2"{})", c.colour, dashed(c)));
             text(x + 18, top_ + 15, "start", c.label);
             x += width + 4;
         }
@@ -225,11 +245,13 @@ private:
 std::string svg(const std::vector<Plot>& plots, int width, int height) {
     const int total = height * static_cast<int>(plots.size());
     const Range x = x_range(plots);
-    std::string out = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " +
-                      std::to_string(width) + " " + std::to_string(total) + "\" width=\"" +
-                      std::to_string(width) + "\" height=\"" + std::to_string(total) +
-                      "\" font-family=\"system-ui, sans-serif\" font-size=\"11.5\" "
-                      "fill=\"#39424a\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n";
+    std::string out = fmt::format(
+        R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {0} {1}" width="{0}" height="{1}" )"
+        R"(font-family="system-ui, sans-serif" font-size="11.5" fill="#39424a">)"
+        "\n"
+        R"(<rect width="100%" height="100%" fill="#fff"/>)"
+        "\n",
+        width, total);
     for (std::size_t i = 0; i < plots.size(); ++i)
         out += Canvas(plots[i], x, width, height, height * static_cast<int>(i)).draw();
     return out + "</svg>\n";

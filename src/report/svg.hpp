@@ -9,17 +9,17 @@
 namespace vines::report {
 
 struct Curve {
-    std::vector<double> x, y;  ///< of equal length; what is not finite leaves a gap
+    std::vector<double> x{}, y{};  ///< of equal length; what is not finite leaves a gap
     std::string colour = "#1f6fb2";
-    std::string label;            ///< in the legend, if any
+    std::string label{};          ///< in the legend, if any
     bool dots = false;            ///< points instead of a line
-    std::string dash;             ///< SVG's stroke-dasharray
+    std::string dash{};           ///< SVG's stroke-dasharray
     std::vector<double> error{};  ///< bars of +- this length, if any
 };
 
 struct Plot {
     std::string x_label, y_label;
-    std::vector<Curve> curves;
+    std::vector<Curve> curves{};
     bool logarithmic = false;  ///< y
     std::optional<std::pair<double, double>> y_range{};
     std::vector<double> levels{};                    ///< thin lines at y

@@ -2,9 +2,19 @@
 import {startService} from "../service.mjs";
 
 const service = await startService(["--sweeps", "1"]);
-const sweep = JSON.stringify({base: {damping: "closed_form"}, axes: [{parameter: "b", from: 0.008, to: 0.03, count: 20000}], cycles: 2000});
-const run = JSON.stringify({b: 0.022, damping: "closed_form", tau_end: 20000, include: ["exponents"]});
-const post = (path, body, options = {}) => fetch(service.url + path, {method: "POST", body, ...options});
+const sweep = JSON.stringify({
+  base: {damping: "closed_form"},
+  axes: [{parameter: "b", from: 0.008, to: 0.03, count: 20000}],
+  cycles: 2000,
+});
+const run = JSON.stringify({
+  b: 0.022,
+  damping: "closed_form",
+  tau_end: 20000,
+  include: ["exponents"],
+});
+const post = (path, body, options = {}) =>
+  fetch(service.url + path, {method: "POST", body, ...options});
 
 /** Starts a sweep as soon as there is room for one and returns, once its first line has come, how to leave it. */
 const startSweep = async () => {
@@ -47,5 +57,9 @@ leave();
 await service.stop();
 
 const ms = (x) => `${x.toFixed(1)} ms`;
-console.log(`a simulation alone: ${ms(alone.median)}, beside a sweep on all cores: ${ms(beside.median)} (median of 31); ratio of the least: ${(beside.least / alone.least).toFixed(2)}, to be below 2`);
-console.log(`a sweep whose client left gives its room back after ${ms(free.median)} (median of 9), to be below 200 ms`);
+console.log(
+  `a simulation alone: ${ms(alone.median)}, beside a sweep on all cores: ${ms(beside.median)} (median of 31); ratio of the least: ${(beside.least / alone.least).toFixed(2)}, to be below 2`,
+);
+console.log(
+  `a sweep whose client left gives its room back after ${ms(free.median)} (median of 9), to be below 200 ms`,
+);

@@ -1,37 +1,58 @@
 // The subcommands, as a terminal and a batch system use them.
-import {after, before, test} from "node:test";
 import assert from "node:assert/strict";
 import {spawn} from "node:child_process";
-import {mkdtemp, readFile, rm, writeFile, appendFile} from "node:fs/promises";
+import {appendFile, mkdtemp, readFile, rm, writeFile} from "node:fs/promises";
 import {tmpdir} from "node:os";
 import {join} from "node:path";
+import {after, before, test} from "node:test";
 import {program, startService} from "../service.mjs";
 
 let folder;
-before(async () => { folder = await mkdtemp(join(tmpdir(), "vines-cli-")); });
+before(async () => {
+  folder = await mkdtemp(join(tmpdir(), "vines-cli-"));
+});
 after(() => rm(folder, {recursive: true}));
 const at = (name) => join(folder, name);
 
-/** Runs the program to its end, or sends it one signal once `until`, given its process's number, says so: {code, out, errors}. */
-const run = (args, {input = "", env = {}, signal, until} = {}) => new Promise((resolve) => {
-  const child = spawn(program, args, {env: {...process.env, ...env}});
-  let out = "", errors = "";
-  child.stdout.on("data", (d) => out += d);
-  child.stderr.on("data", (d) => errors += d);
-  child.on("close", (code) => resolve({code, out, errors}));
-  child.stdin.on("error", () => {});
-  child.stdin.end(input);
-  const look = async () => {  // one look after the other: a second signal would end the program at once
-    if (child.exitCode !== null) return;
-    if (await until(child.pid)) child.kill(signal);
-    else setTimeout(look, 5);
-  };
-  if (signal) look();
-});
+/**
+ * Runs the program to its end, or sends it one signal once `until`, given its process's number, says
+ * so: {code, out, errors}.
+ */
+const run = (args, {input = "", env = {}, signal, until} = {}) =>
+  new Promise((resolve) => {
+    const child = spawn(program, args, {env: {...process.env, ...env}});
+    let out = "";
+    let errors = "";
+    child.stdout.on("data", (d) => (out += d));
+    child.stderr.on("data", (d) => (errors += d));
+    child.on("close", (code) => resolve({code, out, errors}));
+    child.stdin.on("error", () => {});
+    child.stdin.end(input);
+    // One look after the other: a second signal would end the program at once.
+    const look = async () => {
+      if (child.exitCode !== null) return;
+      if (await until(child.pid)) child.kill(signal);
+      else setTimeout(look, 5);
+    };
+    if (signal) look();
+  });
 
-const sweep = JSON.stringify({base: {damping: "closed_form"}, axes: [{parameter: "b", from: 0.008, to: 0.03, count: 40}], cycles: 60, section: "impact", section_points: 5});
-const long = JSON.stringify({...JSON.parse(sweep), cycles: 100000});  // longer than a look at its file may take on any machine
-const lines = async (name) => (await readFile(at(name), "utf8").catch(() => "")).split("\n").length - 1;
+const sweep = JSON.stringify({
+  base: {damping: "closed_form"},
+  axes: [{parameter: "b", from: 0.008, to: 0.03, count: 40}],
+  cycles: 60,
+  section: "impact",
+  section_points: 5,
+});
+// Longer than a look at its file may take on any machine.
+const long = JSON.stringify({...JSON.parse(sweep), cycles: 100000});
+const parsed = (text) =>
+  text
+    .trim()
+    .split("\n")
+    .map((line) => JSON.parse(line));
+const lines = async (name) =>
+  (await readFile(at(name), "utf8").catch(() => "")).split("\n").length - 1;
 
 test("simulate answers as the service does, from a file or stdin to a file or stdout", async () => {
   const service = await startService();
@@ -45,10 +66,14 @@ test("simulate answers as the service does, from a file or stdin to a file or st
 });
 
 test("identify takes a CSV file with its fields as a query, or the service's JSON", async () => {
-  const simulated = JSON.parse((await run(["simulate"], {input: '{"preset":"fig20","include":["impacts","exponents"],"exponents":["qr"]}'})).out);
-  const {code, out} = await run(["identify"], {input: JSON.stringify({preset: "fig20", impacts: simulated.impacts, exponents: ["qr"]})});
+  const asked = '{"preset":"fig20","include":["impacts","exponents"],"exponents":["qr"]}';
+  const simulated = JSON.parse((await run(["simulate"], {input: asked})).out);
+  const {code, out} = await run(["identify"], {
+    input: JSON.stringify({preset: "fig20", impacts: simulated.impacts, exponents: ["qr"]}),
+  });
   assert.equal(code, 0);
-  assert.ok(Math.abs(JSON.parse(out).exponents.qr.final[0] - simulated.exponents.qr.final[0]) < 1e-9);
+  const lambda = (answer) => answer.exponents.qr.final[0];
+  assert.ok(Math.abs(lambda(JSON.parse(out)) - lambda(simulated)) < 1e-9);
   await writeFile(at("record.csv"), "time_s,x_m,a\n0,1,2\n0.001,1,x\n");
   const refused = await run(["identify", at("record.csv"), "-q", "preset=fig20&b=0.015"]);
   assert.equal(refused.code, 2);
@@ -56,28 +81,46 @@ test("identify takes a CSV file with its fields as a query, or the service's JSO
 });
 
 test("identify decodes its query as the service does a URL's", async () => {
-  const identify = async (query) => JSON.parse((await run(["identify", "-q", query], {input: "time_s,the x,a\n0,1,2\n0.001,1,3\n"})).errors);
-  const {errors} = await identify("preset=fig20&displacement_column=no%20x+%2Cor%3D&");
-  assert.deepEqual(errors.map((e) => [e.pointer, e.value]), [["/displacement_column", "no x ,or="]]);
-  for (const column of ["the x", "the%20x", "the+x", "%74he%20x"]) assert.match((await identify(`preset=fig20&displacement_column=${column}`)).detail, /^the record has 2 samples/);  // the column was found
-  assert.equal((await identify("preset=fig20&displacement_column=50%zz%2")).errors[0].value, "50%zz%2");
+  const input = "time_s,the x,a\n0,1,2\n0.001,1,3\n";
+  const refused = async (column) => {
+    const query = `preset=fig20&displacement_column=${column}`;
+    return JSON.parse((await run(["identify", "-q", query], {input})).errors);
+  };
+  const {errors} = await refused("no%20x+%2Cor%3D&");
+  assert.equal(errors[0].pointer, "/displacement_column");
+  assert.equal(errors[0].value, "no x ,or=");
+  // The column is found, and the record is too short.
+  for (const column of ["the x", "the%20x", "the+x", "%74he%20x"])
+    assert.match((await refused(column)).detail, /^the record has 2 samples/);
+  assert.equal((await refused("50%zz%2")).errors[0].value, "50%zz%2");
 });
 
 test("a sweep whose motion depends on the start says so on stderr, one with the default set of starts has the worst and the best in its lines", async () => {
-  const platform = {base: {m1: 12, f0: 14, damping_ratio: 0.006, mass_ratio: 0.01, F: 0.0004, R: 0.4, b: 0.03}, axes: [{parameter: "f", from: 13.8, to: 14.2, count: 3}], cycles: 100};
+  const platform = {
+    base: {m1: 12, f0: 14, damping_ratio: 0.006, mass_ratio: 0.01, F: 0.0004, R: 0.4, b: 0.03},
+    axes: [{parameter: "f", from: 13.8, to: 14.2, count: 3}],
+    cycles: 100,
+  };
   const single = await run(["sweep"], {input: JSON.stringify(platform)});
   assert.equal(single.code, 0);
   assert.match(single.errors, /^vines: the motion depends on the start: at 2 of 3 points/);
-  const both = await run(["sweep"], {input: JSON.stringify({...platform, starts: "default set", reduce: "max over f"})});
+  const both = await run(["sweep"], {
+    input: JSON.stringify({...platform, starts: "default set", reduce: "max over f"}),
+  });
   assert.deepEqual({code: both.code, errors: both.errors}, {code: 0, errors: ""});
-  const [start, line, done] = both.out.trim().split("\n").map((text) => JSON.parse(text));
+  const [start, line, done] = parsed(both.out);
   assert.equal(start.parameters.origin.f, "swept: the first of its axis");
   assert.ok(line.worst.x_peak > line.best.x_peak);
   assert.deepEqual(done, {type: "done", points: 1});
 });
 
 test("a request at fault is a problem document on stderr and exit code 2, a file that is not there is 1", async () => {
-  for (const [command, input] of [["simulate", '{"b":-1}'], ["sweep", '{"axes":[{"parameter":"q","values":[1]}]}'], ["simulate", "{"]]) {
+  const faults = [
+    ["simulate", '{"b":-1}'],
+    ["sweep", '{"axes":[{"parameter":"q","values":[1]}]}'],
+    ["simulate", "{"],
+  ];
+  for (const [command, input] of faults) {
     const {code, out, errors} = await run([command], {input});
     assert.equal(code, 2);
     assert.equal(out, "");
@@ -90,10 +133,17 @@ test("a request at fault is a problem document on stderr and exit code 2, a file
 });
 
 /** Whether a process has SIGINT blocked: it waits for it then. */
-const waitsForSignals = async (pid) => (BigInt(`0x${(await readFile(`/proc/${pid}/status`, "utf8")).match(/^SigBlk:\s+(\w+)/m)[1]}`) & 2n) !== 0n;
+const waitsForSignals = async (pid) =>
+  (BigInt(`0x${(await readFile(`/proc/${pid}/status`, "utf8")).match(/^SigBlk:\s+(\w+)/m)[1]}`) &
+    2n) !==
+  0n;
 
 test("an interrupted simulation answers with what it has and exit code 3", async () => {
-  const {code, out} = await run(["simulate"], {input: '{"b":0.003,"R":1,"tau_end":1e7,"max_impacts":2000000,"include":["exponents"]}', signal: "SIGINT", until: waitsForSignals});
+  const {code, out} = await run(["simulate"], {
+    input: '{"b":0.003,"R":1,"tau_end":1e7,"max_impacts":2000000,"include":["exponents"]}',
+    signal: "SIGINT",
+    until: waitsForSignals,
+  });
   assert.equal(code, 3);
   assert.equal(JSON.parse(out).status.reason, "interrupted");
 });
@@ -103,18 +153,29 @@ test("a sweep's file has its points in order, the same on stdout and on any numb
   const whole = await readFile(at("whole.ndjson"), "utf8");
   assert.equal((await run(["sweep", "--threads", "1"], {input: sweep})).out, whole);
   assert.equal((await run(["sweep", "--threads", "5"], {input: sweep})).out, whole);
-  const parsed = whole.trim().split("\n").map((line) => JSON.parse(line));
-  assert.deepEqual(parsed.map((l) => l.type), ["start", ...Array(40).fill("point"), "done"]);
-  assert.deepEqual(parsed.slice(1, -1).map((l) => l.index), Array.from({length: 40}, (_, i) => i));
+  const types = parsed(whole).map((line) => line.type);
+  assert.deepEqual(types, ["start", ...Array(40).fill("point"), "done"]);
+  const indices = parsed(whole).map((line) => line.index);
+  assert.deepEqual(indices.slice(1, -1), [...Array(40).keys()]);
 });
 
 test("shards put together are the whole, byte for byte; a missing one is named", async () => {
   const whole = await readFile(at("whole.ndjson"), "utf8");
-  const parts = [];
-  for (let i = 0; i < 3; ++i) {
-    parts.push(at(`part${i}`));
-    const env = i === 0 ? {} : i === 1 ? {SLURM_ARRAY_TASK_ID: "11", SLURM_ARRAY_TASK_MIN: "10", SLURM_ARRAY_TASK_COUNT: "3"} : {JOB_COMPLETION_INDEX: "2", VINES_SHARDS: "3"};
-    assert.equal((await run(["sweep", "--shard", i === 0 ? "0/3" : "auto", "-o", parts[i]], {input: sweep, env})).code, 0);
+  const slurm = {
+    SLURM_ARRAY_TASK_ID: "11",
+    SLURM_ARRAY_TASK_MIN: "10",
+    SLURM_ARRAY_TASK_COUNT: "3",
+  };
+  const kubernetes = {JOB_COMPLETION_INDEX: "2", VINES_SHARDS: "3"};
+  const shards = [
+    {shard: "0/3", env: {}},
+    {shard: "auto", env: slurm},
+    {shard: "auto", env: kubernetes},
+  ];
+  const parts = shards.map((_, i) => at(`part${i}`));
+  for (const [i, {shard, env}] of shards.entries()) {
+    const {code} = await run(["sweep", "--shard", shard, "-o", parts[i]], {input: sweep, env});
+    assert.equal(code, 0);
   }
   assert.equal((await run(["merge", ...parts])).out, whole);
   assert.equal((await run(["merge", ...parts, "-o", at("merged")])).code, 0);
@@ -131,23 +192,33 @@ test("shards put together are the whole, byte for byte; a missing one is named",
 test("a file that is there is not overwritten; --resume completes one that was cut anywhere", async () => {
   const whole = await readFile(at("whole.ndjson"), "utf8");
   assert.equal((await run(["sweep", "-o", at("whole.ndjson")], {input: sweep})).code, 1);
-  for (const cut of [0, 10, whole.indexOf("\n") + 1, Math.floor(whole.length / 2), whole.length - 3, whole.length]) {
+  const resume = (name, input) => run(["sweep", "--resume", "-o", at(name)], {input});
+  const n = whole.length;
+  for (const cut of [0, 10, whole.indexOf("\n") + 1, Math.floor(n / 2), n - 3, n]) {
     await writeFile(at("cut"), whole.slice(0, cut));
-    assert.equal((await run(["sweep", "--resume", "-o", at("cut")], {input: sweep})).code, 0, `cut at ${cut}`);
+    assert.equal((await resume("cut", sweep)).code, 0, `cut at ${cut}`);
     assert.equal(await readFile(at("cut"), "utf8"), whole);
   }
   await appendFile(at("cut"), "nonsense\n");
-  assert.match((await run(["sweep", "--resume", "-o", at("cut")], {input: sweep})).errors, /line 43: not a line of a sweep/);
-  assert.equal((await run(["sweep", "--resume", "-o", at("whole.ndjson")], {input: sweep.replace("60", "61")})).code, 1);
+  assert.match((await resume("cut", sweep)).errors, /line 43: not a line of a sweep/);
+  assert.equal((await resume("whole.ndjson", sweep.replace("60", "61"))).code, 1);
 });
 
 test("a killed sweep loses the points in work at most, and one that is interrupted ends with exit code 3", async () => {
-  const killed = await run(["sweep", "-o", at("killed")], {input: long, signal: "SIGKILL", until: async () => await lines("killed") > 4});
+  const killed = await run(["sweep", "-o", at("killed")], {
+    input: long,
+    signal: "SIGKILL",
+    until: async () => (await lines("killed")) > 4,
+  });
   assert.equal(killed.code, null);
   const kept = await lines("killed");
   assert.ok(kept > 4);
-  const interrupted = await run(["sweep", "--resume", "-o", at("killed")], {input: long, signal: "SIGINT", until: async () => await lines("killed") > kept + 3});
+  const interrupted = await run(["sweep", "--resume", "-o", at("killed")], {
+    input: long,
+    signal: "SIGINT",
+    until: async () => (await lines("killed")) > kept + 3,
+  });
   assert.equal(interrupted.code, 3);
   assert.match(interrupted.errors, /--resume completes the file/);
-  assert.ok(await lines("killed") > kept + 3);
+  assert.ok((await lines("killed")) > kept + 3);
 });

@@ -1,9 +1,10 @@
-// Writes down what the program answers, one file for each request, so that two builds can be held against each other:
+// Writes down what the program answers, one file for each request, so that two builds can be held
+// against each other:
 //   node tests/golden/golden.mjs record FOLDER     of the program that VINES names
 //   node tests/golden/golden.mjs compare BEFORE AFTER
 // The version is left out, and of a sweep's stream the progress; its points are put in order.
 import {spawn} from "node:child_process";
-import {mkdir, mkdtemp, readFile, readdir, rm, stat, writeFile} from "node:fs/promises";
+import {mkdir, mkdtemp, readdir, readFile, rm, stat, writeFile} from "node:fs/promises";
 import {tmpdir} from "node:os";
 import {join, resolve} from "node:path";
 import {program, startService} from "../service.mjs";
@@ -14,19 +15,24 @@ const withoutVersion = (text) => text.replace(/\b0\.\d+\.\d+\b/g, "VERSION");
 
 /** The lines of a sweep in the order of their indices. */
 const ordered = (text) => {
-  const lines = text.trimEnd().split("\n").filter((line) => !line.startsWith('{"type":"progress"'));
+  const lines = text
+    .trimEnd()
+    .split("\n")
+    .filter((line) => !line.startsWith('{"type":"progress"'));
   const index = (line) => Number(line.match(/^{"type":"point","index":(\d+)/)?.[1] ?? -1);
   const points = lines.filter((line) => index(line) >= 0).sort((a, b) => index(a) - index(b));
   const others = lines.filter((line) => index(line) < 0);
-  return [...others.slice(0, 1), ...points, ...others.slice(1)].join("\n") + "\n";
+  return `${[...others.slice(0, 1), ...points, ...others.slice(1)].join("\n")}\n`;
 };
 
-const asText = (body) => typeof body === "string" ? body : JSON.stringify(body);
+const asText = (body) => (typeof body === "string" ? body : JSON.stringify(body));
 
 async function answerOf(url, {path, body, type}) {
-  const options = body === undefined ? {} : {method: "POST", body: asText(body), headers: {"Content-Type": type ?? "application/json"}};
+  const headers = {"Content-Type": type ?? "application/json"};
+  const options = body === undefined ? {} : {method: "POST", body: asText(body), headers};
   const response = await fetch(url + path, options);
-  const text = await response.text(), kind = response.headers.get("content-type");
+  const text = await response.text();
+  const kind = response.headers.get("content-type");
   return `${response.status} ${kind}\n${kind.includes("ndjson") ? ordered(text) : text}`;
 }
 
@@ -35,16 +41,19 @@ async function contents(folder, name) {
   const path = join(folder, name);
   if (!(await stat(path)).isDirectory()) return `--- ${name}\n${await readFile(path, "utf8")}`;
   const parts = [];
-  for (const inside of (await readdir(path)).sort()) parts.push(await contents(folder, join(name, inside)));
+  for (const inside of (await readdir(path)).sort())
+    parts.push(await contents(folder, join(name, inside)));
   return parts.join("");
 }
 
 async function outcomeOf({args, input, environment, files = []}) {
   const folder = await mkdtemp(join(tmpdir(), "vines-golden-"));
-  const child = spawn(resolve(program), args, {cwd: folder, env: {...process.env, ...environment}});
-  let out = "", errors = "";
-  child.stdout.on("data", (data) => out += data);
-  child.stderr.on("data", (data) => errors += data);
+  const options = {cwd: folder, env: {...process.env, ...environment}};
+  const child = spawn(resolve(program), args, options);
+  let out = "";
+  let errors = "";
+  child.stdout.on("data", (data) => (out += data));
+  child.stderr.on("data", (data) => (errors += data));
   child.stdin.on("error", () => {});
   child.stdin.end(input === undefined ? "" : asText(input));
   const code = await new Promise((resolve) => child.on("close", resolve));
@@ -60,16 +69,21 @@ async function record(folder) {
     ++count;
     await writeFile(join(folder, nameOf(name)), withoutVersion(text));
   };
-  const service = await startService(["--deadline", "600"]), small = await startService(["--answer-limit", "2000000"]);
-  const ask = async (body) => (await fetch(`${service.url}/v1/simulate`, {method: "POST", body: JSON.stringify(body)})).json();
-  for (const request of [...requests, ...await identifications(ask)]) await keep(request.name, await answerOf(request.limited ? small.url : service.url, request));
+  const service = await startService(["--deadline", "600"]);
+  const small = await startService(["--answer-limit", "2000000"]);
+  const ask = async (fields) => {
+    const body = JSON.stringify(fields);
+    return (await fetch(`${service.url}/v1/simulate`, {method: "POST", body})).json();
+  };
+  for (const request of [...requests, ...(await identifications(ask))])
+    await keep(request.name, await answerOf(request.limited ? small.url : service.url, request));
   await Promise.all([service.stop(), small.stop()]);
   for (const command of commands) await keep(command.name, await outcomeOf(command));
   console.log(`${count} answers in ${folder}`);
 }
 
 async function compare(before, after) {
-  const names = [...new Set([...await readdir(before), ...await readdir(after)])].sort();
+  const names = [...new Set([...(await readdir(before)), ...(await readdir(after))])].sort();
   const read = (folder, name) => readFile(join(folder, name), "utf8").catch(() => undefined);
   let different = 0;
   for (const name of names) {
@@ -82,8 +96,8 @@ async function compare(before, after) {
     }
     let at = 0;
     while (one[at] === other[at]) ++at;
-    const from = Math.max(0, at - 60);
-    console.log(`${name}: differs at byte ${at}\n  - ${JSON.stringify(one.slice(from, at + 100))}\n  + ${JSON.stringify(other.slice(from, at + 100))}`);
+    const around = (text) => JSON.stringify(text.slice(Math.max(0, at - 60), at + 100));
+    console.log(`${name}: differs at byte ${at}\n  - ${around(one)}\n  + ${around(other)}`);
   }
   console.log(`${names.length - different} of ${names.length} answers are equal, byte for byte`);
   process.exitCode = different ? 1 : 0;

@@ -1,0 +1,21 @@
+// The chapters of the report. Each is a file of its own in chapters/: it runs the system, holds the
+// paper's statements against what comes out, and adds its findings and pictures to the report.
+// `reproduce.cpp` has their order.
+#pragma once
+
+#include "report/report.hpp"
+#include "report/runs.hpp"
+
+namespace vines::report {
+
+using Chapter = void(Report&, Runs&);
+
+Chapter table_1;              ///< the parameters
+Chapter strongly_modulated;   ///< Figs. 3 and 4: the motion at b = 22 mm
+Chapter transient_exponents;  ///< Fig. 5: its Lyapunov exponents
+Chapter transfer_matrices;    ///< Figs. 6 to 9: the eigenvalues of its J, M and T
+Chapter table_2;              ///< its exponents over other windows
+Chapter other_regimes;        ///< Figs. 10 to 14: Types I and III to VI
+Chapter table_3;              ///< the exponents at ten values of b
+
+}  // namespace vines::report

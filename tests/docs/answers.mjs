@@ -1,0 +1,182 @@
+// Every key that the service answers with, seen in real answers, part by part of the documents.
+import assert from "node:assert/strict";
+import {measured} from "../page/record.mjs";
+import {startService} from "../service.mjs";
+
+const everything = [
+  "series",
+  "impacts",
+  "exponents",
+  "eigenvalues",
+  "matrices",
+  "section",
+  "energy",
+  "regime",
+  "manifold",
+];
+const parts = [...everything, "status", "sticking", "touches"];
+const machine = {m1: 12, f0: 14, damping_ratio: 0.006, mass_ratio: 0.01, F: 0.0004, R: 0.4};
+const platform = {...machine, b: 0.03, f: 14};
+
+const simulations = [
+  // Reduced and periodic; SI and periodic, with windows; a free decay in SI.
+  {preset: "fig11", tau_end: 300, include: everything},
+  {preset: "fig16", include: everything, windows: [[100, 300]]},
+  {...platform, F: 0, x0: 0.01, y0: 0.02, tau_end: 400, include: everything},
+  // Tangent contacts: the oscillator swings by the width of the cavity, in units where omega0 = 1.
+  {m1: 1, k1: 1, c1: 0, m2: 0.0084, F: 0, b: 0.01, R: 0.6, x0: 0.01 - 3e-17, y0: 0, tau_end: 21},
+];
+
+const b = (values) => [{parameter: "b", values}];
+const f = [{parameter: "f", from: 13.8, to: 14.2, count: 3}];
+const short = {cycles: 50, transient_cycles: 30};
+const sweeps = [
+  {axes: b([0.008, 0.015]), section: "impact", ...short},
+  {axes: b([0.008, 0.015]), section: "stroboscopic", ...short},
+  {axes: f, base: {...machine, b: 0.03}, section: "impact", ...short},
+  {axes: f, base: {...machine, b: 0.03}, section: "stroboscopic", ...short},
+  {axes: b([0.008, 0.02]), starts: [{}, {x0: 0.01, y0: 0.01}], ...short},
+  {axes: f, base: {...machine, b: 0.03}, starts: "default set", cycles: 100},
+  {axes: f, base: {...machine, b: 0.03}, cycles: 100},
+  {axes: b([0.008, 0.02]), starts: [{}, {x0: 0.01, y0: 0.01}], reduce: "max over b", ...short},
+  {axes: f, base: {...machine, b: 0.03}, starts: "default set", reduce: "max over f", cycles: 60},
+  // A state that cannot be carried, a transient that does not end, a point that is no system.
+  {axes: b([1e-8, 0.015]), carry_state: "up", base: {R: 1}, cycles: 5, transient_cycles: 5},
+  {axes: b([1e-8, 0.015]), starts: "default set", base: {R: 1}, cycles: 5, transient_cycles: 5},
+  {axes: [{parameter: "y0", values: [0, 0.05, 0]}], cycles: 20},
+];
+
+const isObject = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
+
+/** Adds the paths of a value's leaves; `opaque` paths are leaves whatever they hold. */
+function walk(value, path, opaque, paths) {
+  const entries = Array.isArray(value) ? value.filter(isObject) : [];
+  if (path && opaque.includes(path)) paths.add(path);
+  else if (isObject(value))
+    for (const [name, inner] of Object.entries(value))
+      walk(inner, path ? `${path}.${name}` : name, opaque, paths);
+  else if (entries.length) for (const entry of entries) walk(entry, `${path}[]`, opaque, paths);
+  else paths.add(path);
+}
+
+/** Collects by part: a Map of Sets of paths. */
+class Keys extends Map {
+  note(part, value, opaque = []) {
+    if (!this.has(part)) this.set(part, new Set());
+    walk(value, "", opaque, this.get(part));
+  }
+  noteTop(part, value) {
+    this.note(part, value, Object.keys(value));
+  }
+}
+
+const json = async (url, path, body, type = "application/json") => {
+  const post = {method: "POST", body, headers: {"Content-Type": type}};
+  const response = await fetch(url + path, body === undefined ? {} : post);
+  return response.json();
+};
+
+function noteSimulation(keys, answer) {
+  keys.noteTop("simulate", answer);
+  keys.note("parameters", answer.parameters, ["origin"]);
+  for (const part of parts)
+    if (part in answer) keys.note(part === "manifold" ? part : `simulate.${part}`, answer[part]);
+  for (const window of answer.windows ?? []) keys.note("simulate.windows", window);
+}
+
+function noteManifold(keys, answer) {
+  keys.noteTop("manifold-answer", answer);
+  keys.note("parameters", answer.parameters, ["origin"]);
+  keys.note("manifold", answer.manifold);
+}
+
+function noteLine(keys, line, axes) {
+  const own = ({...object}) => {
+    for (const name of axes) delete object[name];
+    return object;
+  };
+  if (line.type === "start") {
+    keys.note("parameters", line.parameters, ["origin"]);
+    keys.note("sweep.start", line, ["parameters", "request"]);
+  } else if (line.type !== "point") {
+    keys.note(line.type === "progress" ? "sweep.progress" : "sweep.end", line);
+  } else if (line.reduce) {
+    const reduced = own(line);
+    for (const name of ["worst", "best"]) if (line[name]) reduced[name] = own(line[name]);
+    if (line.starts) reduced.starts = line.starts.map(own);
+    keys.note("sweep.reduced", reduced);
+  } else {
+    keys.note("sweep.point", own(line), ["section", "second_start", "worst", "best", "starts"]);
+    const motions = [line.worst, line.best, line.second_start, ...(line.starts ?? [])];
+    for (const motion of motions) if (motion) keys.note("sweep.motion", motion);
+    if (line.section) keys.note("sweep.section", line.section);
+  }
+}
+
+async function noteSweep(keys, url, request) {
+  const response = await fetch(`${url}/v1/sweep`, {method: "POST", body: JSON.stringify(request)});
+  const text = await response.text();
+  assert.equal(response.status, 200, text);
+  for (const line of text.trim().split("\n"))
+    noteLine(
+      keys,
+      JSON.parse(line),
+      request.axes.map((axis) => axis.parameter),
+    );
+}
+
+/** The last line of a stream whose service is told to stop. */
+async function noteBrokenSweep(keys) {
+  const service = await startService();
+  const axes = [{parameter: "b", from: 0.008, to: 0.03, count: 20000}];
+  const response = await fetch(`${service.url}/v1/sweep`, {
+    method: "POST",
+    body: JSON.stringify({axes}),
+  });
+  const text = response.text();
+  await service.stop();
+  noteLine(keys, JSON.parse((await text).trim().split("\n").at(-1)), ["b"]);
+}
+
+function noteIdentification(keys, answer) {
+  keys.noteTop("identify", answer);
+  keys.note("parameters", answer.parameters, ["origin"]);
+  for (const part of [
+    "signal",
+    "impacts",
+    "restitution",
+    "b_fitted",
+    "exponents",
+    "slope",
+    "direct",
+    "forward",
+  ])
+    if (part in answer) keys.note(`identify.${part}`, answer[part]);
+}
+
+async function noteService(keys, url) {
+  const parameters = await json(url, "/v1/parameters");
+  const lists = Object.keys(parameters).filter((name) => name !== "model");
+  keys.note("parameters-answer", parameters, ["model.symbols", ...lists]);
+  for (const field of lists.flatMap((list) => parameters[list]))
+    keys.note("parameters-answer", field, Object.keys(field));
+  keys.note("presets-answer", await json(url, "/v1/presets"), ["presets[].parameters"]);
+  for (const path of ["/version", "/healthz", "/livez", "/readyz"])
+    keys.note("health-answer", await json(url, path));
+  keys.note("problem", await json(url, "/v1/simulate", '{"b":-1,"q":2}'));
+}
+
+/** By part of the documents: the paths of all keys. */
+export async function answeredKeys(url) {
+  const keys = new Keys();
+  for (const request of simulations)
+    noteSimulation(keys, await json(url, "/v1/simulate", JSON.stringify(request)));
+  for (const request of [{b: 0.015}, platform])
+    noteManifold(keys, await json(url, "/v1/manifold", JSON.stringify(request)));
+  for (const request of sweeps) await noteSweep(keys, url, request);
+  await noteBrokenSweep(keys);
+  const csv = await measured(url, "fig20", 6);
+  noteIdentification(keys, await json(url, "/v1/identify?preset=fig20&b=0.015", csv, "text/csv"));
+  await noteService(keys, url);
+  return keys;
+}

@@ -1,0 +1,270 @@
+// What the documents say is what the program does.
+import assert from "node:assert/strict";
+import {execFile} from "node:child_process";
+import {access, mkdtemp, readdir, rm} from "node:fs/promises";
+import {availableParallelism, tmpdir} from "node:os";
+import {join} from "node:path";
+import {after, before, test} from "node:test";
+import {fileURLToPath} from "node:url";
+import {program, startService} from "../service.mjs";
+import {answeredKeys} from "./answers.mjs";
+import {anchors, between, codes, links, read, root, tables, transcripts} from "./markdown.mjs";
+
+const documents = {};
+let service;
+let parameters;
+before(async () => {
+  const names = (await readdir(root)).filter((name) => name.endsWith(".md"));
+  for (const name of await readdir(new URL("docs/", root)))
+    if (name.endsWith(".md")) names.push(`docs/${name}`);
+  for (const name of names) documents[name] = await read(name);
+  service = await startService();
+  parameters = await (await fetch(`${service.url}/v1/parameters`)).json();
+});
+after(() => service.stop());
+
+/** Runs a program to its end: what it wrote to stdout. */
+const run = (file, args, options = {}) =>
+  new Promise((resolve, reject) => {
+    execFile(file, args, {maxBuffer: 1 << 26, ...options}, (error, stdout, stderr) =>
+      error ? reject(new Error(`${args.join(" ")}: ${error.message}\n${stderr}`)) : resolve(stdout),
+    );
+  });
+
+/** The same names, in any order. */
+const sameNames = (got, expected, what) => assert.deepEqual(new Set(got), new Set(expected), what);
+
+const named = (table, column) =>
+  new Map(table.rows.map((row) => [codes(row[column]).join(","), row]));
+
+// Fields.
+
+/** A table's text for a range: "1e-9 to 1000", or the choices. */
+function rangeOf(row) {
+  if (row.range.includes("`")) return codes(row.range);
+  return row.range ? row.range.split(" to ").map(Number) : [];
+}
+
+/** A table's text for a default: [value or null, note]. */
+function defaultOf(row) {
+  const [, value, note] = row.default.match(/^(?:`([^`]*)`)?(?:; )?(.*)$/);
+  if (value === undefined) return [null, note];
+  try {
+    return [JSON.parse(value), note];
+  } catch {
+    return [value, note];
+  }
+}
+
+const groups = ["system", "reduced", "SI", "start", "run", "output"];
+
+test("every field is in a table with its type, unit, range and default", () => {
+  const marked = tables(documents["docs/api.md"], "fields");
+  const table = (name) => named(marked.find((t) => t.argument === name) ?? {rows: []}, "field");
+  const shared = new Map(groups.flatMap((group) => [...table(group)]));
+  for (const [list, fields] of Object.entries(parameters).filter(([name]) => name !== "model"))
+    for (const field of fields) {
+      const row = table(list).get(field.name) ?? shared.get(field.name);
+      const what = `${field.name} of ${list}`;
+      assert.ok(row, `${what} is in a table`);
+      assert.equal(row.type, field.type, `type of ${what}`);
+      assert.equal(row.unit, field.unit, `unit of ${what}`);
+      const range = "minimum" in field ? [field.minimum, field.maximum] : (field.choices ?? []);
+      assert.deepEqual(rangeOf(row), range, `range of ${what}`);
+      assert.deepEqual(
+        defaultOf(row),
+        [field.default, field.default_note ?? ""],
+        `default of ${what}`,
+      );
+      assert.ok(row.meaning, `meaning of ${what}`);
+    }
+});
+
+test("no table has a field that the service does not know, or in another group", () => {
+  for (const {argument, rows} of tables(documents["docs/api.md"], "fields")) {
+    const known = groups.includes(argument)
+      ? parameters.fields.filter((field) => field.group === argument)
+      : parameters[argument];
+    const names = known.map((field) => field.name);
+    for (const row of rows)
+      assert.ok(names.includes(codes(row.field)[0]), `${row.field} of ${argument}`);
+  }
+});
+
+// Routes.
+
+test("the table of routes is the OpenAPI document's, with every method and status", async () => {
+  const {paths} = await (await fetch(`${service.url}/v1/openapi.json`)).json();
+  const [table] = tables(documents["docs/api.md"], "routes");
+  const rows = named(table, "route");
+  sameNames(rows.keys(), Object.keys(paths));
+  const [statuses] = tables(documents["docs/api.md"], "statuses");
+  const explained = new Set(named(statuses, "status").keys());
+  for (const [path, methods] of Object.entries(paths)) {
+    const row = rows.get(path);
+    const allowed = Object.keys(methods).map((method) => method.toUpperCase());
+    sameNames(codes(row.method), allowed, path);
+    for (const {responses} of Object.values(methods))
+      for (const status of Object.keys(responses))
+        assert.ok(codes(row.statuses).includes(status), `${status} of ${path}`);
+    for (const status of codes(row.statuses)) assert.ok(explained.has(status), status);
+  }
+});
+
+// Keys of answers.
+
+/** By part: the paths in the first two columns of its table. */
+function documentedKeys() {
+  const parts = new Map();
+  for (const {argument, rows} of tables(documents["docs/api.md"], "keys")) {
+    assert.ok(!parts.has(argument), `one table for ${argument}`);
+    parts.set(argument, new Set(rows.flatMap((row) => codes(row.key + row["in SI"]))));
+  }
+  return parts;
+}
+
+/** Parts that hold what another one does, too. */
+const like = {"simulate.windows": "simulate.exponents", "identify.exponents": "simulate.exponents"};
+
+test("every key of every answer is in the table of its part, and no other one", async () => {
+  const documented = documentedKeys();
+  const answered = await answeredKeys(service.url);
+  sameNames(documented.keys(), answered.keys());
+  for (const [part, paths] of answered) {
+    const own = documented.get(part);
+    const known = [...own, ...(documented.get(like[part]) ?? [])];
+    // What is null, or an empty list, in one answer has its keys in another one.
+    for (const path of paths)
+      assert.ok(
+        known.some((k) => k === path || k.startsWith(`${path}.`) || k.startsWith(`${path}[]`)),
+        `${part}: ${path} is answered, but not documented`,
+      );
+    for (const path of own) assert.ok(paths.has(path), `${part}: ${path} is not answered`);
+  }
+});
+
+// The command line.
+
+/** The flags of a subcommand's help: {names, environment, range, standard}. */
+function flagsOf(help) {
+  const found = [...help.matchAll(/^ {2}((?:-\w,)?--[\w-]+)(?: (.*))?$/gm)];
+  return found.map(([, names, rest = ""]) => {
+    const [kind] = rest.split(/ {2,}/);
+    const range = kind.match(/in \[(\S+) - ([^\]]+)\]/);
+    return {
+      names,
+      environment: kind.match(/\(Env:(\w+)\)/)?.[1] ?? "",
+      range: range ? range.slice(1).map(Number) : [],
+      standard: kind.replace(/ in \[[^\]]*\]/, "").match(/=(\S+)/)?.[1] ?? "",
+    };
+  });
+}
+
+const help = (command) => run(program, [command, "--help"].filter(Boolean));
+const commandsOf = (text) =>
+  [...text.split("Subcommands:")[1].matchAll(/^ {2}(\w+)/gm)].map((found) => found[1]);
+
+test("every flag of every subcommand is in a table with its variable, default and range", async () => {
+  const marked = tables(documents["docs/operations.md"], "flags");
+  const commands = ["", ...commandsOf(await help(""))];
+  sameNames(
+    marked.map((table) => table.argument),
+    commands,
+  );
+  for (const {argument, rows} of marked) {
+    const flags = flagsOf(await help(argument));
+    const documented = named({rows}, "flag");
+    sameNames(
+      documented.keys(),
+      flags.map((flag) => flag.names),
+      `flags of vines ${argument}`,
+    );
+    for (const {names, environment, range, standard} of flags) {
+      const row = documented.get(names);
+      const what = `${names} of vines ${argument}`;
+      assert.equal(codes(row.environment).join(), environment, `variable of ${what}`);
+      assert.deepEqual(rangeOf(row), range, `range of ${what}`);
+      const value =
+        row.default === "the cores" ? String(availableParallelism()) : codes(row.default)[0];
+      assert.equal(value ?? "", standard, `default of ${what}`);
+      assert.ok(row.meaning, `meaning of ${what}`);
+    }
+  }
+});
+
+test("every subcommand, positional and environment variable is in the operations document", async () => {
+  const known = new Set(codes(documents["docs/operations.md"]));
+  for (const command of commandsOf(await help(""))) {
+    assert.ok(known.has(command) || known.has(`vines ${command}`), command);
+    const text = await help(command);
+    for (const [name] of text.matchAll(/\b(?:VINES|SLURM|JOB)(?:_[A-Z]+)+\b/g))
+      assert.ok(known.has(name), name);
+    for (const [, name] of text.matchAll(/^ {2}(\w+) TEXT/gm)) assert.ok(known.has(name), name);
+  }
+});
+
+// Commands and their output.
+
+const number = /-?\d+(?:\.\d+)?(?:e[-+]?\d+)?/gi;
+
+/** Equal but for the last digits of numbers. */
+function sameOutput(shown, got, command) {
+  assert.equal(got.replace(number, "#"), shown.replace(number, "#"), `${command}\n${got}`);
+  const numbers = got.match(number) ?? [];
+  (shown.match(number) ?? []).forEach((text, k) => {
+    const off = Math.abs(Number(text) - Number(numbers[k]));
+    assert.ok(off <= 1e-9 * Math.abs(Number(text)), `${command}\n${text} is ${numbers[k]}`);
+  });
+}
+
+/** As it is written, but of this service, this program and this checkout. */
+const here = (command) =>
+  command
+    .replaceAll("127.0.0.1:8080", new URL(service.url).host)
+    .replaceAll("build/release/vines", program)
+    .replace(/(scripts\/record\.mjs \S+ \S+)/, `${fileURLToPath(root)}$1 ${service.url}`);
+
+test("the commands that the documents show print what they show", async () => {
+  const folder = await mkdtemp(join(tmpdir(), "vines-docs-"));
+  let count = 0;
+  for (const [name, text] of Object.entries(documents))
+    for (const {command, output} of transcripts(text).flat()) {
+      const got = await run("bash", ["-o", "pipefail", "-c", here(command)], {cwd: folder});
+      sameOutput(output, got, `${name}: ${command}`);
+      ++count;
+    }
+  await rm(folder, {recursive: true});
+  assert.ok(count >= 8, `${count} commands`);
+});
+
+test("the table of the findings is what vines reproduce prints", async () => {
+  const shown = between(documents["docs/paper.md"], "reproduce");
+  assert.equal(shown, await run(program, ["reproduce"]));
+});
+
+// The documents themselves.
+
+test("links lead to files and headings that are there", async () => {
+  for (const [name, text] of Object.entries(documents))
+    for (const link of links(text)) {
+      if (/^https?:/.test(link)) continue;
+      const url = new URL(link, new URL(name, root));
+      const target = url.href.slice(root.href.length).replace(url.hash, "");
+      await access(new URL(target, root)).catch(() => assert.fail(`${name}: ${link}`));
+      if (!url.hash) continue;
+      const headings = anchors(documents[target] ?? "");
+      assert.ok(headings.includes(url.hash.slice(1)), `${name}: ${link}`);
+    }
+});
+
+test("every document is linked from the README", () => {
+  const linked = links(documents["README.md"]);
+  for (const name of Object.keys(documents))
+    if (name !== "README.md") assert.ok(linked.includes(name), name);
+});
+
+test("the newest version of the changelog is the program's", async () => {
+  const newest = documents["CHANGELOG.md"].match(/^## (\S+)/m)[1];
+  assert.match(await run(program, ["--version"]), new RegExp(`^(vines )?${newest}$`, "m"));
+  assert.match(await read("CMakeLists.txt"), new RegExp(`project\\(vines VERSION ${newest} `));
+});
