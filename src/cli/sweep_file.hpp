@@ -11,18 +11,15 @@ namespace vines::cli {
 struct SweepFile {
     std::string start;                          ///< the first line; empty in an empty file
     std::map<std::size_t, std::string> points;  ///< lines by index
-    bool done = false;
 
-    /// start, points by index, done: what a complete file holds.
+    /// start, points by index: what a file holds that may be completed.
+    std::string lines() const;
+    /// And done: what a complete file holds.
     std::string text() const;
 };
 
 /// Reads what is there; a last line that was cut off is left out. Throws std::runtime_error where
 /// it cannot be read or is no such file.
 SweepFile read_sweep_file(const std::string& path);
-
-/// Puts the text in the file's place at once: another one sees the old file or the new. Throws
-/// std::runtime_error.
-void replace_file(const std::string& path, const std::string& text);
 
 }  // namespace vines::cli

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <span>
-#include <string>
 #include <string_view>
 
 namespace vines::http {
@@ -14,8 +13,5 @@ struct Asset {
 
 /// Generated at build from web/ by embed.cmake.
 std::span<const Asset> assets();
-
-/// By the file name's ending.
-std::string_view content_type_of(std::string_view path);
 
 }  // namespace vines::http

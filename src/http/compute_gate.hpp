@@ -5,98 +5,65 @@
 // so never makes it wait for more than a moment.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <condition_variable>
+#include <memory>
 #include <mutex>
+#include <stop_token>
+#include <thread>
 
 namespace vines::http {
 
+struct ComputeLimits {
+    int running = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    int waiting = 64;  ///< urgent ones, beside those that run
+    int sweeps = 4;    ///< which share what is left
+};
+
+/// Outlives its places and rooms.
 class ComputeGate {
-public:
-    /// So many run at once, so many more urgent ones wait, and so many sweeps share the rest.
-    ComputeGate(int running, int waiting, int sweeps)
-        : threads_(running),
-          free_(running),
-          waiting_left_(waiting),
-          sweeps_left_(sweeps) {}
-
-    int threads() const { return threads_; }
-
-    /// A place to compute in, given back when it goes out of scope. Empty (false) where the queue
-    /// was full.
-    class Place {
-    public:
-        explicit Place(ComputeGate& gate) : gate_(gate.enter() ? &gate : nullptr) {}
-        ~Place() {
-            if (gate_) gate_->leave();
-        }
-        Place(const Place&) = delete;
-        Place& operator=(const Place&) = delete;
-        explicit operator bool() const { return gate_ != nullptr; }
-
-    private:
-        ComputeGate* gate_;
+    struct Leave {
+        void operator()(ComputeGate* gate) const { gate->leave(); }
+    };
+    struct LeaveSweep {
+        void operator()(ComputeGate* gate) const { gate->leave_sweep(); }
     };
 
-    /// Room for one sweep, or false. Give it back with leave_sweep().
-    bool enter_sweep() {
-        const std::lock_guard lock(mutex_);
-        if (sweeps_left_ == 0 || closing_) return false;
-        --sweeps_left_;
-        return true;
-    }
-    void leave_sweep() {
-        const std::lock_guard lock(mutex_);
-        ++sweeps_left_;
-    }
+public:
+    explicit ComputeGate(const ComputeLimits& limits) : limits_(limits), free_(limits.running) {}
 
-    /// Waits for a place behind all urgent work. Returns without one (false) once `stop` is set or
-    /// the gate closes.
-    bool enter_patiently(const std::atomic<bool>& stop) {
-        std::unique_lock lock(mutex_);
-        while (free_ == 0 || urgent_ > 0) {
-            if (stop || closing_) return false;
-            freed_.wait_for(lock, std::chrono::milliseconds(20));
-        }
-        --free_;
-        return true;
-    }
-    /// Whether patient work should leave its place for a moment.
+    int threads() const { return limits_.running; }
+
+    /// A place to compute in, or none (null). It is given back when it goes.
+    using Place = std::unique_ptr<ComputeGate, Leave>;
+    /// For urgent work: waits for a place; none where the queue is full.
+    Place enter();
+    /// For patient work: waits for a place behind all urgent work; none once it is stopped or the
+    /// gate closes.
+    Place enter_patiently(const std::stop_token& stop);
+    /// Whether patient work should give its place back and enter again.
     bool wanted() const { return urgent_ > 0; }
 
-    void leave() {
-        {
-            const std::lock_guard lock(mutex_);
-            ++free_;
-        }
-        freed_.notify_all();
-    }
+    /// Room for one sweep, or none (null) where there are as many as may be, or the gate is closed.
+    using Room = std::unique_ptr<ComputeGate, LeaveSweep>;
+    Room enter_sweep();
 
     /// From now on sweeps end at their next look: the server is about to stop.
-    void close() { closing_ = true; }
+    void close();
     bool closing() const { return closing_; }
 
 private:
-    bool enter() {
-        std::unique_lock lock(mutex_);
-        if (free_ == 0 || urgent_ > 0) {
-            if (waiting_left_ == 0) return false;
-            --waiting_left_;
-            ++urgent_;
-            freed_.wait(lock, [this] { return free_ > 0; });
-            --urgent_;
-            ++waiting_left_;
-        }
-        --free_;
-        return true;
-    }
+    void leave();
+    void leave_sweep();
 
+    const ComputeLimits limits_;
     std::mutex mutex_;
-    std::condition_variable freed_;
-    const int threads_;
-    int free_, waiting_left_, sweeps_left_;
-    std::atomic<int> urgent_ = 0;
+    // One of: a place is free, the last urgent one that waited has got its place, the gate closes.
+    std::condition_variable_any changed_;
+    int free_, sweeps_ = 0;
+    // Changed under the mutex; read without it by work that only takes a look.
+    std::atomic<int> urgent_ = 0;  ///< waiting
     std::atomic<bool> closing_ = false;
 };
 

@@ -6,11 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "api/query.hpp"
+
 namespace vines::http {
 
 struct Request {
     std::string method, path;
-    std::vector<std::pair<std::string, std::string>> query;
+    api::Query query;
     std::string content_type;
     std::string body;
 };
@@ -26,17 +28,10 @@ public:
 struct Response {
     int status = 200;
     std::string content_type = "application/json";
-    std::string body;
+    std::string body = {};
     std::vector<std::pair<std::string, std::string>> headers = {};
     /// In place of a body: writes it and returns at its end.
     std::function<void(Writer&)> stream = {};
-};
-
-struct Route {
-    std::string method;  ///< GET (answers HEAD, too) or POST
-    std::string path;
-    std::function<Response(const Request&)> answer;
-    std::size_t body_limit = 0;  ///< bytes, where it is larger than the server's own
 };
 
 }  // namespace vines::http

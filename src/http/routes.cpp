@@ -1,17 +1,16 @@
 #include "http/routes.hpp"
 
+#include <fmt/format.h>
 #include <malloc.h>
 
 #include <chrono>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "api/identify.hpp"
 #include "api/openapi.hpp"
 #include "api/presets.hpp"
 #include "api/simulate.hpp"
-#include "http/assets.hpp"
+#include "http/page.hpp"
+#include "http/problem_response.hpp"
 #include "http/sweep_stream.hpp"
 
 namespace vines::http {
@@ -21,7 +20,7 @@ namespace {
 using api::Json;
 using api::Problem;
 
-Response json_response(const Json& json) { return {200, "application/json", json.dump() + "\n"}; }
+Response json_response(const Json& json) { return {.body = json.dump() + "\n"}; }
 
 // From this size on an answer's memory is given back to the system at once.
 constexpr std::size_t large = 1 << 20;
@@ -48,44 +47,19 @@ Response limited_response(Json answer, std::size_t limit) {
 #endif
     if (text.size() > limit)
         throw Problem(
-            413,
-            "the answer has " + std::to_string(text.size()) +
-                " bytes, and this server sends no more than " + std::to_string(limit) +
-                ": ask for fewer parts (include), points (max_points) or impacts (max_impacts)");
-    return {200, "application/json", std::move(text)};
-}
-
-Response problem_response(const Problem& problem) {
-    Response r{problem.status, "application/problem+json", problem.body()};
-    if (problem.status == 503) r.headers.emplace_back("Retry-After", "1");
-    return r;
-}
-
-// Everything from this server, nothing inline: the page's scripts and styles are files.
-const char* const page_policy =
-    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src "
-    "'self'; base-uri 'none'; form-action 'none'; "
-    "frame-ancestors 'none'";
-
-Response page_file(std::string_view path, std::string content) {
-    Response r{200, std::string(content_type_of(path)), std::move(content)};
-    r.headers = {
-        {"Content-Security-Policy", page_policy},
-        {"X-Content-Type-Options", "nosniff"},
-        {"Referrer-Policy", "no-referrer"}};
-    return r;
+            413, fmt::format(
+                     "the answer has {} bytes, and this server sends no more than {}: ask for "
+                     "fewer parts (include), points (max_points) or impacts (max_impacts)",
+                     text.size(), limit));
+    return {.body = std::move(text)};
 }
 
 /// A place to compute in, or Problem 503.
-struct Entered {
-    explicit Entered(ComputeGate& gate) : place(gate) {
-        if (!place)
-            throw Problem(
-                503,
-                "as many requests as the server takes are waiting already; try again in a second");
-    }
-    const ComputeGate::Place place;
-};
+ComputeGate::Place place_in(ComputeGate& gate) {
+    if (ComputeGate::Place place = gate.enter()) return place;
+    throw Problem(
+        503, "as many requests as the server takes are waiting already; try again in a second");
+}
 
 // A run that its deadline ends is analysed and made up into an answer in this share of it more, the
 // first half of that for the analysis.
@@ -93,7 +67,7 @@ constexpr double time_to_write = 0.2;
 
 Response simulate(const Json& object, const RouteOptions& options, ComputeGate& gate) {
     const api::SimulateRequest request = api::read_simulate_request(object);
-    const Entered entered(gate);
+    const ComputeGate::Place place = place_in(gate);
     using Clock = std::chrono::steady_clock;
     const auto now = Clock::now();
     const std::chrono::duration<double> time(options.deadline);
@@ -125,14 +99,16 @@ Response identify(const Request& r, const RouteOptions& options, ComputeGate& ga
     const api::IdentifyRequest request =
         csv ? api::read_identify_request(api::from_query(api::identify_fields(), r.query), r.body)
             : api::read_identify_request(body_of(r));
-    const Entered entered(gate);
+    const ComputeGate::Place place = place_in(gate);
     return limited_response(api::identify_answer(request), options.answer_limit);
 }
 
 /// A route whose answer may throw a Problem.
 Route route(std::string method, std::string path, std::function<Response(const Request&)> answer) {
     return {
-        std::move(method), std::move(path), [answer = std::move(answer)](const Request& request) {
+        .method = std::move(method),
+        .path = std::move(path),
+        .answer = [answer = std::move(answer)](const Request& request) {
             try {
                 return answer(request);
             } catch (const Problem& problem) {
@@ -142,18 +118,6 @@ Route route(std::string method, std::string path, std::function<Response(const R
 }
 
 }  // namespace
-
-Response problem_response(int status, const std::string& detail) {
-    return problem_response(Problem(status, detail));
-}
-
-std::string_view content_type_of(std::string_view path) {
-    const std::string_view ending = path.substr(std::min(path.rfind('.'), path.size()));
-    if (ending == ".js" || ending == ".mjs") return "text/javascript; charset=utf-8";
-    if (ending == ".css") return "text/css; charset=utf-8";
-    if (ending == ".svg") return "image/svg+xml";
-    return "text/html; charset=utf-8";
-}
 
 std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate) {
     std::vector<Route> routes;
@@ -196,18 +160,7 @@ std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate) {
     routes.push_back(route("GET", "/version", [](const Request&) {
         return json_response({{"name", "vines"}, {"version", api::version()}});
     }));
-    for (const Asset& asset : assets()) {
-        routes.push_back(route(
-            "GET", std::string(asset.path), [asset, web_dir = options.web_dir](const Request&) {
-                if (web_dir.empty()) return page_file(asset.path, std::string(asset.content));
-                const std::string name =
-                    asset.path == "/" ? "/index.html" : std::string(asset.path);
-                std::ifstream file(web_dir + name, std::ios::binary);
-                // uPlot's files lie elsewhere.
-                if (!file) return page_file(asset.path, std::string(asset.content));
-                return page_file(asset.path, {std::istreambuf_iterator<char>(file), {}});
-            }));
-    }
+    for (Route& file : page_routes(options.web_dir)) routes.push_back(std::move(file));
     return routes;
 }
 

@@ -5,23 +5,20 @@
 #include <vector>
 
 #include "http/compute_gate.hpp"
-#include "http/message.hpp"
+#include "http/route.hpp"
 
 namespace vines::http {
 
 struct RouteOptions {
-    double deadline;           ///< seconds of computing for one request
-    std::size_t sweep_points;  ///< of one sweep, at most
-    std::size_t record_limit;  ///< bytes of a measurement sent to /v1/identify
-    std::size_t answer_limit;  ///< bytes of an answer's JSON
+    double deadline = 30;                  ///< seconds of computing for one request
+    std::size_t sweep_points = 100000;     ///< of one sweep, at most
+    std::size_t record_limit = 64 << 20;   ///< bytes of a measurement sent to /v1/identify
+    std::size_t answer_limit = 128 << 20;  ///< bytes of an answer's JSON
     /// Serve the page from this folder instead of the program; empty: do not.
-    std::string web_dir;
+    std::string web_dir = {};
 };
 
 /// All routes. `gate` outlives them.
 std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate);
-
-/// A problem document as a response.
-Response problem_response(int status, const std::string& detail);
 
 }  // namespace vines::http

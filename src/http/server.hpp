@@ -1,11 +1,11 @@
-// The HTTP server: bytes to requests and back. The only place that includes httplib.
+// The HTTP server: bytes to requests and back.
 #pragma once
 
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "http/message.hpp"
+#include "http/route.hpp"
 
 namespace vines::http {
 
@@ -32,9 +32,5 @@ private:
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;
 };
-
-/// GET http://host:port/path: the status code, or 0 with no answer in time. For the container's
-/// health check.
-int get_status(const std::string& host, int port, const std::string& path);
 
 }  // namespace vines::http

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <chrono>
-#include <condition_variable>
-#include <mutex>
+#include <exception>
+#include <memory>
 #include <thread>
 
-#include "http/routes.hpp"
+#include "http/line_queue.hpp"
+#include "http/log.hpp"
+#include "http/problem_response.hpp"
 
 namespace vines::http {
 
@@ -23,63 +25,28 @@ constexpr auto report = std::chrono::milliseconds(200);
 class GatePace : public api::Pace {
 public:
     explicit GatePace(ComputeGate& gate) : gate_(gate) {}
-    void begin() override { inside() = gate_.enter_patiently(stop); }
-    void end() override {
-        if (inside()) gate_.leave();
-        inside() = false;
-    }
+    void begin() override { place() = gate_.enter_patiently(stop_.get_token()); }
+    void end() override { place().reset(); }
     bool stop_or_yield() override {
-        if (inside() && gate_.wanted()) {
-            gate_.leave();
-            inside() = gate_.enter_patiently(stop);
+        if (place() && gate_.wanted()) {
+            place().reset();
+            place() = gate_.enter_patiently(stop_.get_token());
         }
-        return stop || gate_.closing() || !inside();
+        return stop_.stop_requested() || gate_.closing() || !place();
     }
-    std::atomic<bool> stop = false;
+    /// From any thread.
+    void stop() { stop_.request_stop(); }
 
 private:
-    static bool& inside() {
-        thread_local bool place = false;
+    /// That of the point which the calling thread computes. One for each thread, not for each pace:
+    /// a thread computes one point after the other and has no place between them, so that it never
+    /// has those of two sweeps.
+    static ComputeGate::Place& place() {
+        thread_local ComputeGate::Place place;
         return place;
     }
     ComputeGate& gate_;
-};
-
-/// Lines on their way from the computing threads to the connection's.
-class Lines {
-public:
-    void push(std::string line) {
-        {
-            const std::lock_guard lock(mutex_);
-            text_ += line;
-            text_ += '\n';
-            ++count_;
-        }
-        changed_.notify_one();
-    }
-    void finish() {
-        {
-            const std::lock_guard lock(mutex_);
-            finished_ = true;
-        }
-        changed_.notify_one();
-    }
-    /// What has come since the last call, after a while at most; sets how many lines there were in
-    /// all, and whether that is all.
-    std::string take(std::size_t& count, bool& finished) {
-        std::unique_lock lock(mutex_);
-        changed_.wait_for(lock, look, [this] { return !text_.empty() || finished_; });
-        count = count_;
-        finished = finished_;
-        return std::exchange(text_, {});
-    }
-
-private:
-    std::mutex mutex_;
-    std::condition_variable changed_;
-    std::string text_;
-    std::size_t count_ = 0;
-    bool finished_ = false;
+    std::stop_source stop_;
 };
 
 /// Of the lines; how long the rest will take follows from the runs.
@@ -100,71 +67,84 @@ Json progress(
         {"runs_of", runs_of}};
 }
 
+std::string line_of(const Json& json) { return json.dump() + "\n"; }
+
+/// How a sweep ended whose client is still there.
+std::string ending(std::size_t done, std::size_t of, const std::string& warning, bool failed) {
+    if (done < of) {
+        const std::string detail =
+            failed ? "the server failed at a point; its log says why"
+                   : "the server is stopping; ask again for the indices that are missing";
+        return line_of({{"type", "error"}, {"detail", detail}, {"points", done}});
+    }
+    return (warning.empty() ? "" : line_of({{"type", "warning"}, {"message", warning}})) +
+           line_of({{"type", "done"}, {"points", done}});
+}
+
+/// Writes the lines as they come, and the progress between them; returns how many they were. Stops
+/// the sweep and `present` is false once the client has left.
+std::size_t write_lines(
+    LineQueue& lines, const api::SweepRequest& request, GatePace& pace, Writer& out,
+    bool& present) {
+    const std::size_t of = request.plan.lines.size(), runs_of = request.plan.runs();
+    const auto started = Clock::now();
+    auto reported = started;
+    LineQueue::Taken taken;
+    do {
+        taken = lines.take(look);
+        const auto now = Clock::now();
+        if (now - reported >= report || taken.finished) {
+            const std::chrono::duration<double> seconds = now - started;
+            taken.text += line_of(progress(taken.count, of, pace.runs, runs_of, seconds.count()));
+            reported = now;
+        }
+        present = present && out.present() && (taken.text.empty() || out.write(taken.text));
+        if (!present) pace.stop();
+    } while (!taken.finished);
+    return taken.count;
+}
+
 void stream(const api::SweepRequest& request, ComputeGate& gate, Writer& out) {
     GatePace pace(gate);
-    Lines lines;
-    std::string failure, warning;
-    const auto started = Clock::now();
-    const std::size_t of = request.plan.lines.size(), runs_of = request.plan.runs();
+    LineQueue lines;
+    std::exception_ptr failure;
+    std::string warning;
     Json start = api::sweep_start(request);
-    start["of"] = of;
-    if (!out.write(start.dump() + "\n")) return;
+    start["of"] = request.plan.lines.size();
+    if (!out.write(line_of(start))) return;
 
     std::thread computing([&] {
         try {
             warning = api::run_sweep(
                 request, gate.threads(), pace,
                 [&](std::size_t, const Json& line) { lines.push(line.dump()); });
-        } catch (const std::exception& e) {
-            failure = e.what();
+        } catch (...) {
+            failure = std::current_exception();
         }
         lines.finish();
     });
-    bool finished = false, present = true;
-    std::size_t done = 0;
-    auto reported = started;
-    while (!finished) {
-        std::string text = lines.take(done, finished);
-        const auto now = Clock::now();
-        if (now - reported >= report || finished) {
-            text += progress(
-                        done, of, pace.runs, runs_of,
-                        std::chrono::duration<double>(now - started).count())
-                        .dump() +
-                    "\n";
-            reported = now;
-        }
-        present = present && out.present() && (text.empty() || out.write(text));
-        if (!present) pace.stop = true;
-    }
+    bool present = true;
+    const std::size_t done = write_lines(lines, request, pace, out, present);
     computing.join();
-    if (!present) return;
-    if (done == of) {
-        if (!warning.empty())
-            out.write(Json{{"type", "warning"}, {"message", warning}}.dump() + "\n");
-        out.write(Json{{"type", "done"}, {"points", done}}.dump() + "\n");
-    } else {
-        const std::string detail =
-            !failure.empty() ? "the server failed at a point; its log says why"
-                             : "the server is stopping; ask again for the indices that are missing";
-        out.write(Json{{"type", "error"}, {"detail", detail}, {"points", done}}.dump() + "\n");
-    }
+    if (failure) log_failure("/v1/sweep", failure);
+    if (present) out.write(ending(done, request.plan.lines.size(), warning, failure != nullptr));
 }
 
 }  // namespace
 
 Response stream_sweep(api::SweepRequest request, ComputeGate& gate) {
-    if (!gate.enter_sweep())
+    // Shared, because a response can be copied: the room is given back when the last copy is gone,
+    // whether or not it was ever sent.
+    const std::shared_ptr<ComputeGate> room = gate.enter_sweep();
+    if (!room)
         return problem_response(
             503, "as many sweeps as the server takes are running already; try again later");
-    // The room is given back when the response is gone, whether or not it was ever sent.
-    const std::shared_ptr<void> room(nullptr, [&gate](void*) { gate.leave_sweep(); });
-    Response response{200, "application/x-ndjson", ""};
-    response.headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}};
-    response.stream = [request = std::move(request), &gate, room](Writer& out) {
-        stream(request, gate, out);
-    };
-    return response;
+    return {
+        .content_type = "application/x-ndjson",
+        .headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}},
+        .stream = [request = std::move(request), &gate, room](Writer& out) {
+            stream(request, gate, out);
+        }};
 }
 
 }  // namespace vines::http

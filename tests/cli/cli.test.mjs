@@ -15,7 +15,8 @@ after(() => rm(folder, {recursive: true}));
 const at = (name) => join(folder, name);
 
 /**
- * Runs the program to its end, or sends it one signal once `until` says so: {code, out, errors}.
+ * Runs the program to its end, or sends it one signal once `until`, given its process's number, says
+ * so: {code, out, errors}.
  */
 const run = (args, {input = "", env = {}, signal, until} = {}) =>
   new Promise((resolve) => {
@@ -30,7 +31,7 @@ const run = (args, {input = "", env = {}, signal, until} = {}) =>
     // One look after the other: a second signal would end the program at once.
     const look = async () => {
       if (child.exitCode !== null) return;
-      if (await until()) child.kill(signal);
+      if (await until(child.pid)) child.kill(signal);
       else setTimeout(look, 5);
     };
     if (signal) look();
@@ -43,7 +44,8 @@ const sweep = JSON.stringify({
   section: "impact",
   section_points: 5,
 });
-const long = JSON.stringify({...JSON.parse(sweep), cycles: 20000});
+// Longer than a look at its file may take on any machine.
+const long = JSON.stringify({...JSON.parse(sweep), cycles: 100000});
 const parsed = (text) =>
   text
     .trim()
@@ -76,6 +78,21 @@ test("identify takes a CSV file with its fields as a query, or the service's JSO
   const refused = await run(["identify", at("record.csv"), "-q", "preset=fig20&b=0.015"]);
   assert.equal(refused.code, 2);
   assert.equal(JSON.parse(refused.errors).detail, 'line 3, column a: "x" is no number');
+});
+
+test("identify decodes its query as the service does a URL's", async () => {
+  const input = "time_s,the x,a\n0,1,2\n0.001,1,3\n";
+  const refused = async (column) => {
+    const query = `preset=fig20&displacement_column=${column}`;
+    return JSON.parse((await run(["identify", "-q", query], {input})).errors);
+  };
+  const {errors} = await refused("no%20x+%2Cor%3D&");
+  assert.equal(errors[0].pointer, "/displacement_column");
+  assert.equal(errors[0].value, "no x ,or=");
+  // The column is found, and the record is too short.
+  for (const column of ["the x", "the%20x", "the+x", "%74he%20x"])
+    assert.match((await refused(column)).detail, /^the record has 2 samples/);
+  assert.equal((await refused("50%zz%2")).errors[0].value, "50%zz%2");
 });
 
 test("a sweep whose motion depends on the start says so on stderr, one with the default set of starts has the worst and the best in its lines", async () => {
@@ -115,12 +132,17 @@ test("a request at fault is a problem document on stderr and exit code 2, a file
   assert.equal((await run(["sweep", "--shard", "auto"], {input: sweep})).code, 2);
 });
 
+/** Whether a process has SIGINT blocked: it waits for it then. */
+const waitsForSignals = async (pid) =>
+  (BigInt(`0x${(await readFile(`/proc/${pid}/status`, "utf8")).match(/^SigBlk:\s+(\w+)/m)[1]}`) &
+    2n) !==
+  0n;
+
 test("an interrupted simulation answers with what it has and exit code 3", async () => {
-  const started = Date.now();
   const {code, out} = await run(["simulate"], {
-    input: '{"R":1,"tau_end":1e7,"max_impacts":2000000,"include":[]}',
+    input: '{"b":0.003,"R":1,"tau_end":1e7,"max_impacts":2000000,"include":["exponents"]}',
     signal: "SIGINT",
-    until: () => Date.now() - started > 100,
+    until: waitsForSignals,
   });
   assert.equal(code, 3);
   assert.equal(JSON.parse(out).status.reason, "interrupted");

@@ -1,0 +1,44 @@
+#include "api/query.hpp"
+
+#include <algorithm>
+#include <charconv>
+
+namespace vines::api {
+
+namespace {
+
+std::string decoded(std::string_view text) {
+    std::string out;
+    out.reserve(text.size());
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        unsigned char byte = 0;
+        const char* const digits = text.data() + std::min(i + 1, text.size());
+        const char* const end = text.data() + std::min(i + 3, text.size());
+        if (text[i] == '%' && end - digits == 2 &&
+            std::from_chars(digits, end, byte, 16).ptr == end) {
+            out += static_cast<char>(byte);
+            i += 2;
+        } else {
+            out += text[i] == '+' ? ' ' : text[i];
+        }
+    }
+    return out;
+}
+
+}  // namespace
+
+Query parse_query(std::string_view text) {
+    Query pairs;
+    while (!text.empty()) {
+        const std::string_view part = text.substr(0, text.find('&'));
+        text.remove_prefix(std::min(text.size(), part.size() + 1));
+        if (part.empty()) continue;
+        const std::size_t equals = std::min(part.find('='), part.size());
+        pairs.emplace_back(
+            decoded(part.substr(0, equals)),
+            decoded(part.substr(std::min(equals + 1, part.size()))));
+    }
+    return pairs;
+}
+
+}  // namespace vines::api

@@ -1,0 +1,20 @@
+// The text of a query, as it stands behind the "?" of a URL or in `vines identify --query`.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace vines::api {
+
+/// Names and values, in the order in which they come.
+using Query = std::vector<std::pair<std::string, std::string>>;
+
+/// The parts between "&", each split at its first "=" and then decoded: "+" is a blank, "%2C" a
+/// comma. Parts that are empty are left out, and a part without "=" has the value "". No text is at
+/// fault by itself: a "%" that no two hexadecimal digits follow stands for itself, and what the
+/// names and values mean is for from_query() to judge.
+Query parse_query(std::string_view text);
+
+}  // namespace vines::api

@@ -1,0 +1,22 @@
+// What a command ends with.
+#pragma once
+
+#include <functional>
+
+#include "program/command.hpp"
+
+namespace vines::cli {
+
+/// Beside 1, for what a command throws: a file cannot be read or written, or files do not fit
+/// together.
+enum ExitCode : int {
+    complete = 0,
+    refused = 2,    ///< the request is at fault: a problem document on stderr says where
+    incomplete = 3  ///< stopped by a signal, or points are missing: what is there is usable
+};
+
+/// A command that SIGINT and SIGTERM stop, that is refused by an api::Problem, and whose help lists
+/// the exit codes.
+Command with_exit_codes(CLI::App* app, std::function<int()> run);
+
+}  // namespace vines::cli

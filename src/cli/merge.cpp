@@ -1,0 +1,77 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "api/problem.hpp"
+#include "cli/commands.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/files.hpp"
+#include "cli/sweep_file.hpp"
+#include "program/tell.hpp"
+
+namespace vines::cli {
+
+namespace {
+
+struct MergeOptions {
+    std::vector<std::string> inputs;
+    std::string output;
+};
+
+/// Adds a shard's points to those of the others. Throws std::runtime_error where they are of
+/// different sweeps or differ in a point.
+void add(SweepFile& all, const std::string& path, const std::string& first_path) {
+    const SweepFile part = read_sweep_file(path);
+    if (part.start.empty()) throw std::runtime_error(path + " is empty");
+    if (all.start.empty()) all.start = part.start;
+    if (part.start != all.start)
+        throw std::runtime_error(fmt::format(
+            "{} belongs to another sweep than {}: its first line differs", path, first_path));
+    for (const auto& [index, line] : part.points) {
+        const auto [there, added] = all.points.try_emplace(index, line);
+        if (!added && there->second != line)
+            throw std::runtime_error(fmt::format(
+                "{}: point {} differs from the same point in another file", path, index));
+    }
+}
+
+std::size_t first_missing(const SweepFile& file) {
+    std::size_t first = 0;
+    for (const auto& [index, line] : file.points) {
+        if (index != first) break;
+        ++first;
+    }
+    return first;
+}
+
+int merge(const MergeOptions& o) {
+    SweepFile all;
+    for (const std::string& path : o.inputs) add(all, path, o.inputs[0]);
+    const std::size_t points = api::Json::parse(all.start)["points"].get<std::size_t>();
+    if (all.points.size() < points) {
+        tell(fmt::format(
+            "{} of {} points are missing, the first is {}: a shard is not complete or was not "
+            "given",
+            points - all.points.size(), points, first_missing(all)));
+        return incomplete;
+    }
+    write_all(o.output, all.text());
+    return complete;
+}
+
+}  // namespace
+
+Command add_merge(CLI::App& app) {
+    const auto options = std::make_shared<MergeOptions>();
+    CLI::App* command = app.add_subcommand(
+        "merge",
+        "put the files of a sweep's shards together: byte for byte the file of the whole sweep");
+    command->add_option("files", options->inputs, "the shards' files")->required();
+    command->add_option("--output,-o", options->output, "file for the whole; - or nothing: stdout");
+    return with_exit_codes(command, [options] { return merge(*options); });
+}
+
+}  // namespace vines::cli

@@ -1,0 +1,32 @@
+// A bar on stderr, where that is a terminal.
+#pragma once
+
+#include <unistd.h>
+
+#include <chrono>
+#include <cstddef>
+
+namespace vines::cli {
+
+class ProgressBar {
+public:
+    /// `done` points of `of` are done already.
+    ProgressBar(std::size_t done, std::size_t of);
+    /// Leaves the line of the bar.
+    ~ProgressBar();
+    ProgressBar(const ProgressBar&) = delete;
+    ProgressBar& operator=(const ProgressBar&) = delete;
+    /// One more is done.
+    void step();
+
+private:
+    using Clock = std::chrono::steady_clock;
+    void draw(bool always);
+    std::size_t done_;
+    const std::size_t of_, done_before_;
+    const bool shown_ = ::isatty(STDERR_FILENO) == 1;
+    const Clock::time_point started_ = Clock::now();
+    Clock::time_point drawn_{};
+};
+
+}  // namespace vines::cli

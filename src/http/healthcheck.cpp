@@ -1,0 +1,39 @@
+#include <httplib.h>
+
+#include <memory>
+#include <string>
+
+#include "http/commands.hpp"
+
+namespace vines::http {
+
+namespace {
+
+struct Target {
+    std::string host = "127.0.0.1";
+    int port = 8080;
+};
+
+/// Whether GET /healthz is answered with 200 in time.
+bool well(const Target& target) {
+    httplib::Client client(target.host, target.port);
+    client.set_connection_timeout(2);  // s
+    client.set_read_timeout(2);
+    const auto result = client.Get("/healthz");
+    return result && result->status == 200;
+}
+
+}  // namespace
+
+Command add_healthcheck(CLI::App& app) {
+    const auto target = std::make_shared<Target>();
+    CLI::App* command = app.add_subcommand(
+        "healthcheck", "ask a running service whether it is well: exit code 0 or 1");
+    command->add_option("--host", target->host, "its address")->capture_default_str();
+    command->add_option("--port", target->port, "its port")
+        ->envname("VINES_PORT")
+        ->capture_default_str();
+    return {command, [target] { return well(*target) ? 0 : 1; }};
+}
+
+}  // namespace vines::http

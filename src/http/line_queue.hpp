@@ -1,0 +1,52 @@
+// Lines on their way from the threads that compute them to the one that sends them.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <string>
+#include <utility>
+
+namespace vines::http {
+
+class LineQueue {
+public:
+    void push(const std::string& line) {
+        {
+            const std::lock_guard lock(mutex_);
+            text_ += line;
+            text_ += '\n';
+            ++count_;
+        }
+        changed_.notify_one();
+    }
+    /// No line follows.
+    void finish() {
+        {
+            const std::lock_guard lock(mutex_);
+            finished_ = true;
+        }
+        changed_.notify_one();
+    }
+
+    struct Taken {
+        std::string text;       ///< the lines since the last call
+        std::size_t count = 0;  ///< of all lines so far
+        bool finished = false;  ///< and that is all
+    };
+    /// Waits for something to come, for so long at most. By one thread at a time.
+    Taken take(std::chrono::milliseconds at_most) {
+        std::unique_lock lock(mutex_);
+        changed_.wait_for(lock, at_most, [this] { return !text_.empty() || finished_; });
+        return {std::exchange(text_, {}), count_, finished_};
+    }
+
+private:
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::string text_;
+    std::size_t count_ = 0;
+    bool finished_ = false;
+};
+
+}  // namespace vines::http

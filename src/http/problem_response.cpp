@@ -1,0 +1,18 @@
+#include "http/problem_response.hpp"
+
+namespace vines::http {
+
+Response problem_response(const api::Problem& problem) {
+    Response response{
+        .status = problem.status,
+        .content_type = "application/problem+json",
+        .body = problem.body()};
+    if (problem.status == 503) response.headers.emplace_back("Retry-After", "1");
+    return response;
+}
+
+Response problem_response(int status, const std::string& detail) {
+    return problem_response(api::Problem(status, detail));
+}
+
+}  // namespace vines::http

@@ -1,0 +1,26 @@
+// Which path is answered by what.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "http/message.hpp"
+
+namespace vines::http {
+
+struct Route {
+    std::string method;  ///< GET (answers HEAD, too) or POST
+    std::string path;
+    std::function<Response(const Request&)> answer;
+    std::size_t body_limit = 0;  ///< bytes, where it is larger than the server's own
+};
+
+/// The route that takes this method at this path; null where none does.
+const Route* find_route(
+    const std::vector<Route>& routes, const std::string& method, const std::string& path);
+
+/// The methods that a path takes, as the header Allow lists them; empty where there is nothing.
+std::string methods_at(const std::vector<Route>& routes, const std::string& path);
+
+}  // namespace vines::http

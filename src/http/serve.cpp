@@ -1,0 +1,139 @@
+#include <fmt/format.h>
+#include <malloc.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <thread>
+
+#include "api/simulate.hpp"
+#include "http/commands.hpp"
+#include "http/compute_gate.hpp"
+#include "http/log.hpp"
+#include "http/routes.hpp"
+#include "http/server.hpp"
+#include "program/end_signals.hpp"
+
+namespace vines::http {
+
+namespace {
+
+struct ServeOptions {
+    ServerOptions server;
+    RouteOptions routes;
+    ComputeLimits compute;
+    double drain = 0;  ///< s
+};
+
+/// A flag beats the environment, which beats the default.
+template <class Value>
+CLI::Option* add_flag(
+    CLI::App& command, const char* name, const char* variable, Value& value, const char* help) {
+    return command.add_option(name, value, help)->envname(variable)->capture_default_str();
+}
+
+void add_server_flags(CLI::App& c, ServerOptions& o) {
+    add_flag(c, "--host", "VINES_HOST", o.host, "address to listen on");
+    add_flag(c, "--port", "VINES_PORT", o.port, "port to listen on, 0 for any free one")
+        ->check(CLI::Range(0, 65535));
+    add_flag(c, "--threads", "VINES_THREADS", o.threads, "connections served at once")
+        ->check(CLI::Range(1, 4096));
+}
+
+void add_compute_flags(CLI::App& c, ServeOptions& o) {
+    add_flag(
+        c, "--compute-threads", "VINES_COMPUTE_THREADS", o.compute.running, "computations at once")
+        ->check(CLI::Range(1, 1024));
+    add_flag(
+        c, "--compute-queue", "VINES_COMPUTE_QUEUE", o.compute.waiting,
+        "computations that wait; beyond that: 503")
+        ->check(CLI::Range(0, 100000));
+    add_flag(
+        c, "--sweeps", "VINES_SWEEPS", o.compute.sweeps,
+        "sweeps at once, which share the computing that is left; beyond that: 503")
+        ->check(CLI::Range(0, 1000));
+    add_flag(
+        c, "--sweep-points", "VINES_SWEEP_POINTS", o.routes.sweep_points, "points of one sweep")
+        ->check(CLI::Range(1, 10000000));
+    add_flag(
+        c, "--drain", "VINES_DRAIN", o.drain,
+        "seconds from SIGTERM on during which /readyz says 503 and requests are still taken, so "
+        "that a proxy notices")
+        ->check(CLI::Range(0.0, 3600.0));
+    add_flag(
+        c, "--deadline", "VINES_DEADLINE", o.routes.deadline,
+        "seconds of computing for one request; then it ends with what it has")
+        ->check(CLI::Range(0.001, 86400.0));
+}
+
+void add_size_flags(CLI::App& c, ServeOptions& o) {
+    add_flag(
+        c, "--payload-limit", "VINES_PAYLOAD_LIMIT", o.server.payload_limit,
+        "bytes of a request's body")
+        ->check(CLI::Range(1, 1 << 30));
+    add_flag(
+        c, "--record-limit", "VINES_RECORD_LIMIT", o.routes.record_limit,
+        "bytes of a measurement sent to /v1/identify")
+        ->check(CLI::Range(1, 1 << 30));
+    add_flag(
+        c, "--answer-limit", "VINES_ANSWER_LIMIT", o.routes.answer_limit,
+        "bytes of an answer's JSON; one that would be larger is thinned, or refused where that "
+        "cannot be")
+        ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 40));
+}
+
+/// Ends the process once it is asked to: sweeps end at once, other requests are taken until the
+/// drain is over, and those in work are finished.
+[[noreturn]] void end_when_asked(double drain, ComputeGate& gate, Server& server) {
+    wait_for_end_signal();
+    gate.close();
+    std::this_thread::sleep_for(std::chrono::duration<double>(drain));
+    server.stop();
+    // run() would return only after every idle connection's keep-alive timeout; no answer is in
+    // work any more.
+    end_log();
+    std::_Exit(0);
+}
+
+int serve(const ServeOptions& options) {
+#ifdef __GLIBC__
+    // Records and answers of this size on are mapped and unmapped one by one. The library's own
+    // threshold grows up to 32 MiB with what is freed, and each of its many arenas would keep that
+    // much for good.
+    mallopt(M_MMAP_THRESHOLD, 1 << 20);
+#endif
+    block_end_signals();
+    start_log();
+    ComputeGate gate(options.compute);
+    Server server(options.server, make_routes(options.routes, gate));
+    const int port = server.bind();
+    const std::string greeting = fmt::format(
+        "vines {} listens on http://{}:{}\n", api::version(), options.server.host, port);
+    std::fputs(greeting.c_str(), stdout);
+    std::fflush(stdout);
+
+    std::thread([&] { end_when_asked(options.drain, gate, server); }).detach();
+    server.run();
+    for (;;) pause();  // stop() was called: the other thread ends the process
+}
+
+}  // namespace
+
+Command add_serve(CLI::App& app) {
+    const auto options = std::make_shared<ServeOptions>();
+    CLI::App* command = app.add_subcommand("serve", "run the HTTP service and its page");
+    add_server_flags(*command, options->server);
+    add_compute_flags(*command, *options);
+    add_size_flags(*command, *options);
+    command
+        ->add_option(
+            "--web-dir", options->routes.web_dir,
+            "serve the page from this folder instead of the program (while developing it)")
+        ->envname("VINES_WEB_DIR")
+        ->check(CLI::ExistingDirectory);
+    return {command, [options] { return serve(*options); }};
+}
+
+}  // namespace vines::http

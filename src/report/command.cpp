@@ -1,0 +1,39 @@
+#include "report/command.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "program/tell.hpp"
+#include "report/markdown.hpp"
+#include "report/reproduce.hpp"
+
+namespace vines::report {
+
+namespace {
+
+int run(const std::string& folder) {
+    const Report result = reproduce(folder);
+    std::fputs(markdown_table(result.findings).c_str(), stdout);
+    if (!folder.empty()) tell(fmt::format("wrote {}/report.md and its plots", folder));
+    if (!result.holds()) tell("a number has left its band");
+    return result.holds() ? 0 : 1;
+}
+
+}  // namespace
+
+Command add_reproduce(CLI::App& app) {
+    const auto folder = std::make_shared<std::string>();
+    CLI::App* command = app.add_subcommand(
+        "reproduce",
+        "recompute the paper's Figs. 3 to 14 and Tables 1 to 3 and compare: exit code 0 if every "
+        "number lies in its band, else 1");
+    command->add_option(
+        "--output", *folder,
+        "folder for report.md and its SVG plots; without it only the table is printed");
+    return {command, [folder] { return run(*folder); }};
+}
+
+}  // namespace vines::report
