@@ -440,3 +440,11 @@ TEST_CASE("there is no verdict and no advice where the motion does not explain t
         CHECK(a["warnings"].dump().find("sample at") == std::string::npos);
     }
 }
+
+TEST_CASE("moments in seconds beside a list of impacts are refused: it has its own in tau") {
+    for (const char* system : {R"("b":0.015)", R"("preset":"fig20")"}) {
+        const Json request = parse_object(
+            std::string("{") + system + R"(,"impacts":{"tau":[1,2]},"impact_times_s":[0.1]})");
+        CHECK_THROWS_AS(read_identify_request(request), Problem);
+    }
+}

@@ -1,0 +1,249 @@
+#include "api/identify_request.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "api/record_columns.hpp"
+
+namespace vines::api {
+
+namespace {
+
+constexpr std::size_t fewest_samples = 100;
+
+using Columns = std::vector<CsvColumn>;
+
+/// What would make every later step wrong without a word: line numbers count the header.
+void check_record(
+    const std::vector<double>& time, const MeasuredRecord& r, double omega0,
+    std::vector<std::string>& notes) {
+    const std::size_t n = time.size();
+    if (n < fewest_samples)
+        refuse(
+            {{"/record", n, Json::array({fewest_samples, 1000000}),
+              "the record has " + std::to_string(n) + " samples; at least " +
+                  std::to_string(fewest_samples) + " are needed"}});
+    for (std::size_t i = 1; i < n; ++i)
+        if (!(time[i] > time[i - 1]))
+            refuse(
+                {{"/record/time_s/" + std::to_string(i), time[i], nullptr,
+                  "line " + std::to_string(i + 2) + ", column of time: time must increase, but " +
+                      Json(time[i]).dump() + " follows " + Json(time[i - 1]).dump()}});
+    const std::vector<TimeGap> gaps = time_gaps(r);
+    if (!gaps.empty())
+        notes.push_back(
+            "the record has " + std::to_string(gaps.size()) + " gap(s), the first of " +
+            fmt::format("{:.4g}", (gaps[0].to - gaps[0].from) / omega0) + " s at " +
+            fmt::format("{:.6g}", gaps[0].from / omega0) + " s: an impact in one is not seen");
+    // A clipped signal repeats its extreme value.
+    for (const auto& [name, column] :
+         {std::pair("displacement", &r.x), std::pair("acceleration", &r.x_ddot)}) {
+        if (column->empty()) continue;
+        const auto [low, high] = std::minmax_element(column->begin(), column->end());
+        for (double extreme : {*low, *high}) {
+            const auto times = std::count(column->begin(), column->end(), extreme);
+            if (times > 3)
+                notes.push_back(
+                    std::string("the ") + name + " reaches its extreme " + Json(extreme).dump() +
+                    " exactly " + std::to_string(times) + " times: is it clipped?");
+        }
+    }
+}
+
+IdentifyRequest read_fields(const Json& given, bool with_record) {
+    IdentifyRequest r;
+    const Layered l = layered(identify_fields(), given);
+    const Json& object = l.fields;
+    r.system = read_system_alone(l, with_record);
+    r.notes = r.system.notes;
+    if (with_record && !r.system.si)
+        refuse(
+            {{"/m1", nullptr, nullptr,
+              "a record in seconds needs the oscillator's own frequency: give m1, c1, k1, m2 and "
+              "f, or a preset"},
+             {"/k1", nullptr, nullptr,
+              "a record in seconds needs the oscillator's own frequency: give m1, c1, k1, m2 and "
+              "f, or a preset"}});
+    Measurement& m = r.measurement;
+    m.parameters = r.system.parameters;
+    m.R_given = given.contains("R") || (given.contains("R_plus") && given.contains("R_minus"));
+    if (object.contains("threshold")) m.threshold = object["threshold"].get<double>();
+    if (object.contains("impact_times_s")) {
+        if (!with_record)
+            refuse(
+                {{"/impact_times_s", nullptr, nullptr,
+                  "impact_times_s are moments in a record; impacts have their own in tau"}});
+        for (const Json& t : object["impact_times_s"])
+            m.moments.push_back(t.get<double>() * r.system.si->omega0());
+        std::sort(m.moments.begin(), m.moments.end());
+    }
+    std::set<std::string> estimators = {"qr", "eigenvalues", "raw_product"};
+    if (object.contains("exponents")) estimators = object["exponents"].get<std::set<std::string>>();
+    m.estimators = {
+        .qr = true,
+        .eigenvalues = estimators.contains("eigenvalues"),
+        .raw_product = estimators.contains("raw_product")};
+    if (object.contains("max_points"))
+        m.estimators.history = static_cast<std::size_t>(object["max_points"].get<double>());
+    return r;
+}
+
+void read_record(IdentifyRequest& r, const Json& fields, const Columns& columns) {
+    const RecordColumn time = find_column(columns, fields, time_quantity),
+                       x = find_column(columns, fields, displacement_quantity),
+                       a = find_column(columns, fields, acceleration_quantity);
+    std::vector<std::string> names;
+    for (const CsvColumn& c : columns) names.push_back(c.name);
+    if (!time.column)
+        refuse(
+            {{"/record", names, nullptr,
+              "the record has no column time_s; name it in time_column"}});
+    if (!x.column && !a.column)
+        refuse(
+            {{"/record", names, nullptr,
+              "the record has neither a displacement nor an acceleration; name them in "
+              "displacement_column and acceleration_column"}});
+    if (!a.column && r.measurement.moments.empty())
+        refuse(
+            {{"/record", nullptr, nullptr,
+              "impacts are found from the spikes of the acceleration, and the record has none: "
+              "give their moments in impact_times_s"}});
+    const double omega0 = r.system.si->omega0();
+    MeasuredRecord& record = r.measurement.record;
+    std::vector<double> seconds;
+    for (double t : time.column->values) seconds.push_back(t * time.factor);
+    for (double t : seconds) record.tau.push_back(t * omega0);
+    if (x.column)
+        for (double v : x.column->values) record.x.push_back(v * x.factor);
+    if (a.column)
+        for (double v : a.column->values) record.x_ddot.push_back(v * a.factor / (omega0 * omega0));
+    check_record(seconds, record, omega0, r.notes);
+    if (!x.column)
+        r.notes.push_back(
+            "without a displacement, x at the impacts rests on the acceleration alone, whose "
+            "errors add up: y' and R are less certain");
+    if (!a.column)
+        r.notes.push_back("without an acceleration the moments of the impacts are taken as given");
+    for (double tau : r.measurement.moments)
+        if (!(tau > record.tau.front() && tau < record.tau.back()))
+            refuse(
+                {{"/impact_times_s", tau / omega0,
+                  Json::array({record.tau.front() / omega0, record.tau.back() / omega0}),
+                  "an impact lies outside the record"}});
+}
+
+/// Columns of impacts with their states, as /v1/simulate gives them.
+void read_impacts(IdentifyRequest& r, const Json& columns) {
+    const Parameters& p = r.system.parameters;
+    std::vector<FieldError> errors;
+    std::map<std::string, std::vector<double>> values;
+    if (!columns.is_object())
+        refuse(
+            {{"/impacts", nullptr, nullptr,
+              "impacts is an object of columns, as in the answer of /v1/simulate"}});
+    const std::size_t n =
+        columns.contains("side") && columns["side"].is_array() ? columns["side"].size() : 0;
+    for (const char* name :
+         {"tau", "side", "phase", "x", "x_dot_before", "x_dot_after", "y_dot_before",
+          "y_dot_after"}) {
+        const std::string where = std::string("/impacts/") + name;
+        if (!columns.contains(name) || !columns[name].is_array())
+            errors.push_back({where, nullptr, nullptr, std::string(name) + " is missing"});
+        else if (columns[name].size() != n)
+            errors.push_back(
+                {where, columns[name].size(), nullptr,
+                 std::string(name) + " has another length than side"});
+        else
+            for (std::size_t i = 0; i < n; ++i) {
+                if (columns[name][i].is_number())
+                    values[name].push_back(columns[name][i].get<double>());
+                else
+                    errors.push_back(
+                        {where + "/" + std::to_string(i), columns[name][i], nullptr,
+                         "must be a number"});
+                if (errors.size() >= most_errors) break;
+            }
+    }
+    if (!errors.empty()) refuse(std::move(errors));
+    if (n < 2) refuse({{"/impacts", n, nullptr, "exponents need at least two impacts"}});
+    const auto flow = Flow::shared_free(p);
+    for (std::size_t i = 0; i < n; ++i) {
+        const auto v = [&](const char* name) { return values[name][i]; };
+        if (i > 0 && !(v("tau") > values["tau"][i - 1]))
+            errors.push_back(
+                {"/impacts/tau/" + std::to_string(i), v("tau"), nullptr,
+                 "the impacts must follow each other in time"});
+        if (std::abs(v("side")) != 1)
+            errors.push_back(
+                {"/impacts/side/" + std::to_string(i), v("side"), Json::array({-1, 1}),
+                 "a side is 1 or -1"});
+        const double x_ddot = flow->acceleration(
+            {v("x"), v("x_dot_before"), std::sin(v("phase")), std::cos(v("phase"))});
+        r.measurement.impacts.push_back(
+            {.tau = v("tau"),
+             .side = static_cast<int>(v("side")),
+             .x = v("x"),
+             .x_dot_before = v("x_dot_before"),
+             .x_dot_after = v("x_dot_after"),
+             .x_ddot_before = x_ddot,
+             .y_dot_before = v("y_dot_before"),
+             .y_dot_after = v("y_dot_after")});
+        if (errors.size() >= most_errors) break;
+    }
+    if (!errors.empty()) refuse(std::move(errors));
+    complete_impacts(p, r.measurement.impacts, 0);
+}
+
+}  // namespace
+
+IdentifyRequest read_identify_request(const Json& object) {
+    Json fields = object;
+    const bool has_record = object.contains("record"), has_impacts = object.contains("impacts");
+    fields.erase("record");
+    fields.erase("impacts");
+    if (has_record == has_impacts)
+        refuse(
+            {{"/record", nullptr, nullptr,
+              "give either record: {time_s, displacement_m, acceleration_m_s2} or impacts, with "
+              "their states"}});
+    IdentifyRequest r = read_fields(fields, has_record);
+    if (has_impacts) {
+        read_impacts(r, object["impacts"]);
+        return r;
+    }
+    const Json& record = object["record"];
+    Columns columns;
+    if (!record.is_object())
+        refuse({{"/record", nullptr, nullptr, "record is an object of columns"}});
+    for (const auto& [name, values] : record.items()) {
+        CsvColumn column{name, {}};
+        if (!values.is_array())
+            refuse({{"/record/" + name, nullptr, nullptr, "a column is an array of numbers"}});
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            if (!values[i].is_number())
+                refuse(
+                    {{"/record/" + name + "/" + std::to_string(i), values[i], nullptr,
+                      "must be a number"}});
+            column.values.push_back(values[i].get<double>());
+        }
+        if (!columns.empty() && column.values.size() != columns[0].values.size())
+            refuse(
+                {{"/record/" + name, column.values.size(), nullptr,
+                  "has another length than " + columns[0].name + " (" +
+                      std::to_string(columns[0].values.size()) + ")"}});
+        columns.push_back(std::move(column));
+    }
+    read_record(r, fields, columns);
+    return r;
+}
+
+IdentifyRequest read_identify_request(const Json& fields, std::string_view csv) {
+    IdentifyRequest r = read_fields(fields, true);
+    read_record(r, fields, parse_csv(csv));
+    return r;
+}
+
+}  // namespace vines::api

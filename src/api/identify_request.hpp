@@ -1,0 +1,23 @@
+// A measurement from the text of a CSV file or from JSON.
+#pragma once
+
+#include <string_view>
+
+#include "api/system.hpp"
+#include "core/identification/measurement.hpp"
+
+namespace vines::api {
+
+struct IdentifyRequest {
+    System system;  ///< R only where it is given
+    Measurement measurement;
+    std::vector<std::string> notes;  ///< what is odd about the record
+};
+
+/// From JSON {fields..., record: {time_s, displacement_m, acceleration_m_s2}} or {fields...,
+/// impacts: {...}}. Problem 422 with what is at fault.
+IdentifyRequest read_identify_request(const Json& object);
+/// From the text of a CSV file and the fields beside it.
+IdentifyRequest read_identify_request(const Json& fields, std::string_view csv);
+
+}  // namespace vines::api
