@@ -1,5 +1,7 @@
 #include "api/problem.hpp"
 
+#include <fmt/format.h>
+
 #include <set>
 
 namespace vines::api {
@@ -7,6 +9,8 @@ namespace vines::api {
 namespace {
 
 constexpr int deepest = 16;
+// Of one object: several times as many as any request has. Each name is compared with all before it.
+constexpr std::size_t most_names = 1000;
 
 constexpr std::size_t longest_echo = 200;
 
@@ -77,6 +81,9 @@ Json parse_object(std::string_view text) {
             names.emplace_back();
         } else if (event == Event::object_end || event == Event::array_end) {
             names.pop_back();
+        } else if (event == Event::key && names.back().size() >= most_names) {
+            throw Problem(
+                400, fmt::format("an object of the JSON text has more than {} names", most_names));
         } else if (event == Event::key && !names.back().insert(value.get<std::string>()).second) {
             throw Problem(
                 400, "the name " + quoted(value.get<std::string>()) +

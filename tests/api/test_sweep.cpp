@@ -42,7 +42,7 @@ std::map<std::size_t, Json> run(const SweepRequest& r, int threads = 2) {
 
 const char* const plane =
     R"({"base":{"damping":"closed_form"},"axes":[{"parameter":"b","from":0.008,"to":0.02,"count":5},{"parameter":"R","values":[0.5,0.6]}],
-    "cycles":60,"transient_cycles":20,"section":"impact","section_points":5)";
+    "cycles":30,"transient_cycles":10,"section":"impact","section_points":5)";
 
 }  // namespace
 
