@@ -4,7 +4,7 @@
 // and a measurement. With VINES_WEB_DIR=web they show the page in that folder instead of the one
 // compiled in.
 import {identified, open, startBrowser} from "../tests/page/browser.mjs";
-import {measured} from "../tests/page/record.mjs";
+import {measured} from "../tests/record.mjs";
 import {startService} from "../tests/service.mjs";
 
 const [folder = ".", query] = process.argv.slice(2);

@@ -76,7 +76,8 @@ TEST_CASE(
 
 TEST_CASE("SI fields are reduced by the paper's definitions") {
     const Json a = answer(
-        R"({"m1":4.168,"c1":3.02,"k1":11470,"m2":0.032,"F":0.00015355086372360845,"f":8.349067754204674,"include":[]})");
+        R"({"m1":4.168,"c1":3.02,"k1":11470,"m2":0.032,"F":0.00015355086372360845,
+            "f":8.349067754204674,"include":[]})");
     CHECK(a["parameters"]["epsilon"].get<double>() == doctest::Approx(0.00768).epsilon(1e-3));
     CHECK(a["parameters"]["lambda"].get<double>() == doctest::Approx(1.80).epsilon(1e-3));
     CHECK(a["parameters"]["Omega"].get<double>() == doctest::Approx(1));
@@ -88,7 +89,8 @@ TEST_CASE("SI fields are reduced by the paper's definitions") {
 TEST_CASE(
     "every field at fault is named with its pointer, value and range, unknown ones included") {
     const Problem p = refused(
-        R"({"b":-1,"Omga":2,"R":"x","samples_per_cycle":0,"max_impacts":1.5,"include":["series","plots"],"window":[5,1],"damping":"none"})");
+        R"({"b":-1,"Omga":2,"R":"x","samples_per_cycle":0,"max_impacts":1.5,
+            "include":["series","plots"],"window":[5,1],"damping":"none"})");
     CHECK(p.status == 422);
     CHECK(
         pointers(p) == std::set<std::string>{
@@ -353,7 +355,8 @@ TEST_CASE("the field table describes exactly what a request takes") {
 
 TEST_CASE("every part that can be asked for is there, its columns of one length") {
     const Json a = answer(
-        R"({"damping":"closed_form","tau_end":400,"include":["series","impacts","exponents","eigenvalues","matrices","section","energy","regime","manifold"]})");
+        R"({"damping":"closed_form","tau_end":400,"include":["series","impacts","exponents",
+            "eigenvalues","matrices","section","energy","regime","manifold"]})");
     const std::size_t impacts = a["impacts"]["tau"].size();
     for (const char* name : {"tau", "J", "M", "T", "M_condition"})
         CHECK(a["eigenvalues"][name].size() == impacts - 1);
@@ -384,7 +387,8 @@ TEST_CASE("every part that can be asked for is there, its columns of one length"
 
 TEST_CASE("the window holds for sections, matrices, energy and regime, too") {
     const Json a = answer(
-        R"({"damping":"closed_form","tau_end":400,"window":[100,200],"include":["impacts","eigenvalues","section","energy","regime","manifold"]})");
+        R"({"damping":"closed_form","tau_end":400,"window":[100,200],
+            "include":["impacts","eigenvalues","section","energy","regime","manifold"]})");
     for (const Json& tau : a["section"]["impact"]["tau"]) CHECK((tau >= 100 && tau <= 200));
     for (const Json& tau : a["eigenvalues"]["tau"]) CHECK((tau >= 100 && tau <= 200));
     for (const Json& tau : a["section"]["stroboscopic"]["tau"]) CHECK((tau >= 100 && tau <= 200));
@@ -395,7 +399,8 @@ TEST_CASE("the window holds for sections, matrices, energy and regime, too") {
 
 TEST_CASE("several windows at once are those of one request each, with a verdict") {
     const Json all = answer(
-        R"({"preset":"table2_1","windows":[[18.13,1708.9],[1708.9,3652.7],[3652.7,5521.3]],"include":[],"exponents":["qr"]})");
+        R"({"preset":"table2_1","windows":[[18.13,1708.9],[1708.9,3652.7],[3652.7,5521.3]],
+            "include":[],"exponents":["qr"]})");
     REQUIRE(all["windows"].size() == 3);
     for (const Json& w : all["windows"]) {
         const Json one = simulate_answer(
@@ -453,7 +458,8 @@ TEST_CASE(
 
 TEST_CASE("a chaotic band beside a stable orbit is called chaotic, with the reason") {
     const Json a = answer(
-        R"({"damping":"closed_form","b":0.0046,"R":0.5,"cycles":20000,"exponents":["qr"],"include":["exponents","regime"]})");
+        R"({"damping":"closed_form","b":0.0046,"R":0.5,"cycles":20000,"exponents":["qr"],
+            "include":["exponents","regime"]})");
     CHECK(a["exponents"]["verdict"] == "chaotic");
     CHECK(a["exponents"]["verdict_sigmas"] > 3);
     CHECK(a["regime"]["periodic"] == false);
@@ -463,8 +469,9 @@ TEST_CASE("a chaotic band beside a stable orbit is called chaotic, with the reas
 
 TEST_CASE("each window has its own verdict beside its own exponents") {
     const Json a = answer(
-        R"({"b":0.022000000999999998,"damping":"closed_form","tau_end":20000,"window":[4164,20000],"windows":[[0,1932],[0,3764],[4164,20000]],
-                              "exponents":["qr"],"include":["exponents","regime"]})");
+        R"({"b":0.022000000999999998,"damping":"closed_form","tau_end":20000,"window":[4164,20000],
+            "windows":[[0,1932],[0,3764],[4164,20000]],
+            "exponents":["qr"],"include":["exponents","regime"]})");
     CHECK(a["exponents"]["verdict"] == "regular");
     for (int i : {0, 1}) {
         CHECK(a["windows"][i]["verdict"] == "chaotic");
@@ -491,7 +498,8 @@ TEST_CASE("nearly tangent means nearly tangent, at any restitution coefficient")
 TEST_CASE("an impact next to a tangent contact is warned of") {
     // The gap opens at 1e-4 and is turned back by x'' = -.02, 5e-12 behind the wall.
     const Json a = answer(
-        R"({"G":0,"x0":0.02,"x_dot0":1e-4,"y0":-0.00199975002,"tau_end":60,"include":["impacts","eigenvalues"]})");
+        R"({"G":0,"x0":0.02,"x_dot0":1e-4,"y0":-0.00199975002,"tau_end":60,
+            "include":["impacts","eigenvalues"]})");
     REQUIRE(a["warnings"].size() == 1);
     CHECK(a["warnings"][0].get<std::string>().find("ill-conditioned") != std::string::npos);
     CHECK(
@@ -560,7 +568,8 @@ TEST_CASE("the manifold ends where the motion does, and says by what") {
 TEST_CASE("what a long run would fill memory with is cut to its last max_points, and said to be") {
     CHECK(pointers(refused(R"({"Omega":100,"tau_end":1e6})")) == std::set<std::string>{"/tau_end"});
     const Json a = answer(
-        R"({"b":0.003,"tau_end":4000,"max_points":256,"include":["eigenvalues","matrices","section","regime","manifold","impacts"]})");
+        R"({"b":0.003,"tau_end":4000,"max_points":256,
+            "include":["eigenvalues","matrices","section","regime","manifold","impacts"]})");
     CHECK(a["eigenvalues"]["tau"].size() == 256);
     CHECK(a["matrices"]["T"].size() == 256);
     CHECK(a["eigenvalues"]["tau"].back() == a["impacts"]["tau"].back());

@@ -77,7 +77,8 @@ TEST_CASE(
 
     const Swept s = swept(
         R"({"base":{)" + platform +
-        R"(},"axes":[{"parameter":"f","from":13,"to":15,"count":81}],"starts":"default set","reduce":"max over f"})");
+        R"(},"axes":[{"parameter":"f","from":13,"to":15,"count":81}],"starts":"default set",
+            "reduce":"max over f"})");
     REQUIRE(s.lines.size() == 1);
     const Json& line = s.lines.at(0);
     std::map<std::string, Json> from;
@@ -146,7 +147,8 @@ TEST_CASE("a system in SI that is not whole is refused by the names of what is m
         try {
             read_sweep_request(
                 parse_object(
-                    R"({"base":{"m1":12,"f0":14,"damping_ratio":0.006,"mass_ratio":0.01},"axes":[{"parameter":"f","from":13,"to":15,"count":3}]})"),
+                    R"({"base":{"m1":12,"f0":14,"damping_ratio":0.006,"mass_ratio":0.01},
+                        "axes":[{"parameter":"f","from":13,"to":15,"count":3}]})"),
                 100);
         } catch (const Problem& problem) {
             return problem;
@@ -254,7 +256,8 @@ void check_times(const Json& part, double omega0) {
 TEST_CASE(
     "the answer to a question in SI has seconds beside every tau, and m/s, m/s^2, N s and J") {
     const std::string all =
-        R"("include":["series","impacts","exponents","eigenvalues","matrices","section","energy","regime","manifold"],"windows":[[10,400]],"tau_end":600)";
+        R"("include":["series","impacts","exponents","eigenvalues","matrices","section","energy",
+            "regime","manifold"],"windows":[[10,400]],"tau_end":600)";
     const Json a = answer("{" + platform + R"(,"f":14,)" + all + "}");
     const double omega0 = a["parameters"]["derived"]["omega0"], m1 = 12;
     REQUIRE(a["impacts"]["tau"].size() > 20);
@@ -290,7 +293,8 @@ TEST_CASE(
 
 TEST_CASE("x_ddot is the derivative of x_dot between impacts, and obeys the equation of motion") {
     const Json a = answer(
-        R"({"b":0.022,"tau_end":60,"samples_per_cycle":2000,"max_points":100000,"include":["series","impacts"]})");
+        R"({"b":0.022,"tau_end":60,"samples_per_cycle":2000,"max_points":100000,
+            "include":["series","impacts"]})");
     const Json& s = a["series"];
     const double step = s["tau"][1].get<double>() - s["tau"][0].get<double>();
     std::size_t impact = 0;
@@ -356,7 +360,8 @@ TEST_CASE(
     "a sweep whose motion depends on the start says so, by a second start at some of its points") {
     const std::string sweep =
         R"({"base":{)" + platform +
-        R"(},"axes":[{"parameter":"f","from":13,"to":15,"count":33}],"transient_cycles":100,"cycles":200)";
+        R"(},"axes":[{"parameter":"f","from":13,"to":15,"count":33}],"transient_cycles":100,
+            "cycles":200)";
     const Swept single = swept(sweep + "}");
     CHECK(single.warning.find("depends on the start") != std::string::npos);
     long tried = 0;
@@ -367,10 +372,10 @@ TEST_CASE(
     }
     CHECK(tried == 11);
     // Where there is one attractor, nothing is said.
-    CHECK(
-        swept(
-            R"({"base":{"damping":"closed_form"},"axes":[{"parameter":"b","from":0.006,"to":0.0066,"count":4}]})")
-            .warning.empty());
+    const Swept one_attractor = swept(
+        R"({"base":{"damping":"closed_form"},
+            "axes":[{"parameter":"b","from":0.006,"to":0.0066,"count":4}]})");
+    CHECK(one_attractor.warning.empty());
 
     const Swept both = swept(sweep + R"(,"starts":"default set"})");
     CHECK(both.warning.empty());
@@ -393,7 +398,10 @@ TEST_CASE(
 
 TEST_CASE("the default set's lines do not depend on threads, shards or the indices asked for") {
     const std::string text =
-        R"({"base":{"damping":"closed_form"},"axes":[{"parameter":"Omega","from":0.95,"to":1.05,"count":6},{"parameter":"b","values":[0.012,0.02]}],"starts":"default set","transient_cycles":30,"cycles":60)";
+        R"({"base":{"damping":"closed_form"},
+            "axes":[{"parameter":"Omega","from":0.95,"to":1.05,"count":6},
+            {"parameter":"b","values":[0.012,0.02]}],"starts":"default set",
+            "transient_cycles":30,"cycles":60)";
     const Swept all = swept(text + "}");
     REQUIRE(all.lines.size() == 12);
     SweepRequest r = read_sweep_request(parse_object(text + R"(,"indices":[2,7]})"), 1000);
@@ -406,8 +414,9 @@ TEST_CASE("the default set's lines do not depend on threads, shards or the indic
 
 TEST_CASE("a sweep over three axes counts the first fastest, then the starts, then the others") {
     const Swept s = swept(
-        R"({"base":{"damping":"closed_form"},"axes":[{"parameter":"b","values":[0.015,0.016]},{"parameter":"R","values":[0.6,0.65,0.7]},{"parameter":"G","values":[0.02,0.021]}],
-                             "starts":[{},{"x_dot0":0.01}],"cycles":5,"transient_cycles":0})");
+        R"({"base":{"damping":"closed_form"},"axes":[{"parameter":"b","values":[0.015,0.016]},
+            {"parameter":"R","values":[0.6,0.65,0.7]},{"parameter":"G","values":[0.02,0.021]}],
+            "starts":[{},{"x_dot0":0.01}],"cycles":5,"transient_cycles":0})");
     REQUIRE(s.lines.size() == 24);
     const Json& line = s.lines.at(1 + 2 * (1 + 2 * (2 + 3 * 1)));
     CHECK(line["b"] == 0.016);
@@ -419,7 +428,9 @@ TEST_CASE("a sweep over three axes counts the first fastest, then the starts, th
 
 TEST_CASE("a reduction is the peak over the points that it folds") {
     const std::string axes =
-        R"("axes":[{"parameter":"b","values":[0.012,0.02]},{"parameter":"Omega","from":0.97,"to":1.03,"count":5}],"cycles":50,"transient_cycles":20,"base":{"damping":"closed_form"})";
+        R"("axes":[{"parameter":"b","values":[0.012,0.02]},
+            {"parameter":"Omega","from":0.97,"to":1.03,"count":5}],"cycles":50,
+            "transient_cycles":20,"base":{"damping":"closed_form"})";
     const Swept each = swept("{" + axes + "}"),
                 most = swept("{" + axes + R"(,"reduce":"max over Omega"})"),
                 least = swept("{" + axes + R"(,"reduce":"min over Omega"})");
@@ -458,7 +469,8 @@ TEST_CASE("a stroboscopic section is taken at the phase asked for") {
         CHECK(is_near(quarter["x"][k], zero["series"]["x"][4 * k + 1].get<double>(), 1e-9));
     }
     const Swept s = swept(
-        R"({"base":{"y0":0,"b":1},"axes":[{"parameter":"G","values":[0.02]}],"cycles":10,"transient_cycles":0,"section":"stroboscopic","section_phase":1.5707963267948966})");
+        R"({"base":{"y0":0,"b":1},"axes":[{"parameter":"G","values":[0.02]}],"cycles":10,
+            "transient_cycles":0,"section":"stroboscopic","section_phase":1.5707963267948966})");
     CHECK(is_near(s.lines.at(0)["section"]["x"][3], quarter["x"][3].get<double>(), 1e-9));
 }
 
@@ -499,11 +511,10 @@ TEST_CASE(
     // At rest in the middle the ball is met while the oscillator swings in.
     const std::string system =
         R"("m1":12,"f0":14,"damping_ratio":0.006,"mass_ratio":0.01,"F":0.0004,"R":0.8,"f":14.1)";
-    const Json line =
-        swept(
-            "{\"base\":{" + system +
-            R"(},"axes":[{"parameter":"b","values":[0.02267622352041703]}],"starts":"default set"})")
-            .lines.at(0);
+    const Swept point = swept(
+        "{\"base\":{" + system +
+        R"(},"axes":[{"parameter":"b","values":[0.02267622352041703]}],"starts":"default set"})");
+    const Json& line = point.lines.at(0);
     CHECK(line["start"] == "untouched");
     CHECK(is_near(line["x_max"], 0.0213336, 1e-4));
     CHECK(is_near(line["x_max"], line["x_free"].get<double>(), 1e-9));
@@ -526,7 +537,8 @@ TEST_CASE("no b is recommended where none reduces the motion") {
 
 TEST_CASE("x_rms_ratio is over the steady motion without absorber, as in a simulation") {
     const std::string system =
-        R"("m1":12,"f0":14,"damping_ratio":0.0005,"mass_ratio":0.01,"F":3e-5,"R":0.6,"b":0.0034,"y0":0)";
+        R"("m1":12,"f0":14,"damping_ratio":0.0005,"mass_ratio":0.01,"F":3e-5,"R":0.6,"b":0.0034,
+            "y0":0)";
     const Swept s = swept(
         "{\"base\":{" + system +
         R"(},"axes":[{"parameter":"f","values":[14]}],"transient_cycles":2000})");
@@ -539,7 +551,9 @@ TEST_CASE("x_rms_ratio is over the steady motion without absorber, as in a simul
 
 TEST_CASE("a transient that is too short for the oscillator is warned of, and is no other motion") {
     const std::string sweep =
-        R"({"base":{"m1":12,"f0":14,"damping_ratio":0.0005,"mass_ratio":0.01,"F":1e-5,"R":0.4,"b":0.5},"axes":[{"parameter":"f","values":[14,14.2]}],"starts":[{"x0":0.02,"y0":0.02}])";
+        R"({"base":{"m1":12,"f0":14,"damping_ratio":0.0005,"mass_ratio":0.01,"F":1e-5,"R":0.4,
+            "b":0.5},"axes":[{"parameter":"f","values":[14,14.2]}],
+            "starts":[{"x0":0.02,"y0":0.02}])";
     const Swept s = swept(sweep + R"(,"cycles":100})");
     CHECK(warns(
         s.start,
@@ -554,7 +568,8 @@ TEST_CASE(
     "the cavity of a machine of one's own, and the damping that goes with a preset, are not "
     "assumed without a word") {
     const Json a = answer(
-        R"({"m1":0.5,"f0":80,"damping_ratio":0.006,"mass_ratio":0.01,"F":1e-6,"f":80,"include":[]})");
+        R"({"m1":0.5,"f0":80,"damping_ratio":0.006,"mass_ratio":0.01,"F":1e-6,"f":80,
+            "include":[]})");
     CHECK(warns(a, "not given, and assumed as in Table 1 of the paper: b = 0.022, R = 0.6"));
     CHECK(warns(
         answer(
@@ -590,8 +605,8 @@ TEST_CASE("what a sweep sets twice is refused") {
         std::set<std::string>{"/starts/0/x0"});
     CHECK(
         faults(
-            R"({"base":{"y0":0},"axes":[{"parameter":"b","values":[0.01]}],"starts":"default set"})") ==
-        std::set<std::string>{"/base/y0"});
+            R"({"base":{"y0":0},"axes":[{"parameter":"b","values":[0.01]}],
+                "starts":"default set"})") == std::set<std::string>{"/base/y0"});
     CHECK(
         faults(R"({"axes":[{"parameter":"y0","values":[0.01]}],"starts":"default set"})") ==
         std::set<std::string>{"/axes/0/parameter"});
@@ -603,7 +618,8 @@ TEST_CASE("what a sweep sets twice is refused") {
 TEST_CASE("the state of a motion in a sweep's line leads a simulation to the same motion") {
     const Swept s = swept(
         R"({"base":{)" + platform +
-        R"(},"axes":[{"parameter":"f","from":13.9,"to":14,"count":3}],"starts":"default set","transient_cycles":0,"cycles":80})");
+        R"(},"axes":[{"parameter":"f","from":13.9,"to":14,"count":3}],"starts":"default set",
+            "transient_cycles":0,"cycles":80})");
     for (const Json& start : s.lines.at(1)["starts"]) {
         CAPTURE(start["start"].get<std::string>());
         Json request =

@@ -41,8 +41,9 @@ std::map<std::size_t, Json> run(const SweepRequest& r, int threads = 2) {
 }
 
 const char* const plane =
-    R"({"base":{"damping":"closed_form"},"axes":[{"parameter":"b","from":0.008,"to":0.02,"count":5},{"parameter":"R","values":[0.5,0.6]}],
-    "cycles":30,"transient_cycles":10,"section":"impact","section_points":5)";
+    R"({"base":{"damping":"closed_form"},"axes":[{"parameter":"b","from":0.008,"to":0.02,"count":5},
+        {"parameter":"R","values":[0.5,0.6]}],
+        "cycles":30,"transient_cycles":10,"section":"impact","section_points":5)";
 
 }  // namespace
 
@@ -96,7 +97,8 @@ TEST_CASE("continuation follows a branch that a fresh start does not find") {
     // Down from 15 mm two symmetric impacts per cycle stay, wherever a fresh start goes; what is
     // carried is the state, cavity and all.
     const std::string text =
-        R"({"base":{"damping":"closed_form"},"axes":[{"parameter":"b","values":[0.0072,0.01,0.015]}],"cycles":200)";
+        R"({"base":{"damping":"closed_form"},
+            "axes":[{"parameter":"b","values":[0.0072,0.01,0.015]}],"cycles":200)";
     const auto down = run(request(text + R"(,"carry_state":"down"})"));
     for (const auto& [index, line] : down) CHECK(line["regime"] == "III");
     Json afresh = run(request(text + "}")).at(0);
@@ -109,7 +111,9 @@ TEST_CASE("continuation follows a branch that a fresh start does not find") {
 TEST_CASE(
     "a long transient is run to its end, so that the phase of the forcing is right behind it") {
     const std::string text =
-        R"({"base":{"epsilon":1,"lambda":0.2,"R_plus":0.9,"R_minus":0.2,"G":0.1},"axes":[{"parameter":"b","values":[0.23152542372881355]}],"cycles":500,"transient_cycles":)";
+        R"({"base":{"epsilon":1,"lambda":0.2,"R_plus":0.9,"R_minus":0.2,"G":0.1},
+            "axes":[{"parameter":"b","values":[0.23152542372881355]}],"cycles":500,
+            "transient_cycles":)";
     for (const char* transient : {"17000", "20000"}) {
         CAPTURE(transient);
         const Json line = run(request(text + transient + "}")).at(0);
@@ -123,7 +127,8 @@ TEST_CASE("a point whose transient does not end says so, and nothing else") {
     // In a cavity of 10 nm the mass bounces a million times a cycle.
     const Json line =
         run(request(
-                R"({"base":{"R":1},"axes":[{"parameter":"b","values":[1e-8]}],"cycles":5,"transient_cycles":5})"))
+                R"({"base":{"R":1},"axes":[{"parameter":"b","values":[1e-8]}],"cycles":5,
+                    "transient_cycles":5})"))
             .at(0);
     CHECK(line["reason"] == "transient_max_impacts");
     for (const char* name :
@@ -139,7 +144,8 @@ TEST_CASE("a state is carried at a whole cycle, or not at all") {
     // The first point ends within a cycle, by max_impacts: its state is taken at the end of that
     // cycle.
     const std::string axes =
-        R"("axes":[{"parameter":"b","values":[0.0151,0.015]}],"carry_state":"up","transient_cycles":0,)";
+        R"("axes":[{"parameter":"b","values":[0.0151,0.015]}],"carry_state":"up",
+            "transient_cycles":0,)";
     const auto carried = run(request(
         "{" + axes + R"("base":{"damping":"closed_form","max_impacts":801},"cycles":1000})"));
     CHECK(carried.at(0)["reason"] == "max_impacts");
@@ -148,14 +154,16 @@ TEST_CASE("a state is carried at a whole cycle, or not at all") {
     CHECK_FALSE(carried.at(1).contains("carried"));
     // In a cavity of 10 nm the transient does not end.
     const auto broken = run(request(
-        R"({"axes":[{"parameter":"b","values":[1e-8,0.015]}],"carry_state":"up","base":{"R":1},"cycles":5,"transient_cycles":5})"));
+        R"({"axes":[{"parameter":"b","values":[1e-8,0.015]}],"carry_state":"up","base":{"R":1},
+            "cycles":5,"transient_cycles":5})"));
     CHECK(broken.at(1)["carried"] == false);
 }
 
 TEST_CASE("several starts at each point show coexisting attractors") {
     // A mass at rest in the middle of a wide cavity is never hit; one with a push is.
     const auto lines = run(request(
-        R"({"base":{"damping":"closed_form"},"axes":[{"parameter":"b","values":[0.03]}],"starts":[{"y0":0},{"y0":0,"y_dot0":0.02}],"cycles":200})"));
+        R"({"base":{"damping":"closed_form"},"axes":[{"parameter":"b","values":[0.03]}],
+            "starts":[{"y0":0},{"y0":0,"y_dot0":0.02}],"cycles":200})"));
     CHECK(lines.at(0)["start"] == 0);
     CHECK(lines.at(0)["regime"] == "none");
     CHECK(lines.at(1)["regime"] != "none");
@@ -176,7 +184,8 @@ TEST_CASE("axes are linear or logarithmic with exact ends, or a list") {
     CHECK(log.values[2] == 0.1);
     CHECK(
         request(
-            R"({"axes":[{"parameter":"f","values":[8,9,10.5]}],"base":{"m1":4,"c1":3,"k1":11e3,"m2":0.03,"F":1e-4}})")
+            R"({"axes":[{"parameter":"f","values":[8,9,10.5]}],
+                "base":{"m1":4,"c1":3,"k1":11e3,"m2":0.03,"F":1e-4}})")
             .axes[0]
             .values == std::vector<double>{8, 9, 10.5});
     CHECK(
@@ -243,36 +252,38 @@ TEST_CASE("what is wrong with a sweep is named at its place") {
         std::set<std::string>{"/axes/0"});
     CHECK(
         refused(
-            R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5},{"parameter":"b","values":[1]}]})") ==
-        std::set<std::string>{"/axes/1/parameter"});
+            R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5},
+                {"parameter":"b","values":[1]}]})") == std::set<std::string>{"/axes/1/parameter"});
     CHECK(
         refused(
             R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"base":{"b":0.01}})") ==
         std::set<std::string>{"/base/b"});
     CHECK(
         refused(
-            R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"base":{"R":3,"tau_end":5}})") ==
+            R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],
+                "base":{"R":3,"tau_end":5}})") ==
         std::set<std::string>{"/base/R", "/base/tau_end"});
     CHECK(
         refused(
-            R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"starts":[{"x0":0.5,"y0":0},{"z":1}]})") ==
-        std::set<std::string>{"/starts/1/z"});
+            R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],
+                "starts":[{"x0":0.5,"y0":0},{"z":1}]})") == std::set<std::string>{"/starts/1/z"});
     CHECK(
         refused(
-            R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"starts":[{"x0":0.5,"y0":0}]})") ==
-        std::set<std::string>{"/starts/0/y0"});
+            R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],
+                "starts":[{"x0":0.5,"y0":0}]})") == std::set<std::string>{"/starts/0/y0"});
     CHECK(
         refused(
             R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"indices":[0,5]})") ==
         std::set<std::string>{"/indices"});
     CHECK(
         refused(
-            R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":1000},{"parameter":"R","from":0,"to":1,"count":1000}]})") ==
+            R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":1000},
+                {"parameter":"R","from":0,"to":1,"count":1000}]})") ==
         std::set<std::string>{"/axes"});
     CHECK(
         refused(
-            R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"cycles":0,"carry_state":"sideways"})") ==
-        std::set<std::string>{"/cycles", "/carry_state"});
+            R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"cycles":0,
+                "carry_state":"sideways"})") == std::set<std::string>{"/cycles", "/carry_state"});
 }
 
 TEST_CASE("a sweep that is stopped hands out no point that is not complete") {

@@ -1,6 +1,6 @@
 // Every key that the service answers with, seen in real answers, part by part of the documents.
 import assert from "node:assert/strict";
-import {measured} from "../page/record.mjs";
+import {measured} from "../record.mjs";
 import {startService} from "../service.mjs";
 
 const everything = [

@@ -3,6 +3,7 @@
 //
 // {name, path, body?, type?, method?}: of the service. {name, args, input?, environment?, files?}:
 // of a subcommand, run in a folder of its own, whose `files` are a part of the answer.
+import {csvOf, sensed} from "../record.mjs";
 
 const machine = {
   m1: 12,
@@ -307,29 +308,15 @@ const faults = [
   get("/v1/nothing"),
 ];
 
-// A record that is made here: what an accelerometer and a displacement sensor see of a run, by
-// linear interpolation, with pulses.
-const record = (series, impacts, omega0, rate, seconds) => {
-  const lines = ["time_s,displacement_m,acceleration_m_s2"];
-  const pulse = 0.001;
-  for (let k = 0; k < rate * seconds; ++k) {
-    const t = k / rate;
-    const tau = t * omega0;
-    let i = series.tau.findIndex((s) => s > tau);
-    if (i < 1) i = 1;
-    const share = (tau - series.tau[i - 1]) / (series.tau[i] - series.tau[i - 1]);
-    const of = (column) =>
-      series[column][i - 1] + share * (series[column][i] - series[column][i - 1]);
-    let a = of("x_ddot") * omega0 ** 2;
-    for (const [n, at] of impacts.tau.entries()) {
-      const phase = (t - at / omega0) / pulse + 0.5;
-      const jump = impacts.x_dot_after[n] - impacts.x_dot_before[n];
-      const peak = (jump * omega0 * Math.PI) / 2 / pulse;
-      if (phase > 0 && phase < 1) a += peak * Math.sin(Math.PI * phase);
-    }
-    lines.push(`${t.toFixed(6)},${of("x").toFixed(7)},${a.toFixed(4)}`);
-  }
-  return `${lines.join("\n")}\n`;
+/** A record of so many seconds, without noise; rate: Hz. */
+const record = (answer, rate, seconds) => {
+  const {omega0} = answer.parameters.derived;
+  const moments = Array.from({length: rate * seconds}, (_, k) => ({
+    t: k / rate,
+    tau: (k / rate) * omega0,
+  }));
+  const written = ({t, x, a}) => [t.toFixed(6), x.toFixed(7), a.toFixed(4)];
+  return csvOf(sensed(answer, moments, 0.001).map(written));
 };
 
 /** Those that need the answer of another request first. `ask` posts to /v1/simulate. */
@@ -343,7 +330,7 @@ export const identifications = async (ask) => {
   });
   const {impacts} = fig20;
   const {omega0} = fig20.parameters.derived;
-  const csv = record(fig20.series, impacts, omega0, 2048, 6);
+  const csv = record(fig20, 2048, 6);
   const [header, ...lines] = csv.trim().split("\n");
   const column = (k) => lines.map((line) => Number(line.split(",")[k]));
   const columns = Object.fromEntries(header.split(",").map((name, k) => [name, column(k)]));

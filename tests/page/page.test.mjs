@@ -2,9 +2,9 @@
 import assert from "node:assert/strict";
 import {readFile} from "node:fs/promises";
 import {after, before, test} from "node:test";
+import {measured} from "../record.mjs";
 import {startService} from "../service.mjs";
 import {drawn, identified, open, startBrowser, swept} from "./browser.mjs";
-import {measured} from "./record.mjs";
 
 let service;
 let browser;

@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
+#include "../support.hpp"
 #include "core/stability/windows.hpp"
-#include "support.hpp"
 
 using namespace vines;
 using namespace vines::test;

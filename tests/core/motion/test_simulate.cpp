@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "support.hpp"
+#include "../support.hpp"
 
 using namespace vines;
 using namespace vines::test;
@@ -264,53 +264,4 @@ TEST_CASE("a stop function ends a run with what it has") {
         simulate(p, default_state(p), {1e7, 1000000000, [&] { return ++asked > 10; }}, {});
     CHECK(outcome.reason == End::stopped);
     CHECK(outcome.tau < 1e5);
-}
-
-TEST_CASE("the series is the motion between the impacts, at equal steps and at the end") {
-    const Parameters p = table1(0.022, Damping::closed_form);
-    SeriesRecord series(0.25);
-    const Record run = record(p, default_state(p), 100.1, 1000, {&series});
-    series.finish(run.outcome);
-    REQUIRE(series.series.tau.size() == 402);
-    CHECK(series.series.tau[400] == 100);
-    CHECK(series.series.tau.back() == 100.1);
-    CHECK(series.series.x.back() == run.outcome.state.x);
-    const Flow flow = Flow::free(p);
-    // Before the first impact.
-    const Oscillation o = flow.after({0, 0, std::sin(p.phi()), std::cos(p.phi())}, 18);
-    CHECK(std::abs(series.series.x[72] - o.x) < 1e-16);
-    CHECK(std::abs(series.series.y[72] - 0.95 * p.b) < 1e-16);
-    for (std::size_t k = 0; k < series.series.tau.size(); ++k)
-        CHECK(std::abs(series.series.x[k] - series.series.y[k]) < p.b + 1e-15);
-}
-
-TEST_CASE(
-    "two symmetric impacts per cycle lie on the slow invariant manifold as epsilon vanishes") {
-    // C^2 = (pi V/2 - b)^2 + k^2 V^2, k = (1 - R)/(1 + R)
-    double error[2];
-    for (int n = 0; n < 2; ++n) {
-        Parameters p = table1(0.015, Damping::closed_form);
-        p.epsilon *= n == 0 ? 1 : 0.1;
-        const Record run = record(p, default_state(p), n == 0 ? 3000 : 20000);
-        double C = 0;
-        struct Amplitude : Observer {
-            double C = 0, from;
-            void on_stretch(const Stretch& s) override {
-                if (s.tau > from)
-                    for (int k = 0; k <= 64; ++k)
-                        C = std::max(C, std::abs(s.at(s.duration * k / 64).x));
-            }
-        } amplitude;
-        amplitude.from = run.outcome.tau - 50;
-        record(p, default_state(p), run.outcome.tau, 1000000, {&amplitude});
-        C = amplitude.C;
-        const double V = std::abs(run.impacts.back().y_dot_after), k = 0.4 / 1.6;
-        error[n] = std::sqrt(
-                       (std::numbers::pi * V / 2 - p.b) * (std::numbers::pi * V / 2 - p.b) +
-                       k * k * V * V) /
-                       C -
-                   1;
-    }
-    CHECK(std::abs(error[0]) < 0.03);
-    CHECK(std::abs(error[1]) < 0.003);
 }

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "../support.hpp"
 #include "core/measures/regime.hpp"
 #include "core/sweep/sweep.hpp"
-#include "support.hpp"
 
 using namespace vines;
 using namespace vines::test;
@@ -484,48 +484,6 @@ TEST_CASE("few impacts, one impact and a free decay are judged without fuss") {
     CHECK(decay.type == RegimeType::none);
 }
 
-TEST_CASE(
-    "a chatter that ends in a stick is one contact, of the side and the moment of its first "
-    "impact") {
-    const Parameters p = table1(0.015, Damping::closed_form);
-    ContactRecord contacts;
-    const Record run = record(p, default_state(p), 100, 1000000, {&contacts});
-    REQUIRE(run.sticks.size() == 1);
-    CHECK(contacts.impacts == static_cast<long>(run.impacts.size()));
-    CHECK(
-        contacts.contacts.size() ==
-        run.impacts.size() - static_cast<std::size_t>(run.sticks[0].start.impacts) + 1);
-}
-
-TEST_CASE(
-    "a chatter holds the impacts that a pressing wall joins, and none from half a cycle before") {
-    // At small R the mass often meets the same wall twice in a cycle, once while it recedes, and
-    // sticks at the second.
-    std::mt19937_64 engine(429);
-    int sticks = 0;
-    for (int n = 0; n < 60; ++n) {
-        Parameters p = table1(uniform(engine, 0.002, 0.02), Damping::closed_form);
-        p.R_plus = uniform(engine, 0.01, 0.3);
-        p.R_minus = uniform(engine, 0.01, 0.3);
-        const Record run = record(p, default_state(p), 400);
-        for (const auto& stick : run.sticks) {
-            const int count = stick.start.impacts;
-            if (count < 2) continue;
-            ++sticks;
-            std::size_t last = run.impacts.size();
-            while (run.impacts[last - 1].tau > stick.start.tau) --last;
-            for (std::size_t k = last - static_cast<std::size_t>(count); k < last; ++k) {
-                const Impact& i = run.impacts[k];
-                CHECK(i.side == stick.start.side);
-                CHECK(
-                    (k == last - static_cast<std::size_t>(count) || i.side * i.x_ddot_before > 0));
-                CHECK(stick.start.tau - i.tau < 0.5 * p.cycle());
-            }
-        }
-    }
-    CHECK(sticks > 500);
-}
-
 TEST_CASE("shares of cycles add up to one, and stretches follow each other without a gap") {
     const Regime r = judge(0.022, Damping::closed_form);
     double sum = 0;
@@ -537,15 +495,4 @@ TEST_CASE("shares of cycles add up to one, and stretches follow each other witho
     CHECK(r.synchronised > 0.3);
     CHECK(r.synchronised < 0.9);
     CHECK(judge(0.040, Damping::closed_form).synchronised == 0);
-}
-
-TEST_CASE(
-    "chaos needs three standard errors, more growth than one unstable orbit gives, and growth that "
-    "goes on") {
-    CHECK(verdict_by_exponents({0.1, {0.03}, 170, 85}) == Verdict::chaotic);
-    CHECK(verdict_by_exponents({0.1, {0.04}, 170, 85}) == Verdict::not_decided);
-    CHECK(verdict_by_exponents({0.1, {0.01}, 30, 15}) == Verdict::not_decided);
-    CHECK(verdict_by_exponents({0.1, {0.01}, 170, 2}) == Verdict::not_decided);
-    CHECK(verdict_by_exponents({-0.01, {0.001}, -17, -8}) == Verdict::not_decided);
-    CHECK(verdict_by_exponents({0.1, {std::nan("")}, 170, 85}) == Verdict::not_decided);
 }

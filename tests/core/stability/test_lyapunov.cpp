@@ -1,12 +1,11 @@
 #include <doctest/doctest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 
+#include "../support.hpp"
 #include "core/stability/linear.hpp"
 #include "core/stability/verdict.hpp"
-#include "support.hpp"
 
 using namespace vines;
 using namespace vines::test;
@@ -508,56 +507,6 @@ TEST_CASE("under strong damping all four exponents are right, at any rank") {
                 CHECK(std::abs(product.eigenvalues()[i] - k.eigenvalues[i]) < 1e-8);
             }
         }
-    }
-}
-
-TEST_CASE("areas and volumes are carried as the deviations that span them") {
-    std::mt19937_64 engine(5);
-    for (int n = 0; n < 300; ++n) {
-        System s = random_system(engine);
-        const Parameters& p = s.parameters;
-        Contact c{
-            0,
-            n % 2 ? 1 : -1,
-            {uniform(engine, -1, 1), uniform(engine, -1, 1), std::sin(n), std::cos(n)},
-            0};
-        c.relative_speed = c.side * uniform(engine, 0.1, 1);
-        const Impact impact = impact_at(p, c, uniform(engine, -1, 1), 0);
-        const Saltation M = saltation(p, impact);
-        const Leg leg =
-            leg_of(n % 3 ? Flow::free(p) : Flow::stuck(p), uniform(engine, 0, 0.5), n % 3 == 0);
-        Eigen::Matrix4d v;
-        for (int i = 0; i < 16; ++i) v(i / 4, i % 4) = uniform(engine, -1, 1);
-        auto area = [](const Eigen::Matrix4d& of) {
-            Area w;
-            int k = 0;
-            for (int i = 0; i < 4; ++i)
-                for (int j = i + 1; j < 4; ++j) w(k++) = of(i, 0) * of(j, 1) - of(j, 0) * of(i, 1);
-            return w;
-        };
-        auto volume = [](Eigen::Matrix4d of) {
-            Eigen::Vector4d normal;
-            for (int i = 0; i < 4; ++i) {
-                of.col(3) = Eigen::Vector4d::Unit(i);
-                normal(i) = of.determinant();
-            }
-            return Volume{normal};
-        };
-        Eigen::Matrix4d after_leg = v;
-        carry(after_leg, leg, p.epsilon);
-        const Eigen::Matrix4d after_impact = M.matrix() * v;
-        CHECK(
-            (carried(area(v), leg, p.epsilon) - area(after_leg)).norm() <
-            1e-12 * (1 + after_leg.squaredNorm()));
-        CHECK(
-            (carried(volume(v), leg).normal - volume(after_leg).normal).norm() <
-            1e-12 * (1 + std::pow(after_leg.norm(), 3)));
-        CHECK(
-            (carried(area(v), M, impact.R) - area(after_impact)).norm() <
-            1e-12 * (1 + after_impact.squaredNorm()));
-        CHECK(
-            (carried(volume(v), M, impact.R).normal - volume(after_impact).normal).norm() <
-            1e-12 * (1 + std::pow(after_impact.norm(), 3)));
     }
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "support.hpp"
+#include "../support.hpp"
 
 using namespace vines;
 using namespace vines::test;

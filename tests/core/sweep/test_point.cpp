@@ -1,13 +1,9 @@
 #include <doctest/doctest.h>
 
-#include <atomic>
 #include <cmath>
-#include <stdexcept>
 
-#include "core/sweep/parallel.hpp"
+#include "../support.hpp"
 #include "core/sweep/point.hpp"
-#include "core/sweep/starts.hpp"
-#include "support.hpp"
 
 using namespace vines;
 using namespace vines::test;
@@ -51,34 +47,6 @@ TEST_CASE("a section keeps the last points in order of time, at whole cycles too
     const PointResult impacts = measure(p, default_state(p), options, {});
     CHECK(impacts.sections.impact.size() == static_cast<std::size_t>(impacts.impacts));
     CHECK(std::isnan(impacts.sections.impact[0].since));
-}
-
-TEST_CASE("a carried state keeps the mass at its place in the cavity") {
-    const Parameters wide = table1(0.02, Damping::closed_form),
-                     narrow = table1(0.01, Damping::closed_form);
-    const State s = carried({0.1, 0.005, 0.2, -0.009}, wide, narrow);
-    CHECK(s.x == 0.005);
-    CHECK(s.y == doctest::Approx(0.005 - 0.007));
-    CHECK(std::abs(s.x - s.y) <= narrow.b);
-}
-
-TEST_CASE("parallel runs each task once, on any number of threads, and hands on what one throws") {
-    for (int threads : {1, 2, 7}) {
-        std::vector<std::atomic<int>> runs(100);
-        parallel(100, threads, [&](std::size_t i) { ++runs[i]; });
-        for (const auto& n : runs) CHECK(n == 1);
-        std::atomic<int> started = 0;
-        CHECK_THROWS_AS(
-            parallel(
-                1000000, threads,
-                [&](std::size_t i) {
-                    ++started;
-                    if (i == 5) throw std::runtime_error("no");
-                }),
-            std::runtime_error);
-        CHECK(started < 1000000);
-    }
-    parallel(0, 4, [](std::size_t) { FAIL("there is no task"); });
 }
 
 TEST_CASE("a point stops soon after it is asked to") {

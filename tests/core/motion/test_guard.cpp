@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "support.hpp"
+#include "../support.hpp"
 
 using namespace vines;
 using namespace vines::test;

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "../support.hpp"
 #include "core/measures/manifold.hpp"
 #include "core/stability/transfer.hpp"
-#include "support.hpp"
 
 using namespace vines;
 using namespace vines::test;
@@ -153,4 +153,35 @@ TEST_CASE(
         CHECK(points.points[k].V == doctest::Approx(path / std::numbers::pi).epsilon(2e-3));
         CHECK(points.points[k].C == doctest::Approx(peak).epsilon(1e-4));
     }
+}
+
+TEST_CASE(
+    "two symmetric impacts per cycle lie on the slow invariant manifold as epsilon vanishes") {
+    // C^2 = (pi V/2 - b)^2 + k^2 V^2, k = (1 - R)/(1 + R)
+    double error[2];
+    for (int n = 0; n < 2; ++n) {
+        Parameters p = table1(0.015, Damping::closed_form);
+        p.epsilon *= n == 0 ? 1 : 0.1;
+        const Record run = record(p, default_state(p), n == 0 ? 3000 : 20000);
+        double C = 0;
+        struct Amplitude : Observer {
+            double C = 0, from;
+            void on_stretch(const Stretch& s) override {
+                if (s.tau > from)
+                    for (int k = 0; k <= 64; ++k)
+                        C = std::max(C, std::abs(s.at(s.duration * k / 64).x));
+            }
+        } amplitude;
+        amplitude.from = run.outcome.tau - 50;
+        record(p, default_state(p), run.outcome.tau, 1000000, {&amplitude});
+        C = amplitude.C;
+        const double V = std::abs(run.impacts.back().y_dot_after), k = 0.4 / 1.6;
+        error[n] = std::sqrt(
+                       (std::numbers::pi * V / 2 - p.b) * (std::numbers::pi * V / 2 - p.b) +
+                       k * k * V * V) /
+                       C -
+                   1;
+    }
+    CHECK(std::abs(error[0]) < 0.03);
+    CHECK(std::abs(error[1]) < 0.003);
 }

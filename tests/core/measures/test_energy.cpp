@@ -1,10 +1,9 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "../support.hpp"
 #include "core/measures/energy.hpp"
-#include "support.hpp"
 
 using namespace vines;
 using namespace vines::test;
@@ -69,13 +68,6 @@ TEST_CASE("rms and peak of x are those of dense samples") {
         energy.rms() == doctest::Approx(std::sqrt(squares / static_cast<double>(n))).epsilon(1e-5));
     CHECK(energy.peak() >= peak);
     CHECK(energy.peak() == doctest::Approx(peak).epsilon(1e-6));
-}
-
-TEST_CASE("an excursion's path is the way up and down between its turning points") {
-    const Flow undamped(1, 0, 0, 1);
-    const Excursion e = excursion(undamped, {0, 1, 0, 1}, 10 * 2 * std::numbers::pi + 1);
-    CHECK(e.peak == doctest::Approx(1).epsilon(1e-14));
-    CHECK(e.path == doctest::Approx(40 + std::sin(1)).epsilon(1e-13));
 }
 
 TEST_CASE("without the absorber the oscillator comes to its steady amplitude") {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "../support.hpp"
 #include "core/identification/identify.hpp"
-#include "support.hpp"
 
 namespace vines::test {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../support.hpp"
 #include "core/stability/linear.hpp"
-#include "support.hpp"
 
 using namespace vines;
 using namespace vines::test;

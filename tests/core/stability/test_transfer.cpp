@@ -3,8 +3,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "../support.hpp"
 #include "core/stability/transfer.hpp"
-#include "support.hpp"
 
 using namespace vines;
 using namespace vines::test;

@@ -1,0 +1,122 @@
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "../support.hpp"
+#include "core/analysis/analysis.hpp"
+
+using namespace vines;
+using namespace vines::test;
+
+namespace {
+
+constexpr Parts everything_wanted = {
+    .series = true,
+    .impacts = true,
+    .exponents = true,
+    .moduli = true,
+    .matrices = true,
+    .section = true,
+    .energy = true,
+    .unattached = true,
+    .regime = true,
+    .before_capture = true,
+    .manifold = true};
+
+Analysis run(const Parts& parts) {
+    const Parameters p = table1(0.022, Damping::closed_form);
+    Wanted w{.parameters = p, .start = default_state(p), .tau_end = 500};
+    w.window = {100, 400};
+    w.parts = parts;
+    return analyse(w);
+}
+
+/// The names of the parts that a result has, in the order of Parts.
+std::string parts_of(const Analysis& a) {
+    std::string names;
+    const auto add = [&](bool there, const char* name) {
+        if (there) names += std::string(names.empty() ? "" : " ") + name;
+    };
+    add(a.series.has_value(), "series");
+    add(!a.impacts.empty(), "impacts");
+    add(a.exponents.has_value(), "exponents");
+    add(!a.windows.empty(), "windows");
+    add(a.moduli.has_value(), "moduli");
+    add(a.matrices.has_value(), "matrices");
+    add(a.sections.has_value(), "section");
+    add(a.energy.has_value(), "energy");
+    add(a.regime.has_value(), "regime");
+    add(a.manifold.has_value(), "manifold");
+    return names;
+}
+
+}  // namespace
+
+TEST_CASE("a result has the parts that are wanted, and those that they rest on") {
+    CHECK(parts_of(run({})) == "");
+    CHECK(parts_of(run({.series = true})) == "series");
+    CHECK(parts_of(run({.impacts = true})) == "impacts");
+    CHECK(parts_of(run({.moduli = true})) == "moduli");
+    CHECK(parts_of(run({.matrices = true})) == "matrices");
+    CHECK(parts_of(run({.section = true})) == "impacts section");
+    CHECK(parts_of(run({.energy = true})) == "energy");
+    CHECK(parts_of(run({.manifold = true})) == "manifold");
+    // The verdict is on the growth and on where the motion goes.
+    CHECK(parts_of(run({.exponents = true})) == "exponents regime");
+    CHECK(parts_of(run({.regime = true})) == "exponents regime");
+    CHECK_FALSE(run({.energy = true}).energy->unattached);
+    CHECK(run({.energy = true, .unattached = true}).energy->unattached);
+}
+
+TEST_CASE("how a run ended, and what of its window it reached, is told whatever is wanted") {
+    for (const Parts& parts : {Parts{}, everything_wanted}) {
+        const Analysis a = run(parts);
+        CHECK(a.outcome.reason == End::tau_end);
+        CHECK(a.outcome.tau == 500);
+        CHECK(a.reached.from == 100);
+        CHECK(a.reached.to == 400);
+    }
+}
+
+TEST_CASE("a part is the same to the last bit whichever others are wanted") {
+    const Analysis all = run(everything_wanted);
+    CHECK(run({.series = true}).series->x == all.series->x);
+    CHECK(run({}).outcome.state.x == all.outcome.state.x);
+
+    const Analysis impacts = run({.impacts = true});
+    REQUIRE(impacts.impacts.size() == all.impacts.size());
+    for (std::size_t k = 0; k < all.impacts.size(); ++k)
+        CHECK(impacts.impacts[k].x == all.impacts[k].x);
+
+    const Analysis exponents = run({.exponents = true});
+    CHECK(exponents.exponents->product.qr() == all.exponents->product.qr());
+    CHECK(exponents.exponents->product.eigenvalues() == all.exponents->product.eigenvalues());
+    CHECK(exponents.exponents->growth.standard_error == all.exponents->growth.standard_error);
+    CHECK(exponents.exponents->judgement.reason == all.exponents->judgement.reason);
+    // The regime asks for no other estimator than the one that it rests on.
+    const Analysis regime = run({.regime = true});
+    CHECK(regime.exponents->growth.lambda1 == all.exponents->growth.lambda1);
+    CHECK(regime.regime->type == all.regime->type);
+    CHECK(regime.regime->moving_z == all.regime->moving_z);
+
+    CHECK(run({.moduli = true}).moduli->T == all.moduli->T);
+    CHECK(run({.matrices = true}).matrices->T == all.matrices->T);
+    const Analysis section = run({.section = true});
+    CHECK(section.sections->tau == all.sections->tau);
+    CHECK(section.sections->impact.size() == all.sections->impact.size());
+    CHECK(run({.energy = true}).energy->balance.input == all.energy->balance.input);
+    CHECK(run({.manifold = true}).manifold->tau == all.manifold->tau);
+}
+
+TEST_CASE("further windows are judged one by one, in the order in which they are asked for") {
+    const Parameters p = table1(0.022, Damping::closed_form);
+    Wanted w{.parameters = p, .start = default_state(p), .tau_end = 500};
+    w.windows = {{200, 300}, {0, 500}};
+    w.parts.exponents = true;
+    const Analysis a = analyse(w);
+    REQUIRE(a.windows.size() == 2);
+    CHECK(a.windows[0].asked.from == 200);
+    CHECK(a.windows[0].product.start_tau() >= 200);
+    CHECK(a.windows[0].product.end_tau() <= 300);
+    CHECK(a.windows[1].product.qr() == a.exponents->product.qr());
+}

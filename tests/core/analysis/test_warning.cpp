@@ -1,0 +1,240 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "../support.hpp"
+#include "core/analysis/analysis.hpp"
+
+using namespace vines;
+using namespace vines::test;
+
+namespace {
+
+Wanted of(const Parameters& p, double tau_end, const Parts& parts) {
+    Wanted w{.parameters = p, .start = default_state(p), .tau_end = tau_end};
+    w.parts = parts;
+    return w;
+}
+Wanted of(double b, double tau_end, const Parts& parts) {
+    return of(table1(b, Damping::closed_form), tau_end, parts);
+}
+
+/// The one warning of a kind; null where there is none, or more than one.
+template <class Kind>
+const Kind* only(const std::vector<Warning>& warnings) {
+    const Kind* found = nullptr;
+    for (const Warning& w : warnings)
+        if (const Kind* kind = std::get_if<Kind>(&w)) {
+            if (found) return nullptr;
+            found = kind;
+        }
+    return found;
+}
+
+/// Half a cycle of an oscillator that nothing damps or forces, beside a free mass at rest.
+Wanted swinging(const State& start) {
+    Parameters p = table1(0.01, Damping::closed_form);
+    p.lambda = 0, p.G = 0;
+    Wanted w = of(p, 1.1 * std::numbers::pi, {.impacts = true});
+    w.start = start;
+    return w;
+}
+
+}  // namespace
+
+TEST_CASE("a regular run that nothing sticks in earns no warning, whatever is wanted") {
+    const Analysis a = analyse(
+        of(0.008, 700,
+           {.series = true,
+            .impacts = true,
+            .exponents = true,
+            .moduli = true,
+            .matrices = true,
+            .section = true,
+            .energy = true,
+            .unattached = true,
+            .regime = true,
+            .before_capture = true,
+            .manifold = true}));
+    CHECK(a.warnings.empty());
+}
+
+TEST_CASE("a run that ends before its window begins says so") {
+    Wanted w = of(0.022, 1000, {});
+    w.window = {500, 1000};
+    w.max_impacts = 2;
+    const Analysis a = analyse(w);
+    const auto* warning = only<warning::WindowNotReached>(a.warnings);
+    REQUIRE(warning);
+    CHECK(warning->tau_start == 500);
+}
+
+TEST_CASE("a series that would be too long is thinned, and says to how much") {
+    Wanted w = of(0.022, 100, {.series = true});
+    w.most_points = 51;
+    const Analysis a = analyse(w);
+    const auto* warning = only<warning::SeriesThinned>(a.warnings);
+    REQUIRE(warning);
+    CHECK(warning->asked == 32);
+    CHECK(warning->samples_per_cycle == doctest::Approx(2 * std::numbers::pi / 2));
+    CHECK(warning->most == 51);
+    CHECK(a.series->tau.size() == 51);
+}
+
+TEST_CASE("a list of which only the end is kept says how long it was") {
+    Wanted w = of(0.022, 300, {.impacts = true});
+    const Analysis whole = analyse(w);
+    CHECK_FALSE(only<warning::ListCut>(whole.warnings));
+    w.most_listed = 3;
+    const Analysis a = analyse(w);
+    const auto* warning = only<warning::ListCut>(a.warnings);
+    REQUIRE(warning);
+    CHECK(std::string(warning->name) == "impacts");
+    CHECK(warning->seen == static_cast<long>(whole.impacts.size()));
+    CHECK(warning->kept == 3);
+    CHECK(a.impacts.size() == 3);
+    CHECK(a.impacts.back().tau == whole.impacts.back().tau);
+}
+
+TEST_CASE("a touch is warned of, a nearly tangent impact as well, and neither as the other") {
+    const Analysis touches = analyse(swinging({0, 0.01 - 3e-17, 0, 0}));
+    CHECK(only<warning::Touched>(touches.warnings));
+    CHECK_FALSE(only<warning::NearlyTangent>(touches.warnings));
+    // It comes to the wall with the speed b sqrt(2e-8), where x'' = -b turns it back.
+    const Analysis grazes = analyse(swinging({0.01 * (1 + 1e-8), 0, 0, 0}));
+    CHECK_FALSE(only<warning::Touched>(grazes.warnings));
+    const auto* warning = only<warning::NearlyTangent>(grazes.warnings);
+    REQUIRE(warning);
+    CHECK(warning->count == 1);
+    CHECK(warning->tau == doctest::Approx(std::numbers::pi / 2).epsilon(1e-3));
+    CHECK(warning->speed_ratio == 1);
+}
+
+TEST_CASE("an unscaled product that leaves the range of double says so, where it is shown") {
+    Wanted w = of(0.034, 9000, {.exponents = true});
+    w.estimators = {.qr = true, .eigenvalues = false, .raw_product = true};
+    CHECK(only<warning::RawProductOverflows>(analyse(w).warnings));
+    w.estimators.raw_product = false;
+    CHECK_FALSE(only<warning::RawProductOverflows>(analyse(w).warnings));
+}
+
+TEST_CASE("exponents that miss the sum rule are warned of") {
+    const Parameters p = table1(0.022, Damping::closed_form);
+    const Record run = record(p, default_state(p), 200);
+    TransferProduct product(p.epsilon, {});
+    product.start(run.impacts[0].tau);
+    for (std::size_t k = 1; k < 3; ++k) {
+        const double flight = run.impacts[k].tau - run.impacts[k - 1].tau;
+        Leg leg = leg_of(Flow::free(p), flight, false);
+        leg.log_det += 0.1;  // which is not that of its matrix
+        product.append({&leg, 1}, saltation(p, run.impacts[k]), 0.6, run.impacts[k].tau);
+    }
+    for (const bool histories : {false, true}) {
+        std::vector<Warning> warnings;
+        add_warnings(product, {}, histories, warnings);
+        const auto* warning = only<warning::SumRuleMissed>(warnings);
+        REQUIRE(warning);
+        CHECK(warning->tau_start == run.impacts[0].tau);
+        CHECK(warning->tau_end == run.impacts[2].tau);
+        CHECK(warning->residual > most_residual);
+    }
+}
+
+TEST_CASE("a window with fewer than two impacts has no exponents") {
+    CHECK(only<warning::NoExponents>(analyse(of(0.022, 20, {.exponents = true})).warnings));
+    CHECK_FALSE(only<warning::NoExponents>(analyse(of(0.022, 60, {.exponents = true})).warnings));
+}
+
+TEST_CASE("a product that loses rank says which it has left") {
+    const Analysis sticks = analyse(of(0.015, 100, {.exponents = true}));
+    REQUIRE(sticks.stick_count > 0);
+    const auto* two = only<warning::RankLost>(sticks.warnings);
+    REQUIRE(two);
+    CHECK(two->rank == 2);
+    Parameters p = table1(0.022, Damping::closed_form);
+    p.R_plus = 0;
+    // The second impact, at the wall with R = 0, finds it receding: nothing sticks.
+    const Analysis soft = analyse(of(p, 47, {.exponents = true}));
+    REQUIRE(soft.stick_count == 0);
+    const auto* three = only<warning::RankLost>(soft.warnings);
+    REQUIRE(three);
+    CHECK(three->rank == 3);
+}
+
+TEST_CASE("transfer matrices and sections that are kept of the last impacts only say so") {
+    Wanted w = of(0.022, 500, {.matrices = true, .section = true});
+    const Analysis whole = analyse(w);
+    CHECK(whole.warnings.empty());
+    w.most_points = 5;
+    const Analysis a = analyse(w);
+    const auto* transfers = only<warning::TransfersCut>(a.warnings);
+    REQUIRE(transfers);
+    CHECK(transfers->most == 5);
+    CHECK(transfers->seen == static_cast<long>(whole.matrices->tau.size()));
+    CHECK(a.matrices->tau.size() == 5);
+    CHECK(a.matrices->tau.back() == whole.matrices->tau.back());
+    const auto* sections = only<warning::SectionsCut>(a.warnings);
+    REQUIRE(sections);
+    CHECK(sections->most == 5);
+    CHECK(sections->impacts == static_cast<long>(whole.sections->impact.size()));
+    CHECK(sections->cycles == whole.sections->tau.size());
+    CHECK(a.sections->tau.size() == 5);
+    CHECK(a.sections->tau.back() == whole.sections->tau.back());
+}
+
+TEST_CASE("moduli that there was no time for are those of the first impacts") {
+    const Wanted w = of(0.008, 1709, {.moduli = true});
+    const Analysis whole = analyse(w);
+    REQUIRE(whole.moduli->tau.size() > 256);
+    int looks = 0;
+    const Analysis a = analyse(w, {.late = [&] { return ++looks > 1; }});
+    const auto* warning = only<warning::ModuliCut>(a.warnings);
+    REQUIRE(warning);
+    CHECK(warning->kept == 256);
+    CHECK(a.moduli->T.size() == 256);
+    CHECK(a.moduli->tau.back() == whole.moduli->tau.back());
+}
+
+TEST_CASE("stretches that are kept of the end only say how many there were") {
+    Wanted w = of(0.022, 1709, {.regime = true});
+    const std::size_t seen = analyse(w).regime->stretches.size();
+    w.most_points = 2;
+    const Analysis a = analyse(w);
+    const auto* warning = only<warning::StretchesCut>(a.warnings);
+    REQUIRE(warning);
+    CHECK(warning->seen == seen);
+    CHECK(warning->most == 2);
+    CHECK(a.regime->stretches.size() == 2);
+}
+
+TEST_CASE("a search for an orbit that is ended from outside says so") {
+    long asked = 0;
+    analyse(of(0.015, 1709, {}), {.run = [&] { return ++asked, false; }});
+    const long during_run = asked;
+    asked = 0;
+    const Analysis a =
+        analyse(of(0.015, 1709, {.regime = true}), {.run = [&] { return ++asked > during_run; }});
+    CHECK(a.outcome.reason == End::tau_end);
+    CHECK(only<warning::OrbitSearchStopped>(a.warnings));
+}
+
+TEST_CASE("a chaotic transient that an orbit captures is told with the growth of both") {
+    // Captured near tau = 4100; an ulp of b matters.
+    const Analysis a =
+        analyse(of(0.022000000999999998, 20000, {.regime = true, .before_capture = true}));
+    const auto* warning = only<warning::CapturedTransient>(a.warnings);
+    REQUIRE(warning);
+    CHECK(warning->before == doctest::Approx(0.10).epsilon(0.2));
+    CHECK(warning->after == doctest::Approx(-0.00703).epsilon(0.01));
+    CHECK(warning->tau.has_value());
+}
+
+TEST_CASE("walls that differ have no manifold") {
+    Parameters p = table1(0.022, Damping::closed_form);
+    p.R_minus = 0.5;
+    const Analysis a = analyse(of(p, 100, {.manifold = true}));
+    CHECK(only<warning::NoManifold>(a.warnings));
+    CHECK_FALSE(a.manifold->manifold);
+    CHECK_FALSE(a.manifold->points.empty());
+}

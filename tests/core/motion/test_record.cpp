@@ -1,0 +1,121 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "../support.hpp"
+
+using namespace vines;
+using namespace vines::test;
+
+TEST_CASE("a growing record keeps its last entries, and up to half of them more") {
+    for (const std::size_t most : {1u, 2u, 5u, 10u}) {
+        CAPTURE(most);
+        std::vector<int> entries;
+        for (int k = 0; k < 100; ++k) {
+            entries.push_back(k);
+            keep_last(entries, most);
+            CHECK(entries.size() <= most + most / 2);
+            CHECK(entries.size() >= std::min<std::size_t>(most, k + 1));
+            CHECK(entries.back() == k);
+            CHECK(entries.back() - entries.front() + 1 == static_cast<int>(entries.size()));
+        }
+        trim_to_last(entries, most);
+        CHECK(entries.size() == most);
+        CHECK(entries.back() == 99);
+    }
+}
+
+TEST_CASE("what is shorter than its limit is left alone") {
+    std::vector<int> entries = {1, 2, 3};
+    keep_last(entries, 3);
+    trim_to_last(entries, 3);
+    keep_last(entries, everything);
+    trim_to_last(entries, everything);
+    CHECK(entries == std::vector<int>{1, 2, 3});
+}
+
+TEST_CASE("the series is the motion between the impacts, at equal steps and at the end") {
+    const Parameters p = table1(0.022, Damping::closed_form);
+    SeriesRecord series(0.25);
+    const Record run = record(p, default_state(p), 100.1, 1000, {&series});
+    series.finish(run.outcome);
+    REQUIRE(series.series.tau.size() == 402);
+    CHECK(series.series.tau[400] == 100);
+    CHECK(series.series.tau.back() == 100.1);
+    CHECK(series.series.x.back() == run.outcome.state.x);
+    const Flow flow = Flow::free(p);
+    // Before the first impact.
+    const Oscillation o = flow.after({0, 0, std::sin(p.phi()), std::cos(p.phi())}, 18);
+    CHECK(std::abs(series.series.x[72] - o.x) < 1e-16);
+    CHECK(std::abs(series.series.y[72] - 0.95 * p.b) < 1e-16);
+    for (std::size_t k = 0; k < series.series.tau.size(); ++k)
+        CHECK(std::abs(series.series.x[k] - series.series.y[k]) < p.b + 1e-15);
+}
+
+TEST_CASE("a series whose last step is the end of the run does not hold the end twice") {
+    const Parameters p = table1(0.022, Damping::closed_form);
+    SeriesRecord series(0.25);
+    const Record run = record(p, default_state(p), 10, 1000, {&series});
+    series.finish(run.outcome);
+    REQUIRE(series.series.tau.size() == 41);
+    CHECK(series.series.tau.back() == 10);
+}
+
+TEST_CASE("stroboscopic states are those of the motion at one phase of each cycle") {
+    const Parameters p = table1(0.022, Damping::closed_form);
+    const double phase = 0.7;
+    StroboscopicRecord strobe(p, 2, phase);
+    record(p, default_state(p), 100, 1000, {&strobe});
+    REQUIRE(strobe.states.size() == 14);
+    for (std::size_t k = 0; k < strobe.states.size(); ++k) {
+        const double tau = strobe.tau(k);
+        CHECK(tau == doctest::Approx(static_cast<double>(k + 2) * p.cycle() + phase / p.Omega));
+        const State there = simulate(p, default_state(p), {tau, 1000, {}}, {}).state;
+        CHECK(std::abs(strobe.states[k].x - there.x) < 1e-14);
+        CHECK(std::abs(strobe.states[k].y - there.y) < 1e-14);
+    }
+}
+
+TEST_CASE("a section holds the impacts of its window, each with the time since the one before") {
+    const Parameters p = table1(0.022, Damping::closed_form);
+    SectionRecord whole(0, 300, everything), late(100, 200, everything), last(0, 300, 4);
+    const Record run = record(p, default_state(p), 300, 1000, {&whole, &late, &last});
+    REQUIRE(whole.points.size() == run.impacts.size());
+    CHECK(std::isnan(whole.points[0].since));
+    for (std::size_t k = 1; k < run.impacts.size(); ++k)
+        CHECK(whole.points[k].since == run.impacts[k].tau - run.impacts[k - 1].tau);
+    std::size_t first = 0;
+    while (run.impacts[first].tau < 100) ++first;
+    REQUIRE(!late.points.empty());
+    CHECK(late.points[0].impact.tau == run.impacts[first].tau);
+    // The impact before it is outside of the window, but known.
+    CHECK(late.points[0].since == whole.points[first].since);
+    CHECK(late.points.back().impact.tau <= 200);
+    CHECK(late.seen == static_cast<long>(late.points.size()));
+    CHECK(last.seen == whole.seen);
+    CHECK(last.points.size() <= 6);
+    CHECK(last.points.back().impact.tau == run.impacts.back().tau);
+}
+
+TEST_CASE("a list that keeps its last entries counts all of them") {
+    ImpactRecord impacts(3);
+    StickRecord sticks(3);
+    TouchRecord touches(3);
+    for (int k = 0; k < 20; ++k) {
+        Impact i{};
+        i.tau = k;
+        impacts.on_impact(i);
+        sticks.on_stick({k + 0.25, 1, 1});
+        sticks.on_release(k + 0.5);
+        touches.on_touch(k, -1);
+    }
+    CHECK(impacts.seen == 20);
+    CHECK(sticks.seen == 20);
+    CHECK(touches.seen == 20);
+    CHECK(impacts.impacts.back().tau == 19);
+    CHECK(sticks.sticks.back().tau_end == 19.5);
+    CHECK(touches.touches.back().tau == 19);
+    CHECK(impacts.impacts.size() <= 4);
+}

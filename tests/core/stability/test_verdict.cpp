@@ -1,0 +1,18 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "core/stability/verdict.hpp"
+
+using namespace vines;
+
+TEST_CASE(
+    "chaos needs three standard errors, more growth than one unstable orbit gives, and growth that "
+    "goes on") {
+    CHECK(verdict_by_exponents({0.1, {0.03}, 170, 85}) == Verdict::chaotic);
+    CHECK(verdict_by_exponents({0.1, {0.04}, 170, 85}) == Verdict::not_decided);
+    CHECK(verdict_by_exponents({0.1, {0.01}, 30, 15}) == Verdict::not_decided);
+    CHECK(verdict_by_exponents({0.1, {0.01}, 170, 2}) == Verdict::not_decided);
+    CHECK(verdict_by_exponents({-0.01, {0.001}, -17, -8}) == Verdict::not_decided);
+    CHECK(verdict_by_exponents({0.1, {std::nan("")}, 170, 85}) == Verdict::not_decided);
+}
