@@ -119,11 +119,7 @@ Json describe_system(const System& system) {
         {"epsilon", p.epsilon}, {"lambda", p.lambda},   {"G", p.G}, {"Omega", p.Omega},
         {"R_plus", p.R_plus},   {"R_minus", p.R_minus}, {"b", p.b}, {"damping", word(p.damping)}};
     j["origin"] = system.origin;
-    if (system.si) {
-        const SiParameters& si = *system.si;
-        j["si"] = {{"m1", si.m1}, {"c1", si.c1}, {"k1", si.k1},
-                   {"m2", si.m2}, {"F", si.F},   {"f", si.f}};
-    }
+    if (system.si) j["si"] = fields_of(*system.si);
     return j;
 }
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "api/request.hpp"
-#include "api/words.hpp"
+#include "api/schema/words.hpp"
 #include "core/sweep/recommend.hpp"
 
 namespace vines::api {

@@ -1,9 +1,10 @@
 #include "api/layers.hpp"
 
 #include <algorithm>
-#include <numbers>
+#include <iterator>
 
 #include "api/presets.hpp"
+#include "api/schema/check.hpp"
 
 namespace vines::api {
 
@@ -117,7 +118,7 @@ void restate_walls(Json& preset, const Json& given) {
 
 /// Takes from a preset what goes with its own system or its own run, where another one is given;
 /// returns it.
-Json leave_what_is_not_its_own(Json& preset, const std::vector<Field>& table, const Json& given) {
+Json leave_what_is_not_its_own(Json& preset, const FieldTable& table, const Json& given) {
     Json left = Json::object();
     auto leave = [&](const char* name) {
         if (!preset.contains(name)) return;
@@ -129,8 +130,8 @@ Json leave_what_is_not_its_own(Json& preset, const std::vector<Field>& table, co
     };
     const bool another_system = std::any_of(own_system.begin(), own_system.end(), replaced);
     const bool another_run = std::any_of(table.begin(), table.end(), [&](const Field& f) {
-        const bool of_the_motion = f.group == "system" || f.group == "reduced" || f.group == "SI" ||
-                                   f.group == "start" || f.name == "tau_end" || f.name == "cycles";
+        const bool of_the_motion =
+            is_of_system(f) || f.group == "start" || f.name == "tau_end" || f.name == "cycles";
         return of_the_motion && f.name != "preset" && replaced(f.name);
     });
     if (another_system) leave("damping");
@@ -147,7 +148,7 @@ std::string Layered::origin(const std::string& name) const {
     return given.contains(name) ? "given" : fields.contains(name) ? "preset " + preset : "default";
 }
 
-Layered layered(const std::vector<Field>& table, const Json& given) {
+Layered layered(const FieldTable& table, const Json& given) {
     std::vector<FieldError> errors = check(table, given);
     check_alternatives(given, errors);
     if (!errors.empty()) refuse(std::move(errors));
@@ -157,10 +158,7 @@ Layered layered(const std::vector<Field>& table, const Json& given) {
     restate_walls(merged, given);
     Json left = leave_what_is_not_its_own(merged, table, given);
     for (auto it = merged.begin(); it != merged.end();)  // those that the table has
-        it = std::any_of(
-                 table.begin(), table.end(), [&](const Field& f) { return f.name == it.key(); })
-                 ? std::next(it)
-                 : merged.erase(it);
+        it = find(table, it.key()) ? std::next(it) : merged.erase(it);
     merged.update(given);
     merged.erase("preset");
     return {table, given, std::move(merged), given["preset"], std::move(left)};
@@ -170,10 +168,9 @@ namespace {
 
 const Json& value_of(const Layered& l, const std::string& name) {
     if (l.has(name)) return l.fields[name];
-    const auto has_it = [&](const Field& f) { return f.name == name; };
-    const auto own = std::find_if(l.table.begin(), l.table.end(), has_it);
-    if (own != l.table.end() && !own->fallback.is_null()) return own->fallback;
-    return std::find_if(simulate_fields().begin(), simulate_fields().end(), has_it)->fallback;
+    const Field* own = find(l.table, name);
+    return own && !own->fallback.is_null() ? own->fallback
+                                           : find(simulate_fields(), name)->fallback;
 }
 
 Interval interval_of(const Json& v) { return {v[0].get<double>(), v[1].get<double>()}; }

@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "api/fields.hpp"
+#include "api/schema/tables.hpp"
 #include "api/system_fields.hpp"
 #include "core/motion/simulate.hpp"
 
@@ -11,7 +11,7 @@ namespace vines::api {
 
 /// A request's fields, each checked by itself, over those of its preset.
 struct Layered {
-    const std::vector<Field>& table;
+    const FieldTable& table;  ///< outlives the request, as those of tables.hpp do
     Json given;
     Json fields;         ///< given, and what the preset adds
     std::string preset;  ///< empty: none
@@ -35,7 +35,7 @@ struct Layered {
 /// A field that is given replaces its own value of the preset alone. But a preset's damping is that
 /// of its own masses, spring and damper, and its windows are those of its own motion: they go with
 /// them. Problem 422 where a field is at fault.
-Layered layered(const std::vector<Field>& table, const Json& given);
+Layered layered(const FieldTable& table, const Json& given);
 
 /// epsilon, lambda, G, Omega.
 extern const std::vector<std::string> reduced_names;

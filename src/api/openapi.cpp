@@ -1,6 +1,6 @@
 #include "api/openapi.hpp"
 
-#include "api/fields.hpp"
+#include "api/schema/tables.hpp"
 #include "api/simulate.hpp"
 
 namespace vines::api {
@@ -35,7 +35,10 @@ Json schema_of(const Field& f) {
     if (f.type == FieldType::choice && !f.choices.empty()) s["enum"] = f.choices;
     if (f.type == FieldType::objects && !f.choices.empty())
         s = {{"anyOf", {s, {{"type", "string"}, {"enum", f.choices}}}}};
-    if (f.minimum) s["minimum"] = *f.minimum, s["maximum"] = *f.maximum;
+    if (f.range) {
+        s["minimum"] = f.range->minimum;
+        s["maximum"] = f.range->maximum;
+    }
     if (!f.fallback.is_null()) s["default"] = f.fallback;
     std::string text = f.description;
     if (!f.unit.empty()) text += " (" + f.unit + (f.symbol.empty() ? "" : ", " + f.symbol) + ")";
@@ -44,7 +47,7 @@ Json schema_of(const Field& f) {
     return s;
 }
 
-Json schema_of(const std::vector<Field>& fields, std::vector<std::string> required = {}) {
+Json schema_of(const FieldTable& fields, std::vector<std::string> required = {}) {
     Json properties = Json::object();
     for (const Field& f : fields) properties[f.name] = schema_of(f);
     Json s = {
@@ -54,7 +57,7 @@ Json schema_of(const std::vector<Field>& fields, std::vector<std::string> requir
 }
 
 /// The same fields in a query: lists are separated by commas, windows by semicolons.
-Json query_of(const std::vector<Field>& fields) {
+Json query_of(const FieldTable& fields) {
     Json list = Json::array();
     for (const Field& f : fields) {
         Json schema = schema_of(f);
@@ -93,7 +96,7 @@ Json with_body(Json op, const std::string& schema) {
     return op;
 }
 
-Json with_query(Json op, const std::vector<Field>& fields) {
+Json with_query(Json op, const FieldTable& fields) {
     op["parameters"] = query_of(fields);
     return op;
 }
@@ -154,9 +157,7 @@ Json plain(const std::string& id, const std::string& summary) {
           {"responses", {{"200", answer(summary, "application/json", {{"type", "object"}})}}}}}};
 }
 
-}  // namespace
-
-Json openapi() {
+Json paths() {
     const Json simulated = {
         {"200",
          answer("what was asked for by include", "application/json", reference("Simulation"))}};
@@ -172,7 +173,7 @@ Json openapi() {
         {"200", answer(
                     "a line of JSON each: start, point, progress, warning, done or error",
                     "application/x-ndjson", reference("SweepLine"))}};
-    Json paths = {
+    return {
         {"/v1/simulate",
          {{"get",
            with_query(operation("simulate_by_query", "one run", simulated), simulate_fields())},
@@ -201,7 +202,10 @@ Json openapi() {
         {"/readyz", plain("readyz", "the server takes work; 503 once it is about to stop")},
         {"/version", plain("version", "name and version")},
     };
-    Json schemas = {
+}
+
+Json schemas() {
+    return {
         {"SimulateRequest", schema_of(simulate_fields())},
         {"ManifoldRequest", schema_of(manifold_fields())},
         {"IdentifyRequest", identify_request()},
@@ -259,6 +263,11 @@ Json openapi() {
                              {"range", "or choices, or null"},
                              {"detail", "a sentence"}})}}}}}}},
     };
+}
+
+}  // namespace
+
+Json openapi() {
     return {
         {"openapi", "3.1.0"},
         {"info",
@@ -267,8 +276,8 @@ Json openapi() {
           {"description",
            "Exact simulation of a linear oscillator coupled with a vibro-impact nonlinear energy "
            "sink. Lengths in m, the rest dimensionless but where a name is SI."}}},
-        {"paths", std::move(paths)},
-        {"components", {{"schemas", std::move(schemas)}}}};
+        {"paths", paths()},
+        {"components", {{"schemas", schemas()}}}};
 }
 
 }  // namespace vines::api

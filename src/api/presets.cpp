@@ -37,9 +37,12 @@ Json experiment(double b, double cycles) {
     return p;
 }
 
-std::vector<Preset> make_presets() {
-    const std::string smr = "Type II, chaotic strongly modulated response";
-    std::vector<Preset> list = {
+const char* const smr_text = "Type II, chaotic strongly modulated response";
+
+/// Those that the paper simulates with Table 1.
+std::vector<Preset> figures() {
+    const std::string smr = smr_text;
+    return {
         {"fig3", "Fig. 3", smr + ", b = 22 mm: displacement x of the linear oscillator",
          "The exponents are those of the window between the paper's broken lines.",
          windowed(closed_form(0.022, 5521.3), window_start, window_end)},
@@ -81,6 +84,10 @@ std::vector<Preset> make_presets() {
          "equation of motion has half of that.",
          closed_form(0.022)},
     };
+}
+
+/// One window of the same motion each.
+void add_table_2(std::vector<Preset>& list) {
     const double windows[3][2] = {{18.13, 1708.9}, {1708.9, 3652.7}, {3652.7, 5521.3}};
     Json rows = Json::array();
     for (const auto& [from, to] : windows) rows.push_back({from, to});
@@ -92,19 +99,27 @@ std::vector<Preset> make_presets() {
     for (int i = 0; i < 3; ++i)
         list.push_back(
             {"table2_" + std::to_string(i + 1), "Table 2, row " + std::to_string(i + 1),
-             smr + ", b = 22 mm: window of the exponents",
+             std::string(smr_text) + ", b = 22 mm: window of the exponents",
              "The printed lambda3 is lambda1 - ln(1/2.2e-16)/T: rounding. It is negative (qr).",
              of_table2(i)});
+}
+
+/// One half-width each.
+void add_table_3(std::vector<Preset>& list) {
     for (const char* b :
          {"0.040", "0.034", "0.031", "0.028", "0.025", "0.022", "0.020", "0.018", "0.017",
           "0.0165"})
         list.push_back(
             {"table3_b" + std::string(b), "Table 3",
-             std::string(std::stod(b) > 0.032 ? "Type I" : smr) +
+             std::string(std::stod(b) > 0.032 ? "Type I" : smr_text) +
                  ", b = " + Json(std::stod(b) * 1000).dump() + " mm",
              "The printed lambda3 is lambda1 - ln(1/2.2e-16)/T: rounding. One window knows lambda1 "
              "to about 10 %.",
              closed_form(std::stod(b))});
+}
+
+/// Those of the experiment, Table 4.
+void add_experiments(std::vector<Preset>& list) {
     const std::string excitation =
         "Forced at resonance with G = 10 mm; the paper does not print its excitation.";
     for (int figure = 15; figure <= 19; ++figure)
@@ -119,6 +134,13 @@ std::vector<Preset> make_presets() {
     list.push_back(
         {"table4", "Table 4", "experimental parameters, with b = 15 mm", excitation,
          experiment(0.015, 170)});
+}
+
+std::vector<Preset> make_presets() {
+    std::vector<Preset> list = figures();
+    add_table_2(list);
+    add_table_3(list);
+    add_experiments(list);
     return list;
 }
 

@@ -2,27 +2,14 @@
 // untrusted JSON.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "api/schema/field_error.hpp"
+
 namespace vines::api {
-
-using Json = nlohmann::ordered_json;
-
-/// One field at fault: where (JSON Pointer), what was given, what may be given, and a sentence.
-struct FieldError {
-    std::string pointer;
-    Json value;
-    Json range;  ///< [minimum, maximum], a list of choices, or null
-    std::string detail;
-};
-
-/// More faults of one request than this are counted, not listed: an answer must not be larger than
-/// what it answers.
-inline constexpr std::size_t most_errors = 20;
 
 /// Thrown on the way from bytes to a request; the HTTP layer answers with it.
 class Problem : public std::runtime_error {

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <charconv>
 
+#include "api/problem.hpp"
+#include "api/schema/text_value.hpp"
+
 namespace vines::api {
 
 namespace {
@@ -39,6 +42,17 @@ Query parse_query(std::string_view text) {
             decoded(part.substr(std::min(equals + 1, part.size()))));
     }
     return pairs;
+}
+
+Json from_query(const FieldTable& table, const Query& query) {
+    Json object = Json::object();
+    for (const auto& [name, text] : query) {
+        if (object.contains(name))
+            throw Problem(400, "the name \"" + name + "\" comes twice in the query");
+        const Field* f = find(table, name);
+        object[name] = f ? value_of_text(f->type, text) : Json(text);
+    }
+    return object;
 }
 
 }  // namespace vines::api

@@ -1,10 +1,13 @@
-// The text of a query, as it stands behind the "?" of a URL or in `vines identify --query`.
+// A query, as it stands behind the "?" of a URL or in `vines identify --query`: its text as pairs,
+// and those as the fields of a request.
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "api/schema/field.hpp"
 
 namespace vines::api {
 
@@ -16,5 +19,10 @@ using Query = std::vector<std::pair<std::string, std::string>>;
 /// fault by itself: a "%" that no two hexadecimal digits follow stands for itself, and what the
 /// names and values mean is for from_query() to judge.
 Query parse_query(std::string_view text);
+
+/// The object that the pairs stand for, typed by the table; what cannot be read as its field's type
+/// stays text, as the value of an unknown name does, and is found by check(). Problem 400 for a
+/// name that comes twice.
+Json from_query(const FieldTable& table, const Query& query);
 
 }  // namespace vines::api

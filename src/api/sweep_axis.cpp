@@ -3,17 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "api/fields.hpp"
+#include "api/schema/check.hpp"
+#include "api/schema/tables.hpp"
 
 namespace vines::api {
 
 namespace {
 
 bool is_parameter(const std::string& name) {
-    const auto& fields = sweep_base_fields();
-    return std::any_of(fields.begin(), fields.end(), [&](const Field& f) {
-        return f.name == name && f.type == FieldType::number;
-    });
+    const Field* field = find(sweep_base_fields(), name);
+    return field && field->type == FieldType::number;
 }
 
 std::vector<std::string> parameter_names() {

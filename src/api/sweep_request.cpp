@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <numeric>
 
-#include "api/words.hpp"
+#include "api/schema/check.hpp"
+#include "api/schema/tables.hpp"
+#include "api/schema/words.hpp"
 
 namespace vines::api {
 
@@ -14,9 +16,7 @@ constexpr std::size_t most_axes = 3;
 /// A field of the request, or the table's default.
 Json field(const Json& object, const char* name) {
     if (object.contains(name)) return object[name];
-    for (const Field& f : sweep_fields())
-        if (f.name == name) return f.fallback;
-    return nullptr;
+    return find(sweep_fields(), name)->fallback;
 }
 
 /// The corners of the sweep must be valid systems; each point is checked again when its turn comes.

@@ -1,8 +1,6 @@
 #include "api/sweep_systems.hpp"
 
-#include <algorithm>
-
-#include "api/fields.hpp"
+#include "api/schema/tables.hpp"
 
 namespace vines::api {
 
@@ -10,13 +8,10 @@ SweepSystems::SweepSystems(
     std::vector<SystemFields> bases, std::vector<Axis> axes, long max_impacts)
     : bases_(std::move(bases)),
       max_impacts_(max_impacts) {
-    const auto& table = sweep_base_fields();
     for (Axis& axis : axes) {
-        const auto field = std::find_if(
-            table.begin(), table.end(), [&](const Field& f) { return f.name == axis.parameter; });
+        const Range range = *find(sweep_base_fields(), axis.parameter)->range;
         columns_.push_back(
-            {system_number(axis.parameter), std::move(axis.values), *field->minimum,
-             *field->maximum});
+            {system_number(axis.parameter), std::move(axis.values), range.minimum, range.maximum});
     }
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "api/schema/joined.hpp"
+
 namespace vines::api {
 
 namespace {
@@ -39,12 +41,6 @@ void check_si_is_whole(const Layered& l, bool forcing_fitted) {
                  "mass_ratio, F and f, or a preset for the rest"});
     }
     if (!errors.empty()) refuse(std::move(errors));
-}
-
-std::string joined(const std::vector<std::string>& words, const char* separator = ", ") {
-    std::string text;
-    for (const std::string& word : words) text += (text.empty() ? "" : separator) + word;
-    return text;
 }
 
 /// Where the values of a system come from.
@@ -94,10 +90,9 @@ std::vector<std::string> notes_on(const Layered& l, const System& s) {
             (present(l.fields, names).empty() ? assumed : taken).push_back(text);
     };
     cavity("b = " + Json(p.b).dump(), {"b"});
-    const auto R =
-        std::find_if(l.table.begin(), l.table.end(), [](const Field& f) { return f.name == "R"; });
     // Else it is estimated.
-    if (!R->fallback.is_null()) cavity("R = " + Json(p.R_plus).dump(), {"R", "R_plus", "R_minus"});
+    if (!find(l.table, "R")->fallback.is_null())
+        cavity("R = " + Json(p.R_plus).dump(), {"R", "R_plus", "R_minus"});
     if (!taken.empty() && !l.preset.empty())
         notes.push_back("not given, and taken from preset " + l.preset + ": " + joined(taken));
     if (!assumed.empty())

@@ -3,7 +3,7 @@
 #include <map>
 #include <numbers>
 
-#include "api/words.hpp"
+#include "api/schema/words.hpp"
 
 namespace vines::api {
 

@@ -8,6 +8,7 @@
 #include "api/identify.hpp"
 #include "api/openapi.hpp"
 #include "api/presets.hpp"
+#include "api/schema/parameters.hpp"
 #include "api/simulate.hpp"
 #include "http/page.hpp"
 #include "http/problem_response.hpp"

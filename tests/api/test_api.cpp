@@ -7,6 +7,9 @@
 #include <set>
 
 #include "api/presets.hpp"
+#include "api/query.hpp"
+#include "api/schema/check.hpp"
+#include "api/schema/parameters.hpp"
 #include "api/simulate.hpp"
 
 using namespace vines;

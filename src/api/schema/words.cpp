@@ -1,4 +1,4 @@
-#include "api/words.hpp"
+#include "api/schema/words.hpp"
 
 namespace vines::api {
 

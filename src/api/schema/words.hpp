@@ -5,8 +5,9 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "api/problem.hpp"
+#include "api/schema/json.hpp"
 #include "core/sweep/sweep.hpp"
 
 namespace vines::api {

@@ -1,0 +1,158 @@
+#include "api/schema/check.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "api/schema/joined.hpp"
+#include "api/schema/nearest_name.hpp"
+#include "api/schema/tables.hpp"
+
+namespace vines::api {
+
+namespace {
+
+/// Each window's exponents are computed and given on their own.
+constexpr std::size_t most_windows = 1000;
+
+std::string pointer(const std::string& name) {
+    std::string escaped(1, '/');
+    for (char c : name) {
+        if (c == '~') escaped += "~0";
+        else if (c == '/') escaped += "~1";
+        else escaped += c;
+    }
+    return escaped;
+}
+
+/// What a fault says may be given.
+Json range_of(const Field& f) {
+    if (f.range) return Json::array({f.range->minimum, f.range->maximum});
+    if (!f.choices.empty()) return f.choices;
+    return nullptr;
+}
+
+/// One field, and where its faults go.
+struct Checked {
+    const Field& field;
+    std::vector<FieldError>& errors;
+
+    /// `where`: below the field, as a JSON Pointer.
+    void fault(const std::string& where, const Json& value, const std::string& detail) const {
+        errors.push_back(
+            {pointer(field.name) + where, value, range_of(field), field.name + " " + detail});
+    }
+    bool is_choice(const Json& value) const {
+        return value.is_string() &&
+               std::find(field.choices.begin(), field.choices.end(), value.get<std::string>()) !=
+                   field.choices.end();
+    }
+    /// Each element, with its place below the field.
+    template <class Check>
+    void each(const Json& array, Check check) const {
+        for (std::size_t i = 0; i < array.size() && errors.size() < most_errors; ++i)
+            check(pointer(std::to_string(i)), array[i]);
+    }
+};
+
+void check_number(const Checked& c, const Json& value) {
+    if (!value.is_number()) return c.fault("", value, "must be a number");
+    const double v = value.get<double>();
+    const auto [minimum, maximum] = *c.field.range;
+    const std::string& unit = c.field.unit;
+    if (!(v >= minimum && v <= maximum))
+        c.fault(
+            "", value,
+            "must lie in [" + Json(minimum).dump() + ", " + Json(maximum).dump() + "]" +
+                (unit.empty() || unit == dimensionless ? "" : " " + unit));
+    else if (c.field.type == FieldType::integer && v != std::floor(v))
+        c.fault("", value, "must be a whole number");
+}
+
+void check_choice(const Checked& c, const Json& value) {
+    if (!value.is_string()) c.fault("", value, "must be a word");
+    else if (!c.field.choices.empty() && !c.is_choice(value))
+        c.fault("", value, "must be one of " + joined(c.field.choices));
+}
+
+void check_choices(const Checked& c, const Json& value) {
+    if (!value.is_array()) return c.fault("", value, "must be an array of words");
+    c.each(value, [&](const std::string& where, const Json& element) {
+        if (!c.is_choice(element)) c.fault(where, element, "may hold " + joined(c.field.choices));
+    });
+}
+
+void check_interval(const Checked& c, const std::string& where, const Json& v) {
+    if (!v.is_array() || v.size() != 2 || !v[0].is_number() || !v[1].is_number())
+        return c.fault(where, v, "must be two numbers, [from, to]");
+    if (!(v[0].get<double>() >= 0)) c.fault(where + "/0", v[0], "must not begin before 0");
+    if (!(v[0].get<double>() < v[1].get<double>())) c.fault(where, v, "must begin before it ends");
+}
+
+void check_intervals(const Checked& c, const Json& value) {
+    if (!value.is_array())
+        return c.fault("", value, "must be an array of intervals, [[from, to], ...]");
+    if (value.size() > most_windows)
+        return c.fault("", value.size(), "may hold " + std::to_string(most_windows) + " intervals");
+    c.each(value, [&](const std::string& where, const Json& element) {
+        check_interval(c, where, element);
+    });
+}
+
+void check_integers(const Checked& c, const Json& value) {
+    if (!value.is_array()) return c.fault("", value, "must be an array of whole numbers");
+    c.each(value, [&](const std::string& where, const Json& element) {
+        if (!element.is_number_integer() || element < 0)
+            c.fault(where, element, "must hold whole numbers from 0 on");
+    });
+}
+
+void check_numbers(const Checked& c, const Json& value) {
+    if (!value.is_array()) return c.fault("", value, "must be an array of numbers");
+    c.each(value, [&](const std::string& where, const Json& element) {
+        if (!element.is_number()) c.fault(where, element, "must hold numbers");
+    });
+}
+
+/// What stands in the objects has a table of its own.
+void check_objects(const Checked& c, const Json& value) {
+    const std::vector<std::string>& words = c.field.choices;
+    if (!value.is_array() && !c.is_choice(value))
+        c.fault(
+            "", value, "must be an array" + (words.empty() ? "" : " or \"" + joined(words) + "\""));
+}
+
+void check_field(const Checked& c, const Json& value) {
+    switch (c.field.type) {
+        case FieldType::number:
+        case FieldType::integer: return check_number(c, value);
+        case FieldType::choice: return check_choice(c, value);
+        case FieldType::choices: return check_choices(c, value);
+        case FieldType::interval: return check_interval(c, "", value);
+        case FieldType::intervals: return check_intervals(c, value);
+        case FieldType::integers: return check_integers(c, value);
+        case FieldType::numbers: return check_numbers(c, value);
+        case FieldType::object:
+            if (!value.is_object()) c.fault("", value, "must be an object");
+            return;
+        case FieldType::objects: return check_objects(c, value);
+    }
+}
+
+std::string unknown_field(const FieldTable& table, const std::string& name) {
+    const std::string nearest = nearest_name(table, name);
+    return "unknown field" + (nearest.empty() ? "" : "; did you mean " + nearest + "?");
+}
+
+}  // namespace
+
+std::vector<FieldError> check(const FieldTable& table, const Json& object) {
+    std::vector<FieldError> errors;
+    for (const auto& [name, value] : object.items()) {
+        if (errors.size() >= most_errors) break;
+        if (const Field* f = find(table, name)) check_field({*f, errors}, value);
+        else errors.push_back({pointer(name), value, nullptr, unknown_field(table, name)});
+    }
+    return errors;
+}
+
+}  // namespace vines::api

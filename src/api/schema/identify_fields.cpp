@@ -1,0 +1,87 @@
+#include "api/schema/tables.hpp"
+
+namespace vines::api {
+
+namespace {
+
+/// A field of /v1/simulate as a record sees it: some of the system is measured, not assumed.
+Field of_record(Field f) {
+    if (f.name == "F" || f.name == "G") f.description += "; of a record it is fitted";
+    if (f.name == "R") {
+        f.fallback = nullptr;
+        f.fallback_note = "estimated, each wall's from its impacts";
+    }
+    if (f.name == "m1" || f.name == "k1")
+        f.fallback_note =
+            "required for a record, or a preset: they give omega0, by which time is scaled";
+    return f;
+}
+
+FieldTable record_rows() {
+    return {
+        {.name = "time_column",
+         .type = FieldType::choice,
+         .group = "record",
+         .description = "name of the column of time",
+         .fallback_note = "time_s, or one that begins with time or t"},
+        {.name = "displacement_column",
+         .type = FieldType::choice,
+         .group = "record",
+         .description = "name of the column of displacement",
+         .fallback_note = "displacement_m, or one that begins with displacement or x"},
+        {.name = "acceleration_column",
+         .type = FieldType::choice,
+         .group = "record",
+         .description = "name of the column of acceleration",
+         .fallback_note = "acceleration_m_s2, or one that begins with acceleration or a"},
+        {.name = "time_unit",
+         .type = FieldType::choice,
+         .group = "record",
+         .description = "unit of time, where the column's name says none",
+         .fallback = "s",
+         .choices = {"s", "ms"}},
+        {.name = "displacement_unit",
+         .type = FieldType::choice,
+         .group = "record",
+         .description = "unit of displacement, where the column's name says none",
+         .fallback = "m",
+         .choices = {"m", "mm", "um"}},
+        {.name = "acceleration_unit",
+         .type = FieldType::choice,
+         .group = "record",
+         .description = "unit of acceleration, where the column's name says none",
+         .fallback = "m/s2",
+         .choices = {"m/s2", "g"}},
+        {.name = "threshold",
+         .group = "record",
+         .unit = "standard deviations of the noise",
+         .description = "height from which on a spike of the acceleration is an impact",
+         .fallback = 6,
+         .range = Range{3, 1000}},
+        {.name = "impact_times_s",
+         .type = FieldType::numbers,
+         .group = "record",
+         .unit = "s",
+         .description =
+             "moments of the impacts, from an edited list: then they are not searched for",
+         .fallback_note = "found from the spikes"},
+    };
+}
+
+FieldTable make_identify_fields() {
+    FieldTable table;
+    for (const Field& f : simulate_fields())
+        if (is_of_system(f) || f.name == "exponents" || f.name == "max_points")
+            table.push_back(of_record(f));
+    for (Field& f : record_rows()) table.push_back(std::move(f));
+    return table;
+}
+
+}  // namespace
+
+const FieldTable& identify_fields() {
+    static const FieldTable table = make_identify_fields();
+    return table;
+}
+
+}  // namespace vines::api

@@ -1,0 +1,88 @@
+#include "api/schema/parameters.hpp"
+
+#include "api/schema/tables.hpp"
+
+namespace vines::api {
+
+namespace {
+
+const char* type_name(FieldType type) {
+    switch (type) {
+        case FieldType::number: return "number";
+        case FieldType::integer: return "integer";
+        case FieldType::choice: return "choice";
+        case FieldType::choices: return "choices";
+        case FieldType::interval: return "interval";
+        case FieldType::intervals: return "intervals";
+        case FieldType::integers: return "integers";
+        case FieldType::numbers: return "numbers";
+        case FieldType::object: return "object";
+        case FieldType::objects: return "objects";
+    }
+    return "";
+}
+
+Json describe(const FieldTable& table) {
+    Json list = Json::array();
+    for (const Field& f : table) {
+        Json entry = {{"name", f.name},       {"type", type_name(f.type)},
+                      {"group", f.group},     {"unit", f.unit},
+                      {"symbol", f.symbol},   {"description", f.description},
+                      {"default", f.fallback}};
+        if (!f.fallback_note.empty()) entry["default_note"] = f.fallback_note;
+        if (f.range) {
+            entry["minimum"] = f.range->minimum;
+            entry["maximum"] = f.range->maximum;
+        }
+        if (!f.choices.empty()) entry["choices"] = f.choices;
+        list.push_back(std::move(entry));
+    }
+    return list;
+}
+
+/// What the symbols are: eq. (1) of the paper, in SI and reduced.
+Json describe_model() {
+    return {
+        {"equations",
+         {"m1 x'' + c1 x' + k1 x = k1 F sin(2 pi f t) + 2 pi f c1 F cos(2 pi f t), m2 y'' = 0 "
+          "while |x - y| < b, derivatives in t (s)",
+          "x'' + 2 zeta x' + x = epsilon G sin(Omega tau) + epsilon^2 lambda G Omega cos(Omega "
+          "tau), y'' = 0 while |x - y| < b, derivatives in tau = omega0 t",
+          "at |x - y| = b: x' + epsilon y' is kept, x' - y' is reversed and shrunk by R"}},
+        {"symbols",
+         {{"x",
+           "displacement of the linear oscillator (mass m1) from rest, absolute: that of an "
+           "observer who does not move with the base"},
+          {"y",
+           "displacement of the free mass m2, absolute, from where x - y = 0 in the middle of its "
+           "cavity"},
+          {"F",
+           "amplitude of the base in m: it moves by F sin(2 pi f t) and carries spring k1 and "
+           "damper c1; F = epsilon G"},
+          {"b",
+           "half-width of the cavity: its free length is 2 b and the diameter of the ball, with "
+           "walls where x - y = b (side 1) and x - y = -b (side -1)"},
+          {"omega0", "sqrt(k1/m1), rad/s"},
+          {"epsilon", "m2/m1"},
+          {"lambda", "c1/(m2 omega0)"},
+          {"Omega", "2 pi f/omega0"},
+          {"G", "F/epsilon, m"},
+          {"zeta",
+           "epsilon lambda/2 = c1/(2 m1 omega0) with damping equation_of_motion, twice that with "
+           "closed_form"}}},
+        {"sketch", "system.svg"}};
+}
+
+}  // namespace
+
+Json describe_fields() {
+    return {
+        {"model", describe_model()},
+        {"fields", describe(simulate_fields())},
+        {"manifold_fields", describe(manifold_fields())},
+        {"sweep_fields", describe(sweep_fields())},
+        {"axis_fields", describe(axis_fields())},
+        {"identify_fields", describe(identify_fields())}};
+}
+
+}  // namespace vines::api

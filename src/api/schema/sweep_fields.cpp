@@ -1,0 +1,162 @@
+#include <numbers>
+
+#include "api/schema/tables.hpp"
+#include "api/schema/words.hpp"
+
+namespace vines::api {
+
+namespace {
+
+FieldTable make_sweep_fields() {
+    return {
+        {.name = "base",
+         .type = FieldType::object,
+         .group = "sweep",
+         .description = "fields of /v1/simulate that all points share: system, reduced or SI, "
+                        "start, preset, max_impacts",
+         .fallback = Json::object()},
+        {.name = "axes",
+         .type = FieldType::objects,
+         .group = "sweep",
+         .description = "one to three: {parameter, from, to, count, scale} or {parameter, values}; "
+                        "the index of a point counts along the first axis fastest",
+         .fallback_note = "required"},
+        {.name = "starts",
+         .type = FieldType::objects,
+         .group = "sweep",
+         .description = "initial states {x0, x_dot0, y0, y_dot0}, each run at every point, to show "
+                        "coexisting attractors; or \"default set\": at rest in the middle, at a "
+                        "wall, moving, and the last states of both neighbours on the first axis, "
+                        "of which a line tells the worst and the best by x_max",
+         .fallback = Json::array(),
+         .choices = {default_set_of_starts}},
+        {.name = "cycles",
+         .type = FieldType::integer,
+         .group = "sweep",
+         .unit = dimensionless,
+         .description = "forcing cycles that are measured at each point",
+         .fallback = 1000,
+         .range = Range{1, 1e6}},
+        {.name = "transient_cycles",
+         .type = FieldType::integer,
+         .group = "sweep",
+         .unit = dimensionless,
+         .description = "forcing cycles run before them",
+         .fallback = 200,
+         .range = Range{0, 1e6}},
+        {.name = "carry_state",
+         .type = FieldType::choice,
+         .group = "sweep",
+         .description = "none: each point starts afresh; up, down: from the last state of its "
+                        "neighbour on the first axis, in ascending or descending order of the "
+                        "axis' entries",
+         .fallback = word(Carry::none),
+         .choices = all_words<Carry>()},
+        {.name = "section",
+         .type = FieldType::choice,
+         .group = "sweep",
+         .description = "points for a bifurcation diagram: at impact or at whole forcing cycles",
+         .fallback = word(SectionKind::none),
+         .choices = all_words<SectionKind>()},
+        {.name = "section_points",
+         .type = FieldType::integer,
+         .group = "sweep",
+         .unit = dimensionless,
+         .description = "the last so many points of the section are given at each point",
+         .fallback = 100,
+         .range = Range{1, 100000}},
+        {.name = "section_phase",
+         .group = "sweep",
+         .unit = "rad",
+         .description = "phase of the stroboscopic section after each whole cycle",
+         .fallback = 0,
+         .range = Range{0, 2 * std::numbers::pi}},
+        {.name = "reduce",
+         // Any word: which ones there are follows from the axes.
+         .type = FieldType::choice,
+         .group = "sweep",
+         .description = "\"max over f\": of the points along that axis only the largest x_max and "
+                        "where it is, as x_peak; or \"min over f\"",
+         .fallback_note = "none: a line for each point"},
+        {.name = "indices",
+         .type = FieldType::integers,
+         .group = "sweep",
+         .description = "only these points: those that a broken stream did not bring",
+         .fallback_note = "all"},
+    };
+}
+
+/// An axis' ends: any number but those next to overflow, for the parameter has a range of its own.
+constexpr Range any_number{-1e300, 1e300};
+
+FieldTable make_axis_fields() {
+    return {
+        {.name = "parameter",
+         // Any word: the reader of the axis answers an unknown one with the list.
+         .type = FieldType::choice,
+         .group = "axis",
+         .description = "any number of system, reduced, SI or start",
+         .fallback_note = "required"},
+        {.name = "from",
+         .group = "axis",
+         .description = "first value",
+         .fallback_note = "required without values",
+         .range = any_number},
+        {.name = "to",
+         .group = "axis",
+         .description = "last value",
+         .fallback_note = "required without values",
+         .range = any_number},
+        {.name = "count",
+         .type = FieldType::integer,
+         .group = "axis",
+         .description = "number of values",
+         .fallback = 2,
+         .range = Range{1, 1e6}},
+        {.name = "scale",
+         .type = FieldType::choice,
+         .group = "axis",
+         .description = "spacing",
+         .fallback = "linear",
+         .choices = {"linear", "log"}},
+        {.name = "values",
+         .type = FieldType::numbers,
+         .group = "sweep",
+         .description = "the values themselves, in place of from, to, count, scale",
+         .fallback_note = "from, to, count"},
+    };
+}
+
+template <class Wanted>
+FieldTable of_simulate(Wanted wanted) {
+    FieldTable table;
+    for (const Field& f : simulate_fields())
+        if (wanted(f)) table.push_back(f);
+    return table;
+}
+
+}  // namespace
+
+const FieldTable& sweep_fields() {
+    static const FieldTable table = make_sweep_fields();
+    return table;
+}
+
+const FieldTable& sweep_base_fields() {
+    static const FieldTable table = of_simulate([](const Field& f) {
+        return is_of_system(f) || f.group == "start" || f.name == "max_impacts";
+    });
+    return table;
+}
+
+const FieldTable& axis_fields() {
+    static const FieldTable table = make_axis_fields();
+    return table;
+}
+
+const FieldTable& start_fields() {
+    static const FieldTable table = of_simulate([](const Field& f) { return f.group == "start"; });
+    return table;
+}
+
+}  // namespace vines::api
