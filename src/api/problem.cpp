@@ -9,7 +9,8 @@ namespace vines::api {
 namespace {
 
 constexpr int deepest = 16;
-// Of one object: several times as many as any request has. Each name is compared with all before it.
+// Of one object: several times as many as any request has. Each name is compared with all before
+// it.
 constexpr std::size_t most_names = 1000;
 
 constexpr std::size_t longest_echo = 200;

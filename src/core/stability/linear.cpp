@@ -10,8 +10,8 @@ namespace vines {
 
 namespace {
 
-// Of a size known at run time only: the solver is then compiled once, and in a tenth of the time that
-// its loops take unrolled for each size.
+// Of a size that is known at run time only: one solver, which compiles in two thirds of the time of
+// those that are unrolled for 4 and for 6.
 using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
 
 Eigen::VectorXcd solved(const Square& matrix) {
