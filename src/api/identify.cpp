@@ -136,13 +136,8 @@ std::string sampling_advice(const RefinedImpacts& refined, double step, double o
 Json describe_measured(
     const MeasuredExponents& e, const ExponentOptions& estimators, const Continuity& c,
     const std::vector<IdentifiedImpact>& impacts, Warnings& warnings) {
-    const ExponentOptions of_all = {
-        .qr = true, .eigenvalues = false, .raw_product = false, .history = estimators.history};
-    const ExponentOptions of_longest = {
-        .qr = false,
-        .eigenvalues = estimators.eigenvalues,
-        .raw_product = estimators.raw_product,
-        .history = estimators.history};
+    const ExponentOptions of_all = of_all_stretches(estimators),
+                          of_longest = of_longest_stretch(estimators);
     Json j = describe_window(e.all());
     add_estimators(j, e.all(), growth_of(e.all()), of_all, true);
     for (Json& tau : j["qr"]["history"]["tau"]) tau = e.moment(tau);

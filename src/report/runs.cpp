@@ -10,8 +10,6 @@ namespace {
 
 // Far above what any run here has: each ends at its tau_end.
 constexpr long max_impacts = 10000000;
-constexpr ExponentOptions qr_alone = {
-    .qr = true, .eigenvalues = false, .raw_product = false, .history = shortest_history};
 constexpr ExponentOptions qr_and_raw_product = {
     .qr = true, .eigenvalues = false, .raw_product = true, .history = shortest_history};
 

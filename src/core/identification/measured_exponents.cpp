@@ -63,11 +63,23 @@ Continuity continuity_of(
     return c;
 }
 
+ExponentOptions of_all_stretches(const ExponentOptions& asked) {
+    return {.qr = true, .eigenvalues = false, .raw_product = false, .history = asked.history};
+}
+
+ExponentOptions of_longest_stretch(const ExponentOptions& asked) {
+    return {
+        .qr = false,
+        .eigenvalues = asked.eigenvalues,
+        .raw_product = asked.raw_product,
+        .history = asked.history};
+}
+
 MeasuredExponents::MeasuredExponents(
     const Parameters& p, const std::vector<IdentifiedImpact>& impacts,
     const std::vector<KnownStretch>& stretches, const ExponentOptions& o)
-    : all_(p.epsilon, {true, false, false, o.history}),
-      longest_(p.epsilon, {false, o.eigenvalues, o.raw_product, o.history}) {
+    : all_(p.epsilon, of_all_stretches(o)),
+      longest_(p.epsilon, of_longest_stretch(o)) {
     const auto table = Flow::shared_free(p);
     const Flow& flow = *table;
     const auto feed = [&](const KnownStretch& s, TransferProduct& product) {

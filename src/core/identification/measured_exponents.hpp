@@ -41,6 +41,10 @@ Continuity continuity_of(
     const Parameters& parameters, const std::vector<IdentifiedImpact>& impacts,
     const std::vector<TimeGap>& gaps);
 
+/// Of the estimators that are asked for those of all stretches, and those of the longest alone.
+ExponentOptions of_all_stretches(const ExponentOptions& asked);
+ExponentOptions of_longest_stretch(const ExponentOptions& asked);
+
 class MeasuredExponents {
 public:
     MeasuredExponents(

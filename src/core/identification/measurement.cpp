@@ -15,9 +15,6 @@ constexpr double same_spike = 3;
 /// Far above what a record of minutes holds.
 constexpr long most_forward_impacts = 100000;
 
-constexpr ExponentOptions qr_alone = {
-    .qr = true, .eigenvalues = false, .raw_product = false, .history = shortest_history};
-
 /// R of each wall that has impacts; rounding may have moved one beyond what an R can be.
 void take_restitution(Parameters& p, const Identification& found) {
     if (std::isfinite(found.plus.R)) p.R_plus = std::clamp(found.plus.R, 0.0, 1.0);

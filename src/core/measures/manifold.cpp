@@ -18,15 +18,18 @@ double k_of(double R) { return (1 - R) / (1 + R); }
 
 double manifold_C(double R, double Omega, double b, double V) {
     const double W = V / Omega;
+    // C^2 = (pi W/2 - b)^2 + k^2 W^2
     return std::hypot(quarter_turn * W - b, k_of(R) * W);
 }
 
 ManifoldPoint manifold_fold(double R, double Omega, double b) {
+    // dC/dW = 0: W = (pi/2) b/(pi^2/4 + k^2)
     const double k = k_of(R), norm = quarter_turn * quarter_turn + k * k;
     return {b * k / std::sqrt(norm), Omega * quarter_turn * b / norm};
 }
 
 ManifoldPoint manifold_symmetry_breaking(double R, double Omega, double b) {
+    // An eigenvalue of half a cycle is -1: W = (pi/2) b/(pi^2/4 - 1)
     const double V = Omega * quarter_turn * b / (quarter_turn * quarter_turn - 1);
     return {manifold_C(R, Omega, b, V), V};
 }

@@ -231,7 +231,7 @@ Capture capture_by(
         std::nullopt};
     if (!exponents_before) return capture;
     const double until = capture.tau.value_or(e.tau_end);
-    Lyapunov before(p, 0, until, {true, false, false, 256});
+    Lyapunov before(p, 0, until, qr_alone);
     Observer* const observers[] = {&before};
     if (simulate(p, start, {until, std::numeric_limits<long>::max(), e.stop}, observers).reason !=
         End::tau_end)

@@ -99,9 +99,8 @@ private:
             if (v.f == 0) return d;
             (v.f < 0 ? low : high) = d;
             const double step = halley(v.f, v.f1, v.f2);
-            // Halley's error shrinks with the cube of the step: after one below 1e-6 of d the next
-            // is below an ulp.
-            if (std::abs(step) <= 1e-6 * d && v.f1 > 0 && std::abs(step * v.f2) <= 1e-6 * v.f1)
+            if (std::abs(step) <= last_step * d && v.f1 > 0 &&
+                std::abs(step * v.f2) <= last_step * v.f1)
                 return std::clamp(d + step, low, high);
             d = i < 20 && d + step > low && d + step < high ? d + step : 0.5 * (low + high);
             if (d <= low || d >= high) break;  // neighbours
@@ -176,7 +175,7 @@ struct Search {
             step = halley(
                 wall * (v.x - (y + start.y_dot * d)) - b, wall * (v.x_dot - start.y_dot),
                 wall * v.half_x_ddot);
-            if (std::abs(step) <= 1e-7 * h) break;
+            if (std::abs(step) <= last_step_in_cell * h) break;
             d = std::clamp(d + step, 0.0, h);
         }
         // The state a last, tiny step further, by its Taylor polynomial: what that leaves out is
@@ -210,7 +209,7 @@ struct Search {
             const double step = halley(v.x, v.x_dot, v.half_x_ddot);
             d = std::clamp(d + step, 0.5 * w / a, D);
             rate = v.x_dot + step * 2 * v.half_x_ddot;
-            if (std::abs(step) <= 1e-8 * d) break;
+            if (std::abs(step) <= last_step_of_chatter * d) break;
         }
         // f' = phi + s phi'.
         return Contact{d, start.side, flow.along(x, start.lo, d), start.side * d * rate};

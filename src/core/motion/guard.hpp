@@ -5,24 +5,20 @@
 // searched by first_crossing, which is itself a proof by bisection. The argument, with eta the
 // rounding error of g on the grid:
 //
-//   1. g differs from its chord over a cell of width h by at most M2 h^2/8, M2 >= |g''| = |x''| (y
-//   is linear). So the
-//      cell is empty if |g| < b - M2 h^2/8 - eta at both of its ends.
+//   1. g differs from its chord over a cell of width h by at most M2 h^2/8, M2 >= |g''| = |x''|
+//      (y is linear). So the cell is empty if |g| < b - M2 h^2/8 - eta at both of its ends.
 //   2. Where the flight has just left a wall, g = side b at s = 0 and property 1 cannot hold. There
-//   let
-//      phi(s) = (side g(s) - b)/s = integral over t in (0,1) of side g'(ts). |phi''| <= M3/3, so
-//      phi differs from its chord by at most M3 h^2/24: no contact with this wall in (0, h] if
+//      let phi(s) = (side g(s) - b)/s = integral over t in (0,1) of side g'(ts). |phi''| <= M3/3,
+//      so phi differs from its chord by at most M3 h^2/24: no contact with this wall in (0, h] if
 //      phi(0) = side g'(0) and phi(h) are below -M3 h^2/24.
 //   3. What is left is searched on the Taylor polynomial of g about the cell's left end, which is g
-//   up to rounding. Its
-//      leading coefficients that are known to be zero (1 after an impact, 2 after one with R = 0, 3
-//      at the release from a stick) are set to zero and divided out: a contact that has just
-//      happened is known by its side, never by |g| - b, and the next one of a chatter keeps full
-//      relative accuracy however close it is.
+//      up to rounding. Its leading coefficients that are known to be zero (1 after an impact, 2
+//      after one with R = 0, 3 at the release from a stick) are set to zero and divided out: a
+//      contact that has just happened is known by its side, never by |g| - b, and the next one of a
+//      chatter keeps full relative accuracy however close it is.
 //   4. first_crossing bisects until a part is empty, monotone, convex or concave by bounds of the
-//   polynomial; each of these
-//      has at most one upward crossing at a place that is known. Bisection ends because the part's
-//      width halves.
+//      polynomial; each of these has at most one upward crossing at a place that is known.
+//      Bisection ends because the part's width halves.
 #pragma once
 
 #include <optional>

@@ -23,6 +23,7 @@ Impact impact_at(const Parameters& p, const Contact& contact, double x_ddot, dou
     i.x_dot_before = contact.lo.x_dot;
     i.y_dot_before = contact.lo.x_dot - w;
     i.relative_speed_before = w;
+    // Eq. (4): x'+ - y'+ = -R (x'- - y'-) and x'+ + epsilon y'+ = x'- + epsilon y'-.
     i.relative_speed_after = -R * w;
     i.x_dot_after = i.x_dot_before - (1 + R) * p.epsilon / (1 + p.epsilon) * w;
     i.y_dot_after = i.x_dot_after - i.relative_speed_after;
@@ -36,6 +37,7 @@ Impact impact_at(const Parameters& p, const Contact& contact, double x_ddot, dou
 
 Eigen::Vector4d gap_gradient() { return {0, 1, 0, -1}; }
 
+// M = S + r g^T, eq. (27).
 Matrix4 Saltation::matrix() const { return S + r * gap_gradient().transpose(); }
 
 Matrix4 Saltation::times(const Matrix4& d) const {
@@ -62,8 +64,11 @@ Saltation saltation(const Parameters& p, const Impact& i) {
     const double mu = p.epsilon / (1 + p.epsilon), nu = 1 / (1 + p.epsilon), e = 1 + i.R;
     const double kappa = i.x_ddot_before / i.relative_speed_before;
     Saltation m;
+    // S, eq. (25): the impact as a linear map of (x', x, y', y), which leaves positions alone.
     m.S << 1 - e * mu, 0, e * mu, 0, 0, 1, 0, 0, e * nu, 0, 1 - e * nu, 0, 0, 0, 0, 1;
-    // x'' jumps by -2 zeta (x'+ - x'-); the velocities by their share of (1 + R)(x'- - y'-).
+    // r = (f+ - S f-)/(x'- - y'-) with f = (x'', x', 0, y'), eq. (27): a deviation meets the wall
+    // earlier or later. x'' jumps by -2 zeta (x'+ - x'-), the velocities by their share of
+    // (1 + R)(x'- - y'-).
     m.r << e * mu * (kappa + 2 * p.zeta()), -e * mu, -e * nu * kappa, e * nu;
     return m;
 }

@@ -1,16 +1,14 @@
 // Transient Lyapunov exponents of a sequence of transfer matrices, by three estimators.
 //
 //   qr           Benettin's: orthonormal deviations carried by T_i = M_i J_i (30), a QR
-//   factorisation at every impact.
-//                The reference.
+//                factorisation at every impact. The reference.
 //   eigenvalues  ln|eigenvalues of T_n ... T_1| / T, eq. (33), all four moduli right over any
-//   window: the largest
-//                eigenvalue of each exterior power of the product (the k-th has the k-fold products
-//                of its eigenvalues), each product scaled as it grows.
+//                window: the largest eigenvalue of each exterior power of the product (the k-th
+//                has the k-fold products of its eigenvalues), each product scaled as it grows.
 //   raw_product  (33) as the paper computed it: the product in double precision, unscaled. After a
-//   while it is a matrix
-//                of rank one plus rounding: its third and fourth "exponents" are lambda1 -
-//                ln(1/2.2e-16)/T, the rounding floor, and near T = 709/lambda1 it overflows.
+//                while it is a matrix of rank one plus rounding: its third and fourth "exponents"
+//                are lambda1 - ln(1/2.2e-16)/T, the rounding floor, and near T = 709/lambda1 it
+//                overflows.
 //
 // Sum rule, exact from impact to impact while nothing sticks: the four exponents add up to
 // -2 zeta + 2/T * (sum of ln R over the impacts).
@@ -58,6 +56,10 @@ struct ExponentOptions {
     bool qr = true, eigenvalues = true, raw_product = true;
     std::size_t history = 20000;
 };
+
+/// What verdicts, regimes and standard errors rest on, where no history is shown.
+inline constexpr ExponentOptions qr_alone = {
+    .qr = true, .eigenvalues = false, .raw_product = false, .history = shortest_history};
 
 /// The product of the transfer matrices of one window, as the estimators see it.
 class TransferProduct {

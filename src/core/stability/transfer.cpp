@@ -25,6 +25,7 @@ Moduli eigenvalue_moduli(const Matrix4& m) {
     return moduli;
 }
 
+// J_i, eq. (19), leg by leg.
 Matrix4 ImpactTransfer::J() const {
     Matrix4 J = Matrix4::Identity();
     for (const Leg& leg : legs) J = transfer_of(leg, epsilon) * J;
@@ -37,7 +38,8 @@ int ImpactTransfer::rank() const {
 
 Moduli ImpactTransfer::J_moduli() const {
     Moduli moduli = {1, 1, 1, 1};
-    // Two blocks; that of the free mass is a Jordan block, which an eigenvalue solver would split.
+    // Two blocks, eq. (19); that of the free mass, [1 0; s 1], is a Jordan block, which an
+    // eigenvalue solver would split.
     if (rank() == 4) {
         for (const Leg& leg : legs) {
             const double n = static_cast<double>(leg.parts),
@@ -56,6 +58,7 @@ Moduli ImpactTransfer::J_moduli() const {
     return moduli;
 }
 
+// T_i = M_i J_i, eq. (30).
 Moduli ImpactTransfer::T_moduli() const {
     PowerProduct product(epsilon);
     for (const Leg& leg : legs) product.pass(leg);

@@ -30,8 +30,7 @@ Wanted wanted_of(const Parameters& p, const State& start, const PointOptions& o)
         .max_impacts = o.max_impacts,
         .window = {0, tau_end},
         .parts = {.section = o.section != SectionKind::none, .energy = true, .regime = true},
-        .estimators =
-            {.qr = true, .eigenvalues = false, .raw_product = false, .history = shortest_history},
+        .estimators = qr_alone,
         .section_phase = o.section_phase,
         .most_points = o.section_points,
         .most_listed = 1};

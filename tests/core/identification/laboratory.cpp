@@ -64,7 +64,7 @@ TrueMotion true_motion(double b, double R_plus, double R_minus, double seconds) 
     p.epsilon = si.epsilon(), p.lambda = si.lambda(), p.G = 0.01, p.b = b, p.R_plus = R_plus,
     p.R_minus = R_minus;
     const double end = m.begin + seconds * m.omega0;
-    Lyapunov lyapunov(p, m.begin, end, {true, false, false, 256});
+    Lyapunov lyapunov(p, m.begin, end, qr_alone);
     m.impacts = record(p, default_state(p), end, 1000000, {&lyapunov}).impacts;
     const auto first = std::find_if(
         m.impacts.begin(), m.impacts.end(), [&](const Impact& i) { return i.tau > m.begin; });

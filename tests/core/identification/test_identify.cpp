@@ -35,7 +35,7 @@ Result identified(const Measurement& m) {
     p.R_plus = found.plus.R, p.R_minus = found.minus.R;
     Continuity continuity = continuity_of(p, found.impacts, time_gaps(m.record));
     const MeasuredExponents exponents(
-        p, found.impacts, continuity.stretches, {true, false, false, 20000});
+        p, found.impacts, continuity.stretches, {.eigenvalues = false, .raw_product = false});
     const TransferProduct& all = exponents.all();
     std::vector<std::string> doubts = doubts_of(p, refined, found);
     const IdentifiedExponents judged =
@@ -263,7 +263,7 @@ TEST_CASE("a chaotic motion that is in step for a while is not called regular") 
                 complete_impacts(motion.parameters, some, 0);
                 const MeasuredExponents e(
                     motion.parameters, some, continuity_of(motion.parameters, some, {}).stretches,
-                    {true, false, false, 256});
+                    qr_alone);
                 CHECK(
                     judge_exponents(
                         motion.parameters, e.all().qr_history(), e.all().start_tau(),

@@ -30,7 +30,7 @@ struct Judged {
 Judged judged(const Parameters& p, const State& start, double cycles) {
     ContactRecord contacts;
     StroboscopicRecord stroboscopic(p);
-    Lyapunov lyapunov(p, 0, cycles * p.cycle(), {true, false, false, 256});
+    Lyapunov lyapunov(p, 0, cycles * p.cycle(), qr_alone);
     Observer* const observers[] = {&contacts, &stroboscopic, &lyapunov};
     const Outcome outcome = simulate(p, start, {cycles * p.cycle(), 10000000, {}}, observers);
     const Growth growth = growth_of(lyapunov.product());
@@ -143,7 +143,7 @@ TEST_CASE(
 
 TEST_CASE("the multipliers of a regular response are the exponents of a long window") {
     const Parameters p = table1(0.015, Damping::closed_form);
-    Lyapunov lyapunov(p, 5000, 30000, {true, false, false, 256});
+    Lyapunov lyapunov(p, 5000, 30000, qr_alone);
     record(p, default_state(p), 30000, 1000000, {&lyapunov});
     const Exponents of_orbit = judge(0.015, Damping::closed_form).orbit->exponents(p);
     // The two pairs are complex: QR's split of each pair dies out as 1/T, its sum is exact.
@@ -422,9 +422,8 @@ TEST_CASE("each window of a run has its own verdict") {
     const Parameters p = table1(0.022000000999999998, Damping::closed_form);
     ContactRecord contacts;
     StroboscopicRecord stroboscopic(p);
-    Lyapunov first(p, 0, 1932, {true, false, false, 256}),
-        second(p, 0, 3764, {true, false, false, 256}),
-        last(p, 4164, 20000, {true, false, false, 256});
+    Lyapunov first(p, 0, 1932, qr_alone), second(p, 0, 3764, qr_alone),
+        last(p, 4164, 20000, qr_alone);
     Observer* const observers[] = {&contacts, &stroboscopic, &first, &second, &last};
     simulate(p, default_state(p), {20000, 10000000, {}}, observers);
     const Regime r = regime_of(

@@ -18,7 +18,8 @@ struct Windows {
 };
 Windows windows(double b, int count, double length, double start) {
     const Parameters p = table1(b, Damping::closed_form);
-    Lyapunov lyapunov(p, start, 1e9, {true, false, false, 1000000});
+    Lyapunov lyapunov(
+        p, start, 1e9, {.eigenvalues = false, .raw_product = false, .history = 1000000});
     record(p, default_state(p), start + (count + 1) * length, 10000000, {&lyapunov});
     const ExponentHistory& h = lyapunov.product().qr_history();
     const double from = lyapunov.product().start_tau();
