@@ -11,6 +11,20 @@ namespace {
 
 constexpr double ulp = std::numeric_limits<double>::epsilon();
 
+// Halley's error shrinks with the cube of the step. So after a step below 1e-6 of the root the next
+// one is below 1e-18 of it: not worth taking.
+constexpr double last_step = 1e-6;
+// In a cell, of its width h: the state is then carried over the last step by its Taylor polynomial
+// to the second order, whose remainder, (1e-7)^3 h^3/6 of x''', lies below an ulp of x.
+constexpr double last_step_in_cell = 1e-7;
+// Of a chatter's next hop, of its duration: thousands of hops follow each other, and each one's
+// error goes into the next, hence a margin beside last_step.
+constexpr double last_step_of_chatter = 1e-8;
+
+// Rounding of g on the grid: five products and as many sums, each within half an ulp of the largest
+// term, and as much again in the table and the state that they are made of, with a margin of three.
+constexpr double grid_rounding = 16 * ulp;
+
 /// Halley's step towards the root of a function of value f, with its derivative and half its second
 /// one.
 double halley(double f, double first, double half_second) {
@@ -253,7 +267,7 @@ std::optional<Contact> next_contact(
     const Flow& flow, const FlightStart& start, double b, double limit,
     std::vector<Touch>& touches) {
     const auto bounds = flow.bounds(start.lo);
-    const double h = flow.cell(), eta = 16 * ulp * (bounds.x + b + std::abs(start.y));
+    const double h = flow.cell(), eta = grid_rounding * (bounds.x + b + std::abs(start.y));
     const Search search{flow, start, b, limit, h, eta, bounds.x_ddot, touches};
     const double inside = b - bounds.x_ddot * h * h / 8 - eta;  // property 1
 
