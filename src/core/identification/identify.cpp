@@ -27,10 +27,20 @@ double sample_interval(const MeasuredRecord& r) {
 // Pulses of impacts between hard bodies last .2 to 2 ms; at an oscillator of 8 Hz that is .01 to .1
 // in tau.
 constexpr double shortest_pulse = 0.005, longest_pulse = 0.15;
+// Lengths of pulses that are tried, one over the one before: 58 of them. The moments change by a
+// hundredth of the length from one to the next.
+constexpr double pulse_ratio = 1.06;
+// x is continuous at an impact: of the noise of one sample the fit may leave it that much of a
+// jump. Far smaller, and the equations lose digits; larger, and the kink in x tells less of the
+// moment.
+constexpr double continuity_share = 0.05;
 // A jump of x' without a spike is an impact only beyond this many standard errors. It is looked for
 // in so many samples at once.
 constexpr double kink_sigmas = 7;
 constexpr std::size_t kink_window = 400;
+// Without a kink the sum of n squares of the noise is n +- sqrt(2 n): an interval below this one,
+// which white noise reaches in no record, is not searched.
+double unsuspicious_misfit(std::size_t n) { return 1.3 * static_cast<double>(n) + 10; }
 // The jump of a real impact is the area of its spike; noise and few samples leave that much of it.
 constexpr double least_jump = 0.25;
 
@@ -292,7 +302,7 @@ FittedMotion fit_motion(
     }
     Equations equations(n);
     std::vector<Rows> ends;
-    const double sigma_c = 0.05 * (r.x.empty() ? sigma_a : sigma_x);
+    const double sigma_c = continuity_share * (r.x.empty() ? sigma_a : sigma_x);
     for (std::size_t k = 0; k < n; ++k) {
         equations.add(k, N[k], g[k]);
         if (k + 1 == n) break;
@@ -435,7 +445,7 @@ std::vector<Spike> find_kinks(
             return (left - used * z).squaredNorm();
         };
         const double whole_misfit = misfit(2, nullptr);
-        if (whole_misfit < 1.3 * static_cast<double>(n) + 10) continue;
+        if (whole_misfit < unsuspicious_misfit(n)) continue;
         double least = whole_misfit, where = 0, jump = 0;
         for (std::size_t c = 3; c + 3 < n; ++c) {
             const double tau = 0.5 * (r.tau[first + c] + r.tau[first + c - 1]);
@@ -576,7 +586,7 @@ RefinedImpacts refine_impacts(
         // must not choose it.
         double least = std::numeric_limits<double>::infinity(), pulse = refined.pulse;
         for (double length = std::min(0.3 * step, shortest_pulse);
-             length < std::max(6 * step, longest_pulse); length *= 1.06) {
+             length < std::max(6 * step, longest_pulse); length *= pulse_ratio) {
             std::vector<double> misfits;
             for (std::size_t i = 0; i < spikes.size(); i += 1 + spikes.size() / 100) {
                 double misfit;
