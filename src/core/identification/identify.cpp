@@ -27,8 +27,7 @@ double sample_interval(const MeasuredRecord& r) {
 // Pulses of impacts between hard bodies last .2 to 2 ms; at an oscillator of 8 Hz that is .01 to .1
 // in tau.
 constexpr double shortest_pulse = 0.005, longest_pulse = 0.15;
-// Lengths of pulses that are tried, one over the one before: 58 of them. The moments change by a
-// hundredth of the length from one to the next.
+// Lengths of pulses that are tried, each over the one before: 58 between the two above.
 constexpr double pulse_ratio = 1.06;
 // x is continuous at an impact: of the noise of one sample the fit may leave it that much of a
 // jump. Far smaller, and the equations lose digits; larger, and the kink in x tells less of the
@@ -38,8 +37,9 @@ constexpr double continuity_share = 0.05;
 // in so many samples at once.
 constexpr double kink_sigmas = 7;
 constexpr std::size_t kink_window = 400;
-// Without a kink the sum of n squares of the noise is n +- sqrt(2 n): an interval below this one,
-// which white noise reaches in no record, is not searched.
+// Of n samples in units of the noise: white noise leaves n +- sqrt(2 n), and noise that was
+// estimated from few samples a little more. An interval that leaves no more than this is not
+// searched.
 double unsuspicious_misfit(std::size_t n) { return 1.3 * static_cast<double>(n) + 10; }
 // The jump of a real impact is the area of its spike; noise and few samples leave that much of it.
 constexpr double least_jump = 0.25;
