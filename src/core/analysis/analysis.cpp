@@ -1,6 +1,7 @@
 #include "core/analysis/analysis.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "core/stability/windows.hpp"
@@ -309,6 +310,8 @@ private:
 }  // namespace
 
 Analysis analyse(const Wanted& w, const Interrupt& interrupt) {
+    assert(w.window.from < w.tau_end && w.most_points > 0 && w.most_listed > 0);
+    assert(w.estimators.history >= shortest_history);
     Observers observers(w);
     Analysis a;
     a.outcome = simulate(

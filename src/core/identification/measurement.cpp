@@ -1,6 +1,7 @@
 #include "core/identification/measurement.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "core/motion/record.hpp"
@@ -99,6 +100,7 @@ Spikes spikes_of(const Measurement& m) {
 }
 
 MeasurementResult conclude(const Measurement& m, const std::vector<Spike>& spikes) {
+    assert(m.is_record() ? spikes.size() >= 2 : m.impacts.size() >= 2);
     Parameters p = m.parameters;
     std::optional<RefinedImpacts> refined;
     Identification found;

@@ -1,6 +1,7 @@
 #include "core/measures/manifold.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -17,6 +18,7 @@ double k_of(double R) { return (1 - R) / (1 + R); }
 }  // namespace
 
 double manifold_C(double R, double Omega, double b, double V) {
+    assert(R >= 0 && R <= 1 && Omega > 0 && V >= 0);
     const double W = V / Omega;
     // C^2 = (pi W/2 - b)^2 + k^2 W^2
     return std::hypot(quarter_turn * W - b, k_of(R) * W);
@@ -66,6 +68,7 @@ std::vector<ManifoldPoint> manifold_branch(
 }
 
 Manifold manifold_of(const Parameters& p, double V_max, std::size_t points) {
+    assert(p.R_plus == p.R_minus && points >= 2);
     const double R = p.R_plus;
     const ManifoldPoint fold = manifold_fold(R, p.Omega, p.b),
                         breaking = manifold_symmetry_breaking(R, p.Omega, p.b),

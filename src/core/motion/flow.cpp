@@ -1,6 +1,7 @@
 #include "core/motion/flow.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -120,6 +121,7 @@ void turn(Oscillation& o, double c, double s) {
 }  // namespace
 
 Oscillation Flow::at(const Oscillation& o, int k) const {
+    assert(k >= 0 && k <= cells);
     Oscillation next = o;
     turn(next, cos_[k], sin_[k]);
     next.x = x_x_[k] * o.x + x_v_[k] * o.x_dot + x_s_[k] * o.sin_theta + x_c_[k] * o.cos_theta;
@@ -172,6 +174,7 @@ Oscillation Flow::along(const Series& c, const Oscillation& o, double d) const {
 }
 
 Oscillation Flow::after(Oscillation o, double s) const {
+    assert(s >= 0);
     for (; s >= reach(); s -= reach()) o = at(o, cells);
     const int k = static_cast<int>(s / h_);
     o = at(o, k);
@@ -179,6 +182,7 @@ Oscillation Flow::after(Oscillation o, double s) const {
 }
 
 Transfer Flow::transfer(double s) const {
+    assert(s >= 0);
     Transfer j;
     auto then = [&j](const Transfer& t) {
         j = {

@@ -115,8 +115,10 @@ private:
     double stiffness_, damping_, forcing_, Omega_, h_;
     double root_inverse_;  // of the stiffness
     double decay_;
-    // x(k h) and x'(k h) from x, x', sin theta, cos theta at 0; k h; cos and sin of Omega k h: each
-    // a column over k.
+    // The flow over k h, each entry a column over k; then k h itself, cos and sin of Omega k h:
+    //
+    //     [x (k h)]   [x_x  x_v  x_s  x_c] [x, x', sin theta, cos theta]^T
+    //     [x'(k h)] = [v_x  v_v  v_s  v_c]
     std::vector<double> x_x_, x_v_, x_s_, x_c_, v_x_, v_v_, v_s_, v_c_, time_, cos_, sin_;
     // Taylor coefficients of x from each part of the state.
     Series from_x_, from_x_dot_, from_sin_, from_cos_;

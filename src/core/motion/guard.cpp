@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -266,6 +267,8 @@ struct Search {
 std::optional<Contact> next_contact(
     const Flow& flow, const FlightStart& start, double b, double limit,
     std::vector<Touch>& touches) {
+    assert(limit <= flow.reach() && b > 0);
+    assert(start.side == 0 || (start.zeros >= 1 && start.zeros <= 3));
     const auto bounds = flow.bounds(start.lo);
     const double h = flow.cell(), eta = grid_rounding * (bounds.x + b + std::abs(start.y));
     const Search search{flow, start, b, limit, h, eta, bounds.x_ddot, touches};
@@ -296,6 +299,7 @@ std::optional<Contact> next_contact(
 
 std::optional<double> next_release(
     const Flow& flow, const Oscillation& start, int side, int zeros, double limit) {
+    assert(side != 0 && (zeros == 0 || zeros == 1) && limit <= flow.reach());
     const double h = flow.cell();
     for (int k = 0; k < Flow::cells && k * h < limit; ++k) {
         const Flow::Series x = flow.series(k == 0 ? start : flow.at(start, k));

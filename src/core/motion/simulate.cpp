@@ -1,6 +1,7 @@
 #include "core/motion/simulate.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -222,6 +223,7 @@ State Stretch::at(double s) const {
 Outcome simulate(
     const Parameters& parameters, const State& start, const Limits& limits,
     std::span<Observer* const> observers) {
+    assert(validate(parameters, start).empty());
     return Run(parameters, start, limits, observers).run();
 }
 

@@ -1,5 +1,7 @@
 #include "core/sweep/grid.hpp"
 
+#include <cassert>
+
 namespace vines {
 
 std::size_t Grid::points() const {
@@ -9,6 +11,7 @@ std::size_t Grid::points() const {
 }
 
 Place Grid::place_of(std::size_t line) const {
+    assert(line < lines());
     Place place{0, std::vector<std::size_t>(steps.size(), 0)};
     auto take = [&line](std::size_t n) {
         const std::size_t at = line % n;
