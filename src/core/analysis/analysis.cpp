@@ -166,22 +166,24 @@ private:
     }
 
     void exponents() {
-        const Verdict by_exponents = verdict_by_exponents(growth_of(o_.lyapunov.product()));
+        const Growth growth = growth_of(o_.lyapunov.product());
         a_.regime = regime_of(
             w_.parameters, w_.start,
             {.contacts = o_.contacts,
              .stroboscopic = o_.whole_cycles,
              .tau_start = a_.reached.from,
              .tau_end = a_.reached.to,
-             .by_exponents = by_exponents,
+             .by_exponents = verdict_by_exponents(growth),
              .stop = interrupt_.run},
             w_.parts.before_capture);
-        a_.exponents.emplace(window_exponents(w_.window, o_.lyapunov.take(), *a_.regime));
+        a_.exponents.emplace(window_exponents(w_.window, o_.lyapunov.take(), growth, *a_.regime));
         if (w_.parts.exponents)
             add_warnings(a_.exponents->product, w_.estimators, true, a_.warnings);
         a_.windows.reserve(w_.windows.size());
         for (std::size_t i = 0; i < w_.windows.size(); ++i) {
-            a_.windows.push_back(window_exponents(w_.windows[i], o_.windows.take(i), *a_.regime));
+            const Growth of_window = growth_of(o_.windows.product(i));
+            a_.windows.push_back(
+                window_exponents(w_.windows[i], o_.windows.take(i), of_window, *a_.regime));
             add_warnings(a_.windows[i].product, w_.estimators, false, a_.warnings);
         }
     }

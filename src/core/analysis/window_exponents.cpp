@@ -5,8 +5,7 @@
 namespace vines {
 
 WindowExponents window_exponents(
-    const Interval& asked, TransferProduct&& product, const Regime& regime) {
-    const Growth growth = growth_of(product);
+    const Interval& asked, TransferProduct&& product, const Growth& growth, const Regime& regime) {
     const Judgement judgement = judge(growth, regime, product.start_tau());
     return {asked, std::move(product), growth, judgement};
 }

@@ -15,9 +15,9 @@ struct WindowExponents {
     Judgement judgement;
 };
 
-/// `regime`: of the run.
+/// `growth`: of the product; `regime`: of the run.
 WindowExponents window_exponents(
-    const Interval& asked, TransferProduct&& product, const Regime& regime);
+    const Interval& asked, TransferProduct&& product, const Growth& growth, const Regime& regime);
 
 /// What is worth a warning where the histories are shown as well: all; else the sum rule alone.
 void add_warnings(
