@@ -6,9 +6,6 @@ namespace vines::api {
 
 namespace {
 
-// "-2.2250738585072014e-308,": the longest double that reads back to the same bits.
-// count: up to 2000000; word: true, false, null.
-constexpr double number = 25, side = 3, count = 8, word = 6, bracket = 2;
 // Words, parameters, the orbit, 200 points on each branch of the manifold.
 constexpr double rest = 64 * 1024;
 // The exponents of one window by three estimators, with their words.
@@ -22,6 +19,9 @@ struct AnswerSize {
 };
 
 AnswerSize size_of(const SimulateRequest& r) {
+    // "-2.2250738585072014e-308,": the longest double that reads back to the same bits.
+    // count: up to 2000000; word: true, false, null.
+    constexpr double number = 25, side = 3, count = 8, word = 6, bracket = 2;
     AnswerSize size;
     const double si = r.system.si ? number : 0;  // of each column that has a twin in SI
     size.fixed += window * static_cast<double>(r.wanted.windows.size());

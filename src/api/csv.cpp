@@ -36,7 +36,8 @@ std::vector<std::string_view> cells(std::string_view line, char separator) {
           shown, nullptr, where + ": " + what}});
 }
 
-double number(std::string_view text, char separator, std::size_t line, const std::string& column) {
+double number_in(
+    std::string_view text, char separator, std::size_t line, const std::string& column) {
     std::string copy;
     if (separator != ',' && text.find(',') != std::string_view::npos) {
         copy = text;
@@ -92,7 +93,7 @@ std::vector<CsvColumn> parse_csv(std::string_view text) {
                     std::to_string(columns.size()));
         for (std::size_t k = 0; k < parts.size(); ++k)
             columns[k].values.push_back(
-                number(parts[k], separator, number_of_line, columns[k].name));
+                number_in(parts[k], separator, number_of_line, columns[k].name));
     }
     if (columns.empty())
         throw Problem(422, "the record is empty: it needs a header and lines of numbers");

@@ -74,7 +74,7 @@ std::map<std::string, std::string> origins_of(const Layered& l, const System& s)
 std::vector<std::string> notes_on(const Layered& l, const System& s) {
     std::vector<std::string> notes;
     const Parameters& p = s.parameters;
-    if (l.left.contains("damping") && l.word("damping") != l.left["damping"])
+    if (l.left.contains("damping") && l.word("damping") != l.left["damping"].get<std::string>())
         notes.push_back(
             "the system is not that of preset " + l.preset + ": its damping is " +
             l.word("damping") + ", not the preset's " + l.left["damping"].get<std::string>());

@@ -1,11 +1,12 @@
 // The plots that several chapters draw.
 #pragma once
 
-#include <limits>
 #include <vector>
 
 #include "report/runs.hpp"
 #include "report/svg.hpp"
+
+#include "core/motion/special_values.hpp"
 
 namespace vines::report {
 
@@ -15,7 +16,7 @@ inline const char* const grey = "#8a939b";
 inline const char* const red = "#b3261e";
 
 /// x in mm up to some moment.
-Plot displacement(const Series& series, double to = std::numeric_limits<double>::infinity());
+Plot displacement(const Series& series, double to = infinity);
 /// y - x in mm between two moments, between the walls.
 Plot relative_displacement(const Response& response, double from, double to);
 /// Above: the four exponents as the paper computed them (33), and the floor that rounding sets

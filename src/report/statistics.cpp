@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
+
+#include "core/motion/special_values.hpp"
 
 namespace vines::report {
 
@@ -17,7 +18,7 @@ Moments moments(const std::vector<double>& values) {
 }
 
 double quantile(std::vector<double> values, double share) {
-    if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+    if (values.empty()) return nan;
     const auto at =
         values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
     std::nth_element(values.begin(), at, values.end());

@@ -15,7 +15,7 @@ namespace vines::hunt {
 namespace {
 
 constexpr double tolerance = 1e-6;
-constexpr int most_impacts = 60;
+constexpr int most_impacts_by_the_exact_product = 60;
 // R = 0 soon ends in a stick: windows of few impacts keep some of them at rank 3.
 int fewest_impacts(const Parameters& p) { return std::min(p.R_plus, p.R_minus) > 0 ? 5 : 3; }
 // A run in double precision that leaves the true one by more (in tau) is no regular window.
@@ -68,7 +68,8 @@ Window random_window(std::uint64_t seed, int number) {
     std::mt19937_64 engine = engine_of(seed, number);
     for (;;) {
         const System system = strongly_damped(engine);
-        const int fewest = fewest_impacts(system.parameters), most = fewest == 3 ? 5 : most_impacts;
+        const int fewest = fewest_impacts(system.parameters),
+                  most = fewest == 3 ? 5 : most_impacts_by_the_exact_product;
         if (auto window =
                 window_of(system, fewest + static_cast<int>(engine() % (most - fewest + 1))))
             return *window;

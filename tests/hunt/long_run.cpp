@@ -17,7 +17,7 @@ constexpr double returned = 1e-9;
 // From here on a run that has returned for so long is not followed further.
 constexpr int settled_after = 6000, settled_for = 1000;
 // Enough for thirty impacts per cycle.
-constexpr long most_impacts = 600000;
+constexpr long most_impacts_of_a_long_run = 600000;
 
 /// The states at half cycles.
 class HalfCycleStates : public Observer {
@@ -108,7 +108,8 @@ LongRun::LongRun(const Parameters& p, const State& start, int cycles) : paramete
         look += settled_for;
         return all_along;
     };
-    simulate(p, start, {(cycles + 0.25) * p.cycle(), most_impacts, settled}, observers);
+    simulate(
+        p, start, {(cycles + 0.25) * p.cycle(), most_impacts_of_a_long_run, settled}, observers);
     cycles_ = std::min(cycles, complete_cycles());
     impacts_.resize(std::max(impacts_.size(), static_cast<std::size_t>(cycles_) + 1));
     sticks_.resize(std::max(sticks_.size(), static_cast<std::size_t>(cycles_) + 1));

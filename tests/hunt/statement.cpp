@@ -8,7 +8,7 @@ namespace vines::hunt {
 
 namespace {
 
-constexpr long most_impacts = 500000;
+constexpr long most_impacts_of_a_request = 500000;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 Verdict verdict_named(const api::Json& name) {
@@ -27,7 +27,7 @@ Statement sweep_point(const System& system, int transient, int cycles) {
     PointOptions options;
     options.transient_cycles = transient;
     options.cycles = cycles;
-    options.max_impacts = most_impacts;
+    options.max_impacts = most_impacts_of_a_request;
     const PointResult r = measure(p, system.start, options, {});
     Statement s{};
     s.door = "sweep, " + std::to_string(transient) + " + " + std::to_string(cycles) + " cycles";
@@ -63,7 +63,7 @@ Statement simulation(const System& system, int cycles) {
     s.cycles = cycles;
     s.request = request(
         system, "\"cycles\":" + std::to_string(cycles) +
-                    ",\"max_impacts\":" + std::to_string(most_impacts) +
+                    ",\"max_impacts\":" + std::to_string(most_impacts_of_a_request) +
                     ",\"include\":[\"exponents\",\"regime\"],\"exponents\":[\"qr\"]");
     const api::Json answer =
         api::simulate_answer(api::read_simulate_request(api::Json::parse(s.request)), {});

@@ -22,7 +22,7 @@ void set_zeta(Parameters& p, double zeta) {
 }
 
 /// Amplitude of the oscillator without the absorber.
-double free_amplitude(const Parameters& p) {
+double unattached_amplitude(const Parameters& p) {
     return p.epsilon * p.A() / std::hypot(1 - p.Omega * p.Omega, 2 * p.zeta() * p.Omega);
 }
 
@@ -37,7 +37,7 @@ State random_start(std::mt19937_64& engine, const Parameters& p, double amplitud
 }
 
 System with_random_start(std::mt19937_64& engine, const Parameters& p) {
-    return {p, random_start(engine, p, free_amplitude(p))};
+    return {p, random_start(engine, p, unattached_amplitude(p))};
 }
 
 Damping random_damping(std::mt19937_64& engine) {
@@ -53,7 +53,7 @@ System wide(std::mt19937_64& engine) {
     p.G = log_uniform(engine, 1e-4, 100);
     p.R_plus = uniform(engine, 0.05, 0.95);
     p.R_minus = chance(engine, 0.7) ? p.R_plus : uniform(engine, 0.05, 0.95);
-    p.b = free_amplitude(p) * log_uniform(engine, 0.02, 2);
+    p.b = unattached_amplitude(p) * log_uniform(engine, 0.02, 2);
     return with_random_start(engine, p);
 }
 
@@ -84,7 +84,7 @@ System contracting(std::mt19937_64& engine) {
     p.Omega = uniform(engine, 0.4, 1.3);
     p.R_plus = uniform(engine, 0.05, 0.3);
     p.R_minus = chance(engine, 0.7) ? p.R_plus : uniform(engine, 0.05, 0.3);
-    p.b = free_amplitude(p) * log_uniform(engine, 0.03, 1.5);
+    p.b = unattached_amplitude(p) * log_uniform(engine, 0.03, 1.5);
     return chance(engine, 0.5) ? System{p, default_state(p)} : with_random_start(engine, p);
 }
 
@@ -96,7 +96,7 @@ System neutral(std::mt19937_64& engine) {
         case 1: p.R_plus = 1; break;
         case 2: p.lambda = 0; break;
         case 3:  // not touched
-            p.b = free_amplitude(p) * uniform(engine, 1.5, 5);
+            p.b = unattached_amplitude(p) * uniform(engine, 1.5, 5);
             system.start = {0, 0, 0, 0};
             break;
     }
@@ -160,7 +160,7 @@ System strongly_damped(std::mt19937_64& engine) {
                : chance(engine, 0.3) ? uniform(engine, 0.05, 0.3)
                                      : uniform(engine, 0.3, 1);
     p.R_minus = chance(engine, 0.6) ? p.R_plus : uniform(engine, 0.05, 1);
-    p.b = free_amplitude(p) * log_uniform(engine, 0.1, 1);
+    p.b = unattached_amplitude(p) * log_uniform(engine, 0.1, 1);
     System system = with_random_start(engine, p);
     if (p.R_plus == 0) system.start.y_dot *= 10;  // fast enough to leave the wall at times
     return system;

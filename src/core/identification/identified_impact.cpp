@@ -1,4 +1,5 @@
 #include "core/identification/identified_impact.hpp"
+#include "core/motion/special_values.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -51,9 +52,7 @@ void complete_impacts(const Parameters& p, std::vector<IdentifiedImpact>& impact
         std::max(least_momentum_tolerance, 10 * robust_deviation(errors)), momentum_tolerance);
     for (std::size_t k = 0; k < impacts.size(); ++k)
         impacts[k].fault = fault_of(
-            impacts[k],
-            k > 0 ? impacts[k].tau - impacts[k - 1].tau : std::numeric_limits<double>::infinity(),
-            pulse, tolerance);
+            impacts[k], k > 0 ? impacts[k].tau - impacts[k - 1].tau : infinity, pulse, tolerance);
 }
 
 bool flight_fits(

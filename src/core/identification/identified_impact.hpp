@@ -2,11 +2,11 @@
 // missing in the balance of momentum, and why it is left out.
 #pragma once
 
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "core/motion/parameters.hpp"
+#include "core/motion/special_values.hpp"
 
 namespace vines {
 
@@ -16,11 +16,11 @@ struct IdentifiedImpact {
     int side;
     double x, x_dot_before, x_dot_after, x_ddot_before;
     /// NaN where there is no impact on that side.
-    double y_dot_before = std::numeric_limits<double>::quiet_NaN();
-    double y_dot_after = std::numeric_limits<double>::quiet_NaN();
-    double R = std::numeric_limits<double>::quiet_NaN();  ///< (4)
+    double y_dot_before = nan;
+    double y_dot_after = nan;
+    double R = nan;  ///< (4)
     /// Of x' + epsilon y', over the typical (median) jump of x'.
-    double momentum_error = std::numeric_limits<double>::quiet_NaN();
+    double momentum_error = nan;
     /// Why it is left out; empty if it is not.
     std::string fault = "";
 };

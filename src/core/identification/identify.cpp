@@ -1,4 +1,5 @@
 #include "core/identification/identify.hpp"
+#include "core/motion/special_values.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -6,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "core/identification/robust.hpp"
@@ -14,8 +14,6 @@
 namespace vines {
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// The typical one: a record may have gaps.
 double sample_interval(const MeasuredRecord& r) {
@@ -151,7 +149,7 @@ Spikes find_spikes(const MeasuredRecord& r, double sigmas) {
         masked = std::move(next);
     }
     found.noise = std::max(found.noise, background_share * robust_deviation(r.x_ddot));
-    found.spikes = grouped(r, left, found.noise, sigmas, std::numeric_limits<double>::infinity());
+    found.spikes = grouped(r, left, found.noise, sigmas, infinity);
     return found;
 }
 
@@ -330,7 +328,7 @@ FittedMotion fit_motion(
     };
     // An interval with hardly a sample says nothing.
     const auto error = [](double variance) {
-        return variance > 0 ? std::sqrt(variance) : std::numeric_limits<double>::infinity();
+        return variance > 0 ? std::sqrt(variance) : infinity;
     };
     for (std::size_t k = 0; k + 1 < n; ++k) {
         const Eigen::Vector4d before = start(m.x[k], m.x_dot[k]),
@@ -584,7 +582,7 @@ RefinedImpacts refine_impacts(
         };
         // One pulse length for the record: that with the smallest typical misfit. A few odd spikes
         // must not choose it.
-        double least = std::numeric_limits<double>::infinity(), pulse = refined.pulse;
+        double least = infinity, pulse = refined.pulse;
         for (double length = std::min(0.3 * step, shortest_pulse);
              length < std::max(6 * step, longest_pulse); length *= pulse_ratio) {
             std::vector<double> misfits;

@@ -10,11 +10,11 @@
 // per unit of tau^2.
 #pragma once
 
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "core/identification/measured_exponents.hpp"
+#include "core/motion/special_values.hpp"
 
 namespace vines {
 
@@ -53,7 +53,7 @@ struct FittedMotion {
     /// Of what is left of each sensor, standard deviation; NaN without it.
     double noise_x, noise_x_ddot;
     /// That over the sensor's own noise,.
-    double misfit_x = std::numeric_limits<double>::quiet_NaN(), misfit_x_ddot = misfit_x;
+    double misfit_x = nan, misfit_x_ddot = misfit_x;
     ///< taken from the signal beside the pulses: 1 if all is explained
     /// Of the acceleration at each sample without the motion: the pulses and the noise.
     std::vector<double> left;

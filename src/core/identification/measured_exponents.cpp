@@ -1,9 +1,9 @@
 #include "core/identification/measured_exponents.hpp"
+#include "core/motion/special_values.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include "core/identification/robust.hpp"
@@ -12,7 +12,6 @@ namespace vines {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double hiding_gap = 0.1;  // of a typical flight
 
 /// T over the flight to impact i from the one before it, which the caller knows to fit.

@@ -1,4 +1,5 @@
 #include "core/identification/measurement.hpp"
+#include "core/motion/special_values.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -51,7 +52,7 @@ std::optional<ForwardRun> forward_run(
                  start = std::fmod(first.tau + (phase - p.phi()) / p.Omega, p.cycle());
     const State state{first.x_dot_after, first.x, first.y_dot_after, first.x - first.side * p.b};
     ImpactRecord impacts;
-    Lyapunov lyapunov(p, 0, std::numeric_limits<double>::infinity(), qr_alone);
+    Lyapunov lyapunov(p, 0, infinity, qr_alone);
     Observer* const observers[] = {&impacts, &lyapunov};
     simulate(
         p, state,

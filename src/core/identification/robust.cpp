@@ -1,15 +1,15 @@
 #include "core/identification/robust.hpp"
+#include "core/motion/special_values.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 namespace vines {
 
 double median(std::vector<double> v) {
     std::erase_if(v, [](double x) { return std::isnan(x); });
-    if (v.empty()) return std::numeric_limits<double>::quiet_NaN();
+    if (v.empty()) return nan;
     const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
     std::nth_element(v.begin(), middle, v.end());
     return v.size() % 2 ? *middle : 0.5 * (*middle + *std::max_element(v.begin(), middle));
@@ -17,7 +17,7 @@ double median(std::vector<double> v) {
 
 double quantile_of_moduli(std::vector<double> v, double share) {
     std::erase_if(v, [](double x) { return std::isnan(x); });
-    if (v.empty()) return std::numeric_limits<double>::quiet_NaN();
+    if (v.empty()) return nan;
     for (double& x : v) x = std::abs(x);
     const auto at =
         v.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(v.size() - 1));
@@ -33,7 +33,7 @@ double robust_deviation(std::vector<double> v) {
 double difference_noise(
     const std::vector<double>& tau, const std::vector<double>& v,
     const std::vector<char>& spoiled) {
-    if (v.size() < 4) return std::numeric_limits<double>::quiet_NaN();
+    if (v.size() < 4) return nan;
     const double step = (tau.back() - tau.front()) / static_cast<double>(tau.size() - 1);
     std::vector<double> third;
     for (std::size_t i = 3; i < v.size(); ++i) {

@@ -1,4 +1,5 @@
 #include "core/measures/regime.hpp"
+#include "core/motion/special_values.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -34,10 +35,7 @@ constexpr double captured_within = 0.1;
 std::vector<Contacts> within(const std::vector<Contacts>& all, double from, double to) {
     const auto before = [](const Contacts& c, double tau) { return c.tau < tau; };
     const auto first = std::lower_bound(all.begin(), all.end(), from, before);
-    return {
-        first,
-        std::lower_bound(
-            first, all.end(), std::nextafter(to, std::numeric_limits<double>::infinity()), before)};
+    return {first, std::lower_bound(first, all.end(), std::nextafter(to, infinity), before)};
 }
 
 /// A phase of the forcing cycle that contacts stay away from, as a share of the cycle: there cycles
@@ -222,7 +220,6 @@ std::optional<std::size_t> captured_from(
 Capture capture_by(
     const Parameters& p, const State& start, std::span<const State> states, const State& scale,
     const RegimeEvidence& e, const PeriodicOrbit& orbit, bool exponents_before) {
-    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     const auto from = captured_from(p, orbit, states, scale);
     Capture capture{
         from ? std::optional(e.stroboscopic.tau(*from)) : std::nullopt,

@@ -1,8 +1,8 @@
 #include "core/motion/impact.hpp"
+#include "core/motion/special_values.hpp"
 
 #include <Eigen/LU>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace vines {
@@ -55,7 +55,7 @@ Matrix4 Saltation::times(const Matrix4& d) const {
 double Saltation::condition(double R) const {
     // M^-1 = S^-1 - S^-1 r g^T S^-1/(1 + g^T S^-1 r). S leaves positions alone and g sees nothing
     // else, so that g^T S^-1 = g^T and 1 + g^T r = -R: no large entry of r is left to cancel.
-    if (R == 0) return std::numeric_limits<double>::infinity();
+    if (R == 0) return infinity;
     const Matrix4 S_inverse = S.inverse();
     return matrix().norm() * (S_inverse + S_inverse * r * gap_gradient().transpose() / R).norm();
 }

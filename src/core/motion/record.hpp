@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/motion/simulate.hpp"
+#include "core/motion/special_values.hpp"
 
 namespace vines {
 
@@ -98,7 +99,7 @@ public:
 private:
     const double tau_start_, tau_end_;
     const std::size_t most_;
-    double before_ = std::numeric_limits<double>::quiet_NaN();
+    double before_ = nan;
 };
 
 class StickRecord : public Observer {

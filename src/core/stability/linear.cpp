@@ -1,10 +1,10 @@
 #include "core/stability/linear.hpp"
+#include "core/motion/special_values.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <cmath>
-#include <limits>
 
 namespace vines {
 
@@ -17,7 +17,7 @@ using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColM
 Eigen::VectorXcd solved(const Square& matrix) {
     const Eigen::EigenSolver<Square> solver(matrix, false);
     if (solver.info() == Eigen::Success) return solver.eigenvalues();
-    return Eigen::VectorXcd::Constant(matrix.rows(), std::numeric_limits<double>::quiet_NaN());
+    return Eigen::VectorXcd::Constant(matrix.rows(), nan);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include "core/stability/lyapunov.hpp"
+#include "core/motion/special_values.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -12,8 +13,6 @@ namespace vines {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr Exponents no_exponents = {nan, nan, nan, nan};
 
 /// A history that thins itself: when full it drops every second entry and from then on takes every

@@ -1,4 +1,5 @@
 #include "core/stability/orbit.hpp"
+#include "core/motion/special_values.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +13,7 @@ namespace vines {
 namespace {
 
 // A period with more impacts than this is not looked for.
-constexpr long most_impacts = 20000;
+constexpr long most_orbit_impacts = 20000;
 // Newton's method has found the orbit when its return misses it by no more, in units of the scale.
 constexpr double closed = 1e-10;
 
@@ -102,7 +103,7 @@ std::optional<State> close(
     const Stop& stop) {
     const State guess = s;
     const Eigen::Vector4d unit = vector(scale);
-    double miss_before = std::numeric_limits<double>::infinity();
+    double miss_before = infinity;
     for (int step = 0, worse = 0; step < 25; ++step) {
         const auto back = after_period(p, s, tau, cycles, stop);
         if (!back) return std::nullopt;
@@ -159,7 +160,7 @@ std::optional<State> follow(
     const Parameters& p, const State& start, double tau, double duration, const Stop& stop,
     std::span<Observer* const> observers) {
     const Outcome outcome =
-        simulate(p, start, {tau + duration, most_impacts, stop, tau}, observers);
+        simulate(p, start, {tau + duration, most_orbit_impacts, stop, tau}, observers);
     if (outcome.reason != End::tau_end) return std::nullopt;
     return outcome.state;
 }

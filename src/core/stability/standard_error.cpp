@@ -1,16 +1,14 @@
 #include "core/stability/standard_error.hpp"
+#include "core/motion/special_values.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace vines {
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // The growth of a window is looked at in so many equal steps of tau, and steps that are up to this
 // many apart are taken to depend on each other: a bit more than a quarter of the window. A

@@ -9,17 +9,18 @@ namespace vines::report {
 
 namespace {
 
-struct Row {
+struct Table2Row {
     double from, to;  ///< tau
     double lambda1, lambda3;
 };
-constexpr Row printed[] = {
+constexpr Table2Row printed_table_2[] = {
     {18.1300, 1708.9, 0.1093, 0.08427},
     {1708.9, 3652.7, 0.1143, 0.09242},
     {3652.7, 5521.3, 0.1197, 0.1015}};
 
-void lambda1(
-    Report& report, const Row& row, const Ensemble& closed_form, const Ensemble& by_equation) {
+void lambda1_of_table_2(
+    Report& report, const Table2Row& row, const Ensemble& closed_form,
+    const Ensemble& by_equation) {
     const Moments here = closed_form.lambda(0);
     const double off = here.deviations_of(row.lambda1);
     report.find(
@@ -37,7 +38,7 @@ void lambda1(
 
 /// What is printed as lambda3 lies where rounding puts it: of the way from there to the true one it
 /// has gone nothing.
-void lambda3(Report& report, const Row& row, const Ensemble& e) {
+void lambda3_of_table_2(Report& report, const Table2Row& row, const Ensemble& e) {
     const double T = row.to - row.from, printed_spread = (row.lambda1 - row.lambda3) * T,
                  true_spread = (e.lambda(0).mean - e.lambda(2).mean) * T;
     const Moments raw = moments(e.raw_spreads), here = e.lambda(2);
@@ -60,9 +61,9 @@ void table_2(Report& report, Runs& runs) {
     report.heading("Table 2: other windows, b = 22 mm");
     const Ensemble &closed_form = runs.ensemble_with_raw_product(0.022),
                    &by_equation = runs.ensemble(0.022, Damping::equation_of_motion);
-    for (const Row& row : printed) {
-        lambda1(report, row, closed_form, by_equation);
-        lambda3(report, row, closed_form);
+    for (const Table2Row& row : printed_table_2) {
+        lambda1_of_table_2(report, row, closed_form, by_equation);
+        lambda3_of_table_2(report, row, closed_form);
     }
     report.say(fmt::format(
         "{} of {} runs up to tau = {:g} were captured by a periodic orbit with chatter; their "

@@ -4,27 +4,29 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "report/chapters.hpp"
 #include "report/plots.hpp"
+
+#include "core/motion/special_values.hpp"
 
 namespace vines::report {
 
 namespace {
 
-struct Row {
+struct Table3Row {
     double b;  ///< m
     double lambda1, lambda3;
 };
-constexpr Row printed[] = {{0.040, 0.1321, 0.1245},   {0.034, 0.1372, 0.127},
-                           {0.031, 0.1528, 0.1391},   {0.028, 0.1452, 0.1309},
-                           {0.025, 0.1138, 0.09727},  {0.022, 0.1093, 0.08427},
-                           {0.020, 0.1014, 0.0783},   {0.018, 0.06368, 0.03913},
-                           {0.017, 0.04703, 0.02043}, {0.0165, 0.03686, 0.01084}};
+constexpr Table3Row printed_table_3[] = {{0.040, 0.1321, 0.1245},   {0.034, 0.1372, 0.127},
+                                 {0.031, 0.1528, 0.1391},   {0.028, 0.1452, 0.1309},
+                                 {0.025, 0.1138, 0.09727},  {0.022, 0.1093, 0.08427},
+                                 {0.020, 0.1014, 0.0783},   {0.018, 0.06368, 0.03913},
+                                 {0.017, 0.04703, 0.02043}, {0.0165, 0.03686, 0.01084}};
 
-void lambda1(
-    Report& report, const Row& row, const Ensemble& closed_form, const Ensemble& by_equation) {
+void lambda1_of_table_3(
+    Report& report, const Table3Row& row, const Ensemble& closed_form,
+    const Ensemble& by_equation) {
     const Moments here = closed_form.lambda(0), other = by_equation.lambda(0);
     const double off = here.deviations_of(row.lambda1);
     const std::string by_eq_1 = by_equation.periodic
@@ -46,7 +48,7 @@ void lambda1(
 
 void all_lambda1(Report& report, Runs& runs) {
     double closed_form = 0, by_equation = 0;
-    for (const Row& row : printed) {
+    for (const Table3Row& row : printed_table_3) {
         const double off = runs.ensemble(row.b).lambda(0).deviations_of(row.lambda1);
         closed_form += off * off;
         const Ensemble& other = runs.ensemble(row.b, Damping::equation_of_motion);
@@ -65,9 +67,10 @@ void all_lambda1(Report& report, Runs& runs) {
          .band = {1, 25}});
 }
 
-void lambda3(Report& report, Runs& runs) {
-    double highest = -std::numeric_limits<double>::infinity();
-    for (const Row& row : printed) highest = std::max(highest, runs.ensemble(row.b).lambda(2).mean);
+void lambda3_of_table_3(Report& report, Runs& runs) {
+    double highest = -infinity;
+    for (const Table3Row& row : printed_table_3)
+        highest = std::max(highest, runs.ensemble(row.b).lambda(2).mean);
     report.find(
         {.where = "Table 3",
          .what = "lambda3",
@@ -83,7 +86,7 @@ Plot comparison(Runs& runs) {
     Curve paper{.colour = red, .label = "paper", .dots = true},
         ours{.colour = colours[0], .label = "closed_form", .dots = true},
         by_equation{.colour = grey, .label = "equation_of_motion", .dots = true};
-    for (const Row& row : printed) {
+    for (const Table3Row& row : printed_table_3) {
         const auto add = [&](Curve& c, const Moments& lambda1) {
             c.x.push_back(1000 * row.b);
             c.y.push_back(lambda1.mean);
@@ -104,11 +107,11 @@ Plot comparison(Runs& runs) {
 
 void table_3(Report& report, Runs& runs) {
     report.heading("Table 3: exponents of the regimes");
-    for (const Row& row : printed)
-        lambda1(
+    for (const Table3Row& row : printed_table_3)
+        lambda1_of_table_3(
             report, row, runs.ensemble(row.b), runs.ensemble(row.b, Damping::equation_of_motion));
     all_lambda1(report, runs);
-    lambda3(report, runs);
+    lambda3_of_table_3(report, runs);
     report.picture(
         {.name = "table3",
          .caption =

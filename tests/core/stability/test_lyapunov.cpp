@@ -13,10 +13,10 @@ using namespace vines::test;
 namespace {
 
 /// lambda1 over consecutive windows of one run.
-struct Windows {
+struct WindowsInARow {
     double mean, deviation, standard_error;
 };
-Windows windows(double b, int count, double length, double start) {
+WindowsInARow windows(double b, int count, double length, double start) {
     const Parameters p = table1(b, Damping::closed_form);
     Lyapunov lyapunov(
         p, start, 1e9, {.eigenvalues = false, .raw_product = false, .history = 1000000});
@@ -50,7 +50,7 @@ TEST_CASE("lambda1 over 100 windows of 1700 is the known one of each response") 
     for (const auto& known : chaotic) {
         const double b = known.first, lambda1 = known.second;
         CAPTURE(b);
-        const Windows w = windows(b, 100, 1700, 1700);
+        const WindowsInARow w = windows(b, 100, 1700, 1700);
         CHECK(std::abs(w.mean - lambda1) < 4 * w.standard_error);
         CHECK(w.standard_error < 0.003);
     }
