@@ -313,7 +313,6 @@ private:
 
 Analysis analyse(const Wanted& w, const Interrupt& interrupt) {
     assert(w.window.from < w.tau_end && w.most_points > 0 && w.most_listed > 0);
-    assert(w.estimators.history >= shortest_history);
     Observers observers(w);
     Analysis a;
     a.outcome = simulate(

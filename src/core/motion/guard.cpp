@@ -264,13 +264,17 @@ struct Search {
 
 }  // namespace
 
+double gap_rounding(const Flow::Bounds& bounds, double y, double b) {
+    return grid_rounding * (bounds.x + b + std::abs(y));
+}
+
 std::optional<Contact> next_contact(
     const Flow& flow, const FlightStart& start, double b, double limit,
     std::vector<Touch>& touches) {
     assert(limit <= flow.reach() && b > 0);
     assert(start.side == 0 || (start.zeros >= 1 && start.zeros <= 3));
     const auto bounds = flow.bounds(start.lo);
-    const double h = flow.cell(), eta = grid_rounding * (bounds.x + b + std::abs(start.y));
+    const double h = flow.cell(), eta = gap_rounding(bounds, start.y, b);
     const Search search{flow, start, b, limit, h, eta, bounds.x_ddot, touches};
     const double inside = b - bounds.x_ddot * h * h / 8 - eta;  // property 1
 

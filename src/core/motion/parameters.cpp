@@ -60,6 +60,14 @@ State default_state(const Parameters& parameters) { return {0, 0, 0, 0.95 * para
 
 std::span<const ParameterRange> parameter_ranges() { return ranges; }
 
+bool is_physical(const Parameters& p) {
+    const auto is_positive = [](double v) { return v > 0 && std::isfinite(v); };
+    const auto is_restitution = [](double R) { return R >= 0 && R <= 1; };
+    return is_positive(p.epsilon) && is_positive(p.Omega) && is_positive(p.b) && p.lambda >= 0 &&
+           std::isfinite(p.lambda) && p.G >= 0 && std::isfinite(p.G) && is_restitution(p.R_plus) &&
+           is_restitution(p.R_minus);
+}
+
 int wall_of(const State& s, double b) {
     if (std::abs(std::abs(s.x - s.y) - b) > wall_tolerance(s, b)) return 0;
     return s.x > s.y ? 1 : -1;
