@@ -64,12 +64,11 @@ Continuity continuity_of(
 }
 
 ExponentOptions of_all_stretches(const ExponentOptions& asked) {
-    return {.qr = true, .eigenvalues = false, .raw_product = false, .history = asked.history};
+    return {.qr = true, .history = asked.history};
 }
 
 ExponentOptions of_longest_stretch(const ExponentOptions& asked) {
     return {
-        .qr = false,
         .eigenvalues = asked.eigenvalues,
         .raw_product = asked.raw_product,
         .history = asked.history};

@@ -221,8 +221,7 @@ TEST_CASE(
             const Continuity c = continuity_of(motion.parameters, impacts, {});
             CHECK(c.left_out == 0);
             CHECK(c.share == doctest::Approx(share).epsilon(0.35));
-            const MeasuredExponents e(
-                motion.parameters, impacts, c.stretches, {true, true, true, 256});
+            const MeasuredExponents e(motion.parameters, impacts, c.stretches, all_estimators);
             CHECK(
                 std::abs(e.all().qr()[0] - motion.lambda1) <
                 (b == 0.009 ? 3e-4 : 0.05 * motion.lambda1 * (1 + 10 * share)));
