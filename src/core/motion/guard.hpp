@@ -54,9 +54,9 @@ struct Touch {
     int side;
 };
 
-/// Rounding error of the gap x - y on the grid of a flight: what |x - y| may exceed b by without a
+/// Rounding error of x - y on the grid of a flight: what |x - y| may exceed b by without a
 /// contact.
-double gap_rounding(const Flow::Bounds& bounds, double y, double b);
+double position_rounding(const Flow::Bounds& bounds, double y, double b);
 
 /// The first contact in (0, limit], limit <= flow.reach(). Tangent contacts passed on the way are
 /// added to `touches`.

@@ -52,6 +52,7 @@ double Parameters::zeta() const {
     return damping == Damping::closed_form ? epsilon * lambda : 0.5 * epsilon * lambda;
 }
 
+// Eq. (3): the base moves spring and damper.
 double Parameters::A() const { return G * std::hypot(1.0, lambda * epsilon * Omega); }
 
 double Parameters::phi() const { return std::atan(lambda * epsilon * Omega); }

@@ -57,7 +57,9 @@ public:
         end_rounding_ = 0.5 * (limits.tau_end - std::nextafter(limits.tau_end, 0));
         relative_speed_ = start.x_dot - start.y_dot;
         assert(is_physical(p));
-        assert(std::abs(start.x - start.y) <= p.b + gap_rounding(free_.bounds(lo_), start.y, p.b));
+        assert(
+            std::abs(start.x - start.y) <=
+            p.b + position_rounding(free_.bounds(lo_), start.y, p.b));
     }
 
     Outcome run() {

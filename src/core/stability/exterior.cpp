@@ -1,17 +1,14 @@
 #include "core/stability/exterior.hpp"
+#include "core/motion/special_values.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/stability/linear.hpp"
 
 namespace vines {
 
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // A product's spectral radius below this share of its norm is made of rounding as much as of the
 // product.
