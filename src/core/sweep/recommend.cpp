@@ -11,7 +11,7 @@ namespace {
 constexpr double fold_shares[] = {0.01, 0.02, 0.03, 0.05, 0.075, 0.1, 0.125, 0.15, 0.2, 0.25, 0.3};
 // Enough for the rms of a strongly modulated response to 5 %.
 constexpr double transient_cycles = 200, cycles = 400;
-constexpr long most_impacts = 50000;
+constexpr long most_impacts_a_motion = 50000;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ std::optional<Recommendation> recommended_b(Parameters p, const std::function<bo
     PointOptions options;
     options.transient_cycles = transient_cycles;
     options.cycles = cycles;
-    options.max_impacts = most_impacts;
+    options.max_impacts = most_impacts_a_motion;
     std::optional<Recommendation> best;
     for (const double share : fold_shares) {
         p.b = manifold_b(p.R_plus, share * *amplitude);
