@@ -7,6 +7,7 @@
 
 #include "api/answer_size.hpp"
 #include "api/describe.hpp"
+#include "api/identify_text.hpp"
 #include "api/si_columns.hpp"
 #include "api/simulate.hpp"
 
@@ -42,7 +43,8 @@ Json describe_identified(const std::vector<IdentifiedImpact>& impacts) {
         {"R", number(&IdentifiedImpact::R)},
         {"momentum_error", number(&IdentifiedImpact::momentum_error)},
         {"status", column([](const auto& i) {
-             return i.fault.empty() ? (std::isnan(i.R) ? "R is not known" : "ok") : i.fault;
+             if (i.is_left_out()) return text_of(i.fault);
+             return std::isnan(i.R) ? "R is not known" : "ok";
          })}};
 }
 
@@ -197,7 +199,8 @@ void add_fit_warnings(
             "the impacts' momentum fits b = {:.4g} m, not b = {:.4g} m ({})", found.b_fitted,
             result.parameters.b, r.system.origin.at("b")));
     if (!std::isfinite(found.b_fitted))
-        warnings.push_back("no b is fitted to the impacts' momentum: " + found.b_fault);
+        warnings.push_back(
+            std::string("no b is fitted to the impacts' momentum: ") + text_of(found.b_fault));
     // What is fitted of the pulses is advice only where the rest of the fit is right.
     if (!result.doubts.empty() || r.measurement.record.x_ddot.empty()) return;
     const std::string advice = sampling_advice(refined, r.measurement.step(), omega0);
@@ -225,7 +228,8 @@ void add_continuity_warnings(const MeasurementResult& result, Warnings& warnings
 
 /// Why no verdict can rest on this measurement; empty if nothing speaks against one.
 std::vector<std::string> all_doubts(const MeasurementResult& result) {
-    std::vector<std::string> doubts = result.doubts;
+    std::vector<std::string> doubts;
+    for (const Doubt doubt : result.doubts) doubts.push_back(text_of(doubt));
     if (result.is_incomplete())
         doubts.insert(
             doubts.begin(),

@@ -11,7 +11,7 @@ namespace {
 // Far above what any run here has: each ends at its tau_end.
 constexpr long max_impacts = 10000000;
 constexpr ExponentOptions qr_and_raw_product = {
-    .qr = true, .eigenvalues = false, .raw_product = true, .history = shortest_history};
+    .qr = true, .raw_product = true, .history = shortest_history};
 
 /// From a start at tau = 0; the rest is to be filled in.
 Wanted run_to(const Parameters& p, const State& start, double tau_end) {
@@ -122,6 +122,7 @@ const Response& Runs::response(double b, Damping damping) {
         .regime = true,
         .before_capture = true,
         .manifold = true};
+    wanted.estimators = all_estimators;
     return responses_.emplace(Key{b, damping}, Response{p, analyse(wanted)}).first->second;
 }
 

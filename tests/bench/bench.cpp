@@ -142,7 +142,7 @@ int main() {
             trajectory.push_back(
                 nanoseconds(impacts, [&] { simulate(p, default_state(p), limits, {}); }));
             spectrum.push_back(nanoseconds(impacts, [&] {
-                Lyapunov lyapunov(p, 0, 1e9, {true, false, false, 256});
+                Lyapunov lyapunov(p, 0, 1e9, qr_alone);
                 Observer* const observers[] = {&lyapunov};
                 simulate(p, default_state(p), limits, observers);
             }));

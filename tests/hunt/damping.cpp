@@ -37,7 +37,8 @@ std::optional<Window> window_of(const System& system, int most) {
     const double longest = 500 / p.Omega;
     for (; most >= fewest_impacts(p); most = most * 2 / 3) {
         EventRecord record;
-        Lyapunov lyapunov(p, 0, longest, {true, true, false, 256});
+        Lyapunov lyapunov(
+            p, 0, longest, {.qr = true, .eigenvalues = true, .history = shortest_history});
         Observer* const observers[] = {&record, &lyapunov};
         simulate(p, start, {longest, most, {}}, observers);
         while (!record.events.empty() && record.events.back().kind != Event::impact)

@@ -114,12 +114,12 @@ public:
         if (a_.outcome.tau <= w_.window.from) warn(warning::WindowNotReached{w_.window.from});
         if (w_.parts.series) series();
         lists();
-        if (is_judged(w_)) exponents();
+        if (is_judged(w_)) judge_motion();
         if (w_.parts.impacts || w_.parts.section) grazing();
         transfers();
         if (w_.parts.section) sections();
         if (w_.parts.energy) energy();
-        if (w_.parts.regime) regime();
+        if (w_.parts.regime) thin_regime();
         if (w_.parts.manifold) manifold();
     }
 
@@ -165,8 +165,18 @@ private:
         return *middle;
     }
 
-    void exponents() {
+    /// The regime, which looks at the growth of the deviations, and the exponents of all windows,
+    /// whose verdicts look at the regime.
+    void judge_motion() {
         const Growth growth = growth_of(o_.lyapunov.product());
+        find_regime(growth);
+        a_.exponents.emplace(window_exponents(w_.window, o_.lyapunov.take(), growth, *a_.regime));
+        if (w_.parts.exponents)
+            add_warnings(a_.exponents->product, w_.estimators, true, a_.warnings);
+        further_windows();
+    }
+
+    void find_regime(const Growth& growth) {
         a_.regime = regime_of(
             w_.parameters, w_.start,
             {.contacts = o_.contacts,
@@ -176,9 +186,9 @@ private:
              .by_exponents = verdict_by_exponents(growth),
              .stop = interrupt_.run},
             w_.parts.before_capture);
-        a_.exponents.emplace(window_exponents(w_.window, o_.lyapunov.take(), growth, *a_.regime));
-        if (w_.parts.exponents)
-            add_warnings(a_.exponents->product, w_.estimators, true, a_.warnings);
+    }
+
+    void further_windows() {
         a_.windows.reserve(w_.windows.size());
         for (std::size_t i = 0; i < w_.windows.size(); ++i) {
             const Growth of_window = growth_of(o_.windows.product(i));
@@ -274,8 +284,9 @@ private:
             .with_absorber = {o_.decay.tau[0], o_.decay.tau[1]}, .without = {alone[0], alone[1]}};
     }
 
-    /// The verdicts have used all of it; of what is shown the moving z is thinned to most_points.
-    void regime() {
+    /// The verdicts have used all of it; of what is shown the moving z is thinned to most_points,
+    /// and the stretches are the last so many.
+    void thin_regime() {
         Regime& r = *a_.regime;
         const std::size_t every = r.moving_tau.size() / w_.most_points + 1;
         for (auto* column : {&r.moving_tau, &r.moving_z}) {
@@ -313,7 +324,6 @@ private:
 
 Analysis analyse(const Wanted& w, const Interrupt& interrupt) {
     assert(w.window.from < w.tau_end && w.most_points > 0 && w.most_listed > 0);
-    assert(w.estimators.history >= shortest_history);
     Observers observers(w);
     Analysis a;
     a.outcome = simulate(

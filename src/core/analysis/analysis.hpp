@@ -99,7 +99,9 @@ struct ManifoldResult {
     std::vector<ManifoldPoint> points;
 };
 
-/// What a run came to. A part that is not wanted is empty.
+/// What a run came to. A part that is not wanted is empty, but for what another one rests on: the
+/// regime and the exponents are there with each other and with windows, and impacts, with no
+/// touches, where a section is wanted.
 struct Analysis {
     Outcome outcome;
     Interval reached;  ///< what of the window the run has reached

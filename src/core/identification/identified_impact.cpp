@@ -14,24 +14,21 @@ namespace {
 // it is left out. Where the others keep momentum better than that, ten times their scatter is
 // enough: flown over two missing impacts it is off by a third.
 constexpr double R_tolerance = 0.15, momentum_tolerance = 0.35, least_momentum_tolerance = 0.1;
+constexpr double momentum_sigmas = 10;
 // What a flight may miss of its speed, and of the way between the walls.
 constexpr double flight_tolerance = 0.1;
 
-std::string fault_of(const IdentifiedImpact& i, double since, double pulse, double tolerance) {
-    if (since < pulse)
-        return "closer to the impact before it than the length of a pulse: one spike picked twice?";
+/// `since`: the time since the impact before it; `tolerance`: of the momentum.
+ImpactFault fault_of(const IdentifiedImpact& i, double since, double pulse, double tolerance) {
+    if (since < pulse) return ImpactFault::too_close;
     if (!std::isnan(i.y_dot_before) && !(i.side * (i.x_dot_before - i.y_dot_before) > 0))
-        return "the mass would move away from the wall that it meets: is an impact beside it "
-               "missing, or b wrong?";
-    if (std::isnan(i.x_dot_before) || std::isnan(i.x_dot_after))
-        return "too few samples beside it for a velocity";
+        return ImpactFault::moves_away;
+    if (std::isnan(i.x_dot_before) || std::isnan(i.x_dot_after)) return ImpactFault::no_velocity;
     // The first and the last: the flight on one side is not known, and R with it.
-    if (std::isnan(i.R)) return "";
-    if (i.R < -R_tolerance || i.R > 1 + R_tolerance)
-        return "R lies outside [0, 1]: is an impact beside it missing, or b wrong?";
-    if (!(std::abs(i.momentum_error) < tolerance))
-        return "momentum is not kept: is an impact beside it missing or false, or b wrong?";
-    return "";
+    if (std::isnan(i.R)) return ImpactFault::none;
+    if (i.R < -R_tolerance || i.R > 1 + R_tolerance) return ImpactFault::R_impossible;
+    if (!(std::abs(i.momentum_error) < tolerance)) return ImpactFault::momentum_lost;
+    return ImpactFault::none;
 }
 
 }  // namespace
@@ -42,6 +39,7 @@ void complete_impacts(const Parameters& p, std::vector<IdentifiedImpact>& impact
         jumps.push_back(std::abs(i.x_dot_after - i.x_dot_before));
     const double typical = median(jumps);
     for (IdentifiedImpact& i : impacts) {
+        // Eq. (4)
         i.R = -(i.x_dot_after - i.y_dot_after) / (i.x_dot_before - i.y_dot_before);
         i.momentum_error =
             (i.x_dot_after - i.x_dot_before + p.epsilon * (i.y_dot_after - i.y_dot_before)) /
@@ -49,7 +47,8 @@ void complete_impacts(const Parameters& p, std::vector<IdentifiedImpact>& impact
         errors.push_back(i.momentum_error);
     }
     const double tolerance = std::min(
-        std::max(least_momentum_tolerance, 10 * robust_deviation(errors)), momentum_tolerance);
+        std::max(least_momentum_tolerance, momentum_sigmas * robust_deviation(errors)),
+        momentum_tolerance);
     for (std::size_t k = 0; k < impacts.size(); ++k)
         impacts[k].fault = fault_of(
             impacts[k], k > 0 ? impacts[k].tau - impacts[k - 1].tau : infinity, pulse, tolerance);
@@ -67,13 +66,10 @@ bool flight_fits(
 Restitution restitution_of(const std::vector<IdentifiedImpact>& impacts, int side) {
     std::vector<double> R, off;
     for (const IdentifiedImpact& i : impacts)
-        if (i.side == side && i.fault.empty() && !std::isnan(i.R)) R.push_back(i.R);
+        if (i.side == side && !i.is_left_out() && !std::isnan(i.R)) R.push_back(i.R);
     const double centre = median(R);
     for (double r : R) off.push_back(r - centre);
-    // The median of n values scatters by 1.25 times what their mean would.
-    return {
-        centre, 1.25 * robust_deviation(off) / std::sqrt(static_cast<double>(R.size())),
-        static_cast<long>(R.size())};
+    return {centre, error_of_median(off), static_cast<long>(R.size())};
 }
 
 }  // namespace vines

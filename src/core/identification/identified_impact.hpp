@@ -2,13 +2,22 @@
 // missing in the balance of momentum, and why it is left out.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "core/motion/parameters.hpp"
 #include "core/motion/special_values.hpp"
 
 namespace vines {
+
+/// Why an impact is left out.
+enum class ImpactFault {
+    none,
+    too_close,     ///< to the impact before it: closer than the length of a pulse
+    moves_away,    ///< the mass would move away from the wall that it meets
+    no_velocity,   ///< too few samples beside it
+    R_impossible,  ///< R lies outside [0, 1]
+    momentum_lost  ///< x' + epsilon y' is not kept
+};
 
 /// One impact with what follows from the flights on both of its sides. What is not known is NaN.
 struct IdentifiedImpact {
@@ -21,8 +30,9 @@ struct IdentifiedImpact {
     double R = nan;  ///< (4)
     /// Of x' + epsilon y', over the typical (median) jump of x'.
     double momentum_error = nan;
-    /// Why it is left out; empty if it is not.
-    std::string fault = "";
+    ImpactFault fault = ImpactFault::none;
+
+    bool is_left_out() const { return fault != ImpactFault::none; }
 };
 
 /// Fills R, momentum_error and fault of each impact from its velocities. Two impacts closer than

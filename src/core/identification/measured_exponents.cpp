@@ -14,6 +14,27 @@ namespace {
 
 constexpr double hiding_gap = 0.1;  // of a typical flight
 
+// Impacts from which on a record is representative; where the jumps are alike, from fewer on
+// (measured_exponents.hpp).
+constexpr std::size_t enough_impacts = 200, enough_if_alike = 80;
+// How alike they must be at the fewest, and by how much less for each impact more.
+constexpr double alike = 0.02, alike_per_impact = 0.001;
+constexpr double nine_in_ten = 0.9;
+
+// Fewer impacts do not show whether a motion dies out; one that does loses this factor from the
+// first quarter to the last.
+constexpr std::size_t fewest_of_decay = 20;
+constexpr double least_fall = 2;
+
+// The first tenth of the impacts is left to the transient, and fewer than so many behind it bear no
+// interval.
+constexpr std::size_t transient_part = 10, fewest_of_slope = 20;
+// Blocks as long as the memory of the motion, some impacts, drawn anew so many times.
+constexpr double shortest_block = 4, longest_block = 20;
+constexpr int draws = 1000;
+// The bounds of its 90 % interval among so many sorted draws.
+constexpr std::size_t low_draw = 50, high_draw = 949;
+
 /// T over the flight to impact i from the one before it, which the caller knows to fit.
 void append(
     const Parameters& p, const Flow& flow, const IdentifiedImpact& i, double duration,
@@ -44,11 +65,11 @@ Continuity continuity_of(
         });
     };
     for (std::size_t i = 0; i < impacts.size(); ++i) {
-        if (!impacts[i].fault.empty()) {
+        if (impacts[i].is_left_out()) {
             ++c.left_out;
             continue;
         }
-        const bool follows = i > 0 && impacts[i - 1].fault.empty();
+        const bool follows = i > 0 && !impacts[i - 1].is_left_out();
         const bool known = follows && flight_fits(p, impacts[i - 1], impacts[i], typical_speed) &&
                            !over_gap(impacts[i - 1].tau, impacts[i].tau);
         if (known && !c.stretches.empty() && c.stretches.back().last == i - 1)
@@ -63,12 +84,11 @@ Continuity continuity_of(
 }
 
 ExponentOptions of_all_stretches(const ExponentOptions& asked) {
-    return {.qr = true, .eigenvalues = false, .raw_product = false, .history = asked.history};
+    return {.qr = true, .history = asked.history};
 }
 
 ExponentOptions of_longest_stretch(const ExponentOptions& asked) {
     return {
-        .qr = false,
         .eigenvalues = asked.eigenvalues,
         .raw_product = asked.raw_product,
         .history = asked.history};
@@ -110,60 +130,47 @@ double MeasuredExponents::moment(double clock) const {
 }
 
 bool is_representative(const std::vector<IdentifiedImpact>& impacts) {
-    constexpr std::size_t enough = 200, enough_if_alike = 80;
     std::vector<double> jumps[2], off;
     std::size_t known = 0;
-    for (const IdentifiedImpact& i : impacts) known += i.fault.empty();
-    if (known >= enough || known < enough_if_alike) return known >= enough;
+    for (const IdentifiedImpact& i : impacts) known += !i.is_left_out();
+    if (known >= enough_impacts || known < enough_if_alike) return known >= enough_impacts;
     for (std::size_t k = impacts.size() / 2; k < impacts.size(); ++k)
-        if (impacts[k].fault.empty())
+        if (!impacts[k].is_left_out())
             jumps[impacts[k].side > 0].push_back(
                 std::abs(impacts[k].x_dot_after - impacts[k].x_dot_before));
     for (const auto& of_side : jumps)
         for (const double jump : of_side) off.push_back(jump / median(of_side) - 1);
-    return quantile_of_moduli(off, 0.9) <
-           0.02 + 0.001 * static_cast<double>(known - enough_if_alike);
+    return quantile_of_moduli(off, nine_in_ten) <
+           alike + alike_per_impact * static_cast<double>(known - enough_if_alike);
 }
 
 bool dies_out(const std::vector<IdentifiedImpact>& impacts) {
-    constexpr std::size_t fewest = 20;
-    constexpr double least_fall = 2;
-    if (impacts.size() < fewest) return false;
+    if (impacts.size() < fewest_of_decay) return false;
     // Of a chatter only the first impact tells how strong it was.
     std::array<double, 4> largest{};
     const double start = impacts.front().tau, duration = impacts.back().tau - start;
     for (const IdentifiedImpact& i : impacts) {
         double& of_quarter =
             largest[static_cast<std::size_t>(std::min(3.0, 4 * (i.tau - start) / duration))];
-        if (i.fault.empty())
+        if (!i.is_left_out())
             of_quarter = std::max(of_quarter, std::abs(i.x_dot_after - i.x_dot_before));
     }
     return std::is_sorted(largest.rbegin(), largest.rend()) && largest[3] > 0 &&
            largest[3] * least_fall < largest[0];
 }
 
-IdentifiedExponents judge_exponents(
-    const Parameters& p, const ExponentHistory& qr, double tau_start, bool representative) {
-    std::vector<double> log, duration;  // growth from impact to impact, without the first tenth
-    for (std::size_t i = 1 + qr.tau.size() / 10; i < qr.tau.size(); ++i) {
-        duration.push_back(qr.tau[i] - qr.tau[i - 1]);
-        log.push_back(
-            qr.lambda[i][0] * (qr.tau[i] - tau_start) -
-            qr.lambda[i - 1][0] * (qr.tau[i - 1] - tau_start));
-    }
-    IdentifiedExponents e{nan, nan, nan, Verdict::not_decided};
+namespace {
+
+/// Slopes of the record as blocks of its impacts, drawn again and again, make it anew; ascending.
+/// Always the same ones.
+std::vector<double> drawn_slopes(
+    const std::vector<double>& log, const std::vector<double>& duration) {
     const std::size_t n = log.size();
-    if (n < 20) return e;
-    double sum = 0, time = 0;
-    for (std::size_t i = 0; i < n; ++i) sum += log[i], time += duration[i];
-    e.slope = sum / time;
-    // Blocks as long as the memory of the motion, some impacts, drawn anew a thousand times; always
-    // the same ones.
-    const auto block =
-        static_cast<std::size_t>(std::clamp(std::cbrt(static_cast<double>(n)) * 2, 4.0, 20.0));
+    const auto block = static_cast<std::size_t>(
+        std::clamp(std::cbrt(static_cast<double>(n)) * 2, shortest_block, longest_block));
     std::mt19937_64 engine(2018);
     std::vector<double> slopes;
-    for (int draw = 0; draw < 1000; ++draw) {
+    for (int draw = 0; draw < draws; ++draw) {
         double s = 0, t = 0;
         for (std::size_t got = 0; got < n; got += block) {
             const std::size_t from = engine() % (n - block + 1);
@@ -172,7 +179,28 @@ IdentifiedExponents judge_exponents(
         slopes.push_back(s / t);
     }
     std::sort(slopes.begin(), slopes.end());
-    e.low = slopes[50], e.high = slopes[949];
+    return slopes;
+}
+
+}  // namespace
+
+IdentifiedExponents judge_exponents(
+    const Parameters& p, const ExponentHistory& qr, double tau_start, bool representative) {
+    std::vector<double> log, duration;  // growth from impact to impact, without the first tenth
+    for (std::size_t i = 1 + qr.tau.size() / transient_part; i < qr.tau.size(); ++i) {
+        duration.push_back(qr.tau[i] - qr.tau[i - 1]);
+        log.push_back(
+            qr.lambda[i][0] * (qr.tau[i] - tau_start) -
+            qr.lambda[i - 1][0] * (qr.tau[i - 1] - tau_start));
+    }
+    IdentifiedExponents e{nan, nan, nan, Verdict::not_decided};
+    const std::size_t n = log.size();
+    if (n < fewest_of_slope) return e;
+    double sum = 0, time = 0;
+    for (std::size_t i = 0; i < n; ++i) sum += log[i], time += duration[i];
+    e.slope = sum / time;
+    const std::vector<double> slopes = drawn_slopes(log, duration);
+    e.low = slopes[low_draw], e.high = slopes[high_draw];
     if (e.low > p.zeta()) e.verdict = Verdict::chaotic;
     if (e.high < p.zeta() && representative) e.verdict = Verdict::regular;
     return e;

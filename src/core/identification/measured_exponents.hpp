@@ -8,18 +8,13 @@
 // gap does not exist: `eigenvalues` and `raw_product` are of the longest stretch.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "core/identification/identified_impact.hpp"
+#include "core/identification/measured_record.hpp"
 #include "core/stability/verdict.hpp"
 
 namespace vines {
-
-/// A stretch of time without a sample.
-struct TimeGap {
-    double from, to;
-};
 
 /// From an impact to another, by their indices, with every flight between known.
 struct KnownStretch {

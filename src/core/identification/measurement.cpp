@@ -44,7 +44,7 @@ std::optional<ForwardRun> forward_run(
     const Parameters& p, const Identification& found, const FittedMotion& motion, double tau_end) {
     const auto known = std::find_if(
         found.impacts.begin(), found.impacts.end(),
-        [](const IdentifiedImpact& i) { return i.fault.empty() && !std::isnan(i.y_dot_after); });
+        [](const IdentifiedImpact& i) { return !i.is_left_out() && !std::isnan(i.y_dot_after); });
     if (known == found.impacts.end()) return std::nullopt;
     const IdentifiedImpact& first = *known;
     // simulate() measures the phase of the forcing from that of eq. (3); the record has its own.
@@ -68,7 +68,6 @@ std::optional<ForwardRun> forward_run(
 Identification of_impacts(const std::vector<IdentifiedImpact>& impacts) {
     Identification found;
     found.impacts = impacts;
-    found.b_fitted = found.b_error = std::nan("");
     found.plus = restitution_of(impacts, 1);
     found.minus = restitution_of(impacts, -1);
     return found;
@@ -81,7 +80,7 @@ double Measurement::step() const {
 }
 
 Spikes spikes_of(const Measurement& m) {
-    Spikes spikes{{}, std::nan("")};
+    Spikes spikes{{}, nan};
     if (!m.record.x_ddot.empty()) spikes = find_spikes(m.record, m.threshold);
     if (m.moments.empty()) return spikes;
     std::vector<Spike> known;
@@ -105,7 +104,7 @@ MeasurementResult conclude(const Measurement& m, const std::vector<Spike>& spike
     Parameters p = m.parameters;
     std::optional<RefinedImpacts> refined;
     Identification found;
-    std::vector<std::string> doubts;
+    std::vector<Doubt> doubts;
     if (m.is_record()) {
         // With moments that are known no others are looked for.
         refined = refine_impacts(p, m.record, spikes, m.moments.empty() ? m.threshold : 0);

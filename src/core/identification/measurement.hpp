@@ -7,6 +7,7 @@
 
 #include <optional>
 
+#include "core/identification/direct_motion.hpp"
 #include "core/identification/identify.hpp"
 
 namespace vines {
@@ -49,7 +50,7 @@ struct MeasurementResult {
     Continuity continuity;
     MeasuredExponents exponents;
     IdentifiedExponents judged;
-    std::vector<std::string> doubts;  ///< why the fit of the record bears no verdict
+    std::vector<Doubt> doubts;  ///< why the fit of the record bears no verdict
     std::optional<DirectEstimate> direct;
     std::optional<ForwardRun> forward;
 

@@ -27,7 +27,13 @@ double quantile_of_moduli(std::vector<double> v, double share) {
 
 double robust_deviation(std::vector<double> v) {
     for (double& x : v) x = std::abs(x);
+    // Of a normal distribution half lies within 1/1.4826 standard deviations.
     return 1.4826 * median(std::move(v));
+}
+
+double error_of_median(const std::vector<double>& off) {
+    // sqrt(pi/2)
+    return 1.25 * robust_deviation(off) / std::sqrt(static_cast<double>(off.size()));
 }
 
 double difference_noise(

@@ -14,6 +14,10 @@ double quantile_of_moduli(std::vector<double> values, double share);
 /// Standard deviation of the bulk about zero, whatever the outliers.
 double robust_deviation(std::vector<double> values);
 
+/// Standard error of the median of values that lie about it by `off`: of n values of a normal
+/// distribution it scatters by 1.25 times what their mean would.
+double error_of_median(const std::vector<double>& off);
+
 /// White noise of a smooth signal from its third differences, whose variance is 20 times that of
 /// the noise at equal steps: a parabola leaves none. Divided differences, so that steps may differ;
 /// not over gaps, nor where `spoiled` (empty: nowhere).

@@ -25,6 +25,9 @@ constexpr std::array<Node, 5> gauss = {
 // Nobody waits for a decay that takes longer, in tau.
 constexpr double longest_decay = 1e6;
 
+// A moment is bisected to some ulps of tau.
+constexpr double moment_rounding = 1e-15;
+
 Eigen::Vector4d vector(const Oscillation& o) { return {o.x, o.x_dot, o.sin_theta, o.cos_theta}; }
 
 }  // namespace
@@ -198,7 +201,7 @@ namespace {
 template <class EnergyAt>
 double moment_of(EnergyAt energy_at, double level, double high, double tau_start) {
     double low = 0;
-    while (high - low > 1e-15 * (tau_start + high)) {
+    while (high - low > moment_rounding * (tau_start + high)) {
         const double middle = 0.5 * (low + high);
         if (middle <= low || middle >= high) break;
         (energy_at(middle) > level ? low : high) = middle;

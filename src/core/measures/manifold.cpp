@@ -13,6 +13,9 @@ namespace {
 
 constexpr double quarter_turn = std::numbers::pi / 2;
 
+// The last half cycle of a window may end behind it by rounding: share of tau_end.
+constexpr double window_rounding = 1e-12;
+
 double k_of(double R) { return (1 - R) / (1 + R); }
 
 }  // namespace
@@ -105,7 +108,7 @@ void HalfCycles::on_stretch(const Stretch& stretch) {
         const double end = next_ * half_cycle_ - stretch.tau;
         pass(stretch, from, std::min(end, stretch.duration));
         if (end > stretch.duration) return;
-        if (next_ * half_cycle_ <= tau_end_ * (1 + 1e-12)) {
+        if (next_ * half_cycle_ <= tau_end_ * (1 + window_rounding)) {
             tau.push_back(next_ * half_cycle_);
             points.push_back({peak_, path_ / half_cycle_});
             keep_last(tau, most_);

@@ -29,21 +29,24 @@ constexpr double irregular_margin = 0.02;
 // How far a run that is near a return but not on an orbit is followed further, in cycles, round by
 // round.
 constexpr int follow_rounds[] = {150, 300, 600, 1200};
+// A run of whole cycles goes on by this share, so that the rounding of its end does not cut off the
+// last of them.
+constexpr double past_last_cycle = 1e-12;
 // A run has been captured once it stays this close to the orbit.
 constexpr double captured_within = 0.1;
 
-std::vector<Contacts> within(const std::vector<Contacts>& all, double from, double to) {
-    const auto before = [](const Contacts& c, double tau) { return c.tau < tau; };
+std::vector<CountedContact> within(const std::vector<CountedContact>& all, double from, double to) {
+    const auto before = [](const CountedContact& c, double tau) { return c.tau < tau; };
     const auto first = std::lower_bound(all.begin(), all.end(), from, before);
     return {first, std::lower_bound(first, all.end(), std::nextafter(to, infinity), before)};
 }
 
 /// A phase of the forcing cycle that contacts stay away from, as a share of the cycle: there cycles
 /// are cut for counting.
-double quiet_phase(const std::vector<Contacts>& contacts, double cycle) {
+double quiet_phase(const std::vector<CountedContact>& contacts, double cycle) {
     constexpr int bins = 64;
     std::array<long, bins> count{};
-    for (const Contacts& c : contacts)
+    for (const CountedContact& c : contacts)
         ++count[std::min(
             bins - 1, static_cast<int>((c.tau / cycle - std::floor(c.tau / cycle)) * bins))];
     // The middle of the longest run of bins with the fewest contacts (a run may go over the end).
@@ -58,13 +61,13 @@ double quiet_phase(const std::vector<Contacts>& contacts, double cycle) {
 }
 
 void count_cycles(
-    Regime& r, const std::vector<Contacts>& contacts, double cycle, double from, double to) {
+    Regime& r, const std::vector<CountedContact>& contacts, double cycle, double from, double to) {
     const double cut = contacts.empty() ? 0 : quiet_phase(contacts, cycle);
     const long first = static_cast<long>(std::ceil(from / cycle - cut)),
                last = static_cast<long>(std::floor(to / cycle - cut));
     if (last <= first) return;
     std::vector<int> per_cycle(last - first, 0);
-    for (const Contacts& c : contacts) {
+    for (const CountedContact& c : contacts) {
         const double k = std::floor(c.tau / cycle - cut) - first;
         if (k >= 0 && k < per_cycle.size()) ++per_cycle[static_cast<std::size_t>(k)];
     }
@@ -81,7 +84,29 @@ void count_cycles(
     }
 }
 
-void find_stretches(Regime& r, const std::vector<Contacts>& c, double half_cycle) {
+/// How often the masses meet in the window.
+void count_contacts(
+    Regime& r, const std::vector<CountedContact>& contacts, double cycle, const RegimeEvidence& e) {
+    r.contacts = static_cast<long>(contacts.size());
+    if (r.contacts > 1)
+        r.z_overall = static_cast<double>(r.contacts - 1) * cycle /
+                      (contacts.back().tau - contacts.front().tau);
+    else if (e.tau_end > e.tau_start)
+        r.z_overall = static_cast<double>(r.contacts) * cycle / (e.tau_end - e.tau_start);
+    r.z = r.z_overall;
+    count_cycles(
+        r, contacts, cycle, contacts.empty() ? e.tau_start : contacts.front().tau - cycle,
+        e.tau_end);
+}
+
+/// Those at whole cycles up to tau_end.
+std::span<const State> states_before(const StroboscopicRecord& record, double tau_end) {
+    std::size_t end = record.states.size();
+    while (end > 0 && record.tau(end - 1) > tau_end) --end;
+    return std::span(record.states).first(end);
+}
+
+void find_stretches(Regime& r, const std::vector<CountedContact>& c, double half_cycle) {
     const std::size_t n = c.size();
     auto in_step = [&](std::size_t i) {
         return c[i + 1].side != c[i].side &&
@@ -187,7 +212,7 @@ std::optional<PeriodicOrbit> orbit_of(
         if (!tried) return std::nullopt;
         StroboscopicRecord on(p);
         Observer* const observers[] = {&on};
-        if (!follow(p, s, 0, cycles * p.cycle() * (1 + 1e-12), e.stop, observers))
+        if (!follow(p, s, 0, cycles * p.cycle() * (1 + past_last_cycle), e.stop, observers))
             return std::nullopt;
         s = on.states.back();
         tried = false;
@@ -262,27 +287,13 @@ Regime regime_of(
     const Parameters& p, const State& start, const RegimeEvidence& e, bool exponents_before) {
     Regime r;
     r.forced = p.G > 0;
-    const double cycle = p.cycle();
-    const std::vector<Contacts> contacts = within(e.contacts.contacts, e.tau_start, e.tau_end);
-    r.contacts = static_cast<long>(contacts.size());
-    if (r.contacts > 1)
-        r.z_overall = static_cast<double>(r.contacts - 1) * cycle /
-                      (contacts.back().tau - contacts.front().tau);
-    else if (e.tau_end > e.tau_start)
-        r.z_overall = static_cast<double>(r.contacts) * cycle / (e.tau_end - e.tau_start);
-    r.z = r.z_overall;
-    count_cycles(
-        r, contacts, cycle, contacts.empty() ? e.tau_start : contacts.front().tau - cycle,
-        e.tau_end);
-    find_stretches(r, contacts, 0.5 * cycle);
-
-    // The states at whole cycles up to the window's end. The first in the window only says whether
-    // there are any.
-    const auto& all = e.stroboscopic.states;
-    std::size_t end = all.size();
-    while (end > 0 && e.stroboscopic.tau(end - 1) > e.tau_end) --end;
-    const std::span<const State> states = std::span(all).first(end);
-    if (r.forced && end > 1 && e.stroboscopic.tau(end - 2) >= e.tau_start) {
+    const std::vector<CountedContact> contacts =
+        within(e.contacts.contacts, e.tau_start, e.tau_end);
+    count_contacts(r, contacts, p.cycle(), e);
+    find_stretches(r, contacts, 0.5 * p.cycle());
+    const std::span<const State> states = states_before(e.stroboscopic, e.tau_end);
+    // The first in the window only says whether there are any.
+    if (r.forced && states.size() > 1 && e.stroboscopic.tau(states.size() - 2) >= e.tau_start) {
         // Of the last part: a transient may have been larger.
         const State scale = scale_of(p, states.last(std::min(states.size(), longest_period)));
         r.orbit = orbit_of(p, states, scale, e);
@@ -296,6 +307,24 @@ Regime regime_of(
     return r;
 }
 
+namespace {
+
+/// Why a motion that an orbit captured is not decided.
+VerdictReason undecided_by(const Capture& capture) {
+    return capture.chaotic_before ? VerdictReason::transient : VerdictReason::not_known_before;
+}
+
+/// Why growth is not enough for chaos.
+VerdictReason undecided_by(const Growth& g) {
+    const double error = verdict_sigmas * g.standard_error[0];
+    if (std::isnan(error)) return VerdictReason::no_error;
+    if (g.lambda1 < -error) return VerdictReason::negative;
+    if (g.lambda1 <= error) return VerdictReason::within_error;
+    return g.whole <= least_growth ? VerdictReason::little_growth : VerdictReason::algebraic_growth;
+}
+
+}  // namespace
+
 Judgement judge(const Growth& g, const Regime& r, double tau_start) {
     if (!r.forced) return {Verdict::none, VerdictReason::free_decay};
     if (r.type == RegimeType::none && verdict_by_exponents(g) != Verdict::chaotic)
@@ -306,15 +335,7 @@ Judgement judge(const Growth& g, const Regime& r, double tau_start) {
         return {Verdict::chaotic, VerdictReason::growth};
     if (r.capture && r.capture->chaotic_before == false)
         return {Verdict::regular, VerdictReason::settling};
-    const VerdictReason why =
-        r.capture && !r.capture->chaotic_before             ? VerdictReason::not_known_before
-        : r.capture                                         ? VerdictReason::transient
-        : std::isnan(g.standard_error[0])                   ? VerdictReason::no_error
-        : g.lambda1 < -verdict_sigmas * g.standard_error[0] ? VerdictReason::negative
-        : g.lambda1 <= verdict_sigmas * g.standard_error[0] ? VerdictReason::within_error
-        : g.whole <= least_growth                           ? VerdictReason::little_growth
-                                                            : VerdictReason::algebraic_growth;
-    return {Verdict::not_decided, why};
+    return {Verdict::not_decided, r.capture ? undecided_by(*r.capture) : undecided_by(g)};
 }
 
 }  // namespace vines

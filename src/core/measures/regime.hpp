@@ -42,7 +42,7 @@ struct Regime {
     RegimeType type = RegimeType::none;
     /// False for a free decay (G = 0), which is none of the regimes.
     bool forced = true;
-    long contacts = 0, impacts = 0;  ///< in the window
+    long contacts = 0;  ///< in the window
     /// Contacts per forcing cycle: of the orbit if periodic, else from the first to the last.
     double z = 0;
     double z_overall = 0;                      ///< from the first to the last, in any case

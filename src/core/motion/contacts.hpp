@@ -8,7 +8,7 @@
 namespace vines {
 
 /// An impact, or a whole chatter that ended in a stick: one meeting of the two masses.
-struct Contacts {
+struct CountedContact {
     double tau;
     int side;
 };
@@ -23,7 +23,7 @@ public:
     void on_stick(const StickStart& start) override;
     void on_release(double tau) override { sticks.back().tau_end = tau; }
 
-    std::vector<Contacts> contacts;
+    std::vector<CountedContact> contacts;
     std::vector<Stick> sticks;
     long impacts = 0;
 };

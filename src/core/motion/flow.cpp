@@ -15,6 +15,55 @@ namespace {
 // .3 % of the amplitude.
 constexpr double cells_per_period = 42;
 
+// Taylor terms of the flow over a cell, whose width times the fastest rate is .15: the first one
+// left out is below 1e-49.
+constexpr int cell_terms = 26;
+
+// In extended precision: the tables are right to the last ulp of double.
+using Real = long double;
+struct RealState {
+    Real x, x_dot, sin, cos;
+};
+/// What four states become that each have one part only: a matrix by its columns.
+using RealColumns = std::array<RealState, 4>;
+
+constexpr RealColumns unit_states = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
+
+/// The n-th Taylor coefficient of the state from the one before.
+RealState next_term(const Flow::Coefficients& c, const RealState& t, int n) {
+    const Real stiffness = c[0], damping = c[1], forcing = c[2], Omega = c[3];
+    return {
+        t.x_dot / n, (-stiffness * t.x - damping * t.x_dot + forcing * t.sin) / n,
+        Omega * t.cos / n, -Omega * t.sin / n};
+}
+
+/// What a state becomes over a cell; gives the Taylor coefficients of its x.
+RealState over_cell(
+    const Flow::Coefficients& c, const RealState& start, double cell, Flow::Series& series) {
+    RealState term = start, sum = start;
+    Real power = 1;
+    series(0) = (double)term.x;
+    for (int n = 1; n <= cell_terms; ++n) {
+        term = next_term(c, term, n);
+        power *= cell;
+        sum = {
+            sum.x + term.x * power, sum.x_dot + term.x_dot * power, sum.sin + term.sin * power,
+            sum.cos + term.cos * power};
+        if (n <= Flow::degree) series(n) = (double)term.x;
+    }
+    return sum;
+}
+
+RealState times(const RealColumns& columns, const RealState& s) {
+    const Real part[4] = {s.x, s.x_dot, s.sin, s.cos};
+    RealState sum = {0, 0, 0, 0};
+    for (int j = 0; j < 4; ++j)
+        sum = {
+            sum.x + columns[j].x * part[j], sum.x_dot + columns[j].x_dot * part[j],
+            sum.sin + columns[j].sin * part[j], sum.cos + columns[j].cos * part[j]};
+    return sum;
+}
+
 }  // namespace
 
 Flow::Flow(double stiffness, double damping, double forcing, double Omega)
@@ -22,67 +71,34 @@ Flow::Flow(double stiffness, double damping, double forcing, double Omega)
       damping_(damping),
       forcing_(forcing),
       Omega_(Omega),
-      h_(2 * std::numbers::pi / cells_per_period / std::max({1.0, Omega, damping})),
-      root_inverse_(1 / std::sqrt(stiffness)),
-      decay_(0.5 * damping + std::sqrt(std::max(0.0, 0.25 * damping * damping - stiffness))) {
-    // In extended precision: the tables are right to the last ulp of double.
-    using Real = long double;
-    struct State4 {
-        Real x, v, s, c;
-    };
-    const State4 unit[4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
-    // The n-th Taylor coefficient of the state from the one before.
-    auto next_term = [&](const State4& t, int n) -> State4 {
-        return {
-            t.v / n, (-(Real)stiffness * t.x - (Real)damping * t.v + (Real)forcing * t.s) / n,
-            (Real)Omega * t.c / n, -(Real)Omega * t.s / n};
-    };
-
-    Series* const from[4] = {&from_x_, &from_x_dot_, &from_sin_, &from_cos_};
-    State4 over_cell[4];  // the exponential over one cell
-    for (int j = 0; j < 4; ++j) {
-        State4 term = unit[j];
-        Real power = 1;
-        over_cell[j] = unit[j];
-        (*from[j])(0) = (double)term.x;
-        for (int n = 1; n <= 26; ++n) {
-            term = next_term(term, n);
-            power *= h_;
-            over_cell[j] = {
-                over_cell[j].x + term.x * power, over_cell[j].v + term.v * power,
-                over_cell[j].s + term.s * power, over_cell[j].c + term.c * power};
-            if (n <= degree) (*from[j])(n) = (double)term.x;
+      cell_(2 * std::numbers::pi / cells_per_period / std::max({1.0, Omega, damping})),
+      inverse_root_stiffness_(1 / std::sqrt(stiffness)),
+      fastest_decay_(
+          0.5 * damping + std::sqrt(std::max(0.0, 0.25 * damping * damping - stiffness))) {
+    Response* const parts[4] = {&of_x_, &of_x_dot_, &of_sin_, &of_cos_};
+    RealColumns cell, state = unit_states;
+    for (int j = 0; j < 4; ++j)
+        cell[j] = over_cell(coefficients(), unit_states[j], cell_, parts[j]->series);
+    for (int k = 0; k < cells + block; ++k) {  // so that a block may begin at the last cell
+        for (int j = 0; j < 4; ++j) {
+            parts[j]->x.push_back((double)state[j].x);
+            parts[j]->x_dot.push_back((double)state[j].x_dot);
         }
-    }
-
-    const int rows = cells + block;  // so that a block may begin at the last cell
-    for (auto* column :
-         {&x_x_, &x_v_, &x_s_, &x_c_, &v_x_, &v_v_, &v_s_, &v_c_, &time_, &cos_, &sin_})
-        column->reserve(rows);
-    State4 z[4] = {unit[0], unit[1], unit[2], unit[3]};
-    for (int k = 0; k < rows; ++k) {
-        x_x_.push_back((double)z[0].x), x_v_.push_back((double)z[1].x),
-            x_s_.push_back((double)z[2].x), x_c_.push_back((double)z[3].x);
-        v_x_.push_back((double)z[0].v), v_v_.push_back((double)z[1].v),
-            v_s_.push_back((double)z[2].v), v_c_.push_back((double)z[3].v);
-        time_.push_back(k * h_), cos_.push_back((double)z[3].c), sin_.push_back((double)z[3].s);
-        for (State4& column : z) {
-            const Real part[4] = {column.x, column.v, column.s, column.c};
-            column = {0, 0, 0, 0};
-            for (int j = 0; j < 4; ++j)
-                column = {
-                    column.x + over_cell[j].x * part[j], column.v + over_cell[j].v * part[j],
-                    column.s + over_cell[j].s * part[j], column.c + over_cell[j].c * part[j]};
-        }
+        time_.push_back(k * cell_);
+        turn_cos_.push_back((double)state[3].cos);
+        turn_sin_.push_back((double)state[3].sin);
+        for (RealState& s : state) s = times(cell, s);
     }
 }
 
 namespace {
 
+// x'' + 2 zeta x' + x = epsilon A sin(theta), eq. (2).
 Flow::Coefficients free_coefficients(const Parameters& p) {
     return {1, 2 * p.zeta(), p.epsilon * p.A(), p.Omega};
 }
 
+// The same force on both masses.
 Flow::Coefficients stuck_coefficients(const Parameters& p) {
     const double mass = 1 + p.epsilon;
     return {1 / mass, 2 * p.zeta() / mass, p.epsilon * p.A() / mass, p.Omega};
@@ -123,9 +139,11 @@ void turn(Oscillation& o, double c, double s) {
 Oscillation Flow::at(const Oscillation& o, int k) const {
     assert(k >= 0 && k <= cells);
     Oscillation next = o;
-    turn(next, cos_[k], sin_[k]);
-    next.x = x_x_[k] * o.x + x_v_[k] * o.x_dot + x_s_[k] * o.sin_theta + x_c_[k] * o.cos_theta;
-    next.x_dot = v_x_[k] * o.x + v_v_[k] * o.x_dot + v_s_[k] * o.sin_theta + v_c_[k] * o.cos_theta;
+    turn(next, turn_cos_[k], turn_sin_[k]);
+    next.x = of_x_.x[k] * o.x + of_x_dot_.x[k] * o.x_dot + of_sin_.x[k] * o.sin_theta +
+             of_cos_.x[k] * o.cos_theta;
+    next.x_dot = of_x_.x_dot[k] * o.x + of_x_dot_.x_dot[k] * o.x_dot +
+                 of_sin_.x_dot[k] * o.sin_theta + of_cos_.x_dot[k] * o.cos_theta;
     return next;
 }
 
@@ -176,11 +194,12 @@ Oscillation Flow::along(const Series& c, const Oscillation& o, double d) const {
 Oscillation Flow::after(Oscillation o, double s) const {
     assert(s >= 0);
     for (; s >= reach(); s -= reach()) o = at(o, cells);
-    const int k = static_cast<int>(s / h_);
+    const int k = static_cast<int>(s / cell_);
     o = at(o, k);
-    return along(series(o), o, std::max(0.0, s - k * h_));
+    return along(series(o), o, std::max(0.0, s - k * cell_));
 }
 
+// The oscillator's block of J, eq. (19).
 Transfer Flow::transfer(double s) const {
     assert(s >= 0);
     Transfer j;
@@ -189,15 +208,17 @@ Transfer Flow::transfer(double s) const {
             t.a11 * j.a11 + t.a12 * j.a21, t.a11 * j.a12 + t.a12 * j.a22,
             t.a21 * j.a11 + t.a22 * j.a21, t.a21 * j.a12 + t.a22 * j.a22};
     };
-    auto row = [&](int k) { return Transfer{v_v_[k], v_x_[k], x_v_[k], x_x_[k]}; };
+    auto row = [&](int k) {
+        return Transfer{of_x_dot_.x_dot[k], of_x_.x_dot[k], of_x_dot_.x[k], of_x_.x[k]};
+    };
     for (; s >= reach(); s -= reach()) then(row(cells));
-    const int k = static_cast<int>(s / h_);
-    const double d = std::max(0.0, s - k * h_);
+    const int k = static_cast<int>(s / cell_);
+    const double d = std::max(0.0, s - k * cell_);
     then(row(k));
 
     // Within a cell: with u the unforced motion from (x', x) = (1, 0), that from (0, 1) is u' +
     // damping u.
-    const SeriesValue u = value_at(from_x_dot_, d);
+    const SeriesValue u = value_at(of_x_dot_.series, d);
     then({u.x_dot, -stiffness_ * u.x, u.x, u.x_dot + damping_ * u.x});
     return j;
 }
@@ -206,7 +227,7 @@ Flow::Bounds Flow::bounds(const Oscillation& o) const {
     // d/ds (stiffness x^2 + x'^2)/2 = x' (forcing sin theta - damping x') <= |x'| |forcing|
     const double speed =
         std::sqrt(stiffness_ * o.x * o.x + o.x_dot * o.x_dot) + std::abs(forcing_) * reach();
-    const double x = speed * root_inverse_;
+    const double x = speed * inverse_root_stiffness_;
     const double x_ddot = stiffness_ * x + damping_ * speed + std::abs(forcing_);
     return {x, x_ddot, stiffness_ * speed + damping_ * x_ddot + std::abs(forcing_) * Omega_};
 }

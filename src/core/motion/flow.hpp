@@ -36,7 +36,7 @@ public:
     static constexpr int cells = 128;
     /// Of the Taylor series within a cell: its remainder is below 1e-20 of the motion.
     static constexpr int degree = 13;
-    static constexpr int block = 4;  ///< grid points that gaps() evaluates at once
+    static constexpr int block = 4;  ///< grid points that relative_positions() evaluates at once
     using Series = Eigen::Array<double, degree + 1, 1>;
     using Block = Eigen::Array<double, block, 1>;
 
@@ -56,13 +56,13 @@ public:
     static std::shared_ptr<const Flow> shared_stuck(const Parameters& parameters);
 
     Coefficients coefficients() const { return {stiffness_, damping_, forcing_, Omega_}; }
-    double cell() const { return h_; }  ///< width h of a cell
+    double cell() const { return cell_; }  ///< width h of a cell
     /// Longest time that one look at the grid can bridge.
-    double reach() const { return h_ * cells; }
+    double reach() const { return cell_ * cells; }
     /// The transfer matrix over s has the determinant e^(-damping s)
     double damping() const { return damping_; }
     /// Rate at which the unforced motion dies out, its faster part.
-    double fastest_decay() const { return decay_; }
+    double fastest_decay() const { return fastest_decay_; }
 
     double acceleration(const Oscillation& o) const {
         return -stiffness_ * o.x - damping_ * o.x_dot + forcing_ * o.sin_theta;
@@ -73,27 +73,27 @@ public:
 
     /// x - y at the grid times k h, ..., (k + block - 1) h, for y = y0 + y_dot s: five
     /// multiply-adds each. k <= cells.
-    Block gaps(const Oscillation& o, double y0, double y_dot, int k) const {
+    Block relative_positions(const Oscillation& o, double y0, double y_dot, int k) const {
         const auto from = [k](const std::vector<double>& column) {
             return Eigen::Map<const Block>(column.data() + k);
         };
-        return from(x_x_) * o.x + from(x_v_) * o.x_dot + from(x_s_) * o.sin_theta +
-               from(x_c_) * o.cos_theta - (y0 + from(time_) * y_dot);
+        return from(of_x_.x) * o.x + from(of_x_dot_.x) * o.x_dot + from(of_sin_.x) * o.sin_theta +
+               from(of_cos_.x) * o.cos_theta - (y0 + from(time_) * y_dot);
     }
     /// x' at the same grid times.
     Block speeds(const Oscillation& o, int k) const {
         const auto from = [k](const std::vector<double>& column) {
             return Eigen::Map<const Block>(column.data() + k);
         };
-        return from(v_x_) * o.x + from(v_v_) * o.x_dot + from(v_s_) * o.sin_theta +
-               from(v_c_) * o.cos_theta;
+        return from(of_x_.x_dot) * o.x + from(of_x_dot_.x_dot) * o.x_dot +
+               from(of_sin_.x_dot) * o.sin_theta + from(of_cos_.x_dot) * o.cos_theta;
     }
     /// The whole state at grid time k h.
     Oscillation at(const Oscillation& o, int k) const;
     /// Taylor coefficients of x(s + d) in d.
     Series series(const Oscillation& o) const {
-        return from_x_ * o.x + from_x_dot_ * o.x_dot + from_sin_ * o.sin_theta +
-               from_cos_ * o.cos_theta;
+        return of_x_.series * o.x + of_x_dot_.series * o.x_dot + of_sin_.series * o.sin_theta +
+               of_cos_.series * o.cos_theta;
     }
     /// The state with its phasor turned by 0 <= d <= h; x and x' stay.
     Oscillation turned(const Oscillation& o, double d) const;
@@ -112,16 +112,18 @@ public:
     Bounds bounds(const Oscillation& o) const;
 
 private:
-    double stiffness_, damping_, forcing_, Omega_, h_;
-    double root_inverse_;  // of the stiffness
-    double decay_;
-    // The flow over k h, each entry a column over k; then k h itself, cos and sin of Omega k h:
-    //
-    //     [x (k h)]   [x_x  x_v  x_s  x_c] [x, x', sin theta, cos theta]^T
-    //     [x'(k h)] = [v_x  v_v  v_s  v_c]
-    std::vector<double> x_x_, x_v_, x_s_, x_c_, v_x_, v_v_, v_s_, v_c_, time_, cos_, sin_;
-    // Taylor coefficients of x from each part of the state.
-    Series from_x_, from_x_dot_, from_sin_, from_cos_;
+    double stiffness_, damping_, forcing_, Omega_;
+    double cell_;  // h
+    double inverse_root_stiffness_, fastest_decay_;
+    // What one part of a state, of size 1 and alone, becomes: x and x' at the grid times k h, and
+    // the Taylor coefficients of x within a cell. A state becomes the sum of its four parts.
+    struct Response {
+        std::vector<double> x, x_dot;
+        Series series;
+    };
+    Response of_x_, of_x_dot_, of_sin_, of_cos_;
+    // The grid times, and the turn of the phasor by then: cos and sin of Omega k h.
+    std::vector<double> time_, turn_cos_, turn_sin_;
 };
 
 /// x, x' and x''/2 of a Taylor series at d.

@@ -157,11 +157,11 @@ struct Search {
 
     /// Property 4's commonest case: g' cannot vanish within cell k, and g at its end is beyond the
     /// wall that it heads for.
-    std::optional<Contact> straight(int k, const Oscillation& lo, double next_gap) const {
+    std::optional<Contact> straight(int k, const Oscillation& lo, double next_relative) const {
         const double speed = lo.x_dot - start.y_dot;
         if (std::abs(speed) <= M2 * h) return {};
         const int wall = speed > 0 ? 1 : -1;
-        const double y = y_at(k), f0 = wall * (lo.x - y) - b, fh = wall * next_gap - b;
+        const double y = y_at(k), f0 = wall * (lo.x - y) - b, fh = wall * next_relative - b;
         if (f0 >= 0 || fh < 0) return {};
 
         // f = wall g - b on the cell: its quartic at the left end, and a fifth term so that it
@@ -254,15 +254,19 @@ struct Search {
     }
 
     /// Whether properties 1 and 2 prove the flight's first cell empty when it has just left a wall.
-    bool first_cell_empty(double next_gap, double M3) const {
+    bool first_cell_empty(double next_relative, double M3) const {
         const double leaving = -M3 * h * h / 24 - eta / h;
         return start.zeros == 1 && start.side * start.relative_speed < leaving &&
-               (start.side * next_gap - b) / h < leaving &&
-               -start.side * next_gap < b - M2 * h * h / 8 - eta;
+               (start.side * next_relative - b) / h < leaving &&
+               -start.side * next_relative < b - M2 * h * h / 8 - eta;
     }
 };
 
 }  // namespace
+
+double position_rounding(const Flow::Bounds& bounds, double y, double b) {
+    return grid_rounding * (bounds.x + b + std::abs(y));
+}
 
 std::optional<Contact> next_contact(
     const Flow& flow, const FlightStart& start, double b, double limit,
@@ -270,22 +274,23 @@ std::optional<Contact> next_contact(
     assert(limit <= flow.reach() && b > 0);
     assert(start.side == 0 || (start.zeros >= 1 && start.zeros <= 3));
     const auto bounds = flow.bounds(start.lo);
-    const double h = flow.cell(), eta = grid_rounding * (bounds.x + b + std::abs(start.y));
+    const double h = flow.cell(), eta = position_rounding(bounds, start.y, b);
     const Search search{flow, start, b, limit, h, eta, bounds.x_ddot, touches};
     const double inside = b - bounds.x_ddot * h * h / 8 - eta;  // property 1
 
-    double gap = start.side != 0 ? start.side * b : start.lo.x - start.y;
+    double relative = start.side != 0 ? start.side * b : start.lo.x - start.y;
     for (int from = 0; from < Flow::cells && from * h < limit; from += Flow::block) {
-        const Flow::Block next = flow.gaps(start.lo, start.y, start.y_dot, from + 1);
-        if (std::abs(gap) < inside && next.abs().maxCoeff() < inside) {  // the whole block at once
-            gap = next[Flow::block - 1];
+        const Flow::Block next = flow.relative_positions(start.lo, start.y, start.y_dot, from + 1);
+        if (std::abs(relative) < inside &&
+            next.abs().maxCoeff() < inside) {  // the whole block at once
+            relative = next[Flow::block - 1];
             continue;
         }
-        for (int i = 0; i < Flow::block && (from + i) * h < limit; gap = next[i++]) {
+        for (int i = 0; i < Flow::block && (from + i) * h < limit; relative = next[i++]) {
             const int k = from + i;
             const bool leaving = k == 0 && start.side != 0;
             if (leaving ? search.first_cell_empty(next[i], bounds.x_dddot)
-                        : std::abs(gap) < inside && std::abs(next[i]) < inside)
+                        : std::abs(relative) < inside && std::abs(next[i]) < inside)
                 continue;
             const Oscillation lo = k == 0 ? start.lo : flow.at(start.lo, k);
             std::optional<Contact> contact =

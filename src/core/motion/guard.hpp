@@ -54,6 +54,10 @@ struct Touch {
     int side;
 };
 
+/// Rounding error of x - y on the grid of a flight: what |x - y| may exceed b by without a
+/// contact.
+double position_rounding(const Flow::Bounds& bounds, double y, double b);
+
 /// The first contact in (0, limit], limit <= flow.reach(). Tangent contacts passed on the way are
 /// added to `touches`.
 std::optional<Contact> next_contact(

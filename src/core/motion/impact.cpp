@@ -29,25 +29,25 @@ Impact impact_at(const Parameters& p, const Contact& contact, double x_ddot, dou
     i.y_dot_after = i.x_dot_after - i.relative_speed_after;
     i.x_ddot_before = x_ddot;
     i.R = R;
-    // The gap is b + w s + x'' s^2/2 (times side) near the contact: depth w^2/(2 |x''|), if x''
+    // x - y is b + w s + x'' s^2/2 (times side) near the contact: depth w^2/(2 |x''|), if x''
     // turns it back at all.
     i.grazing = contact.side * x_ddot < 0 && w * w < 2 * std::abs(x_ddot) * grazing_depth * p.b;
     return i;
 }
 
-Eigen::Vector4d gap_gradient() { return {0, 1, 0, -1}; }
+Eigen::Vector4d wall_normal() { return {0, 1, 0, -1}; }
 
 // M = S + r g^T, eq. (27).
-Matrix4 Saltation::matrix() const { return S + r * gap_gradient().transpose(); }
+Matrix4 Saltation::matrix() const { return S + r * wall_normal().transpose(); }
 
 Matrix4 Saltation::times(const Matrix4& d) const {
     Matrix4 out;
     for (int k = 0; k < 4; ++k) {
-        const double gap = d(1, k) - d(3, k);
-        out(0, k) = S(0, 0) * d(0, k) + S(0, 2) * d(2, k) + r(0) * gap;
-        out(1, k) = d(1, k) + r(1) * gap;
-        out(2, k) = S(2, 0) * d(0, k) + S(2, 2) * d(2, k) + r(2) * gap;
-        out(3, k) = d(3, k) + r(3) * gap;
+        const double relative = d(1, k) - d(3, k);
+        out(0, k) = S(0, 0) * d(0, k) + S(0, 2) * d(2, k) + r(0) * relative;
+        out(1, k) = d(1, k) + r(1) * relative;
+        out(2, k) = S(2, 0) * d(0, k) + S(2, 2) * d(2, k) + r(2) * relative;
+        out(3, k) = d(3, k) + r(3) * relative;
     }
     return out;
 }
@@ -57,7 +57,7 @@ double Saltation::condition(double R) const {
     // else, so that g^T S^-1 = g^T and 1 + g^T r = -R: no large entry of r is left to cancel.
     if (R == 0) return infinity;
     const Matrix4 S_inverse = S.inverse();
-    return matrix().norm() * (S_inverse + S_inverse * r * gap_gradient().transpose() / R).norm();
+    return matrix().norm() * (S_inverse + S_inverse * r * wall_normal().transpose() / R).norm();
 }
 
 Saltation saltation(const Parameters& p, const Impact& i) {

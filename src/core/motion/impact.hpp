@@ -50,8 +50,8 @@ struct Saltation {
     double condition(double R) const;
 };
 
-/// The vector g of eq. (23): d(x - y)/dPhi.
-Eigen::Vector4d gap_gradient();
+/// The vector g of eq. (23): d(x - y)/dPhi, normal to both walls in the space of states.
+Eigen::Vector4d wall_normal();
 
 /// Where S does not change in time M has determinant R^2 and eigenvalues of moduli 1, 1, R, R.
 Saltation saltation(const Parameters& parameters, const Impact& impact);

@@ -52,6 +52,7 @@ double Parameters::zeta() const {
     return damping == Damping::closed_form ? epsilon * lambda : 0.5 * epsilon * lambda;
 }
 
+// Eq. (3): the base moves spring and damper.
 double Parameters::A() const { return G * std::hypot(1.0, lambda * epsilon * Omega); }
 
 double Parameters::phi() const { return std::atan(lambda * epsilon * Omega); }
@@ -59,6 +60,14 @@ double Parameters::phi() const { return std::atan(lambda * epsilon * Omega); }
 State default_state(const Parameters& parameters) { return {0, 0, 0, 0.95 * parameters.b}; }
 
 std::span<const ParameterRange> parameter_ranges() { return ranges; }
+
+bool is_physical(const Parameters& p) {
+    const auto is_positive = [](double v) { return v > 0 && std::isfinite(v); };
+    const auto is_restitution = [](double R) { return R >= 0 && R <= 1; };
+    return is_positive(p.epsilon) && is_positive(p.Omega) && is_positive(p.b) && p.lambda >= 0 &&
+           std::isfinite(p.lambda) && p.G >= 0 && std::isfinite(p.G) && is_restitution(p.R_plus) &&
+           is_restitution(p.R_minus);
+}
 
 int wall_of(const State& s, double b) {
     if (std::abs(std::abs(s.x - s.y) - b) > wall_tolerance(s, b)) return 0;

@@ -92,6 +92,10 @@ State default_state(const Parameters& parameters);
 /// the damping ratio, and |x - y| <= b at the start.
 std::vector<Fault> validate(const Parameters& parameters, const State& start);
 
+/// Whether the equations of motion have a meaning: epsilon, Omega, b > 0, lambda and G >= 0, both R
+/// in [0, 1], all of them finite. validate() asks for more, so that a request ends in time.
+bool is_physical(const Parameters& parameters);
+
 /// The wall (side = sign(x - y)) that a state touches up to rounding, or 0.
 int wall_of(const State& state, double b);
 

@@ -56,6 +56,10 @@ public:
         side_ = wall_of(start, p.b);
         end_rounding_ = 0.5 * (limits.tau_end - std::nextafter(limits.tau_end, 0));
         relative_speed_ = start.x_dot - start.y_dot;
+        assert(is_physical(p));
+        assert(
+            std::abs(start.x - start.y) <=
+            p.b + position_rounding(free_.bounds(lo_), start.y, p.b));
     }
 
     Outcome run() {
@@ -94,7 +98,8 @@ private:
         const double rest = clock_.until(limits_.tau_end), limit = std::min(rest, free_.reach());
         const FlightStart start{lo_, y_, y_dot_, side_, relative_speed_, zeros_};
         touches_.clear();
-        // A contact whose tau rounds to tau_end belongs to the run.
+        // A contact whose tau rounds to tau_end belongs to the run, so that behind one `rest` may
+        // be negative: by half an ulp of tau_end, over which nothing moves.
         const auto contact = next_contact(
             free_, start, p_.b, std::min(rest + end_rounding_, free_.reach()), touches_);
         for (const Touch& t : touches_) touch(clock_.tau() + t.s, t.side);
@@ -111,7 +116,8 @@ private:
         }
         if (limit == rest) end_ = End::tau_end;
         y_ += y_dot_ * limit;
-        lo_ = limit == free_.reach() ? free_.at(lo_, Flow::cells) : free_.after(lo_, limit);
+        lo_ = limit == free_.reach() ? free_.at(lo_, Flow::cells)
+                                     : free_.after(lo_, std::max(0.0, limit));
         side_ = 0;
         hop_ = 0;
     }
@@ -175,7 +181,7 @@ private:
             const auto release = next_release(*stuck_, lo_, side_, zeros, limit);
             const double s = release ? *release : limit;
             pass(*stuck_, s, side_);
-            lo_ = stuck_->after(lo_, s);
+            lo_ = stuck_->after(lo_, std::max(0.0, s));
             released = release.has_value();
             zeros = 0;
             if (!released && limit == rest) end_ = End::tau_end;
@@ -223,7 +229,6 @@ State Stretch::at(double s) const {
 Outcome simulate(
     const Parameters& parameters, const State& start, const Limits& limits,
     std::span<Observer* const> observers) {
-    assert(validate(parameters, start).empty());
     return Run(parameters, start, limits, observers).run();
 }
 

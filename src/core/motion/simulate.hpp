@@ -70,7 +70,8 @@ struct Outcome {
     long impacts;
 };
 
-/// Runs a system that validate() finds no fault with.
+/// Runs a system that is_physical(), from a state within the cavity: |x - y| <= b up to rounding. x
+/// and the velocities may have any size, as they do where a run goes on from another one's end.
 Outcome simulate(
     const Parameters& parameters, const State& start, const Limits& limits,
     std::span<Observer* const> observers);

@@ -14,6 +14,10 @@ namespace {
 // those that are unrolled for 4 and for 6.
 using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
 
+// A direction that a matrix shrinks to this share of its largest counts as none: far above an ulp,
+// so that what rounding leaves of a zero is not divided by.
+constexpr double least_share = 1e-10;
+
 Eigen::VectorXcd solved(const Square& matrix) {
     const Eigen::EigenSolver<Square> solver(matrix, false);
     if (solver.info() == Eigen::Success) return solver.eigenvalues();
@@ -39,7 +43,7 @@ EigenBase eigen_base_of(const Eigen::Matrix4d& matrix) {
 
 Eigen::Vector4d smallest_solution(const Eigen::Matrix4d& matrix, const Eigen::Vector4d& right) {
     Eigen::CompleteOrthogonalDecomposition<Square> solver;
-    solver.setThreshold(1e-10);
+    solver.setThreshold(least_share);
     solver.compute(matrix);
     return solver.solve(right);
 }

@@ -13,6 +13,14 @@ namespace vines {
 
 namespace {
 
+// Products of lengths, and squares of areas and volumes, are kept within these bounds by taking
+// their logarithms out: a third of double's exponents, so that the next factor stays in its range.
+constexpr double least_product = 1e-100, most_product = 1e100;
+bool is_in_range(double product) { return product > least_product && product < most_product; }
+
+// Each entry costs three eigenvalue problems.
+constexpr std::size_t most_eigenvalue_entries = 2048;
+
 constexpr Exponents no_exponents = {nan, nan, nan, nan};
 
 /// A history that thins itself: when full it drops every second entry and from then on takes every
@@ -88,7 +96,7 @@ struct TransferProduct::Qr {
         std::array<double, 4> growth = {1, 1, 1, 1}, logs{};
         void grow(int k, double length) {
             growth[k] *= length;
-            if (!(growth[k] > 1e-100 && growth[k] < 1e100)) take_logarithm(k);
+            if (!is_in_range(growth[k])) take_logarithm(k);
         }
         void take_logarithm(int k) {
             logs[k] += std::log(growth[k]);
@@ -147,7 +155,7 @@ struct TransferProduct::Qr {
     /// q_j|^2: the lengths are V_k/V_{k-1}. Of all four columns it is the determinant 1 + g^T r =
     /// -R.
     void shear(const Eigen::Vector4d& r, double R, int rank) {
-        const Eigen::Vector4d a = frame.transpose() * gap_gradient(), p = frame.transpose() * r;
+        const Eigen::Vector4d a = frame.transpose() * wall_normal(), p = frame.transpose() * r;
         Eigen::Vector4d rest = r;
         double before = 1, dot = 1, head = 0;
         for (int k = 0; k < rank; ++k) {
@@ -193,7 +201,7 @@ struct TransferProduct::Qr {
     void rescale(int rank) {
         auto keep = [](auto& of, double& log) {
             const double squared = of.squaredNorm();
-            if (squared > 1e-100 && squared < 1e100) return;
+            if (is_in_range(squared)) return;
             log += 0.5 * std::log(squared);
             of *= 1 / std::sqrt(squared);
         };
@@ -227,7 +235,7 @@ struct TransferProduct::Qr {
 struct TransferProduct::Powers {
     Powers(double epsilon, std::size_t history)
         : product(epsilon),
-          thinned(std::min<std::size_t>(history, 2048)) {}
+          thinned(std::min(history, most_eigenvalue_entries)) {}
 
     PowerProduct product;
     Thinned thinned;
@@ -244,7 +252,7 @@ struct TransferProduct::Raw {
         const Eigen::Vector4cd eigenvalues = eigenvalues_of(product);
         if (!eigenvalues.allFinite()) return no_exponents;
         Exponents lambda;
-        for (int k = 0; k < 4; ++k) lambda[k] = std::log(std::abs(eigenvalues(k))) / T;
+        for (int k = 0; k < 4; ++k) lambda[k] = std::log(std::abs(eigenvalues(k))) / T;  // (33)
         std::sort(lambda.begin(), lambda.end(), std::greater<>());
         return lambda;
     }
@@ -287,7 +295,7 @@ void TransferProduct::append(std::span<const Leg> legs, const Saltation& M, doub
         record(*powers_, [&] { return eigenvalues(); });
     }
     if (raw_) {
-        raw_->product = M.matrix() * J * raw_->product;
+        raw_->product = M.matrix() * J * raw_->product;  // T_n ... T_1, eq. (30)
         record(*raw_, [&] { return raw_product(); });
     }
 }

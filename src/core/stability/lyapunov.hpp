@@ -53,13 +53,14 @@ struct ExponentHistory {
 /// shortest_history). Longer ones are thinned to every second, fourth, ... impact; `eigenvalues`
 /// keeps at most 2048, for each costs three eigenvalue problems.
 struct ExponentOptions {
-    bool qr = true, eigenvalues = true, raw_product = true;
+    bool qr = false, eigenvalues = false, raw_product = false;
     std::size_t history = 20000;
 };
 
 /// What verdicts, regimes and standard errors rest on, where no history is shown.
-inline constexpr ExponentOptions qr_alone = {
-    .qr = true, .eigenvalues = false, .raw_product = false, .history = shortest_history};
+inline constexpr ExponentOptions qr_alone = {.qr = true, .history = shortest_history};
+inline constexpr ExponentOptions all_estimators = {
+    .qr = true, .eigenvalues = true, .raw_product = true};
 
 /// The product of the transfer matrices of one window, as the estimators see it.
 class TransferProduct {

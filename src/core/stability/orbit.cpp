@@ -16,6 +16,25 @@ namespace {
 constexpr long most_orbit_impacts = 20000;
 // Newton's method has found the orbit when its return misses it by no more, in units of the scale.
 constexpr double closed = 1e-10;
+// Closer than this it cannot come: some ulps of a state of order one. Before that, a step which
+// does not shrink the miss to a tenth has met rounding: near the orbit it would square it.
+constexpr double closed_to_rounding = 1e-14, converging = 0.1;
+// Newton's method gives up after so many steps, or so many that led further away; a step out of the
+// cavity is halved so many times.
+constexpr int most_steps = 25, most_worse_steps = 2, most_halvings = 6;
+// A divisor of the period closes, too, if the state misses itself by no more than this.
+constexpr double divisor_closed = 1e3 * closed;
+// An eigenvalue this much smaller than the largest one has lost six digits to the solver's error,
+// an ulp of the largest: the exterior powers know its modulus better.
+constexpr double small_multiplier = 1e-6;
+// What a motion is measured by at least, in b: less is rest. And the free mass is never slower, by
+// order of magnitude, than b per half cycle where it meets both walls.
+constexpr double least_scale = 1e-9, least_mass_speed = 0.1;
+// A contact's tau is known to rounding, which must not count it twice: share of a period.
+constexpr double contact_rounding = 1e-9;
+// An orbit is symmetric if its state after half a period is the opposite one to this, in units of
+// the scale: far above what it closes to, far below what an asymmetry of any use would be.
+constexpr double symmetric_within = 1e-6;
 
 Eigen::Vector4d vector(const State& s) { return {s.x_dot, s.x, s.y_dot, s.y}; }
 State state(const Eigen::Vector4d& v) { return {v(0), v(1), v(2), v(3)}; }
@@ -47,7 +66,7 @@ public:
         for (int k = 0; k < 4; ++k) {
             const double modulus = std::abs(values[k]);
             if (k >= powers_.rank() || modulus == 0) values[k] = 0;
-            else if (modulus < 1e-6 * std::abs(values[0]) && std::isfinite(logs[k]))
+            else if (modulus < small_multiplier * std::abs(values[0]) && std::isfinite(logs[k]))
                 values[k] *= std::exp(logs[k]) / modulus;
         }
         return values;
@@ -104,14 +123,14 @@ std::optional<State> close(
     const State guess = s;
     const Eigen::Vector4d unit = vector(scale);
     double miss_before = infinity;
-    for (int step = 0, worse = 0; step < 25; ++step) {
+    for (int step = 0, worse = 0; step < most_steps; ++step) {
         const auto back = after_period(p, s, tau, cycles, stop);
         if (!back) return std::nullopt;
         const Eigen::Vector4d miss = (vector(back->state) - vector(s)).cwiseQuotient(unit);
         const double size = miss.cwiseAbs().maxCoeff();
-        // Near the orbit each step squares the miss, until rounding stops it.
-        if (size < 1e-14 || (size < closed && size > 0.1 * miss_before)) return s;
-        if (size > miss_before && ++worse > 2) return std::nullopt;
+        if (size < closed_to_rounding || (size < closed && size > converging * miss_before))
+            return s;
+        if (size > miss_before && ++worse > most_worse_steps) return std::nullopt;
         miss_before = size;
         const Matrix4 D = unit.asDiagonal().inverse() *
                           (back->monodromy.matrix() - Matrix4::Identity()) * unit.asDiagonal();
@@ -119,7 +138,7 @@ std::optional<State> close(
         // step solves.
         Eigen::Vector4d correction = -smallest_solution(D, miss);
         State next = state(vector(s) + correction.cwiseProduct(unit));
-        for (int half = 0; half < 6 && std::abs(next.x - next.y) > p.b; ++half) {
+        for (int half = 0; half < most_halvings && std::abs(next.x - next.y) > p.b; ++half) {
             correction *= 0.5;
             next = state(vector(s) + correction.cwiseProduct(unit));
         }
@@ -132,9 +151,7 @@ std::optional<State> close(
 }  // namespace
 
 State scale_of(const Parameters& p, std::span<const State> states) {
-    // The free mass is never slower, by order of magnitude, than b per half cycle where it meets
-    // both walls.
-    State scale{1e-9 * p.b, 1e-9 * p.b, 0.1 * p.b, p.b};
+    State scale{least_scale * p.b, least_scale * p.b, least_mass_speed * p.b, p.b};
     for (const State& s : states)
         scale = {
             std::max(scale.x_dot, std::abs(s.x_dot)), std::max(scale.x, std::abs(s.x)),
@@ -165,63 +182,81 @@ std::optional<State> follow(
     return outcome.state;
 }
 
-std::optional<PeriodicOrbit> find_orbit(
-    const Parameters& p, const State& at_whole_cycle, int cycles, const State& scale, double reach,
-    const Stop& stop) {
-    const double tau = quiet_moment(p, at_whole_cycle, stop), cycle = p.cycle();
-    const auto guess = follow(p, at_whole_cycle, 0, tau, stop);
-    if (!guess) return std::nullopt;
-    const auto found = close(p, *guess, tau, cycles, scale, reach, stop);
-    if (!found) return std::nullopt;
+namespace {
 
-    PeriodicOrbit orbit{};
-    orbit.tau = tau;
-    orbit.state = *found;
-    // The smallest period: a divisor after which the state is back.
+/// The smallest period: the first divisor of `cycles` after which the state is back. Sets what the
+/// monodromy matrix over it says; false where the search was stopped.
+bool close_smallest(
+    const Parameters& p, int cycles, const State& scale, const Stop& stop, PeriodicOrbit& orbit) {
     for (int divisor = 1; divisor <= cycles; ++divisor) {
         if (cycles % divisor != 0) continue;
-        auto back = after_period(p, *found, tau, divisor, stop);
-        if (!back) return std::nullopt;
-        orbit.closure = distance(back->state, *found, scale);
-        if (divisor < cycles && orbit.closure > 1e3 * closed) continue;
+        const auto back = after_period(p, orbit.state, orbit.tau, divisor, stop);
+        if (!back) return false;
+        orbit.closure = distance(back->state, orbit.state, scale);
+        if (divisor < cycles && orbit.closure > divisor_closed) continue;
         orbit.cycles = divisor;
         orbit.monodromy = back->monodromy.matrix();
         orbit.multipliers = back->monodromy.multipliers();
         break;
     }
+    return true;
+}
 
+/// Counts what happens in a period; false where the search was stopped.
+bool count_period(const Parameters& p, const Stop& stop, PeriodicOrbit& orbit) {
     // Three periods, of which one is counted from the first contact after a release: a chatter must
     // not be cut in two.
     ContactRecord contacts;
     ImpactRecord impacts;
     Observer* const observers[] = {&contacts, &impacts};
-    const double period = orbit.cycles * cycle;
-    if (!follow(p, *found, tau, 3 * period, stop, observers)) return std::nullopt;
-    double from = contacts.sticks.empty() ? tau : contacts.sticks[0].tau_end;
-    for (const Contacts& c : contacts.contacts)
+    const double period = orbit.cycles * p.cycle();
+    if (!follow(p, orbit.state, orbit.tau, 3 * period, stop, observers)) return false;
+    double from = contacts.sticks.empty() ? orbit.tau : contacts.sticks[0].tau_end;
+    for (const CountedContact& c : contacts.contacts)
         if (c.tau >= from) {
             from = c.tau;
             break;
         }
-    // The rounding of a contact's tau must not count it twice.
-    const double to = from + period * (1 - 1e-9);
+    const double to = from + period * (1 - contact_rounding);
     const auto within = [&](double t) { return t >= from && t < to; };
     orbit.contacts = std::count_if(
         contacts.contacts.begin(), contacts.contacts.end(),
-        [&](const Contacts& c) { return within(c.tau); });
+        [&](const CountedContact& c) { return within(c.tau); });
     orbit.impacts = std::count_if(
         impacts.impacts.begin(), impacts.impacts.end(),
         [&](const Impact& i) { return within(i.tau); });
     orbit.sticks = std::count_if(
         contacts.sticks.begin(), contacts.sticks.end(),
         [&](const auto& s) { return within(s.tau_start); });
-    // Half a period on, the forcing has the opposite sign only where the period is an odd number of
-    // cycles. Walls that differ may leave the motion between their chatters the same, but not the
-    // chatters.
-    if (orbit.cycles % 2 == 1 && (p.R_plus == p.R_minus || orbit.impacts == 0)) {
-        const auto half = follow(p, *found, tau, 0.5 * orbit.cycles * cycle, stop);
-        orbit.symmetric = half && distance(state(-vector(*half)), *found, scale) < 1e-6;
-    }
+    return true;
+}
+
+/// Half a period on, the forcing has the opposite sign only where the period is an odd number of
+/// cycles. Walls that differ may leave the motion between their chatters the same, but not the
+/// chatters.
+bool is_symmetric(
+    const Parameters& p, const PeriodicOrbit& orbit, const State& scale, const Stop& stop) {
+    if (orbit.cycles % 2 == 0 || (p.R_plus != p.R_minus && orbit.impacts != 0)) return false;
+    const auto half = follow(p, orbit.state, orbit.tau, 0.5 * orbit.cycles * p.cycle(), stop);
+    return half && distance(state(-vector(*half)), orbit.state, scale) < symmetric_within;
+}
+
+}  // namespace
+
+std::optional<PeriodicOrbit> find_orbit(
+    const Parameters& p, const State& at_whole_cycle, int cycles, const State& scale, double reach,
+    const Stop& stop) {
+    const double tau = quiet_moment(p, at_whole_cycle, stop);
+    const auto guess = follow(p, at_whole_cycle, 0, tau, stop);
+    if (!guess) return std::nullopt;
+    const auto found = close(p, *guess, tau, cycles, scale, reach, stop);
+    if (!found) return std::nullopt;
+    PeriodicOrbit orbit{};
+    orbit.tau = tau;
+    orbit.state = *found;
+    if (!close_smallest(p, cycles, scale, stop, orbit) || !count_period(p, stop, orbit))
+        return std::nullopt;
+    orbit.symmetric = is_symmetric(p, orbit, scale, stop);
     return orbit;
 }
 
@@ -265,6 +300,8 @@ constexpr int most_cycles = 4000, least_periods = 30;
 // to this share of what the map contracts in the span.
 constexpr int spans = 3;
 constexpr double linear_share = 0.2;
+// ln of the contraction of a period that is more than rounding.
+constexpr double least_contraction = 1e-9;
 
 }  // namespace
 
@@ -277,7 +314,7 @@ bool attracts(
     const double largest = untouched ? spectral_radius(orbit.monodromy.topLeftCorner<2, 2>())
                                      : std::abs(orbit.multipliers[0]);
     const double per_period = -std::log(largest);
-    if (!(per_period > 1e-9)) return false;  // nothing contracts, but for rounding
+    if (!(per_period > least_contraction)) return false;
     std::optional<State> s = follow(p, at_whole_cycle, 0, orbit.tau, stop);
     auto distant = [&] { return distance(*s, orbit.state, scale); };
     auto pass = [&](int periods) {

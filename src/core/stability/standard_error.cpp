@@ -15,6 +15,11 @@ namespace {
 // modulated response needs that much: its growth goes up and down with each modulation, so that
 // shorter blocks, taken as independent, promise up to 2.5 times too little.
 constexpr int error_steps = 128, error_lags = 40;
+// A shorter history says nothing of its error.
+constexpr std::size_t least_entries = 32;
+// The window's estimate of a variance may come out below zero: it counts at least this share of
+// that of independent steps.
+constexpr double least_variance = 0.02;
 
 /// The sum of logarithms (lambda times its window) at evenly spaced tau up to the last entry of the
 /// history, for one exponent.
@@ -45,7 +50,7 @@ std::size_t ExponentHistory::coarse_stride() const {
 }
 
 Exponents standard_error(const ExponentHistory& h, double start) {
-    if (h.tau.size() < 32 || !(h.tau.back() > start)) return {nan, nan, nan, nan};
+    if (h.tau.size() < least_entries || !(h.tau.back() > start)) return {nan, nan, nan, nan};
     const std::size_t stride = h.coarse_stride(), last = (h.tau.size() - 1) / stride * stride;
     const double length = h.tau[last] - start;
     // Tukey and Hanning's estimate of the spectrum of the growth at frequency zero, times the
@@ -71,7 +76,7 @@ Exponents standard_error(const ExponentHistory& h, double start) {
             return sum;
         };
         double variance = covariance(0);
-        const double least = 0.02 * variance;  // the window's estimate may come out below zero
+        const double least = least_variance * variance;
         for (int lag = 1; lag <= error_lags; ++lag) variance += 2 * weights[lag] * covariance(lag);
         error[k] =
             std::isfinite(variance) ? std::sqrt(std::max(variance, least) / left) / length : nan;

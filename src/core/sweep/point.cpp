@@ -8,6 +8,10 @@ namespace vines {
 
 namespace {
 
+// Two orbits of the same period and contacts are one if their x_rms differ by no more than this
+// share; of irregular motions, whose x_rms is a mean over a finite run, more may be chance.
+constexpr double same_orbit = 0.01, same_irregular = 0.25;
+
 /// From a state at a whole cycle: the phase of the forcing is that of tau = 0 again.
 Outcome run_on(
     const Parameters& p, const State& from, double tau, double cycles,
@@ -108,8 +112,8 @@ bool ends_elsewhere(const PointResult& one, const PointResult& other) {
     };
     if (a.orbit && b.orbit)
         return a.orbit->cycles != b.orbit->cycles || a.orbit->contacts != b.orbit->contacts ||
-               apart(0.01);
-    return apart(0.25);
+               apart(same_orbit);
+    return apart(same_irregular);
 }
 
 }  // namespace vines

@@ -28,6 +28,7 @@ Analysis run(const Parts& parts) {
     Wanted w{.parameters = p, .start = default_state(p), .tau_end = 500};
     w.window = {100, 400};
     w.parts = parts;
+    w.estimators = all_estimators;
     return analyse(w);
 }
 
@@ -113,6 +114,7 @@ TEST_CASE("further windows are judged one by one, in the order in which they are
     Wanted w{.parameters = p, .start = default_state(p), .tau_end = 500};
     w.windows = {{200, 300}, {0, 500}};
     w.parts.exponents = true;
+    w.estimators = all_estimators;
     const Analysis a = analyse(w);
     REQUIRE(a.windows.size() == 2);
     CHECK(a.windows[0].asked.from == 200);

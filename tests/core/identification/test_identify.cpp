@@ -16,7 +16,7 @@ struct Result {
     RefinedImpacts refined;
     Identification found;
     Continuity continuity;
-    std::vector<std::string> doubts;
+    std::vector<Doubt> doubts;
     double lambda1;
     IdentifiedExponents judged;
 
@@ -37,7 +37,7 @@ Result identified(const Measurement& m) {
     const MeasuredExponents exponents(
         p, found.impacts, continuity.stretches, {.eigenvalues = false, .raw_product = false});
     const TransferProduct& all = exponents.all();
-    std::vector<std::string> doubts = doubts_of(p, refined, found);
+    std::vector<Doubt> doubts = doubts_of(p, refined, found);
     const IdentifiedExponents judged =
         judge_exponents(p, all.qr_history(), all.start_tau(), is_representative(found.impacts));
     return {std::move(refined), std::move(found), std::move(continuity),
@@ -165,9 +165,9 @@ TEST_CASE(
     const RefinedImpacts refined = refine_impacts(m.parameters, m.record, spikes, 0);
     const Identification found =
         identify_impacts(m.parameters, refined.motion, refined.side, refined.pulse);
-    CHECK_FALSE(found.impacts[49].fault.empty());
-    CHECK_FALSE(found.impacts[50].fault.empty());
-    CHECK(found.impacts[40].fault.empty());
+    CHECK(found.impacts[49].is_left_out());
+    CHECK(found.impacts[50].is_left_out());
+    CHECK_FALSE(found.impacts[40].is_left_out());
     CHECK(std::abs(found.plus.R - 0.85) < 0.02);
 }
 
@@ -221,8 +221,7 @@ TEST_CASE(
             const Continuity c = continuity_of(motion.parameters, impacts, {});
             CHECK(c.left_out == 0);
             CHECK(c.share == doctest::Approx(share).epsilon(0.35));
-            const MeasuredExponents e(
-                motion.parameters, impacts, c.stretches, {true, true, true, 256});
+            const MeasuredExponents e(motion.parameters, impacts, c.stretches, all_estimators);
             CHECK(
                 std::abs(e.all().qr()[0] - motion.lambda1) <
                 (b == 0.009 ? 3e-4 : 0.05 * motion.lambda1 * (1 + 10 * share)));
@@ -304,7 +303,7 @@ TEST_CASE(
     complete_impacts(motion.parameters, impacts, 0);
     CHECK(impacts[10].momentum_error == doctest::Approx(0).epsilon(1e-9));
     CHECK(impacts[20].momentum_error == doctest::Approx(0.2).epsilon(1e-3));
-    CHECK(impacts[20].fault.find("momentum") == 0);
+    CHECK(impacts[20].fault == ImpactFault::momentum_lost);
     CHECK(std::isnan(impacts[30].momentum_error));
     CHECK(std::isnan(impacts[30].R));
 }

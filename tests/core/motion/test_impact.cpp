@@ -58,7 +58,7 @@ TEST_CASE("the saltation matrix is eq. (27) with f from the flow") {
         S << (1 - R * e) / (1 + e), 0, (e + R * e) / (1 + e), 0, 0, 1, 0, 0, (1 + R) / (1 + e), 0,
             (e - R) / (1 + e), 0, 0, 0, 0, 1;
         const Matrix4 M =
-            S - (S * before - after) * gap_gradient().transpose() / gap_gradient().dot(before);
+            S - (S * before - after) * wall_normal().transpose() / wall_normal().dot(before);
         CHECK((m.matrix() - M).norm() < 1e-12 * M.norm());
         // The flow's own direction goes over into itself.
         CHECK((M * before - after).norm() < 1e-14);

@@ -54,6 +54,19 @@ TEST_CASE("a start outside the cavity is a fault, one on its wall is not") {
     CHECK(wall_of({0, 0.001, 0, 0}, p.b) == 0);
 }
 
+TEST_CASE(
+    "the equations of motion hold for more than a request may ask for, but not for anything") {
+    Parameters p;
+    p.b = 1e6;
+    CHECK_FALSE(validate(p, default_state(p)).empty());
+    CHECK(is_physical(p));
+    p.R_minus = 1.001;
+    CHECK_FALSE(is_physical(p));
+    p.R_minus = 1;
+    p.G = std::numeric_limits<double>::quiet_NaN();
+    CHECK_FALSE(is_physical(p));
+}
+
 TEST_CASE("a damping ratio that the grid would be too fine for is a fault of lambda") {
     Parameters p;
     p.epsilon = 0.5;

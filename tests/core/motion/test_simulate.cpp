@@ -193,6 +193,35 @@ TEST_CASE(
     CHECK(run.impacts.empty());
 }
 
+TEST_CASE("a run may end at any impact, whether the mass sticks there or flies on") {
+    // The moment of an impact is rounded: about half of them lie behind the tau_end of the second
+    // run, by less than an ulp.
+    for (const double R : {0.0, 0.6}) {
+        Parameters p = table1(0.022, Damping::closed_form);
+        p.R_plus = p.R_minus = R;
+        for (const Impact& i : record(p, default_state(p), 200).impacts) {
+            const Record again = record(p, default_state(p), i.tau);
+            CHECK(again.outcome.tau == i.tau);
+            CHECK(again.outcome.reason == End::tau_end);
+            REQUIRE(!again.impacts.empty());
+            CHECK(again.impacts.back().tau == i.tau);
+        }
+    }
+}
+
+TEST_CASE("a run goes on from a state beyond any that a request may start from") {
+    Parameters p = table1(0.022, Damping::equation_of_motion);
+    p.lambda = 0;
+    p.G = 1000;
+    const double tau = 100 * p.cycle();
+    const Outcome grown =
+        simulate(p, default_state(p), {.tau_end = tau, .max_impacts = 10000000}, {});
+    REQUIRE(grown.reason == End::tau_end);
+    REQUIRE_FALSE(validate(p, grown.state).empty());
+    const Limits limits{.tau_end = 1.1 * tau, .max_impacts = 10000000, .tau_start = tau};
+    CHECK(simulate(p, grown.state, limits, {}).reason == End::tau_end);
+}
+
 TEST_CASE("a system at rest on its wall stays there, as one stick without an impact") {
     Parameters p = table1(0.01, Damping::closed_form);
     p.G = 0;

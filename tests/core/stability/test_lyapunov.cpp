@@ -18,8 +18,7 @@ struct WindowsInARow {
 };
 WindowsInARow windows(double b, int count, double length, double start) {
     const Parameters p = table1(b, Damping::closed_form);
-    Lyapunov lyapunov(
-        p, start, 1e9, {.eigenvalues = false, .raw_product = false, .history = 1000000});
+    Lyapunov lyapunov(p, start, 1e9, {.qr = true, .history = 1000000});
     record(p, default_state(p), start + (count + 1) * length, 10000000, {&lyapunov});
     const ExponentHistory& h = lyapunov.product().qr_history();
     const double from = lyapunov.product().start_tau();
@@ -70,8 +69,8 @@ TEST_CASE("the sum rule holds to 1e-10 in every window without a stick") {
             std::vector<std::unique_ptr<Lyapunov>> all;
             std::vector<Observer*> observers;
             for (int k = 0; k < 30; ++k) {
-                all.push_back(std::make_unique<Lyapunov>(
-                    p, 1700.0 * k, 1700.0 * (k + 1), ExponentOptions{true, false, false, 256}));
+                all.push_back(
+                    std::make_unique<Lyapunov>(p, 1700.0 * k, 1700.0 * (k + 1), qr_alone));
                 observers.push_back(all.back().get());
             }
             record(p, default_state(p), 1700 * 30, 1000000, observers);
@@ -88,7 +87,8 @@ TEST_CASE("the sum rule holds through nearly grazing impacts, where entries of M
     std::mt19937_64 engine(9);
     const Parameters p = table1(0.022, Damping::closed_form);
     for (double speed : {1e-4, 1e-6, 1e-8, 1e-10}) {
-        TransferProduct product(p.epsilon, {true, true, false, 256});
+        TransferProduct product(
+            p.epsilon, {.qr = true, .eigenvalues = true, .history = shortest_history});
         product.start(0);
         double tau = 0;
         for (int n = 0; n < 300; ++n) {
@@ -214,7 +214,7 @@ TEST_CASE(
     Eigen::Vector4d multipliers = eigenvalues_of(cycle).cwiseAbs().array().log() / period;
     std::sort(multipliers.begin(), multipliers.end(), std::greater<>());
 
-    Lyapunov lyapunov(p, run.impacts[last - 401].tau - 1e-6, 6001, {});
+    Lyapunov lyapunov(p, run.impacts[last - 401].tau - 1e-6, 6001, all_estimators);
     record(p, default_state(p), 6000, 1000000, {&lyapunov});
     const Exponents eigenvalues = lyapunov.product().eigenvalues(), qr = lyapunov.product().qr();
     for (int k = 0; k < 4; ++k) {
@@ -228,7 +228,7 @@ TEST_CASE(
 TEST_CASE(
     "raw_product shows the paper's four positive exponents, three of them its rounding floor") {
     const Parameters p = table1(0.022, Damping::closed_form);
-    Lyapunov lyapunov(p, 0, 1709, {});
+    Lyapunov lyapunov(p, 0, 1709, all_estimators);
     record(p, default_state(p), 1709, 100000, {&lyapunov});
     const TransferProduct& product = lyapunov.product();
     const Exponents raw = product.raw_product(), qr = product.qr();
@@ -243,7 +243,7 @@ TEST_CASE(
 
 TEST_CASE("raw_product beyond the range of double has no value, eigenvalues and qr have") {
     const Parameters p = table1(0.034, Damping::closed_form);
-    Lyapunov lyapunov(p, 0, 20000, {});
+    Lyapunov lyapunov(p, 0, 20000, all_estimators);
     record(p, default_state(p), 20000, 100000, {&lyapunov});
     CHECK(status_of(lyapunov.product().raw_product()[0]) == Status::not_converged);
     CHECK(std::abs(lyapunov.product().eigenvalues()[0] - lyapunov.product().qr()[0]) < 1e-3);
@@ -251,7 +251,7 @@ TEST_CASE("raw_product beyond the range of double has no value, eigenvalues and 
 
 TEST_CASE("after a stick two exponents are minus infinity, after R = 0 one is") {
     Parameters p = table1(0.015, Damping::closed_form);
-    Lyapunov stick(p, 0, 1709, {});
+    Lyapunov stick(p, 0, 1709, all_estimators);
     record(p, default_state(p), 1709, 100000, {&stick});
     const Exponents qr = stick.product().qr(), eigenvalues = stick.product().eigenvalues();
     for (const Exponents& e : {qr, eigenvalues}) {
@@ -262,20 +262,20 @@ TEST_CASE("after a stick two exponents are minus infinity, after R = 0 one is") 
     }
     // The rule says nothing at rank 2; the area that two deviations span does.
     CHECK(stick.product().sum_rule_residual() < 1e-10);
-    Lyapunov before(p, 0, 70, {});
+    Lyapunov before(p, 0, 70, all_estimators);
     record(p, default_state(p), 1709, 100000, {&before});
     CHECK(before.product().rank() == 4);
 
     p.b = 0.1;
     p.R_plus = p.R_minus = 0;
-    Lyapunov plastic(p, 0, 1e9, {});
+    Lyapunov plastic(p, 0, 1e9, all_estimators);
     const Record run = record(p, {0.02, 0, 0.05, 0}, 30, 100000, {&plastic});
     if (run.sticks.empty() && run.impacts.size() > 1) CHECK(plastic.product().rank() == 3);
 }
 
 TEST_CASE("a window with fewer than two impacts has no exponents") {
     const Parameters p = table1(0.022, Damping::closed_form);
-    Lyapunov lyapunov(p, 0, 20, {});
+    Lyapunov lyapunov(p, 0, 20, all_estimators);
     record(p, default_state(p), 100, 100000, {&lyapunov});
     CHECK(lyapunov.product().impacts() == 1);
     CHECK(status_of(lyapunov.product().qr()[0]) == Status::not_converged);
@@ -284,8 +284,7 @@ TEST_CASE("a window with fewer than two impacts has no exponents") {
 
 TEST_CASE("a thinned history keeps every second, fourth, ... impact and ends near the end") {
     const Parameters p = table1(0.008, Damping::closed_form);
-    Lyapunov full(p, 0, 1e9, {true, false, false, 100000}),
-        thin(p, 0, 1e9, {true, false, false, 256});
+    Lyapunov full(p, 0, 1e9, {.qr = true, .history = 100000}), thin(p, 0, 1e9, qr_alone);
     record(p, default_state(p), 3000, 100000, {&full, &thin});
     const ExponentHistory &f = full.product().qr_history(), &t = thin.product().qr_history();
     CHECK(f.tau.size() == static_cast<std::size_t>(full.product().impacts() - 1));
@@ -311,7 +310,7 @@ Calibration calibrated(const Parameters& p, double apart) {
     for (int k = 1; k <= runs; ++k) {
         State start = default_state(p);
         start.y *= 1 - apart * k;
-        Lyapunov lyapunov(p, 0, 1709, {true, false, false, 20000});
+        Lyapunov lyapunov(p, 0, 1709, {.qr = true});
         record(p, start, 1709, 100000, {&lyapunov});
         const Growth g = growth_of(lyapunov.product());
         sum += g.lambda1, squares += g.lambda1 * g.lambda1, stated += g.standard_error[0] / runs;
@@ -493,7 +492,7 @@ TEST_CASE("under strong damping all four exponents are right, at any rank") {
         Parameters p;
         p.epsilon = k.epsilon, p.lambda = k.lambda, p.damping = k.damping, p.G = k.G,
         p.Omega = k.Omega, p.R_plus = k.R_plus, p.R_minus = k.R_minus, p.b = k.b;
-        Lyapunov lyapunov(p, 0, k.tau_end, {});
+        Lyapunov lyapunov(p, 0, k.tau_end, all_estimators);
         record(p, k.start, k.tau_end, k.max_impacts, {&lyapunov});
         const TransferProduct& product = lyapunov.product();
         CHECK(product.rank() == k.rank);
@@ -517,7 +516,7 @@ TEST_CASE("tiny restitution coefficients leave the exponents right: their sum ob
         Parameters p = table1(0.02, Damping::closed_form);
         p.R_plus = p.R_minus = R;
         for (double from : {0.0, 300.0, 600.0}) {
-            Lyapunov lyapunov(p, from, from + 60, {});
+            Lyapunov lyapunov(p, from, from + 60, all_estimators);
             record(p, default_state(p), 800, 100000, {&lyapunov});
             if (lyapunov.product().impacts() < 2) continue;
             CHECK(lyapunov.product().sum_rule_residual() < 1e-6);

@@ -10,10 +10,10 @@ TEST_CASE("windows that are fed together hold what each holds alone, to the last
     const Parameters p = table1(0.022, Damping::closed_form);
     const std::pair<double, double> bounds[] = {{500, 900}, {0, 1709},   {0, 100},     {900, 1300},
                                                 {600, 700}, {650, 5000}, {1700, 1709}, {10, 11}};
-    Windows together(p, {});
+    Windows together(p, all_estimators);
     std::vector<Lyapunov> alone;
     for (const auto& [from, to] : bounds)
-        together.add(from, to), alone.emplace_back(p, from, to, ExponentOptions{});
+        together.add(from, to), alone.emplace_back(p, from, to, all_estimators);
     std::vector<Observer*> observers = {&together};
     for (Lyapunov& l : alone) observers.push_back(&l);
     record(p, default_state(p), 1709, 100000, observers);

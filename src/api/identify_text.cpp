@@ -1,0 +1,47 @@
+#include "api/identify_text.hpp"
+
+namespace vines::api {
+
+const char* text_of(ImpactFault fault) {
+    switch (fault) {
+        case ImpactFault::none: return "";
+        case ImpactFault::too_close:
+            return "closer to the impact before it than the length of a pulse: one spike picked "
+                   "twice?";
+        case ImpactFault::moves_away:
+            return "the mass would move away from the wall that it meets: is an impact beside it "
+                   "missing, or b wrong?";
+        case ImpactFault::no_velocity: return "too few samples beside it for a velocity";
+        case ImpactFault::R_impossible:
+            return "R lies outside [0, 1]: is an impact beside it missing, or b wrong?";
+        case ImpactFault::momentum_lost:
+            return "momentum is not kept: is an impact beside it missing or false, or b wrong?";
+    }
+    return "";
+}
+
+const char* text_of(BFault fault) {
+    switch (fault) {
+        case BFault::none: return "";
+        case BFault::no_flight: return "no impact has one on the other wall before or after it";
+        case BFault::unexplained: return "the fitted motion does not explain the record";
+        case BFault::negative: return "it would be negative";
+        case BFault::scattered: return "the impacts say different ones";
+    }
+    return "";
+}
+
+const char* text_of(Doubt doubt) {
+    switch (doubt) {
+        case Doubt::not_settled:
+            return "the search for impacts did not settle: what one round finds the next one drops";
+        case Doubt::unexplained:
+            return "the fitted motion does not explain the record: it leaves more than the noise "
+                   "of the sensors (signal.misfit). Is a parameter wrong (frequency, mass, "
+                   "stiffness), or has a sensor an offset, a drift, a delay or another scale?";
+        case Doubt::b_disagrees: return "the impacts' momentum does not fit the given b";
+    }
+    return "";
+}
+
+}  // namespace vines::api

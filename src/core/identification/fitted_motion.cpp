@@ -1,0 +1,268 @@
+#include "core/identification/fitted_motion.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "core/identification/oscillator_model.hpp"
+#include "core/identification/robust.hpp"
+#include "core/identification/spikes.hpp"
+
+namespace vines {
+
+namespace {
+
+// x is continuous at an impact: of the noise of one sample the fit may leave it that much of a
+// jump. Far smaller, and the equations lose digits; larger, and the kink in x tells less of the
+// moment.
+constexpr double continuity_share = 0.05;
+// A sensor without noise would weigh infinitely: less than this, in m, is no sensor's.
+constexpr double least_sensor_noise = 1e-12;
+// Added to the diagonal of the normal equations, where a single sample adds about 1/noise^2, far
+// above 1: what no sample says anything of comes out as zero, what one does is left as it is.
+constexpr double ridge = 1e-9;
+// A pulse spoils the acceleration over half of it on both sides of an impact, and that share of a
+// sample's step more.
+constexpr double pulse_margin = 0.1;
+// A misfit of three quarters of the noise beside the noise: sqrt(1 + .75^2). Records with the
+// assumed signal stay below 1.05.
+constexpr double misfit_limit = 1.25;
+
+/// One sample as the model sees it.
+struct FitSample {
+    std::size_t interval;
+    Eigen::Vector4d x, x_ddot;
+    bool in_pulse;  ///< its acceleration is the pulse's
+};
+
+/// The noise that each sensor's samples are weighed by; NaN without it.
+struct SensorNoise {
+    double x, x_ddot;
+};
+
+/// The normal equations N z = g of one interval's samples, z = its start and the forcing.
+struct IntervalEquations {
+    Eigen::Matrix4d N = Eigen::Matrix4d::Zero();
+    Eigen::Vector4d g = Eigen::Vector4d::Zero();
+
+    void add(const Eigen::Vector4d& row, double value, double sigma) {
+        const Eigen::Vector4d scaled = row / sigma;
+        N += scaled * scaled.transpose();
+        g += scaled * (value / sigma);
+    }
+};
+
+/// The normal equations of the whole record: two unknowns for each interval, then the two of the
+/// forcing.
+class JointEquations {
+public:
+    explicit JointEquations(std::size_t intervals)
+        : unknowns_(static_cast<Eigen::Index>(2 * intervals + 2)),
+          right_(Eigen::VectorXd::Zero(unknowns_)) {}
+
+    void add(std::size_t i, const IntervalEquations& own) {
+        const Eigen::Index at[4] = {
+            static_cast<Eigen::Index>(2 * i), static_cast<Eigen::Index>(2 * i + 1), unknowns_ - 2,
+            unknowns_ - 1};
+        for (int j = 0; j < 4; ++j) {
+            right_(at[j]) += own.g(j);
+            for (int k = 0; k < 4; ++k) triplets_.emplace_back(at[j], at[k], own.N(j, k));
+        }
+    }
+    /// x at the end of interval i (row) is x at the start of the next.
+    void connect(std::size_t i, const Eigen::Vector4d& row, double weight) {
+        Eigen::Matrix<double, 5, 1> all;
+        all << row, -1;
+        const Eigen::Index at[5] = {
+            static_cast<Eigen::Index>(2 * i), static_cast<Eigen::Index>(2 * i + 1), unknowns_ - 2,
+            unknowns_ - 1, static_cast<Eigen::Index>(2 * i + 2)};
+        for (int j = 0; j < 5; ++j)
+            for (int k = 0; k < 5; ++k)
+                triplets_.emplace_back(at[j], at[k], weight * weight * all(j) * all(k));
+    }
+    Eigen::VectorXd solve() {
+        // An interval without a sample, or a record that does not show the forcing, leaves its
+        // unknowns at zero.
+        for (Eigen::Index k = 0; k < unknowns_; ++k) triplets_.emplace_back(k, k, ridge);
+        Eigen::SparseMatrix<double> N(unknowns_, unknowns_);
+        N.setFromTriplets(triplets_.begin(), triplets_.end());
+        const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(N);
+        // Without a factorisation solve() leaves its result unset. A motion of zero explains
+        // nothing, and is seen to.
+        if (solver.info() != Eigen::Success) return Eigen::VectorXd::Zero(unknowns_);
+        const Eigen::VectorXd z = solver.solve(right_);
+        return z.allFinite() ? z : Eigen::VectorXd(Eigen::VectorXd::Zero(unknowns_));
+    }
+
+private:
+    const Eigen::Index unknowns_;
+    std::vector<Eigen::Triplet<double>> triplets_;
+    Eigen::VectorXd right_;
+};
+
+SensorNoise sensor_noise(const MeasuredRecord& r) {
+    const auto noise = [&](const std::vector<double>& signal) {
+        return signal.empty() ? nan : std::max(difference_noise(r.tau, signal), least_sensor_noise);
+    };
+    return {noise(r.x), noise(r.x_ddot)};
+}
+
+/// `starts`: of the intervals; a sample closer to an impact than `spoiled` lies in its pulse.
+std::vector<FitSample> samples_of(
+    const OscillatorModel& model, const MeasuredRecord& r, const std::vector<double>& starts,
+    double spoiled) {
+    std::vector<FitSample> samples;
+    samples.reserve(r.tau.size());
+    std::size_t i = 0;
+    for (const double tau : r.tau) {
+        while (i + 1 < starts.size() && starts[i + 1] <= tau) ++i;
+        const ModelRows rows = model.at(starts[i], tau - starts[i]);
+        const bool in_pulse = (i > 0 && tau - starts[i] < spoiled) ||
+                              (i + 1 < starts.size() && starts[i + 1] - tau < spoiled);
+        samples.push_back({i, rows.x, rows.x_ddot, in_pulse});
+    }
+    return samples;
+}
+
+std::vector<IntervalEquations> equations_of(
+    const MeasuredRecord& r, const std::vector<FitSample>& samples, const SensorNoise& sigma,
+    std::size_t intervals) {
+    std::vector<IntervalEquations> equations(intervals);
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+        const FitSample& s = samples[k];
+        if (!r.x.empty()) equations[s.interval].add(s.x, r.x[k], sigma.x);
+        if (!r.x_ddot.empty() && !s.in_pulse)
+            equations[s.interval].add(s.x_ddot, r.x_ddot[k], sigma.x_ddot);
+    }
+    return equations;
+}
+
+/// The model at the end of each interval but the last.
+std::vector<ModelRows> ends_of(const OscillatorModel& model, const std::vector<double>& starts) {
+    std::vector<ModelRows> ends;
+    for (std::size_t k = 0; k + 1 < starts.size(); ++k)
+        ends.push_back(model.at(starts[k], starts[k + 1] - starts[k]));
+    return ends;
+}
+
+/// Sets the starts of all intervals and the forcing. `sigma`: of a jump of x at an impact.
+void solve_together(
+    const std::vector<IntervalEquations>& own, const std::vector<ModelRows>& ends, double sigma,
+    FittedMotion& m) {
+    JointEquations equations(own.size());
+    for (std::size_t k = 0; k < own.size(); ++k) {
+        equations.add(k, own[k]);
+        if (k < ends.size()) equations.connect(k, ends[k].x, 1 / sigma);
+    }
+    const Eigen::VectorXd z = equations.solve();
+    m.force_sin = z(z.size() - 2), m.force_cos = z(z.size() - 1);
+    for (std::size_t k = 0; k < own.size(); ++k) {
+        m.x.push_back(z(static_cast<Eigen::Index>(2 * k)));
+        m.x_dot.push_back(z(static_cast<Eigen::Index>(2 * k + 1)));
+    }
+}
+
+/// Sets each interval's own start, with the forcing of all; gives what it then knows of it: the
+/// covariance of (x, x').
+std::vector<Eigen::Matrix2d> solve_apart(
+    const std::vector<IntervalEquations>& equations, FittedMotion& m) {
+    const Eigen::Vector2d force(m.force_sin, m.force_cos);
+    std::vector<Eigen::Matrix2d> covariance;
+    for (const IntervalEquations& e : equations) {
+        covariance.push_back(
+            (e.N.topLeftCorner<2, 2>() + ridge * Eigen::Matrix2d::Identity()).inverse());
+        const Eigen::Vector2d own =
+            covariance.back() * (e.g.head<2>() - e.N.topRightCorner<2, 2>() * force);
+        m.own_x.push_back(own(0));
+        m.own_x_dot.push_back(own(1));
+    }
+    return covariance;
+}
+
+/// Sets what the motion is at the impacts, from both sides.
+void meet_at_impacts(
+    const OscillatorModel& model, const std::vector<ModelRows>& ends,
+    const std::vector<Eigen::Matrix2d>& covariance, FittedMotion& m) {
+    const auto unknowns = [&](double x, double x_dot) {
+        return Eigen::Vector4d(x, x_dot, m.force_sin, m.force_cos);
+    };
+    // An interval with hardly a sample says nothing.
+    const auto error = [](double variance) {
+        return variance > 0 ? std::sqrt(variance) : infinity;
+    };
+    for (std::size_t k = 0; k < ends.size(); ++k) {
+        const Eigen::Vector4d before = unknowns(m.x[k], m.x_dot[k]),
+                              own = unknowns(m.own_x[k], m.own_x_dot[k]);
+        m.x_dot_before.push_back(ends[k].x_dot.dot(before));
+        m.x_ddot_before.push_back(ends[k].x_ddot.dot(before));
+        m.x_ddot_after.push_back(
+            model.at(m.tau[k + 1], 0).x_ddot.dot(unknowns(m.x[k + 1], m.x_dot[k + 1])));
+        m.x_jump.push_back(ends[k].x.dot(own) - m.own_x[k + 1]);
+        m.x_jump_rate.push_back(ends[k].x_dot.dot(own) - m.own_x_dot[k + 1]);
+        const Eigen::Vector2d row = ends[k].x.head<2>(), speed = ends[k].x_dot.head<2>();
+        m.x_jump_error.push_back(error(row.dot(covariance[k] * row) + covariance[k + 1](0, 0)));
+        m.x_dot_jump_error.push_back(
+            error(speed.dot(covariance[k] * speed) + covariance[k + 1](1, 1)));
+    }
+}
+
+/// What a fit leaves of a sensor over the noise of that sensor, which is seen beside the pulses. Of
+/// the nine in ten that lie closest: a motion may be wrong in a part of the record, but a few odd
+/// samples are no misfit.
+double misfit_of(
+    const std::vector<double>& residual, const std::vector<double>& tau,
+    const std::vector<double>& signal, const std::vector<char>& spoiled) {
+    const double noise = std::hypot(difference_noise(tau, signal, spoiled), least_noise_of(signal));
+    // Of a normal distribution lie within that many standard deviations.
+    constexpr double ninety_percent = 1.645;
+    return quantile_of_moduli(residual, 0.9) / ninety_percent / noise;
+}
+
+/// Sets what the motion leaves of the sensors.
+void take_residuals(
+    const MeasuredRecord& r, const std::vector<FitSample>& samples, FittedMotion& m) {
+    std::vector<double> of_x, of_x_ddot;
+    std::vector<char> spoiled;
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+        const FitSample& s = samples[k];
+        const Eigen::Vector4d unknowns(
+            m.x[s.interval], m.x_dot[s.interval], m.force_sin, m.force_cos);
+        spoiled.push_back(s.in_pulse);
+        if (!r.x.empty()) of_x.push_back(r.x[k] - s.x.dot(unknowns));
+        if (r.x_ddot.empty()) continue;
+        m.x_ddot_residual.push_back(r.x_ddot[k] - s.x_ddot.dot(unknowns));
+        if (!s.in_pulse) of_x_ddot.push_back(m.x_ddot_residual.back());
+    }
+    m.noise_x = r.x.empty() ? nan : robust_deviation(of_x);
+    m.noise_x_ddot = r.x_ddot.empty() ? nan : robust_deviation(of_x_ddot);
+    m.misfit_x = r.x.empty() ? nan : misfit_of(of_x, r.tau, r.x, spoiled);
+    m.misfit_x_ddot = r.x_ddot.empty() ? nan : misfit_of(of_x_ddot, r.tau, r.x_ddot, spoiled);
+}
+
+}  // namespace
+
+FittedMotion fit_motion(
+    const Parameters& p, const MeasuredRecord& r, const std::vector<double>& impacts,
+    double pulse) {
+    const OscillatorModel model(p);
+    FittedMotion m;
+    m.tau = {r.tau.front()};
+    m.tau.insert(m.tau.end(), impacts.begin(), impacts.end());
+    const SensorNoise sigma = sensor_noise(r);
+    const std::vector<FitSample> samples =
+        samples_of(model, r, m.tau, 0.5 * pulse + pulse_margin * sample_interval(r));
+    const std::vector<IntervalEquations> own = equations_of(r, samples, sigma, m.tau.size());
+    const std::vector<ModelRows> ends = ends_of(model, m.tau);
+    solve_together(own, ends, continuity_share * (r.x.empty() ? sigma.x_ddot : sigma.x), m);
+    meet_at_impacts(model, ends, solve_apart(own, m), m);
+    take_residuals(r, samples, m);
+    return m;
+}
+
+bool explains(const FittedMotion& m) {
+    return !(m.misfit_x > misfit_limit) && !(m.misfit_x_ddot > misfit_limit);
+}
+
+}  // namespace vines
