@@ -1,0 +1,33 @@
+// The program that makes the reference files, against the files.
+import assert from "node:assert/strict";
+import {execFileSync} from "node:child_process";
+import {readFileSync} from "node:fs";
+import test from "node:test";
+
+const lines = (text) => text.trimEnd().split("\n");
+const stored = (name) => lines(readFileSync(new URL(`${name}.txt`, import.meta.url), "utf8"));
+const made = (name, tauEnd) =>
+  lines(execFileSync(process.env.MAKE_REFERENCE, [name, tauEnd], {encoding: "utf8"}));
+
+test("a short run with the closed form's damping begins its stored file, through a stick", () => {
+  const run = made("closed_b0.015", "100").slice(0, -4);
+  assert.ok(run.some((line) => line.startsWith("# stick")));
+  assert.deepEqual(run, stored("closed_b0.015").slice(0, run.length));
+});
+
+test("a short run with the equation of motion's damping begins its stored file", () => {
+  const run = made("eom_b0.008", "200").slice(0, -4);
+  assert.ok(run.length > 50);
+  assert.deepEqual(run, stored("eom_b0.008").slice(0, run.length));
+});
+
+test("a short run's exponents add up to what damping and impacts say", () => {
+  const [, qr, sumrule, eig] = made("closed_b0.022", "200").slice(-4);
+  const [, sum, rule] = sumrule.split(" ");
+  assert.equal(sum, rule);
+  for (const line of [qr, eig]) {
+    const exponents = line.split(" ").slice(1).map(Number);
+    assert.equal(exponents.length, 4);
+    assert.ok(Math.abs(exponents.reduce((a, b) => a + b) - rule) < 1e-13);
+  }
+});
