@@ -52,9 +52,9 @@ struct FittedMotion {
     double force_sin, force_cos;
     /// Of what is left of each sensor, standard deviation; NaN without it.
     double noise_x, noise_x_ddot;
-    /// That over the sensor's own noise,.
+    /// That over the sensor's own noise, which is taken from the signal beside the pulses: 1 if all
+    /// is explained; NaN without the sensor.
     double misfit_x = std::numeric_limits<double>::quiet_NaN(), misfit_x_ddot = misfit_x;
-    ///< taken from the signal beside the pulses: 1 if all is explained
     /// Of the acceleration at each sample without the motion: the pulses and the noise.
     std::vector<double> left;
     // Of each interval fitted by itself, with the forcing of all:
