@@ -1,3 +1,4 @@
+# The program and the libraries that it loads, and nothing else: docs/operations.md.
 FROM debian:bookworm-slim AS build
 RUN apt-get update \
     && DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends \

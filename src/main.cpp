@@ -1,3 +1,4 @@
+// The program `vines`: which subcommands there are, and which of them runs.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <vector>

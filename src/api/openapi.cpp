@@ -113,15 +113,18 @@ Json identify_operation() {
         {"200", answer(
                     "impacts, restitution, exponents, verdict", "application/json",
                     parts(
-                        {{"parameters", "with the identified R"},
-                         {"signal", "noise, misfit, pulse length, forcing"},
+                        {{"version", ""},
+                         {"parameters", "resolved, with the R and the forcing found"},
+                         {"signal", "of a record: noise, misfit, pulse length, forcing"},
                          {"impacts", "columns, with a status each"},
                          {"restitution", "of each wall"},
                          {"b_fitted", "that fits the momentum"},
                          {"exponents", "of the sequence"},
                          {"slope", "with its 90 % interval"},
-                         {"verdict", "chaotic, regular or not_decided"},
-                         {"forward", "a run of the identified system"},
+                         {"verdict", "chaotic, regular, not_decided or null"},
+                         {"verdict_reason", "a sentence"},
+                         {"direct", "of a record with both sensors: the paper's estimate"},
+                         {"forward", "of a record: a run of the identified system"},
                          {"warnings", "sentences"}}))}};
     Json op = with_query(
         operation(
@@ -149,12 +152,20 @@ Json identify_request() {
     return s;
 }
 
+/// A route without fields.
 Json plain(const std::string& id, const std::string& summary) {
     return {
         {"get",
          {{"operationId", id},
           {"summary", summary},
           {"responses", {{"200", answer(summary, "application/json", {{"type", "object"}})}}}}}};
+}
+
+Json readyz() {
+    Json path = plain("readyz", "the server takes work; 503 once it is about to stop");
+    path["get"]["responses"]["503"] =
+        answer("the server is about to stop", "application/problem+json", reference("Problem"));
+    return path;
 }
 
 Json paths() {
@@ -181,7 +192,7 @@ Json paths() {
         {"/v1/sweep",
          {{"post",
            with_body(
-               operation("sweep", "many runs over one or two parameters, as a stream", swept),
+               operation("sweep", "many runs over one to three parameters, as a stream", swept),
                "SweepRequest")}}},
         {"/v1/identify", {{"post", identify_operation()}}},
         {"/v1/manifold",
@@ -199,7 +210,7 @@ Json paths() {
         {"/v1/openapi.json", plain("openapi", "this document")},
         {"/healthz", plain("healthz", "the process answers")},
         {"/livez", plain("livez", "the process answers")},
-        {"/readyz", plain("readyz", "the server takes work; 503 once it is about to stop")},
+        {"/readyz", readyz()},
         {"/version", plain("version", "name and version")},
     };
 }

@@ -1,3 +1,4 @@
+// `vines identify`: a measurement as CSV or JSON.
 #include "api/identify.hpp"
 
 #include <memory>

@@ -1,3 +1,4 @@
+// `vines merge`: the file of a whole sweep from those of its shards.
 #include <fmt/format.h>
 
 #include <memory>

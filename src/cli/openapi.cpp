@@ -1,3 +1,4 @@
+// `vines openapi`: the document that the service has at /v1/openapi.json.
 #include "api/openapi.hpp"
 
 #include <cstdio>

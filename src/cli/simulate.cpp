@@ -1,3 +1,4 @@
+// `vines simulate`: one run, without the service's deadline and limits.
 #include "api/simulate.hpp"
 
 #include <memory>

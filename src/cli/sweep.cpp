@@ -1,3 +1,4 @@
+// `vines sweep`: a sweep or a shard of one into a file, which a later run can complete.
 #include "api/sweep.hpp"
 
 #include <fmt/format.h>

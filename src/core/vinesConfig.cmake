@@ -1,3 +1,4 @@
+# What find_package(vines) reads: the installed core and what it needs.
 include(CMakeFindDependencyMacro)
 find_dependency(Eigen3 NO_MODULE)
 find_dependency(Threads)

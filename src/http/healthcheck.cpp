@@ -1,3 +1,4 @@
+// `vines healthcheck`: asks a running service, for a container that has no curl.
 #include <httplib.h>
 
 #include <memory>

@@ -1,3 +1,4 @@
+// `vines serve`: flags and environment, start, end by a signal.
 #include <fmt/format.h>
 #include <malloc.h>
 #include <unistd.h>

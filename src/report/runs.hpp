@@ -59,8 +59,9 @@ struct Ensemble {
     Moments lambda(int k) const;
 };
 
-/// Where each of so many random starts comes to, always the same ones: |x'|, |x| <= .008, |y'| <=
-/// .01 (m, and m per unit of tau), y anywhere in the cavity. Judged from tau = 1500 to 3000.
+/// Where each of so many random starts comes to, always the same ones: |x'|, |x| <= .008 and
+/// |y'| <= .01 (m, and m per unit of tau), y anywhere in the cavity. Judged from tau = 1500 to
+/// 3000.
 std::vector<Regime> regimes_of_random_starts(const Parameters& parameters, int starts);
 
 /// The runs that more than one chapter rests on: each is made when it is first asked for. `b` in m.

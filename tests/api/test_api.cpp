@@ -1,3 +1,4 @@
+// Requests and answers of /v1/simulate and /v1/manifold, presets and the tables of fields.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Requests and answers of /v1/identify.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// What an engineer asks of a machine: systems in SI, several starts, reductions, a recommended b.
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// Requests and lines of /v1/sweep.
 #include <doctest/doctest.h>
 
 #include <cstdio>

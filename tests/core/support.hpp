@@ -21,8 +21,8 @@ struct ReferenceStick {
     double start, end;
 };
 
-/// One file of reference/: a trajectory in 250-digit arithmetic from Table 1's initial state to tau
-/// = 1709.
+/// One file of reference/: a trajectory in 250-digit arithmetic from Table 1's initial state to
+/// tau = 1709.
 struct Reference {
     Parameters parameters;
     std::vector<ReferenceImpact> impacts;

@@ -1,6 +1,6 @@
-// The forced oscillator in closed form, in any arithmetic: x'' = -stiffness x - damping x' +
-// forcing sin(theta), theta' = Omega. Written from the equations alone, so that it shares nothing
-// with the flow that it judges.
+// The forced oscillator in closed form, in any arithmetic:
+// x'' = -stiffness x - damping x' + forcing sin(theta), theta' = Omega. Written from the equations
+// alone, so that it shares nothing with the flow that it judges.
 #pragma once
 
 #include <boost/multiprecision/cpp_bin_float.hpp>

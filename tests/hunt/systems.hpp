@@ -22,8 +22,8 @@ struct System {
 System strongly_damped(std::mt19937_64& engine);
 
 /// Where verdicts go wrong: wide ranges of everything; Table 1 over b; a thin chaotic band beside a
-/// stable orbit; strongly contracting walls with their long periods; neutral motions (R = 1, zeta =
-/// 0, a mass that is not touched).
+/// stable orbit; strongly contracting walls with their long periods; neutral motions (R = 1,
+/// zeta = 0, a mass that is not touched).
 enum class Kind { wide, table, band, contracting, neutral };
 inline constexpr Kind kinds[] = {
     Kind::wide, Kind::table, Kind::band, Kind::contracting, Kind::neutral};

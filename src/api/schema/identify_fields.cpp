@@ -1,3 +1,4 @@
+// The table of /v1/identify: what of /v1/simulate holds for a record, and how to read its columns.
 #include "api/schema/tables.hpp"
 
 namespace vines::api {

@@ -1,3 +1,4 @@
+// The table of /v1/manifold: the system's rows of /v1/simulate, and the extent of the branches.
 #include <algorithm>
 #include <iterator>
 

@@ -1,3 +1,4 @@
+// The rows of the table of /v1/simulate, of which those of the other routes are made.
 #include <numbers>
 #include <stdexcept>
 

@@ -1,3 +1,4 @@
+// The tables of /v1/sweep: its own fields, and those of `base`, of an axis and of a start.
 #include <numbers>
 
 #include "api/schema/tables.hpp"

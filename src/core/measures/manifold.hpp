@@ -7,17 +7,17 @@
 //     C^2 = (pi W/2 - b)^2 + k^2 W^2,
 //
 // which for Omega = 1 is the manifold of Gourc et al. (2015). Linearised, half a cycle followed by
-// the mirroring (x, y) ->
-// (-x, -y) has the determinant R^2 and the trace 2 R + (1 + R)^2 (pi b/(2 W) - pi^2/4). An
-// eigenvalue is 1 at the fold and -1, where the two impacts lose their symmetry, at W = (pi/2)
-// b/(pi^2/4 - 1), for every R. The manifold is stable between the two.
+// the mirroring (x, y) -> (-x, -y) has the determinant R^2 and the trace
+// 2 R + (1 + R)^2 (pi b/(2 W) - pi^2/4). An eigenvalue is 1 at the fold and -1, where the two
+// impacts lose their symmetry, at W = (pi/2) b/(pi^2/4 - 1), for every R. The manifold is stable
+// between the two.
 //
 // It exists as long as the flight meets no wall before its end. With t = Omega tau since the impact
-// and q = -x_i/W = pi/2 - b/W, the mass stays off the wall that it has left while q (1 - cos t) < t
-// - k sin t, and off the other one while q (1 - cos t) < t + k sin t, which follows. So the limit
-// is q = min of (t - k sin t)/(1 - cos t) over 0 < t < pi. The derivative vanishes where tan(t/2) =
-// (1 + R) t/2, which has one root, for tan(u)/u rises from 1 without bound. Up to R = .0867 this
-// second contact comes before the loss of symmetry.
+// and q = -x_i/W = pi/2 - b/W, the mass stays off the wall that it has left while
+// q (1 - cos t) < t - k sin t, and off the other one while q (1 - cos t) < t + k sin t, which
+// follows. So the limit is q = min of (t - k sin t)/(1 - cos t) over 0 < t < pi. The derivative
+// vanishes where tan(t/2) = (1 + R) t/2, which has one root, for tan(u)/u rises from 1 without
+// bound. Up to R = .0867 this second contact comes before the loss of symmetry.
 #pragma once
 
 #include <cstddef>
@@ -35,8 +35,8 @@ struct ManifoldPoint {
 
 /// C on the manifold for a speed V >= 0 of the free mass.
 double manifold_C(double R, double Omega, double b, double V);
-/// Where C is smallest: below this amplitude the absorber cannot be activated, C = b k/sqrt(pi^2/4
-/// + k^2).
+/// Where C is smallest, C = b k/sqrt(pi^2/4 + k^2): below this amplitude the absorber cannot be
+/// activated.
 ManifoldPoint manifold_fold(double R, double Omega, double b);
 /// Where the symmetric impacts become unstable to asymmetric ones.
 ManifoldPoint manifold_symmetry_breaking(double R, double Omega, double b);

@@ -216,8 +216,8 @@ Transfer Flow::transfer(double s) const {
     const double d = std::max(0.0, s - k * cell_);
     then(row(k));
 
-    // Within a cell: with u the unforced motion from (x', x) = (1, 0), that from (0, 1) is u' +
-    // damping u.
+    // Within a cell: with u the unforced motion from (x', x) = (1, 0), that from (0, 1) is
+    // u' + damping u.
     const SeriesValue u = value_at(of_x_dot_.series, d);
     then({u.x_dot, -stiffness_ * u.x, u.x, u.x_dot + damping_ * u.x});
     return j;

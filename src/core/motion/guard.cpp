@@ -202,11 +202,11 @@ struct Search {
         return Contact{k * h + d, wall, at, at.x_dot - start.y_dot};
     }
 
-    /// The next contact of a chatter. The flight left its wall with relative speed -w, and a = side
-    /// x'' > 0 presses it back. f = side g - b is s phi(s) with phi(0) = -w, phi'(0) = a/2 and
-    /// |phi''| <= M3/3. Let D = 4 w/a. If M3 D < a, then phi rises on [0, D] (phi' >= a/2 - M3 D/3
-    /// > 0) and phi(D) >= -w + a D/2 - M3 D^2/6 > w - a D/6 > 0: there is one contact in (0, D],
-    /// the first one, if the other wall is out of reach.
+    /// The next contact of a chatter. The flight left its wall with relative speed -w, and
+    /// a = side x'' > 0 presses it back. f = side g - b is s phi(s) with phi(0) = -w,
+    /// phi'(0) = a/2 and |phi''| <= M3/3. Let D = 4 w/a. If M3 D < a, then phi rises on [0, D]
+    /// (phi' >= a/2 - M3 D/3 > 0) and phi(D) >= -w + a D/2 - M3 D^2/6 > w - a D/6 > 0: there is one
+    /// contact in (0, D], the first one, if the other wall is out of reach.
     std::optional<Contact> chatter(double M3) const {
         const double w = -start.side * start.relative_speed,
                      a = start.side * flow.acceleration(start.lo);

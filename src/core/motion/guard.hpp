@@ -64,9 +64,9 @@ std::optional<Contact> next_contact(
     const Flow& flow, const FlightStart& start, double b, double limit,
     std::vector<Touch>& touches);
 
-/// The first s in (0, limit] where the acceleration of the stuck motion stops pressing (side x'' >
-/// 0) the mass against its wall; limit <= flow.reach(). `zeros` is 1 if x'' = 0 at the start, else
-/// 0.
+/// The first s in (0, limit] where the acceleration of the stuck motion stops pressing the mass
+/// against its wall (side x'' > 0); limit <= flow.reach(). `zeros` is 1 if x'' = 0 at the start,
+/// else 0.
 std::optional<double> next_release(
     const Flow& flow, const Oscillation& start, int side, int zeros, double limit);
 

@@ -13,14 +13,13 @@ namespace vines {
 /// Which damping ratio zeta the motion has. The paper uses both: see docs/paper.md.
 enum class Damping {
     equation_of_motion,  ///< 2 zeta = epsilon lambda, eqs. (1), (6), (17): what c1 means
-    /// Zeta = epsilon lambda, eqs. (8)-(11), (19), (20): what the paper's numbers were computed
-    /// with.
+    /// zeta = epsilon lambda, eqs. (8)-(11), (19), (20): what the paper's numbers come from
     closed_form
 };
 
 /// The same system in SI units: masses in kg, c1 in N s/m, k1 in N/m, F (amplitude of the base) in
-/// m, f in Hz. The defaults are the paper's Table 1; its excitation is given in reduced form, G =
-/// .02 m and Omega = 1.
+/// m, f in Hz. The defaults are the paper's Table 1; its excitation is given in reduced form,
+/// G = .02 m and Omega = 1.
 struct SiParameters {
     double m1 = 3.807, c1 = 2.53, k1 = 11.68e3, m2 = 0.032;
     double F = 0.02 * m2 / m1, f = f0();
@@ -28,16 +27,15 @@ struct SiParameters {
     double omega0() const { return std::sqrt(k1 / m1); }             ///< rad/s
     double f0() const { return omega0() / (2 * std::numbers::pi); }  ///< Hz
     double damping_ratio() const { return c1 / (2 * m1 * omega0()); }
-    /// The definitions below eq. (1)
+    // The definitions below eq. (1).
     double epsilon() const { return m2 / m1; }
     double lambda() const { return c1 / (m2 * omega0()); }
     double G() const { return F / epsilon(); }
-    // Exactly 1 for the oscillator's own f.
-    double Omega() const { return f / f0(); }
+    double Omega() const { return f / f0(); }  ///< exactly 1 for the oscillator's own f
 };
 
-/// Dimensionless but where a unit is given; the symbols are the paper's. The defaults are its Table
-/// 1 with the b of Fig. 3; epsilon and lambda come from the table's SI values, of which .84 %
+/// Dimensionless but where a unit is given; the symbols are the paper's. The defaults are its
+/// Table 1 with the b of Fig. 3; epsilon and lambda come from the table's SI values, of which .84 %
 /// and 1.43 are rounded.
 struct Parameters {
     double epsilon = SiParameters{}.epsilon();  ///< mass ratio m2/m1

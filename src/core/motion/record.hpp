@@ -46,8 +46,8 @@ private:
     long next_ = 0;
 };
 
-/// The states at one phase of the forcing, once a cycle: at tau = (k + phase/(2 pi)) 2 pi/Omega, k
-/// = first, first + 1, ... So theta = phi + phase.
+/// The states at one phase of the forcing, once a cycle: at tau = (k + phase/(2 pi)) 2 pi/Omega
+/// with k = first, first + 1, ... So theta = phi + phase.
 class StroboscopicRecord : public Observer {
 public:
     explicit StroboscopicRecord(const Parameters& parameters, long first = 0, double phase = 0)

@@ -61,8 +61,8 @@ public:
     void pass(const Leg& leg);
     void strike(const Saltation& M, double R);
 
-    /// 4; 2 once a stick has left only deviations of the centre of mass; 3 after an impact with R =
-    /// 0.
+    /// 4; 2 once a stick has left only deviations of the centre of mass; 3 after an impact with
+    /// R = 0.
     int rank() const { return rank_; }
     /// ln|eigenvalues|, descending; -infinity beyond the rank, NaN where they were not found.
     Moduli log_moduli() const;

@@ -85,8 +85,8 @@ struct TransferProduct::Qr {
     // computed from the sums would have a relative error of |r|^2 ulp. Below, that error is under
     // 1e-12.
     static constexpr double steep = 100;
-    // Below this R the columns hide each other as well: an impact shrinks deviations of x' - y' by
-    // R.
+    // Below this R the columns hide each other as well: by R an impact shrinks deviations of
+    // x' - y'.
     static constexpr double dull = 0.02;
 
     explicit Qr(std::size_t history) : thinned(history) {}
@@ -149,11 +149,13 @@ struct TransferProduct::Qr {
         shear(M.r, R, rank);
     }
 
-    /// Replaces the orthonormal columns Q by an orthonormal base of (I + r g^T) Q = Q + r a^T, a =
-    /// Q^T g. With p = Q^T r the Gram determinant of the first k columns is, written so that
-    /// nothing cancels, V_k^2 = (1 + sum_{j<=k} p_j a_j)^2 + (sum_{j<=k} a_j^2) |r - sum_{j<=k} p_j
-    /// q_j|^2: the lengths are V_k/V_{k-1}. Of all four columns it is the determinant 1 + g^T r =
-    /// -R.
+    /// Replaces the orthonormal columns Q by an orthonormal base of (I + r g^T) Q = Q + r a^T with
+    /// a = Q^T g. With p = Q^T r the Gram determinant of the first k columns is, written so that
+    /// nothing cancels,
+    ///
+    ///     V_k^2 = (1 + sum_{j<=k} p_j a_j)^2 + (sum_{j<=k} a_j^2) |r - sum_{j<=k} p_j q_j|^2:
+    ///
+    /// the lengths are V_k/V_{k-1}. Of all four columns it is the determinant 1 + g^T r = -R.
     void shear(const Eigen::Vector4d& r, double R, int rank) {
         const Eigen::Vector4d a = frame.transpose() * wall_normal(), p = frame.transpose() * r;
         Eigen::Vector4d rest = r;

@@ -106,8 +106,8 @@ private:
 /// An exponent whose sum rule misses by more is not shown (TransferProduct::qr).
 inline constexpr double most_residual = 1e-6;
 
-/// The exponent that rounding puts in place of a smaller one in raw_product: lambda1 -
-/// ln(1/2.2e-16)/T.
+/// The exponent that rounding puts in place of a smaller one in raw_product:
+/// lambda1 - ln(1/2.2e-16)/T.
 double rounding_floor(double lambda1, double T);
 
 /// Feeds the matrices of a run into a product, from the first impact at or after tau_start to the

@@ -25,8 +25,8 @@ struct Recommendation {
 };
 
 /// The best of the b tried, by the largest rms of x of all starts. None where none of them reduces
-/// it, where there is no amplitude without absorber (undamped resonance, no forcing) or no fold (R
-/// = 1), or where the time is over.
+/// it, where there is no amplitude without absorber (undamped resonance, no forcing) or no fold
+/// (R = 1), or where the time is over.
 std::optional<Recommendation> recommended_b(
     Parameters parameters, const std::function<bool()>& stop);
 

@@ -10,8 +10,8 @@ std::vector<NamedStart> default_starts(const Parameters& p) {
     std::vector<NamedStart> starts = {{"middle", {}}, {"wall", default_state(p)}};
     const auto amplitude = free_amplitude(p);
     if (!amplitude || *amplitude == 0) return starts;
-    // x = C sin(tau' - delta), tan(delta) = 2 zeta Omega/(1 - Omega^2): the steady motion at theta
-    // = phi.
+    // The steady motion at theta = phi: x = C sin(theta - delta),
+    // tan(delta) = 2 zeta Omega/(1 - Omega^2).
     const double delta = std::atan2(2 * p.zeta() * p.Omega, (1 - p.Omega) * (1 + p.Omega)),
                  theta = p.phi() - delta;
     const double x = *amplitude * std::sin(theta);
