@@ -143,16 +143,23 @@ Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes
     return answer;
 }
 
-/// What is odd about a manifold and the b that is recommended beside it.
+namespace {
+
+/// What is odd about a manifold and the b that is recommended beside it, or was not while there was
+/// time.
 void add_manifold_warnings(
-    const Manifold& m, double V_max, const std::optional<Recommendation>& recommended,
+    const Manifold& m, double V_max, const std::optional<Recommendation>& recommended, bool late,
     Warnings& warnings) {
     const auto free = m.free_amplitude;
     if (!free)
         warnings.push_back(
             "an undamped oscillator at resonance has no amplitude without the absorber: there is "
             "none to reduce");
-    if (free && *free > 0 && !recommended)
+    if (late && !recommended)
+        warnings.push_back(
+            "no b is recommended: the server's time limit for one request was over before all "
+            "were tried");
+    else if (free && *free > 0 && !recommended)
         warnings.push_back(
             "no b is recommended: none of those tried reduces the motion at this frequency from "
             "every start");
@@ -169,14 +176,18 @@ void add_manifold_warnings(
             m.second_contact.V));
 }
 
-Json manifold_answer(const ManifoldRequest& r) {
+}  // namespace
+
+Json manifold_answer(const ManifoldRequest& r, const Stop& stop) {
     const Parameters& p = r.system.parameters;
     Json parameters = describe_system(r.system);
     parameters["derived"] = describe_derived(r.system);
     const Manifold manifold = manifold_of(p, r.V_max, r.points);
-    const auto recommended = recommended_b(p, {});
+    bool late = false;  // asked and told so
+    const auto recommended =
+        recommended_b(p, [&] { return late = late || (stop.asked && stop.asked()); });
     Warnings warnings = r.system.notes;
-    add_manifold_warnings(manifold, r.V_max, recommended, warnings);
+    add_manifold_warnings(manifold, r.V_max, recommended, late, warnings);
     Json described = describe_manifold(manifold);
     described["recommended"] = describe_recommendation(recommended);
     if (r.system.si) add_si(described, *r.system.si);
