@@ -50,8 +50,8 @@ public:
     Room enter_sweep();
 
     /// From now on sweeps end at their next look: the server is about to stop.
-    void close();
-    bool closing() const { return closing_; }
+    void close_to_sweeps();
+    bool closed_to_sweeps() const { return closed_to_sweeps_; }
 
 private:
     void leave();
@@ -64,7 +64,7 @@ private:
     int free_, sweeps_ = 0;
     // Changed under the mutex; read without it by work that only takes a look.
     std::atomic<int> urgent_ = 0;  ///< waiting
-    std::atomic<bool> closing_ = false;
+    std::atomic<bool> closed_to_sweeps_ = false;
 };
 
 }  // namespace vines::http

@@ -163,7 +163,7 @@ std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate) {
         routes.push_back(
             route("GET", path, [](const Request&) { return json_response({{"status", "ok"}}); }));
     routes.push_back(route("GET", "/readyz", [&gate](const Request&) {
-        if (gate.closing()) throw Problem(503, "the server is stopping");
+        if (gate.closed_to_sweeps()) throw Problem(503, "the server is stopping");
         return json_response({{"status", "ok"}});
     }));
     routes.push_back(route("GET", "/version", [](const Request&) {

@@ -32,7 +32,7 @@ public:
             place().reset();
             place() = gate_.enter_patiently(stop_.get_token());
         }
-        return stop_.stop_requested() || gate_.closing() || !place();
+        return stop_.stop_requested() || gate_.closed_to_sweeps() || !place();
     }
     /// From any thread.
     void stop() { stop_.request_stop(); }
