@@ -171,7 +171,7 @@ Json describe_impacts(const std::vector<Impact>& impacts, double epsilon, double
         {"grazing", column(impacts, [](const Impact& i) { return i.grazing; })}};
 }
 
-Json describe_sticks(const std::vector<StickRecord::Stick>& sticks) {
+Json describe_sticks(const std::vector<StuckPhase>& sticks) {
     return {
         {"side", column(sticks, [](const auto& s) { return s.start.side; })},
         {"tau_start", column(sticks, [](const auto& s) { return s.start.tau; })},
@@ -179,7 +179,7 @@ Json describe_sticks(const std::vector<StickRecord::Stick>& sticks) {
         {"impacts", column(sticks, [](const auto& s) { return s.start.impacts; })}};
 }
 
-Json describe_touches(const std::vector<TouchRecord::Touch>& touches) {
+Json describe_touches(const std::vector<TangentContact>& touches) {
     return {
         {"tau", column(touches, [](const auto& t) { return t.tau; })},
         {"side", column(touches, [](const auto& t) { return t.side; })}};
@@ -256,7 +256,7 @@ Json describe_matrices(const TransferMatrices& m) {
         {"T", column(m.T, describe_matrix)}};
 }
 
-Json describe_impact_section(const std::vector<SectionRecord::Point>& points) {
+Json describe_impact_section(const std::vector<SectionPoint>& points) {
     return {
         {"tau", column(points, [](const auto& p) { return p.impact.tau; })},
         {"side", column(points, [](const auto& p) { return p.impact.side; })},

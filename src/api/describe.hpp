@@ -23,25 +23,14 @@ Json describe_derived(const System& system);
 Json describe_series(Series&& series);
 /// `typical_speed`: what relative_speed_ratio is measured by.
 Json describe_impacts(const std::vector<Impact>& impacts, double epsilon, double typical_speed);
-Json describe_sticks(const std::vector<StickRecord::Stick>& sticks);
-Json describe_touches(const std::vector<TouchRecord::Touch>& touches);
-
-/// The exponents of one window of a run of this regime, with the verdict, by the estimators that
-/// are to be shown. `histories`: those of each estimator, too.
-Json describe_exponents(
-    const WindowExponents& window, const ExponentOptions& shown, const Regime& regime,
-    bool histories);
-/// Its parts: how long the window is, and what each estimator says.
-Json describe_window(const TransferProduct& product);
-void add_estimators(
-    Json& part, const TransferProduct& product, const Growth& growth, const ExponentOptions& shown,
-    bool histories);
+Json describe_sticks(const std::vector<StuckPhase>& sticks);
+Json describe_touches(const std::vector<TangentContact>& touches);
 
 Json describe_moduli(const TransferModuli& moduli);
 Json describe_matrices(const TransferMatrices& matrices);
 
 Json describe_sections(const Sections& sections);
-Json describe_impact_section(const std::vector<SectionRecord::Point>& points);
+Json describe_impact_section(const std::vector<SectionPoint>& points);
 Json describe_states(const std::vector<State>& states);
 
 /// Of a result with the oscillator alone beside it.
