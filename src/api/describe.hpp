@@ -1,20 +1,13 @@
-// Results of the core as the parts of an answer: columns, and null with a word beside it for a
-// number that does not exist. Nothing is computed here.
+// Results of the core as the parts of an answer, beside exponents and regime. Nothing is computed
+// here.
 #pragma once
 
 #include <optional>
 
 #include "api/request.hpp"
-#include "api/schema/words.hpp"
 #include "core/sweep/recommend.hpp"
 
 namespace vines::api {
-
-Json finite_or_null(double value);
-template <class Value>
-Json or_null(const std::optional<Value>& value) {
-    return value ? Json(*value) : Json(nullptr);
-}
 
 /// The resolved parameters of a system without what belongs to a run, and what follows from them.
 Json describe_system(const System& system);
@@ -35,7 +28,6 @@ Json describe_states(const std::vector<State>& states);
 
 /// Of a result with the oscillator alone beside it.
 Json describe_energy(const EnergyResult& energy);
-Json describe_regime(const Regime& regime);
 Json describe_manifold(const Manifold& manifold);
 Json describe_manifold(const ManifoldResult& manifold);
 /// Null where there is none.

@@ -5,6 +5,9 @@
 #include "api/describe.hpp"
 #include "api/si_columns.hpp"
 
+#include "api/describe_exponents.hpp"
+#include "api/describe_regime.hpp"
+#include "api/schema/joined.hpp"
 namespace vines::api {
 
 namespace {

@@ -4,7 +4,9 @@
 
 #include <cmath>
 
+#include "api/column.hpp"
 #include "api/describe.hpp"
+#include "api/schema/words.hpp"
 #include "api/si_columns.hpp"
 
 namespace vines::api {
@@ -54,12 +56,9 @@ Json located(const SweepRequest& r, std::size_t line, const Place& place) {
 }
 
 void add_exponents(Json& line, const PointResult& p) {
-    for (const char* name : {"lambda", "status", "standard_error"}) line[name] = Json::array();
-    for (std::size_t k = 0; k < 4; ++k) {
-        line["lambda"].push_back(finite_or_null(p.lambda[k]));
-        line["status"].push_back(word(status_of(p.lambda[k])));
-        line["standard_error"].push_back(finite_or_null(p.standard_error[k]));
-    }
+    line["lambda"] = column(p.lambda);
+    line["status"] = column(p.lambda, [](double v) { return word(status_of(v)); });
+    line["standard_error"] = column(p.standard_error);
 }
 
 void add_regime(Json& line, const Regime& regime, double cycle) {
