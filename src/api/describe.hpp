@@ -13,15 +13,20 @@ namespace vines::api {
 Json describe_system(const System& system);
 Json describe_derived(const System& system);
 
+/// Columns of equal length; x and y in m, derivatives in tau.
 Json describe_series(Series&& series);
-/// `typical_speed`: what relative_speed_ratio is measured by.
+/// Columns, one entry for each impact. `typical_speed`, in m per unit of tau: what
+/// relative_speed_ratio is measured by.
 Json describe_impacts(const std::vector<Impact>& impacts, double epsilon, double typical_speed);
 Json describe_sticks(const std::vector<StuckPhase>& sticks);
 Json describe_touches(const std::vector<TangentContact>& touches);
 
+/// {tau, J, M, T, M_condition}: four moduli of each matrix, one entry for each impact.
 Json describe_moduli(const TransferModuli& moduli);
+/// {tau, order, J, M, T}: 4 x 4 matrices by rows, one of each for each impact.
 Json describe_matrices(const TransferMatrices& matrices);
 
+/// {impact, stroboscopic}, and each by itself: columns.
 Json describe_sections(const Sections& sections);
 Json describe_impact_section(const std::vector<SectionPoint>& points);
 Json describe_states(const std::vector<State>& states);
