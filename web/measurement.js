@@ -1,12 +1,13 @@
 // The tab of a measurement: a file and its fields in, one request, what was identified out; the
 // list of impacts can be edited and sent again.
 import {identify, identifyJson, Problem, recordAsCurl, wholeMessage} from "./api.js";
-import {$, element} from "./dom.js";
+import {$, element, showBusy} from "./dom.js";
 import {Form} from "./form.js";
 import {ImpactList} from "./impact_list.js";
 import {summariseMeasurement} from "./measurement_summary.js";
 import {draw, drawRecord, mark, redraw} from "./measurement_views.js";
 import {parse, recordOf, spikeNear} from "./record.js";
+import {copy, save} from "./take_away.js";
 
 const groups = {
   system: ["System", true],
@@ -190,7 +191,7 @@ async function run(more = {}) {
   const fields = {...form.values(), ...more};
   form.showErrors([]);
   quoteLine("");
-  busy(true);
+  showBusy("measure-", true);
   say("identifying …");
   const began = performance.now();
   try {
@@ -212,15 +213,9 @@ async function run(more = {}) {
   } finally {
     if (running === mine) {
       running = null;
-      busy(false);
+      showBusy("measure-", false);
     }
   }
-}
-
-function busy(is) {
-  $("measure-run").disabled = is;
-  $("measure-cancel").hidden = !is;
-  $("measure-results").classList.toggle("stale", is);
 }
 
 /** Where the plots lie below the form, one who asks for them is led there. */
@@ -232,21 +227,11 @@ function lead() {
 
 function download() {
   const text = JSON.stringify(answer, null, 1);
-  const url = URL.createObjectURL(new Blob([text], {type: "application/json"}));
   const name = file.name.replace(/\.[^.]*$/, "");
-  element("a", {href: url, download: `${name}-identified.json`}).click();
-  setTimeout(() => URL.revokeObjectURL(url), 10000);
+  save(new Blob([text], {type: "application/json"}), `${name}-identified.json`);
 }
 
-async function copy() {
-  const command = recordAsCurl(asQuery(sent ?? form.values()), file?.name ?? "record.csv");
-  try {
-    await navigator.clipboard.writeText(command);
-    say("copied");
-  } catch {
-    say(command);
-  }
-}
+const command = () => recordAsCurl(asQuery(sent ?? form.values()), file?.name ?? "record.csv");
 
 function listenToFiles() {
   const panel = $("panel-measurement");
@@ -319,5 +304,5 @@ function listen() {
     $("plot-measured-a").classList.toggle("adding", on);
   });
   $("measure-download").addEventListener("click", download);
-  $("measure-copy").addEventListener("click", copy);
+  $("measure-copy").addEventListener("click", () => copy(command(), say));
 }

@@ -21,7 +21,7 @@ export const verdictColour = (p) =>
 const mm = (metres) => (metres == null ? null : metres * 1000);
 
 /**
- * of: the value at a point; from0: its axis begins at 0; levels: lines across the plot; free: the
+ * of: the value at a point, where it is not the point's own of that name; from0: its axis begins at 0; levels: lines across the plot; free: the
  * same without the absorber; diverging: its colours change sides at 0.
  */
 export const quantities = {
@@ -34,20 +34,17 @@ export const quantities = {
   z: {
     label: "z",
     title: "impacts per cycle z",
-    of: (p) => p.z ?? null,
     from0: true,
     levels: [1, 2, 3],
   },
   regime: {
     label: "",
     title: "regime",
-    of: (p) => p.regime ?? null,
     categories: Object.keys(regimes),
   },
   x_rms_ratio: {
     label: "rms of x / without absorber",
     title: "rms of x over that without absorber",
-    of: (p) => p.x_rms_ratio ?? null,
     from0: true,
     levels: [1],
   },
@@ -61,27 +58,19 @@ export const quantities = {
   share_impacts: {
     label: "share of the impacts",
     title: "dissipated by the impacts, share",
-    of: (p) => p.share_impacts ?? null,
     from0: true,
   },
   synchronised: {
     label: "share synchronised",
     title: "contacts synchronised, share",
-    of: (p) => p.synchronised ?? null,
     from0: true,
     levels: [1],
   },
 };
+for (const [name, quantity] of Object.entries(quantities)) quantity.of ??= (p) => p[name] ?? null;
+
 export const besideLambda = ["z", "x_rms_ratio", "share_impacts", "x_max", "synchronised"];
-export const overTwoAxes = [
-  "lambda1",
-  "z",
-  "regime",
-  "x_rms_ratio",
-  "x_max",
-  "share_impacts",
-  "synchronised",
-];
+export const overTwoAxes = Object.keys(quantities);
 const reducedTo = ["x_max", "where", "z"];
 
 /** A quantity of a sweep's points; `where` is that of the axis that a reduction folds. */

@@ -2,11 +2,12 @@
 // so a link shows the same run.
 import {mark, show} from "./about.js";
 import {asCurl, Problem, simulate, wholeMessage} from "./api.js";
-import {$} from "./dom.js";
+import {$, showBusy} from "./dom.js";
 import {Form, textOf} from "./form.js";
 import {listParameters} from "./parameters.js";
 import {holding, isOfSystem, queryText} from "./presets.js";
 import {accountEnergy, summarise, tabulate} from "./summary.js";
+import {copy} from "./take_away.js";
 import {onUnits, unitsOf, unitsSwitch} from "./units.js";
 import {draw, redraw} from "./views.js";
 
@@ -57,7 +58,7 @@ async function run(lead = false) {
   running = mine;
   const request = form.values();
   form.showErrors([]);
-  busy(true);
+  showBusy("", true);
   say("computing …");
   const started = performance.now();
   try {
@@ -81,15 +82,9 @@ async function run(lead = false) {
   } finally {
     if (running === mine) {
       running = null;
-      busy(false);
+      showBusy("", false);
     }
   }
-}
-
-function busy(is) {
-  $("run").disabled = is;
-  $("cancel").hidden = !is;
-  $("results").classList.toggle("stale", is);
 }
 
 /** What a text of a query stands for: a list of lists, a list, or a text. */
@@ -208,15 +203,7 @@ export async function open(given) {
 
 export {redraw};
 
-async function copy() {
-  const command = asCurl("v1/simulate", {...asked(form.values()), include});
-  try {
-    await navigator.clipboard.writeText(command);
-    say("copied");
-  } catch {
-    say(command);
-  }
-}
+const command = () => asCurl("v1/simulate", {...asked(form.values()), include});
 
 /** changed: called when there is another query. */
 export function start(fields, list, changed) {
@@ -245,5 +232,5 @@ export function start(fields, list, changed) {
     run();
   });
   $("cancel").addEventListener("click", () => running?.abort());
-  $("copy").addEventListener("click", copy);
+  $("copy").addEventListener("click", () => copy(command(), say));
 }

@@ -10,6 +10,7 @@ import {SweepData} from "./sweep_data.js";
 import {examples, halfPeriod, SweepForm} from "./sweep_form.js";
 import {SweepPlots, startKeys} from "./sweep_plots.js";
 import {follow} from "./sweep_stream.js";
+import {copy, save} from "./take_away.js";
 import {onUnits, unitsSwitch} from "./units.js";
 
 const cyclesOfPoint = 272; // of the simulation of a point: the paper's tau of 1709
@@ -297,21 +298,11 @@ export function redraw() {
 }
 
 function download() {
-  const url = URL.createObjectURL(data.file());
   const names = data.request.axes.map((a) => a.parameter).join("-");
-  element("a", {href: url, download: `sweep-${names}.ndjson`}).click();
-  setTimeout(() => URL.revokeObjectURL(url), 10000);
+  save(data.file(), `sweep-${names}.ndjson`);
 }
 
-async function copy() {
-  const command = asCurl("v1/sweep", form.request(), "-sN");
-  try {
-    await navigator.clipboard.writeText(command);
-    say("copied");
-  } catch {
-    say(command);
-  }
-}
+const command = () => asCurl("v1/sweep", form.request(), "-sN");
 
 function legend() {
   const item = ([regime, what]) => {
@@ -395,5 +386,5 @@ function listen() {
     event.preventDefault();
     download();
   });
-  $("sweep-copy").addEventListener("click", copy);
+  $("sweep-copy").addEventListener("click", () => copy(command(), say));
 }

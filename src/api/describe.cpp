@@ -1,107 +1,13 @@
 #include "api/describe.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <cmath>
+
+#include "api/column.hpp"
+#include "api/schema/words.hpp"
 
 namespace vines::api {
 
 namespace {
-
-/// A column: one value for each element.
-template <class Elements, class Value>
-Json column(const Elements& elements, Value value) {
-    Json values = Json::array();
-    values.get_ref<Json::array_t&>().reserve(elements.size());
-    for (const auto& e : elements) values.push_back(value(e));
-    return values;
-}
-
-Json four(const Exponents& values) { return column(values, finite_or_null); }
-
-Json with_status(const Exponents& values) {
-    return {
-        {"final", four(values)},
-        {"status", column(values, [](double v) { return word(status_of(v)); })}};
-}
-
-Json describe_history(const ExponentHistory& history) {
-    Json columns = {{"tau", history.tau}};
-    for (std::size_t k = 0; k < 4; ++k)
-        columns["lambda" + std::to_string(k + 1)] = column(
-            history.lambda, [k](const Exponents& lambda) { return finite_or_null(lambda[k]); });
-    return columns;
-}
-
-std::string reason_of(const Judgement& judgement, const Growth& g, const Regime& r) {
-    const std::string sigmas = fmt::format(
-        "lambda1 = {:.3g} lies {:.1f} standard errors {} zero", g.lambda1,
-        std::abs(g.lambda1 / g.standard_error[0]), g.lambda1 > 0 ? "above" : "below");
-    auto orbit = [&] {
-        return fmt::format(
-            "a stable periodic orbit, whose largest multiplier has the modulus {:.4g}",
-            std::abs(r.orbit->multipliers[0]));
-    };
-    auto captured = [&] {
-        return "a periodic orbit captures the motion " +
-               (r.capture->tau ? fmt::format("at tau = {:.1f}", *r.capture->tau)
-                               : "after the run's end");
-    };
-    switch (judgement.reason) {
-        case VerdictReason::growth:
-            return fmt::format("{}; at least {:.0f} decide", sigmas, verdict_sigmas) +
-                   (r.capture ? ", but " + captured() : "");
-        case VerdictReason::on_orbit: return "the motion is on " + orbit();
-        case VerdictReason::settling: return "the motion ends on " + orbit();
-        case VerdictReason::free_decay:
-            return "without forcing (G = 0) the motion dies out: it has no exponents of a long run";
-        case VerdictReason::untouched:
-            return "the free mass meets no wall in the end: there are no exponents to judge";
-        case VerdictReason::transient:
-            return "the window begins in a chaotic transient; " + captured();
-        case VerdictReason::not_known_before:
-            return captured() + "; the time limit left none to see whether it was chaotic before";
-        case VerdictReason::no_error: return "too few impacts for a standard error of lambda1";
-        case VerdictReason::within_error:
-            return fmt::format("{}; less than {:.0f} decide nothing", sigmas, verdict_sigmas);
-        case VerdictReason::little_growth:
-            return fmt::format(
-                "{}, but deviations grow by no more than e^{:.1f} in this window, as they may "
-                "while one unstable orbit is left; e^{:.0f} decides",
-                sigmas, g.whole, least_growth);
-        case VerdictReason::algebraic_growth:
-            return fmt::format(
-                "{}, but deviations grow by no more than e^{:.1f} in the second half of this "
-                "window: that may be algebraic growth beside a torus",
-                sigmas, g.late);
-        case VerdictReason::negative:
-            return sigmas + ", but no stable periodic orbit was found that the motion comes to";
-    }
-    return "";
-}
-
-/// A period's multipliers, by descending modulus.
-Json describe_multipliers(const PeriodicOrbit& orbit) {
-    return {
-        {"re", column(orbit.multipliers, [](auto m) { return m.real(); })},
-        {"im", column(orbit.multipliers, [](auto m) { return m.imag(); })},
-        {"modulus", column(orbit.multipliers, [](auto m) { return std::abs(m); })}};
-}
-
-const char* describe_type(const Regime& r) {
-    switch (r.type) {
-        case RegimeType::none: return r.forced ? "no impacts" : "free decay, no forcing";
-        case RegimeType::I: return "sparse irregular impacts, no stretch of two per cycle";
-        case RegimeType::II:
-            return "strongly modulated response: stretches of two impacts per cycle between others";
-        case RegimeType::III: return "two symmetric impacts per cycle, periodic";
-        case RegimeType::IV: return "two asymmetric impacts per cycle, periodic";
-        case RegimeType::V: return "another number of impacts per cycle, periodic";
-        case RegimeType::VI: return "irregular, more than two impacts per cycle";
-    }
-    return "";
-}
 
 Json describe_matrix(const Matrix4& m) {
     Json rows = Json::array();
@@ -110,8 +16,6 @@ Json describe_matrix(const Matrix4& m) {
 }
 
 }  // namespace
-
-Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json describe_system(const System& system) {
     const Parameters& p = system.parameters;
@@ -171,7 +75,7 @@ Json describe_impacts(const std::vector<Impact>& impacts, double epsilon, double
         {"grazing", column(impacts, [](const Impact& i) { return i.grazing; })}};
 }
 
-Json describe_sticks(const std::vector<StickRecord::Stick>& sticks) {
+Json describe_sticks(const std::vector<StuckPhase>& sticks) {
     return {
         {"side", column(sticks, [](const auto& s) { return s.start.side; })},
         {"tau_start", column(sticks, [](const auto& s) { return s.start.tau; })},
@@ -179,60 +83,10 @@ Json describe_sticks(const std::vector<StickRecord::Stick>& sticks) {
         {"impacts", column(sticks, [](const auto& s) { return s.start.impacts; })}};
 }
 
-Json describe_touches(const std::vector<TouchRecord::Touch>& touches) {
+Json describe_touches(const std::vector<TangentContact>& touches) {
     return {
         {"tau", column(touches, [](const auto& t) { return t.tau; })},
         {"side", column(touches, [](const auto& t) { return t.side; })}};
-}
-
-Json describe_window(const TransferProduct& product) {
-    return {
-        {"window", product.impacts() > 0 ? Json::array({product.start_tau(), product.end_tau()})
-                                         : Json(nullptr)},
-        {"impacts", product.impacts()},
-        {"sum_rule_residual", finite_or_null(product.sum_rule_residual())}};
-}
-
-void add_estimators(
-    Json& j, const TransferProduct& product, const Growth& growth, const ExponentOptions& shown,
-    bool histories) {
-    if (shown.qr) {
-        Json qr = with_status(product.qr());
-        qr["standard_error"] = four(growth.standard_error);
-        if (histories) qr["history"] = describe_history(product.qr_history());
-        j["qr"] = std::move(qr);
-    }
-    if (shown.eigenvalues) {
-        j["eigenvalues"] = with_status(product.eigenvalues());
-        if (histories)
-            j["eigenvalues"]["history"] = describe_history(product.eigenvalues_history());
-    }
-    if (!shown.raw_product) return;
-    const double start = product.start_tau();
-    const Exponents final = product.raw_product();
-    Json raw = with_status(final);
-    raw["rounding_floor"] = finite_or_null(rounding_floor(final[0], product.end_tau() - start));
-    if (histories) {
-        const ExponentHistory& history = product.raw_product_history();
-        raw["history"] = describe_history(history);
-        Json& floor = raw["history"]["rounding_floor"] = Json::array();
-        for (std::size_t i = 0; i < history.tau.size(); ++i)
-            floor.push_back(
-                finite_or_null(rounding_floor(history.lambda[i][0], history.tau[i] - start)));
-    }
-    j["raw_product"] = std::move(raw);
-}
-
-Json describe_exponents(
-    const WindowExponents& w, const ExponentOptions& shown, const Regime& regime, bool histories) {
-    Json j = describe_window(w.product);
-    if (shown.qr) {
-        j["verdict"] = word(w.judgement.verdict);
-        j["verdict_sigmas"] = finite_or_null(w.growth.lambda1 / w.growth.standard_error[0]);
-        j["verdict_reason"] = reason_of(w.judgement, w.growth, regime);
-    }
-    add_estimators(j, w.product, w.growth, shown, histories);
-    return j;
 }
 
 Json describe_moduli(const TransferModuli& m) {
@@ -244,7 +98,7 @@ Json describe_moduli(const TransferModuli& m) {
         {"J", moduli(m.J)},
         {"M", moduli(m.M)},
         {"T", moduli(m.T)},
-        {"M_condition", column(m.M_condition, finite_or_null)}};
+        {"M_condition", column(m.M_condition)}};
 }
 
 Json describe_matrices(const TransferMatrices& m) {
@@ -256,7 +110,7 @@ Json describe_matrices(const TransferMatrices& m) {
         {"T", column(m.T, describe_matrix)}};
 }
 
-Json describe_impact_section(const std::vector<SectionRecord::Point>& points) {
+Json describe_impact_section(const std::vector<SectionPoint>& points) {
     return {
         {"tau", column(points, [](const auto& p) { return p.impact.tau; })},
         {"side", column(points, [](const auto& p) { return p.impact.side; })},
@@ -308,66 +162,6 @@ Json describe_energy(const EnergyResult& e) {
     };
     j["decay"] = moments(e.decay->with_absorber);
     j["decay"]["without_absorber"] = moments(e.decay->without);
-    return j;
-}
-
-namespace {
-
-Json describe_capture(const Capture& c) {
-    return {
-        {"tau", or_null(c.tau)},
-        {"status", c.tau ? "captured" : "on_its_way"},
-        {"chaotic_before", or_null(c.chaotic_before)},
-        {"exponents_before", with_status(c.before)},
-        {"exponents_after", with_status(c.after)}};
-}
-
-void add_orbit(Json& j, const std::optional<PeriodicOrbit>& orbit) {
-    auto of_orbit = [&](const char* name, auto value) {
-        j[name] = orbit ? Json(value(*orbit)) : Json(nullptr);
-    };
-    of_orbit("period_cycles", [](const PeriodicOrbit& o) { return o.cycles; });
-    of_orbit("impacts_per_period", [](const PeriodicOrbit& o) { return o.contacts; });
-    of_orbit("chatter_impacts_per_period", [](const PeriodicOrbit& o) {
-        return o.impacts - o.contacts;
-    });
-    of_orbit("sticks_per_period", [](const PeriodicOrbit& o) { return o.sticks; });
-    of_orbit("symmetric", [](const PeriodicOrbit& o) { return o.symmetric; });
-    of_orbit("stable", [](const PeriodicOrbit& o) { return o.stable(); });
-    of_orbit("closure", [](const PeriodicOrbit& o) { return o.closure; });
-    of_orbit("multipliers", describe_multipliers);
-    of_orbit("orbit", [](const PeriodicOrbit& o) {
-        return Json{
-            {"tau", o.tau},
-            {"x_dot", o.state.x_dot},
-            {"x", o.state.x},
-            {"y_dot", o.state.y_dot},
-            {"y", o.state.y}};
-    });
-}
-
-}  // namespace
-
-Json describe_regime(const Regime& r) {
-    Json j = {{"type", name_of(r.type)},
-              {"description", describe_type(r)},
-              {"z", r.z},
-              {"z_overall", r.z_overall},
-              {"contacts", r.contacts},
-              {"periodic", r.orbit.has_value()}};
-    add_orbit(j, r.orbit);
-    j["capture"] = r.capture ? describe_capture(*r.capture) : Json(nullptr);
-    j["cycles_with"] = r.cycles_with;
-    j["share_two_impacts"] = r.cycles_with.size() > 2 ? r.cycles_with[2] : 0;
-    j["z_moving"] = {{"tau", r.moving_tau}, {"z", r.moving_z}};
-    j["synchronised"] = {
-        {"share", r.synchronised}, {"longest_half_cycles", r.longest_synchronised}};
-    const auto& stretches = r.stretches;
-    j["stretches"] = {
-        {"tau_start", column(stretches, [](const auto& s) { return s.tau_start; })},
-        {"tau_end", column(stretches, [](const auto& s) { return s.tau_end; })},
-        {"synchronised", column(stretches, [](const auto& s) { return s.synchronised; })},
-        {"contacts", column(stretches, [](const auto& s) { return s.contacts; })}};
     return j;
 }
 

@@ -1,52 +1,38 @@
-// Results of the core as the parts of an answer: columns, and null with a word beside it for a
-// number that does not exist. Nothing is computed here.
+// Results of the core as the parts of an answer, beside exponents and regime. Nothing is computed
+// here.
 #pragma once
 
 #include <optional>
 
 #include "api/request.hpp"
-#include "api/schema/words.hpp"
 #include "core/sweep/recommend.hpp"
 
 namespace vines::api {
-
-Json finite_or_null(double value);
-template <class Value>
-Json or_null(const std::optional<Value>& value) {
-    return value ? Json(*value) : Json(nullptr);
-}
 
 /// The resolved parameters of a system without what belongs to a run, and what follows from them.
 Json describe_system(const System& system);
 Json describe_derived(const System& system);
 
+/// Columns of equal length; x and y in m, derivatives in tau.
 Json describe_series(Series&& series);
-/// `typical_speed`: what relative_speed_ratio is measured by.
+/// Columns, one entry for each impact. `typical_speed`, in m per unit of tau: what
+/// relative_speed_ratio is measured by.
 Json describe_impacts(const std::vector<Impact>& impacts, double epsilon, double typical_speed);
-Json describe_sticks(const std::vector<StickRecord::Stick>& sticks);
-Json describe_touches(const std::vector<TouchRecord::Touch>& touches);
+Json describe_sticks(const std::vector<StuckPhase>& sticks);
+Json describe_touches(const std::vector<TangentContact>& touches);
 
-/// The exponents of one window of a run of this regime, with the verdict, by the estimators that
-/// are to be shown. `histories`: those of each estimator, too.
-Json describe_exponents(
-    const WindowExponents& window, const ExponentOptions& shown, const Regime& regime,
-    bool histories);
-/// Its parts: how long the window is, and what each estimator says.
-Json describe_window(const TransferProduct& product);
-void add_estimators(
-    Json& part, const TransferProduct& product, const Growth& growth, const ExponentOptions& shown,
-    bool histories);
-
+/// {tau, J, M, T, M_condition}: four moduli of each matrix, one entry for each impact.
 Json describe_moduli(const TransferModuli& moduli);
+/// {tau, order, J, M, T}: 4 x 4 matrices by rows, one of each for each impact.
 Json describe_matrices(const TransferMatrices& matrices);
 
+/// {impact, stroboscopic}, and each by itself: columns.
 Json describe_sections(const Sections& sections);
-Json describe_impact_section(const std::vector<SectionRecord::Point>& points);
+Json describe_impact_section(const std::vector<SectionPoint>& points);
 Json describe_states(const std::vector<State>& states);
 
 /// Of a result with the oscillator alone beside it.
 Json describe_energy(const EnergyResult& energy);
-Json describe_regime(const Regime& regime);
 Json describe_manifold(const Manifold& manifold);
 Json describe_manifold(const ManifoldResult& manifold);
 /// Null where there is none.

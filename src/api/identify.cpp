@@ -6,8 +6,11 @@
 #include <cmath>
 
 #include "api/answer_size.hpp"
+#include "api/column.hpp"
 #include "api/describe.hpp"
+#include "api/describe_exponents.hpp"
 #include "api/identify_text.hpp"
+#include "api/schema/words.hpp"
 #include "api/si_columns.hpp"
 #include "api/simulate.hpp"
 
@@ -23,17 +26,13 @@ Json describe_restitution(const Restitution& r) {
 }
 
 Json describe_identified(const std::vector<IdentifiedImpact>& impacts) {
-    auto column = [&](auto value) {
-        Json values = Json::array();
-        for (const IdentifiedImpact& i : impacts) values.push_back(value(i));
-        return values;
-    };
     auto number = [&](double IdentifiedImpact::* member) {
-        return column([member](const IdentifiedImpact& i) { return finite_or_null(i.*member); });
+        return column(
+            impacts, [member](const IdentifiedImpact& i) { return finite_or_null(i.*member); });
     };
     return {
         {"tau", number(&IdentifiedImpact::tau)},
-        {"side", column([](const auto& i) { return i.side; })},
+        {"side", column(impacts, [](const auto& i) { return i.side; })},
         {"x", number(&IdentifiedImpact::x)},
         {"x_dot_before", number(&IdentifiedImpact::x_dot_before)},
         {"x_dot_after", number(&IdentifiedImpact::x_dot_after)},
@@ -42,7 +41,7 @@ Json describe_identified(const std::vector<IdentifiedImpact>& impacts) {
         {"y_dot_after", number(&IdentifiedImpact::y_dot_after)},
         {"R", number(&IdentifiedImpact::R)},
         {"momentum_error", number(&IdentifiedImpact::momentum_error)},
-        {"status", column([](const auto& i) {
+        {"status", column(impacts, [](const auto& i) {
              if (i.is_left_out()) return text_of(i.fault);
              return std::isnan(i.R) ? "R is not known" : "ok";
          })}};
@@ -51,12 +50,6 @@ Json describe_identified(const std::vector<IdentifiedImpact>& impacts) {
 Json describe_walls(const Identification& found) {
     return {
         {"plus", describe_restitution(found.plus)}, {"minus", describe_restitution(found.minus)}};
-}
-
-Json describe_lambda(const Exponents& lambda) {
-    Json list = Json::array();
-    for (const double v : lambda) list.push_back(finite_or_null(v));
-    return list;
 }
 
 /// What the record is like, as the fit sees it.
@@ -83,24 +76,20 @@ Json describe_direct(const std::optional<DirectEstimate>& direct) {
     return {
         {"impacts", std::move(columns)},
         {"restitution", describe_walls(direct->found)},
-        {"lambda", describe_lambda(direct->lambda)}};
+        {"lambda", column(direct->lambda)}};
 }
 
 Json describe_forward(const std::optional<ForwardRun>& run) {
     if (!run) return nullptr;
-    auto column = [&](auto value) {
-        Json values = Json::array();
-        for (const Impact& i : run->impacts) values.push_back(value(i));
-        return values;
-    };
+    const std::vector<Impact>& impacts = run->impacts;
     return {
         {"start", run->start},
         {"impacts",
-         {{"tau", column([](const Impact& i) { return i.tau; })},
-          {"side", column([](const Impact& i) { return i.side; })},
-          {"x", column([](const Impact& i) { return i.x; })},
-          {"x_dot_after", column([](const Impact& i) { return i.x_dot_after; })}}},
-        {"lambda", describe_lambda(run->lambda)}};
+         {{"tau", column(impacts, [](const Impact& i) { return i.tau; })},
+          {"side", column(impacts, [](const Impact& i) { return i.side; })},
+          {"x", column(impacts, [](const Impact& i) { return i.x; })},
+          {"x_dot_after", column(impacts, [](const Impact& i) { return i.x_dot_after; })}}},
+        {"lambda", column(run->lambda)}};
 }
 
 const char* reason_of(const IdentifiedExponents& e) {
@@ -160,10 +149,9 @@ Json describe_measured(
         }
     if (c.stretches.empty()) return j;
     j["window"] = {impacts[c.stretches.front().first].tau, impacts[c.stretches.back().last].tau};
-    Json from = Json::array(), to = Json::array();
-    for (const KnownStretch& s : c.stretches)
-        from.push_back(impacts[s.first].tau), to.push_back(impacts[s.last].tau);
-    j["stretches"] = {{"tau_start", std::move(from)}, {"tau_end", std::move(to)}};
+    j["stretches"] = {
+        {"tau_start", column(c.stretches, [&](const auto& s) { return impacts[s.first].tau; })},
+        {"tau_end", column(c.stretches, [&](const auto& s) { return impacts[s.last].tau; })}};
     j["duration"] = e.all().end_tau() - e.all().start_tau();
     return j;
 }

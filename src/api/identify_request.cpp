@@ -56,7 +56,6 @@ void check_record(
 IdentifyRequest read_fields(const Json& given, bool with_record) {
     IdentifyRequest r;
     const Layered l = layered(identify_fields(), given);
-    const Json& object = l.fields;
     r.system = read_system_alone(l, with_record);
     r.notes = r.system.notes;
     if (with_record && !r.system.si)
@@ -70,24 +69,18 @@ IdentifyRequest read_fields(const Json& given, bool with_record) {
     Measurement& m = r.measurement;
     m.parameters = r.system.parameters;
     m.R_given = given.contains("R") || (given.contains("R_plus") && given.contains("R_minus"));
-    if (object.contains("threshold")) m.threshold = object["threshold"].get<double>();
-    if (object.contains("impact_times_s")) {
+    m.threshold = l.number("threshold");
+    if (l.has("impact_times_s")) {
         if (!with_record)
             refuse(
                 {{"/impact_times_s", nullptr, nullptr,
                   "impact_times_s are moments in a record; impacts have their own in tau"}});
-        for (const Json& t : object["impact_times_s"])
+        for (const Json& t : l.fields["impact_times_s"])
             m.moments.push_back(t.get<double>() * r.system.si->omega0());
         std::sort(m.moments.begin(), m.moments.end());
     }
-    std::set<std::string> estimators = {"qr", "eigenvalues", "raw_product"};
-    if (object.contains("exponents")) estimators = object["exponents"].get<std::set<std::string>>();
-    m.estimators = {
-        .qr = true,
-        .eigenvalues = estimators.contains("eigenvalues"),
-        .raw_product = estimators.contains("raw_product")};
-    if (object.contains("max_points"))
-        m.estimators.history = static_cast<std::size_t>(object["max_points"].get<double>());
+    m.estimators = read_estimators(l);
+    m.estimators.qr = true;  // the verdict's
     return r;
 }
 
@@ -135,9 +128,8 @@ void read_record(IdentifyRequest& r, const Json& fields, const Columns& columns)
                   "an impact lies outside the record"}});
 }
 
-/// Columns of impacts with their states, as /v1/simulate gives them.
-void read_impacts(IdentifyRequest& r, const Json& columns) {
-    const Parameters& p = r.system.parameters;
+/// The columns that impacts are read from, all of one length.
+std::map<std::string, std::vector<double>> read_impact_columns(const Json& columns) {
     std::vector<FieldError> errors;
     std::map<std::string, std::vector<double>> values;
     if (!columns.is_object())
@@ -169,10 +161,19 @@ void read_impacts(IdentifyRequest& r, const Json& columns) {
     }
     if (!errors.empty()) refuse(std::move(errors));
     if (n < 2) refuse({{"/impacts", n, nullptr, "exponents need at least two impacts"}});
+    return values;
+}
+
+/// Columns of impacts with their states, as /v1/simulate gives them.
+void read_impacts(IdentifyRequest& r, const Json& given) {
+    const Parameters& p = r.system.parameters;
+    const auto columns = read_impact_columns(given);
+    const std::vector<double>& tau = columns.at("tau");
+    std::vector<FieldError> errors;
     const auto flow = Flow::shared_free(p);
-    for (std::size_t i = 0; i < n; ++i) {
-        const auto v = [&](const char* name) { return values[name][i]; };
-        if (i > 0 && !(v("tau") > values["tau"][i - 1]))
+    for (std::size_t i = 0; i < tau.size(); ++i) {
+        const auto v = [&](const char* name) { return columns.at(name)[i]; };
+        if (i > 0 && !(tau[i] > tau[i - 1]))
             errors.push_back(
                 {"/impacts/tau/" + std::to_string(i), v("tau"), nullptr,
                  "the impacts must follow each other in time"});
@@ -197,24 +198,8 @@ void read_impacts(IdentifyRequest& r, const Json& columns) {
     complete_impacts(p, r.measurement.impacts, 0);
 }
 
-}  // namespace
-
-IdentifyRequest read_identify_request(const Json& object) {
-    Json fields = object;
-    const bool has_record = object.contains("record"), has_impacts = object.contains("impacts");
-    fields.erase("record");
-    fields.erase("impacts");
-    if (has_record == has_impacts)
-        refuse(
-            {{"/record", nullptr, nullptr,
-              "give either record: {time_s, displacement_m, acceleration_m_s2} or impacts, with "
-              "their states"}});
-    IdentifyRequest r = read_fields(fields, has_record);
-    if (has_impacts) {
-        read_impacts(r, object["impacts"]);
-        return r;
-    }
-    const Json& record = object["record"];
+/// The columns of a record in JSON, all of one length.
+Columns read_record_columns(const Json& record) {
     Columns columns;
     if (!record.is_object())
         refuse({{"/record", nullptr, nullptr, "record is an object of columns"}});
@@ -236,7 +221,27 @@ IdentifyRequest read_identify_request(const Json& object) {
                       std::to_string(columns[0].values.size()) + ")"}});
         columns.push_back(std::move(column));
     }
-    read_record(r, fields, columns);
+    return columns;
+}
+
+}  // namespace
+
+IdentifyRequest read_identify_request(const Json& object) {
+    Json fields = object;
+    const bool has_record = object.contains("record"), has_impacts = object.contains("impacts");
+    fields.erase("record");
+    fields.erase("impacts");
+    if (has_record == has_impacts)
+        refuse(
+            {{"/record", nullptr, nullptr,
+              "give either record: {time_s, displacement_m, acceleration_m_s2} or impacts, with "
+              "their states"}});
+    IdentifyRequest r = read_fields(fields, has_record);
+    if (has_impacts) {
+        read_impacts(r, object["impacts"]);
+        return r;
+    }
+    read_record(r, fields, read_record_columns(object["record"]));
     return r;
 }
 

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "api/system.hpp"
+#include "api/request.hpp"
 #include "core/identification/measurement.hpp"
 
 namespace vines::api {

@@ -11,8 +11,11 @@ namespace vines::api {
 const std::vector<std::string> reduced_names = {"epsilon", "lambda", "G", "Omega"};
 const std::vector<std::vector<std::string>> si_lines = {
     {"m1"}, {"c1", "damping_ratio"}, {"k1", "f0"}, {"m2", "mass_ratio"}, {"F"}, {"f"}};
-const std::vector<std::string> si_names = {
-    "m1", "c1", "damping_ratio", "k1", "f0", "m2", "mass_ratio", "F", "f"};
+const std::vector<std::string> si_names = [] {
+    std::vector<std::string> names;
+    for (const auto& line : si_lines) names.insert(names.end(), line.begin(), line.end());
+    return names;
+}();
 
 std::vector<std::string> present(const Json& object, const std::vector<std::string>& names) {
     std::vector<std::string> found;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "api/problem.hpp"
+#include "api/schema/joined.hpp"
 
 namespace vines::api {
 
@@ -104,12 +105,10 @@ double unit_factor(const Quantity& q, const Json& fields, const std::string& col
         if (!suffix->in_brackets && fields.contains(q.name + "_column") &&
             !is_foreign(suffix->text))
             return (asked ? asked : &q.units[0])->factor;
-        std::string names;
-        for (const Unit& u : q.units) names += (names.empty() ? "" : ", ") + u.name;
         refuse(
             {{(Json::json_pointer("/record") / column).to_string(), suffix->text, unit_names(q),
               "column " + column + ": the unit \"" + suffix->text + "\" is not known; known are " +
-                  names +
+                  joined(unit_names(q)) +
                   (suffix->in_brackets
                        ? ""
                        : ". If it is no unit, name the column in " + q.name + "_column")}});

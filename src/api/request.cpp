@@ -48,17 +48,32 @@ Parts parts_of(const std::set<std::string>& include) {
         .manifold = includes("manifold")};
 }
 
+/// Whether the answer tells a field's value among its parameters. The other fields of a run and its
+/// output are lists, which show in the answer by what it has.
+bool is_told(const Field& f) {
+    return (f.group == "run" || f.group == "output") &&
+           (f.type == FieldType::number || f.type == FieldType::integer ||
+            f.type == FieldType::interval);
+}
+
 /// Where the values of a run come from.
 void add_origins(std::map<std::string, std::string>& origin, const Layered& l) {
-    for (const char* name :
-         {"tau_end", "cycles", "window", "samples_per_cycle", "section_phase", "max_points",
-          "max_impacts"})
-        origin[name] = l.origin(name);
+    for (const Field& f : l.table)
+        if (is_told(f)) origin[f.name] = l.origin(f.name);
     if (l.has("cycles")) origin["tau_end"] = "follows from cycles";
     else origin["cycles"] = "follows from tau_end";
 }
 
 }  // namespace
+
+ExponentOptions read_estimators(const Layered& l) {
+    const std::set<std::string> names = l.words("exponents");
+    return {
+        .qr = names.contains("qr"),
+        .eigenvalues = names.contains("eigenvalues"),
+        .raw_product = names.contains("raw_product"),
+        .history = static_cast<std::size_t>(l.number("max_points"))};
+}
 
 SimulateRequest read_simulate_request(const Json& given) {
     const Layered l = layered(simulate_fields(), given);
@@ -84,12 +99,7 @@ SimulateRequest read_simulate_request(const Json& given) {
     w.most_points = static_cast<std::size_t>(l.number("max_points"));
     w.max_impacts = static_cast<long>(l.number("max_impacts"));
     w.most_listed = static_cast<std::size_t>(w.max_impacts);
-    const std::set<std::string> estimators = l.words("exponents");
-    w.estimators = {
-        .qr = estimators.contains("qr"),
-        .eigenvalues = estimators.contains("eigenvalues"),
-        .raw_product = estimators.contains("raw_product"),
-        .history = w.most_points};
+    w.estimators = read_estimators(l);
     add_origins(r.system.origin, l);
     return r;
 }

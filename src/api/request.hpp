@@ -17,6 +17,9 @@ struct SimulateRequest {
 /// Problem 422 with every field at fault.
 SimulateRequest read_simulate_request(const Json& object);
 
+/// Those that the field exponents names, with a history of max_points.
+ExponentOptions read_estimators(const Layered& fields);
+
 /// A system with its initial state: what the points of a sweep are.
 struct StartedSystem {
     System system;

@@ -2,7 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "api/describe.hpp"
+#include "api/describe_exponents.hpp"
+#include "api/describe_regime.hpp"
+#include "api/schema/joined.hpp"
 #include "api/si_columns.hpp"
 
 namespace vines::api {
@@ -61,7 +66,13 @@ Json describe_windows(
     return list;
 }
 
-/// The parts of an answer, one by one while there is time.
+/// A result on its way into an answer: it is freed where it is described.
+template <class Result>
+Result taken(Result& result) {
+    return std::exchange(result, {});
+}
+
+/// The parts of an answer, one by one while there is time, with their twins in SI.
 class Answer {
 public:
     Answer(const SimulateRequest& r, const Stop& stop, Json& answer)
@@ -71,24 +82,25 @@ public:
 
     void describe(Analysis& a) {
         const ExponentOptions& shown = r_.wanted.estimators;
-        part("series", [&] { return describe_series(std::move(*a.series)); });
+        part("series", [&] { return describe_series(*taken(a.series)); });
         part("impacts", [&] {
-            return describe_impacts(a.impacts, r_.wanted.parameters.epsilon, a.typical_speed);
+            return describe_impacts(
+                taken(a.impacts), r_.wanted.parameters.epsilon, a.typical_speed);
         });
-        answer_["sticking"] = describe_sticks(a.sticks);
-        if (!a.touches.empty()) answer_["touches"] = describe_touches(a.touches);
+        add("sticking", describe_sticks(a.sticks));
+        if (!a.touches.empty()) add("touches", describe_touches(a.touches));
         part("exponents", [&] { return describe_exponents(*a.exponents, shown, *a.regime, true); });
-        if (!a.windows.empty()) answer_["windows"] = describe_windows(a.windows, shown, *a.regime);
-        part("eigenvalues", [&] { return describe_moduli(*a.moduli); });
-        part("matrices", [&] { return describe_matrices(*a.matrices); });
-        part("section", [&] { return describe_sections(*a.sections); });
+        if (!a.windows.empty()) add("windows", describe_windows(a.windows, shown, *a.regime));
+        part("eigenvalues", [&] { return describe_moduli(*taken(a.moduli)); });
+        part("matrices", [&] { return describe_matrices(*taken(a.matrices)); });
+        part("section", [&] { return describe_sections(*taken(a.sections)); });
         part("energy", [&] { return describe_energy(*a.energy); });
         part("regime", [&] { return describe_regime(*a.regime); });
         part("manifold", [&] { return describe_manifold(*a.manifold); });
     }
 
     /// The parts for which there was no time.
-    std::string left_out;
+    std::vector<std::string> left_out;
 
 private:
     template <class Describe>
@@ -96,27 +108,21 @@ private:
         if (!r_.includes(name)) return;
         if (stop_.late && stop_.late()) {
             answer_[name] = nullptr;
-            left_out += (left_out.empty() ? "" : ", ") + std::string(name);
+            left_out.push_back(name);
             return;
         }
-        answer_[name] = describe();
+        add(name, describe());
+    }
+
+    void add(const char* name, Json part) {
+        if (r_.system.si) add_si(part, *r_.system.si);
+        answer_[name] = std::move(part);
     }
 
     const SimulateRequest& r_;
     const Stop& stop_;
     Json& answer_;
 };
-
-/// The twins of what is in units of tau.
-void add_si_twins(Json& answer, const SiParameters& si) {
-    for (const char* part :
-         {"series", "impacts", "sticking", "touches", "exponents", "windows", "eigenvalues",
-          "matrices", "section", "energy", "regime", "manifold"})
-        if (answer.contains(part)) add_si(answer[part], si);
-    if (answer.contains("energy") && answer["energy"].is_object()) add_joules(answer["energy"], si);
-    answer["status"]["time_s"] = answer["status"]["tau"].get<double>() / si.omega0();
-    add_si(answer["parameters"], si);
-}
 
 }  // namespace
 
@@ -133,26 +139,38 @@ Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes
     for (const Warning& w : analysis.warnings) warnings.push_back(text_of(w, most_bytes));
     Answer parts(r, stop, answer);
     parts.describe(analysis);
-    if (r.system.si) add_si_twins(answer, *r.system.si);
+    if (r.system.si) {
+        if (r.includes("energy") && answer["energy"].is_object())
+            add_joules(answer["energy"], *r.system.si);
+        answer["status"]["time_s"] = analysis.outcome.tau / r.system.si->omega0();
+        add_si(answer["parameters"], *r.system.si);
+    }
     if (!parts.left_out.empty())
         warnings.push_back(
             "the time limit for one request was over before these parts were made up, which are "
             "null: " +
-            parts.left_out);
+            joined(parts.left_out));
     answer["warnings"] = warnings;
     return answer;
 }
 
-/// What is odd about a manifold and the b that is recommended beside it.
+namespace {
+
+/// What is odd about a manifold and the b that is recommended beside it, or was not while there was
+/// time.
 void add_manifold_warnings(
-    const Manifold& m, double V_max, const std::optional<Recommendation>& recommended,
+    const Manifold& m, double V_max, const std::optional<Recommendation>& recommended, bool late,
     Warnings& warnings) {
     const auto free = m.free_amplitude;
     if (!free)
         warnings.push_back(
             "an undamped oscillator at resonance has no amplitude without the absorber: there is "
             "none to reduce");
-    if (free && *free > 0 && !recommended)
+    if (late && !recommended)
+        warnings.push_back(
+            "no b is recommended: the server's time limit for one request was over before all "
+            "were tried");
+    else if (free && *free > 0 && !recommended)
         warnings.push_back(
             "no b is recommended: none of those tried reduces the motion at this frequency from "
             "every start");
@@ -169,14 +187,18 @@ void add_manifold_warnings(
             m.second_contact.V));
 }
 
-Json manifold_answer(const ManifoldRequest& r) {
+}  // namespace
+
+Json manifold_answer(const ManifoldRequest& r, const Stop& stop) {
     const Parameters& p = r.system.parameters;
     Json parameters = describe_system(r.system);
     parameters["derived"] = describe_derived(r.system);
     const Manifold manifold = manifold_of(p, r.V_max, r.points);
-    const auto recommended = recommended_b(p, {});
+    bool late = false;  // asked and told so
+    const auto recommended =
+        recommended_b(p, [&] { return late = late || (stop.asked && stop.asked()); });
     Warnings warnings = r.system.notes;
-    add_manifold_warnings(manifold, r.V_max, recommended, warnings);
+    add_manifold_warnings(manifold, r.V_max, recommended, late, warnings);
     Json described = describe_manifold(manifold);
     described["recommended"] = describe_recommendation(recommended);
     if (r.system.si) add_si(described, *r.system.si);

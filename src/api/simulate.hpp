@@ -22,7 +22,8 @@ struct Stop {
 /// An answer of no more than about so many bytes of JSON: see fit_answer().
 Json simulate_answer(SimulateRequest request, const Stop& stop, std::size_t most_bytes = any_size);
 
-Json manifold_answer(const ManifoldRequest& request);
+/// The manifold, and the b that is recommended beside it: none once stop.asked() is true.
+Json manifold_answer(const ManifoldRequest& request, const Stop& stop = {});
 
 /// The version of this build.
 std::string version();

@@ -2,11 +2,13 @@
 
 #include <mutex>
 
+#include "api/sweep_line.hpp"
+
 namespace vines::api {
 
 namespace {
 
-using TakeLine = std::function<void(std::size_t, const Json&)>;
+using TakeLine = std::function<void(std::size_t, const std::string&)>;
 
 /// Writes lines on the threads that computed them, and hands them out one by one.
 class Lines : public SweepSink {
@@ -14,14 +16,14 @@ public:
     Lines(const SweepRequest& r, const TakeLine& take) : r_(r), take_(take) {}
 
     void point(std::size_t index, const SweepPoint& point) override {
-        hand_out(index, describe_point(r_, index, point));
+        hand_out(index, describe_point(r_, index, point).dump());
     }
     void row(std::size_t index, const RowSummary& row) override {
-        hand_out(index, describe_row(r_, index, row));
+        hand_out(index, describe_row(r_, index, row).dump());
     }
 
 private:
-    void hand_out(std::size_t index, const Json& line) {
+    void hand_out(std::size_t index, const std::string& line) {
         const std::lock_guard lock(mutex_);
         take_(index, line);
     }
@@ -33,8 +35,8 @@ private:
 
 }  // namespace
 
-std::string run_sweep(const SweepRequest& r, int threads, Pace& pace, const TakeLine& line) {
-    Lines lines(r, line);
+std::string run_sweep(const SweepRequest& r, int threads, Pace& pace, const TakeLine& take) {
+    Lines lines(r, take);
     return start_warning(vines::run_sweep(r.plan, threads, pace, lines));
 }
 

@@ -4,9 +4,10 @@
 
 #include <cmath>
 
+#include "api/column.hpp"
 #include "api/describe.hpp"
+#include "api/schema/words.hpp"
 #include "api/si_columns.hpp"
-#include "api/simulate.hpp"
 
 namespace vines::api {
 
@@ -35,9 +36,6 @@ constexpr const char* measured_quantities[] = {
     "impacts",
     "sticks"};
 
-/// A transient should leave no more of a free motion's amplitude.
-constexpr double most_left = 0.01;
-
 /// Of a section at impact all that a bifurcation diagram shows: its moments say nothing there.
 Json describe_section(const SweepRequest& r, const Sections& sections, const Place& place) {
     Json j = r.plan.options.section == SectionKind::impact
@@ -58,12 +56,9 @@ Json located(const SweepRequest& r, std::size_t line, const Place& place) {
 }
 
 void add_exponents(Json& line, const PointResult& p) {
-    for (const char* name : {"lambda", "status", "standard_error"}) line[name] = Json::array();
-    for (std::size_t k = 0; k < 4; ++k) {
-        line["lambda"].push_back(finite_or_null(p.lambda[k]));
-        line["status"].push_back(word(status_of(p.lambda[k])));
-        line["standard_error"].push_back(finite_or_null(p.standard_error[k]));
-    }
+    line["lambda"] = column(p.lambda);
+    line["status"] = column(p.lambda, [](double v) { return word(status_of(v)); });
+    line["standard_error"] = column(p.standard_error);
 }
 
 void add_regime(Json& line, const Regime& regime, double cycle) {
@@ -143,19 +138,6 @@ Json describe_peak(const Axis& axis, const Peak& peak) {
     return j;
 }
 
-/// Where the transient leaves much of what the oscillator does by itself, as it does where the ball
-/// is not met; else empty.
-std::string transient_warning(const Parameters& p, double cycles) {
-    const double per_cycle = p.zeta() * p.cycle(), left = std::exp(-per_cycle * cycles);
-    if (!(left > most_left)) return "";
-    const double enough = std::ceil(-std::log(most_left) / per_cycle);
-    return fmt::format(
-               "after transient_cycles = {:.0f} the oscillator's free motion still has {:.0f} % of "
-               "its amplitude",
-               cycles, 100 * left) +
-           (std::isfinite(enough) ? fmt::format("; {:.0f} leave 1 %", enough) : ": it is undamped");
-}
-
 /// Why a point's fields make no system.
 std::string fault_of(const SweepRequest& r, const Place& place) {
     try {
@@ -167,29 +149,6 @@ std::string fault_of(const SweepRequest& r, const Place& place) {
 }
 
 }  // namespace
-
-Json sweep_start(const SweepRequest& r) {
-    Json axes = Json::array();
-    for (const Axis& a : r.axes) axes.push_back({{"parameter", a.parameter}, {"values", a.values}});
-    const System system = read_started_system(fields_of(r, r.plan.grid.place_of(0))).system;
-    Json parameters = describe_system(system);
-    for (const Axis& a : r.axes) parameters["origin"][a.parameter] = "swept: the first of its axis";
-    parameters["derived"] = describe_derived(system);
-    const PointOptions& options = r.plan.options;
-    std::vector<std::string> warnings = system.notes;
-    const std::string warning = transient_warning(system.parameters, options.transient_cycles);
-    if (!warning.empty()) warnings.push_back(warning);
-    return {
-        {"type", "start"},
-        {"version", version()},
-        {"points", r.plan.grid.lines()},
-        {"cycles",
-         static_cast<double>(r.plan.runs_of_all()) * (options.cycles + options.transient_cycles)},
-        {"axes", std::move(axes)},
-        {"parameters", std::move(parameters)},
-        {"warnings", std::move(warnings)},
-        {"request", r.given}};
-}
 
 Json describe_point(const SweepRequest& r, std::size_t index, const SweepPoint& point) {
     const Place place = r.plan.grid.place_of(index);

@@ -7,10 +7,6 @@
 
 namespace vines::api {
 
-/// {type: start, version, points, cycles, axes, parameters, warnings, request}: the same for each
-/// part of the same sweep.
-Json sweep_start(const SweepRequest& request);
-
 /// The line of one point.
 Json describe_point(const SweepRequest& request, std::size_t line, const SweepPoint& point);
 

@@ -8,19 +8,26 @@ namespace vines::api {
 
 namespace {
 
-/// Which others each field of the core follows from, where it is not given itself.
+/// Which others each field of the core follows from, where it is not given itself; of a line of
+/// si_lines the first stands for both.
 const std::map<std::string, std::vector<std::string>> sources = {
-    {"epsilon", {"m2", "mass_ratio", "m1"}},
-    {"lambda", {"c1", "damping_ratio", "k1", "f0", "m1", "m2", "mass_ratio"}},
-    {"G", {"F", "m1", "m2", "mass_ratio"}},
-    {"Omega", {"f", "k1", "f0", "m1"}},
-    {"x_dot0", {"x_velocity0"}},
-    {"y_dot0", {"y_velocity0"}}};
+    {"epsilon", {"m2", "m1"}},   {"lambda", {"c1", "k1", "m1", "m2"}},
+    {"G", {"F", "m1", "m2"}},    {"Omega", {"f", "k1", "m1"}},
+    {"x_dot0", {"x_velocity0"}}, {"y_dot0", {"y_velocity0"}}};
+
+/// A field and what may be said in place of it.
+std::vector<std::string> line_with(const std::string& name) {
+    for (const auto& line : si_lines)
+        if (line[0] == name) return line;
+    return {name};
+}
 
 /// Those that are there of the fields that one follows from. Omega is f over f0, whatever m1 is,
 /// where f0 is given.
 std::vector<std::string> sources_of(const std::string& name, const Json& fields) {
-    std::vector<std::string> names = present(fields, sources.at(name));
+    std::vector<std::string> names;
+    for (const std::string& source : sources.at(name))
+        for (std::string& there : present(fields, line_with(source))) names.push_back(there);
     if (name == "Omega" && fields.contains("f0")) std::erase(names, "m1");
     return names;
 }

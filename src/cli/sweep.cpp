@@ -78,10 +78,9 @@ std::string compute(
     const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     return api::run_sweep(
         request, o.threads > 0 ? o.threads : cores, pace,
-        [&](std::size_t index, const api::Json& line) {
-            std::string text = line.dump();
-            if (out) out->line(text);
-            file.points[index] = std::move(text);
+        [&](std::size_t index, const std::string& line) {
+            if (out) out->line(line);
+            file.points[index] = line;
             bar.step();
         });
 }

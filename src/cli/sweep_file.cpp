@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "api/problem.hpp"
+#include "api/sweep_frame.hpp"
 #include "cli/files.hpp"
 
 namespace vines::cli {
@@ -24,9 +24,7 @@ std::string SweepFile::lines() const {
     return all;
 }
 
-std::string SweepFile::text() const {
-    return lines() + api::Json{{"type", "done"}, {"points", points.size()}}.dump() + "\n";
-}
+std::string SweepFile::text() const { return lines() + api::done_line(points.size()); }
 
 SweepFile read_sweep_file(const std::string& path) {
     const std::string text = read_file(path);

@@ -23,9 +23,9 @@ ComputeGate::Place ComputeGate::enter_patiently(const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     // The wait registers with the token before it looks, so that a stop at any time ends it. The
     // one who stops must not hold the mutex, and has no way to.
-    const bool passes =
-        changed_.wait(lock, stop, [this] { return closing_ || (free_ > 0 && urgent_ == 0); });
-    if (!passes || closing_) return nullptr;
+    const bool passes = changed_.wait(
+        lock, stop, [this] { return closed_to_sweeps_ || (free_ > 0 && urgent_ == 0); });
+    if (!passes || closed_to_sweeps_) return nullptr;
     --free_;
     return Place(this);
 }
@@ -40,7 +40,7 @@ void ComputeGate::leave() {
 
 ComputeGate::Room ComputeGate::enter_sweep() {
     const std::lock_guard lock(mutex_);
-    if (sweeps_ >= limits_.sweeps || closing_) return nullptr;
+    if (sweeps_ >= limits_.sweeps || closed_to_sweeps_) return nullptr;
     ++sweeps_;
     return Room(this);
 }
@@ -50,10 +50,10 @@ void ComputeGate::leave_sweep() {
     --sweeps_;
 }
 
-void ComputeGate::close() {
+void ComputeGate::close_to_sweeps() {
     {
         const std::lock_guard lock(mutex_);
-        closing_ = true;
+        closed_to_sweeps_ = true;
     }
     changed_.notify_all();
 }

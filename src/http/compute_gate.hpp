@@ -40,18 +40,20 @@ public:
     /// For urgent work: waits for a place; none where the queue is full.
     Place enter();
     /// For patient work: waits for a place behind all urgent work; none once it is stopped or the
-    /// gate closes.
+    /// gate is closed to sweeps.
     Place enter_patiently(const std::stop_token& stop);
     /// Whether patient work should give its place back and enter again.
     bool wanted() const { return urgent_ > 0; }
 
-    /// Room for one sweep, or none (null) where there are as many as may be, or the gate is closed.
+    /// Room for one sweep, or none (null) where there are as many as may be, or the gate is closed
+    /// to them.
     using Room = std::unique_ptr<ComputeGate, LeaveSweep>;
     Room enter_sweep();
 
-    /// From now on sweeps end at their next look: the server is about to stop.
-    void close();
-    bool closing() const { return closing_; }
+    /// From now on sweeps end at their next look, and no new one begins: the server is about to
+    /// stop. Urgent work goes on.
+    void close_to_sweeps();
+    bool closed_to_sweeps() const { return closed_to_sweeps_; }
 
 private:
     void leave();
@@ -59,12 +61,13 @@ private:
 
     const ComputeLimits limits_;
     std::mutex mutex_;
-    // One of: a place is free, the last urgent one that waited has got its place, the gate closes.
+    // One of: a place is free, the last urgent one that waited has got its place, the gate
+    // is closed to sweeps.
     std::condition_variable_any changed_;
     int free_, sweeps_ = 0;
     // Changed under the mutex; read without it by work that only takes a look.
     std::atomic<int> urgent_ = 0;  ///< waiting
-    std::atomic<bool> closing_ = false;
+    std::atomic<bool> closed_to_sweeps_ = false;
 };
 
 }  // namespace vines::http

@@ -5,10 +5,48 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdlib>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
 namespace vines::http {
+
+namespace {
+
+/// Takes what stands before the separator, without blanks around it, from the front of a text.
+std::string_view next(std::string_view& text, char separator) {
+    std::string_view part = text.substr(0, text.find(separator));
+    text.remove_prefix(std::min(text.size(), part.size() + 1));
+    constexpr std::string_view blanks = " \t";
+    part.remove_prefix(std::min(part.size(), part.find_first_not_of(blanks)));
+    return part.substr(0, part.find_last_not_of(blanks) + 1);
+}
+
+std::string lower_case(std::string_view text) {
+    std::string lower(text);
+    for (char& c : lower)
+        if (c >= 'A' && c <= 'Z') c += 'a' - 'A';
+    return lower;
+}
+
+/// An element of Accept-Encoding: "gzip;q=0.5". RFC 9110, 12.4.2: a weight of 0 refuses, any other
+/// accepts. One that is no number is taken for 0: what is not compressed anyone can read.
+struct Coding {
+    std::string name;
+    bool accepted = true;
+};
+Coding coding_of(std::string_view element) {
+    Coding coding{lower_case(next(element, ';'))};
+    while (!element.empty()) {
+        const std::string parameter = lower_case(next(element, ';'));
+        if (parameter.rfind("q=", 0) == 0)
+            coding.accepted = std::strtod(parameter.c_str() + 2, nullptr) > 0;
+    }
+    return coding;
+}
+
+}  // namespace
 
 std::string gzip(const std::string& text) {
     z_stream stream{};
@@ -38,9 +76,15 @@ std::string gzip(const std::string& text) {
     return out;
 }
 
-bool accepts_gzip(const std::string& accept_encoding) {
-    const std::size_t at = accept_encoding.find("gzip");
-    return at != std::string::npos && accept_encoding.compare(at + 4, 4, ";q=0") != 0;
+bool accepts_gzip(std::string_view accept_encoding) {
+    std::optional<bool> by_name, by_star;
+    while (!accept_encoding.empty()) {
+        const std::string_view element = next(accept_encoding, ',');
+        const Coding coding = coding_of(element);
+        if (coding.name == "gzip" || coding.name == "x-gzip") by_name = coding.accepted;
+        if (coding.name == "*") by_star = coding.accepted;
+    }
+    return by_name.value_or(by_star.value_or(false));
 }
 
 std::string entity_tag(const std::string& body) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace vines::http {
 
@@ -9,8 +10,9 @@ namespace vines::http {
 /// std::runtime_error where zlib fails.
 std::string gzip(const std::string& text);
 
-/// Whether a request with this header Accept-Encoding takes gzip.
-bool accepts_gzip(const std::string& accept_encoding);
+/// Whether a request with this header Accept-Encoding takes gzip (RFC 9110, 12.5.3): by its name,
+/// or by "*" where its name is not there. Empty: no.
+bool accepts_gzip(std::string_view accept_encoding);
 
 /// The header ETag of a body, by FNV-1a of 64 bits: tells its versions apart, guards against
 /// nothing.

@@ -1,5 +1,7 @@
 #include "http/route.hpp"
 
+#include "api/schema/joined.hpp"
+
 namespace vines::http {
 
 const Route* find_route(
@@ -11,11 +13,13 @@ const Route* find_route(
 }
 
 std::string methods_at(const std::vector<Route>& routes, const std::string& path) {
-    std::string list;
-    for (const Route& r : routes)
-        if (r.path == path)
-            list += (list.empty() ? "" : ", ") + r.method + (r.method == "GET" ? ", HEAD" : "");
-    return list;
+    std::vector<std::string> methods;
+    for (const Route& r : routes) {
+        if (r.path != path) continue;
+        methods.push_back(r.method);
+        if (r.method == "GET") methods.push_back("HEAD");
+    }
+    return api::joined(methods);
 }
 
 }  // namespace vines::http

@@ -66,25 +66,33 @@ ComputeGate::Place place_in(ComputeGate& gate) {
 // first half of that for the analysis.
 constexpr double time_to_write = 0.2;
 
-Response simulate(const Json& object, const RouteOptions& options, ComputeGate& gate) {
-    const api::SimulateRequest request = api::read_simulate_request(object);
-    const ComputeGate::Place place = place_in(gate);
+/// Ends what takes longer than so many seconds from now on.
+api::Stop stop_after(double seconds) {
     using Clock = std::chrono::steady_clock;
     const auto now = Clock::now();
-    const std::chrono::duration<double> time(options.deadline);
+    const std::chrono::duration<double> time(seconds);
     api::Stop stop;
     stop.asked = [deadline = now + time] { return Clock::now() > deadline; };
     stop.analysis_late = [deadline = now + (1 + time_to_write / 2) * time] {
         return Clock::now() > deadline;
     };
     stop.late = [deadline = now + (1 + time_to_write) * time] { return Clock::now() > deadline; };
-    return limited_response(
-        api::simulate_answer(request, stop, options.answer_limit), options.answer_limit);
+    return stop;
 }
 
-Response manifold(const Json& object, const RouteOptions& options) {
+Response simulate(const Json& object, const RouteOptions& options, ComputeGate& gate) {
+    const api::SimulateRequest request = api::read_simulate_request(object);
+    const ComputeGate::Place place = place_in(gate);
     return limited_response(
-        api::manifold_answer(api::read_manifold_request(object)), options.answer_limit);
+        api::simulate_answer(request, stop_after(options.deadline), options.answer_limit),
+        options.answer_limit);
+}
+
+Response manifold(const Json& object, const RouteOptions& options, ComputeGate& gate) {
+    const api::ManifoldRequest request = api::read_manifold_request(object);
+    const ComputeGate::Place place = place_in(gate);
+    return limited_response(
+        api::manifold_answer(request, stop_after(options.deadline)), options.answer_limit);
 }
 
 Json body_of(const Request& r) {
@@ -128,11 +136,11 @@ std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate) {
     routes.push_back(route("POST", "/v1/simulate", [options, &gate](const Request& r) {
         return simulate(body_of(r), options, gate);
     }));
-    routes.push_back(route("GET", "/v1/manifold", [options](const Request& r) {
-        return manifold(api::from_query(api::manifold_fields(), r.query), options);
+    routes.push_back(route("GET", "/v1/manifold", [options, &gate](const Request& r) {
+        return manifold(api::from_query(api::manifold_fields(), r.query), options, gate);
     }));
-    routes.push_back(route("POST", "/v1/manifold", [options](const Request& r) {
-        return manifold(body_of(r), options);
+    routes.push_back(route("POST", "/v1/manifold", [options, &gate](const Request& r) {
+        return manifold(body_of(r), options, gate);
     }));
     routes.push_back(route("POST", "/v1/sweep", [options, &gate](const Request& r) {
         return stream_sweep(api::read_sweep_request(body_of(r), options.sweep_points), gate);
@@ -155,7 +163,7 @@ std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate) {
         routes.push_back(
             route("GET", path, [](const Request&) { return json_response({{"status", "ok"}}); }));
     routes.push_back(route("GET", "/readyz", [&gate](const Request&) {
-        if (gate.closing()) throw Problem(503, "the server is stopping");
+        if (gate.closed_to_sweeps()) throw Problem(503, "the server is stopping");
         return json_response({{"status", "ok"}});
     }));
     routes.push_back(route("GET", "/version", [](const Request&) {

@@ -89,7 +89,7 @@ void add_size_flags(CLI::App& c, ServeOptions& o) {
 /// drain is over, and those in work are finished.
 [[noreturn]] void end_when_asked(double drain, ComputeGate& gate, Server& server) {
     wait_for_end_signal();
-    gate.close();
+    gate.close_to_sweeps();
     std::this_thread::sleep_for(std::chrono::duration<double>(drain));
     server.stop();
     // run() would return only after every idle connection's keep-alive timeout; no answer is in

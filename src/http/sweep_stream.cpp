@@ -14,7 +14,6 @@ namespace vines::http {
 
 namespace {
 
-using api::Json;
 using Clock = std::chrono::steady_clock;
 
 // How soon a client that left is noticed, and how often one that stays hears how far it is.
@@ -32,7 +31,7 @@ public:
             place().reset();
             place() = gate_.enter_patiently(stop_.get_token());
         }
-        return stop_.stop_requested() || gate_.closing() || !place();
+        return stop_.stop_requested() || gate_.closed_to_sweeps() || !place();
     }
     /// From any thread.
     void stop() { stop_.request_stop(); }
@@ -49,36 +48,15 @@ private:
     std::stop_source stop_;
 };
 
-/// Of the lines; how long the rest will take follows from the runs.
-Json progress(
-    std::size_t done, std::size_t of, std::size_t runs, std::size_t runs_of, double seconds) {
-    const double rate = seconds > 0 ? static_cast<double>(done) / seconds : 0;
-    const double left = done < of && runs > 0
-                            ? static_cast<double>(runs_of - std::min(runs, runs_of)) * seconds /
-                                  static_cast<double>(runs)
-                            : 0;
-    return {
-        {"type", "progress"},
-        {"done", done},
-        {"of", of},
-        {"per_second", rate},
-        {"seconds_left", runs > 0 ? Json(left) : Json(nullptr)},
-        {"runs", runs},
-        {"runs_of", runs_of}};
-}
-
-std::string line_of(const Json& json) { return json.dump() + "\n"; }
-
 /// How a sweep ended whose client is still there.
 std::string ending(std::size_t done, std::size_t of, const std::string& warning, bool failed) {
     if (done < of) {
         const std::string detail =
             failed ? "the server failed at a point; its log says why"
                    : "the server is stopping; ask again for the indices that are missing";
-        return line_of({{"type", "error"}, {"detail", detail}, {"points", done}});
+        return api::error_line(detail, done);
     }
-    return (warning.empty() ? "" : line_of({{"type", "warning"}, {"message", warning}})) +
-           line_of({{"type", "done"}, {"points", done}});
+    return (warning.empty() ? "" : api::warning_line(warning)) + api::done_line(done);
 }
 
 /// Writes the lines as they come, and the progress between them; returns how many they were. Stops
@@ -95,7 +73,12 @@ std::size_t write_lines(
         const auto now = Clock::now();
         if (now - reported >= report || taken.finished) {
             const std::chrono::duration<double> seconds = now - started;
-            taken.text += line_of(progress(taken.count, of, pace.runs, runs_of, seconds.count()));
+            taken.text += api::progress_line(
+                {.done = taken.count,
+                 .of = of,
+                 .runs = pace.runs,
+                 .runs_of = runs_of,
+                 .seconds = seconds.count()});
             reported = now;
         }
         present = present && out.present() && (taken.text.empty() || out.write(taken.text));
@@ -109,15 +92,13 @@ void stream(const api::SweepRequest& request, ComputeGate& gate, Writer& out) {
     LineQueue lines;
     std::exception_ptr failure;
     std::string warning;
-    Json start = api::sweep_start(request);
-    start["of"] = request.plan.lines.size();
-    if (!out.write(line_of(start))) return;
+    if (!out.write(api::start_line(request))) return;
 
     std::thread computing([&] {
         try {
             warning = api::run_sweep(
                 request, gate.threads(), pace,
-                [&](std::size_t, const Json& line) { lines.push(line.dump()); });
+                [&](std::size_t, const std::string& line) { lines.push(line); });
         } catch (...) {
             failure = std::current_exception();
         }

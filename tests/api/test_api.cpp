@@ -11,35 +11,11 @@
 #include "api/query.hpp"
 #include "api/schema/check.hpp"
 #include "api/schema/parameters.hpp"
-#include "api/simulate.hpp"
+#include "support.hpp"
 
 using namespace vines;
 using namespace vines::api;
-
-namespace {
-
-Json answer(const char* text) {
-    return simulate_answer(read_simulate_request(parse_object(text)), {});
-}
-
-/// The problem that a request is refused with.
-Problem refused(const std::string& text) {
-    try {
-        read_simulate_request(parse_object(text));
-    } catch (const Problem& p) {
-        return p;
-    }
-    FAIL("not refused: " << text);
-    throw;
-}
-
-std::set<std::string> pointers(const Problem& p) {
-    std::set<std::string> set;
-    for (const FieldError& e : p.errors) set.insert(e.pointer);
-    return set;
-}
-
-}  // namespace
+using namespace vines::test;
 
 TEST_CASE("an empty object is Table 1 from rest, with series, impacts and exponents") {
     const Json a = answer("{}");
@@ -358,9 +334,10 @@ TEST_CASE("the field table describes exactly what a request takes") {
 }
 
 TEST_CASE("every part that can be asked for is there, its columns of one length") {
-    const Json a = answer(
-        R"({"damping":"closed_form","tau_end":400,"include":["series","impacts","exponents",
-            "eigenvalues","matrices","section","energy","regime","manifold"]})");
+    const Json a = simulate_answer(
+        read_simulate_request(
+            {{"damping", "closed_form"}, {"tau_end", 400}, {"include", all_parts()}}),
+        {});
     const std::size_t impacts = a["impacts"]["tau"].size();
     for (const char* name : {"tau", "J", "M", "T", "M_condition"})
         CHECK(a["eigenvalues"][name].size() == impacts - 1);
@@ -491,9 +468,8 @@ TEST_CASE("each window has its own verdict beside its own exponents") {
 TEST_CASE("nearly tangent means nearly tangent, at any restitution coefficient") {
     for (const char* R : {"1e-3", "0.02", "0"}) {
         const Json a = answer(
-            (std::string(R"({"damping":"closed_form","tau_end":800,"include":["impacts"],"R":)") +
-             R + "}")
-                .c_str());
+            std::string(R"({"damping":"closed_form","tau_end":800,"include":["impacts"],"R":)") +
+            R + "}");
         for (const Json& warning : a["warnings"])
             CHECK(warning.get<std::string>().find("nearly tangent") == std::string::npos);
     }
@@ -533,12 +509,9 @@ TEST_CASE(
     CHECK(
         at_b["fold"]["C"].get<double>() ==
         doctest::Approx(m["free_amplitude"].get<double>()).epsilon(1e-12));
-    try {
-        read_manifold_request(parse_object(R"({"R_plus":0.5,"R_minus":0.6})"));
-        FAIL("not refused");
-    } catch (const Problem& p) {
-        CHECK(pointers(p) == std::set<std::string>{"/R_minus"});
-    }
+    const Problem two_walls =
+        problem_of([] { read_manifold_request(parse_object(R"({"R_plus":0.5,"R_minus":0.6})")); });
+    CHECK(pointers(two_walls) == std::set<std::string>{"/R_minus"});
     const Json run = answer(R"({"R_plus":0.5,"R_minus":0.6,"tau_end":50,"include":["manifold"]})");
     CHECK(run["manifold"].contains("points"));
     CHECK_FALSE(run["manifold"].contains("fold"));
@@ -606,16 +579,8 @@ TEST_CASE("caps end a run as a result that says so") {
 
 namespace {
 
-const std::vector<std::string> all_parts = {"series",      "impacts",  "exponents",
-                                            "eigenvalues", "matrices", "section",
-                                            "energy",      "regime",   "manifold"};
-
 Json within_bytes(const Json& given, std::size_t bytes) {
     return simulate_answer(read_simulate_request(given), {}, bytes);
-}
-
-bool warns(const Json& a, const std::string& text) {
-    return a["warnings"].dump().find(text) != std::string::npos;
 }
 
 }  // namespace
@@ -627,7 +592,7 @@ TEST_CASE(
         {"b", 0.003},
         {"tau_end", 3000},
         {"max_points", 100000},
-        {"include", all_parts},
+        {"include", all_parts()},
         {"windows", {{0, 100}, {0, 200}}}};
     const Json all = within_bytes(given, any_size);
     CHECK_FALSE(warns(all, "limit"));
@@ -675,9 +640,9 @@ TEST_CASE("parts for which no time is left are null, and the answer names them")
     Stop stop;
     stop.late = [] { return true; };
     const SimulateRequest request = read_simulate_request(
-        {{"b", 0.003}, {"tau_end", 1000}, {"include", all_parts}, {"windows", {{0, 100}}}});
+        {{"b", 0.003}, {"tau_end", 1000}, {"include", all_parts()}, {"windows", {{0, 100}}}});
     const Json a = simulate_answer(request, stop);
-    for (const std::string& part : all_parts) CHECK((a.contains(part) && a[part].is_null()));
+    for (const std::string& part : all_parts()) CHECK((a.contains(part) && a[part].is_null()));
     CHECK(a["windows"].size() == 1);
     CHECK(warns(
         a,

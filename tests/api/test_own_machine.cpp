@@ -7,58 +7,17 @@
 #include <set>
 
 #include "api/identify.hpp"
-#include "api/simulate.hpp"
-#include "api/sweep.hpp"
+#include "support.hpp"
 
 using namespace vines;
 using namespace vines::api;
+using namespace vines::test;
 
 namespace {
-
-Json answer(const std::string& text) {
-    return simulate_answer(read_simulate_request(parse_object(text)), {});
-}
-
-Problem refused(const std::string& text) {
-    try {
-        read_simulate_request(parse_object(text));
-    } catch (const Problem& problem) {
-        return problem;
-    }
-    FAIL("not refused: " << text);
-    return {0, ""};
-}
-
-std::set<std::string> pointers(const Problem& problem) {
-    std::set<std::string> all;
-    for (const FieldError& e : problem.errors) all.insert(e.pointer);
-    return all;
-}
-
-/// The lines of a sweep by their index, and what it warns of.
-struct Swept {
-    std::map<std::size_t, Json> lines;
-    std::string warning;
-    Json start;
-};
-Swept swept(const std::string& text) {
-    const SweepRequest r = read_sweep_request(parse_object(text), 100000);
-    Swept s{{}, "", sweep_start(r)};
-    Pace pace;
-    s.warning =
-        run_sweep(r, 2, pace, [&](std::size_t index, const Json& line) { s.lines[index] = line; });
-    return s;
-}
 
 /// Whether a number is another one, relatively. (doctest's Approx takes small ones for equal.)
 bool is_near(const Json& value, double expected, double relative) {
     return std::abs(value.get<double>() - expected) <= relative * std::abs(expected);
-}
-
-bool warns(const Json& a, const std::string& of) {
-    for (const Json& w : a["warnings"])
-        if (w.get<std::string>().find(of) != std::string::npos) return true;
-    return false;
 }
 
 // A platform of 12 kg, 14 Hz and .6 % of damping on a base that moves by .4 mm, with an absorber of
@@ -144,20 +103,11 @@ TEST_CASE("a system in SI that is not whole is refused by the names of what is m
     CHECK(
         answer(R"({"m1":12,"f0":14,"damping_ratio":0.006,"mass_ratio":0.01,"F":0,"include":[]})")
             ["parameters"]["Omega"] == 1);
-    const Problem in_sweep = [] {
-        try {
-            read_sweep_request(
-                parse_object(
-                    R"({"base":{"m1":12,"f0":14,"damping_ratio":0.006,"mass_ratio":0.01},
-                        "axes":[{"parameter":"f","from":13,"to":15,"count":3}]})"),
-                100);
-        } catch (const Problem& problem) {
-            return problem;
-        }
-        FAIL("not refused");
-        return Problem(0, "");
-    }();
-    CHECK(pointers(in_sweep) == std::set<std::string>{"/base/F"});
+    CHECK(
+        faults_of_sweep(
+            R"({"base":{"m1":12,"f0":14,"damping_ratio":0.006,"mass_ratio":0.01},
+                "axes":[{"parameter":"f","from":13,"to":15,"count":3}]})") ==
+        std::set<std::string>{"/base/F"});
 }
 
 TEST_CASE("what is not given comes from the preset that is named, with a word") {
@@ -257,8 +207,7 @@ void check_times(const Json& part, double omega0) {
 TEST_CASE(
     "the answer to a question in SI has seconds beside every tau, and m/s, m/s^2, N s and J") {
     const std::string all =
-        R"("include":["series","impacts","exponents","eigenvalues","matrices","section","energy",
-            "regime","manifold"],"windows":[[10,400]],"tau_end":600)";
+        R"("include":)" + Json(all_parts()).dump() + R"(,"windows":[[10,400]],"tau_end":600)";
     const Json a = answer("{" + platform + R"(,"f":14,)" + all + "}");
     const double omega0 = a["parameters"]["derived"]["omega0"], m1 = 12;
     REQUIRE(a["impacts"]["tau"].size() > 20);
@@ -405,12 +354,9 @@ TEST_CASE("the default set's lines do not depend on threads, shards or the indic
             "transient_cycles":30,"cycles":60)";
     const Swept all = swept(text + "}");
     REQUIRE(all.lines.size() == 12);
-    SweepRequest r = read_sweep_request(parse_object(text + R"(,"indices":[2,7]})"), 1000);
-    Pace pace;
-    std::map<std::size_t, Json> some;
-    run_sweep(r, 1, pace, [&](std::size_t index, const Json& line) { some[index] = line; });
-    REQUIRE(some.size() == 2);
-    for (const auto& [index, line] : some) CHECK(line == all.lines.at(index));
+    const Swept some = swept(sweep_request(text + R"(,"indices":[2,7]})"), 1);
+    REQUIRE(some.lines.size() == 2);
+    for (const auto& [index, line] : some.lines) CHECK(line == all.lines.at(index));
 }
 
 TEST_CASE("a sweep over three axes counts the first fastest, then the starts, then the others") {
@@ -555,14 +501,17 @@ TEST_CASE("a transient that is too short for the oscillator is warned of, and is
         R"({"base":{"m1":12,"f0":14,"damping_ratio":0.0005,"mass_ratio":0.01,"F":1e-5,"R":0.4,
             "b":0.5},"axes":[{"parameter":"f","values":[14,14.2]}],
             "starts":[{"x0":0.02,"y0":0.02}])";
-    const Swept s = swept(sweep + R"(,"cycles":100})");
+    const SweepRequest request = sweep_request(sweep + R"(,"cycles":100})");
+    const Json start = sweep_start(request);
     CHECK(warns(
-        s.start,
+        start,
         "after transient_cycles = 200 the oscillator's free motion still has 53 % of its "
         "amplitude; 1466 leave 1 %"));
-    CHECK(s.warning.empty());
-    CHECK(s.start["parameters"]["origin"]["f"] == "swept: the first of its axis");
-    CHECK(swept(sweep + R"(,"cycles":100,"transient_cycles":1500})").start["warnings"].empty());
+    CHECK(swept(request).warning.empty());
+    CHECK(start["parameters"]["origin"]["f"] == "swept: the first of its axis");
+    const Json patient =
+        sweep_start(sweep_request(sweep + R"(,"cycles":100,"transient_cycles":1500})"));
+    CHECK(patient["warnings"].empty());
 }
 
 TEST_CASE(
@@ -593,26 +542,20 @@ TEST_CASE(
 }
 
 TEST_CASE("what a sweep sets twice is refused") {
-    const auto faults = [](const std::string& text) {
-        try {
-            read_sweep_request(parse_object(text), 100);
-        } catch (const Problem& problem) {
-            return pointers(problem);
-        }
-        return std::set<std::string>{};
-    };
     CHECK(
-        faults(R"({"axes":[{"parameter":"x0","values":[0,0.01]}],"starts":[{"x0":0.005}]})") ==
+        faults_of_sweep(
+            R"({"axes":[{"parameter":"x0","values":[0,0.01]}],"starts":[{"x0":0.005}]})") ==
         std::set<std::string>{"/starts/0/x0"});
     CHECK(
-        faults(
+        faults_of_sweep(
             R"({"base":{"y0":0},"axes":[{"parameter":"b","values":[0.01]}],
                 "starts":"default set"})") == std::set<std::string>{"/base/y0"});
     CHECK(
-        faults(R"({"axes":[{"parameter":"y0","values":[0.01]}],"starts":"default set"})") ==
+        faults_of_sweep(
+            R"({"axes":[{"parameter":"y0","values":[0.01]}],"starts":"default set"})") ==
         std::set<std::string>{"/axes/0/parameter"});
     CHECK(
-        faults(R"({"axes":[{"parameter":"b","values":[0.01]}],"starts":"default"})") ==
+        faults_of_sweep(R"({"axes":[{"parameter":"b","values":[0.01]}],"starts":"default"})") ==
         std::set<std::string>{"/starts"});
 }
 

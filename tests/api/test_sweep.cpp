@@ -6,39 +6,16 @@
 #include <numeric>
 #include <set>
 
-#include "api/sweep.hpp"
+#include "support.hpp"
 
 using namespace vines;
 using namespace vines::api;
+using namespace vines::test;
 
 namespace {
 
-SweepRequest request(const std::string& text) {
-    return read_sweep_request(parse_object(text), 100000);
-}
-
-std::set<std::string> refused(const std::string& text) {
-    try {
-        request(text);
-    } catch (const Problem& p) {
-        CHECK(p.status == 422);
-        std::set<std::string> pointers;
-        for (const FieldError& e : p.errors) pointers.insert(e.pointer);
-        return pointers;
-    }
-    FAIL("not refused: " << text);
-    return {};
-}
-
 std::map<std::size_t, Json> run(const SweepRequest& r, int threads = 2) {
-    std::map<std::size_t, Json> lines;
-    Pace pace;
-    run_sweep(r, threads, pace, [&](std::size_t index, const Json& line) {
-        CHECK(line["index"] == index);
-        CHECK_FALSE(lines.contains(index));
-        lines[index] = line;
-    });
-    return lines;
+    return swept(r, threads).lines;
 }
 
 const char* const plane =
@@ -56,7 +33,7 @@ TEST_CASE(
           R"(,"starts":[{},{"x_dot0":0.01}]})",
           R"(,"carry_state":"up","starts":[{},{"x_dot0":0.01}]})"}) {
         CAPTURE(more);
-        const SweepRequest r = request(std::string(plane) + more);
+        const SweepRequest r = sweep_request(std::string(plane) + more);
         const auto all = run(r);
         CHECK(all.size() == r.plan.grid.lines());
         CHECK(run(r, 1) == all);
@@ -76,7 +53,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a point tells its place, exponents, regime, amplitude, energy and section") {
-    const auto lines = run(request(std::string(plane) + "}"));
+    const auto lines = run(sweep_request(std::string(plane) + "}"));
     const Json& line = lines.at(6);  // the second b at the second R
     CHECK(line["type"] == "point");
     CHECK(line["b"] == 0.011);
@@ -100,13 +77,13 @@ TEST_CASE("continuation follows a branch that a fresh start does not find") {
     const std::string text =
         R"({"base":{"damping":"closed_form"},
             "axes":[{"parameter":"b","values":[0.0072,0.01,0.015]}],"cycles":200)";
-    const auto down = run(request(text + R"(,"carry_state":"down"})"));
+    const auto down = run(sweep_request(text + R"(,"carry_state":"down"})"));
     for (const auto& [index, line] : down) CHECK(line["regime"] == "III");
-    Json afresh = run(request(text + "}")).at(0);
+    Json afresh = run(sweep_request(text + "}")).at(0);
     for (const char* name : {"second_start", "depends_on_start"}) afresh.erase(name);
     // The first of a chain starts afresh.
-    CHECK(run(request(text + R"(,"carry_state":"up"})")).at(0) == afresh);
-    CHECK(down.at(1)["x_max"] != run(request(text + "}")).at(1)["x_max"]);
+    CHECK(run(sweep_request(text + R"(,"carry_state":"up"})")).at(0) == afresh);
+    CHECK(down.at(1)["x_max"] != run(sweep_request(text + "}")).at(1)["x_max"]);
 }
 
 TEST_CASE(
@@ -117,7 +94,7 @@ TEST_CASE(
             "transient_cycles":)";
     for (const char* transient : {"17000", "20000"}) {
         CAPTURE(transient);
-        const Json line = run(request(text + transient + "}")).at(0);
+        const Json line = run(sweep_request(text + transient + "}")).at(0);
         CHECK(line["verdict"] == "regular");
         CHECK(line["period_cycles"] == 3);
         CHECK(line["reason"] == "complete");
@@ -127,7 +104,7 @@ TEST_CASE(
 TEST_CASE("a point whose transient does not end says so, and nothing else") {
     // In a cavity of 10 nm the mass bounces a million times a cycle.
     const Json line =
-        run(request(
+        run(sweep_request(
                 R"({"base":{"R":1},"axes":[{"parameter":"b","values":[1e-8]}],"cycles":5,
                     "transient_cycles":5})"))
             .at(0);
@@ -147,14 +124,14 @@ TEST_CASE("a state is carried at a whole cycle, or not at all") {
     const std::string axes =
         R"("axes":[{"parameter":"b","values":[0.0151,0.015]}],"carry_state":"up",
             "transient_cycles":0,)";
-    const auto carried = run(request(
+    const auto carried = run(sweep_request(
         "{" + axes + R"("base":{"damping":"closed_form","max_impacts":801},"cycles":1000})"));
     CHECK(carried.at(0)["reason"] == "max_impacts");
     CHECK(carried.at(1)["regime"] == "III");
     CHECK(carried.at(1)["capture_cycle"] == 0);  // it begins where the branch is
     CHECK_FALSE(carried.at(1).contains("carried"));
     // In a cavity of 10 nm the transient does not end.
-    const auto broken = run(request(
+    const auto broken = run(sweep_request(
         R"({"axes":[{"parameter":"b","values":[1e-8,0.015]}],"carry_state":"up","base":{"R":1},
             "cycles":5,"transient_cycles":5})"));
     CHECK(broken.at(1)["carried"] == false);
@@ -162,7 +139,7 @@ TEST_CASE("a state is carried at a whole cycle, or not at all") {
 
 TEST_CASE("several starts at each point show coexisting attractors") {
     // A mass at rest in the middle of a wide cavity is never hit; one with a push is.
-    const auto lines = run(request(
+    const auto lines = run(sweep_request(
         R"({"base":{"damping":"closed_form"},"axes":[{"parameter":"b","values":[0.03]}],
             "starts":[{"y0":0},{"y0":0,"y_dot0":0.02}],"cycles":200})"));
     CHECK(lines.at(0)["start"] == 0);
@@ -172,11 +149,11 @@ TEST_CASE("several starts at each point show coexisting attractors") {
 
 TEST_CASE("axes are linear or logarithmic with exact ends, or a list") {
     CHECK(
-        request(R"({"axes":[{"parameter":"b","from":0.003,"to":0.04,"count":38}]})")
+        sweep_request(R"({"axes":[{"parameter":"b","from":0.003,"to":0.04,"count":38}]})")
             .axes[0]
             .values[1] == doctest::Approx(0.004));
     const Axis log =
-        request(
+        sweep_request(
             R"({"axes":[{"parameter":"epsilon","from":0.001,"to":0.1,"count":3,"scale":"log"}]})")
             .axes[0];
     REQUIRE(log.values.size() == 3);
@@ -184,13 +161,13 @@ TEST_CASE("axes are linear or logarithmic with exact ends, or a list") {
     CHECK(log.values[1] == doctest::Approx(0.01));
     CHECK(log.values[2] == 0.1);
     CHECK(
-        request(
+        sweep_request(
             R"({"axes":[{"parameter":"f","values":[8,9,10.5]}],
                 "base":{"m1":4,"c1":3,"k1":11e3,"m2":0.03,"F":1e-4}})")
             .axes[0]
             .values == std::vector<double>{8, 9, 10.5});
     CHECK(
-        request(R"({"axes":[{"parameter":"x0","from":0,"to":0.01,"count":1}]})")
+        sweep_request(R"({"axes":[{"parameter":"x0","from":0,"to":0.01,"count":1}]})")
             .plan.grid.lines() == 1);
 }
 
@@ -198,7 +175,7 @@ TEST_CASE("an axis over a preset changes that field alone, reduced, SI or of one
     // Each point is the point of a sweep whose base says all of the preset's values.
     const std::string rest = R"(,"cycles":60,"transient_cycles":0})";
     const auto point = [&](const std::string& base, const std::string& axis) {
-        return run(request(R"({"base":)" + base + R"(,"axes":[)" + axis + "]" + rest)).at(0);
+        return run(sweep_request(R"({"base":)" + base + R"(,"axes":[)" + axis + "]" + rest)).at(0);
     };
     const SiParameters table4{4.168, 3.02, 11.47e3, 0.032, 0.01 * 0.032 / 4.168, 0};
     char reduced[200];
@@ -223,66 +200,68 @@ TEST_CASE("an axis over a preset changes that field alone, reduced, SI or of one
         point(R"({"preset":"fig3"})", c1)["x_rms"] !=
         point(R"({"preset":"fig3","damping":"closed_form"})", c1)["x_rms"]);
     CHECK(
-        refused(R"({"base":{"R":0.85},"axes":[{"parameter":"R_plus","values":[0.8]}]})") ==
+        faults_of_sweep(R"({"base":{"R":0.85},"axes":[{"parameter":"R_plus","values":[0.8]}]})") ==
         std::set<std::string>{"/axes/0", "/base/R"});
     CHECK(
-        refused(R"({"base":{"preset":"fig20"},"axes":[{"parameter":"m1","values":[1e-9]}]})") ==
+        faults_of_sweep(
+            R"({"base":{"preset":"fig20"},"axes":[{"parameter":"m1","values":[1e-9]}]})") ==
         std::set<std::string>{"/axes/0"});
 }
 
 TEST_CASE("what is wrong with a sweep is named at its place") {
-    CHECK(refused("{}") == std::set<std::string>{"/axes"});
-    CHECK(refused(R"({"axes":[]})") == std::set<std::string>{"/axes"});
+    CHECK(faults_of_sweep("{}") == std::set<std::string>{"/axes"});
+    CHECK(faults_of_sweep(R"({"axes":[]})") == std::set<std::string>{"/axes"});
     CHECK(
-        refused(R"({"axes":[{"parameter":"bb","from":1,"to":2,"count":5}]})") ==
+        faults_of_sweep(R"({"axes":[{"parameter":"bb","from":1,"to":2,"count":5}]})") ==
         std::set<std::string>{"/axes/0/parameter"});
     CHECK(
-        refused(R"({"axes":[{"parameter":"b","from":1,"count":0}]})") ==
+        faults_of_sweep(R"({"axes":[{"parameter":"b","from":1,"count":0}]})") ==
         std::set<std::string>{"/axes/0/to", "/axes/0/count"});
     CHECK(
-        refused(R"({"axes":[{"parameter":"b","values":[1,"x"]}]})") ==
+        faults_of_sweep(R"({"axes":[{"parameter":"b","values":[1,"x"]}]})") ==
         std::set<std::string>{"/axes/0/values/1"});
     CHECK(
-        refused(R"({"axes":[{"parameter":"b","values":[1],"from":1}]})") ==
+        faults_of_sweep(R"({"axes":[{"parameter":"b","values":[1],"from":1}]})") ==
         std::set<std::string>{"/axes/0/from"});
     CHECK(
-        refused(R"({"axes":[{"parameter":"b","from":-1,"to":2,"count":5,"scale":"log"}]})") ==
+        faults_of_sweep(
+            R"({"axes":[{"parameter":"b","from":-1,"to":2,"count":5,"scale":"log"}]})") ==
         std::set<std::string>{"/axes/0/from"});
     CHECK(
-        refused(R"({"axes":[{"parameter":"b","from":-1,"to":2,"count":5}]})") ==
+        faults_of_sweep(R"({"axes":[{"parameter":"b","from":-1,"to":2,"count":5}]})") ==
         std::set<std::string>{"/axes/0"});
     CHECK(
-        refused(
+        faults_of_sweep(
             R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5},
                 {"parameter":"b","values":[1]}]})") == std::set<std::string>{"/axes/1/parameter"});
     CHECK(
-        refused(
+        faults_of_sweep(
             R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"base":{"b":0.01}})") ==
         std::set<std::string>{"/base/b"});
     CHECK(
-        refused(
+        faults_of_sweep(
             R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],
                 "base":{"R":3,"tau_end":5}})") ==
         std::set<std::string>{"/base/R", "/base/tau_end"});
     CHECK(
-        refused(
+        faults_of_sweep(
             R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],
                 "starts":[{"x0":0.5,"y0":0},{"z":1}]})") == std::set<std::string>{"/starts/1/z"});
     CHECK(
-        refused(
+        faults_of_sweep(
             R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],
                 "starts":[{"x0":0.5,"y0":0}]})") == std::set<std::string>{"/starts/0/y0"});
     CHECK(
-        refused(
+        faults_of_sweep(
             R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"indices":[0,5]})") ==
         std::set<std::string>{"/indices"});
     CHECK(
-        refused(
+        faults_of_sweep(
             R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":1000},
                 {"parameter":"R","from":0,"to":1,"count":1000}]})") ==
         std::set<std::string>{"/axes"});
     CHECK(
-        refused(
+        faults_of_sweep(
             R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":5}],"cycles":0,
                 "carry_state":"sideways"})") == std::set<std::string>{"/cycles", "/carry_state"});
 }
@@ -293,13 +272,10 @@ TEST_CASE("a sweep that is stopped hands out no point that is not complete") {
         bool stop_or_yield() override { return ++asked > 300; }
         std::atomic<long> asked = 0;
     } pace;
-    const SweepRequest r =
-        request(R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":50}],"cycles":300})");
+    const SweepRequest r = sweep_request(
+        R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":50}],"cycles":300})");
     const auto all = run(r);
-    std::size_t n = 0;
-    run_sweep(r, 2, pace, [&](std::size_t index, const Json& line) {
-        ++n;
-        CHECK(line == all.at(index));
-    });
-    CHECK(n < 50);
+    const Swept some = swept(r, 2, pace);
+    for (const auto& [index, line] : some.lines) CHECK(line == all.at(index));
+    CHECK(some.lines.size() < 50);
 }

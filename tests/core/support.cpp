@@ -47,7 +47,7 @@ Record record(
     observers.insert(observers.end(), {&impacts, &sticks, &touches});
     const Outcome outcome = simulate(p, start, {tau_end, max_impacts, {}}, observers);
     return {
-        outcome, std::move(impacts.impacts), std::move(sticks.sticks), std::move(touches.touches)};
+        outcome, std::move(impacts.entries), std::move(sticks.entries), std::move(touches.entries)};
 }
 
 Parameters table1(double b, Damping damping) {

@@ -34,8 +34,8 @@ Reference read_reference(const std::string& name);
 struct Record {
     Outcome outcome;
     std::vector<Impact> impacts;
-    std::vector<StickRecord::Stick> sticks;
-    std::vector<TouchRecord::Touch> touches;
+    std::vector<StuckPhase> sticks;
+    std::vector<TangentContact> touches;
 };
 Record record(
     const Parameters& parameters, const State& start, double tau_end, long max_impacts = 1000000,

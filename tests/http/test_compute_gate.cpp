@@ -118,10 +118,10 @@ TEST_CASE("closing ends all patient waits, lets no sweep in, and urgent work sti
                 if (!gate.enter_patiently(stop.get_token())) ++without;
             });
         wait_until([&] { return waiting == 3; });
-        gate.close();
+        gate.close_to_sweeps();
         for (std::thread& thread : patient) thread.join();
         CHECK(without == 3);
-        CHECK(gate.closing());
+        CHECK(gate.closed_to_sweeps());
         CHECK(!gate.enter_sweep());
         held.reset();
         CHECK(gate.enter());

@@ -135,23 +135,23 @@ private:
     }
 
     /// The last entries of a list, and a warning where there were more.
-    template <class Entries>
-    Entries last_of(Entries& entries, long seen, const char* name) {
-        trim_to_last(entries, w_.most_listed);
-        if (seen > static_cast<long>(entries.size()))
-            warn(warning::ListCut{name, seen, entries.size()});
-        return std::move(entries);
+    template <class Entry>
+    std::vector<Entry> last_of(LastOf<Entry>& list, const char* name) {
+        trim_to_last(list.entries, w_.most_listed);
+        if (list.seen > static_cast<long>(list.entries.size()))
+            warn(warning::ListCut{name, list.seen, list.entries.size()});
+        return std::move(list.entries);
     }
 
     void lists() {
         if (w_.parts.impacts) {
-            a_.impacts = last_of(o_.impacts.impacts, o_.impacts.seen, "impacts");
-            a_.touches = last_of(o_.touches.touches, o_.touches.seen, "touches");
+            a_.impacts = last_of(o_.impacts, "impacts");
+            a_.touches = last_of(o_.touches, "touches");
         } else {
-            a_.impacts = std::move(o_.impacts.impacts);
+            a_.impacts = std::move(o_.impacts.entries);
         }
         a_.stick_count = o_.sticks.seen;
-        a_.sticks = last_of(o_.sticks.sticks, o_.sticks.seen, "sticks");
+        a_.sticks = last_of(o_.sticks, "sticks");
         a_.typical_speed = median_speed(a_.impacts);
         if (!a_.touches.empty()) warn(warning::Touched{});
     }
@@ -261,9 +261,9 @@ private:
         if (o_.section.seen > static_cast<long>(most) || cycles > most)
             warn(warning::SectionsCut{most, o_.section.seen, cycles});
         if (cycles > most) first = end - most;
-        trim_to_last(o_.section.points, most);
+        trim_to_last(o_.section.entries, most);
         Sections& s = a_.sections.emplace();
-        s.impact = std::move(o_.section.points);
+        s.impact = std::move(o_.section.entries);
         for (std::size_t k = first; k < end; ++k) {
             s.tau.push_back(record.tau(k));
             s.states.push_back(record.states[k]);

@@ -70,7 +70,7 @@ struct TransferModuli {
 
 /// The motion on two surfaces: where it meets a wall, and at one phase of the forcing.
 struct Sections {
-    std::vector<SectionRecord::Point> impact;
+    std::vector<SectionPoint> impact;
     std::vector<double> tau;    ///< of the stroboscopic states
     std::vector<State> states;  ///< stroboscopic
 };
@@ -108,9 +108,9 @@ struct Analysis {
     std::optional<Series> series;
     std::vector<Impact> impacts;
     double typical_speed = 1;  ///< median of the impacts' relative speeds
-    std::vector<StickRecord::Stick> sticks;
+    std::vector<StuckPhase> sticks;
     long stick_count = 0;  ///< of all, listed or not
-    std::vector<TouchRecord::Touch> touches;
+    std::vector<TangentContact> touches;
     std::optional<WindowExponents> exponents;
     std::vector<WindowExponents> windows;
     std::optional<TransferModuli> moduli;

@@ -60,8 +60,8 @@ std::optional<ForwardRun> forward_run(
          .max_impacts = most_forward_impacts,
          .tau_start = start},
         observers);
-    for (Impact& i : impacts.impacts) i.tau = i.tau - start + first.tau;
-    return ForwardRun{first.tau, std::move(impacts.impacts), lyapunov.product().qr()};
+    for (Impact& i : impacts.entries) i.tau = i.tau - start + first.tau;
+    return ForwardRun{first.tau, std::move(impacts.entries), lyapunov.product().qr()};
 }
 
 /// What is known of the impacts without a record.

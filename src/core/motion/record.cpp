@@ -31,31 +31,4 @@ void StroboscopicRecord::on_stretch(const Stretch& stretch) {
         states.push_back(stretch.at(std::max(0.0, tau(states.size()) - stretch.tau)));
 }
 
-void ImpactRecord::on_impact(const Impact& impact) {
-    impacts.push_back(impact);
-    keep_last(impacts, most_);
-    ++seen;
-}
-
-void SectionRecord::on_impact(const Impact& impact) {
-    if (impact.tau >= tau_start_ && impact.tau <= tau_end_) {
-        points.push_back({impact, impact.tau - before_});
-        keep_last(points, most_);
-        ++seen;
-    }
-    before_ = impact.tau;
-}
-
-void StickRecord::on_stick(const StickStart& start) {
-    sticks.push_back({start, start.tau});
-    keep_last(sticks, most_);
-    ++seen;
-}
-
-void TouchRecord::on_touch(double tau, int side) {
-    touches.push_back({tau, side});
-    keep_last(touches, most_);
-    ++seen;
-}
-
 }  // namespace vines

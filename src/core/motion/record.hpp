@@ -66,74 +66,78 @@ private:
     const long first_;
 };
 
-/// Like the two below it keeps up to half more than its last `most`; `seen` counts all of them.
-class ImpactRecord : public Observer {
+/// The last `most` entries of a list that grows with a run: it keeps up to half more. `seen` counts
+/// all of them.
+template <class Entry>
+class LastOf {
 public:
-    explicit ImpactRecord(std::size_t most = everything) : most_(most) {}
-    void on_impact(const Impact& impact) override;
+    explicit LastOf(std::size_t most = everything) : most_(most) {}
+    void add(const Entry& entry) {
+        entries.push_back(entry);
+        keep_last(entries, most_);
+        ++seen;
+    }
 
-    std::vector<Impact> impacts;
+    std::vector<Entry> entries;
     long seen = 0;
 
 private:
     const std::size_t most_;
+};
+
+class ImpactRecord : public Observer, public LastOf<Impact> {
+public:
+    using LastOf::LastOf;
+    void on_impact(const Impact& impact) override { add(impact); }
+};
+
+/// An impact of a section, and the time since the impact before it.
+struct SectionPoint {
+    Impact impact;
+    double since;  ///< NaN at the first impact of the run
 };
 
 /// The impacts in [tau_start, tau_end], each with the time since the impact before it, whether that
 /// is in the window or not.
-class SectionRecord : public Observer {
+class SectionRecord : public Observer, public LastOf<SectionPoint> {
 public:
     SectionRecord(double tau_start, double tau_end, std::size_t most)
-        : tau_start_(tau_start),
-          tau_end_(tau_end),
-          most_(most) {}
-    void on_impact(const Impact& impact) override;
-
-    struct Point {
-        Impact impact;
-        double since;  ///< NaN at the first impact of the run
-    };
-    std::vector<Point> points;
-    long seen = 0;
+        : LastOf(most),
+          tau_start_(tau_start),
+          tau_end_(tau_end) {}
+    void on_impact(const Impact& impact) override {
+        if (impact.tau >= tau_start_ && impact.tau <= tau_end_) add({impact, impact.tau - before_});
+        before_ = impact.tau;
+    }
 
 private:
     const double tau_start_, tau_end_;
-    const std::size_t most_;
     double before_ = nan;
 };
 
-class StickRecord : public Observer {
-public:
-    explicit StickRecord(std::size_t most = everything) : most_(most) {}
-    void on_stick(const StickStart& start) override;
-    void on_release(double tau) override { sticks.back().tau_end = tau; }
-
-    struct Stick {
-        StickStart start;
-        double tau_end;
-    };
-    std::vector<Stick> sticks;
-    long seen = 0;
-
-private:
-    const std::size_t most_;
+/// A phase in which the mass stays on a wall.
+struct StuckPhase {
+    StickStart start;
+    double tau_end;
 };
 
-/// Tangent contacts without an impact.
-class TouchRecord : public Observer {
+class StickRecord : public Observer, public LastOf<StuckPhase> {
 public:
-    explicit TouchRecord(std::size_t most = everything) : most_(most) {}
-    void on_touch(double tau, int side) override;
+    using LastOf::LastOf;
+    void on_stick(const StickStart& start) override { add({start, start.tau}); }
+    void on_release(double tau) override { entries.back().tau_end = tau; }
+};
 
-    struct Touch {
-        double tau;
-        int side;
-    };
-    std::vector<Touch> touches;
-    long seen = 0;
+/// A tangent contact without an impact.
+struct TangentContact {
+    double tau;
+    int side;
+};
 
-private:
-    const std::size_t most_;
+class TouchRecord : public Observer, public LastOf<TangentContact> {
+public:
+    using LastOf::LastOf;
+    void on_touch(double tau, int side) override { add({tau, side}); }
 };
 
 }  // namespace vines

@@ -92,12 +92,12 @@ double quiet_moment(const Parameters& p, const State& start, const Stop& stop) {
     std::size_t stick = 0;
     auto flight_to = [&](double tau) {
         // What is left of a chatter, and the stuck phase behind it, are no flight.
-        for (; stick < sticks.sticks.size() && sticks.sticks[stick].start.tau <= tau; ++stick)
-            from = std::max(from, sticks.sticks[stick].tau_end);
+        for (; stick < sticks.entries.size() && sticks.entries[stick].start.tau <= tau; ++stick)
+            from = std::max(from, sticks.entries[stick].tau_end);
         if (tau - from > length) length = tau - from, middle = 0.5 * (from + tau);
         from = std::max(from, tau);
     };
-    for (const Impact& i : impacts.impacts) flight_to(i.tau);
+    for (const Impact& i : impacts.entries) flight_to(i.tau);
     flight_to(cycle);
     return middle;
 }
@@ -223,7 +223,7 @@ bool count_period(const Parameters& p, const Stop& stop, PeriodicOrbit& orbit) {
         contacts.contacts.begin(), contacts.contacts.end(),
         [&](const CountedContact& c) { return within(c.tau); });
     orbit.impacts = std::count_if(
-        impacts.impacts.begin(), impacts.impacts.end(),
+        impacts.entries.begin(), impacts.entries.end(),
         [&](const Impact& i) { return within(i.tau); });
     orbit.sticks = std::count_if(
         contacts.sticks.begin(), contacts.sticks.end(),

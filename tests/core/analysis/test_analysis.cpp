@@ -3,25 +3,12 @@
 #include <string>
 
 #include "../support.hpp"
-#include "core/analysis/analysis.hpp"
+#include "all_parts.hpp"
 
 using namespace vines;
 using namespace vines::test;
 
 namespace {
-
-constexpr Parts everything_wanted = {
-    .series = true,
-    .impacts = true,
-    .exponents = true,
-    .moduli = true,
-    .matrices = true,
-    .section = true,
-    .energy = true,
-    .unattached = true,
-    .regime = true,
-    .before_capture = true,
-    .manifold = true};
 
 Analysis run(const Parts& parts) {
     const Parameters p = table1(0.022, Damping::closed_form);
@@ -70,7 +57,7 @@ TEST_CASE("a result has the parts that are wanted, and those that they rest on")
 }
 
 TEST_CASE("how a run ended, and what of its window it reached, is told whatever is wanted") {
-    for (const Parts& parts : {Parts{}, everything_wanted}) {
+    for (const Parts& parts : {Parts{}, all_parts}) {
         const Analysis a = run(parts);
         CHECK(a.outcome.reason == End::tau_end);
         CHECK(a.outcome.tau == 500);
@@ -80,7 +67,7 @@ TEST_CASE("how a run ended, and what of its window it reached, is told whatever 
 }
 
 TEST_CASE("a part is the same to the last bit whichever others are wanted") {
-    const Analysis all = run(everything_wanted);
+    const Analysis all = run(all_parts);
     CHECK(run({.series = true}).series->x == all.series->x);
     CHECK(run({}).outcome.state.x == all.outcome.state.x);
 

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "../support.hpp"
-#include "core/analysis/analysis.hpp"
+#include "all_parts.hpp"
 
 using namespace vines;
 using namespace vines::test;
@@ -45,19 +45,7 @@ Wanted swinging(const State& start) {
 }  // namespace
 
 TEST_CASE("a regular run that nothing sticks in earns no warning, whatever is wanted") {
-    const Analysis a = analyse(
-        of(0.008, 700,
-           {.series = true,
-            .impacts = true,
-            .exponents = true,
-            .moduli = true,
-            .matrices = true,
-            .section = true,
-            .energy = true,
-            .unattached = true,
-            .regime = true,
-            .before_capture = true,
-            .manifold = true}));
+    const Analysis a = analyse(of(0.008, 700, all_parts));
     CHECK(a.warnings.empty());
 }
 

@@ -26,6 +26,13 @@ struct Result {
     }
 };
 
+/// Of a regular motion: 12 s hold some 200 impacts.
+Measurement regular_record(double R_plus = 0.85, double R_minus = 0.85) {
+    Sensors sensors;
+    sensors.seconds = 12;
+    return measured(0.009, R_plus, R_minus, sensors);
+}
+
 Result identified(const Measurement& m) {
     RefinedImpacts refined =
         refine_impacts(m.parameters, m.record, find_spikes(m.record, 6).spikes, 6);
@@ -83,9 +90,7 @@ TEST_CASE(
     "from a regular response every impact, the restitution of each wall and lambda1 are found") {
     for (const auto& R : {std::pair(0.85, 0.85), std::pair(0.6, 0.9)}) {
         CAPTURE(R.first);
-        Sensors sensors;
-        sensors.seconds = 12;
-        const Measurement m = measured(0.009, R.first, R.second, sensors);
+        const Measurement m = regular_record(R.first, R.second);
         const Result r = identified(m);
         check(m, r);
         CHECK(std::abs(r.lambda1 - m.lambda1) < 0.002);
@@ -142,9 +147,7 @@ TEST_CASE("noise alone has no spikes") {
 
 TEST_CASE(
     "a picked spike without a jump of the velocity is dropped, and one picked twice is left out") {
-    Sensors sensors;
-    sensors.seconds = 12;
-    const Measurement m = measured(0.009, 0.85, 0.85, sensors);
+    const Measurement m = regular_record();
     std::vector<Spike> spikes = find_spikes(m.record, 6).spikes;
     const std::size_t all = spikes.size();
     Spike none = spikes[40];
@@ -157,9 +160,7 @@ TEST_CASE(
 
 TEST_CASE(
     "a missing impact makes its neighbours inconsistent, and they are left out with a reason") {
-    Sensors sensors;
-    sensors.seconds = 12;
-    const Measurement m = measured(0.009, 0.85, 0.85, sensors);
+    const Measurement m = regular_record();
     std::vector<Spike> spikes = find_spikes(m.record, 6).spikes;
     spikes.erase(spikes.begin() + 50);
     const RefinedImpacts refined = refine_impacts(m.parameters, m.record, spikes, 0);
@@ -172,9 +173,7 @@ TEST_CASE(
 }
 
 TEST_CASE("the b that fits the momentum is found though a wrong one is given") {
-    Sensors sensors;
-    sensors.seconds = 12;
-    Measurement m = measured(0.009, 0.85, 0.85, sensors);
+    Measurement m = regular_record();
     m.parameters.b = 0.011;
     CHECK(identified(m).found.b_fitted == doctest::Approx(0.009).epsilon(0.02));
 }

@@ -48,7 +48,7 @@ std::vector<Impact> impacts_on_manifold(double R, double b, double V, double eps
     const double k = (1 - R) / (1 + R), x = b - std::numbers::pi / 2 * V;
     ImpactRecord impacts;
     record(p, {k * V, x, V, x - b}, 3.5 * std::numbers::pi, 1000, {&impacts});
-    return impacts.impacts;
+    return impacts.entries;
 }
 
 }  // namespace

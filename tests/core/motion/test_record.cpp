@@ -82,21 +82,21 @@ TEST_CASE("a section holds the impacts of its window, each with the time since t
     const Parameters p = table1(0.022, Damping::closed_form);
     SectionRecord whole(0, 300, everything), late(100, 200, everything), last(0, 300, 4);
     const Record run = record(p, default_state(p), 300, 1000, {&whole, &late, &last});
-    REQUIRE(whole.points.size() == run.impacts.size());
-    CHECK(std::isnan(whole.points[0].since));
+    REQUIRE(whole.entries.size() == run.impacts.size());
+    CHECK(std::isnan(whole.entries[0].since));
     for (std::size_t k = 1; k < run.impacts.size(); ++k)
-        CHECK(whole.points[k].since == run.impacts[k].tau - run.impacts[k - 1].tau);
+        CHECK(whole.entries[k].since == run.impacts[k].tau - run.impacts[k - 1].tau);
     std::size_t first = 0;
     while (run.impacts[first].tau < 100) ++first;
-    REQUIRE(!late.points.empty());
-    CHECK(late.points[0].impact.tau == run.impacts[first].tau);
+    REQUIRE(!late.entries.empty());
+    CHECK(late.entries[0].impact.tau == run.impacts[first].tau);
     // The impact before it is outside of the window, but known.
-    CHECK(late.points[0].since == whole.points[first].since);
-    CHECK(late.points.back().impact.tau <= 200);
-    CHECK(late.seen == static_cast<long>(late.points.size()));
+    CHECK(late.entries[0].since == whole.entries[first].since);
+    CHECK(late.entries.back().impact.tau <= 200);
+    CHECK(late.seen == static_cast<long>(late.entries.size()));
     CHECK(last.seen == whole.seen);
-    CHECK(last.points.size() <= 6);
-    CHECK(last.points.back().impact.tau == run.impacts.back().tau);
+    CHECK(last.entries.size() <= 6);
+    CHECK(last.entries.back().impact.tau == run.impacts.back().tau);
 }
 
 TEST_CASE("a list that keeps its last entries counts all of them") {
@@ -114,8 +114,8 @@ TEST_CASE("a list that keeps its last entries counts all of them") {
     CHECK(impacts.seen == 20);
     CHECK(sticks.seen == 20);
     CHECK(touches.seen == 20);
-    CHECK(impacts.impacts.back().tau == 19);
-    CHECK(sticks.sticks.back().tau_end == 19.5);
-    CHECK(touches.touches.back().tau == 19);
-    CHECK(impacts.impacts.size() <= 4);
+    CHECK(impacts.entries.back().tau == 19);
+    CHECK(sticks.entries.back().tau_end == 19.5);
+    CHECK(touches.entries.back().tau == 19);
+    CHECK(impacts.entries.size() <= 4);
 }

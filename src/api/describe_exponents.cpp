@@ -1,0 +1,127 @@
+#include "api/describe_exponents.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "api/column.hpp"
+#include "api/schema/words.hpp"
+
+namespace vines::api {
+
+namespace {
+
+Json describe_history(const ExponentHistory& history) {
+    Json columns = {{"tau", history.tau}};
+    for (std::size_t k = 0; k < 4; ++k)
+        columns["lambda" + std::to_string(k + 1)] = column(
+            history.lambda, [k](const Exponents& lambda) { return finite_or_null(lambda[k]); });
+    return columns;
+}
+
+std::string reason_of(const Judgement& judgement, const Growth& g, const Regime& r) {
+    const std::string sigmas = fmt::format(
+        "lambda1 = {:.3g} lies {:.1f} standard errors {} zero", g.lambda1,
+        std::abs(g.lambda1 / g.standard_error[0]), g.lambda1 > 0 ? "above" : "below");
+    auto orbit = [&] {
+        return fmt::format(
+            "a stable periodic orbit, whose largest multiplier has the modulus {:.4g}",
+            std::abs(r.orbit->multipliers[0]));
+    };
+    auto captured = [&] {
+        return "a periodic orbit captures the motion " +
+               (r.capture->tau ? fmt::format("at tau = {:.1f}", *r.capture->tau)
+                               : "after the run's end");
+    };
+    switch (judgement.reason) {
+        case VerdictReason::growth:
+            return fmt::format("{}; at least {:.0f} decide", sigmas, verdict_sigmas) +
+                   (r.capture ? ", but " + captured() : "");
+        case VerdictReason::on_orbit: return "the motion is on " + orbit();
+        case VerdictReason::settling: return "the motion ends on " + orbit();
+        case VerdictReason::free_decay:
+            return "without forcing (G = 0) the motion dies out: it has no exponents of a long run";
+        case VerdictReason::untouched:
+            return "the free mass meets no wall in the end: there are no exponents to judge";
+        case VerdictReason::transient:
+            return "the window begins in a chaotic transient; " + captured();
+        case VerdictReason::not_known_before:
+            return captured() + "; the time limit left none to see whether it was chaotic before";
+        case VerdictReason::no_error: return "too few impacts for a standard error of lambda1";
+        case VerdictReason::within_error:
+            return fmt::format("{}; less than {:.0f} decide nothing", sigmas, verdict_sigmas);
+        case VerdictReason::little_growth:
+            return fmt::format(
+                "{}, but deviations grow by no more than e^{:.1f} in this window, as they may "
+                "while one unstable orbit is left; e^{:.0f} decides",
+                sigmas, g.whole, least_growth);
+        case VerdictReason::algebraic_growth:
+            return fmt::format(
+                "{}, but deviations grow by no more than e^{:.1f} in the second half of this "
+                "window: that may be algebraic growth beside a torus",
+                sigmas, g.late);
+        case VerdictReason::negative:
+            return sigmas + ", but no stable periodic orbit was found that the motion comes to";
+    }
+    return "";
+}
+
+}  // namespace
+
+Json describe_final(const Exponents& values) {
+    return {
+        {"final", column(values)},
+        {"status", column(values, [](double v) { return word(status_of(v)); })}};
+}
+
+Json describe_window(const TransferProduct& product) {
+    return {
+        {"window", product.impacts() > 0 ? Json::array({product.start_tau(), product.end_tau()})
+                                         : Json(nullptr)},
+        {"impacts", product.impacts()},
+        {"sum_rule_residual", finite_or_null(product.sum_rule_residual())}};
+}
+
+void add_estimators(
+    Json& j, const TransferProduct& product, const Growth& growth, const ExponentOptions& shown,
+    bool histories) {
+    if (shown.qr) {
+        Json qr = describe_final(product.qr());
+        qr["standard_error"] = column(growth.standard_error);
+        if (histories) qr["history"] = describe_history(product.qr_history());
+        j["qr"] = std::move(qr);
+    }
+    if (shown.eigenvalues) {
+        j["eigenvalues"] = describe_final(product.eigenvalues());
+        if (histories)
+            j["eigenvalues"]["history"] = describe_history(product.eigenvalues_history());
+    }
+    if (!shown.raw_product) return;
+    const double start = product.start_tau();
+    const Exponents final = product.raw_product();
+    Json raw = describe_final(final);
+    raw["rounding_floor"] = finite_or_null(rounding_floor(final[0], product.end_tau() - start));
+    if (histories) {
+        const ExponentHistory& history = product.raw_product_history();
+        raw["history"] = describe_history(history);
+        Json& floor = raw["history"]["rounding_floor"] = Json::array();
+        for (std::size_t i = 0; i < history.tau.size(); ++i)
+            floor.push_back(
+                finite_or_null(rounding_floor(history.lambda[i][0], history.tau[i] - start)));
+    }
+    j["raw_product"] = std::move(raw);
+}
+
+Json describe_exponents(
+    const WindowExponents& w, const ExponentOptions& shown, const Regime& regime, bool histories) {
+    Json j = describe_window(w.product);
+    if (shown.qr) {
+        j["verdict"] = word(w.judgement.verdict);
+        j["verdict_sigmas"] = finite_or_null(w.growth.lambda1 / w.growth.standard_error[0]);
+        j["verdict_reason"] = reason_of(w.judgement, w.growth, regime);
+    }
+    add_estimators(j, w.product, w.growth, shown, histories);
+    return j;
+}
+
+}  // namespace vines::api

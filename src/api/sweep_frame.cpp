@@ -1,0 +1,92 @@
+#include "api/sweep_frame.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "api/describe.hpp"
+#include "api/simulate.hpp"
+
+namespace vines::api {
+
+namespace {
+
+/// A transient should leave no more of a free motion's amplitude.
+constexpr double most_left = 0.01;
+
+/// Where the transient leaves much of what the oscillator does by itself, as it does where the ball
+/// is not met; else empty.
+std::string transient_warning(const Parameters& p, double cycles) {
+    const double per_cycle = p.zeta() * p.cycle(), left = std::exp(-per_cycle * cycles);
+    if (!(left > most_left)) return "";
+    const double enough = std::ceil(-std::log(most_left) / per_cycle);
+    return fmt::format(
+               "after transient_cycles = {:.0f} the oscillator's free motion still has {:.0f} % of "
+               "its amplitude",
+               cycles, 100 * left) +
+           (std::isfinite(enough) ? fmt::format("; {:.0f} leave 1 %", enough) : ": it is undamped");
+}
+
+std::string json_line(const Json& json) { return json.dump() + "\n"; }
+
+}  // namespace
+
+Json sweep_start(const SweepRequest& r) {
+    Json axes = Json::array();
+    for (const Axis& a : r.axes) axes.push_back({{"parameter", a.parameter}, {"values", a.values}});
+    const System system = read_started_system(fields_of(r, r.plan.grid.place_of(0))).system;
+    Json parameters = describe_system(system);
+    for (const Axis& a : r.axes) parameters["origin"][a.parameter] = "swept: the first of its axis";
+    parameters["derived"] = describe_derived(system);
+    const PointOptions& options = r.plan.options;
+    std::vector<std::string> warnings = system.notes;
+    const std::string warning = transient_warning(system.parameters, options.transient_cycles);
+    if (!warning.empty()) warnings.push_back(warning);
+    return {
+        {"type", "start"},
+        {"version", version()},
+        {"points", r.plan.grid.lines()},
+        {"cycles",
+         static_cast<double>(r.plan.runs_of_all()) * (options.cycles + options.transient_cycles)},
+        {"axes", std::move(axes)},
+        {"parameters", std::move(parameters)},
+        {"warnings", std::move(warnings)},
+        {"request", r.given}};
+}
+
+std::string start_line(const SweepRequest& r) {
+    Json start = sweep_start(r);
+    start["of"] = r.plan.lines.size();
+    return json_line(start);
+}
+
+std::string progress_line(const SweepProgress& p) {
+    const double rate = p.seconds > 0 ? static_cast<double>(p.done) / p.seconds : 0;
+    const double left = p.done < p.of && p.runs > 0
+                            ? static_cast<double>(p.runs_of - std::min(p.runs, p.runs_of)) *
+                                  p.seconds / static_cast<double>(p.runs)
+                            : 0;
+    return json_line(
+        {{"type", "progress"},
+         {"done", p.done},
+         {"of", p.of},
+         {"per_second", rate},
+         {"seconds_left", p.runs > 0 ? Json(left) : Json(nullptr)},
+         {"runs", p.runs},
+         {"runs_of", p.runs_of}});
+}
+
+std::string warning_line(const std::string& message) {
+    return json_line({{"type", "warning"}, {"message", message}});
+}
+
+std::string done_line(std::size_t points) {
+    return json_line({{"type", "done"}, {"points", points}});
+}
+
+std::string error_line(const std::string& detail, std::size_t points) {
+    return json_line({{"type", "error"}, {"detail", detail}, {"points", points}});
+}
+
+}  // namespace vines::api

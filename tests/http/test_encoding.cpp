@@ -1,0 +1,23 @@
+#include <doctest/doctest.h>
+
+#include "http/encoding.hpp"
+
+using namespace vines::http;
+
+TEST_CASE("gzip is taken by whoever names it, with any weight but 0, or takes all") {
+    for (const char* header :
+         {"gzip", "GZIP", "x-gzip", "br, gzip", "gzip;q=0.5", "gzip ; q=0.001", "gzip;Q=1.000",
+          "br;q=1.0, gzip;q=0.8, *;q=0.1", "*", "*;q=0.5", "deflate,\tgzip ,br"}) {
+        CAPTURE(header);
+        CHECK(accepts_gzip(header));
+    }
+}
+
+TEST_CASE("gzip is not sent to whoever does not name it, or gives it the weight 0") {
+    for (const char* header :
+         {"", "identity", "br, deflate", "gzip;q=0", "gzip;q=0.0", "gzip; q=0.000", "br, gzip;q=0",
+          "gzip;q=0, *", "*;q=0", "gzip;q=much", "gzipped", "not-gzip"}) {
+        CAPTURE(header);
+        CHECK_FALSE(accepts_gzip(header));
+    }
+}
