@@ -100,7 +100,7 @@ const char* reason_of(const IdentifiedExponents& e) {
             return "the slope's 90 % interval lies below the oscillator's own damping zeta";
         case Verdict::not_decided:
             return "the record is too short to say: the slope's 90 % interval holds the "
-                   "oscillator's own damping zeta, or there are too few impacts (20 for chaotic; "
+                   "oscillator's own damping zeta, or there are too few impacts (24 for chaotic; "
                    "for regular 200, or 80 whose jumps are alike: a chaotic motion may be in step "
                    "for a while)";
         case Verdict::none: return "the motion dies out: it has no exponents of a long run";

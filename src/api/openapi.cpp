@@ -47,7 +47,7 @@ Json schema_of(const Field& f) {
     return s;
 }
 
-Json schema_of(const FieldTable& fields, std::vector<std::string> required = {}) {
+Json schema_of(const FieldTable& fields, const std::vector<std::string>& required = {}) {
     Json properties = Json::object();
     for (const Field& f : fields) properties[f.name] = schema_of(f);
     Json s = {

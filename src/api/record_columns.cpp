@@ -97,7 +97,8 @@ double unit_factor(const Quantity& q, const Json& fields, const std::string& col
     const Unit* asked = nullptr;
     if (fields.contains(field))
         asked = &*std::find_if(
-            q.units.begin(), q.units.end(), [&](const Unit& u) { return u.name == fields[field]; });
+            q.units.begin(), q.units.end(),
+            [name = fields[field].get<std::string>()](const Unit& u) { return u.name == name; });
     const std::optional<Suffix> suffix = suffix_of(q, column);
     const Unit* said = suffix ? known(q, suffix->text) : nullptr;
     if (suffix && !said) {

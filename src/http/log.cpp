@@ -43,12 +43,14 @@ void log_served(const Served& served) {
          {"bytes", served.bytes}}));
 }
 
-void log_failure(const std::string& path, std::exception_ptr thrown) {
+void log_failure(const std::string& path, const std::exception_ptr& thrown) {
     try {
         std::rethrow_exception(thrown);
     } catch (const std::exception& e) {
         spdlog::error(text_of({{"level", "error"}, {"path", path}, {"what", e.what()}}));
-    } catch (...) {}
+    } catch (...) {
+        spdlog::error(text_of({{"level", "error"}, {"path", path}, {"what", "no std::exception"}}));
+    }
 }
 
 }  // namespace vines::http

@@ -22,6 +22,6 @@ void log_served(const Served& served);
 
 /// Why a request failed. Throws nothing, whatever was thrown: an exception here would end the
 /// process.
-void log_failure(const std::string& path, std::exception_ptr thrown);
+void log_failure(const std::string& path, const std::exception_ptr& thrown);
 
 }  // namespace vines::http

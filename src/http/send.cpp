@@ -9,7 +9,7 @@ namespace vines::http {
 namespace {
 
 // Below this the time to compress costs more than the bytes.
-constexpr std::size_t compress_from = 64 * 1024;
+constexpr std::size_t compress_from = 65536;
 
 void set_head(httplib::Response& out, const Response& response) {
     out.status = response.status;

@@ -68,7 +68,7 @@ Handled explain(const httplib::Request& in, httplib::Response& out) {
     return Handled::Handled;
 }
 
-void fail(const httplib::Request& in, httplib::Response& out, std::exception_ptr thrown) {
+void fail(const httplib::Request& in, httplib::Response& out, const std::exception_ptr& thrown) {
     log_failure(in.path, thrown);
     send(
         in, out, problem_response(500, "the server failed at this request; its log says why"),

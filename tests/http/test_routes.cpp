@@ -17,7 +17,8 @@ Response answer_of(
     const std::vector<Route> routes = make_routes(options, gate);
     const Route* route = find_route(routes, method, path);
     REQUIRE(route);
-    return route->answer({.method = method, .path = path, .query = {}, .content_type = {}, .body = "{}"});
+    return route->answer(
+        {.method = method, .path = path, .query = {}, .content_type = {}, .body = "{}"});
 }
 
 bool warns_of(const Json& answer, const std::string& text) {

@@ -90,7 +90,7 @@ TEST_CASE("the report is a text in the chapters' order, with its pictures in fil
 
 TEST_CASE("a curve has a gap where it is not finite") {
     const double nan = std::nan(""), infinity = std::numeric_limits<double>::infinity();
-    const auto lines = [](std::vector<double> y) {
+    const auto lines = [](const std::vector<double>& y) {
         std::vector<double> x;
         for (std::size_t i = 0; i < y.size(); ++i) x.push_back(static_cast<double>(i));
         return occurrences(svg({{"x", "y", {{.x = x, .y = y}}}}, 400, 200), "<polyline");

@@ -8,6 +8,7 @@ namespace vines::api {
 
 namespace {
 
+// NOLINTNEXTLINE(readability-function-size): a table
 FieldTable make_sweep_fields() {
     return {
         {.name = "base",

@@ -124,7 +124,7 @@ public:
     }
 
 private:
-    void warn(Warning warning) { a_.warnings.push_back(std::move(warning)); }
+    void warn(const Warning& warning) { a_.warnings.push_back(warning); }
 
     void series() {
         o_.series.finish(a_.outcome);

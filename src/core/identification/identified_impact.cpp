@@ -1,10 +1,10 @@
 #include "core/identification/identified_impact.hpp"
-#include "core/motion/special_values.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/identification/robust.hpp"
+#include "core/motion/special_values.hpp"
 
 namespace vines {
 

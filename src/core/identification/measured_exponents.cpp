@@ -1,5 +1,4 @@
 #include "core/identification/measured_exponents.hpp"
-#include "core/motion/special_values.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,6 +6,7 @@
 #include <random>
 
 #include "core/identification/robust.hpp"
+#include "core/motion/special_values.hpp"
 
 namespace vines {
 

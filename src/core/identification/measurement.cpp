@@ -1,11 +1,11 @@
 #include "core/identification/measurement.hpp"
-#include "core/motion/special_values.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 
 #include "core/motion/record.hpp"
+#include "core/motion/special_values.hpp"
 
 namespace vines {
 

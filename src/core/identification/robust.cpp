@@ -1,9 +1,10 @@
 #include "core/identification/robust.hpp"
-#include "core/motion/special_values.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+
+#include "core/motion/special_values.hpp"
 
 namespace vines {
 

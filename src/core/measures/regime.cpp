@@ -1,9 +1,10 @@
 #include "core/measures/regime.hpp"
-#include "core/motion/special_values.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "core/motion/special_values.hpp"
 
 namespace vines {
 
@@ -216,7 +217,7 @@ std::optional<PeriodicOrbit> orbit_of(
             return std::nullopt;
         s = on.states.back();
         tried = false;
-        const auto orbit = orbit_at_end(p, on.states, scale, near_return, e.stop, tried);
+        auto orbit = orbit_at_end(p, on.states, scale, near_return, e.stop, tried);
         if (!orbit) continue;
         const auto along = whole_cycle_states(p, *orbit);
         if (distance(states.back(), along[phase_of(states.back(), along, scale)], scale) <
@@ -267,7 +268,7 @@ RegimeType type_of(const Regime& r) {
     if (!r.forced) return RegimeType::none;
     if (r.orbit) {
         if (r.orbit->contacts == 0) return RegimeType::none;
-        if (r.orbit->contacts != 2 * r.orbit->cycles) return RegimeType::V;
+        if (r.orbit->contacts != 2L * r.orbit->cycles) return RegimeType::V;
         if (r.orbit->cycles == 1 && r.orbit->symmetric) return RegimeType::III;
         return RegimeType::IV;
     }

@@ -169,15 +169,15 @@ SeriesValue value_at(const Flow::Series& c, double d) {
     const double q = d * d;
     constexpr int n = Flow::degree;
     double x[2] = {c[n - 1], c[n]}, v[2] = {n * c[n], (n - 1) * c[n - 1]},
-           a[2] = {0, n * (n - 1) / 2 * c[n]};
+           a[2] = {0, 0.5 * (n * (n - 1)) * c[n]};
     for (int k = n - 3; k >= 0; k -= 2) {
         x[0] = x[0] * q + c[k];
         x[1] = x[1] * q + c[k + 1];
         v[0] = v[0] * q + (k + 1) * c[k + 1];
-        a[0] = a[0] * q + (k + 2) * (k + 1) / 2 * c[k + 2];
+        a[0] = a[0] * q + 0.5 * ((k + 2) * (k + 1)) * c[k + 2];
         if (k > 0) {
             v[1] = v[1] * q + k * c[k];
-            a[1] = a[1] * q + (k + 1) * k / 2 * c[k + 1];
+            a[1] = a[1] * q + 0.5 * ((k + 1) * k) * c[k + 1];
         }
     }
     return {x[0] + d * x[1], v[0] + d * v[1], a[0] + d * a[1]};

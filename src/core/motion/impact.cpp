@@ -1,9 +1,10 @@
 #include "core/motion/impact.hpp"
-#include "core/motion/special_values.hpp"
 
 #include <Eigen/LU>
 #include <cmath>
 #include <numbers>
+
+#include "core/motion/special_values.hpp"
 
 namespace vines {
 

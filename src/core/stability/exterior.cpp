@@ -1,9 +1,9 @@
 #include "core/stability/exterior.hpp"
-#include "core/motion/special_values.hpp"
 
 #include <algorithm>
 #include <cmath>
 
+#include "core/motion/special_values.hpp"
 #include "core/stability/linear.hpp"
 
 namespace vines {

@@ -1,5 +1,4 @@
 #include "core/stability/lyapunov.hpp"
-#include "core/motion/special_values.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -7,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/motion/special_values.hpp"
 #include "core/stability/linear.hpp"
 
 namespace vines {

@@ -1,11 +1,11 @@
 #include "core/stability/orbit.hpp"
-#include "core/motion/special_values.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/motion/contacts.hpp"
 #include "core/motion/record.hpp"
+#include "core/motion/special_values.hpp"
 #include "core/stability/linear.hpp"
 
 namespace vines {

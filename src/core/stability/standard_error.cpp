@@ -1,10 +1,11 @@
 #include "core/stability/standard_error.hpp"
-#include "core/motion/special_values.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+
+#include "core/motion/special_values.hpp"
 
 namespace vines {
 
