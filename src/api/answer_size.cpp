@@ -10,8 +10,6 @@ namespace {
 constexpr double rest = 64 * 1024;
 // The exponents of one window by three estimators, with their words.
 constexpr double window = 2048;
-// Of the estimator `eigenvalues`, which keeps no more.
-constexpr double eigenvalue_history = 2048;
 constexpr double fewest_points = 256;
 
 struct AnswerSize {
@@ -29,7 +27,8 @@ AnswerSize size_of(const SimulateRequest& r) {
     if (r.includes("exponents")) {  // tau and four exponents, and the floor
         if (r.wanted.estimators.qr) size.point += 5 * number + si;
         if (r.wanted.estimators.raw_product) size.point += 6 * number + si;
-        if (r.wanted.estimators.eigenvalues) size.fixed += eigenvalue_history * (5 * number + si);
+        if (r.wanted.estimators.eigenvalues)
+            size.fixed += static_cast<double>(most_eigenvalue_entries) * (5 * number + si);
     }
     if (r.includes("eigenvalues")) size.point += 14 * number + si + 3 * bracket;
     if (r.includes("matrices")) size.point += 49 * number + si + 15 * bracket;

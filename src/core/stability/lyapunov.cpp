@@ -18,9 +18,6 @@ namespace {
 constexpr double least_product = 1e-100, most_product = 1e100;
 bool is_in_range(double product) { return product > least_product && product < most_product; }
 
-// Each entry costs three eigenvalue problems.
-constexpr std::size_t most_eigenvalue_entries = 2048;
-
 constexpr Exponents no_exponents = {nan, nan, nan, nan};
 
 /// A history that thins itself: when full it drops every second entry and from then on takes every

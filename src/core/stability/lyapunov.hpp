@@ -39,6 +39,8 @@ Status status_of(double exponent);
 
 /// A history holds at least so many entries before it is thinned.
 inline constexpr std::size_t shortest_history = 256;
+/// Of `eigenvalues`: each costs three eigenvalue problems.
+inline constexpr std::size_t most_eigenvalue_entries = 2048;
 
 struct ExponentHistory {
     std::vector<double> tau;
@@ -51,7 +53,7 @@ struct ExponentHistory {
 
 /// Which estimators to run, and how many entries their histories may have (at least
 /// shortest_history). Longer ones are thinned to every second, fourth, ... impact; `eigenvalues`
-/// keeps at most 2048, for each costs three eigenvalue problems.
+/// keeps at most most_eigenvalue_entries.
 struct ExponentOptions {
     bool qr = false, eigenvalues = false, raw_product = false;
     std::size_t history = 20000;
