@@ -100,7 +100,8 @@ TEST_CASE(
 
 TEST_CASE(
     "from a chaotic response lambda1 is found within 15 %, whatever the walls, the noise, the "
-    "pulse and the sampling") {
+    "pulse and the sampling" *
+    doctest::test_suite("statistics")) {
     struct Case {
         double R_plus, R_minus;
         Sensors sensors;
@@ -353,7 +354,7 @@ int seeds(int few) {
 
 }  // namespace
 
-TEST_CASE("no seed of the noise flips a side") {
+TEST_CASE("no seed of the noise flips a side" * doctest::test_suite("statistics")) {
     struct Kind {
         const char* name;
         double R_plus, R_minus;
@@ -381,7 +382,9 @@ TEST_CASE("no seed of the noise flips a side") {
         }
 }
 
-TEST_CASE("no seed of what a laboratory does to a record gets a wrong verdict") {
+TEST_CASE(
+    "no seed of what a laboratory does to a record gets a wrong verdict" *
+    doctest::test_suite("statistics")) {
     struct Kind {
         const char* name;
         bool few;  ///< also where there are few seeds

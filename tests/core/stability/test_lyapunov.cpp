@@ -322,7 +322,8 @@ Calibration calibrated(const Parameters& p, double apart) {
 }  // namespace
 
 TEST_CASE(
-    "the standard error of a window is the spread of lambda1 over runs from neighbouring starts") {
+    "the standard error of a window is the spread of lambda1 over runs from neighbouring starts" *
+    doctest::test_suite("statistics")) {
     // By eq. (1) the motion is regular below 19.6 mm.
     const std::pair<Damping, std::vector<double>> chaotic[] = {
         {Damping::closed_form,
