@@ -10,12 +10,13 @@ namespace vines::report {
 
 using Chapter = void(Report&, Runs&);
 
-Chapter table_1;              ///< the parameters
+Chapter model;                ///< Table 1, and the closed form against eq. (1)
 Chapter strongly_modulated;   ///< Figs. 3 and 4: the motion at b = 22 mm
 Chapter transient_exponents;  ///< Fig. 5: its Lyapunov exponents
 Chapter transfer_matrices;    ///< Figs. 6 to 9: the eigenvalues of its J, M and T
 Chapter table_2;              ///< its exponents over other windows
 Chapter other_regimes;        ///< Figs. 10 to 14: Types I and III to VI
 Chapter table_3;              ///< the exponents at ten values of b
+Chapter open_questions;       ///< where the regimes begin and end; misprints
 
 }  // namespace vines::report

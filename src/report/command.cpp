@@ -18,8 +18,8 @@ int run(const std::string& folder) {
     const Report result = reproduce(folder);
     std::fputs(markdown_table(result.findings).c_str(), stdout);
     if (!folder.empty()) tell(fmt::format("wrote {}/report.md and its plots", folder));
-    if (!result.holds()) tell("a number has left its band");
-    return result.holds() ? 0 : 1;
+    if (!result.stands()) tell("a verdict is not what it was found to be");
+    return result.stands() ? 0 : 1;
 }
 
 }  // namespace
@@ -28,8 +28,8 @@ Command add_reproduce(CLI::App& app) {
     const auto folder = std::make_shared<std::string>();
     CLI::App* command = app.add_subcommand(
         "reproduce",
-        "recompute the paper's Figs. 3 to 14 and Tables 1 to 3 and compare: exit code 0 if every "
-        "number lies in its band, else 1");
+        "recompute the paper's figures and tables and compare: exit code 0 if every verdict is the "
+        "known one, else 1");
     command->add_option(
         "--output", *folder,
         "folder for report.md and its SVG plots; without it only the table is printed");

@@ -1,6 +1,7 @@
 // One number of the paper, or one statement, beside what it turned out to be.
 #pragma once
 
+#include <optional>
 #include <string>
 
 namespace vines::report {
@@ -12,23 +13,51 @@ struct Band {
 };
 inline Band exactly(double number) { return {number, number}; }
 
-/// The texts are Markdown of one line, without a vertical bar. `vines reproduce` fails when a
-/// number has left its band: then the verdict no longer stands, be it good or bad.
-struct Finding {
-    std::string where;    ///< in the paper: "Fig. 5"
-    std::string what;     ///< the quantity
-    std::string paper;    ///< what the paper says
-    std::string here;     ///< what was computed
-    std::string verdict;  ///< one of those below, or more of the kind
-    double number;        ///< what the verdict rests on ...
-    Band band;            ///< ... and where it must lie
-
-    bool holds() const { return band.contains(number); }
+enum class Verdict {
+    reproduced,
+    by_closed_form,         ///< reproduced, but not by the damping of eq. (1)
+    by_equation_of_motion,  ///< reproduced by that alone
+    partly,
+    not_reproduced
 };
 
-inline const std::string reproduced = "reproduced";
-/// By eq. (1) it would not be: see docs/paper.md.
-inline const std::string reproduced_with_closed_form = "reproduced with the closed-form damping";
-inline std::string not_reproduced(const std::string& reason) { return "not reproduced: " + reason; }
+/// A statement of the paper comes down to one number, and to the band where that lies if the
+/// statement holds: the verdict follows from the two. The texts are Markdown of one line, without
+/// a vertical bar.
+struct Finding {
+    std::string where;  ///< in the paper: "Fig. 5"
+    std::string what;   ///< the quantity, or the statement
+    std::string paper;  ///< what the paper says
+    std::string here;   ///< what was computed
+    double number;      ///< what the verdict rests on
+    /// The same by the damping of eq. (1), where the two differ.
+    std::optional<double> by_equation = {};
+    Band band;            ///< where the number lies if the statement holds
+    std::string because;  ///< why there
+    /// Wider: where the statement holds in part.
+    std::optional<Band> partly = {};
+    /// What the number was found to say. Another verdict today is an error: `vines reproduce`
+    /// fails.
+    Verdict expected = Verdict::reproduced;
+
+    Verdict verdict() const {
+        const bool also = !by_equation || band.contains(*by_equation);
+        if (band.contains(number)) return also ? Verdict::reproduced : Verdict::by_closed_form;
+        if (by_equation && also) return Verdict::by_equation_of_motion;
+        return partly && partly->contains(number) ? Verdict::partly : Verdict::not_reproduced;
+    }
+    bool stands() const { return verdict() == expected; }
+};
+
+inline const char* text_of(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::reproduced: return "reproduced";
+        case Verdict::by_closed_form: return "reproduced, with the closed-form damping alone";
+        case Verdict::by_equation_of_motion: return "reproduced, with the damping of eq. (1) alone";
+        case Verdict::partly: return "in part";
+        case Verdict::not_reproduced: return "**not reproduced**";
+    }
+    return "";
+}
 
 }  // namespace vines::report

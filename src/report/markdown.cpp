@@ -1,10 +1,13 @@
 #include "report/markdown.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
+
+#include "core/motion/special_values.hpp"
 
 namespace vines::report {
 
@@ -14,12 +17,24 @@ constexpr int picture_width = 860;  // px
 
 const char* const introduction =
     "# Li, Lamarque, Seguy, Berlioz (2018), recomputed\n\n"
-    "Figures 3 to 14 and Tables 1 to 3 of *Nonlinear Dynamics* 91, 2319-2330, each with the "
-    "paper's number beside the one computed here. A row's verdict rests on a number and the band "
-    "that it must lie in; `vines reproduce` fails when one leaves it.\n\n";
+    "The figures, tables and statements of *Nonlinear Dynamics* 91, 2319-2330, each with what the "
+    "paper says beside what was computed here. A verdict follows from a number and the band in "
+    "which that lies if the statement holds; the last column says why it is that band.\n\n";
+
+std::string row(const std::vector<std::string>& cells) {
+    return fmt::format("| {} |\n", fmt::join(cells, " | "));
+}
+std::string head(const std::vector<std::string>& columns) {
+    return row(columns) + row(std::vector<std::string>(columns.size(), "---"));
+}
 
 std::string markdown(const Heading& h) { return "\n## " + h.text + "\n\n"; }
 std::string markdown(const Paragraph& p) { return p.text + "\n\n"; }
+std::string markdown(const DataTable& t) {
+    std::string text = head(t.columns);
+    for (const auto& cells : t.rows) text += row(cells);
+    return text + "\n";
+}
 std::string markdown(const Picture& p) {
     return fmt::format("![{0}]({1}.svg)\n*{0}*\n\n", p.caption, p.name);
 }
@@ -30,17 +45,27 @@ void write(const std::filesystem::path& path, const std::string& content) {
     if (!file.flush()) throw std::runtime_error("cannot write " + path.string());
 }
 
+std::string text_of(const Band& b) {
+    if (b.low == b.high) return fmt::format("{:.8g}", b.low);
+    if (b.high == infinity) return fmt::format("{:.8g} or more", b.low);
+    if (b.low == -infinity) return fmt::format("{:.8g} or less", b.high);
+    return fmt::format("{:.8g} to {:.8g}", b.low, b.high);
+}
+
+std::string band_of(const Finding& f) {
+    return text_of(f.band) + (f.partly ? " (in part: " + text_of(*f.partly) + ")" : "");
+}
+
 }  // namespace
 
 std::string markdown_table(const std::vector<Finding>& findings) {
     std::string text =
-        "| of the paper | quantity | paper | here | verdict | its number | band |\n"
-        "| --- | --- | --- | --- | --- | --- | --- |\n";
+        head({"of the paper", "quantity", "paper", "here", "verdict", "its number", "band", "for"});
     for (const Finding& f : findings)
-        text += fmt::format(
-            "| {} | {} | {} | {} | {}{} | {:.4g} | {:g} to {:g} |\n", f.where, f.what, f.paper,
-            f.here, f.holds() ? "" : "**OUT OF BAND** ", f.verdict, f.number, f.band.low,
-            f.band.high);
+        text += row(
+            {f.where, f.what, f.paper, f.here,
+             std::string(text_of(f.verdict())) + (f.stands() ? "" : " **(CHANGED)**"),
+             fmt::format("{:.4g}", f.number), band_of(f), f.because});
     return text;
 }
 

@@ -19,6 +19,11 @@ struct Heading {
 struct Paragraph {
     std::string text;  ///< Markdown
 };
+/// Numbers that a finding rests on, a row each.
+struct DataTable {
+    std::vector<std::string> columns;
+    std::vector<std::vector<std::string>> rows{};
+};
 struct Picture {
     std::string name;  ///< of its file, without ".svg"
     std::string caption;
@@ -28,15 +33,16 @@ struct Picture {
 
 struct Report {
     std::vector<Finding> findings;
-    std::vector<std::variant<Heading, Paragraph, Picture>> body;
+    std::vector<std::variant<Heading, Paragraph, DataTable, Picture>> body;
 
     void find(Finding finding) { findings.push_back(std::move(finding)); }
     void heading(std::string text) { body.emplace_back(Heading{std::move(text)}); }
     void say(std::string text) { body.emplace_back(Paragraph{std::move(text)}); }
+    void table(DataTable table) { body.emplace_back(std::move(table)); }
     void picture(Picture picture) { body.emplace_back(std::move(picture)); }
 
-    /// Every number lies in its band.
-    bool holds() const { return std::ranges::all_of(findings, &Finding::holds); }
+    /// Every verdict is the one that is expected.
+    bool stands() const { return std::ranges::all_of(findings, &Finding::stands); }
 };
 
 }  // namespace vines::report

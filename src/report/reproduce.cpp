@@ -11,13 +11,14 @@ namespace {
 
 /// As they are read, one after the other.
 constexpr Chapter* chapters[] = {
-    table_1,
+    model,                // Table 1, eqs. (8) to (11)
     strongly_modulated,   // Figs. 3 and 4
     transient_exponents,  // Fig. 5
     transfer_matrices,    // Figs. 6 to 9
     table_2,
     other_regimes,  // Figs. 10 to 14
     table_3,
+    open_questions,
 };
 
 }  // namespace

@@ -3,6 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <thread>
+
+#include "core/motion/contacts.hpp"
+#include "core/motion/special_values.hpp"
+#include "core/sweep/parallel.hpp"
 
 namespace vines::report {
 
@@ -23,41 +28,82 @@ Wanted run_to(const Parameters& p, const State& start, double tau_end) {
         .window = {0, tau_end}};
 }
 
-/// One more run of the ensemble.
-void add_run(
-    Ensemble& e, const Parameters& p, const State& start, const ExponentOptions& estimators) {
-    Wanted wanted = run_to(p, start, Ensemble::tau_end);
-    wanted.parts = {.regime = true, .before_capture = true};
-    wanted.estimators = estimators;
-    for (int i = 0; i < Ensemble::windows_per_run; ++i)
-        wanted.windows.push_back({i * Ensemble::window, (i + 1) * Ensemble::window});
-    const Analysis run = analyse(wanted);
-
-    const Regime& regime = *run.regime;
-    const bool captured = regime.capture && regime.capture->chaotic_before == true;
-    const double until =
-        captured ? regime.capture->tau.value_or(Ensemble::tau_end) : Ensemble::tau_end;
-    e.captured += captured;
-    if (regime.orbit && !captured) e.periodic = regime.orbit->exponents(p)[0];
-    for (int i = 1; i < Ensemble::windows_per_run && (i + 1) * Ensemble::window <= until; ++i) {
-        const TransferProduct& product = run.windows[i].product;
-        const Exponents qr = product.qr(), raw = product.raw_product();
-        if (std::isnan(qr[0])) continue;
-        e.windows.push_back(qr);
-        if (product.rank() == 4 && std::isfinite(raw[2]))
-            e.raw_spreads.push_back((raw[0] - raw[2]) * (product.end_tau() - product.start_tau()));
+/// The windows of one size that follow each other in a run up to some tau.
+std::vector<Interval> windows_of(
+    WindowsOf size, const Parameters& p, const State& start, double until) {
+    std::vector<Interval> windows;
+    if (size == WindowsOf::tau_1690) {
+        for (double from = window_tau; from + window_tau <= until; from += window_tau)
+            windows.push_back({from, from + window_tau});
+        return windows;
     }
+    ContactRecord record;
+    Observer* const observers[] = {&record};
+    simulate(p, start, {.tau_end = until, .max_impacts = max_impacts}, observers);
+    const auto& contacts = record.contacts;
+    std::size_t first = 0;
+    while (first < contacts.size() && contacts[first].tau < window_tau) ++first;
+    for (; first + window_contacts < contacts.size(); first += window_contacts)
+        windows.push_back({contacts[first].tau, contacts[first + window_contacts].tau});
+    return windows;
 }
 
-Ensemble make_ensemble(double b, Damping damping, const ExponentOptions& estimators) {
-    const Parameters p = table1(b, damping);
+Ensemble::Window concluded(const TransferProduct& product) {
+    const double T = product.end_tau() - product.start_tau();
+    const Exponents raw = product.raw_product();
+    return {T, product.qr(), std::isfinite(raw[2]) ? (raw[0] - raw[2]) * T : nan};
+}
+
+/// One run of the ensemble.
+Ensemble one_run(const Parameters& p, const State& start, WindowsOf size) {
+    Wanted wanted = run_to(p, start, Ensemble::tau_end);
+    wanted.parts = {.regime = true, .before_capture = true};
+    wanted.estimators = qr_alone;
+    const Regime regime = *analyse(wanted).regime;
+
     Ensemble e;
-    for (int run = 0; run < Ensemble::runs; ++run) {
-        State start = default_state(p);
-        start.y -= run * 1e-6 * b;
-        add_run(e, p, start, estimators);
+    const bool captured = regime.capture && regime.capture->chaotic_before == true;
+    e.captured = captured;
+    if (regime.orbit && !captured) {
+        e.periodic = regime.orbit->exponents(p)[0];
+        e.windows.push_back({Ensemble::tau_end, regime.orbit->exponents(p), nan});
+        return e;
     }
+    e.chaotic_tau = captured ? regime.capture->tau.value_or(Ensemble::tau_end) : Ensemble::tau_end;
+    Wanted exponents = run_to(p, start, e.chaotic_tau);
+    exponents.estimators = qr_and_raw_product;
+    exponents.windows = windows_of(size, p, start, e.chaotic_tau);
+    for (const WindowExponents& w : analyse(exponents).windows)
+        if (!std::isnan(w.product.qr()[0])) e.windows.push_back(concluded(w.product));
     return e;
+}
+
+int all_threads() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
+
+Ensemble make_ensemble(double b, WindowsOf size, Damping damping) {
+    const Parameters p = table1(b, damping);
+    std::vector<Ensemble> each(Ensemble::runs);
+    parallel(each.size(), all_threads(), [&](std::size_t run) {
+        State start = default_state(p);
+        start.y -= static_cast<double>(run) * 1e-6 * b;
+        each[run] = one_run(p, start, size);
+    });
+    Ensemble all;
+    for (const Ensemble& run : each) {
+        all.windows.insert(all.windows.end(), run.windows.begin(), run.windows.end());
+        all.captured += run.captured;
+        all.chaotic_tau += run.chaotic_tau;
+        if (run.periodic) all.periodic = run.periodic;
+    }
+    return all;
+}
+
+/// Of those that are numbers.
+Moments finite_moments(const std::vector<Ensemble::Window>& windows, auto&& value) {
+    std::vector<double> values;
+    for (const Ensemble::Window& w : windows)
+        if (std::isfinite(value(w))) values.push_back(value(w));
+    return moments(values);
 }
 
 }  // namespace
@@ -83,10 +129,26 @@ Series series_until(double b, double tau_end) {
 }
 
 Moments Ensemble::lambda(int k) const {
-    std::vector<double> values;
-    for (const Exponents& w : windows)
-        if (std::isfinite(w[k])) values.push_back(w[k]);
-    return moments(values);
+    return finite_moments(windows, [k](const Window& w) { return w.qr[k]; });
+}
+Moments Ensemble::raw_spread() const {
+    return finite_moments(windows, [](const Window& w) { return w.raw_spread; });
+}
+Moments Ensemble::duration() const {
+    return finite_moments(windows, [](const Window& w) { return w.T; });
+}
+
+std::vector<Regime> long_regimes(const std::vector<double>& b) {
+    std::vector<Regime> regimes(b.size());
+    parallel(b.size(), all_threads(), [&](std::size_t i) {
+        const Parameters p = table1(b[i], Damping::closed_form);
+        Wanted wanted = run_to(p, default_state(p), 10 * window_end);
+        wanted.window.from = window_end;
+        wanted.parts = {.regime = true};
+        wanted.estimators = qr_alone;
+        regimes[i] = *analyse(wanted).regime;
+    });
+    return regimes;
 }
 
 std::vector<Regime> regimes_of_random_starts(const Parameters& p, int starts) {
@@ -108,11 +170,11 @@ std::vector<Regime> regimes_of_random_starts(const Parameters& p, int starts) {
     return regimes;
 }
 
-const Response& Runs::response(double b, Damping damping) {
-    const auto found = responses_.find({b, damping});
+const Response& Runs::run(double b, Damping damping, double tau_end) {
+    const auto found = responses_.find({b, damping, tau_end});
     if (found != responses_.end()) return found->second;
     const Parameters p = table1(b, damping);
-    Wanted wanted = run_to(p, default_state(p), window_end);
+    Wanted wanted = run_to(p, default_state(p), tau_end);
     wanted.parts = {
         .series = true,
         .impacts = true,
@@ -123,19 +185,20 @@ const Response& Runs::response(double b, Damping damping) {
         .before_capture = true,
         .manifold = true};
     wanted.estimators = all_estimators;
-    return responses_.emplace(Key{b, damping}, Response{p, analyse(wanted)}).first->second;
+    return responses_.emplace(std::tuple{b, damping, tau_end}, Response{p, analyse(wanted)})
+        .first->second;
 }
 
-const Ensemble& Runs::ensemble(double b, Damping damping) {
-    const auto [at, is_new] = ensembles_.try_emplace({b, damping});
-    if (is_new) at->second = make_ensemble(b, damping, qr_alone);
+const Response& Runs::response(double b, Damping damping) { return run(b, damping, window_end); }
+
+const Response& Runs::long_response(double b) {
+    return run(b, Damping::closed_form, 10 * window_end);
+}
+
+const Ensemble& Runs::ensemble(double b, WindowsOf size, Damping damping) {
+    const auto [at, is_new] = ensembles_.try_emplace({b, size, damping});
+    if (is_new) at->second = make_ensemble(b, size, damping);
     return at->second;
-}
-
-const Ensemble& Runs::ensemble_with_raw_product(double b) {
-    Ensemble& e = ensembles_[{b, Damping::closed_form}];
-    if (e.raw_spreads.empty()) e = make_ensemble(b, Damping::closed_form, qr_and_raw_product);
-    return e;
 }
 
 }  // namespace vines::report

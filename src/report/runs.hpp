@@ -5,7 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include "core/analysis/analysis.hpp"
@@ -37,26 +37,38 @@ struct Response {
 /// x and y alone, from the paper's initial state to tau_end; `b` in m.
 Series series_until(double b, double tau_end);
 
-/// lambda over many windows as long as the paper's: stretches of several runs, of which each starts
-/// a little different and ends, at the latest, where a periodic orbit captures it (b = 22 mm:
-/// docs/paper.md).
+/// What the windows of an ensemble have in common.
+enum class WindowsOf {
+    tau_1690,     ///< their length: Table 2's
+    contacts_400  ///< how many contacts they hold: Table 3's (chapters/table_3.cpp)
+};
+inline constexpr double window_tau = 1690;
+inline constexpr std::size_t window_contacts = 400;
+
+/// The exponents over many windows: stretches of several runs, of which each starts a little
+/// different and ends, at the latest, where a periodic orbit captures it (b = 22 mm:
+/// docs/paper.md). What begins before tau = 1690 is left out: it holds the transient from rest.
 struct Ensemble {
     static constexpr int runs = 12;
-    static constexpr int windows_per_run = 11;  ///< the first holds the transient from rest
-    static constexpr double window = 1690;
-    static constexpr double tau_end = windows_per_run * window;
+    static constexpr double tau_end = 11 * window_tau;
 
-    std::vector<Exponents> windows;  ///< by qr
-    /// (lambda1 - lambda3) T of raw_product in each window where both are numbers; none where it
-    /// was not asked for.
-    std::vector<double> raw_spreads;
-    int captured = 0;  ///< runs that were chaotic until an orbit captured them
+    struct Window {
+        double T;
+        Exponents qr;
+        /// (lambda1 - lambda3) T of raw_product; NaN where one of them is none.
+        double raw_spread;
+    };
+    std::vector<Window> windows;
+    int captured = 0;        ///< runs that were chaotic until an orbit captured them
+    double chaotic_tau = 0;  ///< how long all of them were, together, until then or their end
     /// lambda1 of the orbit that every run comes to without a chaotic transient.
     std::optional<double> periodic;
 
     /// Of the k-th exponent (0 to 3), over the windows where it is a number: a stick makes lambda3
     /// and lambda4 minus infinity.
     Moments lambda(int k) const;
+    Moments raw_spread() const;
+    Moments duration() const;
 };
 
 /// Where each of so many random starts comes to, always the same ones: |x'|, |x| <= .008 and
@@ -64,18 +76,22 @@ struct Ensemble {
 /// 3000.
 std::vector<Regime> regimes_of_random_starts(const Parameters& parameters, int starts);
 
+/// The regimes at several b (m) from the paper's initial state, by the closed form's damping, over
+/// ten times its window without the first tenth.
+std::vector<Regime> long_regimes(const std::vector<double>& b);
+
 /// The runs that more than one chapter rests on: each is made when it is first asked for. `b` in m.
 class Runs {
 public:
     const Response& response(double b, Damping damping = Damping::closed_form);
-    const Ensemble& ensemble(double b, Damping damping = Damping::closed_form);
-    /// By the closed form's damping, with raw_spreads, which take half as long again.
-    const Ensemble& ensemble_with_raw_product(double b);
+    /// Ten times as long, by the closed form's damping: for what one window has too little of.
+    const Response& long_response(double b);
+    const Ensemble& ensemble(double b, WindowsOf size, Damping damping = Damping::closed_form);
 
 private:
-    using Key = std::pair<double, Damping>;
-    std::map<Key, Response> responses_;
-    std::map<Key, Ensemble> ensembles_;
+    std::map<std::tuple<double, Damping, double>, Response> responses_;  // by tau_end, too
+    const Response& run(double b, Damping damping, double tau_end);
+    std::map<std::tuple<double, WindowsOf, Damping>, Ensemble> ensembles_;
 };
 
 }  // namespace vines::report

@@ -8,6 +8,19 @@
 
 namespace vines::report {
 
+namespace {
+
+/// How many of the values lie below each.
+std::vector<double> ranks(const std::vector<double>& values) {
+    std::vector<double> ranks;
+    for (double v : values)
+        ranks.push_back(
+            static_cast<double>(std::ranges::count_if(values, [v](double w) { return w < v; })));
+    return ranks;
+}
+
+}  // namespace
+
 Moments moments(const std::vector<double>& values) {
     const double n = static_cast<double>(values.size());
     double sum = 0, squares = 0;
@@ -15,6 +28,15 @@ Moments moments(const std::vector<double>& values) {
     const double mean = sum / n;
     for (double v : values) squares += (v - mean) * (v - mean);
     return {mean, std::sqrt(squares / (n - 1))};
+}
+
+double rank_correlation(const std::vector<double>& a, const std::vector<double>& b) {
+    const std::vector<double> of_a = ranks(a), of_b = ranks(b);
+    const Moments m_a = moments(of_a), m_b = moments(of_b);
+    double product = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        product += (of_a[i] - m_a.mean) * (of_b[i] - m_b.mean);
+    return product / (static_cast<double>(a.size()) - 1) / (m_a.deviation * m_b.deviation);
 }
 
 double quantile(std::vector<double> values, double share) {

@@ -15,6 +15,9 @@ struct Moments {
 /// NaN of nothing; of one value the deviation is NaN.
 Moments moments(const std::vector<double>& values);
 
+/// Spearman's, -1 to 1: of pairs of equal length without ties.
+double rank_correlation(const std::vector<double>& a, const std::vector<double>& b);
+
 /// The value below which a share (below 1) of the others lies; NaN of nothing.
 double quantile(std::vector<double> values, double share);
 inline double median(std::vector<double> values) { return quantile(std::move(values), 0.5); }

@@ -8,8 +8,10 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "core/analysis/analysis.hpp"
 #include "report/markdown.hpp"
 #include "report/statistics.hpp"
+#include "report/symmetric_motion.hpp"
 
 using namespace vines::report;
 
@@ -21,9 +23,9 @@ Finding finding(double number, Band band) {
         .what = "lambda1",
         .paper = "0.1093",
         .here = "0.1",
-        .verdict = reproduced,
         .number = number,
-        .band = band};
+        .band = band,
+        .because = "two digits"};
 }
 
 std::size_t occurrences(const std::string& text, const std::string& part) {
@@ -40,29 +42,87 @@ std::string contents(const std::filesystem::path& path) {
 
 }  // namespace
 
-TEST_CASE("a report holds while every number lies in its band, the band's ends included") {
+TEST_CASE("a verdict is what the number says, the band's ends included") {
+    CHECK(finding(1, {1, 2}).verdict() == Verdict::reproduced);
+    CHECK(finding(2, {1, 2}).verdict() == Verdict::reproduced);
+    CHECK(finding(4, exactly(4)).verdict() == Verdict::reproduced);
+    Finding f = finding(std::nextafter(2, 3), {1, 2});
+    CHECK(f.verdict() == Verdict::not_reproduced);
+    f.partly = Band{0, 3};
+    CHECK(f.verdict() == Verdict::partly);
+}
+
+TEST_CASE("a verdict says which damping a statement takes") {
+    Finding f = finding(1.5, {1, 2});
+    f.by_equation = 1.6;
+    CHECK(f.verdict() == Verdict::reproduced);
+    f.by_equation = 2.1;
+    CHECK(f.verdict() == Verdict::by_closed_form);
+    f.number = 2.2;
+    CHECK(f.verdict() == Verdict::not_reproduced);
+    f.by_equation = 1.6;
+    CHECK(f.verdict() == Verdict::by_equation_of_motion);
+}
+
+TEST_CASE("what is not a number is not reproduced") {
+    CHECK(finding(std::nan(""), {-1e300, 1e300}).verdict() == Verdict::not_reproduced);
+}
+
+TEST_CASE("a report stands while every verdict is the expected one, good or bad") {
     Report report;
-    CHECK(report.holds());
+    CHECK(report.stands());
     report.find(finding(1, {1, 2}));
-    report.find(finding(2, {1, 2}));
-    report.find(finding(4, exactly(4)));
-    CHECK(report.holds());
-    report.find(finding(std::nextafter(2, 3), {1, 2}));
-    CHECK_FALSE(report.holds());
+    Finding bad = finding(3, {1, 2});
+    bad.expected = Verdict::not_reproduced;
+    report.find(bad);
+    CHECK(report.stands());
+    report.find(finding(3, {1, 2}));
+    CHECK_FALSE(report.stands());
 }
 
-TEST_CASE("what is not a number lies in no band") {
-    CHECK_FALSE(finding(std::nan(""), {-1e300, 1e300}).holds());
+TEST_CASE("a verdict that has changed is marked in its row of the table, and only there") {
+    const std::string table = markdown_table({finding(1.5, {1, 2}), finding(12345.6, {1, 2})});
+    CHECK(
+        table.find(
+            "| Fig. 5 | lambda1 | 0.1093 | 0.1 | reproduced | 1.5 | 1 to 2 | two digits |\n") !=
+        std::string::npos);
+    CHECK(
+        table.find("| **not reproduced** **(CHANGED)** | 1.235e+04 | 1 to 2 | two digits |\n") !=
+        std::string::npos);
 }
 
-TEST_CASE("a number that has left its band is marked in its row of the table, and only there") {
-    const std::string table = markdown_table({finding(1.5, {1, 2}), finding(12345.6, {1, 1e-6})});
+TEST_CASE("two symmetric impacts per cycle in closed form are those that a run comes to") {
+    vines::Parameters p;
+    p.b = 0.015;
+    p.damping = vines::Damping::closed_form;
+    vines::Wanted wanted{.parameters = p, .start = vines::default_state(p), .tau_end = 3000};
+    wanted.window = {2000, 3000};
+    wanted.parts = {.impacts = true, .regime = true};
+    const vines::Analysis run = vines::analyse(wanted);
+    const auto motion = fast_symmetric_motion(p);
+    REQUIRE(motion);
+    CHECK(std::abs(run.impacts.back().y_dot_after) == doctest::Approx(motion->V).epsilon(1e-12));
+    // Of half a period, squared, they are those of a whole one.
     CHECK(
-        table.find("| Fig. 5 | lambda1 | 0.1093 | 0.1 | reproduced | 1.5 | 1 to 2 |\n") !=
-        std::string::npos);
-    CHECK(
-        table.find("| **OUT OF BAND** reproduced | 1.235e+04 | 1 to 1e-06 |\n") !=
-        std::string::npos);
+        std::norm(motion->multipliers[0]) ==
+        doctest::Approx(std::abs(run.regime->orbit->multipliers[0])).epsilon(1e-9));
+}
+
+TEST_CASE(
+    "two symmetric impacts per cycle attract between 7.0467 and 16.2860 mm, and are there to a "
+    "fold") {
+    const auto at = [](double mm) {
+        vines::Parameters p;
+        p.b = mm / 1000;
+        p.damping = vines::Damping::closed_form;
+        return fast_symmetric_motion(p);
+    };
+    CHECK_FALSE(at(7.046736302)->stable());
+    CHECK(at(7.046736304)->stable());
+    CHECK(at(16.286026399)->stable());
+    CHECK_FALSE(at(16.286026401)->stable());
+    CHECK(at(17.27473414));
+    CHECK_FALSE(at(17.27473415));
 }
 
 TEST_CASE("the report is a text in the chapters' order, with its pictures in files beside it") {
@@ -80,8 +140,9 @@ TEST_CASE("the report is a text in the chapters' order, with its pictures in fil
     write_markdown(report, folder.string());
     const std::string text = contents(folder / "report.md"),
                       picture = contents(folder / "fig5.svg");
-    CHECK(text.ends_with(
-        "| 1 | 1 to 2 |\n\n## Fig. 5\n\nIn words.\n\n![Exponents](fig5.svg)\n*Exponents*\n\n"));
+    CHECK(
+        text.ends_with("| 1 | 1 to 2 | two digits |\n\n## Fig. 5\n\nIn "
+                       "words.\n\n![Exponents](fig5.svg)\n*Exponents*\n\n"));
     CHECK(picture.starts_with("<svg "));
     CHECK(picture.find("a &lt; b") != std::string::npos);
     std::filesystem::remove_all(folder);
@@ -99,6 +160,12 @@ TEST_CASE("a curve has a gap where it is not finite") {
     CHECK(lines({1, 2, nan, 4, 5}) == 2);
     CHECK(lines({-infinity, 2, 3, infinity}) == 1);
     CHECK(lines({nan, nan}) == 0);
+}
+
+TEST_CASE("a rank correlation is one of what rises together, however, and minus one of opposites") {
+    CHECK(rank_correlation({1, 2, 3, 4}, {10, 11, 50, 1000}) == doctest::Approx(1));
+    CHECK(rank_correlation({1, 2, 3, 4}, {4, 3, 2, 1}) == doctest::Approx(-1));
+    CHECK(rank_correlation({1, 2, 3, 4, 5}, {2, 1, 4, 3, 5}) == doctest::Approx(0.8));
 }
 
 TEST_CASE("moments and quantiles are those of the numbers, and of none they are none") {

@@ -2,6 +2,7 @@
 // than two impacts per cycle and falls with two.
 #include <fmt/format.h>
 
+#include "core/motion/flow.hpp"
 #include "report/chapters.hpp"
 #include "report/plots.hpp"
 
@@ -30,6 +31,56 @@ ImpactsPerCycle impacts_per_cycle(const Response& r) {
         falling / static_cast<double>(falling_cycles), rising / static_cast<double>(rising_cycles)};
 }
 
+/// When a run's first flight, from its initial state, first comes within `tolerance` of the wall
+/// that it will meet; m.
+double first_within(const Response& r, double tolerance) {
+    const Parameters& p = r.parameters;
+    const Flow flow = Flow::free(p);
+    const State start = default_state(p);
+    const Oscillation from{start.x, start.x_dot, std::sin(p.phi()), std::cos(p.phi())};
+    const Impact& first = r.run.impacts.front();
+    // On its last way to the wall, which takes less than the half cycle before: bisected.
+    double outside = first.tau - p.cycle() / 4, inside = first.tau;
+    for (int i = 0; i < 60; ++i) {
+        const double tau = (outside + inside) / 2,
+                     gap = p.b - first.side * (flow.after(from, tau).x - start.y);
+        (gap > tolerance ? outside : inside) = tau;
+    }
+    return inside;
+}
+
+double first_impact_of(const Parameters& p) {
+    Wanted wanted{.parameters = p, .start = default_state(p), .tau_end = 30};
+    wanted.parts = {.impacts = true};
+    return analyse(wanted).impacts.front().tau;
+}
+
+void first_impact(Report& report, const Response& r, const Response& by_equation) {
+    Parameters rounded = r.parameters;
+    rounded.epsilon = 0.0084;
+    rounded.lambda = 1.43;
+    const double tau = r.run.impacts.front().tau, other = by_equation.run.impacts.front().tau;
+    report.find(
+        {.where = "Fig. 3",
+         .what = "first impact, tau_s",
+         .paper = "18.1300",
+         .here = fmt::format(
+             "{:.4f} ({:.4f} by eq. (1); {:.4f} with epsilon and lambda as printed)", tau, other,
+             first_impact_of(rounded)),
+         .number = tau,
+         .by_equation = other,
+         .band = {18.12995, 18.13005},
+         .because = "the printed digits; in part: a tenth of a per cent, the same impact",
+         .partly = Band{18.1119, 18.1481},
+         .expected = Verdict::partly});
+    // A program that stops its steps where the mass is this near to a wall would be early by that.
+    constexpr double tolerance = 1e-5;
+    report.say(fmt::format(
+        "The first impact comes at {:.4f}; the mass is within {:g} m of the wall from {:.4f} "
+        "on.",
+        tau, tolerance, first_within(r, tolerance)));
+}
+
 void figure_3(Report& report, const Response& r, const Response& by_equation) {
     Plot x = displacement(series_until(0.022, 5521.3));
     x.moments = {18.13, 1708.9};
@@ -43,45 +94,49 @@ void figure_3(Report& report, const Response& r, const Response& by_equation) {
          .what = "regime",
          .paper = "Type II",
          .here = fmt::format(
-             "{}, {} half cycles in step", r.type(), r.run.regime->longest_synchronised),
-         .verdict = reproduced,
+             "{}, {} half cycles in step; by eq. (1) {}", r.type(),
+             r.run.regime->longest_synchronised, by_equation.type()),
          .number = number_of(r.run.regime->type),
-         .band = exactly(number_of(RegimeType::II))});
-    const double first = r.run.impacts.front().tau;
-    report.find(
-        {.where = "Fig. 3",
-         .what = "first impact, tau_s",
-         .paper = "18.1300",
-         .here =
-             fmt::format("{:.4f} ({:.4f} by eq. (1))", first, by_equation.run.impacts.front().tau),
-         .verdict = reproduced_with_closed_form,
-         .number = first,
-         .band = {18.11, 18.15}});
+         .by_equation = number_of(by_equation.run.regime->type),
+         .band = exactly(number_of(RegimeType::II)),
+         .because = "the type's number"});
+    first_impact(report, r, by_equation);
 }
 
-void figure_4(Report& report, const Response& r) {
+void figure_4(Report& report, const Response& r, const Response& by_equation) {
     report.picture(
         {.name = "fig4",
          .caption = "Fig. 4: displacement and relative displacement, enlarged",
          .plots = {displacement(*r.run.series, 600), relative_displacement(r, 0, 600)}});
-    const auto [falling, rising] = impacts_per_cycle(r);
+    const ImpactsPerCycle here = impacts_per_cycle(r), other = impacts_per_cycle(by_equation);
     report.find(
         {.where = "Fig. 4",
-         .what = "impacts per cycle while x falls / rises",
-         .paper = "2 / below 2",
-         .here = fmt::format("{:.2f} / {:.2f}", falling, rising),
-         .verdict = reproduced,
-         .number = falling - rising,
-         .band = {0.4, 2}});
+         .what = "impacts per cycle while x falls",
+         .paper = "2",
+         .here = fmt::format("{:.2f}; by eq. (1) {:.2f}", here.falling, other.falling),
+         .number = here.falling,
+         .by_equation = other.falling,
+         .band = {1.9, 2.1},
+         .because = "cycles in which x turns are counted with either side"});
+    report.find(
+        {.where = "Fig. 4",
+         .what = "impacts per cycle while x rises",
+         .paper = "below 2",
+         .here = fmt::format("{:.2f}; by eq. (1) {:.2f}", here.rising, other.rising),
+         .number = here.rising,
+         .by_equation = other.rising,
+         .band = {0, 1.9},
+         .because = "as the row above"});
 }
 
 }  // namespace
 
 void strongly_modulated(Report& report, Runs& runs) {
     report.heading("Figs. 3 and 4: strongly modulated response, b = 22 mm (Type II)");
-    const Response& r = runs.response(0.022);
-    figure_3(report, r, runs.response(0.022, Damping::equation_of_motion));
-    figure_4(report, r);
+    const Response &r = runs.response(0.022),
+                   &by_equation = runs.response(0.022, Damping::equation_of_motion);
+    figure_3(report, r, by_equation);
+    figure_4(report, r, by_equation);
 }
 
 }  // namespace vines::report

@@ -1,0 +1,194 @@
+// What the paper leaves open, or says in passing: where the regimes begin and end, and what the
+// motion at b = 22 mm comes to in the end.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/chapters.hpp"
+#include "report/symmetric_motion.hpp"
+
+#include "core/motion/special_values.hpp"
+
+namespace vines::report {
+
+namespace {
+
+/// Where `holds` changes, between an end where it does and one where it does not; b in m.
+double border(double where_it_holds, double where_not, const auto& holds) {
+    for (int i = 0; i < 60; ++i) {
+        const double middle = (where_it_holds + where_not) / 2;
+        (holds(middle) ? where_it_holds : where_not) = middle;
+    }
+    return where_it_holds;
+}
+
+bool is_stable(double b, Damping damping) {
+    const auto motion = fast_symmetric_motion(table1(b, damping));
+    return motion && motion->stable();
+}
+
+/// What the largest multiplier is at a border of stability, in words.
+std::string crossing(double b, Damping damping) {
+    const std::complex<double> m = fast_symmetric_motion(table1(b, damping))->multipliers[0];
+    if (std::abs(m.imag()) > 1e-6)
+        return fmt::format("a pair {:.4f} +- {:.4f}i", m.real(), std::abs(m.imag()));
+    return fmt::format("{:+.4f}", m.real());
+}
+
+/// By either damping two symmetric impacts per cycle attract at this b (Fig. 11), m.
+constexpr double symmetric = 0.015;
+
+/// Both ends of the range around it where they do.
+struct Borders {
+    double breaking, end;  ///< m
+};
+Borders borders(Damping damping) {
+    const auto stable = [damping](double b) { return is_stable(b, damping); };
+    return {border(symmetric, 0.004, stable), border(symmetric, 0.030, stable)};
+}
+
+std::string compared_with_runs(double b) {
+    constexpr double beside = 0.0001;  // m
+    const std::vector<Regime> runs = long_regimes({b - beside, b + beside});
+    return fmt::format(
+        "from the paper's start Type {} .1 mm below it, {} .1 mm above", name_of(runs[0].type),
+        name_of(runs[1].type));
+}
+
+void symmetric_impacts(Report& report) {
+    const Borders here = borders(Damping::closed_form),
+                  other = borders(Damping::equation_of_motion);
+    report.find(
+        {.where = "Figs. 11, 12",
+         .what = "b at which two impacts per cycle become asymmetric, mm",
+         .paper = "asymmetric at 8, symmetric at 15",
+         .here = fmt::format(
+             "{:.6f}, multiplier of the half cycle {}; by eq. (1) {:.6f}", 1000 * here.breaking,
+             crossing(here.breaking, Damping::closed_form), 1000 * other.breaking),
+         .number = 1000 * here.breaking,
+         .by_equation = 1000 * other.breaking,
+         .band = {8, 15},
+         .because = "between the two",
+         .expected = Verdict::by_equation_of_motion});
+    report.find(
+        {.where = "Fig. 11, Table 3",
+         .what =
+             "b at which two symmetric impacts per cycle cease to attract (end of Type III), mm",
+         .paper = "III at 15, II at 16.5",
+         .here = fmt::format(
+             "{:.6f}, {}; {}; by eq. (1) {:.6f}", 1000 * here.end,
+             crossing(here.end, Damping::closed_form), compared_with_runs(here.end),
+             1000 * other.end),
+         .number = 1000 * here.end,
+         .by_equation = 1000 * other.end,
+         .band = {15, 16.5},
+         .because = "between the two",
+         .expected = Verdict::by_closed_form});
+    const double fold = border(symmetric, 0.030, [](double b) {
+        return fast_symmetric_motion(table1(b, Damping::closed_form)).has_value();
+    });
+    report.say(fmt::format(
+        "A pair of complex multipliers leaves the unit circle at the end of Type III: a torus "
+        "branches off. The motion is there up to b = {:.6f} mm, unstable, and meets a slower one "
+        "in a fold.",
+        1000 * fold));
+}
+
+/// Long runs on a grid of b, in mm.
+struct Grid {
+    std::vector<double> mm;
+    std::vector<Regime> regimes;
+
+    Grid(double from, double to, int steps) {
+        std::vector<double> b;
+        for (int i = 0; i <= steps; ++i) {
+            mm.push_back(from + (to - from) * i / steps);
+            b.push_back(mm.back() / 1000);
+        }
+        regimes = long_regimes(b);
+    }
+    /// Those b at which the response is as asked for.
+    std::vector<double> where(auto&& is_so) const {
+        std::vector<double> found;
+        for (std::size_t i = 0; i < mm.size(); ++i)
+            if (is_so(regimes[i])) found.push_back(mm[i]);
+        return found;
+    }
+};
+
+std::string listed(const std::vector<double>& numbers) {
+    std::string text;
+    for (double n : numbers) text += fmt::format("{}{:g}", text.empty() ? "" : ", ", n);
+    return text;
+}
+
+void sparse_and_modulated(Report& report) {
+    const Grid grid(31, 34, 12);
+    const auto type = [](RegimeType type) {
+        return [type](const Regime& r) { return r.type == type; };
+    };
+    const std::vector<double> II = grid.where(type(RegimeType::II)),
+                              I = grid.where(type(RegimeType::I));
+    report.find(
+        {.where = "Table 3",
+         .what = "lowest b of Type I, mm (steps of .25, runs of 17,000)",
+         .paper = "II at 31, I at 34",
+         .here = fmt::format("{}; II at {}", listed(I), listed(II)),
+         .number = I.empty() ? nan : I.front(),
+         .band = {31, 34},
+         .because = "between the two"});
+}
+
+void three_impacts(Report& report) {
+    const Grid grid(3, 5.5, 25);
+    const std::vector<double> V = grid.where([](const Regime& r) {
+        return r.type == RegimeType::V && r.orbit->contacts == 3 * r.orbit->cycles;
+    });
+    report.find(
+        {.where = "Figs. 13, 14",
+         .what = "lowest b of three impacts per cycle, periodic, mm (steps of .1, runs of 17,000)",
+         .paper = "none at 3, there at 4",
+         .here = listed(V),
+         .number = V.empty() ? nan : V.front(),
+         .band = {3, 4},
+         .because = "between the two",
+         .expected = Verdict::not_reproduced});
+}
+
+void captures(Report& report, Runs& runs) {
+    const Ensemble& e = runs.ensemble(0.022, WindowsOf::tau_1690);
+    const double lifetime = e.chaotic_tau / e.captured;
+    report.find(
+        {.where = "Fig. 3",
+         .what = fmt::format(
+             "of {} runs at b = 22 mm to tau = {:g}, those that a periodic orbit captures",
+             Ensemble::runs, Ensemble::tau_end),
+         .paper = "\"the transient response has disappeared\"",
+         .here = fmt::format(
+             "{}: the chaos lives {:.1g} on average, give or take {:.0f} %", e.captured, lifetime,
+             100 / std::sqrt(e.captured)),
+         .number = static_cast<double>(e.captured),
+         .band = exactly(0),
+         .because = "the chaos is no transient",
+         .expected = Verdict::not_reproduced});
+}
+
+}  // namespace
+
+void open_questions(Report& report, Runs& runs) {
+    report.heading("What the paper leaves open");
+    captures(report, runs);
+    symmetric_impacts(report);
+    sparse_and_modulated(report);
+    three_impacts(report);
+    report.say(
+        "Fig. 1 is a drawing and has no number. Misprints that a reader may stumble over: \"When b "
+        "is further increased\" before Fig. 14, where b falls from 4 to 3 mm; b = 0.09 m below "
+        "Fig. "
+        "17, which is 0.009 m; |x - b| = b below Fig. 23, which is |x - y| = b; lambda_1 for "
+        "lambda "
+        "in the text below eq. (1), where it is the damping and no exponent.");
+}
+
+}  // namespace vines::report
