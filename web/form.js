@@ -16,8 +16,8 @@ export const groups = {
   run: ["Run", true],
   output: ["Output", false],
 };
-// The preset has its own menu; the page needs every part that it draws.
-const hidden = new Set(["preset", "include"]);
+// The preset has its own menu; the page needs every part that it draws, and shows no perturbed run.
+const hidden = new Set(["preset", "include", "perturbation"]);
 const wide = new Set(["choice", "choices", "intervals", "states", "text"]);
 const hints = {intervals: "none; as a,b; c,d", states: "one; as x0=0.01; x0=0, y0=0.002"};
 

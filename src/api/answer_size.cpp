@@ -35,10 +35,12 @@ AnswerSize size_of(const SimulateRequest& r) {
     if (r.includes("section")) size.point += 11 * number + 7 * si + side;
     if (r.includes("regime")) size.point += 6 * number + 3 * si;    // z_moving, stretches
     if (r.includes("manifold")) size.point += 3 * number + 2 * si;  // the half cycles
-    size.impact = 2 * (number + si) + side + count;                 // sticking
+    if (r.wanted.perturbation) size.point += 7 * number + 3 * si;
+    size.impact = 2 * (number + si) + side + count;  // sticking
     // Impacts, touches.
     if (r.includes("impacts"))
         size.impact += 11 * number + 8 * si + side + word + number + si + side;
+    if (r.wanted.perturbation) size.impact += number + si + side;
     return size;
 }
 

@@ -121,6 +121,12 @@ Json describe_exponents(
         j["verdict_reason"] = reason_of(w.judgement, w.growth, regime);
     }
     add_estimators(j, w.product, w.growth, shown, histories);
+    const auto add_slope = [&](bool is_shown, const char* estimator, double slope) {
+        if (is_shown) j[estimator]["slope"] = finite_or_null(slope);
+    };
+    add_slope(shown.qr, "qr", w.slopes.qr);
+    add_slope(shown.eigenvalues, "eigenvalues", w.slopes.eigenvalues);
+    add_slope(shown.raw_product, "raw_product", w.slopes.raw_product);
     return j;
 }
 

@@ -9,6 +9,8 @@ namespace {
 
 Json reference(const std::string& name) { return {{"$ref", "#/components/schemas/" + name}}; }
 
+Json schema_of(const FieldTable& fields, const std::vector<std::string>& required = {});
+
 /// The JSON Schema of a field's values.
 Json schema_of(const Field& f) {
     const Json number = {{"type", "number"}},
@@ -27,7 +29,9 @@ Json schema_of(const Field& f) {
             s = {{"type", "array"}, {"items", {{"type", "integer"}, {"minimum", 0}}}};
             break;
         case FieldType::numbers: s = {{"type", "array"}, {"items", number}}; break;
-        case FieldType::object: s = reference("SweepBase"); break;
+        case FieldType::object:
+            s = f.fields.empty() ? reference("SweepBase") : schema_of(f.fields);
+            break;
         case FieldType::objects:
             s = {{"type", "array"}, {"items", reference(f.name == "axes" ? "Axis" : "Start")}};
             break;
@@ -47,7 +51,7 @@ Json schema_of(const Field& f) {
     return s;
 }
 
-Json schema_of(const FieldTable& fields, const std::vector<std::string>& required = {}) {
+Json schema_of(const FieldTable& fields, const std::vector<std::string>& required) {
     Json properties = Json::object();
     for (const Field& f : fields) properties[f.name] = schema_of(f);
     Json s = {
@@ -56,15 +60,21 @@ Json schema_of(const FieldTable& fields, const std::vector<std::string>& require
     return s;
 }
 
-/// The same fields in a query: lists are separated by commas, windows by semicolons.
-Json query_of(const FieldTable& fields) {
+/// The same fields in a query: lists are separated by commas, windows by semicolons; those of an
+/// object stand alone, behind its name and a point.
+Json query_of(const FieldTable& fields, const std::string& prefix = "") {
     Json list = Json::array();
     for (const Field& f : fields) {
+        if (!f.fields.empty()) {
+            for (Json& of_object : query_of(f.fields, f.name + "."))
+                list.push_back(std::move(of_object));
+            continue;
+        }
         Json schema = schema_of(f);
         if (f.type == FieldType::intervals)
             schema = {{"type", "string"}, {"description", "from,to;from,to"}};
         list.push_back(
-            {{"name", f.name},
+            {{"name", prefix + f.name},
              {"in", "query"},
              {"description", schema_of(f)["description"]},
              {"style", "form"},
@@ -234,14 +244,18 @@ Json schemas() {
               {"impacts", "columns, an entry for each impact"},
               {"sticking", "columns, an entry for each stuck phase"},
               {"touches", "tangent contacts, if any"},
-              {"exponents", "qr, eigenvalues, raw_product over the window, with a verdict"},
+              {"exponents",
+               "qr, eigenvalues, raw_product over the window, each with its slope; a verdict"},
               {"windows", "exponents of each of the windows"},
               {"eigenvalues", "moduli of those of J, M, T at each impact"},
               {"matrices", "J, M, T themselves, by rows"},
               {"section", "at impact and stroboscopic"},
               {"energy", "balance, amplitudes, decay"},
               {"regime", "type I to VI with its evidence"},
-              {"manifold", "slow invariant manifold and the run's half cycles"}})},
+              {"manifold", "slow invariant manifold and the run's half cycles"},
+              {"perturbation",
+               "a second run that starts a little off, its distance from the first, the linear "
+               "prediction of that"}})},
         {"SweepLine", parts(
                           {{"type", "start, point, progress, warning, done or error"},
                            {"index", "of a point"},

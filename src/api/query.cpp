@@ -44,13 +44,32 @@ Query parse_query(std::string_view text) {
     return pairs;
 }
 
+namespace {
+
+/// Problem 400 where `whole`, the name as it stands in the query, has come before.
+void add_text(
+    Json& object, const std::string& whole, const FieldTable& table, const std::string& name,
+    const std::string& text) {
+    if (!object.is_object() || object.contains(name))
+        throw Problem(400, "the name \"" + whole + "\" comes twice in the query");
+    const Field* f = find(table, name);
+    object[name] = f ? value_of_text(f->type, text) : Json(text);
+}
+
+}  // namespace
+
 Json from_query(const FieldTable& table, const Query& query) {
     Json object = Json::object();
     for (const auto& [name, text] : query) {
-        if (object.contains(name))
-            throw Problem(400, "the name \"" + name + "\" comes twice in the query");
-        const Field* f = find(table, name);
-        object[name] = f ? value_of_text(f->type, text) : Json(text);
+        const std::size_t point = name.find('.');
+        const std::string outer = name.substr(0, point);
+        const Field* f = point == std::string::npos ? nullptr : find(table, outer);
+        if (!f || f->fields.empty()) {
+            add_text(object, name, table, name, text);
+            continue;
+        }
+        if (!object.contains(outer)) object[outer] = Json::object();
+        add_text(object[outer], name, f->fields, name.substr(point + 1), text);
     }
     return object;
 }

@@ -21,8 +21,8 @@ using Query = std::vector<std::pair<std::string, std::string>>;
 Query parse_query(std::string_view text);
 
 /// The object that the pairs stand for, typed by the table; what cannot be read as its field's type
-/// stays text, as the value of an unknown name does, and is found by check(). Problem 400 for a
-/// name that comes twice.
+/// stays text, as the value of an unknown name does, and is found by check(). What is named
+/// object.field is a field of that object. Problem 400 for a name that comes twice.
 Json from_query(const FieldTable& table, const Query& query);
 
 }  // namespace vines::api

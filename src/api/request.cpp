@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "api/perturbation.hpp"
+
 namespace vines::api {
 
 namespace {
@@ -49,7 +51,7 @@ Parts parts_of(const std::set<std::string>& include) {
 }
 
 /// Whether the answer tells a field's value among its parameters. The other fields of a run and its
-/// output are lists, which show in the answer by what it has.
+/// output are lists and objects, which show in the answer by what it has.
 bool is_told(const Field& f) {
     return (f.group == "run" || f.group == "output") &&
            (f.type == FieldType::number || f.type == FieldType::integer ||
@@ -90,6 +92,7 @@ SimulateRequest read_simulate_request(const Json& given) {
     w.windows = l.intervals("windows");
     for (std::size_t i = 0; i < w.windows.size(); ++i)
         check_window("/windows/" + std::to_string(i), w.windows[i], w.tau_end, errors);
+    if (errors.empty()) w.perturbation = read_perturbation(l, w.parameters, w.start, errors);
     if (!errors.empty()) refuse(std::move(errors));
 
     r.include = l.words("include");

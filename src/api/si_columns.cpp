@@ -28,6 +28,7 @@ constexpr Twin twins[] = {
     {"time_difference", "time_difference_s", -1},
     {"window", "window_s", -1},
     {"asked", "asked_s", -1},
+    {"parted", "parted_s", -1},
     {"x_dot", "x_velocity", 1},
     {"y_dot", "y_velocity", 1},
     {"x_ddot", "x_acceleration", 2},

@@ -7,6 +7,7 @@
 #include "api/describe.hpp"
 #include "api/describe_exponents.hpp"
 #include "api/describe_regime.hpp"
+#include "api/perturbation.hpp"
 #include "api/schema/joined.hpp"
 #include "api/si_columns.hpp"
 
@@ -97,6 +98,8 @@ public:
         part("energy", [&] { return describe_energy(*a.energy); });
         part("regime", [&] { return describe_regime(*a.regime); });
         part("manifold", [&] { return describe_manifold(*a.manifold); });
+        if (a.perturbation)
+            put("perturbation", [&] { return describe_perturbation(*taken(a.perturbation)); });
     }
 
     /// The parts for which there was no time.
@@ -105,7 +108,11 @@ public:
 private:
     template <class Describe>
     void part(const char* name, Describe describe) {
-        if (!r_.includes(name)) return;
+        if (r_.includes(name)) put(name, describe);
+    }
+
+    template <class Describe>
+    void put(const char* name, Describe describe) {
         if (stop_.late && stop_.late()) {
             answer_[name] = nullptr;
             left_out.push_back(name);

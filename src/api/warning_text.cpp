@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "core/analysis/perturbation.hpp"
+
 namespace vines::api {
 
 namespace {
@@ -87,6 +89,17 @@ struct Sentence {
     std::string operator()(const NoManifold&) const {
         return "the manifold of two symmetric impacts needs the same R at both walls: only the "
                "run's points are given";
+    }
+    std::string operator()(const PerturbedRunCut& w) const {
+        return fmt::format(
+            "the perturbed run ended at tau = {:.6g}, before the run itself: {}", w.tau,
+            w.stopped ? "it was stopped from outside" : "by max_impacts");
+    }
+    std::string operator()(const NoDistanceSlope& w) const {
+        return fmt::format(
+            "the distance of the perturbed run has no slope: it is within {:.0f} % of its linear "
+            "prediction up to tau = {:.6g} only, over {} impacts; at least {} are needed",
+            100 * linear_share, w.linear_until, w.impacts, fewest_linear_impacts);
     }
 };
 

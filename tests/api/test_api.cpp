@@ -665,3 +665,141 @@ TEST_CASE("parts for which no time is left are null, and the answer names them")
     }
     CHECK(warns(interrupted(), "eigenvalues are those of the last 512 impacts"));
 }
+
+TEST_CASE("a perturbed run stands beside the run, with its distance and what is predicted of it") {
+    const Json a =
+        answer(R"({"b":0.015,"damping":"closed_form","tau_end":900,"perturbation":{"y":-1e-9}})");
+    const Json& p = a["perturbation"];
+    CHECK(p["tau"] == a["series"]["tau"]);
+    for (const char* column : {"x", "x_dot", "y", "y_dot", "distance"})
+        CHECK(p[column].size() == p["tau"].size());
+    CHECK(p["predicted"]["distance"].size() == p["tau"].size());
+    CHECK(p["impacts"]["tau"].size() == p["impacts"]["side"].size());
+    CHECK(p["start"]["x"] == 0);
+    CHECK(p["start"]["y"].get<double>() == doctest::Approx(-1e-9).epsilon(1e-7));
+    CHECK(p["distance"][0] == -p["start"]["y"].get<double>());
+    CHECK(p["predicted"]["distance"][0] == p["distance"][0]);
+    CHECK(p["slope"]["tau_start"] < p["slope"]["tau_end"]);
+    CHECK_FALSE(answer(R"({"tau_end":10})").contains("perturbation"));
+    // It comes without the series, too, and moves nothing beside it.
+    Json alone = answer(R"({"b":0.015,"damping":"closed_form","tau_end":900})");
+    Json with = a;
+    with.erase("perturbation");
+    CHECK(with == alone);
+}
+
+TEST_CASE("a random perturbation is the same for the same seed, and of the size asked for") {
+    const auto start = [](const char* text) {
+        return answer(
+            std::string(R"({"b":0.01,"y0":0,"tau_end":20,"include":[],"perturbation":)") + text +
+            "}")["perturbation"]["start"];
+    };
+    const Json one = start(R"({"seed":7,"size":1e-6})");
+    CHECK(start(R"({"seed":7,"size":1e-6})") == one);
+    CHECK(start(R"({"seed":8,"size":1e-6})") != one);
+    CHECK(start(R"({"size":1e-6})") == start(R"({"seed":1,"size":1e-6})"));
+    double squares = 0;
+    for (const auto& [name, value] : one.items()) squares += std::pow(value.get<double>(), 2);
+    CHECK(std::sqrt(squares) == doctest::Approx(1e-6).epsilon(1e-12));
+}
+
+TEST_CASE("a perturbation at fault is named with its pointer, value and range") {
+    const auto faults = [](const char* text) {
+        return refused(std::string(R"({"b":0.01,"y0":0.009,"perturbation":)") + text + "}");
+    };
+    using Names = std::set<std::string>;
+    CHECK(pointers(faults("1")) == Names{"/perturbation"});
+    CHECK(pointers(faults("{}")) == Names{"/perturbation"});
+    CHECK(pointers(faults(R"({"x":0})")) == Names{"/perturbation"});
+    CHECK(pointers(faults(R"({"y":1e-19})")) == Names{"/perturbation"});
+    CHECK(pointers(faults(R"({"x":"a"})")) == Names{"/perturbation/x"});
+    CHECK(pointers(faults(R"({"z":1})")) == Names{"/perturbation/z"});
+    CHECK(pointers(faults(R"({"seed":1})")) == Names{"/perturbation/size"});
+    CHECK(pointers(faults(R"({"size":0})")) == Names{"/perturbation/size"});
+    CHECK(pointers(faults(R"({"seed":-1,"size":1})")) == Names{"/perturbation/seed"});
+    CHECK(
+        pointers(faults(R"({"x":1e-9,"seed":1})")) ==
+        Names{"/perturbation/x", "/perturbation/seed"});
+    // The perturbed start lies in the cavity as well: x - y within b.
+    const Problem outside = faults(R"({"y":0.002})");
+    CHECK(pointers(outside) == Names{"/perturbation/y"});
+    CHECK(outside.errors[0].value == 0.002);
+    CHECK(outside.errors[0].range[1].get<double>() == doctest::Approx(0.001));
+    CHECK(outside.errors[0].range[0].get<double>() == doctest::Approx(-0.019));
+    const Problem by_x = faults(R"({"x":-0.002})");
+    CHECK(pointers(by_x) == Names{"/perturbation/x"});
+    CHECK(by_x.errors[0].range[0].get<double>() == doctest::Approx(-0.001));
+    CHECK(pointers(faults(R"({"size":0.5})")) == Names{"/perturbation/size"});
+    CHECK(
+        pointers(refused(R"({"x_dot0":600,"perturbation":{"x_dot":600}})")) ==
+        Names{"/perturbation/x_dot"});
+}
+
+TEST_CASE("in a query the fields of an object stand behind its name and a point") {
+    const auto& fields = simulate_fields();
+    const Json q = from_query(fields, {{"perturbation.size", "1e-9"}, {"perturbation.seed", "2"}});
+    CHECK(q == Json{{"perturbation", {{"size", 1e-9}, {"seed", 2.0}}}});
+    CHECK(check(fields, q).empty());
+    CHECK(
+        check(fields, from_query(fields, {{"perturbation.z", "1"}}))[0].pointer ==
+        "/perturbation/z");
+    CHECK(check(fields, from_query(fields, {{"b.x", "1"}}))[0].pointer == "/b.x");
+    CHECK(check(fields, from_query(fields, {{"perturbation", "1"}}))[0].pointer == "/perturbation");
+    for (const Query& twice :
+         {Query{{"perturbation.x", "1"}, {"perturbation.x", "2"}},
+          Query{{"perturbation", "1"}, {"perturbation.x", "2"}},
+          Query{{"perturbation.x", "1"}, {"perturbation", "2"}}})
+        CHECK(problem_of([&] { from_query(fields, twice); }).status == 400);
+}
+
+TEST_CASE("a perturbed run in SI has its twins") {
+    const Json p =
+        answer(R"({"preset":"fig16","tau_end":300,"perturbation":{"size":1e-8}})")["perturbation"];
+    for (const char* twin : {"time_s", "x_velocity", "y_velocity"})
+        CHECK(p[twin].size() == p["tau"].size());
+    CHECK(p["impacts"]["time_s"].size() == p["impacts"]["tau"].size());
+    CHECK(p["start"].contains("x_velocity"));
+    CHECK(p["slope"].contains("time_start_s"));
+    CHECK(p.contains("parted_s"));
+}
+
+TEST_CASE("a perturbed run is thinned with the series, and cut to the answer's limit") {
+    const Json thin = answer(
+        R"({"tau_end":500,"max_points":256,"samples_per_cycle":100,"include":["exponents"],
+            "perturbation":{"x":1e-9}})");
+    CHECK(thin["perturbation"]["tau"].size() <= 256);
+    CHECK(warns(thin, "samples per cycle instead of 100"));
+    const std::size_t limit = 200000;
+    const Json cut = simulate_answer(
+        read_simulate_request(
+            parse_object(R"({"b":0.01,"tau_end":5000,"include":[],"perturbation":{"x":1e-9}})")),
+        {}, limit);
+    CHECK(cut.dump().size() < limit);
+    CHECK(cut["perturbation"]["tau"].size() > 256);
+}
+
+TEST_CASE("each estimator of a window has the slope of its first exponent") {
+    const Json a = answer(
+        R"({"b":0.022,"damping":"closed_form","tau_end":4000,"windows":[[100,2000],[0,30]],
+            "include":["exponents"]})");
+    for (const char* estimator : {"qr", "eigenvalues"}) {
+        CAPTURE(estimator);
+        CHECK(
+            a["exponents"][estimator]["slope"].get<double>() ==
+            doctest::Approx(a["exponents"][estimator]["final"][0].get<double>()).epsilon(0.25));
+        CHECK(a["windows"][0][estimator]["slope"].is_number());
+        CHECK(a["windows"][1][estimator]["slope"].is_null());  // too few impacts
+    }
+    CHECK(a["exponents"]["raw_product"]["slope"].is_number());
+}
+
+TEST_CASE("a perturbed run for which no time is left is null, and named") {
+    Stop stop;
+    stop.late = [] { return true; };
+    const Json a = simulate_answer(
+        read_simulate_request(
+            parse_object(R"({"tau_end":100,"include":[],"perturbation":{"x":1e-9}})")),
+        stop);
+    CHECK(a["perturbation"].is_null());
+    CHECK(warns(a, "null: perturbation"));
+}

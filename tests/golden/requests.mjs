@@ -130,6 +130,20 @@ const runs = [
     include: ["regime", "exponents"],
     exponents: ["qr"],
   }),
+  simulate("beside a perturbed run", {
+    b: 0.015,
+    damping: "closed_form",
+    tau_end: 900,
+    perturbation: {y: -1e-9},
+  }),
+  simulate("beside a run that parts, in SI", {
+    ...platform,
+    cycles: 150,
+    max_points: 400,
+    include: [],
+    perturbation: {seed: 3, size: 1e-7},
+  }),
+  simulate("a perturbation at fault", {perturbation: {x: 1, y_dot: "a"}}),
   {
     name: "simulate thinned",
     path: "/v1/simulate",
@@ -140,6 +154,7 @@ const runs = [
     "/v1/simulate?preset=fig11&include=impacts,exponents&window=100,1700&windows=100,500;500,900",
   ),
   get("/v1/simulate?b=0.015&tau_end=50&include=series&x0=0.001&y0=0"),
+  get("/v1/simulate?b=0.022&tau_end=200&include=&perturbation.size=1e-9&perturbation.seed=2"),
 ];
 
 const manifolds = [

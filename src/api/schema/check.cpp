@@ -121,6 +121,16 @@ void check_objects(const Checked& c, const Json& value) {
             "", value, "must be an array" + (words.empty() ? "" : " or \"" + joined(words) + "\""));
 }
 
+/// What stands in an object has a table of its own: the field's, or one that its reader knows.
+void check_object(const Checked& c, const Json& value) {
+    if (!value.is_object()) return c.fault("", value, "must be an object");
+    if (c.field.fields.empty()) return;
+    for (FieldError& e : check(c.field.fields, value)) {
+        e.pointer = pointer(c.field.name) + e.pointer;
+        c.errors.push_back(std::move(e));
+    }
+}
+
 void check_field(const Checked& c, const Json& value) {
     switch (c.field.type) {
         case FieldType::number:
@@ -131,9 +141,7 @@ void check_field(const Checked& c, const Json& value) {
         case FieldType::intervals: return check_intervals(c, value);
         case FieldType::integers: return check_integers(c, value);
         case FieldType::numbers: return check_numbers(c, value);
-        case FieldType::object:
-            if (!value.is_object()) c.fault("", value, "must be an object");
-            return;
+        case FieldType::object: return check_object(c, value);
         case FieldType::objects: return check_objects(c, value);
     }
 }

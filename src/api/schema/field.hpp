@@ -19,7 +19,7 @@ enum class FieldType {
     intervals,  ///< an array of them (in a query: separated by semicolons)
     integers,   ///< an array of whole numbers
     numbers,    ///< an array of numbers (in a query: separated by commas)
-    object,     ///< fields of their own
+    object,     ///< fields of their own (in a query: name.field each)
     objects     ///< an array of such
 };
 
@@ -38,6 +38,8 @@ struct Field {
     std::optional<Range> range = {};  ///< of a number or integer: each has one
     /// Of a choice, none: any word. Of objects: words that may stand in place of the array.
     std::vector<std::string> choices = {};
+    /// Of an object that is checked with the others: its own.
+    std::vector<Field> fields = {};
 };
 
 using FieldTable = std::vector<Field>;

@@ -35,6 +35,7 @@ Json describe(const FieldTable& table) {
             entry["maximum"] = f.range->maximum;
         }
         if (!f.choices.empty()) entry["choices"] = f.choices;
+        if (!f.fields.empty()) entry["fields"] = describe(f.fields);
         list.push_back(std::move(entry));
     }
     return list;

@@ -231,6 +231,33 @@ FieldTable start_rows() {
     };
 }
 
+FieldTable perturbation_rows() {
+    const auto component = [](const char* name, const char* unit, const char* of_start) {
+        return Field{
+            .name = name,
+            .unit = unit,
+            .description = std::string("is added to ") + of_start,
+            .fallback = 0,
+            .range = core_range(of_start)};
+    };
+    return {
+        component("x", "m", "x0"),
+        component("x_dot", speed, "x_dot0"),
+        component("y", "m", "y0"),
+        component("y_dot", speed, "y_dot0"),
+        {.name = "seed",
+         .type = FieldType::integer,
+         .description = "of a random direction in (x', x, y', y), the same on every machine; with "
+                        "size",
+         .fallback = 1,
+         .range = Range{0, 9007199254740992}},  // 2^53: every whole number up to there is a double
+        {.name = "size",
+         .description = "Euclidean length of that difference",
+         .fallback_note = "none",
+         .range = Range{1e-18, 1e3}},
+    };
+}
+
 FieldTable run_rows() {
     return {
         {.name = "tau_end",
@@ -262,6 +289,14 @@ FieldTable run_rows() {
          .symbol = "[[tau_s, tau_e], ...]",
          .description = "more windows, for which the exponents are given without histories",
          .fallback = Json::array()},
+        {.name = "perturbation",
+         .type = FieldType::object,
+         .group = "run",
+         .description = "a second run that starts a little off, and how its distance from the "
+                        "first one grows: either the difference {x, x_dot, y, y_dot} of the start, "
+                        "or a random one {seed, size}",
+         .fallback_note = "none",
+         .fields = perturbation_rows()},
     };
 }
 

@@ -49,7 +49,7 @@ Json value_of_text(FieldType type, const std::string& text) {
         }
         case FieldType::integers:
         case FieldType::object:
-        case FieldType::objects: return text;  // of routes that take no query
+        case FieldType::objects: return text;  // no text stands for one
     }
     return nullptr;
 }

@@ -67,6 +67,10 @@ struct Observers {
           half_cycles(w.parameters, w.window.from, w.window.to, w.most_points) {
         for (const Interval& window : w.windows) windows.add(window.from, window.to);
         if (w.parts.energy) energy.emplace(w.parameters, w.window.from, w.window.to);
+        if (w.perturbation)  // what is left of it once the start is rounded
+            compared.emplace(
+                w.parameters, series_step(w),
+                difference_of(displaced(w.start, *w.perturbation), w.start));
     }
 
     std::vector<Observer*> wanted(const Wanted& w) {
@@ -83,6 +87,7 @@ struct Observers {
         if (energy) list.push_back(&*energy);
         observe(w.parts.energy && w.parameters.G == 0, decay);
         observe(w.parts.manifold, half_cycles);
+        if (compared) list.push_back(&*compared);
         return list;
     }
 
@@ -99,6 +104,7 @@ struct Observers {
     Decay decay;
     ContactRecord contacts;
     HalfCycles half_cycles;
+    std::optional<ComparedRun> compared;
 };
 
 /// From observers to the parts of the result, in its order: each function is one part.
@@ -113,6 +119,7 @@ public:
     void conclude() {
         if (a_.outcome.tau <= w_.window.from) warn(warning::WindowNotReached{w_.window.from});
         if (w_.parts.series) series();
+        if (w_.parts.series || w_.perturbation) thinning();
         lists();
         if (is_judged(w_)) judge_motion();
         if (w_.parts.impacts || w_.parts.section) grazing();
@@ -121,6 +128,7 @@ public:
         if (w_.parts.energy) energy();
         if (w_.parts.regime) thin_regime();
         if (w_.parts.manifold) manifold();
+        if (w_.perturbation) perturbation();
     }
 
 private:
@@ -129,6 +137,10 @@ private:
     void series() {
         o_.series.finish(a_.outcome);
         a_.series = std::move(o_.series.series);
+    }
+
+    /// Of the series, and of a perturbed one.
+    void thinning() {
         const double step = series_step(w_), cycle = w_.parameters.cycle();
         if (step > cycle / w_.samples_per_cycle)
             warn(warning::SeriesThinned{cycle / step, w_.samples_per_cycle, w_.most_points});
@@ -312,6 +324,20 @@ private:
         trim_to_last(o_.half_cycles.points, w_.most_points);
         m.tau = std::move(o_.half_cycles.tau);
         m.points = std::move(o_.half_cycles.points);
+    }
+
+    void perturbation() {
+        o_.compared->finish(a_.outcome);
+        Perturbation& p = a_.perturbation.emplace(perturbation_of(
+            w_.parameters, w_.start, *w_.perturbation, *o_.compared, a_.outcome,
+            {.max_impacts = w_.max_impacts, .stop = interrupt_.run}, series_step(w_)));
+        if (p.outcome.tau < a_.outcome.tau)
+            warn(warning::PerturbedRunCut{p.outcome.tau, p.outcome.reason == End::stopped});
+        if (!p.linear) warn(warning::NoDistanceSlope{p.linear_until, p.linear_impacts});
+        const auto seen = static_cast<long>(p.impacts.size());
+        trim_to_last(p.impacts, w_.most_listed);
+        if (seen > static_cast<long>(p.impacts.size()))
+            warn(warning::ListCut{"perturbed impacts", seen, p.impacts.size()});
     }
 
     const Wanted& w_;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/analysis/perturbation.hpp"
 #include "core/analysis/warning.hpp"
 #include "core/analysis/window_exponents.hpp"
 #include "core/measures/energy.hpp"
@@ -31,7 +32,7 @@ struct Parts {
 };
 
 /// What is wanted of a run. Valid is what validate() finds no fault with, and a window that begins
-/// before tau_end.
+/// before tau_end, and with a perturbation that validates as well.
 struct Wanted {
     Parameters parameters;
     State start;
@@ -42,7 +43,9 @@ struct Wanted {
     std::vector<Interval> windows = {};  ///< more, for the exponents of each
     Parts parts = {};
     ExponentOptions estimators = {};
-    double samples_per_cycle = 32;  ///< of the series
+    /// The difference of the start, of a second run that is compared with this one.
+    std::optional<State> perturbation = {};
+    double samples_per_cycle = 32;  ///< of the series, and of a perturbed one
     double section_phase = 0;       ///< of the stroboscopic section, rad after each whole cycle
     /// The longest series; of what is longer otherwise, the last so many entries.
     std::size_t most_points = everything;
@@ -119,6 +122,7 @@ struct Analysis {
     std::optional<EnergyResult> energy;
     std::optional<Regime> regime;
     std::optional<ManifoldResult> manifold;
+    std::optional<Perturbation> perturbation;
     std::vector<Warning> warnings;
 };
 

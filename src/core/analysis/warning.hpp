@@ -21,7 +21,7 @@ struct SeriesThinned {
 };
 /// Of a list only its last entries are kept.
 struct ListCut {
-    const char* name;  ///< impacts, touches, sticks
+    const char* name;  ///< impacts, touches, sticks, perturbed impacts
     long seen;
     std::size_t kept;
 };
@@ -71,6 +71,16 @@ struct CapturedTransient {
 };
 /// The walls differ, and the manifold is that of two equal ones.
 struct NoManifold {};
+/// The perturbed run ended before its reference: by max_impacts, or from outside.
+struct PerturbedRunCut {
+    double tau;
+    bool stopped;  ///< from outside
+};
+/// Of a distance that follows the linear theory over too few impacts to have a slope.
+struct NoDistanceSlope {
+    double linear_until;
+    long impacts;
+};
 
 }  // namespace warning
 
@@ -79,6 +89,6 @@ using Warning = std::variant<
     warning::RawProductOverflows, warning::SumRuleMissed, warning::NoExponents, warning::RankLost,
     warning::NearlyTangent, warning::TransfersCut, warning::ModuliCut, warning::SectionsCut,
     warning::StretchesCut, warning::OrbitSearchStopped, warning::CapturedTransient,
-    warning::NoManifold>;
+    warning::NoManifold, warning::PerturbedRunCut, warning::NoDistanceSlope>;
 
 }  // namespace vines

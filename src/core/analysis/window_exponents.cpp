@@ -2,12 +2,19 @@
 
 #include <cmath>
 
+#include "core/stability/slope.hpp"
+
 namespace vines {
 
 WindowExponents window_exponents(
     const Interval& asked, TransferProduct&& product, const Growth& growth, const Regime& regime) {
     const Judgement judgement = judge(growth, regime, product.start_tau());
-    return {asked, std::move(product), growth, judgement};
+    const double start = product.start_tau();
+    const ExponentSlopes slopes{
+        coarse_slope(product.qr_history(), start),
+        coarse_slope(product.eigenvalues_history(), start),
+        coarse_slope(product.raw_product_history(), start)};
+    return {asked, std::move(product), growth, slopes, judgement};
 }
 
 void add_warnings(

@@ -8,10 +8,16 @@
 
 namespace vines {
 
+/// coarse_slope() of each estimator; NaN without it, or of too few impacts.
+struct ExponentSlopes {
+    double qr, eigenvalues, raw_product;
+};
+
 struct WindowExponents {
     Interval asked;
     TransferProduct product;  ///< of the estimators that were asked for
     Growth growth;            ///< by qr; NaN without it
+    ExponentSlopes slopes;
     Judgement judgement;
 };
 

@@ -7,6 +7,7 @@
 
 #include "core/identification/robust.hpp"
 #include "core/motion/special_values.hpp"
+#include "core/stability/slope.hpp"
 
 namespace vines {
 
@@ -26,9 +27,6 @@ constexpr double nine_in_ten = 0.9;
 constexpr std::size_t fewest_of_decay = 20;
 constexpr double least_fall = 2;
 
-// The first tenth of the impacts is left to the transient, and fewer than so many behind it bear no
-// interval.
-constexpr std::size_t transient_part = 10, fewest_of_slope = 20;
 // Blocks as long as the memory of the motion, some impacts, drawn anew so many times.
 constexpr double shortest_block = 4, longest_block = 20;
 constexpr int draws = 1000;
@@ -163,9 +161,8 @@ namespace {
 
 /// Slopes of the record as blocks of its impacts, drawn again and again, make it anew; ascending.
 /// Always the same ones.
-std::vector<double> drawn_slopes(
-    const std::vector<double>& log, const std::vector<double>& duration) {
-    const std::size_t n = log.size();
+std::vector<double> drawn_slopes(const GrowthSteps& steps) {
+    const std::size_t n = steps.log.size();
     const auto block = static_cast<std::size_t>(
         std::clamp(std::cbrt(static_cast<double>(n)) * 2, shortest_block, longest_block));
     std::mt19937_64 engine(2018);
@@ -174,7 +171,8 @@ std::vector<double> drawn_slopes(
         double s = 0, t = 0;
         for (std::size_t got = 0; got < n; got += block) {
             const std::size_t from = engine() % (n - block + 1);
-            for (std::size_t i = from; i < from + block; ++i) s += log[i], t += duration[i];
+            for (std::size_t i = from; i < from + block; ++i)
+                s += steps.log[i], t += steps.duration[i];
         }
         slopes.push_back(s / t);
     }
@@ -186,20 +184,10 @@ std::vector<double> drawn_slopes(
 
 IdentifiedExponents judge_exponents(
     const Parameters& p, const ExponentHistory& qr, double tau_start, bool representative) {
-    std::vector<double> log, duration;  // growth from impact to impact, without the first tenth
-    for (std::size_t i = 1 + qr.tau.size() / transient_part; i < qr.tau.size(); ++i) {
-        duration.push_back(qr.tau[i] - qr.tau[i - 1]);
-        log.push_back(
-            qr.lambda[i][0] * (qr.tau[i] - tau_start) -
-            qr.lambda[i - 1][0] * (qr.tau[i - 1] - tau_start));
-    }
-    IdentifiedExponents e{nan, nan, nan, Verdict::not_decided};
-    const std::size_t n = log.size();
-    if (n < fewest_of_slope) return e;
-    double sum = 0, time = 0;
-    for (std::size_t i = 0; i < n; ++i) sum += log[i], time += duration[i];
-    e.slope = sum / time;
-    const std::vector<double> slopes = drawn_slopes(log, duration);
+    const GrowthSteps steps = growth_steps(qr, tau_start);
+    IdentifiedExponents e{slope_of(steps), nan, nan, Verdict::not_decided};
+    if (steps.log.size() < fewest_steps_of_slope) return e;
+    const std::vector<double> slopes = drawn_slopes(steps);
     e.low = slopes[low_draw], e.high = slopes[high_draw];
     if (e.low > p.zeta()) e.verdict = Verdict::chaotic;
     if (e.high < p.zeta() && representative) e.verdict = Verdict::regular;

@@ -63,9 +63,7 @@ private:
 
 /// How the sum of logarithms of qr's first exponent grows, and what that says.
 struct IdentifiedExponents {
-    /// Of lambda1(tau) tau over tau, without the first tenth of the impacts: less of the transient
-    /// than lambda1 itself.
-    double slope;
+    double slope;      ///< slope_of() all impacts
     double low, high;  ///< 90 % interval of it, by bootstrap of blocks of impacts
     /// Chaotic: low is above the oscillator's own damping zeta; regular: high is below it, of a
     /// representative record.

@@ -23,18 +23,27 @@ Leg leg_of(const Flow& flow, double duration, bool stuck) {
     return {flow.transfer(part), part, -flow.damping() * part, static_cast<long>(parts), stuck};
 }
 
-void carry(Matrix4& deviations, const Leg& leg, double epsilon) {
+namespace {
+
+/// d: one deviation.
+void carry_one(double* d, const Leg& leg, double epsilon) {
     const auto& [a11, a12, a21, a22] = leg.oscillator;
-    const double nu = 1 / (1 + epsilon), mu = epsilon * nu, s = leg.duration;
-    for (int k = 0; k < 4; ++k) {
-        double *const d = deviations.col(k).data(),
-                      x_dot = leg.stuck ? nu * d[0] + mu * d[2] : d[0],
-                      x = leg.stuck ? nu * d[1] + mu * d[3] : d[1];
-        d[0] = a11 * x_dot + a12 * x;
-        d[1] = a21 * x_dot + a22 * x;
-        if (leg.stuck) d[2] = d[0], d[3] = d[1];
-        else d[3] += s * d[2];
-    }
+    const double nu = 1 / (1 + epsilon), mu = epsilon * nu, s = leg.duration,
+                 x_dot = leg.stuck ? nu * d[0] + mu * d[2] : d[0],
+                 x = leg.stuck ? nu * d[1] + mu * d[3] : d[1];
+    d[0] = a11 * x_dot + a12 * x;
+    d[1] = a21 * x_dot + a22 * x;
+    if (leg.stuck) d[2] = d[0], d[3] = d[1];
+    else d[3] += s * d[2];
+}
+
+}  // namespace
+
+void carry(Matrix4& deviations, const Leg& leg, double epsilon) {
+    for (int k = 0; k < 4; ++k) carry_one(deviations.col(k).data(), leg, epsilon);
+}
+void carry(Eigen::Vector4d& deviation, const Leg& leg, double epsilon) {
+    carry_one(deviation.data(), leg, epsilon);
 }
 
 Matrix4 transfer_of(const Leg& leg, double epsilon) {

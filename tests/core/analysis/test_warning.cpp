@@ -227,3 +227,33 @@ TEST_CASE("walls that differ have no manifold") {
     CHECK_FALSE(a.manifold->manifold);
     CHECK_FALSE(a.manifold->points.empty());
 }
+
+TEST_CASE("a distance that leaves the linear theory too soon has no slope, and says how soon") {
+    Wanted w = of(0.022, 500, {});
+    w.perturbation = State{0, 1e-3, 0, 0};
+    const Analysis a = analyse(w);
+    const auto* warning = only<warning::NoDistanceSlope>(a.warnings);
+    REQUIRE(warning);
+    CHECK(warning->linear_until < 500);
+    CHECK(warning->impacts < fewest_linear_impacts);
+    w.perturbation = State{0, 1e-9, 0, 0};
+    CHECK_FALSE(only<warning::NoDistanceSlope>(analyse(w).warnings));
+}
+
+TEST_CASE("a perturbed run that ends before the run itself says where, and why") {
+    // Ten impacts: the run that is ahead by a little has them first.
+    int cut = 0;
+    for (const double y : {1e-9, -1e-9}) {
+        Wanted w = of(0.015, 500, {});
+        w.max_impacts = 10;
+        w.perturbation = State{0, 0, 0, y};
+        const Analysis a = analyse(w);
+        const auto* warning = only<warning::PerturbedRunCut>(a.warnings);
+        CHECK((warning != nullptr) == (a.perturbation->outcome.tau < a.outcome.tau));
+        if (!warning) continue;
+        ++cut;
+        CHECK(warning->tau == a.perturbation->outcome.tau);
+        CHECK_FALSE(warning->stopped);
+    }
+    CHECK(cut == 1);
+}

@@ -1,0 +1,109 @@
+#include "api/perturbation.hpp"
+
+#include <algorithm>
+
+#include "api/column.hpp"
+#include "api/describe.hpp"
+
+namespace vines::api {
+
+namespace {
+
+/// A part of the difference, and the field of the start that it is added to.
+struct Component {
+    const char *name, *of_start;
+    double State::* value;
+};
+constexpr Component components[] = {
+    {"x", "x0", &State::x},
+    {"x_dot", "x_dot0", &State::x_dot},
+    {"y", "y0", &State::y},
+    {"y_dot", "y_dot0", &State::y_dot},
+};
+
+const std::string at_perturbation = "/perturbation/";
+
+/// The fault of a perturbed start as one of the difference. The cavity's is told of y, or of x
+/// where that is given alone; of a random one only its size can be told.
+FieldError error_of(
+    const Fault& fault, const Json& given, const Parameters& p, const State& start,
+    const State& beside) {
+    const std::string detail = "the perturbed start is at fault: " + fault.message;
+    if (given.contains("size")) return {at_perturbation + "size", given["size"], nullptr, detail};
+    const bool by_x = fault.field == "y0" && !given.contains("y");
+    const Component& c =
+        *std::find_if(std::begin(components), std::end(components), [&](const Component& of) {
+            return by_x ? of.value == &State::x : of.of_start == fault.field;
+        });
+    const double from = start.*c.value, low = by_x ? beside.y - p.b : fault.minimum,
+                 high = by_x ? beside.y + p.b : fault.maximum;
+    return {
+        at_perturbation + c.name, given.value(c.name, 0.0), Json::array({low - from, high - from}),
+        detail};
+}
+
+}  // namespace
+
+std::optional<State> read_perturbation(
+    const Layered& l, const Parameters& p, const State& start, std::vector<FieldError>& errors) {
+    if (!l.has("perturbation")) return std::nullopt;
+    const Json& given = l.fields["perturbation"];
+    const auto own = present(given, {"x", "x_dot", "y", "y_dot"}),
+               random = present(given, {"seed", "size"});
+    if (!own.empty() && !random.empty()) {
+        for (const auto& some : {own, random})
+            for (const std::string& name : some)
+                errors.push_back(
+                    {at_perturbation + name, given[name], nullptr,
+                     "a perturbation is either x, x_dot, y, y_dot or seed and size"});
+        return std::nullopt;
+    }
+    if (!random.empty() && !given.contains("size")) {
+        errors.push_back(
+            {at_perturbation + "size", nullptr, nullptr,
+             "size is missing: the length of the difference"});
+        return std::nullopt;
+    }
+    State difference;
+    for (const Component& c : components) difference.*c.value = given.value(c.name, 0.0);
+    if (!random.empty()) {
+        const double seed = given.value(
+            "seed", find(find(l.table, "perturbation")->fields, "seed")->fallback.get<double>());
+        difference =
+            random_difference(static_cast<std::uint64_t>(seed), given["size"].get<double>());
+    }
+    const State beside = displaced(start, difference);
+    if (length_of(difference_of(beside, start)) == 0)
+        errors.push_back(
+            {"/perturbation", given, nullptr,
+             "the perturbed start is the start itself: the difference must not be zero, nor lost "
+             "in the rounding of the start"});
+    for (const Fault& fault : validate(p, beside))
+        errors.push_back(error_of(fault, given, p, start, beside));
+    return difference;
+}
+
+Json describe_perturbation(Perturbation&& p) {
+    const std::optional<LinearStretch>& linear = p.linear;
+    Json start = Json::object();
+    for (const Component& c : components) start[c.name] = p.start.*c.value;
+    Json j = describe_series(std::move(p.series));
+    j.erase("x_ddot");
+    j.update(
+        {{"start", std::move(start)},
+         {"impacts",
+          {{"tau", column(p.impacts, [](const auto& i) { return i.tau; })},
+           {"side", column(p.impacts, [](const auto& i) { return i.side; })}}},
+         {"distance", column(p.distance)},
+         {"predicted",
+          {{"lambda1", linear ? finite_or_null(linear->lambda1) : Json(nullptr)},
+           {"distance", column(p.tangent)}}},
+         {"slope",
+          {{"lambda1", linear ? finite_or_null(linear->slope) : Json(nullptr)},
+           {"tau_start", linear ? Json(linear->tau.from) : Json(nullptr)},
+           {"tau_end", linear ? Json(linear->tau.to) : Json(nullptr)}}},
+         {"parted", or_null(p.parted)}});
+    return j;
+}
+
+}  // namespace vines::api
