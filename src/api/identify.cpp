@@ -69,16 +69,6 @@ Json describe_signal(const Measurement& m, const MeasurementResult& result, doub
         {"force_cos", motion.force_cos}};
 }
 
-Json describe_direct(const std::optional<DirectEstimate>& direct) {
-    if (!direct) return nullptr;
-    Json columns = describe_identified(direct->found.impacts);
-    for (const char* same : {"time_s", "tau", "side"}) columns.erase(same);
-    return {
-        {"impacts", std::move(columns)},
-        {"restitution", describe_walls(direct->found)},
-        {"lambda", column(direct->lambda)}};
-}
-
 Json describe_forward(const std::optional<ForwardRun>& run) {
     if (!run) return nullptr;
     const std::vector<Impact>& impacts = run->impacts;
@@ -125,8 +115,9 @@ std::string sampling_advice(const RefinedImpacts& refined, double step, double o
 
 /// The exponents as of a simulation, in the record's time.
 Json describe_measured(
-    const MeasuredExponents& e, const ExponentOptions& estimators, const Continuity& c,
-    const std::vector<IdentifiedImpact>& impacts, Warnings& warnings) {
+    const MeasuredExponents& e, const ExponentOptions& estimators,
+    const std::vector<KnownStretch>& stretches, const std::vector<IdentifiedImpact>& impacts,
+    Warnings& warnings) {
     const ExponentOptions of_all = of_all_stretches(estimators),
                           of_longest = of_longest_stretch(estimators);
     Json j = describe_window(e.all());
@@ -147,13 +138,52 @@ Json describe_measured(
             j[name] = longest[name];
             j[name]["window"] = longest["window"];
         }
-    if (c.stretches.empty()) return j;
-    j["window"] = {impacts[c.stretches.front().first].tau, impacts[c.stretches.back().last].tau};
+    if (stretches.empty()) return j;
+    j["window"] = {impacts[stretches.front().first].tau, impacts[stretches.back().last].tau};
     j["stretches"] = {
-        {"tau_start", column(c.stretches, [&](const auto& s) { return impacts[s.first].tau; })},
-        {"tau_end", column(c.stretches, [&](const auto& s) { return impacts[s.last].tau; })}};
+        {"tau_start", column(stretches, [&](const auto& s) { return impacts[s.first].tau; })},
+        {"tau_end", column(stretches, [&](const auto& s) { return impacts[s.last].tau; })}};
     j["duration"] = e.all().end_tau() - e.all().start_tau();
     return j;
+}
+
+/// `warnings`: of its exponents, where they are asked for.
+Json describe_direct(
+    const IdentifyRequest& r, const std::optional<DirectEstimate>& direct, Warnings& warnings) {
+    if (!direct) return nullptr;
+    const Identification& found = direct->found;
+    Json columns = describe_identified(found.impacts);
+    for (const char* same : {"time_s", "tau", "side"}) columns.erase(same);
+    Json j = {
+        {"impacts", std::move(columns)},
+        {"restitution", describe_walls(found)},
+        {"lambda", column(direct->lambda)}};
+    if (!r.includes("direct_exponents")) return j;
+    Warnings odd;
+    j["exponents"] = describe_measured(
+        direct->exponents, r.measurement.direct_estimators, direct->stretches, found.impacts, odd);
+    for (const std::string& text : odd) warnings.push_back("direct: " + text);
+    return j;
+}
+
+/// The fitted motion at so many of the record's samples, evenly thinned.
+Json describe_motion(
+    const IdentifyRequest& r, const MeasurementResult& result, Warnings& warnings) {
+    const std::vector<double>& all = r.measurement.record.tau;
+    const std::size_t every = (all.size() + r.most_points - 1) / r.most_points;
+    std::vector<double> moments;
+    for (std::size_t k = 0; k < all.size(); k += every) moments.push_back(all[k]);
+    if (every > 1)
+        warnings.push_back(fmt::format(
+            "the motion is given at one of {} samples, so that it holds no more than max_points = "
+            "{}",
+            every, r.most_points));
+    const OscillatorSeries motion = motion_at(result.parameters, result.refined->motion, moments);
+    return {
+        {"tau", column(motion.tau)},
+        {"x", column(motion.x)},
+        {"x_dot", column(motion.x_dot)},
+        {"x_ddot", column(motion.x_ddot)}};
 }
 
 /// The spikes of a record, or Problem 422 where there are too few to identify anything.
@@ -262,7 +292,7 @@ Json identify_answer(const IdentifyRequest& r) {
     answer["b_fitted"] = {
         {"b", finite_or_null(found.b_fitted)}, {"standard_error", finite_or_null(found.b_error)}};
     answer["exponents"] = describe_measured(
-        result.exponents, m.estimators, result.continuity, found.impacts, warnings);
+        result.exponents, m.estimators, result.continuity.stretches, found.impacts, warnings);
     answer["slope"] = {
         {"lambda1", finite_or_null(judged.slope)},
         {"low", finite_or_null(judged.low)},
@@ -270,11 +300,12 @@ Json identify_answer(const IdentifyRequest& r) {
     answer["verdict"] = word(judged.verdict);
     answer["verdict_reason"] = doubts.empty() ? reason_of(judged) : doubts[0];
     if (m.is_record()) {
-        answer["direct"] = describe_direct(result.direct);
+        answer["direct"] = describe_direct(r, result.direct, warnings);
+        if (r.includes("motion")) answer["motion"] = describe_motion(r, result, warnings);
         answer["forward"] = describe_forward(result.forward);
     }
     if (r.system.si)
-        for (const char* part : {"impacts", "exponents", "direct", "forward"})
+        for (const char* part : {"impacts", "exponents", "motion", "direct", "forward"})
             if (answer.contains(part)) add_si(answer[part], *r.system.si);
     answer["warnings"] = warnings;
     return answer;

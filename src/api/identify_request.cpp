@@ -81,6 +81,13 @@ IdentifyRequest read_fields(const Json& given, bool with_record) {
     }
     m.estimators = read_estimators(l);
     m.estimators.qr = true;  // the verdict's
+    r.include = l.words("include");
+    if (!with_record && !r.include.empty())
+        refuse(
+            {{"/include", r.include, nullptr,
+              "motion and direct_exponents are of a record; impacts come without one"}});
+    if (r.includes("direct_exponents")) m.direct_estimators = m.estimators;
+    r.most_points = static_cast<std::size_t>(l.number("max_points"));
     return r;
 }
 

@@ -1,6 +1,7 @@
 // A measurement from the text of a CSV file or from JSON.
 #pragma once
 
+#include <set>
 #include <string_view>
 
 #include "api/request.hpp"
@@ -12,6 +13,10 @@ struct IdentifyRequest {
     System system;  ///< R only where it is given
     Measurement measurement;
     std::vector<std::string> notes;  ///< what is odd about the record
+    std::set<std::string> include;   ///< parts of the answer beside the usual ones
+    std::size_t most_points;         ///< of the motion
+
+    bool includes(const char* part) const { return include.contains(part); }
 };
 
 /// From JSON {fields..., record: {time_s, displacement_m, acceleration_m_s2}} or {fields...,

@@ -133,6 +133,7 @@ Json identify_operation() {
                          {"slope", "with its 90 % interval"},
                          {"verdict", "chaotic, regular, not_decided or null"},
                          {"verdict_reason", "a sentence"},
+                         {"motion", "if included: the fitted motion at the record's samples"},
                          {"direct", "of a record with both sensors: the paper's estimate"},
                          {"forward", "of a record: a run of the identified system"},
                          {"warnings", "sentences"}}))}};

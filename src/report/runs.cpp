@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <thread>
 
 #include "core/motion/contacts.hpp"
+#include "core/motion/random.hpp"
 #include "core/motion/special_values.hpp"
 #include "core/sweep/parallel.hpp"
 
@@ -153,14 +153,11 @@ std::vector<Regime> long_regimes(const std::vector<double>& b) {
 
 std::vector<Regime> regimes_of_random_starts(const Parameters& p, int starts) {
     std::mt19937_64 engine(2018);
-    // By hand: what the library's distributions give differs from one library to the next.
-    const auto uniform = [&](double from, double to) {
-        return from + (to - from) * static_cast<double>(engine() >> 11) * 0x1p-53;
-    };
+    const auto within = [&](double size) { return uniform(engine, -size, size); };
     std::vector<Regime> regimes;
     for (int i = 0; i < starts; ++i) {
-        State start{uniform(-0.008, 0.008), uniform(-0.008, 0.008), uniform(-0.01, 0.01), 0};
-        start.y = start.x + uniform(-p.b, p.b);
+        State start{within(0.008), within(0.008), within(0.01), 0};
+        start.y = start.x + within(p.b);
         Wanted wanted = run_to(p, start, 3000);
         wanted.window.from = 1500;
         wanted.parts = {.regime = true};

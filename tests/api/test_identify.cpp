@@ -8,6 +8,7 @@
 
 #include "api/csv.hpp"
 #include "api/identify.hpp"
+#include "core/identification/synthetic_record.hpp"
 #include "support.hpp"
 
 using namespace vines;
@@ -16,44 +17,21 @@ using namespace vines::test;
 
 namespace {
 
-/// A measurement of the preset's oscillator: what /v1/simulate says, sampled, each impact as a half
-/// sine of the acceleration.
-std::string measured(const char* preset, double seconds, char separator = ',') {
-    const Json a = simulate_answer(
-        read_simulate_request(
-            {{"preset", preset},
-             {"include", {"series", "impacts"}},
-             {"samples_per_cycle", 245},
-             {"cycles", seconds * 8.35},
-             {"max_points", 100000}}),
-        {});
-    const Json& p = a["parameters"];
-    const double omega0 = p["derived"]["omega0"], zeta = p["derived"]["zeta"],
-                 force = p["epsilon"].get<double>() * p["derived"]["A"].get<double>(),
-                 phi = p["derived"]["phi"], pulse = 0.8e-3 * omega0;
+/// A measurement of the preset's oscillator by quiet sensors, from rest or `settling` s later.
+std::string measured(
+    const char* preset, double seconds, double settling = 0, char separator = ',') {
+    const SimulateRequest r = read_simulate_request({{"preset", preset}});
+    const double omega0 = r.system.si->omega0();
+    const MeasuredRecord record = synthetic_record(
+        true_motion(r.wanted.parameters, omega0, settling, seconds),
+        {.noise_x = 1e-6, .noise_a = 0.025});
     std::string csv =
         std::string("time_s") + separator + "displacement_m" + separator + "acceleration_m_s2\n";
-    std::size_t next = 0;
-    unsigned noise = 1;
-    for (std::size_t k = 0; k < a["series"]["tau"].size(); ++k) {
-        const double tau = a["series"]["tau"][k], x = a["series"]["x"][k],
-                     x_dot = a["series"]["x_dot"][k];
-        double x_ddot = -x - 2 * zeta * x_dot + force * std::sin(tau + phi);
-        const Json &times = a["impacts"]["tau"], &before = a["impacts"]["x_dot_before"],
-                   &after = a["impacts"]["x_dot_after"];
-        while (next < times.size() && times[next].get<double>() < tau - pulse) ++next;
-        for (std::size_t i = next; i < times.size() && times[i].get<double>() < tau + pulse; ++i) {
-            const double s = tau - times[i].get<double>();
-            if (std::abs(s) < 0.5 * pulse)
-                x_ddot += (after[i].get<double>() - before[i].get<double>()) * 1.5707963 / pulse *
-                          std::cos(3.14159265 * s / pulse);
-        }
-        noise = noise * 1664525 + 1013904223;
+    for (std::size_t k = 0; k < record.tau.size(); ++k) {
         char line[96];
         std::snprintf(
-            line, sizeof line, "%.7f%c%.8e%c%.5e\n", tau / omega0, separator,
-            x + 2e-6 * (noise / 2147483648.0 - 1), separator,
-            x_ddot * omega0 * omega0 + 0.05 * (noise / 2147483648.0 - 1));
+            line, sizeof line, "%.7f%c%.8e%c%.5e\n", record.tau[k] / omega0, separator, record.x[k],
+            separator, record.x_ddot[k] * omega0 * omega0);
         csv += line;
     }
     return csv;
@@ -130,7 +108,7 @@ TEST_CASE(
     for (const CsvColumn& c : parse_csv(csv)) record[c.name] = c.values;
     CHECK(identify_answer(read_identify_request({{"preset", "fig15"}, {"record", record}})) == a);
     // Other names, separators and units say the same.
-    std::string german = measured("fig15", 12, ';');
+    std::string german = measured("fig15", 12, 0, ';');
     std::replace(german.begin(), german.end(), '.', ',');
     german.replace(0, german.find('\n'), "Zeit;weg;\"acceleration (m/s^2)\"");
     const Json b = identify_answer(read_identify_request(
@@ -140,6 +118,77 @@ TEST_CASE(
          {"acceleration_column", "acceleration (m/s^2)"}},
         german));
     CHECK(b["impacts"]["tau"] == a["impacts"]["tau"]);
+}
+
+TEST_CASE("the fitted motion is given at the record's samples where it is asked for") {
+    const std::string csv = measured("fig15", 3);
+    const Json a =
+        identify_answer(read_identify_request({{"preset", "fig15"}, {"include", {"motion"}}}, csv));
+    const Json &motion = a["motion"], &impacts = a["impacts"];
+    const double omega0 = a["parameters"]["derived"]["omega0"];
+    const std::vector<CsvColumn> record = parse_csv(csv);
+    const std::size_t n = record[0].values.size();
+    for (const auto& [name, column] : motion.items()) CHECK(column.size() == n);
+    std::size_t next = 0, far = 0;
+    for (std::size_t k = 0; k < n; ++k) {
+        CHECK(motion["time_s"][k].get<double>() == doctest::Approx(record[0].values[k]));
+        far += std::abs(motion["x"][k].get<double>() - record[1].values[k]) > 3e-6;
+        // The acceleration beside the pulses.
+        const double t = record[0].values[k];
+        while (next < impacts["time_s"].size() && impacts["time_s"][next].get<double>() < t - 1e-3)
+            ++next;
+        if (next < impacts["time_s"].size() && impacts["time_s"][next].get<double>() < t + 1e-3)
+            continue;
+        CHECK(
+            std::abs(motion["x_acceleration"][k].get<double>() - record[2].values[k]) <
+            0.025 * 5 + 1e-3);
+    }
+    CHECK(static_cast<double>(far) < 0.01 * static_cast<double>(n));  // 3 standard deviations
+    CHECK(
+        motion["x_velocity"][99].get<double>() ==
+        doctest::Approx(motion["x_dot"][99].get<double>() * omega0).epsilon(1e-12));
+
+    const Json few = identify_answer(read_identify_request(
+        {{"preset", "fig15"}, {"include", {"motion"}}, {"max_points", 1000}}, csv));
+    const std::size_t every = (n + 999) / 1000;
+    CHECK(few["motion"]["tau"].size() == (n + every - 1) / every);
+    for (std::size_t k = 0; k < 5; ++k) CHECK(few["motion"]["x"][k] == motion["x"][every * k]);
+    CHECK(warns(few, "the motion is given at one of"));
+    CHECK_FALSE(warns(a, "the motion is given at one of"));
+}
+
+TEST_CASE("the direct estimate has the exponents of the answer, with histories, where asked for") {
+    const std::string csv = measured("fig15", 6);
+    const Json fields = {{"preset", "fig15"}, {"exponents", {"qr", "raw_product"}}};
+    Json asking = fields;
+    asking["include"] = {"direct_exponents"};
+    Json a = identify_answer(read_identify_request(asking, csv));
+    const Json e = a["direct"]["exponents"];
+    CHECK(e["qr"]["history"]["tau"] == a["exponents"]["qr"]["history"]["tau"]);
+    CHECK(
+        std::abs(
+            e["qr"]["final"][0].get<double>() - a["exponents"]["qr"]["final"][0].get<double>()) <
+        0.02);
+    CHECK(e.contains("raw_product"));
+    CHECK_FALSE(e.contains("eigenvalues"));
+    for (const auto& [name, part] : a["exponents"].items()) CHECK(e.contains(name));
+    const Json& history = e["raw_product"]["history"];
+    CHECK(history["lambda1"].size() == history["time_s"].size());
+    CHECK(history["lambda1"].back() == e["raw_product"]["final"][0]);
+    CHECK(
+        history["tau"].back().get<double>() ==
+        doctest::Approx(a["impacts"]["tau"].back().get<double>()));
+    // All else is as without.
+    a["direct"].erase("exponents");
+    CHECK(a == identify_answer(read_identify_request(fields, csv)));
+}
+
+TEST_CASE("what is of a record cannot be included where impacts come without one") {
+    const Json request =
+        parse_object(R"({"b":0.015,"impacts":{"tau":[1,2]},"include":["motion"]})");
+    CHECK(pointers(problem_of([&] {
+              read_identify_request(request);
+          })) == std::set<std::string>{"/include"});
 }
 
 TEST_CASE("an edited list of moments is taken as it is") {
@@ -275,7 +324,7 @@ std::string rescaled(
 TEST_CASE(
     "a unit in a column's name is obeyed, in CSV and JSON, or refused where it is not known or "
     "contradicts the field") {
-    const std::string csv = measured("fig15", 3);
+    const std::string csv = measured("fig15", 3, 20);  // weak impacts move with every digit
     const Json a = identify_answer(read_identify_request({{"preset", "fig15"}}, csv));
     const auto same = [&](const Json& b) {
         REQUIRE(b["impacts"]["side"] == a["impacts"]["side"]);

@@ -57,11 +57,6 @@ Parameters table1(double b, Damping damping) {
     return p;
 }
 
-// The library's distribution differs between implementations.
-double uniform(std::mt19937_64& engine, double from, double to) {
-    return from + (to - from) * static_cast<double>(engine() >> 11) * 0x1p-53;
-}
-
 System random_system(std::mt19937_64& engine) {
     const auto u = [&](double from, double to) { return uniform(engine, from, to); };
     System s;

@@ -1,10 +1,10 @@
 // What several test files need: reference trajectories, recorded runs, random systems.
 #pragma once
 
-#include <random>
 #include <string>
 #include <vector>
 
+#include "core/motion/random.hpp"
 #include "core/motion/record.hpp"
 #include "core/stability/lyapunov.hpp"
 
@@ -50,7 +50,5 @@ struct System {
     State start;
 };
 System random_system(std::mt19937_64& engine);
-
-double uniform(std::mt19937_64& engine, double from, double to);
 
 }  // namespace vines::test

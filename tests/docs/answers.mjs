@@ -148,10 +148,12 @@ function noteIdentification(keys, answer) {
     "b_fitted",
     "exponents",
     "slope",
+    "motion",
     "direct",
     "forward",
   ])
-    if (part in answer) keys.note(`identify.${part}`, answer[part]);
+    if (part in answer) keys.note(`identify.${part}`, answer[part], ["exponents"]);
+  if (answer.direct?.exponents) keys.note("identify.exponents", answer.direct.exponents);
 }
 
 async function noteService(keys, url) {
@@ -176,7 +178,15 @@ export async function answeredKeys(url) {
   for (const request of sweeps) await noteSweep(keys, url, request);
   await noteBrokenSweep(keys);
   const csv = await measured(url, "fig20", 6);
-  noteIdentification(keys, await json(url, "/v1/identify?preset=fig20&b=0.015", csv, "text/csv"));
+  noteIdentification(
+    keys,
+    await json(
+      url,
+      "/v1/identify?preset=fig20&b=0.015&include=motion,direct_exponents",
+      csv,
+      "text/csv",
+    ),
+  );
   await noteService(keys, url);
   return keys;
 }

@@ -354,6 +354,12 @@ export const identifications = async (ask) => {
   return [
     as("CSV", "/v1/identify?preset=fig20&b=0.015", csv, "text/csv"),
     as("CSV with R", "/v1/identify?preset=fig20&b=0.015&R=0.85&exponents=qr", csv, "text/csv"),
+    as(
+      "the motion and the direct exponents",
+      "/v1/identify?preset=fig20&b=0.015&include=motion,direct_exponents&max_points=3000",
+      csv,
+      "text/csv",
+    ),
     as("another b", "/v1/identify?preset=fig20&b=0.012", csv, "text/csv"),
     as("JSON", "/v1/identify", {
       preset: "fig20",

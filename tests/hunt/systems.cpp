@@ -9,8 +9,6 @@ namespace vines::hunt {
 
 namespace {
 
-using test::uniform;
-
 double log_uniform(std::mt19937_64& engine, double from, double to) {
     return std::exp(uniform(engine, std::log(from), std::log(to)));
 }

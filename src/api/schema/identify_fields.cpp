@@ -69,11 +69,25 @@ FieldTable record_rows() {
     };
 }
 
+Field include_row() {
+    return {
+        .name = "include",
+        .type = FieldType::choices,
+        .group = "output",
+        .description =
+            "parts of the answer beside the usual ones, of a record: motion, the fitted "
+            "motion at its samples; direct_exponents, those of the paper's direct "
+            "estimate with their histories",
+        .fallback = Json::array(),
+        .choices = {"motion", "direct_exponents"}};
+}
+
 FieldTable make_identify_fields() {
     FieldTable table;
     for (const Field& f : simulate_fields())
         if (is_of_system(f) || f.name == "exponents" || f.name == "max_points")
             table.push_back(of_record(f));
+    table.push_back(include_row());
     for (Field& f : record_rows()) table.push_back(std::move(f));
     return table;
 }

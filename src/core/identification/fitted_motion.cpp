@@ -109,15 +109,34 @@ SensorNoise sensor_noise(const MeasuredRecord& r) {
     return {noise(r.x), noise(r.x_ddot)};
 }
 
+/// Of moments that ascend the interval that each falls into; at the start of one into that.
+class Intervals {
+public:
+    explicit Intervals(const std::vector<double>& starts) : starts_(starts) {}
+    std::size_t at(double tau) {
+        while (i_ + 1 < starts_.size() && starts_[i_ + 1] <= tau) ++i_;
+        return i_;
+    }
+
+private:
+    const std::vector<double>& starts_;
+    std::size_t i_ = 0;
+};
+
+/// What the model takes for interval i of a motion.
+Eigen::Vector4d unknowns_of(const FittedMotion& m, std::size_t i) {
+    return {m.x[i], m.x_dot[i], m.force_sin, m.force_cos};
+}
+
 /// `starts`: of the intervals; a sample closer to an impact than `spoiled` lies in its pulse.
 std::vector<FitSample> samples_of(
     const OscillatorModel& model, const MeasuredRecord& r, const std::vector<double>& starts,
     double spoiled) {
     std::vector<FitSample> samples;
     samples.reserve(r.tau.size());
-    std::size_t i = 0;
+    Intervals intervals(starts);
     for (const double tau : r.tau) {
-        while (i + 1 < starts.size() && starts[i + 1] <= tau) ++i;
+        const std::size_t i = intervals.at(tau);
         const ModelRows rows = model.at(starts[i], tau - starts[i]);
         const bool in_pulse = (i > 0 && tau - starts[i] < spoiled) ||
                               (i + 1 < starts.size() && starts[i + 1] - tau < spoiled);
@@ -185,20 +204,16 @@ std::vector<Eigen::Matrix2d> solve_apart(
 void meet_at_impacts(
     const OscillatorModel& model, const std::vector<ModelRows>& ends,
     const std::vector<Eigen::Matrix2d>& covariance, FittedMotion& m) {
-    const auto unknowns = [&](double x, double x_dot) {
-        return Eigen::Vector4d(x, x_dot, m.force_sin, m.force_cos);
-    };
     // An interval with hardly a sample says nothing.
     const auto error = [](double variance) {
         return variance > 0 ? std::sqrt(variance) : infinity;
     };
     for (std::size_t k = 0; k < ends.size(); ++k) {
-        const Eigen::Vector4d before = unknowns(m.x[k], m.x_dot[k]),
-                              own = unknowns(m.own_x[k], m.own_x_dot[k]);
+        const Eigen::Vector4d before = unknowns_of(m, k),
+                              own(m.own_x[k], m.own_x_dot[k], m.force_sin, m.force_cos);
         m.x_dot_before.push_back(ends[k].x_dot.dot(before));
         m.x_ddot_before.push_back(ends[k].x_ddot.dot(before));
-        m.x_ddot_after.push_back(
-            model.at(m.tau[k + 1], 0).x_ddot.dot(unknowns(m.x[k + 1], m.x_dot[k + 1])));
+        m.x_ddot_after.push_back(model.at(m.tau[k + 1], 0).x_ddot.dot(unknowns_of(m, k + 1)));
         m.x_jump.push_back(ends[k].x.dot(own) - m.own_x[k + 1]);
         m.x_jump_rate.push_back(ends[k].x_dot.dot(own) - m.own_x_dot[k + 1]);
         const Eigen::Vector2d row = ends[k].x.head<2>(), speed = ends[k].x_dot.head<2>();
@@ -227,8 +242,7 @@ void take_residuals(
     std::vector<char> spoiled;
     for (std::size_t k = 0; k < samples.size(); ++k) {
         const FitSample& s = samples[k];
-        const Eigen::Vector4d unknowns(
-            m.x[s.interval], m.x_dot[s.interval], m.force_sin, m.force_cos);
+        const Eigen::Vector4d unknowns = unknowns_of(m, s.interval);
         spoiled.push_back(s.in_pulse);
         if (!r.x.empty()) of_x.push_back(r.x[k] - s.x.dot(unknowns));
         if (r.x_ddot.empty()) continue;
@@ -259,6 +273,22 @@ FittedMotion fit_motion(
     meet_at_impacts(model, ends, solve_apart(own, m), m);
     take_residuals(r, samples, m);
     return m;
+}
+
+OscillatorSeries motion_at(
+    const Parameters& p, const FittedMotion& m, const std::vector<double>& moments) {
+    const OscillatorModel model(p);
+    Intervals intervals(m.tau);
+    OscillatorSeries series{moments, {}, {}, {}};
+    for (const double tau : moments) {
+        const std::size_t i = intervals.at(tau);
+        const ModelRows rows = model.at(m.tau[i], tau - m.tau[i]);
+        const Eigen::Vector4d unknowns = unknowns_of(m, i);
+        series.x.push_back(rows.x.dot(unknowns));
+        series.x_dot.push_back(rows.x_dot.dot(unknowns));
+        series.x_ddot.push_back(rows.x_ddot.dot(unknowns));
+    }
+    return series;
 }
 
 bool explains(const FittedMotion& m) {

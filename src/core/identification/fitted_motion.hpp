@@ -41,6 +41,15 @@ FittedMotion fit_motion(
     const Parameters& parameters, const MeasuredRecord& record, const std::vector<double>& impacts,
     double pulse);
 
+/// The oscillator at some moments: columns of equal length, m and derivatives in tau.
+struct OscillatorSeries {
+    std::vector<double> tau, x, x_dot, x_ddot;
+};
+
+/// A fitted motion at moments of its record, ascending; at that of an impact, after it.
+OscillatorSeries motion_at(
+    const Parameters& parameters, const FittedMotion& motion, const std::vector<double>& moments);
+
 /// Whether the fitted motion leaves no more of the sensors' signals than their noise.
 bool explains(const FittedMotion& motion);
 

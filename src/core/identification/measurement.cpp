@@ -29,15 +29,34 @@ double G_of(const Parameters& p, const FittedMotion& motion) {
            std::hypot(1.0, p.lambda * p.epsilon * p.Omega);
 }
 
-std::optional<DirectEstimate> direct_estimate(const Measurement& m, const RefinedImpacts& refined) {
+/// The stretches without the passages to impacts whose relative speed is not known.
+std::vector<KnownStretch> with_speeds(
+    const std::vector<IdentifiedImpact>& impacts, const std::vector<KnownStretch>& stretches) {
+    std::vector<KnownStretch> known;
+    for (const KnownStretch& s : stretches)
+        for (std::size_t first = s.first, i = first + 1; i <= s.last; ++i) {
+            if (std::isnan(impacts[i].x_dot_before - impacts[i].y_dot_before)) first = i;
+            else if (first + 1 == i) known.push_back({first, i});
+            else known.back().last = i;
+        }
+    return known;
+}
+
+/// `stretches`: those of the fit.
+std::optional<DirectEstimate> direct_estimate(
+    const Measurement& m, const RefinedImpacts& refined,
+    const std::vector<KnownStretch>& stretches) {
     if (m.record.x.empty() || m.record.x_ddot.empty()) return std::nullopt;
     Parameters p = m.parameters;
     Identification found = identify_impacts(
         p, direct_motion(m.record, refined.tau, refined.pulse), refined.side, refined.pulse);
     if (!m.R_given) take_restitution(p, found);
-    const MeasuredExponents exponents(
+    const MeasuredExponents faultless(
         p, found.impacts, continuity_of(p, found.impacts, time_gaps(m.record)).stretches, qr_alone);
-    return DirectEstimate{std::move(found), exponents.all().qr()};
+    std::vector<KnownStretch> known = with_speeds(found.impacts, stretches);
+    MeasuredExponents exponents(p, found.impacts, known, m.direct_estimators);
+    return DirectEstimate{
+        std::move(found), faultless.all().qr(), std::move(known), std::move(exponents)};
 }
 
 std::optional<ForwardRun> forward_run(
@@ -124,12 +143,9 @@ MeasurementResult conclude(const Measurement& m, const std::vector<Spike>& spike
         judged.verdict = Verdict::not_decided;
     else if (p.G == 0 || dies_out(found.impacts)) judged.verdict = Verdict::none;
 
-    std::optional<DirectEstimate> direct;
-    std::optional<ForwardRun> forward;
-    if (refined) {
-        direct = direct_estimate(m, *refined);
-        forward = forward_run(p, found, refined->motion, m.record.tau.back());
-    }
+    auto direct = refined ? direct_estimate(m, *refined, continuity.stretches) : std::nullopt;
+    auto forward =
+        refined ? forward_run(p, found, refined->motion, m.record.tau.back()) : std::nullopt;
     return {
         .parameters = p,
         .found = std::move(found),

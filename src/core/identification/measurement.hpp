@@ -20,6 +20,7 @@ struct Measurement {
     std::vector<IdentifiedImpact> impacts = {};  ///< completed, in place of a record
     double threshold = 6;  ///< of a spike, in standard deviations of the noise
     ExponentOptions estimators = {};
+    ExponentOptions direct_estimators = qr_alone;  ///< of the paper's direct estimate
 
     bool is_record() const { return impacts.empty(); }
     double step() const;  ///< of the record: the mean time between two samples
@@ -32,7 +33,11 @@ Spikes spikes_of(const Measurement& measurement);
 /// The paper's estimate beside ours: velocities by differences, and what follows from them.
 struct DirectEstimate {
     Identification found;
-    Exponents lambda;  ///< qr
+    Exponents lambda;  ///< qr, without the impacts at fault
+    /// Of the impacts that MeasurementResult::exponents takes, at fault or not: the two then differ
+    /// by the estimate of the velocities alone.
+    std::vector<KnownStretch> stretches;
+    MeasuredExponents exponents;
 };
 
 /// The run of the identified system from the state after the first impact whose state is known,
