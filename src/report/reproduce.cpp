@@ -18,6 +18,7 @@ constexpr Chapter* chapters[] = {
     table_2,
     other_regimes,  // Figs. 10 to 14
     table_3,
+    experiment,  // Table 4, Figs. 15 to 24
     open_questions,
 };
 
