@@ -205,16 +205,16 @@ TEST_CASE("an impact just before the end does not part runs of which one has it 
 TEST_CASE(
     "a second run that is ended before the first one is compared up to there, and warned of") {
     const Parameters p = table1(0.022, Damping::closed_form);
-    Wanted w{.parameters = p, .start = default_state(p), .tau_end = 300};
+    Wanted w{.parameters = p, .start = default_state(p), .tau_end = 1500};
     long asked = 0;
     analyse(w, {.run = [&] { return ++asked, false; }});
     const long by_first = asked;
     w.perturbation = random_difference(1, 1e-9);
     const Analysis whole = analyse(w);
-    CHECK(whole.perturbation->outcome.tau == 300);
+    CHECK(whole.perturbation->outcome.tau == 1500);
     asked = 0;
     const Analysis cut = analyse(w, {.run = [&] { return ++asked > by_first + 1; }});
-    CHECK(cut.outcome.tau == 300);
+    CHECK(cut.outcome.tau == 1500);
     CHECK(cut.perturbation->outcome.reason == End::stopped);
     const std::size_t size = cut.perturbation->distance.size();
     CHECK(size == cut.perturbation->series.tau.size());
