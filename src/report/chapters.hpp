@@ -10,7 +10,7 @@ namespace vines::report {
 
 using Chapter = void(Report&, Runs&);
 
-Chapter model;                ///< Table 1, and the closed form against eq. (1)
+Chapter model;                ///< Table 1, the closed form against eq. (1), Fig. 2
 Chapter strongly_modulated;   ///< Figs. 3 and 4: the motion at b = 22 mm
 Chapter transient_exponents;  ///< Fig. 5: its Lyapunov exponents
 Chapter transfer_matrices;    ///< Figs. 6 to 9: the eigenvalues of its J, M and T

@@ -1,4 +1,4 @@
-// Recomputes the paper's Figs. 3 to 14 and Tables 1 to 3 and sets its numbers beside ours.
+// Recomputes the paper's figures, tables and statements and sets its numbers beside ours.
 #pragma once
 
 #include <string>

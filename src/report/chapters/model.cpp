@@ -1,10 +1,12 @@
-// Table 1, and whether the closed form (8)-(11), as printed, solves the equation of motion (1).
+// Table 1, whether the closed form (8)-(11), as printed, solves the equation of motion (1), and
+// whether the transfer matrix carries the difference of two trajectories (Fig. 2).
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "report/chapters.hpp"
+#include "report/plots.hpp"
 
 #include "core/motion/special_values.hpp"
 
@@ -91,6 +93,47 @@ void closed_form(Report& report, const Parameters& p) {
         most));
 }
 
+/// Whether M J carries the difference of two trajectories through their impacts, which come one
+/// after the other (Fig. 2): the distance of two runs beside the length of the tangent vector.
+void trajectory_difference(Report& report) {
+    Parameters p;
+    p.damping = Damping::closed_form;
+    Wanted wanted{.parameters = p, .start = default_state(p), .tau_end = 60};
+    constexpr double size = 1e-10;  // m: far below what bends, far above rounding
+    wanted.perturbation = random_difference(1, size);
+    const Analysis run = analyse(wanted);
+    const Perturbation& second = *run.perturbation;
+    double largest = 0;
+    for (std::size_t i = 0; i < second.distance.size(); ++i)
+        largest = std::max(largest, std::abs(second.distance[i] / second.tangent[i] - 1));
+    Curve distance{.label = "distance"},
+        tangent{.colour = grey, .label = "tangent vector", .dash = "5 4"};
+    distance.x = tangent.x = second.series.tau;
+    distance.y = second.distance, tangent.y = second.tangent;
+    report.picture(
+        {.name = "fig2",
+         .caption = "Fig. 2: distance of two trajectories through their impacts, and what (26) to "
+                    "(32) say of it",
+         .plots = {
+             {.x_label = "tau",
+              .y_label = "distance (m)",
+              .curves = {distance, tangent},
+              .logarithmic = true}}});
+    report.find(
+        {.where = "Fig. 2, eqs. (26) to (32)",
+         .what = fmt::format(
+             "two runs, {:g} m apart, to tau = {:g}: largest relative error of M J as their "
+             "distance",
+             size, wanted.tau_end),
+         .paper = "the transfer matrix",
+         .here = fmt::format(
+             "{:.0e} through {} impacts, while the distance grows {:.0f}-fold", largest,
+             run.outcome.impacts, second.distance.back() / size),
+         .number = largest,
+         .band = {0, 1e-3},
+         .because = "of first order: what is left is the size of the distance and rounding"});
+}
+
 }  // namespace
 
 void model(Report& report, Runs&) {
@@ -98,6 +141,7 @@ void model(Report& report, Runs&) {
     const Parameters p;
     parameters_of_table_1(report, p);
     closed_form(report, p);
+    trajectory_difference(report);
 }
 
 }  // namespace vines::report

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "report/chapters.hpp"
+#include "report/constancy.hpp"
 #include "report/plots.hpp"
 
 #include "core/motion/special_values.hpp"
@@ -62,20 +63,7 @@ void their_sum(Report& report, const TransferProduct& product) {
         rounding_floor(raw[0], T), raw[2], qr[2]));
 }
 
-/// How far an exponent comes over the second half of a window, but for its spikes (one value in
-/// twenty at either end), over its last value.
-double late_change(const ExponentHistory& h, int k) {
-    const double half = (h.tau.front() + h.tau.back()) / 2;
-    std::vector<double> late;
-    for (std::size_t i = 0; i < h.tau.size(); ++i)
-        if (h.tau[i] >= half && std::isfinite(h.lambda[i][k])) late.push_back(h.lambda[i][k]);
-    const double last = late.back();
-    return (quantile(late, 0.95) - quantile(late, 0.05)) / std::abs(last);
-}
-
 void constancy(Report& report, const TransferProduct& product) {
-    // The three lambda1 of Table 2 lie within .095 of the smallest, "a small difference".
-    constexpr double small = 0.1;
     const ExponentHistory& raw = product.raw_product_history();
     for (const int k : {0, 2}) {
         const double change = late_change(raw, k);
@@ -88,9 +76,9 @@ void constancy(Report& report, const TransferProduct& product) {
              .paper = "almost constant",
              .here = fmt::format("{:.2f}", change),
              .number = change,
-             .band = {0, small},
-             .because = "as much as Table 2's lambda1 differ; in part: three times that",
-             .partly = Band{0, 3 * small},
+             .band = {0, small_change},
+             .because = why_small_change,
+             .partly = Band{0, some_change},
              .expected = Verdict::partly});
     }
 }
