@@ -143,7 +143,7 @@ void sparse_and_modulated(Report& report) {
 void three_impacts(Report& report) {
     const Grid grid(3, 5.5, 25);
     const std::vector<double> V = grid.where([](const Regime& r) {
-        return r.type == RegimeType::V && r.orbit->contacts == 3 * r.orbit->cycles;
+        return r.type == RegimeType::V && r.orbit->contacts == 3L * r.orbit->cycles;
     });
     report.find(
         {.where = "Figs. 13, 14",
