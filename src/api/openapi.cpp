@@ -226,6 +226,67 @@ Json paths() {
     };
 }
 
+Json simulation() {
+    return parts(
+        {{"version", ""},
+         {"parameters", "every one, resolved, with derived"},
+         {"status", "reason, tau, message"},
+         {"warnings", "sentences"},
+         {"series", "columns over tau"},
+         {"impacts", "columns, an entry for each impact"},
+         {"sticking", "columns, an entry for each stuck phase"},
+         {"touches", "tangent contacts, if any"},
+         {"exponents",
+          "qr, eigenvalues, raw_product over the window, each with its slope; a verdict"},
+         {"windows", "exponents of each of the windows"},
+         {"eigenvalues", "moduli of those of J, M, T at each impact"},
+         {"matrices", "J, M, T themselves, by rows"},
+         {"section", "at impact and stroboscopic"},
+         {"energy", "balance, amplitudes, decay"},
+         {"regime", "type I to VI with its evidence"},
+         {"manifold", "slow invariant manifold and the run's half cycles"},
+         {"perturbation",
+          "a second run that starts a little off, its distance from the first, the linear "
+          "prediction of that"}});
+}
+
+Json sweep_line() {
+    return parts(
+        {{"type", "start, point, progress, warning, done or error"},
+         {"index", "of a point"},
+         {"lambda", "four exponents (qr)"},
+         {"standard_error", "of the four exponents"},
+         {"z", "contacts per cycle"},
+         {"regime", "I to VI or none"},
+         {"section", "points of a bifurcation diagram"},
+         {"x_free", "amplitude without the absorber"},
+         {"worst", "motion of the default set of starts"},
+         {"best", "another"},
+         {"starts", "all of them"},
+         {"depends_on_start", "whether they end in different motions"},
+         {"x_peak", "of a reduction"},
+         {"message", "of a warning"},
+         {"done", "points so far"},
+         {"of", "points wanted"}});
+}
+
+Json problem() {
+    return {
+        {"type", "object"},
+        {"properties",
+         {{"type", {{"type", "string"}}},
+          {"title", {{"type", "string"}}},
+          {"status", {{"type", "integer"}}},
+          {"detail", {{"type", "string"}}},
+          {"errors",
+           {{"type", "array"},
+            {"items", parts(
+                          {{"pointer", "JSON Pointer to the field"},
+                           {"value", "as given"},
+                           {"range", "or choices, or null"},
+                           {"detail", "a sentence"}})}}}}}};
+}
+
 Json schemas() {
     return {
         {"SimulateRequest", schema_of(simulate_fields())},
@@ -235,59 +296,9 @@ Json schemas() {
         {"SweepBase", schema_of(sweep_base_fields())},
         {"Axis", schema_of(axis_fields(), {"parameter"})},
         {"Start", schema_of(start_fields())},
-        {"Simulation",
-         parts(
-             {{"version", ""},
-              {"parameters", "every one, resolved, with derived"},
-              {"status", "reason, tau, message"},
-              {"warnings", "sentences"},
-              {"series", "columns over tau"},
-              {"impacts", "columns, an entry for each impact"},
-              {"sticking", "columns, an entry for each stuck phase"},
-              {"touches", "tangent contacts, if any"},
-              {"exponents",
-               "qr, eigenvalues, raw_product over the window, each with its slope; a verdict"},
-              {"windows", "exponents of each of the windows"},
-              {"eigenvalues", "moduli of those of J, M, T at each impact"},
-              {"matrices", "J, M, T themselves, by rows"},
-              {"section", "at impact and stroboscopic"},
-              {"energy", "balance, amplitudes, decay"},
-              {"regime", "type I to VI with its evidence"},
-              {"manifold", "slow invariant manifold and the run's half cycles"},
-              {"perturbation",
-               "a second run that starts a little off, its distance from the first, the linear "
-               "prediction of that"}})},
-        {"SweepLine", parts(
-                          {{"type", "start, point, progress, warning, done or error"},
-                           {"index", "of a point"},
-                           {"lambda", "four exponents (qr)"},
-                           {"standard_error", "of the four exponents"},
-                           {"z", "contacts per cycle"},
-                           {"regime", "I to VI or none"},
-                           {"section", "points of a bifurcation diagram"},
-                           {"x_free", "amplitude without the absorber"},
-                           {"worst", "motion of the default set of starts"},
-                           {"best", "another"},
-                           {"starts", "all of them"},
-                           {"depends_on_start", "whether they end in different motions"},
-                           {"x_peak", "of a reduction"},
-                           {"message", "of a warning"},
-                           {"done", "points so far"},
-                           {"of", "points wanted"}})},
-        {"Problem",
-         {{"type", "object"},
-          {"properties",
-           {{"type", {{"type", "string"}}},
-            {"title", {{"type", "string"}}},
-            {"status", {{"type", "integer"}}},
-            {"detail", {{"type", "string"}}},
-            {"errors",
-             {{"type", "array"},
-              {"items", parts(
-                            {{"pointer", "JSON Pointer to the field"},
-                             {"value", "as given"},
-                             {"range", "or choices, or null"},
-                             {"detail", "a sentence"}})}}}}}}},
+        {"Simulation", simulation()},
+        {"SweepLine", sweep_line()},
+        {"Problem", problem()},
     };
 }
 
