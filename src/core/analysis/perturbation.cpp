@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
+#include "core/motion/random.hpp"
 #include "core/motion/special_values.hpp"
 #include "core/stability/lyapunov.hpp"
 
@@ -36,11 +36,9 @@ Eigen::Vector4d carried_over(const Stretch& stretch, double s, double epsilon, E
 
 State random_difference(std::uint64_t seed, double size) {
     std::mt19937_64 engine(seed);
-    // The library's distributions differ between implementations.
-    const auto uniform = [&] { return static_cast<double>(engine() >> 11) * 0x1p-52 - 1; };
     for (;;) {
         State s;
-        for (double* v : {&s.x_dot, &s.x, &s.y_dot, &s.y}) *v = uniform();
+        for (double* v : {&s.x_dot, &s.x, &s.y_dot, &s.y}) *v = uniform(engine, -1, 1);
         const double length = length_of(s);
         if (length > 1 || length < least_drawn) continue;
         for (double* v : {&s.x_dot, &s.x, &s.y_dot, &s.y}) *v *= size / length;

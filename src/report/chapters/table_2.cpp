@@ -38,8 +38,8 @@ void lambda1(Report& report, const Ensemble& closed_form, const Ensemble& by_equ
          .what = "lambda1 of the three windows together: sd above the mean of many",
          .paper = ".1093, .1143, .1197",
          .here = fmt::format(
-             "{:.4f} +- {:.4f} over {} windows of 1690; {} sd each, {:.1f} together; eq. (1): "
-             "{:.3f}, {:.0f} together",
+             "{:.4f} +- {:.4f} over {} windows of 1690; {} sd each, of windows as long as its "
+             "own, {:.1f} together; eq. (1): {:.3f}, {:.0f} together",
              here.mean, here.deviation, closed_form.windows.size(), each, joint, other.mean,
              other_joint),
          .number = joint,
@@ -50,8 +50,6 @@ void lambda1(Report& report, const Ensemble& closed_form, const Ensemble& by_equ
          .expected = Verdict::partly});
 }
 
-/// What is printed as lambda3 lies where rounding puts it: of the way from there to the true one it
-/// has gone nothing.
 void lambda3(Report& report, const Ensemble& e) {
     const Moments here = e.lambda(2), raw = e.raw_spread();
     report.find(
@@ -63,19 +61,20 @@ void lambda3(Report& report, const Ensemble& e) {
          .band = {0, infinity},
          .because = "positive, as printed",
          .expected = Verdict::not_reproduced});
+    DataTable table{
+        {"window", "printed lambda3", "printed (lambda1 - lambda3) T", "raw_product", "qr"}, {}};
     for (const Table2Row& row : printed_table_2) {
-        const double printed = row.spread(), exact = (e.lambda(0).mean - here.mean) * row.T();
-        report.find(
-            {.where = fmt::format("Table 2, [{:g}, {:g}]", row.from, row.to),
-             .what = "(lambda1 - lambda3) T, computed as in the paper (raw_product)",
-             .paper = fmt::format("{:.1f}", printed),
-             .here = fmt::format(
-                 "{:.1f} +- {:.1f}; ln(1/2.2e-16) is 36.0; by qr it would be {:.0f}", raw.mean,
-                 raw.deviation, exact),
-             .number = (printed - raw.mean) / (exact - raw.mean),
-             .band = {-0.1, 0.1},
-             .because = "of the way from rounding (0) to the exponent (1)"});
+        const double exact = (e.lambda(0).mean - here.mean) * row.T();
+        table.rows.push_back(
+            {fmt::format("[{:g}, {:g}]", row.from, row.to), fmt::format("{:g}", row.lambda3),
+             fmt::format("{:.1f}", row.spread()),
+             fmt::format("{:.1f} +- {:.1f}", raw.mean, raw.deviation),
+             fmt::format("{:.0f}", exact)});
     }
+    report.say(
+        "What is printed as lambda3 is explained by rounding: it lies about ln(1/2.2e-16) = 36.0, "
+        "over T, below lambda1, as raw_product has it.");
+    report.table(std::move(table));
 }
 
 }  // namespace

@@ -1,0 +1,23 @@
+// What the paper says of exponents at more than one place.
+#pragma once
+
+#include "report/report.hpp"
+#include "report/runs.hpp"
+
+namespace vines::report {
+
+std::string in_words(const Exponents& lambda);
+
+/// That the motion is chaotic, and that all four exponents are positive; `raw_product`: what is
+/// expected of the paper's own way to compute them.
+void positive_exponents(
+    Report& report, const std::string& where, const Response& response, Verdict raw_product);
+
+/// How far the k-th exponent (0 to 3) comes over the second half of a window, but for its spikes
+/// (one value in twenty at either end), over its last value.
+double late_change(const ExponentHistory& history, int k);
+/// Almost constant, and nearly so.
+inline constexpr double small_change = 0.1, some_change = 0.3;
+inline const char* const why_small_change = "a tenth; in part: three tenths";
+
+}  // namespace vines::report
