@@ -99,8 +99,8 @@ std::string markdown_table(const std::vector<Finding>& findings) {
     for (const Finding& f : findings)
         text += row(
             {f.where, f.what, f.paper, f.here,
-             std::string(text_of(f.verdict())) + (f.stands() ? "" : " **(CHANGED)**"), number_of(f),
-             band_of(f), f.because});
+             std::string(text_of(f.verdict())) + (f.stands() ? "" : " **(CHANGED)**"),
+             shown_number(f), band_of(f), f.because});
     return text;
 }
 

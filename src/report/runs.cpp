@@ -80,6 +80,22 @@ Ensemble one_run(const Parameters& p, const State& start, WindowsOf size) {
 
 int all_threads() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
 
+struct Case {
+    Parameters parameters;
+    State start;
+};
+std::vector<Regime> regimes_of(const std::vector<Case>& cases, const Interval& window) {
+    std::vector<Regime> regimes(cases.size());
+    parallel(cases.size(), all_threads(), [&](std::size_t i) {
+        Wanted wanted = run_to(cases[i].parameters, cases[i].start, window.to);
+        wanted.window.from = window.from;
+        wanted.parts = {.regime = true};
+        wanted.estimators = qr_alone;
+        regimes[i] = *analyse(wanted).regime;
+    });
+    return regimes;
+}
+
 Ensemble make_ensemble(double b, WindowsOf size, Damping damping) {
     const Parameters p = table1(b, damping);
     std::vector<Ensemble> each(Ensemble::runs);
@@ -139,32 +155,24 @@ Moments Ensemble::duration() const {
 }
 
 std::vector<Regime> long_regimes(const std::vector<double>& b) {
-    std::vector<Regime> regimes(b.size());
-    parallel(b.size(), all_threads(), [&](std::size_t i) {
-        const Parameters p = table1(b[i], Damping::closed_form);
-        Wanted wanted = run_to(p, default_state(p), 10 * window_end);
-        wanted.window.from = window_end;
-        wanted.parts = {.regime = true};
-        wanted.estimators = qr_alone;
-        regimes[i] = *analyse(wanted).regime;
-    });
-    return regimes;
+    std::vector<Case> cases;
+    for (const double half_width : b) {
+        const Parameters p = table1(half_width, Damping::closed_form);
+        cases.push_back({p, default_state(p)});
+    }
+    return regimes_of(cases, {window_end, 10 * window_end});
 }
 
 std::vector<Regime> regimes_of_random_starts(const Parameters& p, int starts) {
     std::mt19937_64 engine(2018);
     const auto within = [&](double size) { return uniform(engine, -size, size); };
-    std::vector<Regime> regimes;
+    std::vector<Case> cases;
     for (int i = 0; i < starts; ++i) {
         State start{within(0.008), within(0.008), within(0.01), 0};
         start.y = start.x + within(p.b);
-        Wanted wanted = run_to(p, start, 3000);
-        wanted.window.from = 1500;
-        wanted.parts = {.regime = true};
-        wanted.estimators = qr_alone;
-        regimes.push_back(std::move(*analyse(wanted).regime));
+        cases.push_back({p, start});
     }
-    return regimes;
+    return regimes_of(cases, {1500, 3000});
 }
 
 const Response& Runs::run(double b, Damping damping, double tau_end) {

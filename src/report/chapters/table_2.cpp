@@ -72,8 +72,9 @@ void lambda3(Report& report, const Ensemble& e) {
              fmt::format("{:.0f}", exact)});
     }
     report.say(
-        "What is printed as lambda3 is explained by rounding: it lies about ln(1/2.2e-16) = 36.0, "
-        "over T, below lambda1, as raw_product has it.");
+        "If what is printed as lambda3 is rounding, it lies some ln(1/2.2e-16) = 36.0, over T, "
+        "below "
+        "lambda1, and as far as raw_product has it; if it is the exponent, as far as qr.");
     report.table(std::move(table));
 }
 

@@ -130,12 +130,13 @@ void windows(Report& report, Runs& runs) {
     for (const Table2Row& row : printed_table_2) of_table_2.push_back(row.spread());
     const Moments mean = moments(contacts);
     report.say(fmt::format(
-        "What is printed as lambda3 is lambda1 less rounding's {:.0f}/T or so, and so tells how "
-        "long each row's window is. An inference: their lengths, {:.0f} to {:.0f}, scatter by "
-        "{:.0f} %, their numbers of contacts, {:.0f} +- {:.0f} on average, by {:.0f} %, where "
-        "rounding alone scatters the three rows of Table 2 by {:.0f} %. So they may well hold one "
-        "number of contacts, and {} is taken for it above. The row of 22 mm is left out: its "
-        "window is printed in Table 2, {:.0f} long, and this way it would be {:.0f}.",
+        "If what is printed as lambda3 is rounding (Table 2), it is lambda1 less {:.0f}/T or so, "
+        "and tells how long each row's window is, which the paper does not. Their lengths, {:.0f} "
+        "to {:.0f}, scatter by {:.0f} %, their numbers of contacts, {:.0f} +- {:.0f} on average, "
+        "by {:.0f} %; rounding alone scatters the three rows of Table 2 by {:.0f} %. One number "
+        "of contacts in all windows is therefore an inference, and {} is taken for it above. The "
+        "row of 22 mm is left out: its window is printed in Table 2, {:.0f} long, and this way it "
+        "would be {:.0f}.",
         moments(spreads).mean, std::ranges::min(lengths), std::ranges::max(lengths),
         scatter_percent(lengths), mean.mean,
         mean.deviation / std::sqrt(static_cast<double>(contacts.size())), scatter_percent(contacts),
