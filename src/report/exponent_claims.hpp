@@ -8,10 +8,9 @@ namespace vines::report {
 
 std::string in_words(const Exponents& lambda);
 
-/// That the motion is chaotic, and that all four exponents are positive; `raw_product`: what is
-/// expected of the paper's own way to compute them.
+/// That the motion is chaotic, and that all four exponents are positive; `other`: by eq. (1).
 void positive_exponents(
-    Report& report, const std::string& where, const Response& response, Verdict raw_product);
+    Report& report, const std::string& where, const Response& here, const Response& other);
 
 /// How far the k-th exponent (0 to 3) comes over the second half of a window, but for its spikes
 /// (one value in twenty at either end), over its last value.

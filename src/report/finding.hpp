@@ -36,6 +36,9 @@ struct Finding {
     std::string because;  ///< why there
     /// Wider: where the statement holds in part.
     std::optional<Band> partly = {};
+    /// Its number comes from a record computed in place of one of the paper's, which are not
+    /// published: the verdict says what such a record shows.
+    bool computed_record = false;
     /// What the number was found to say. Another verdict today is an error: `vines reproduce`
     /// fails.
     Verdict expected = Verdict::reproduced;
@@ -49,7 +52,12 @@ struct Finding {
     bool stands() const { return verdict() == expected; }
 };
 
-inline const char* text_of(Verdict verdict) {
+inline const char* text_of(Verdict verdict, bool computed_record = false) {
+    if (computed_record) switch (verdict) {
+            case Verdict::reproduced: return "holds for the computed record";
+            case Verdict::partly: return "holds in part for the computed record";
+            default: return "**does not hold for the computed record**";
+        }
     switch (verdict) {
         case Verdict::reproduced: return "reproduced";
         case Verdict::by_closed_form: return "reproduced, with the closed-form damping alone";

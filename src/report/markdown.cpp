@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <stdexcept>
+#include <utility>
 
 #include "core/motion/special_values.hpp"
 
@@ -23,16 +26,19 @@ const char* const introduction =
     "which that lies if the statement holds; the last column says why it is that band.\n\n";
 
 const char* const glossary =
-    "Words: *closed form* and *eq. (1)* are the paper's two dampings, zeta = epsilon lambda and "
-    "half "
-    "of that; numbers are by the closed form where nothing else is said, in section 5 by eq. (1). "
-    "*qr*: exponents by a QR factorisation at each impact, which rounding does not spoil; *(33)*: "
-    "from the eigenvalues of the product of transfer matrices, held exactly; *raw_product*: the "
-    "same "
-    "as the paper did it, in double precision without scaling. *Contact*: an impact, or a whole "
-    "chatter that ends with the mass stuck to the wall; a *stick* leaves two exponents minus "
-    "infinity. *In step*: contacts that alternate walls within 15 % of half a forcing cycle. *sd*: "
-    "standard deviation.\n\n";
+    "Numbers are by the damping of the closed form (8) to (11), zeta = epsilon lambda, and by that "
+    "of eq. (1), half as much, where a row says so; a row without a number by eq. (1) says nothing "
+    "of it. In section 5 it is eq. (1) alone. Those of the rows not reproduced that speak of "
+    "lambda2, lambda3, lambda4 or the sum being positive are one and the same thing.\n\n"
+    "Exponents: *qr*, by a QR factorisation at each impact, which rounding does not spoil; *(33)*, "
+    "from the eigenvalues of the product of transfer matrices, held exactly; *raw_product*, the "
+    "same with the product in double precision and without scaling, as the paper presumably did "
+    "it. *Contact*: an impact, or a whole chatter that ends with the mass stuck to the wall; a "
+    "*stick* leaves two exponents minus infinity. *z*: contacts per cycle. *In step*: contacts "
+    "that alternate walls within 15 % of half a forcing cycle. *Types*: III, IV and V are "
+    "motions on a stable periodic orbit, the others are not; VI has more than two contacts per "
+    "cycle, II has stretches in step, I has none. *sd*: standard deviation. *T*: the matrix (30) "
+    "in Figs. 8 and 9, else the length of a window.\n\n";
 
 std::string row(const std::vector<std::string>& cells) {
     return fmt::format("| {} |\n", fmt::join(cells, " | "));
@@ -69,37 +75,47 @@ std::string band_of(const Finding& f) {
     return text_of(f.band) + (f.partly ? " (in part: " + text_of(*f.partly) + ")" : "");
 }
 
+std::string shown(double number) {
+    return std::isnan(number) ? "none" : fmt::format("{:.4g}", number);
+}
+
 std::string shown_number(const Finding& f) {
-    const std::string other = f.by_equation ? fmt::format("; eq. (1): {:.4g}", *f.by_equation) : "";
-    return fmt::format("{:.4g}", f.number) + other;
+    return shown(f.number) + (f.by_equation ? "; eq. (1): " + shown(*f.by_equation) : "");
+}
+
+/// Places in the paper, each once, in order.
+std::string places_of(const std::vector<Finding>& findings, Verdict verdict) {
+    std::vector<std::string> places;
+    for (const Finding& f : findings)
+        if (f.verdict() == verdict && std::ranges::find(places, f.where) == places.end())
+            places.push_back(f.where);
+    return fmt::format("{}", fmt::join(places, "; "));
 }
 
 /// How many verdicts there are of each, and which rows hold by one damping alone.
 std::string summary(const std::vector<Finding>& findings) {
-    std::map<Verdict, int> counts;
-    std::map<Verdict, std::string> rows;
-    for (const Finding& f : findings) {
-        ++counts[f.verdict()];
-        std::string& list = rows[f.verdict()];
-        if (list.find(f.where) == std::string::npos) list += (list.empty() ? "" : "; ") + f.where;
-    }
+    std::map<std::pair<bool, Verdict>, int> counts;
+    for (const Finding& f : findings) ++counts[{f.computed_record, f.verdict()}];
     std::string text;
-    for (const auto& [verdict, n] : counts) text += fmt::format("- {}: {}\n", text_of(verdict), n);
+    for (const auto& [kind, n] : counts)
+        text += fmt::format("- {}: {}\n", text_of(kind.second, kind.first), n);
     return fmt::format(
-        "{}\nThe paper's two dampings do not agree with each other: by the closed form alone hold "
-        "rows of {}; by eq. (1) alone rows of {}.\n\n",
-        text, rows[Verdict::by_closed_form], rows[Verdict::by_equation_of_motion]);
+        "{}\nThe paper's two dampings do not agree with each other. Where rows hold by the closed "
+        "form alone: {}. By eq. (1) alone: {}.\n\n",
+        text, places_of(findings, Verdict::by_closed_form),
+        places_of(findings, Verdict::by_equation_of_motion));
 }
 
 }  // namespace
 
 std::string markdown_table(const std::vector<Finding>& findings) {
     std::string text =
-        head({"of the paper", "quantity", "paper", "here", "verdict", "its number", "band", "for"});
+        head({"of the paper", "quantity", "paper", "here", "verdict", "number", "band", "because"});
     for (const Finding& f : findings)
         text += row(
             {f.where, f.what, f.paper, f.here,
-             std::string(text_of(f.verdict())) + (f.stands() ? "" : " **(CHANGED)**"),
+             std::string(text_of(f.verdict(), f.computed_record)) +
+                 (f.stands() ? "" : " **(CHANGED)**"),
              shown_number(f), band_of(f), f.because});
     return text;
 }

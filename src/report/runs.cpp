@@ -154,10 +154,10 @@ Moments Ensemble::duration() const {
     return finite_moments(windows, [](const Window& w) { return w.T; });
 }
 
-std::vector<Regime> long_regimes(const std::vector<double>& b) {
+std::vector<Regime> long_regimes(const std::vector<double>& b, Damping damping) {
     std::vector<Case> cases;
     for (const double half_width : b) {
-        const Parameters p = table1(half_width, Damping::closed_form);
+        const Parameters p = table1(half_width, damping);
         cases.push_back({p, default_state(p)});
     }
     return regimes_of(cases, {window_end, 10 * window_end});

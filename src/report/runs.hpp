@@ -76,9 +76,9 @@ struct Ensemble {
 /// 3000.
 std::vector<Regime> regimes_of_random_starts(const Parameters& parameters, int starts);
 
-/// The regimes at several b (m) from the paper's initial state, by the closed form's damping, over
-/// ten times its window without the first tenth.
-std::vector<Regime> long_regimes(const std::vector<double>& b);
+/// The regimes at several b (m) from the paper's initial state, over ten times its window without
+/// the first tenth.
+std::vector<Regime> long_regimes(const std::vector<double>& b, Damping damping);
 
 /// The runs that more than one chapter rests on: each is made when it is first asked for. `b` in m.
 class Runs {

@@ -87,9 +87,7 @@ void closed_form(Report& report, const Parameters& p) {
     report.say(fmt::format(
         "The equation of motion (1) has 2 zeta = epsilon lambda; the closed form (8)-(11), put "
         "into it as printed, has {:.4f} times that, and so has the transfer matrix (19), (20). "
-        "These are the two dampings of this report: `\"damping\":\"equation_of_motion\"` and "
-        "`\"damping\":\"closed_form\"`. Where a row says \"with the closed-form damping "
-        "alone\", eq. (1) gives another result.",
+        "These are the two dampings of this report.",
         most));
 }
 
@@ -131,7 +129,8 @@ void trajectory_difference(Report& report) {
              run.outcome.impacts, second.distance.back() / size),
          .number = largest,
          .band = {0, 1e-3},
-         .because = "of first order: what is left is the size of the distance and rounding"});
+         .because = "an identity of first order: what is left is the size of the distance and "
+                    "rounding"});
 }
 
 }  // namespace

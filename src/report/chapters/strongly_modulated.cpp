@@ -65,8 +65,8 @@ void first_impact(Report& report, const Response& r, const Response& by_equation
          .what = "first impact, tau_s",
          .paper = "18.1300",
          .here = fmt::format(
-             "{:.4f} ({:.4f} by eq. (1); {:.4f} with epsilon and lambda as printed)", tau, other,
-             first_impact_of(rounded)),
+             "{:.4f}; {:.4f} with epsilon and lambda as printed; by eq. (1) {:.4f}", tau,
+             first_impact_of(rounded), other),
          .number = tau,
          .by_equation = other,
          .band = {18.12995, 18.13005},

@@ -61,6 +61,18 @@ void lambda3(Report& report, const Ensemble& e) {
          .band = {0, infinity},
          .because = "positive, as printed",
          .expected = Verdict::not_reproduced});
+    double squares = 0;
+    for (const Table2Row& row : printed_table_2)
+        squares += std::pow(raw.deviations_of(row.spread()), 2);
+    report.find(
+        {.where = "Table 2",
+         .what = "(lambda1 - lambda3) T of the three windows together, by raw_product: sum of "
+                 "squared deviations in sd",
+         .paper = "42.3, 42.5, 34.0",
+         .here = fmt::format("{:.1f}, of {:.1f} +- {:.1f}", squares, raw.mean, raw.deviation),
+         .number = squares,
+         .band = {0.115, 11.3},
+         .because = "98 % of chi squared with three degrees of freedom"});
     DataTable table{
         {"window", "printed lambda3", "printed (lambda1 - lambda3) T", "raw_product", "qr"}, {}};
     for (const Table2Row& row : printed_table_2) {

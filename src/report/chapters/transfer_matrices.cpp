@@ -73,7 +73,7 @@ void figures_6_and_7(Report& report, const Response& r) {
          .here = fmt::format("{:.0e}", J_error),
          .number = J_error,
          .band = {0, 1e-12},
-         .because = "rounding"});
+         .because = "an identity, checked: rounding is all"});
     report.find(
         {.where = "Fig. 7",
          .what = "moduli of M: their distance from 1, 1, R, R (median of the impacts)",
@@ -81,7 +81,7 @@ void figures_6_and_7(Report& report, const Response& r) {
          .here = fmt::format("{:.0e}", M_error),
          .number = M_error,
          .band = {0, 1e-12},
-         .because = "rounding, which near grazing is larger"});
+         .because = "an identity, checked: rounding, which near grazing is larger"});
 }
 
 /// The factor by which M multiplies a deviation of x - y alone, median of the impacts.
@@ -99,7 +99,8 @@ void what_M_does(Report& report, const Response& r) {
     report.find(
         {.where = "Fig. 7",
          .what = "factor of a difference of x - y at an impact",
-         .paper = "1: a difference of displacement will not be changed",
+         .paper =
+             "\"the initial difference of displacement will not be changed ... by themselves\"",
          .here = fmt::format("{:.4f}: R, as that of x' - y'", factor),
          .number = factor,
          .band = {0.999, 1.001},
@@ -188,7 +189,7 @@ void areas_1_and_2(Report& report, const LargestOfT& here, const LargestOfT& oth
     report.find(
         {.where = "Fig. 9, area 1",
          .what = "out of step: share of impacts where T's largest modulus is above 1",
-         .paper = "greater than one",
+         .paper = "greater than one (an example)",
          .here = fmt::format("{:.2f}, median {:.2f}", out, median(here.out_of_step)),
          .number = out,
          .by_equation = above_one(other.out_of_step),
@@ -198,8 +199,8 @@ void areas_1_and_2(Report& report, const LargestOfT& here, const LargestOfT& oth
          .expected = Verdict::partly});
     report.find(
         {.where = "Fig. 9, area 2",
-         .what = "in step: share of impacts where it is below 1",
-         .paper = "less than one",
+         .what = "in step, all of it: share of impacts where it is below 1",
+         .paper = "less than one (an example)",
          .here = fmt::format(
              "{:.2f}, median {:.3f}; by eq. (1) {:.2f}, median {:.3f}", in, median(here.in_step),
              other_in, median(other.in_step)),
@@ -250,7 +251,8 @@ void where_chaos_comes_from(Report& report, Runs& runs) {
     const Growth here = of(Damping::closed_form), other = of(Damping::equation_of_motion);
     report.find(
         {.where = "Sections 4.1, 6",
-         .what = "growth of ln of the largest deviation (qr) in step, over that out of step",
+         .what = "b = 22 mm: growth of ln of the largest deviation (qr) in step, over that out of "
+                 "step",
          .paper = "chaos results from desynchronised impacts",
          .here = fmt::format(
              "{:.4f} / {:.4f} per unit of tau; by eq. (1) {:.4f} / {:.4f}", here.in_step,
@@ -284,8 +286,45 @@ std::vector<Modulation> modulations(const Response& r, const Intervals& stretche
     return found;
 }
 
-/// "The largest value ... has a close relation to the maximal amplitude."
-void area_3(Report& report, Runs& runs) {
+/// "Area1 and area2 are two typical examples": of the synchronised stretches those that begin with
+/// such an area 2.
+void example_of_area_2(Report& report, const Response& r, const Intervals& stretches) {
+    const TransferModuli& moduli = *r.run.moduli;
+    long examples = 0;
+    for (const auto& [from, to] : stretches) {
+        bool below = true;
+        for (std::size_t i = 0; i < moduli.tau.size(); ++i)
+            if (moduli.tau[i] > from && moduli.tau[i] <= (from + to) / 2)
+                below = below && moduli.T[i][0] < 1;
+        examples += below;
+    }
+    report.find(
+        {.where = "Fig. 9, area 2",
+         .what = "stretches in step over whose first half it is below 1 throughout",
+         .paper = "less than one (an example)",
+         .here = fmt::format("{} of {}", examples, stretches.size()),
+         .number = static_cast<double>(examples),
+         .band = {1, infinity},
+         .because = "an example is enough"});
+}
+
+/// "In area3, the largest value is observed and it has a close relation to the maximal amplitude of
+/// modulated displacement."
+void area_3(Report& report, Runs& runs, const Response& window) {
+    const std::vector<Modulation> shown =
+        modulations(window, synchronised_stretches(*window.run.regime));
+    const double largest_T = std::ranges::max_element(shown, {}, &Modulation::T)->x;
+    const auto higher =
+        std::ranges::count_if(shown, [&](const Modulation& m) { return m.x > largest_T; });
+    report.find(
+        {.where = "Fig. 9, area 3",
+         .what = "of the window's modulations, those with a higher amplitude than that of the "
+                 "largest value of T",
+         .paper = "in area3, the largest value is observed",
+         .here = fmt::format("{} of {}", higher, shown.size()),
+         .number = static_cast<double>(higher),
+         .band = exactly(0),
+         .because = "area3 is at the maximal amplitude"});
     const Response& r = runs.long_response(0.022);
     std::vector<double> T, x;
     for (const Modulation& m : modulations(r, synchronised_stretches(*r.run.regime)))
@@ -319,7 +358,8 @@ void figure_9(Report& report, Runs& runs) {
     areas_1_and_2(
         report, largest_by_step(r, stretches),
         largest_by_step(by_equation, synchronised_stretches(*by_equation.run.regime)));
-    area_3(report, runs);
+    example_of_area_2(report, r, stretches);
+    area_3(report, runs, r);
     where_chaos_comes_from(report, runs);
 }
 
