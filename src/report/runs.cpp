@@ -78,8 +78,6 @@ Ensemble one_run(const Parameters& p, const State& start, WindowsOf size) {
     return e;
 }
 
-int all_threads() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
-
 struct Case {
     Parameters parameters;
     State start;
@@ -123,6 +121,8 @@ Moments finite_moments(const std::vector<Ensemble::Window>& windows, auto&& valu
 }
 
 }  // namespace
+
+int all_threads() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
 
 Parameters table1(double b, Damping damping) {
     Parameters p;
@@ -175,11 +175,19 @@ std::vector<Regime> regimes_of_random_starts(const Parameters& p, int starts) {
     return regimes_of(cases, {1500, 3000});
 }
 
-const Response& Runs::run(double b, Damping damping, double tau_end) {
-    const auto found = responses_.find({b, damping, tau_end});
+Response long_response(double b) {
+    const Parameters p = table1(b, Damping::closed_form);
+    Wanted wanted = run_to(p, default_state(p), 10 * window_end);
+    wanted.parts = {.series = true, .moduli = true, .regime = true};
+    wanted.estimators = qr_alone;
+    return {p, analyse(wanted)};
+}
+
+const Response& Runs::response(double b, Damping damping) {
+    const auto found = responses_.find({b, damping});
     if (found != responses_.end()) return found->second;
     const Parameters p = table1(b, damping);
-    Wanted wanted = run_to(p, default_state(p), tau_end);
+    Wanted wanted = run_to(p, default_state(p), window_end);
     wanted.parts = {
         .series = true,
         .impacts = true,
@@ -190,14 +198,7 @@ const Response& Runs::run(double b, Damping damping, double tau_end) {
         .before_capture = true,
         .manifold = true};
     wanted.estimators = all_estimators;
-    return responses_.emplace(std::tuple{b, damping, tau_end}, Response{p, analyse(wanted)})
-        .first->second;
-}
-
-const Response& Runs::response(double b, Damping damping) { return run(b, damping, window_end); }
-
-const Response& Runs::long_response(double b) {
-    return run(b, Damping::closed_form, 10 * window_end);
+    return responses_.emplace(std::pair{b, damping}, Response{p, analyse(wanted)}).first->second;
 }
 
 const Ensemble& Runs::ensemble(double b, WindowsOf size, Damping damping) {

@@ -17,6 +17,9 @@ namespace vines::report {
 /// long.
 inline constexpr double window_end = 1708.9;
 
+/// For parallel(): of the machine.
+int all_threads();
+
 /// Table 1 with a half-width b, in m.
 Parameters table1(double b, Damping damping);
 
@@ -80,17 +83,18 @@ std::vector<Regime> regimes_of_random_starts(const Parameters& parameters, int s
 /// the first tenth.
 std::vector<Regime> long_regimes(const std::vector<double>& b, Damping damping);
 
+/// By the closed form's damping and ten times as long, for what one window has too little of: the
+/// series, the moduli and the regime alone. `b` in m.
+Response long_response(double b);
+
 /// The runs that more than one chapter rests on: each is made when it is first asked for. `b` in m.
 class Runs {
 public:
     const Response& response(double b, Damping damping = Damping::closed_form);
-    /// Ten times as long, by the closed form's damping: for what one window has too little of.
-    const Response& long_response(double b);
     const Ensemble& ensemble(double b, WindowsOf size, Damping damping = Damping::closed_form);
 
 private:
-    std::map<std::tuple<double, Damping, double>, Response> responses_;  // by tau_end, too
-    const Response& run(double b, Damping damping, double tau_end);
+    std::map<std::pair<double, Damping>, Response> responses_;
     std::map<std::tuple<double, WindowsOf, Damping>, Ensemble> ensembles_;
 };
 

@@ -310,7 +310,7 @@ void example_of_area_2(Report& report, const Response& r, const Intervals& stret
 
 /// "In area3, the largest value is observed and it has a close relation to the maximal amplitude of
 /// modulated displacement."
-void area_3(Report& report, Runs& runs, const Response& window) {
+void area_3(Report& report, const Response& window) {
     const std::vector<Modulation> shown =
         modulations(window, synchronised_stretches(*window.run.regime));
     const double largest_T = std::ranges::max_element(shown, {}, &Modulation::T)->x;
@@ -325,7 +325,7 @@ void area_3(Report& report, Runs& runs, const Response& window) {
          .number = static_cast<double>(higher),
          .band = exactly(0),
          .because = "area3 is at the maximal amplitude"});
-    const Response& r = runs.long_response(0.022);
+    const Response r = long_response(0.022);
     std::vector<double> T, x;
     for (const Modulation& m : modulations(r, synchronised_stretches(*r.run.regime)))
         T.push_back(m.T), x.push_back(m.x);
@@ -359,7 +359,7 @@ void figure_9(Report& report, Runs& runs) {
         report, largest_by_step(r, stretches),
         largest_by_step(by_equation, synchronised_stretches(*by_equation.run.regime)));
     example_of_area_2(report, r, stretches);
-    area_3(report, runs, r);
+    area_3(report, r);
     where_chaos_comes_from(report, runs);
 }
 
