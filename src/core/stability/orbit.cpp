@@ -299,7 +299,7 @@ constexpr int most_cycles = 4000, least_periods = 30;
 // Where that is too short, it must move as the orbit's linear map says, in each of so many spans,
 // to this share of what the map contracts in the span.
 constexpr int spans = 3;
-constexpr double linear_share = 0.2;
+constexpr double linear_return_share = 0.2;
 // ln of the contraction of a period that is more than rounding.
 constexpr double least_contraction = 1e-9;
 
@@ -337,7 +337,8 @@ bool attracts(
                                linear = coordinates.after(before, periods);
         if (!pass(periods)) return false;
         if (distant() < there) return true;
-        if ((coordinates.of(*s) - linear).norm() > linear_share * contraction * before.norm())
+        if ((coordinates.of(*s) - linear).norm() >
+            linear_return_share * contraction * before.norm())
             return false;
     }
     return true;
