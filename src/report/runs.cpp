@@ -15,8 +15,7 @@ namespace {
 
 // Far above what any run here has: each ends at its tau_end.
 constexpr long max_impacts = 10000000;
-constexpr ExponentOptions qr_and_raw_product = {
-    .qr = true, .raw_product = true, .history = shortest_history};
+constexpr ExponentOptions qr_and_raw_product = {.qr = true, .raw_product = true, .history = 0};
 
 /// From a start at tau = 0; the rest is to be filled in.
 Wanted run_to(const Parameters& p, const State& start, double tau_end) {

@@ -19,9 +19,6 @@ constexpr double nearly_tangent = 1800;
 /// Points on each branch of the manifold beside a run: a smooth curve on a screen.
 constexpr std::size_t manifold_points = 200;
 
-/// Exponents that are not shown have a history for their standard error alone.
-constexpr std::size_t unseen_history = shortest_history;
-
 const std::vector<double> decay_shares = {0.5, 0.1};
 
 /// A cycle's samples are further apart where the series would be too long.
@@ -46,7 +43,8 @@ ExponentOptions main_estimators(const Wanted& w) {
 
 ExponentOptions window_estimators(const Wanted& w) {
     ExponentOptions options = w.estimators;
-    options.history = unseen_history;
+    // It is not shown; slopes rest on it.
+    options.history = std::min(options.history, shortest_history);
     return options;
 }
 

@@ -21,12 +21,13 @@ bool is_in_range(double product) { return product > least_product && product < m
 constexpr Exponents no_exponents = {nan, nan, nan, nan};
 
 /// A history that thins itself: when full it drops every second entry and from then on takes every
-/// second impact.
+/// second impact. Of capacity 0 it stays empty.
 class Thinned {
 public:
-    explicit Thinned(std::size_t capacity) : capacity_(std::max(capacity, shortest_history)) {}
+    explicit Thinned(std::size_t capacity)
+        : capacity_(capacity > 0 ? std::max(capacity, shortest_history) : 0) {}
 
-    bool wants_next() const { return seen_ % stride_ == 0; }
+    bool wants_next() const { return capacity_ > 0 && seen_ % stride_ == 0; }
     void skip() { ++seen_; }
     void push(double tau, const Exponents& lambda) {
         if (history_.tau.size() == capacity_) thin();
@@ -258,7 +259,7 @@ struct TransferProduct::Raw {
 };
 
 TransferProduct::TransferProduct(double epsilon, const ExponentOptions& o) : epsilon_(epsilon) {
-    if (o.qr) qr_ = std::make_unique<Qr>(o.history);
+    if (o.qr) qr_ = std::make_unique<Qr>(std::max(o.history, shortest_history));
     if (o.eigenvalues) powers_ = std::make_unique<Powers>(epsilon, o.history);
     if (o.raw_product) raw_ = std::make_unique<Raw>(o.history);
 }

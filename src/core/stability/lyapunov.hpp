@@ -52,8 +52,9 @@ struct ExponentHistory {
 };
 
 /// Which estimators to run, and how many entries their histories may have (at least
-/// shortest_history). Longer ones are thinned to every second, fourth, ... impact; `eigenvalues`
-/// keeps at most most_eigenvalue_entries.
+/// shortest_history; 0: none but qr's shortest one, which its standard error rests on). Longer ones
+/// are thinned to every second, fourth, ... impact; `eigenvalues` keeps at most
+/// most_eigenvalue_entries.
 struct ExponentOptions {
     bool qr = false, eigenvalues = false, raw_product = false;
     std::size_t history = 20000;
