@@ -49,9 +49,10 @@ std::vector<Preset> figures() {
         {"fig4", "Fig. 4", smr + ", b = 22 mm: relative displacement y - x enlarged", "",
          closed_form(0.022, 600)},
         {"fig5", "Fig. 5", smr + ", b = 22 mm: transient Lyapunov exponents",
-         "The paper's four positive values are those of raw_product: but for lambda1 they are its "
-         "rounding floor. qr has one. The spikes are not grazing: they come where the "
-         "product's leading eigenvalue passes through zero.",
+         "The paper's four positive values are presumably those of raw_product: but for lambda1 "
+         "they are its rounding floor. qr has one. The deepest spikes of lambda1 by (33) come at "
+         "impacts that are faster than most, where the product's leading eigenvalue is nearly "
+         "zero.",
          closed_form(0.022)},
         {"fig6", "Fig. 6", smr + ", b = 22 mm: transfer matrices J_i of the flights", "",
          closed_form(0.022)},

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "core/motion/special_values.hpp"
 #include "report/statistics.hpp"
@@ -16,12 +18,17 @@ std::string in_words(const Exponents& lambda) {
 
 namespace {
 
-double share_all_positive(const ExponentHistory& h) {
+/// Of a history's values those of the second half of its window.
+std::span<const Exponents> late(const ExponentHistory& h) {
     const double half = (h.tau.front() + h.tau.back()) / 2;
-    double all = 0, impacts = 0;
-    for (std::size_t i = 0; i < h.tau.size(); ++i)
-        if (h.tau[i] >= half) all += positive(h.lambda[i]) == 4, ++impacts;
-    return all / impacts;
+    const auto first = std::ranges::lower_bound(h.tau, half) - h.tau.begin();
+    return std::span(h.lambda).subspan(static_cast<std::size_t>(first));
+}
+
+double share_all_positive(const ExponentHistory& h) {
+    const auto all = std::ranges::count_if(
+        late(h), [](const Exponents& lambda) { return positive(lambda) == 4; });
+    return static_cast<double>(all) / static_cast<double>(late(h).size());
 }
 
 double over_error(const Response& r) {
@@ -30,16 +37,16 @@ double over_error(const Response& r) {
 }
 
 void chaotic(
-    Report& report, const std::string& where, const Response& here, const Response& other) {
+    Report& report, const PositiveExponents& paper, const Response& here, const Response& other) {
     const auto text = [](const Response& r) {
         const auto& exponents = *r.run.exponents;
         return fmt::format(
             "{:.4f} +- {:.4f}", exponents.product.qr()[0], exponents.growth.standard_error[0]);
     };
     report.find(
-        {.where = where,
+        {.where = paper.where,
          .what = "lambda1 (qr) over its standard error",
-         .paper = "chaotic",
+         .paper = paper.chaotic,
          .here = fmt::format("{}; by eq. (1) {}", text(here), text(other)),
          .number = over_error(here),
          .by_equation = over_error(other),
@@ -50,16 +57,16 @@ void chaotic(
 }  // namespace
 
 void positive_exponents(
-    Report& report, const std::string& where, const Response& here, const Response& other) {
-    chaotic(report, where, here, other);
+    Report& report, const PositiveExponents& paper, const Response& here, const Response& other) {
+    chaotic(report, paper, here, other);
     const TransferProduct &product = here.run.exponents->product,
                           &by_equation = other.run.exponents->product;
     const double share = share_all_positive(product.raw_product_history());
     report.find(
-        {.where = where,
+        {.where = paper.where,
          .what = "raw_product, second half of the window: share of impacts up to which all four "
                  "are positive",
-         .paper = "four positive values",
+         .paper = paper.positive,
          .here = fmt::format("{:.2f}; at the last {}", share, in_words(product.raw_product())),
          .number = share,
          .by_equation = share_all_positive(by_equation.raw_product_history()),
@@ -69,9 +76,9 @@ void positive_exponents(
          .expected = Verdict::partly});
     const Exponents lambda = product.qr();
     report.find(
-        {.where = where,
+        {.where = paper.where,
          .what = "positive exponents (qr)",
-         .paper = "4",
+         .paper = paper.positive,
          .here = fmt::format("{}: {}", positive(lambda), in_words(lambda)),
          .number = static_cast<double>(positive(lambda)),
          .by_equation = static_cast<double>(positive(by_equation.qr())),
@@ -81,12 +88,11 @@ void positive_exponents(
 }
 
 double late_change(const ExponentHistory& h, int k) {
-    const double half = (h.tau.front() + h.tau.back()) / 2;
-    std::vector<double> late;
-    for (std::size_t i = 0; i < h.tau.size(); ++i)
-        if (h.tau[i] >= half && std::isfinite(h.lambda[i][k])) late.push_back(h.lambda[i][k]);
-    const double last = late.back();
-    return (quantile(late, 0.95) - quantile(late, 0.05)) / std::abs(last);
+    std::vector<double> values;
+    for (const Exponents& lambda : late(h))
+        if (std::isfinite(lambda[k])) values.push_back(lambda[k]);
+    const double last = values.back();
+    return (quantile(values, 0.95) - quantile(values, 0.05)) / std::abs(last);
 }
 
 }  // namespace vines::report

@@ -8,9 +8,13 @@ namespace vines::report {
 
 std::string in_words(const Exponents& lambda);
 
-/// That the motion is chaotic, and that all four exponents are positive; `other`: by eq. (1).
+/// Where the paper says that a motion is chaotic and that its four exponents are positive, and how.
+struct PositiveExponents {
+    std::string where, chaotic, positive;
+};
+/// `other`: by eq. (1).
 void positive_exponents(
-    Report& report, const std::string& where, const Response& here, const Response& other);
+    Report& report, const PositiveExponents& paper, const Response& here, const Response& other);
 
 /// How far the k-th exponent (0 to 3) comes over the second half of a window, but for its spikes
 /// (one value in twenty at either end), over its last value.

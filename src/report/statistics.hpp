@@ -11,6 +11,7 @@ struct Moments {
 
     /// How many deviations a value lies above the mean.
     double deviations_of(double value) const { return (value - mean) / deviation; }
+    double scatter() const { return deviation / mean; }
 };
 /// NaN of nothing; of one value the deviation is NaN.
 Moments moments(const std::vector<double>& values);

@@ -29,6 +29,7 @@ export async function startBrowser() {
       "--disable-sync",
     ],
   });
+  context.setDefaultTimeout(120000); // a busy machine is slow, not wrong
   const complaints = [];
   context.on("page", (page) => {
     page.on("console", (message) => {
@@ -63,12 +64,11 @@ export async function open(context, url, options = {}) {
   return page;
 }
 
-const done = (id, timeout) => (page, n) =>
+const done = (id) => (page, n) =>
   page.waitForFunction(
     ([id, n]) => Number(document.getElementById(id).dataset.done ?? 0) >= n,
     [id, n],
-    {timeout},
   );
-export const drawn = done("results", 20000);
-export const identified = done("measure-results", 20000);
-export const swept = done("sweep-results", 90000);
+export const drawn = done("results");
+export const identified = done("measure-results");
+export const swept = done("sweep-results");

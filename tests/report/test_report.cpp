@@ -91,6 +91,31 @@ TEST_CASE("a verdict that has changed is marked in its row of the table, and onl
         std::string::npos);
 }
 
+TEST_CASE("a verdict on a computed record speaks of that record") {
+    std::vector<Finding> findings = {
+        finding(1.5, {1, 2}), finding(2.5, {1, 2}), finding(3.5, {1, 2})};
+    for (Finding& f : findings) f.computed_record = true, f.partly = Band{1, 3};
+    const std::string table = markdown_table(findings);
+    CHECK(occurrences(table, "| holds for the computed record") == 1);
+    CHECK(occurrences(table, "| holds in part for the computed record") == 1);
+    CHECK(occurrences(table, "| **does not hold for the computed record**") == 1);
+    CHECK(table.find("reproduced") == std::string::npos);
+}
+
+TEST_CASE("the verdicts are counted, those on computed records apart") {
+    const auto folder = std::filesystem::temp_directory_path() / "vines-test-report-counts";
+    std::filesystem::create_directories(folder);
+    Report report;
+    for (int i = 0; i < 3; ++i) report.find(finding(1, {1, 2}));
+    report.findings[2].computed_record = true;
+    write_markdown(report, folder.string());
+    const std::string text = contents(folder / "report.md");
+    CHECK(
+        text.find("\n- reproduced: 2\n- holds for the computed record: 1\n\n") !=
+        std::string::npos);
+    std::filesystem::remove_all(folder);
+}
+
 TEST_CASE("two symmetric impacts per cycle in closed form are those that a run comes to") {
     vines::Parameters p;
     p.b = 0.015;

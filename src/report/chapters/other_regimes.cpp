@@ -65,7 +65,12 @@ void figure_10(Report& report, const Response& r, const Response& by_equation) {
          .because = "an impact in three cycles or in more; in part: in two",
          .partly = Band{0, 0.5},
          .expected = Verdict::not_reproduced});
-    positive_exponents(report, "Fig. 10", r, by_equation);
+    positive_exponents(
+        report,
+        {.where = "Fig. 10",
+         .chaotic = "irregular impacts \"can result in chaos\"",
+         .positive = "\"four positive values are obtained\""},
+        r, by_equation);
     if (r.run.stick_count > 0)
         report.say(fmt::format(
             "{} stuck phase(s) lie in the window: each leaves the deviations of the centre of mass "
@@ -240,9 +245,14 @@ void figure_14(Report& report, const Response& r, const Response& by_equation) {
          .number = r.run.regime->z,
          .by_equation = by_equation.run.regime->z,
          .band = {3, 4},
-         .because = "between",
+         .because = "the paper's two numbers",
          .expected = Verdict::by_equation_of_motion});
-    positive_exponents(report, "Fig. 14", r, by_equation);
+    positive_exponents(
+        report,
+        {.where = "Fig. 14",
+         .chaotic = "an \"irregular response\"",
+         .positive = "\"the final Lyapunov exponents are positive\""},
+        r, by_equation);
 }
 
 }  // namespace

@@ -85,8 +85,7 @@ void lambda3(Report& report, const Ensemble& e) {
     }
     report.say(
         "If what is printed as lambda3 is rounding, it lies some ln(1/2.2e-16) = 36.0, over T, "
-        "below "
-        "lambda1, and as far as raw_product has it; if it is the exponent, as far as qr.");
+        "below lambda1, and as far as raw_product has it; if it is the exponent, as far as qr.");
     report.table(std::move(table));
 }
 

@@ -3,7 +3,7 @@
 //
 // The paper does not say over which windows. But what it prints as lambda3 is rounding
 // (transient_exponents.cpp): lambda1 - lambda3 is about 36/T, and so tells each window's length T.
-// They are 1400 to 4800 long, and hold about 400 impacts, whatever b.
+// They are 1400 to 5000 long, and hold about 400 contacts, whatever b.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -106,12 +106,6 @@ void lambda3(Report& report, Runs& runs) {
          .expected = Verdict::not_reproduced});
 }
 
-/// Deviation over mean, in per cent.
-double scatter_percent(const std::vector<double>& values) {
-    const Moments m = moments(values);
-    return 100 * m.deviation / m.mean;
-}
-
 /// What the printed lambda1 - lambda3 says of the windows, which the paper does not print: no
 /// statement of the paper, and no verdict.
 void windows(Report& report, Runs& runs) {
@@ -131,17 +125,17 @@ void windows(Report& report, Runs& runs) {
     const Moments mean = moments(contacts);
     report.say(fmt::format(
         "If what is printed as lambda3 is rounding (Table 2), it is lambda1 less {:.0f}/T to "
-        "{:.0f}/T, "
-        "and tells how long each row's window is, which the paper does not. Their lengths, {:.0f} "
+        "{:.0f}/T, and tells how long each row's window is, which the paper does not. Their "
+        "lengths, {:.0f} "
         "to {:.0f}, scatter by {:.0f} %, their numbers of contacts, {:.0f} +- {:.0f} on average, "
         "by {:.0f} %; rounding alone scatters the three rows of Table 2 by {:.0f} %. One number "
         "of contacts in all windows is therefore an inference, and {} is taken for it above. The "
         "row of 22 mm is left out: its window is printed in Table 2, {:.0f} long, and this way it "
         "would be {:.0f}.",
         std::ranges::min(spreads), std::ranges::max(spreads), std::ranges::min(lengths),
-        std::ranges::max(lengths), scatter_percent(lengths), mean.mean,
-        mean.deviation / std::sqrt(static_cast<double>(contacts.size())), scatter_percent(contacts),
-        scatter_percent(of_table_2), window_contacts, known, inferred));
+        std::ranges::max(lengths), 100 * moments(lengths).scatter(), mean.mean,
+        mean.deviation / std::sqrt(static_cast<double>(contacts.size())), 100 * mean.scatter(),
+        100 * moments(of_table_2).scatter(), window_contacts, known, inferred));
 }
 
 constexpr double highest_of_type_II = 0.031;  // m

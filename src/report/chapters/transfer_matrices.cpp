@@ -104,7 +104,7 @@ void what_M_does(Report& report, const Response& r) {
          .here = fmt::format("{:.4f}: R, as that of x' - y'", factor),
          .number = factor,
          .band = {0.999, 1.001},
-         .because = "not changed",
+         .because = "1, if nothing changes it: that of each impact is exact but for rounding",
          .expected = Verdict::not_reproduced});
 }
 
@@ -339,8 +339,9 @@ void area_3(Report& report, const Response& window) {
              r.run.outcome.tau),
          .number = correlation,
          .band = {0.8, 1},
-         .because = "close; in part: more than by chance and less than close",
-         .partly = Band{0.3, 1},
+         .because = "close; in part: more than chance leaves once in 100 times, 2.58 over the root "
+                    "of their number less one",
+         .partly = Band{2.58 / std::sqrt(static_cast<double>(T.size()) - 1), 1},
          .expected = Verdict::partly});
 }
 

@@ -36,11 +36,16 @@ void their_sum(Report& report, const TransferProduct& product, const TransferPro
          .expected = Verdict::not_reproduced});
 }
 
+/// From this length of the window on, the product in double precision holds nothing of the k-th
+/// exponent.
+double rounded_from(const Exponents& qr, int k) {
+    return -std::log(std::numeric_limits<double>::epsilon()) / (qr[0] - qr[k]);
+}
+
 /// What a product in double precision can hold of the exponents, and until when.
 void limits_of_the_computer(Report& report, const TransferProduct& product) {
     const Exponents qr = product.qr(), raw = product.raw_product();
     const double T = product.end_tau() - product.start_tau(),
-                 digits = -std::log(std::numeric_limits<double>::epsilon()),
                  range = std::log(std::numeric_limits<double>::max());
     report.say(fmt::format(
         "The exponents add up to -2 zeta + (2/T) (sum of ln R), whatever the motion: they cannot "
@@ -50,7 +55,7 @@ void limits_of_the_computer(Report& report, const TransferProduct& product) {
         "plus rounding, and what stands for the third exponent is the floor lambda1 - "
         "ln(1/2.2e-16)/T, the broken line: {:.4f} here, where raw_product has {:.4f} and qr "
         "{:.4f}.",
-        range / qr[0], digits / (qr[0] - qr[2]), rounding_floor(raw[0], T), raw[2], qr[2]));
+        range / qr[0], rounded_from(qr, 2), rounding_floor(raw[0], T), raw[2], qr[2]));
 }
 
 void constancy(Report& report, const TransferProduct& product) {
@@ -76,7 +81,7 @@ void constancy(Report& report, const TransferProduct& product) {
 /// One impact: how far the k-th exponent lies below the mean of those at its neighbours, times T,
 /// which makes it the logarithm of an eigenvalue; and which share of all impacts is slower.
 struct Spike {
-    double depth, rank;
+    double T, depth, rank;
 };
 
 /// The deepest first.
@@ -91,17 +96,18 @@ std::vector<Spike> spikes_of(const Response& r, const ExponentHistory& h, int k)
     };
     std::vector<Spike> spikes;
     for (std::size_t i = 10; i + 1 < h.tau.size(); ++i) {  // the first products are short
-        const double beside = (h.lambda[i - 1][k] + h.lambda[i + 1][k]) / 2,
-                     depth = (beside - h.lambda[i][k]) * (h.tau[i] - start);
+        const double beside = (h.lambda[i - 1][k] + h.lambda[i + 1][k]) / 2, T = h.tau[i] - start,
+                     depth = (beside - h.lambda[i][k]) * T;
         // The product's first entry is that of the second impact.
-        if (std::isfinite(depth)) spikes.push_back({depth, share_slower_than(speeds[i + 1])});
+        if (std::isfinite(depth)) spikes.push_back({T, depth, share_slower_than(speeds[i + 1])});
     }
     std::ranges::sort(spikes, std::ranges::greater{}, &Spike::depth);
     return spikes;
 }
 
+constexpr std::size_t deepest = 8;
+
 void spikes(Report& report, const Response& r, const ExponentHistory& h, int k, const char* how) {
-    constexpr std::size_t deepest = 8;
     const std::vector<Spike> spikes = spikes_of(r, h, k);
     std::vector<double> ranks;
     for (std::size_t i = 0; i < deepest; ++i) ranks.push_back(spikes[i].rank);
@@ -139,17 +145,25 @@ void transient_exponents(Report& report, Runs& runs) {
                     "QR",
          .plots = exponent_histories(product),
          .height = 230});
-    positive_exponents(report, "Fig. 5", r, by_equation);
+    positive_exponents(
+        report, {.where = "Fig. 5", .chaotic = "chaotic", .positive = "four exponents, positive"},
+        r, by_equation);
     their_sum(report, product, by_equation.run.exponents->product);
     limits_of_the_computer(report, product);
     constancy(report, product);
     spikes(report, r, product.eigenvalues_history(), 0, "by (33)");
     spikes(report, r, product.raw_product_history(), 3, "by raw_product");
-    report.say(
+    const double rounded = rounded_from(product.qr(), 3);
+    const std::vector<Spike> of_lambda4 = spikes_of(r, product.raw_product_history(), 3);
+    const auto in_rounding = std::ranges::count_if(
+        of_lambda4.begin(), of_lambda4.begin() + deepest,
+        [rounded](const Spike& s) { return s.T > rounded; });
+    report.say(fmt::format(
         "A spike of lambda1 by (33) is where the product's leading eigenvalue is small beside the "
         "product: its right and its left direction are nearly orthogonal there, which QR never "
-        "sees. In raw_product lambda4 and lambda3 spike as well, where rounding happens to "
-        "cancel.");
+        "sees. Of the {} deepest spikes of lambda4 by raw_product {} come later than T = {:.0f}, "
+        "where it is rounding alone.",
+        deepest, in_rounding, rounded));
 }
 
 }  // namespace vines::report
