@@ -124,6 +124,14 @@ TEST_CASE("in a chaotic motion it grows by lambda1 up to the size of the motion,
     CHECK(r.tangent.back() > 1e10);
 }
 
+TEST_CASE("the linear stretch ends before the distance misses the prediction by a tenth") {
+    const Parameters p = table1(0.022, Damping::equation_of_motion);
+    const Perturbation r = perturbed(p, default_state(p), random_difference(2, 1e-9), 200);
+    REQUIRE(r.linear);
+    CHECK(r.linear->tau.to > 80);
+    CHECK(largest_miss(r, r.linear->tau.to) <= linear_share);
+}
+
 TEST_CASE("between the two moments of an impact the distance shows no jump of the velocities") {
     const Parameters p = table1(0.008, Damping::closed_form);
     const State start = settled(p, 300);
