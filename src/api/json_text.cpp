@@ -125,7 +125,7 @@ void JsonText::put_list(const Json& list) {
     }
 }
 
-void JsonText::write(Json json) {
+void JsonText::write(Json& json) {
     using Type = Json::value_t;
     switch (json.type()) {
         case Type::object: {
@@ -134,7 +134,7 @@ void JsonText::write(Json json) {
                 put(std::exchange(before, ','));
                 put_quoted(name);
                 put(':');
-                write(std::move(value));
+                write(value);
             }
             return put(std::string_view(json.empty() ? "{}" : "}"));
         }
@@ -142,11 +142,14 @@ void JsonText::write(Json json) {
             char before = '[';
             for (Json& value : json.get_ref<Json::array_t&>()) {
                 put(std::exchange(before, ','));
-                write(std::move(value));
+                write(value);
             }
             return put(std::string_view(json.empty() ? "[]" : "]"));
         }
-        case Type::binary: return put_list(json);
+        case Type::binary:
+            put_list(json);
+            json = nullptr;
+            return;
         case Type::number_float: return put_number(json.get<double>());
         case Type::string: return put_quoted(json.get_ref<const std::string&>());
         default: return put(std::string_view(json.dump()));
@@ -157,7 +160,7 @@ std::string json_text(Json json) {
     std::string text;
     text.reserve(most_of_lists(json));
     JsonText out([&text](std::string_view piece) { text += piece; });
-    out.write(std::move(json));
+    out.write(json);
     out.end();
     return text;
 }

@@ -21,8 +21,8 @@ public:
     JsonText(const JsonText&) = delete;
     JsonText& operator=(const JsonText&) = delete;
 
-    /// Each part is freed once it is written.
-    void write(Json json);
+    /// Each packed list is freed once it is written.
+    void write(Json& json);
     /// Hands out what is left.
     void end();
 

@@ -121,7 +121,8 @@ TEST_CASE("a text comes in pieces that make up the whole") {
         whole += piece;
         ++pieces;
     });
-    out.write(json);
+    Json written = json;
+    out.write(written);
     out.end();
     CHECK(pieces > 10);
     CHECK(whole == json_text(json));

@@ -137,7 +137,9 @@ async function compare(before, after) {
     let at = 0;
     while (one[at] === other[at]) ++at;
     const around = (text) => JSON.stringify(text.slice(Math.max(0, at - 60), at + 100));
-    console.log(`${name}: differs by ${difference}, at byte ${at}\n  - ${around(one)}\n  + ${around(other)}`);
+    console.log(
+      `${name}: differs by ${difference}, at byte ${at}\n  - ${around(one)}\n  + ${around(other)}`,
+    );
   }
   console.log(`${names.length - different} of ${names.length} answers are equal, byte for byte`);
   if (same > 0) console.log(`${same} more are equal as JSON`);
