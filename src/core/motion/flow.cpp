@@ -223,8 +223,8 @@ Transfer Flow::transfer(double s) const {
 
     // Within a cell: with u the unforced motion from (x', x) = (1, 0), that from (0, 1) is
     // u' + damping u.
-    const SeriesValue u = value_at(of_x_dot_.series, d);
-    then({u.x_dot, -stiffness_ * u.x, u.x, u.x_dot + damping_ * u.x});
+    const auto [u, u_dot] = of_x_dot_.near.at(d);
+    then({u_dot, -stiffness_ * u, u, u_dot + damping_ * u});
     return j;
 }
 
