@@ -79,14 +79,24 @@ Flow::Flow(double stiffness, double damping, double forcing, double Omega)
     RealColumns cell, state = unit_states;
     for (int j = 0; j < 4; ++j)
         cell[j] = over_cell(coefficients(), unit_states[j], cell_, parts[j]->series);
-    for (int k = 0; k < cells + block; ++k) {  // so that a block may begin at the last cell
+    for (Response* part : parts) {
+        part->near.x = part->series.head<2 * near_pairs>();
+        for (int n = 0; n < 2 * near_pairs; ++n)
+            part->near.x_dot[n] = (n + 1) * part->series[n + 1];
+    }
+    // So that a block of grid points, or of blocks' ends, may begin at the last cell.
+    for (int k = 0; k <= cells + block * block; ++k) {
         for (int j = 0; j < 4; ++j) {
             parts[j]->x.push_back((double)state[j].x);
             parts[j]->x_dot.push_back((double)state[j].x_dot);
+            if (k > 0 && k % block == 0) parts[j]->x_apart.push_back((double)state[j].x);
         }
         time_.push_back(k * cell_);
-        turn_cos_.push_back((double)state[3].cos);
-        turn_sin_.push_back((double)state[3].sin);
+        if (k > 0 && k % block == 0) time_apart_.push_back(k * cell_);
+        Row row{{}, {}, (double)state[3].cos, (double)state[3].sin};
+        for (int j = 0; j < 4; ++j)
+            row.x[j] = (double)state[j].x, row.x_dot[j] = (double)state[j].x_dot;
+        rows_.push_back(row);
         for (RealState& s : state) s = times(cell, s);
     }
 }
@@ -125,25 +135,19 @@ std::shared_ptr<const Flow> Flow::shared_stuck(const Parameters& p) {
 
 namespace {
 
-/// The phasor turned by an angle. One Newton step keeps its length 1 over millions of turns.
-void turn(Oscillation& o, double c, double s) {
-    const double sin_theta = o.sin_theta * c + o.cos_theta * s,
-                 cos_theta = o.cos_theta * c - o.sin_theta * s;
-    const double shrink = 1.5 - 0.5 * (sin_theta * sin_theta + cos_theta * cos_theta);
-    o.sin_theta = sin_theta * shrink;
-    o.cos_theta = cos_theta * shrink;
+/// One Newton step keeps a phasor's length 1 over millions of turns.
+void keep_length(Oscillation& o) {
+    const double shrink = 1.5 - 0.5 * (o.sin_theta * o.sin_theta + o.cos_theta * o.cos_theta);
+    o.sin_theta *= shrink;
+    o.cos_theta *= shrink;
 }
 
 }  // namespace
 
 Oscillation Flow::at(const Oscillation& o, int k) const {
     assert(k >= 0 && k <= cells);
-    Oscillation next = o;
-    turn(next, turn_cos_[k], turn_sin_[k]);
-    next.x = of_x_.x[k] * o.x + of_x_dot_.x[k] * o.x_dot + of_sin_.x[k] * o.sin_theta +
-             of_cos_.x[k] * o.cos_theta;
-    next.x_dot = of_x_.x_dot[k] * o.x + of_x_dot_.x_dot[k] * o.x_dot +
-                 of_sin_.x_dot[k] * o.sin_theta + of_cos_.x_dot[k] * o.cos_theta;
+    Oscillation next = roughly_at(o, k);
+    keep_length(next);
     return next;
 }
 
@@ -157,8 +161,9 @@ Oscillation Flow::turned(const Oscillation& o, double d) const {
         a *
         (1 + q * (-1.0 / 6 + q * (1.0 / 120 +
                                   q * (-1.0 / 5040 + q * (1.0 / 362880 + q * (-1.0 / 39916800))))));
-    Oscillation next = o;
-    turn(next, cos, sin);
+    Oscillation next = {
+        o.x, o.x_dot, o.sin_theta * cos + o.cos_theta * sin, o.cos_theta * cos - o.sin_theta * sin};
+    keep_length(next);
     return next;
 }
 
@@ -218,18 +223,9 @@ Transfer Flow::transfer(double s) const {
 
     // Within a cell: with u the unforced motion from (x', x) = (1, 0), that from (0, 1) is
     // u' + damping u.
-    const SeriesValue u = value_at(of_x_dot_.series, d);
-    then({u.x_dot, -stiffness_ * u.x, u.x, u.x_dot + damping_ * u.x});
+    const auto [u, u_dot] = of_x_dot_.near.at(d);
+    then({u_dot, -stiffness_ * u, u, u_dot + damping_ * u});
     return j;
-}
-
-Flow::Bounds Flow::bounds(const Oscillation& o) const {
-    // d/ds (stiffness x^2 + x'^2)/2 = x' (forcing sin theta - damping x') <= |x'| |forcing|
-    const double speed =
-        std::sqrt(stiffness_ * o.x * o.x + o.x_dot * o.x_dot) + std::abs(forcing_) * reach();
-    const double x = speed * inverse_root_stiffness_;
-    const double x_ddot = stiffness_ * x + damping_ * speed + std::abs(forcing_);
-    return {x, x_ddot, stiffness_ * speed + damping_ * x_ddot + std::abs(forcing_) * Omega_};
 }
 
 namespace {

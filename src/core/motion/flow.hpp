@@ -11,6 +11,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -67,8 +68,14 @@ public:
     double acceleration(const Oscillation& o) const {
         return -stiffness_ * o.x - damping_ * o.x_dot + forcing_ * o.sin_theta;
     }
+    /// The third and the fourth derivative.
     double jerk(const Oscillation& o) const {
         return -stiffness_ * o.x_dot - damping_ * acceleration(o) + forcing_ * Omega_ * o.cos_theta;
+    }
+
+    double snap(const Oscillation& o) const {
+        return -stiffness_ * acceleration(o) - damping_ * jerk(o) -
+               forcing_ * Omega_ * Omega_ * o.sin_theta;
     }
 
     /// x - y at the grid times k h, ..., (k + block - 1) h, for y = y0 + y_dot s: five
@@ -80,6 +87,16 @@ public:
         return from(of_x_.x) * o.x + from(of_x_dot_.x) * o.x_dot + from(of_sin_.x) * o.sin_theta +
                from(of_cos_.x) * o.cos_theta - (y0 + from(time_) * y_dot);
     }
+    /// The same at the ends of blocks, of the j-th (from 0) and of the next ones: at the grid times
+    /// block (j + 1) h, block (j + 2) h, ... j <= cells/block.
+    Block relative_positions_apart(const Oscillation& o, double y0, double y_dot, int j) const {
+        const auto from = [j](const std::vector<double>& column) {
+            return Eigen::Map<const Block>(column.data() + j);
+        };
+        return from(of_x_.x_apart) * o.x + from(of_x_dot_.x_apart) * o.x_dot +
+               from(of_sin_.x_apart) * o.sin_theta + from(of_cos_.x_apart) * o.cos_theta -
+               (y0 + from(time_apart_) * y_dot);
+    }
     /// x' at the same grid times.
     Block speeds(const Oscillation& o, int k) const {
         const auto from = [k](const std::vector<double>& column) {
@@ -90,13 +107,56 @@ public:
     }
     /// The whole state at grid time k h.
     Oscillation at(const Oscillation& o, int k) const;
+    /// The same, but for the last ulp of the phasor's length.
+    Oscillation roughly_at(const Oscillation& o, int k) const {
+        const Row& r = rows_[static_cast<std::size_t>(k)];
+        return {
+            r.x[0] * o.x + r.x[1] * o.x_dot + r.x[2] * o.sin_theta + r.x[3] * o.cos_theta,
+            r.x_dot[0] * o.x + r.x_dot[1] * o.x_dot + r.x_dot[2] * o.sin_theta +
+                r.x_dot[3] * o.cos_theta,
+            o.sin_theta * r.cos + o.cos_theta * r.sin, o.cos_theta * r.cos - o.sin_theta * r.sin};
+    }
     /// Taylor coefficients of x(s + d) in d.
     Series series(const Oscillation& o) const {
         return of_x_.series * o.x + of_x_dot_.series * o.x_dot + of_sin_.series * o.sin_theta +
                of_cos_.series * o.cos_theta;
     }
+    /// The same, shorter: the coefficients of x and of x' by pairs of an even and an odd power, for
+    /// |d| <= h. Remainders below 1e-18 of the motion.
+    static constexpr int near_pairs = 6;
+    using NearSeries = Eigen::Array<double, 2 * near_pairs, 1>;
+    struct Near {
+        NearSeries x, x_dot;
+        /// x and x' at d.
+        std::array<double, 2> at(double d) const {
+            // Estrin's scheme: three levels of operations instead of eleven.
+            static_assert(near_pairs == 6);
+            const double q = d * d, q_squared = q * q, q_fourth = q_squared * q_squared;
+            const auto value = [=](const NearSeries& c) {
+                const auto pair = [&c](int k) { return c.segment<2>(2 * k); };
+                const Eigen::Array2d sum = pair(0) + pair(1) * q +
+                                           (pair(2) + pair(3) * q) * q_squared +
+                                           (pair(4) + pair(5) * q) * q_fourth;
+                return sum[0] + d * sum[1];
+            };
+            return {value(x), value(x_dot)};
+        }
+    };
+    Near near_series(const Oscillation& o) const {
+        return {
+            of_x_.near.x * o.x + of_x_dot_.near.x * o.x_dot + of_sin_.near.x * o.sin_theta +
+                of_cos_.near.x * o.cos_theta,
+            of_x_.near.x_dot * o.x + of_x_dot_.near.x_dot * o.x_dot +
+                of_sin_.near.x_dot * o.sin_theta + of_cos_.near.x_dot * o.cos_theta};
+    }
     /// The state with its phasor turned by 0 <= d <= h; x and x' stay.
     Oscillation turned(const Oscillation& o, double d) const;
+    /// The same for |d| Omega < 1e-6.
+    Oscillation turned_little(const Oscillation& o, double d) const {
+        const double a = Omega_ * d, cos = 1 - 0.5 * a * a;
+        return {
+            o.x, o.x_dot, o.sin_theta * cos + o.cos_theta * a, o.cos_theta * cos - o.sin_theta * a};
+    }
     /// The state that `series` (made at o) has after 0 <= d <= h.
     Oscillation along(const Series& series, const Oscillation& o, double d) const;
     /// The state after any s >= 0.
@@ -109,7 +169,14 @@ public:
     struct Bounds {
         double x, x_ddot, x_dddot;
     };
-    Bounds bounds(const Oscillation& o) const;
+    Bounds bounds(const Oscillation& o) const {
+        // d/ds (stiffness x^2 + x'^2)/2 = x' (forcing sin theta - damping x') <= |x'| |forcing|
+        const double speed =
+            std::sqrt(stiffness_ * o.x * o.x + o.x_dot * o.x_dot) + std::abs(forcing_) * reach();
+        const double x = speed * inverse_root_stiffness_;
+        const double x_ddot = stiffness_ * x + damping_ * speed + std::abs(forcing_);
+        return {x, x_ddot, stiffness_ * speed + damping_ * x_ddot + std::abs(forcing_) * Omega_};
+    }
 
 private:
     double stiffness_, damping_, forcing_, Omega_;
@@ -118,12 +185,18 @@ private:
     // What one part of a state, of size 1 and alone, becomes: x and x' at the grid times k h, and
     // the Taylor coefficients of x within a cell. A state becomes the sum of its four parts.
     struct Response {
-        std::vector<double> x, x_dot;
+        std::vector<double> x, x_dot, x_apart;
         Series series;
+        Near near;
     };
     Response of_x_, of_x_dot_, of_sin_, of_cos_;
-    // The grid times, and the turn of the phasor by then: cos and sin of Omega k h.
-    std::vector<double> time_, turn_cos_, turn_sin_;
+    std::vector<double> time_, time_apart_;  // the grid times
+    // The same numbers by grid times k h, with the turn of the phasor by then.
+    struct Row {
+        std::array<double, 4> x, x_dot;
+        double cos, sin;
+    };
+    std::vector<Row> rows_;
 };
 
 /// x, x' and x''/2 of a Taylor series at d.

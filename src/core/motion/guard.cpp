@@ -18,19 +18,10 @@ constexpr double last_step = 1e-6;
 // In a cell, of its width h: the state is then carried over the last step by its Taylor polynomial
 // to the second order, whose remainder, (1e-7)^3 h^3/6 of x''', lies below an ulp of x.
 constexpr double last_step_in_cell = 1e-7;
-// Of a chatter's next hop, of its duration: thousands of hops follow each other, and each one's
-// error goes into the next, hence a margin beside last_step.
-constexpr double last_step_of_chatter = 1e-8;
 
 // Rounding of g on the grid: five products and as many sums, each within half an ulp of the largest
 // term, and as much again in the table and the state that they are made of, with a margin of three.
 constexpr double grid_rounding = 16 * ulp;
-
-/// Halley's step towards the root of a function of value f, with its derivative and half its second
-/// one.
-double halley(double f, double first, double half_second) {
-    return -f * first / (first * first - f * half_second);
-}
 
 /// A polynomial with its bound of the third derivative on [0, h].
 class CrossingSearch {

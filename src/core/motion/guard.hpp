@@ -54,6 +54,16 @@ struct Touch {
     int side;
 };
 
+/// Halley's step towards the root of a function of value f, with its derivative and half its second
+/// one. Its error shrinks with the cube of the step.
+inline double halley(double f, double first, double half_second) {
+    return -f * first / (first * first - f * half_second);
+}
+
+/// The last step of Halley's for a chatter's next hop, of the hop's duration: the next one would be
+/// below 1e-24 of it. Thousands of hops follow each other, and each one's error goes into the next.
+inline constexpr double last_step_of_chatter = 1e-8;
+
 /// Rounding error of x - y on the grid of a flight: what |x - y| may exceed b by without a
 /// contact.
 double position_rounding(const Flow::Bounds& bounds, double y, double b);

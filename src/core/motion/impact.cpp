@@ -41,15 +41,13 @@ Eigen::Vector4d wall_normal() { return {0, 1, 0, -1}; }
 // M = S + r g^T, eq. (27).
 Matrix4 Saltation::matrix() const { return S + r * wall_normal().transpose(); }
 
-Matrix4 Saltation::times(const Matrix4& d) const {
-    Matrix4 out;
-    for (int k = 0; k < 4; ++k) {
-        const double relative = d(1, k) - d(3, k);
-        out(0, k) = S(0, 0) * d(0, k) + S(0, 2) * d(2, k) + r(0) * relative;
-        out(1, k) = d(1, k) + r(1) * relative;
-        out(2, k) = S(2, 0) * d(0, k) + S(2, 2) * d(2, k) + r(2) * relative;
-        out(3, k) = d(3, k) + r(3) * relative;
-    }
+Frame Saltation::times(const Frame& d) const {
+    const Eigen::RowVector4d relative = d.row(1) - d.row(3);
+    Frame out;
+    out.row(0) = S(0, 0) * d.row(0) + S(0, 2) * d.row(2) + r(0) * relative;
+    out.row(1) = d.row(1) + r(1) * relative;
+    out.row(2) = S(2, 0) * d.row(0) + S(2, 2) * d.row(2) + r(2) * relative;
+    out.row(3) = d.row(3) + r(3) * relative;
     return out;
 }
 

@@ -11,6 +11,10 @@ namespace vines {
 /// Matrices act on deviations in the paper's order (x', x, y', y), eq. (5).
 using Matrix4 = Eigen::Matrix4d;
 
+/// Deviations as columns, stored by rows: what happens to one of their components happens to those
+/// of all four at once.
+using Frame = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+
 /// Everything known of one impact. Velocities in m per unit of tau; `relative_speed_*` is x' - y'.
 struct Impact {
     double tau;
@@ -44,7 +48,7 @@ struct Saltation {
 
     Matrix4 matrix() const;
     /// matrix() * deviations, with a third of the multiplications.
-    Matrix4 times(const Matrix4& deviations) const;
+    Frame times(const Frame& deviations) const;
     /// Condition number in the Frobenius norm: by how much M may magnify a relative error. It grows
     /// as (x''/(x'- - y'-))^2 towards grazing; infinite for R = 0.
     double condition(double R) const;

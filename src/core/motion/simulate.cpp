@@ -100,7 +100,7 @@ private:
         touches_.clear();
         // A contact whose tau rounds to tau_end belongs to the run, so that behind one `rest` may
         // be negative: by half an ulp of tau_end, over which nothing moves.
-        const auto contact = next_contact(
+        const auto contact = fast_contact(
             free_, start, p_.b, std::min(rest + end_rounding_, free_.reach()), touches_);
         for (const Touch& t : touches_) touch(clock_.tau() + t.s, t.side);
         pass(free_, contact ? contact->s : limit, 0);

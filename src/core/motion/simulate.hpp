@@ -9,6 +9,7 @@
 #include <span>
 #include <string_view>
 
+#include "core/motion/fast_contact.hpp"
 #include "core/motion/impact.hpp"
 
 namespace vines {

@@ -25,29 +25,34 @@ Leg leg_of(const Flow& flow, double duration, bool stuck) {
 
 namespace {
 
-/// d: one deviation.
-void carry_one(double* d, const Leg& leg, double epsilon) {
+/// By rows.
+template <class Deviations>
+void carry_rows(Deviations& d, const Leg& leg, double epsilon) {
     const auto& [a11, a12, a21, a22] = leg.oscillator;
-    const double nu = 1 / (1 + epsilon), mu = epsilon * nu, s = leg.duration,
-                 x_dot = leg.stuck ? nu * d[0] + mu * d[2] : d[0],
-                 x = leg.stuck ? nu * d[1] + mu * d[3] : d[1];
-    d[0] = a11 * x_dot + a12 * x;
-    d[1] = a21 * x_dot + a22 * x;
-    if (leg.stuck) d[2] = d[0], d[3] = d[1];
-    else d[3] += s * d[2];
+    using Row = Eigen::Matrix<double, 1, Deviations::ColsAtCompileTime>;
+    Row x_dot = d.row(0), x = d.row(1);
+    if (leg.stuck) {
+        const double nu = 1 / (1 + epsilon), mu = epsilon * nu;
+        x_dot = nu * x_dot + mu * d.row(2);
+        x = nu * x + mu * d.row(3);
+    }
+    d.row(0) = a11 * x_dot + a12 * x;
+    d.row(1) = a21 * x_dot + a22 * x;
+    if (leg.stuck) d.row(2) = d.row(0), d.row(3) = d.row(1);
+    else d.row(3) += leg.duration * d.row(2);
 }
 
 }  // namespace
 
-void carry(Matrix4& deviations, const Leg& leg, double epsilon) {
-    for (int k = 0; k < 4; ++k) carry_one(deviations.col(k).data(), leg, epsilon);
+void carry(Frame& deviations, const Leg& leg, double epsilon) {
+    carry_rows(deviations, leg, epsilon);
 }
 void carry(Eigen::Vector4d& deviation, const Leg& leg, double epsilon) {
-    carry_one(deviation.data(), leg, epsilon);
+    carry_rows(deviation, leg, epsilon);
 }
 
 Matrix4 transfer_of(const Leg& leg, double epsilon) {
-    Matrix4 J = Matrix4::Identity();
+    Frame J = Frame::Identity();
     for (long k = 0; k < leg.parts; ++k) carry(J, leg, epsilon);
     return J;
 }
@@ -134,7 +139,9 @@ double PowerProduct::Scaled<n>::log_radius() const {
 void PowerProduct::pass(const Leg& leg) {
     if (leg.stuck) rank_ = 2;
     for (long count = 0; count < leg.parts; ++count) {
-        carry(first_.matrix, leg, epsilon_);
+        Frame first = first_.matrix;
+        carry(first, leg, epsilon_);
+        first_.matrix = first;
         first_.rescale();
         for (int k = 0; k < 6; ++k)
             second_.matrix.col(k) = carried(Area(second_.matrix.col(k)), leg, epsilon_);

@@ -29,9 +29,9 @@ struct Leg {
 };
 Leg leg_of(const Flow& flow, double duration, bool stuck);
 
-/// Carries deviations, a column each, over one part: J of eq. (19), or of a stuck leg the
+/// Carries deviations over one part: J of eq. (19), or of a stuck leg the
 /// projection onto the centre of mass and its motion; epsilon: mass ratio.
-void carry(Matrix4& deviations, const Leg& leg, double epsilon);
+void carry(Frame& deviations, const Leg& leg, double epsilon);
 void carry(Eigen::Vector4d& deviation, const Leg& leg, double epsilon);
 /// J of all parts.
 Matrix4 transfer_of(const Leg& leg, double epsilon);

@@ -89,39 +89,41 @@ struct TransferProduct::Qr {
 
     explicit Qr(std::size_t history) : thinned(history) {}
 
-    /// Lengths as products since their last logarithm was taken, and the logarithms.
-    struct Lengths {
-        std::array<double, 4> growth = {1, 1, 1, 1}, logs{};
-        void grow(int k, double length) {
-            growth[k] *= length;
-            if (!is_in_range(growth[k])) take_logarithm(k);
+    /// A product since its last logarithm was taken, and the logarithms.
+    struct Growth {
+        double product = 1, logs = 0;
+        void grow(double factor) {
+            product *= factor;
+            if (!is_in_range(product)) {
+                logs += std::log(product);
+                product = 1;
+            }
         }
-        void take_logarithm(int k) {
-            logs[k] += std::log(growth[k]);
-            growth[k] = 1;
-        }
-        double logarithm(int k) const { return logs[k] + std::log(growth[k]); }
+        double logarithm() const { return logs + std::log(product); }
     };
 
-    Matrix4 frame = Matrix4::Identity();
-    Lengths lengths;
+    Frame frame = Frame::Identity();
+    std::array<Growth, 4> lengths;
     // What the first two and three deviations span, from the exterior powers; and the determinant.
     Area area = Area::Unit(0);
     Volume volume{Eigen::Vector4d::UnitW()};
     double log_area = 0, log_volume = 0;  // what was taken out of them
-    double log_det = 0;
+    double log_det = 0;                   // of the legs
+    Growth impacts_det;                   // of the impacts
     Thinned thinned;
 
     /// Gram-Schmidt on the first columns; the exponents grow by their lengths.
     void orthonormalise(int columns) {
-        if (columns < 4) frame.rightCols(4 - columns).setZero();
+        Matrix4 base = frame;  // by columns
         for (int k = 0; k < columns; ++k) {
-            Eigen::Vector4d q = frame.col(k);
-            for (int j = 0; j < k; ++j) q -= frame.col(j).dot(q) * frame.col(j);
+            Eigen::Vector4d q = base.col(k);
+            for (int j = 0; j < k; ++j) q -= base.col(j).dot(q) * base.col(j);
             const double length = q.norm();
-            frame.col(k) = q * (1 / length);
-            lengths.grow(k, length);
+            base.col(k) = q * (1 / length);
+            lengths[k].grow(length);
         }
+        if (columns < 4) base.rightCols(4 - columns).setZero();
+        frame = base;
     }
 
     /// Deviations of x' - y' shrunk by `factor`, x' + epsilon y' and the positions kept: S for
@@ -164,7 +166,7 @@ struct TransferProduct::Qr {
             rest -= p(k) * frame.col(k);
             const double spanned_volume =
                 k < 3 ? std::sqrt(dot * dot + head * rest.squaredNorm()) : R;
-            lengths.grow(k, spanned_volume / before);
+            lengths[k].grow(spanned_volume / before);
             before = spanned_volume;
         }
         const Eigen::HouseholderQR<Matrix4> factors(frame + r * a.transpose());
@@ -194,7 +196,7 @@ struct TransferProduct::Qr {
         area = carried(area, M, R);
         if (rank > 2) volume = carried(volume, M, R);
         rescale(rank);
-        log_det += 2 * std::log(R);
+        impacts_det.grow(R * R);
     }
 
     /// Keeps area and volume within the range of double.
@@ -219,14 +221,14 @@ struct TransferProduct::Qr {
         Sums s;
         double sum = 0;
         for (int k = 0; k < rank; ++k) {
-            s.logs[k] = lengths.logarithm(k);
+            s.logs[k] = lengths[k].logarithm();
             sum += s.logs[k];
             if (k == 1)
                 s.misses[k] = std::abs(sum - (log_area + 0.5 * std::log(area.squaredNorm())));
             if (k == 2)
                 s.misses[k] =
                     std::abs(sum - (log_volume + 0.5 * std::log(volume.normal.squaredNorm())));
-            if (k == 3) s.misses[k] = std::abs(sum - log_det);
+            if (k == 3) s.misses[k] = std::abs(sum - (log_det + impacts_det.logarithm()));
         }
         return s;
     }

@@ -1,0 +1,81 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "../support.hpp"
+
+using namespace vines;
+using namespace vines::test;
+
+namespace {
+
+/// A flight that leaves a wall of a random system, at a speed of any size.
+struct RandomFlight {
+    Flow flow;
+    double b;
+    FlightStart start;
+};
+
+RandomFlight random_flight(std::mt19937_64& engine) {
+    const System s = random_system(engine);
+    const double theta = uniform(engine, 0, 6.3);
+    const Oscillation lo{s.start.x, s.start.x_dot, std::sin(theta), std::cos(theta)};
+    const int side = engine() % 2 ? 1 : -1;
+    const double speed =
+        std::abs(s.start.x_dot - s.start.y_dot) * std::pow(10, -uniform(engine, 0, 12)) + 1e-12;
+    return {
+        Flow::free(s.parameters),
+        s.parameters.b,
+        {lo, lo.x - side * s.parameters.b, lo.x_dot + side * speed, side, -side * speed, 1}};
+}
+
+}  // namespace
+
+TEST_CASE("the fast search for a contact finds what the plain one finds") {
+    std::mt19937_64 engine(5);
+    int contacts = 0;
+    for (int n = 0; n < 20000; ++n) {
+        const RandomFlight f = random_flight(engine);
+        const double limit = n % 3 ? f.flow.reach() : uniform(engine, 0, 1) * f.flow.reach();
+        std::vector<Touch> touches, plain_touches;
+        const auto fast = fast_contact(f.flow, f.start, f.b, limit, touches),
+                   plain = next_contact(f.flow, f.start, f.b, limit, plain_touches);
+        CAPTURE(n);
+        REQUIRE(touches.size() == plain_touches.size());
+        if (!fast || !plain) {
+            // At the very end of the interval rounding may decide.
+            const double s = fast ? fast->s : plain ? plain->s : limit;
+            REQUIRE(std::abs(s - limit) * 1e3 <= 1e-11);
+            continue;
+        }
+        ++contacts;
+        REQUIRE(fast->side == plain->side);
+        const double size = std::abs(plain->lo.x) + f.b, speed = std::abs(plain->relative_speed);
+        REQUIRE(std::abs(fast->s - plain->s) * speed <= 1e-14 * size + 1e-15 * plain->s * speed);
+        REQUIRE(std::abs(fast->lo.x - plain->lo.x) <= 1e-14 * size + std::abs(fast->s - plain->s));
+        REQUIRE(fast->side * fast->relative_speed >= 0);
+    }
+    CHECK(contacts > 10000);
+}
+
+TEST_CASE("a chatter's next hop keeps its relative accuracy by the fast search, too") {
+    std::mt19937_64 engine(6);
+    int hops = 0;
+    for (int n = 0; n < 20000; ++n) {
+        const RandomFlight f = random_flight(engine);
+        const double w = -f.start.side * f.start.relative_speed,
+                     a = f.start.side * f.flow.acceleration(f.start.lo);
+        if (!(a > 0 && 4 * w < a * f.flow.cell())) continue;
+        std::vector<Touch> touches;
+        const auto fast = fast_contact(f.flow, f.start, f.b, f.flow.reach(), touches),
+                   plain = next_contact(f.flow, f.start, f.b, f.flow.reach(), touches);
+        if (!plain || plain->s > 4 * w / a) continue;
+        ++hops;
+        CAPTURE(n);
+        REQUIRE(fast);
+        REQUIRE(fast->s == doctest::Approx(plain->s).epsilon(1e-13).scale(0));
+        REQUIRE(
+            fast->relative_speed == doctest::Approx(plain->relative_speed).epsilon(1e-13).scale(0));
+    }
+    CHECK(hops > 1000);
+}
