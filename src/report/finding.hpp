@@ -18,6 +18,8 @@ enum class Verdict {
     by_closed_form,         ///< reproduced, but not by the damping of eq. (1)
     by_equation_of_motion,  ///< reproduced by that alone
     partly,
+    partly_by_closed_form,
+    partly_by_equation_of_motion,
     not_reproduced
 };
 
@@ -44,10 +46,14 @@ struct Finding {
     Verdict expected = Verdict::reproduced;
 
     Verdict verdict() const {
-        const bool also = !by_equation || band.contains(*by_equation);
-        if (band.contains(number)) return also ? Verdict::reproduced : Verdict::by_closed_form;
-        if (by_equation && also) return Verdict::by_equation_of_motion;
-        return partly && partly->contains(number) ? Verdict::partly : Verdict::not_reproduced;
+        const bool here = band.contains(number), other = by_equation && band.contains(*by_equation);
+        if (here) return other || !by_equation ? Verdict::reproduced : Verdict::by_closed_form;
+        if (other) return Verdict::by_equation_of_motion;
+        if (!partly) return Verdict::not_reproduced;
+        const bool partly_other = by_equation && partly->contains(*by_equation);
+        if (partly->contains(number))
+            return partly_other || !by_equation ? Verdict::partly : Verdict::partly_by_closed_form;
+        return partly_other ? Verdict::partly_by_equation_of_motion : Verdict::not_reproduced;
     }
     bool stands() const { return verdict() == expected; }
 };
@@ -63,6 +69,9 @@ inline const char* text_of(Verdict verdict, bool computed_record = false) {
         case Verdict::by_closed_form: return "reproduced, with the closed-form damping alone";
         case Verdict::by_equation_of_motion: return "reproduced, with the damping of eq. (1) alone";
         case Verdict::partly: return "in part";
+        case Verdict::partly_by_closed_form: return "in part, with the closed-form damping alone";
+        case Verdict::partly_by_equation_of_motion:
+            return "in part, with the damping of eq. (1) alone";
         case Verdict::not_reproduced: return "**not reproduced**";
     }
     return "";

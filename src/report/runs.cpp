@@ -68,6 +68,7 @@ Ensemble one_run(const Parameters& p, const State& start, WindowsOf size) {
         e.windows.push_back({Ensemble::tau_end, regime.orbit->exponents(p), nan});
         return e;
     }
+    if (captured) e.capture_tau = {regime.capture->tau.value_or(Ensemble::tau_end)};
     e.chaotic_tau = captured ? regime.capture->tau.value_or(Ensemble::tau_end) : Ensemble::tau_end;
     Wanted exponents = run_to(p, start, e.chaotic_tau);
     exponents.estimators = qr_and_raw_product;
@@ -105,6 +106,8 @@ Ensemble make_ensemble(double b, WindowsOf size, Damping damping) {
     for (const Ensemble& run : each) {
         all.windows.insert(all.windows.end(), run.windows.begin(), run.windows.end());
         all.captured += run.captured;
+        all.capture_tau.insert(
+            all.capture_tau.end(), run.capture_tau.begin(), run.capture_tau.end());
         all.chaotic_tau += run.chaotic_tau;
         if (run.periodic) all.periodic = run.periodic;
     }

@@ -62,7 +62,8 @@ struct Ensemble {
         double raw_spread;
     };
     std::vector<Window> windows;
-    int captured = 0;        ///< runs that were chaotic until an orbit captured them
+    int captured = 0;                 ///< runs that were chaotic until an orbit captured them
+    std::vector<double> capture_tau;  ///< when
     double chaotic_tau = 0;  ///< how long all of them were, together, until then or their end
     /// lambda1 of the orbit that every run comes to without a chaotic transient.
     std::optional<double> periodic;

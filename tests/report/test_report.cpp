@@ -7,6 +7,7 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "core/analysis/analysis.hpp"
 #include "report/markdown.hpp"
@@ -62,6 +63,19 @@ TEST_CASE("a verdict says which damping a statement takes") {
     CHECK(f.verdict() == Verdict::not_reproduced);
     f.by_equation = 1.6;
     CHECK(f.verdict() == Verdict::by_equation_of_motion);
+}
+
+TEST_CASE("what holds in part holds in part by one damping alone, if the other misses that, too") {
+    Finding f = finding(2.5, {1, 2});
+    f.partly = Band{0, 3};
+    f.by_equation = 0.5;
+    CHECK(f.verdict() == Verdict::partly);
+    f.by_equation = 4;
+    CHECK(f.verdict() == Verdict::partly_by_closed_form);
+    std::swap(f.number, *f.by_equation);
+    CHECK(f.verdict() == Verdict::partly_by_equation_of_motion);
+    f.by_equation = 5;
+    CHECK(f.verdict() == Verdict::not_reproduced);
 }
 
 TEST_CASE("what is not a number is not reproduced") {

@@ -33,8 +33,8 @@ std::string crossing(double b, Damping damping) {
     const std::complex<double> m = fast_symmetric_motion(table1(b, damping))->multipliers[0];
     if (std::abs(m.imag()) > 1e-6)
         return fmt::format(
-            "a pair {:.4f} +- {:.4f}i leaves the unit circle, a torus branches off", m.real(),
-            std::abs(m.imag()));
+            "a pair {:.4f} +- {:.4f}i leaves the unit circle, as where a torus branches off",
+            m.real(), std::abs(m.imag()));
     return fmt::format(
         "a multiplier of the half cycle is {:+.4f}, {}", m.real(),
         m.real() < 0 ? "the symmetry breaks" : "a fold");
@@ -152,12 +152,18 @@ void three_impacts(Report& report) {
 /// Whether the chaos at b = 22 mm is itself a transient, if a long one.
 void captures(Report& report, Runs& runs) {
     const Ensemble& e = runs.ensemble(0.022, WindowsOf::tau_1690);
+    std::string when;
+    for (const double tau : e.capture_tau)
+        when += fmt::format("{} {:.0f}", when.empty() ? ", at tau =" : ",", tau);
     report.say(fmt::format(
         "\"In this period, the transient response has disappeared\" (of Fig. 5): of {} runs at b = "
-        "22 mm to tau = {:g} a periodic orbit captures {}; the other {} are chaotic to their ends. "
-        "Together they are chaotic over tau = {:.3g}.{}",
-        Ensemble::runs, Ensemble::tau_end, e.captured, Ensemble::runs - e.captured, e.chaotic_tau,
-        e.captured ? " So their chaos is a transient itself." : ""));
+        "22 mm to tau = {:g} a periodic orbit captures {}{}, which {} chaotic until then by "
+        "lambda1 "
+        "and its standard error; the other {} are chaotic to their ends. Whether their chaos "
+        "lasts, "
+        "runs of this length do not decide.",
+        Ensemble::runs, Ensemble::tau_end, e.captured, when, e.captured == 1 ? "was" : "were",
+        Ensemble::runs - e.captured));
 }
 
 }  // namespace
@@ -169,8 +175,11 @@ void open_questions(Report& report, Runs& runs) {
     sparse_and_modulated(report);
     three_impacts(report);
     report.say(
-        "Without a row: Fig. 1, a drawing; that Fig. 24 and Fig. 5 are \"consistent\", which is no "
-        "number; friction and the walls' materials (section 6), which are in no equation.");
+        "Without a row: Fig. 1, a drawing; that Fig. 24 and Fig. 5 are \"consistent\", for which "
+        "the "
+        "paper gives no measure (each has its own rows); that irregular impacts are the \"common "
+        "base\" of all chaotic regimes (section 6), of which one is tested (section 4.1); friction "
+        "and the walls' materials (section 6), which are in no equation.");
     report.heading("Misprints that a reader may stumble over");
     report.say(
         "Below eq. (1) lambda_1 stands for lambda, the damping. In (7) tau = 0 stands for tau_0. "
