@@ -77,7 +77,7 @@ TEST_CASE("areas and volumes are carried by the minors of J and M") {
     for (int n = 0; n < 300; ++n) {
         const Parameters p = random_system(engine).parameters;
         const Leg leg = random_leg(engine, p, n % 3 == 0);
-        Matrix4 J = Matrix4::Identity();
+        Frame J = Frame::Identity();
         carry(J, leg, p.epsilon);
         CHECK((area_matrix(leg, p.epsilon) - second_minors(J)).norm() < 1e-12 * J.squaredNorm());
         CHECK((volume_matrix(leg) - cofactors(J)).norm() < 1e-12 * std::pow(J.norm(), 3));
@@ -120,7 +120,7 @@ TEST_CASE("areas and volumes are carried as the deviations that span them") {
             }
             return Volume{normal};
         };
-        Eigen::Matrix4d after_leg = v;
+        Frame after_leg = v;
         carry(after_leg, leg, p.epsilon);
         const Eigen::Matrix4d after_impact = M.matrix() * v;
         CHECK(
