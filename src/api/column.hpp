@@ -1,9 +1,18 @@
-// Numbers as they stand in an answer: columns, and null for a number that does not exist.
+// Numbers as they stand in an answer: lists of them, and null for a number that does not exist.
+//
+// A list is kept as its numbers lie in memory, in a binary value of the JSON library, whose subtype
+// says what they are. It stands for the array that json_text() writes of it (json_text.hpp): a
+// third of the memory of an array of JSON values, and a third of the time.
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <optional>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "api/schema/json.hpp"
 
@@ -18,19 +27,69 @@ Json or_null(const std::optional<Value>& value) {
     return value ? Json(*value) : Json(nullptr);
 }
 
+/// What the entries of a packed list are.
+enum class Packed : std::uint8_t {
+    no,          ///< it is an array of JSON values
+    numbers,     ///< doubles; what is not finite stands for null
+    quadruples,  ///< of such
+    matrices,    ///< 4 x 4 of such, by rows
+    integers,
+    flags
+};
+
+using Quadruple = std::array<double, 4>;
+using MatrixByRows = std::array<Quadruple, 4>;
+
+template <class Entry>
+inline constexpr Packed packing = std::is_same_v<Entry, double>         ? Packed::numbers
+                                  : std::is_same_v<Entry, Quadruple>    ? Packed::quadruples
+                                  : std::is_same_v<Entry, MatrixByRows> ? Packed::matrices
+                                  : std::is_same_v<Entry, int>          ? Packed::integers
+                                  : std::is_same_v<Entry, bool>         ? Packed::flags
+                                                                        : Packed::no;
+
 /// One value for each element.
 template <class Elements, class Value>
 Json column(const Elements& elements, Value value) {
-    Json values = Json::array();
-    values.get_ref<Json::array_t&>().reserve(elements.size());
-    for (const auto& e : elements) values.push_back(value(e));
-    return values;
+    using Entry = std::decay_t<decltype(value(*std::begin(elements)))>;
+    if constexpr (packing<Entry> == Packed::no) {
+        Json values = Json::array();
+        values.get_ref<Json::array_t&>().reserve(elements.size());
+        for (const auto& e : elements) values.push_back(value(e));
+        return values;
+    } else {
+        std::vector<std::uint8_t> bytes(elements.size() * sizeof(Entry));
+        std::uint8_t* to = bytes.data();
+        for (const auto& e : elements) {
+            const Entry entry = value(e);
+            std::memcpy(to, &entry, sizeof(Entry));
+            to += sizeof(Entry);
+        }
+        return Json::binary(std::move(bytes), static_cast<std::uint8_t>(packing<Entry>));
+    }
 }
 
-/// Each number that is finite.
-template <class Numbers>
-Json column(const Numbers& numbers) {
-    return column(numbers, finite_or_null);
+/// Each of them.
+template <class Elements>
+Json column(const Elements& elements) {
+    return column(elements, [](const auto& e) { return e; });
+}
+
+/// The packing of a value of an answer.
+inline Packed packing_of(const Json& value) {
+    return value.is_binary() ? static_cast<Packed>(value.get_binary().subtype()) : Packed::no;
+}
+
+/// Puts another number in the place of each in a packed list of doubles.
+template <class Change>
+void change_numbers(Json& list, Change change) {
+    Json::binary_t& bytes = list.get_binary();
+    for (std::size_t at = 0; at < bytes.size(); at += sizeof(double)) {
+        double number;
+        std::memcpy(&number, bytes.data() + at, sizeof number);
+        number = change(number);
+        std::memcpy(bytes.data() + at, &number, sizeof number);
+    }
 }
 
 }  // namespace vines::api

@@ -9,9 +9,9 @@ namespace vines::api {
 
 namespace {
 
-Json describe_matrix(const Matrix4& m) {
-    Json rows = Json::array();
-    for (int i = 0; i < 4; ++i) rows.push_back({m(i, 0), m(i, 1), m(i, 2), m(i, 3)});
+MatrixByRows by_rows(const Matrix4& m) {
+    MatrixByRows rows;
+    for (int i = 0; i < 4; ++i) rows[i] = {m(i, 0), m(i, 1), m(i, 2), m(i, 3)};
     return rows;
 }
 
@@ -48,10 +48,9 @@ Json describe_derived(const System& system) {
     return j;
 }
 
-Json describe_series(Series&& s) {
-    return {{"tau", std::move(s.tau)},     {"x", std::move(s.x)},
-            {"x_dot", std::move(s.x_dot)}, {"y", std::move(s.y)},
-            {"y_dot", std::move(s.y_dot)}, {"x_ddot", std::move(s.x_ddot)}};
+Json describe_series(const Series& s) {
+    return {{"tau", column(s.tau)}, {"x", column(s.x)},         {"x_dot", column(s.x_dot)},
+            {"y", column(s.y)},     {"y_dot", column(s.y_dot)}, {"x_ddot", column(s.x_ddot)}};
 }
 
 Json describe_impacts(const std::vector<Impact>& impacts, double epsilon, double typical_speed) {
@@ -90,24 +89,21 @@ Json describe_touches(const std::vector<TangentContact>& touches) {
 }
 
 Json describe_moduli(const TransferModuli& m) {
-    auto moduli = [](const std::vector<Moduli>& list) {
-        return column(list, [](const Moduli& of_one) { return of_one; });
-    };
     return {
-        {"tau", m.tau},
-        {"J", moduli(m.J)},
-        {"M", moduli(m.M)},
-        {"T", moduli(m.T)},
+        {"tau", column(m.tau)},
+        {"J", column(m.J)},
+        {"M", column(m.M)},
+        {"T", column(m.T)},
         {"M_condition", column(m.M_condition)}};
 }
 
 Json describe_matrices(const TransferMatrices& m) {
     return {
-        {"tau", m.tau},
+        {"tau", column(m.tau)},
         {"order", {"x_dot", "x", "y_dot", "y"}},
-        {"J", column(m.J, describe_matrix)},
-        {"M", column(m.M, describe_matrix)},
-        {"T", column(m.T, describe_matrix)}};
+        {"J", column(m.J, by_rows)},
+        {"M", column(m.M, by_rows)},
+        {"T", column(m.T, by_rows)}};
 }
 
 Json describe_impact_section(const std::vector<SectionPoint>& points) {
@@ -118,7 +114,7 @@ Json describe_impact_section(const std::vector<SectionPoint>& points) {
         {"x", column(points, [](const auto& p) { return p.impact.x; })},
         {"x_dot_after", column(points, [](const auto& p) { return p.impact.x_dot_after; })},
         {"y_dot_after", column(points, [](const auto& p) { return p.impact.y_dot_after; })},
-        {"time_difference", column(points, [](const auto& p) { return finite_or_null(p.since); })}};
+        {"time_difference", column(points, [](const auto& p) { return p.since; })}};
 }
 
 Json describe_states(const std::vector<State>& states) {
@@ -130,7 +126,7 @@ Json describe_states(const std::vector<State>& states) {
 }
 
 Json describe_sections(const Sections& s) {
-    Json stroboscopic = {{"tau", s.tau}};
+    Json stroboscopic = {{"tau", column(s.tau)}};
     stroboscopic.update(describe_states(s.states));
     return {
         {"impact", describe_impact_section(s.impact)}, {"stroboscopic", std::move(stroboscopic)}};
@@ -196,7 +192,7 @@ Json describe_manifold(const Manifold& m) {
 
 Json describe_manifold(const ManifoldResult& m) {
     Json j = m.manifold ? describe_manifold(*m.manifold) : Json::object();
-    j["points"] = {{"tau", m.tau}};
+    j["points"] = {{"tau", column(m.tau)}};
     j["points"].update(describe_points(m.points));
     return j;
 }

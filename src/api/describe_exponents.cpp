@@ -12,10 +12,10 @@ namespace vines::api {
 namespace {
 
 Json describe_history(const ExponentHistory& history) {
-    Json columns = {{"tau", history.tau}};
+    Json columns = {{"tau", column(history.tau)}};
     for (std::size_t k = 0; k < 4; ++k)
-        columns["lambda" + std::to_string(k + 1)] = column(
-            history.lambda, [k](const Exponents& lambda) { return finite_or_null(lambda[k]); });
+        columns["lambda" + std::to_string(k + 1)] =
+            column(history.lambda, [k](const Exponents& lambda) { return lambda[k]; });
     return columns;
 }
 
@@ -104,10 +104,10 @@ void add_estimators(
     if (histories) {
         const ExponentHistory& history = product.raw_product_history();
         raw["history"] = describe_history(history);
-        Json& floor = raw["history"]["rounding_floor"] = Json::array();
+        std::vector<double> floor;
         for (std::size_t i = 0; i < history.tau.size(); ++i)
-            floor.push_back(
-                finite_or_null(rounding_floor(history.lambda[i][0], history.tau[i] - start)));
+            floor.push_back(rounding_floor(history.lambda[i][0], history.tau[i] - start));
+        raw["history"]["rounding_floor"] = column(floor);
     }
     j["raw_product"] = std::move(raw);
 }

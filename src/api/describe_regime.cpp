@@ -75,9 +75,9 @@ Json describe_regime(const Regime& r) {
               {"periodic", r.orbit.has_value()}};
     add_orbit(j, r.orbit);
     j["capture"] = r.capture ? describe_capture(*r.capture) : Json(nullptr);
-    j["cycles_with"] = r.cycles_with;
+    j["cycles_with"] = column(r.cycles_with);
     j["share_two_impacts"] = r.cycles_with.size() > 2 ? r.cycles_with[2] : 0;
-    j["z_moving"] = {{"tau", r.moving_tau}, {"z", r.moving_z}};
+    j["z_moving"] = {{"tau", column(r.moving_tau)}, {"z", column(r.moving_z)}};
     j["synchronised"] = {
         {"share", r.synchronised}, {"longest_half_cycles", r.longest_synchronised}};
     const auto& stretches = r.stretches;

@@ -27,8 +27,7 @@ Json describe_restitution(const Restitution& r) {
 
 Json describe_identified(const std::vector<IdentifiedImpact>& impacts) {
     auto number = [&](double IdentifiedImpact::* member) {
-        return column(
-            impacts, [member](const IdentifiedImpact& i) { return finite_or_null(i.*member); });
+        return column(impacts, [member](const IdentifiedImpact& i) { return i.*member; });
     };
     return {
         {"tau", number(&IdentifiedImpact::tau)},
@@ -122,7 +121,7 @@ Json describe_measured(
                           of_longest = of_longest_stretch(estimators);
     Json j = describe_window(e.all());
     add_estimators(j, e.all(), growth_of(e.all()), of_all, true);
-    for (Json& tau : j["qr"]["history"]["tau"]) tau = e.moment(tau);
+    change_numbers(j["qr"]["history"]["tau"], [&e](double tau) { return e.moment(tau); });
     std::vector<Warning> odd;
     add_warnings(e.all(), of_all, true, odd);
     add_warnings(e.longest(), of_longest, true, odd);

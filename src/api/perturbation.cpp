@@ -87,7 +87,7 @@ Json describe_perturbation(Perturbation&& p) {
     const std::optional<LinearStretch>& linear = p.linear;
     Json start = Json::object();
     for (const Component& c : components) start[c.name] = p.start.*c.value;
-    Json j = describe_series(std::move(p.series));
+    Json j = describe_series(p.series);
     j.erase("x_ddot");
     j.update(
         {{"start", std::move(start)},

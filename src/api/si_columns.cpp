@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "api/column.hpp"
+
 namespace vines::api {
 
 namespace {
@@ -50,11 +52,13 @@ constexpr Twin energies[] = {
 
 Json scaled(const Json& value, double factor) {
     if (value.is_number()) return value.get<double>() * factor;
-    if (!value.is_array()) return nullptr;  // null: a number that does not exist
-    Json column = Json::array();
-    column.get_ref<Json::array_t&>().reserve(value.size());
-    for (const Json& v : value) column.push_back(scaled(v, factor));
-    return column;
+    if (value.is_null()) return nullptr;  // a number that does not exist
+    Json list = value;
+    if (value.is_binary())
+        change_numbers(list, [factor](double number) { return number * factor; });
+    else
+        for (Json& v : list) v = scaled(v, factor);
+    return list;
 }
 
 void add(Json& object, std::span<const Twin> table, const SiParameters& si) {

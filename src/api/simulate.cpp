@@ -137,11 +137,11 @@ Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes
     Warnings warnings = r.system.notes;
     fit_answer(r, most_bytes, warnings);
     Analysis analysis = analyse(r.wanted, {.run = stop.asked, .late = stop.analysis_late});
-    Json answer = {
-        {"version", version()},
-        {"parameters", describe_parameters(r)},
-        {"status", describe_status(analysis.outcome, r.wanted.max_impacts, stop)},
-        {"warnings", nullptr}};
+    Json answer;
+    answer["version"] = version();
+    answer["parameters"] = describe_parameters(r);
+    answer["status"] = describe_status(analysis.outcome, r.wanted.max_impacts, stop);
+    answer["warnings"] = nullptr;
     if (analysis.outcome.reason != End::tau_end) warnings.push_back(answer["status"]["message"]);
     for (const Warning& w : analysis.warnings) warnings.push_back(text_of(w, most_bytes));
     Answer parts(r, stop, answer);

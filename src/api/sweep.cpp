@@ -2,6 +2,7 @@
 
 #include <mutex>
 
+#include "api/json_text.hpp"
 #include "api/sweep_line.hpp"
 
 namespace vines::api {
@@ -16,10 +17,10 @@ public:
     Lines(const SweepRequest& r, const TakeLine& take) : r_(r), take_(take) {}
 
     void point(std::size_t index, const SweepPoint& point) override {
-        hand_out(index, describe_point(r_, index, point).dump());
+        hand_out(index, json_text(describe_point(r_, index, point)));
     }
     void row(std::size_t index, const RowSummary& row) override {
-        hand_out(index, describe_row(r_, index, row).dump());
+        hand_out(index, json_text(describe_row(r_, index, row)));
     }
 
 private:

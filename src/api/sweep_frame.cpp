@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "api/column.hpp"
 #include "api/describe.hpp"
+#include "api/json_text.hpp"
 #include "api/simulate.hpp"
 
 namespace vines::api {
@@ -28,13 +30,14 @@ std::string transient_warning(const Parameters& p, double cycles) {
            (std::isfinite(enough) ? fmt::format("; {:.0f} leave 1 %", enough) : ": it is undamped");
 }
 
-std::string json_line(const Json& json) { return json.dump() + "\n"; }
+std::string json_line(Json json) { return json_text(std::move(json)) + "\n"; }
 
 }  // namespace
 
 Json sweep_start(const SweepRequest& r) {
     Json axes = Json::array();
-    for (const Axis& a : r.axes) axes.push_back({{"parameter", a.parameter}, {"values", a.values}});
+    for (const Axis& a : r.axes)
+        axes.push_back({{"parameter", a.parameter}, {"values", column(a.values)}});
     const System system = read_started_system(fields_of(r, r.plan.grid.place_of(0))).system;
     Json parameters = describe_system(system);
     for (const Axis& a : r.axes) parameters["origin"][a.parameter] = "swept: the first of its axis";
@@ -58,7 +61,7 @@ Json sweep_start(const SweepRequest& r) {
 std::string start_line(const SweepRequest& r) {
     Json start = sweep_start(r);
     start["of"] = r.plan.lines.size();
-    return json_line(start);
+    return json_line(std::move(start));
 }
 
 std::string progress_line(const SweepProgress& p) {

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "api/json_text.hpp"
 #include "api/query.hpp"
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
@@ -27,7 +28,7 @@ api::IdentifyRequest read_request(const std::string& text, const std::string& qu
 
 int identify(const IdentifyOptions& o) {
     const api::IdentifyRequest request = read_request(read_all(o.files.input), o.query);
-    write_all(o.files.output, api::identify_answer(request).dump() + "\n");
+    write_all(o.files.output, api::json_text(api::identify_answer(request)) + "\n");
     return complete;
 }
 

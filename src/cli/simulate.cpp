@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "api/json_text.hpp"
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/files.hpp"
@@ -17,7 +18,7 @@ int simulate(const Files& files) {
         api::read_simulate_request(api::parse_object(read_all(files.input)));
     const api::Stop stop{
         .asked = stopped, .reason = "interrupted", .message = "ended by a signal, before tau_end"};
-    write_all(files.output, api::simulate_answer(request, stop).dump() + "\n");
+    write_all(files.output, api::json_text(api::simulate_answer(request, stop)) + "\n");
     return stopped() ? incomplete : complete;
 }
 

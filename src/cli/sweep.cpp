@@ -11,6 +11,7 @@
 #include <string>
 #include <thread>
 
+#include "api/json_text.hpp"
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/files.hpp"
@@ -88,7 +89,7 @@ std::string compute(
 int sweep(const SweepOptions& o) {
     api::SweepRequest request = read_request(o);
     const std::size_t of = request.plan.lines.size();
-    SweepFile file = resumed(o, api::sweep_start(request).dump());
+    SweepFile file = resumed(o, api::json_text(api::sweep_start(request)));
     std::erase_if(request.plan.lines, [&](std::size_t i) { return file.points.contains(i); });
 
     const std::string warning = compute(o, request, of, file);

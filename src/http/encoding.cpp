@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -88,8 +89,13 @@ bool accepts_gzip(std::string_view accept_encoding) {
 }
 
 std::string entity_tag(const std::string& body) {
-    std::uint64_t hash = 0xcbf29ce484222325;
-    for (unsigned char c : body) hash = (hash ^ c) * 0x100000001b3;
+    std::uint64_t hash = 0xcbf29ce484222325 ^ body.size();
+    for (std::size_t at = 0; at < body.size(); at += sizeof hash) {
+        std::uint64_t word = 0;
+        std::memcpy(&word, body.data() + at, std::min(sizeof word, body.size() - at));
+        hash = (hash ^ word) * 0x100000001b3;
+        hash ^= hash >> 32;  // a product carries upwards only
+    }
     return fmt::format("W/\"{:016x}\"", hash);
 }
 

@@ -14,8 +14,8 @@ std::string gzip(const std::string& text);
 /// or by "*" where its name is not there. Empty: no.
 bool accepts_gzip(std::string_view accept_encoding);
 
-/// The header ETag of a body, by FNV-1a of 64 bits: tells its versions apart, guards against
-/// nothing.
+/// The header ETag of a body, by a hash after FNV-1a, of 64 bits at a time: tells its versions
+/// apart, guards against nothing.
 std::string entity_tag(const std::string& body);
 
 }  // namespace vines::http

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "api/identify.hpp"
+#include "api/json_text.hpp"
 #include "api/openapi.hpp"
 #include "api/presets.hpp"
 #include "api/schema/parameters.hpp"
@@ -21,30 +22,16 @@ namespace {
 using api::Json;
 using api::Problem;
 
-Response json_response(const Json& json) { return {.body = json.dump() + "\n"}; }
+Response json_response(Json json) { return {.body = api::json_text(std::move(json)) + "\n"}; }
 
 // From this size on an answer's memory is given back to the system at once.
-constexpr std::size_t large = 1 << 20;
-
-/// The text of an answer, whose parts are freed as they are written.
-std::string written(Json answer) {
-    std::string text;
-    for (auto& [name, part] : answer.get_ref<Json::object_t&>()) {
-        text += text.empty() ? '{' : ',';
-        text += Json(name).dump();
-        text += ':';
-        text += part.dump();
-        part = nullptr;
-    }
-    text += "}\n";
-    return text;
-}
+constexpr std::size_t large = 16 << 20;
 
 /// As json_response(), for answers that may be large: Problem 413 beyond the limit.
 Response limited_response(Json answer, std::size_t limit) {
-    std::string text = written(std::move(answer));
+    std::string text = api::json_text(std::move(answer)) + "\n";
 #ifdef __GLIBC__
-    if (text.size() >= large) malloc_trim(0);  // what a thousand small arrays leave behind
+    if (text.size() >= large) malloc_trim(0);
 #endif
     if (text.size() > limit)
         throw Problem(

@@ -98,12 +98,21 @@ void add_size_flags(CLI::App& c, ServeOptions& o) {
     std::_Exit(0);
 }
 
+#ifdef __GLIBC__
+/// Records and answers beyond a size are mapped and unmapped one by one: the library's own
+/// threshold grows up to 32 MiB with what is freed. Below it each arena keeps as much as one answer
+/// of tens of thousands of numbers needs, for each page that is asked for anew costs a microsecond;
+/// there are no more arenas than threads that compute.
+void keep_memory_small(int computing) {
+    mallopt(M_MMAP_THRESHOLD, 4 << 20);
+    mallopt(M_TRIM_THRESHOLD, 8 << 20);
+    mallopt(M_ARENA_MAX, computing);
+}
+#endif
+
 int serve(const ServeOptions& options) {
 #ifdef __GLIBC__
-    // Records and answers of this size on are mapped and unmapped one by one. The library's own
-    // threshold grows up to 32 MiB with what is freed, and each of its many arenas would keep that
-    // much for good.
-    mallopt(M_MMAP_THRESHOLD, 1 << 20);
+    keep_memory_small(options.compute.running);
 #endif
     block_end_signals();
     start_log();

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "api/identify.hpp"
+#include "api/json_text.hpp"
 #include "api/schema/tables.hpp"
 #include "api/simulate.hpp"
 #include "api/sweep.hpp"
@@ -17,9 +19,24 @@ namespace vines::test {
 
 using namespace vines::api;
 
+/// What an answer says to who reads its text.
+inline Json read_back(Json answer) { return Json::parse(json_text(std::move(answer))); }
+
+inline Json simulated(
+    const SimulateRequest& request, const Stop& stop, std::size_t most_bytes = any_size) {
+    return read_back(simulate_answer(request, stop, most_bytes));
+}
+inline Json identified(const IdentifyRequest& request) {
+    return read_back(identify_answer(request));
+}
+inline Json slow_manifold(const ManifoldRequest& request, const Stop& stop = {}) {
+    return read_back(manifold_answer(request, stop));
+}
+inline Json start_of_sweep(const SweepRequest& request) { return read_back(sweep_start(request)); }
+
 /// Of /v1/simulate.
 inline Json answer(const std::string& text) {
-    return simulate_answer(read_simulate_request(parse_object(text)), {});
+    return simulated(read_simulate_request(parse_object(text)), {});
 }
 
 /// All parts of such an answer.

@@ -157,7 +157,7 @@ TEST_CASE("every preset runs, names its figure or table, and the request overrid
     std::set<std::string> sources;
     for (const Preset& p : presets()) {
         CAPTURE(p.name);
-        const Json a = simulate_answer(
+        const Json a = simulated(
             read_simulate_request(
                 {{"preset", p.name}, {"include", {"exponents"}}, {"exponents", {"qr"}}}),
             {});
@@ -182,7 +182,7 @@ namespace {
 /// What a preset runs, with fields of the request over it.
 Json parameters_of(const std::string& preset, Json given) {
     given.update({{"preset", preset}, {"include", Json::array()}, {"tau_end", 1}});
-    Json parameters = simulate_answer(read_simulate_request(given), {})["parameters"];
+    Json parameters = simulated(read_simulate_request(given), {})["parameters"];
     parameters.erase("origin");
     return parameters;
 }
@@ -290,7 +290,7 @@ TEST_CASE(
 
 TEST_CASE("the manifold of a preset is that of the fields over it") {
     const auto parameters = [](const Json& given) {
-        Json j = manifold_answer(read_manifold_request(given))["parameters"];
+        Json j = slow_manifold(read_manifold_request(given))["parameters"];
         j.erase("origin");
         return j;
     };
@@ -334,7 +334,7 @@ TEST_CASE("the field table describes exactly what a request takes") {
 }
 
 TEST_CASE("every part that can be asked for is there, its columns of one length") {
-    const Json a = simulate_answer(
+    const Json a = simulated(
         read_simulate_request(
             {{"damping", "closed_form"}, {"tau_end", 400}, {"include", all_parts()}}),
         {});
@@ -384,7 +384,7 @@ TEST_CASE("several windows at once are those of one request each, with a verdict
             "include":[],"exponents":["qr"]})");
     REQUIRE(all["windows"].size() == 3);
     for (const Json& w : all["windows"]) {
-        const Json one = simulate_answer(
+        const Json one = simulated(
             read_simulate_request(
                 {{"preset", "table2_1"},
                  {"window", w["asked"]},
@@ -496,7 +496,7 @@ TEST_CASE("an impact next to a tangent contact is warned of") {
 TEST_CASE(
     "the manifold has its fold, its branches and a hint for b, by itself and with a run's half "
     "cycles") {
-    const Json m = manifold_answer(
+    const Json m = slow_manifold(
         read_manifold_request(parse_object(R"({"preset":"fig11","points":50})")))["manifold"];
     CHECK(m["fold"]["C"].get<double>() == doctest::Approx(0.157 * 0.015).epsilon(0.01));
     CHECK(m["activation_amplitude"] == m["fold"]["C"]);
@@ -505,7 +505,7 @@ TEST_CASE(
     CHECK(m["stable"]["V"][0] == m["fold"]["V"]);
     const double b = m["b_at_free_amplitude"].get<double>();
     const Json at_b =
-        manifold_answer(read_manifold_request({{"b", b}, {"damping", "closed_form"}}))["manifold"];
+        slow_manifold(read_manifold_request({{"b", b}, {"damping", "closed_form"}}))["manifold"];
     CHECK(
         at_b["fold"]["C"].get<double>() ==
         doctest::Approx(m["free_amplitude"].get<double>()).epsilon(1e-12));
@@ -520,7 +520,7 @@ TEST_CASE(
 
 TEST_CASE("the manifold ends where the motion does, and says by what") {
     const auto manifold = [](const Json& given) {
-        return manifold_answer(read_manifold_request(given));
+        return slow_manifold(read_manifold_request(given));
     };
     const Json small = manifold({{"R", 0.05}, {"b", 0.02}})["manifold"];
     CHECK(small["stable_ends_by"] == "second_contact");
@@ -570,7 +570,7 @@ TEST_CASE("caps end a run as a result that says so") {
     a = answer(R"({"samples_per_cycle":10000,"max_points":500,"include":["series"]})");
     CHECK(a["series"]["tau"].size() <= 501);
     CHECK(a["warnings"].size() == 1);
-    a = simulate_answer(
+    a = simulated(
         read_simulate_request(
             {{"tau_end", 1e7}, {"max_impacts", 2000000}, {"include", Json::array()}}),
         {[] { return true; }});
@@ -580,7 +580,7 @@ TEST_CASE("caps end a run as a result that says so") {
 namespace {
 
 Json within_bytes(const Json& given, std::size_t bytes) {
-    return simulate_answer(read_simulate_request(given), {}, bytes);
+    return simulated(read_simulate_request(given), {}, bytes);
 }
 
 }  // namespace
@@ -641,7 +641,7 @@ TEST_CASE("parts for which no time is left are null, and the answer names them")
     stop.late = [] { return true; };
     const SimulateRequest request = read_simulate_request(
         {{"b", 0.003}, {"tau_end", 1000}, {"include", all_parts()}, {"windows", {{0, 100}}}});
-    const Json a = simulate_answer(request, stop);
+    const Json a = simulated(request, stop);
     for (const std::string& part : all_parts()) CHECK((a.contains(part) && a[part].is_null()));
     CHECK(a["windows"].size() == 1);
     CHECK(warns(
@@ -654,10 +654,10 @@ TEST_CASE("parts for which no time is left are null, and the answer names them")
     auto interrupted = [&] {
         Stop soon;
         soon.analysis_late = [asked = 0]() mutable { return ++asked > 2; };
-        return simulate_answer(eigenvalues, soon);
+        return simulated(eigenvalues, soon);
     };
     const Json some = interrupted()["eigenvalues"],
-               every = simulate_answer(eigenvalues, {})["eigenvalues"];
+               every = simulated(eigenvalues, {})["eigenvalues"];
     CHECK(some["T"].size() == 512);
     for (const auto& [name, column] : some.items()) {
         REQUIRE(column.size() == 512);
@@ -770,7 +770,7 @@ TEST_CASE("a perturbed run is thinned with the series, and cut to the answer's l
     CHECK(thin["perturbation"]["tau"].size() <= 256);
     CHECK(warns(thin, "samples per cycle instead of 100"));
     const std::size_t limit = 200000;
-    const Json cut = simulate_answer(
+    const Json cut = simulated(
         read_simulate_request(
             parse_object(R"({"b":0.01,"tau_end":5000,"include":[],"perturbation":{"x":1e-9}})")),
         {}, limit);
@@ -796,7 +796,7 @@ TEST_CASE("each estimator of a window has the slope of its first exponent") {
 TEST_CASE("a perturbed run for which no time is left is null, and named") {
     Stop stop;
     stop.late = [] { return true; };
-    const Json a = simulate_answer(
+    const Json a = simulated(
         read_simulate_request(
             parse_object(R"({"tau_end":100,"include":[],"perturbation":{"x":1e-9}})")),
         stop);

@@ -39,7 +39,7 @@ std::string measured(
 
 Problem refused(const Json& fields, const std::string& csv) {
     CAPTURE(csv.substr(0, 100));
-    return problem_of([&] { identify_answer(read_identify_request(fields, csv)); });
+    return problem_of([&] { identified(read_identify_request(fields, csv)); });
 }
 
 const std::string header = "time_s,displacement_m,acceleration_m_s2\n";
@@ -56,7 +56,7 @@ TEST_CASE("a reduced field over a preset leaves a record its oscillator") {
     // A record in seconds needs omega0, which no reduced field tells.
     const std::string csv = measured("fig15", 3);
     const auto parameters = [&](const Json& given) {
-        Json j = identify_answer(read_identify_request(given, csv))["parameters"];
+        Json j = identified(read_identify_request(given, csv))["parameters"];
         j.erase("origin");
         return j;
     };
@@ -73,7 +73,7 @@ TEST_CASE(
     "a CSV file and the same record as JSON give the impacts, the restitution and the exponents of "
     "the motion") {
     const std::string csv = measured("fig15", 12);
-    const Json a = identify_answer(read_identify_request({{"preset", "fig15"}}, csv));
+    const Json a = identified(read_identify_request({{"preset", "fig15"}}, csv));
     CHECK(a["verdict"] == "regular");
     CHECK(a["restitution"]["plus"]["R"].get<double>() == doctest::Approx(0.85).epsilon(0.02));
     CHECK(a["signal"]["G"].get<double>() == doctest::Approx(0.01).epsilon(0.01));
@@ -106,12 +106,12 @@ TEST_CASE(
     CHECK(Json::parse(a.dump()) == a);
     Json record = Json::object();
     for (const CsvColumn& c : parse_csv(csv)) record[c.name] = c.values;
-    CHECK(identify_answer(read_identify_request({{"preset", "fig15"}, {"record", record}})) == a);
+    CHECK(identified(read_identify_request({{"preset", "fig15"}, {"record", record}})) == a);
     // Other names, separators and units say the same.
     std::string german = measured("fig15", 12, 0, ';');
     std::replace(german.begin(), german.end(), '.', ',');
     german.replace(0, german.find('\n'), "Zeit;weg;\"acceleration (m/s^2)\"");
-    const Json b = identify_answer(read_identify_request(
+    const Json b = identified(read_identify_request(
         {{"preset", "fig15"},
          {"time_column", "Zeit"},
          {"displacement_column", "weg"},
@@ -123,7 +123,7 @@ TEST_CASE(
 TEST_CASE("the fitted motion is given at the record's samples where it is asked for") {
     const std::string csv = measured("fig15", 3);
     const Json a =
-        identify_answer(read_identify_request({{"preset", "fig15"}, {"include", {"motion"}}}, csv));
+        identified(read_identify_request({{"preset", "fig15"}, {"include", {"motion"}}}, csv));
     const Json &motion = a["motion"], &impacts = a["impacts"];
     const double omega0 = a["parameters"]["derived"]["omega0"];
     const std::vector<CsvColumn> record = parse_csv(csv);
@@ -148,7 +148,7 @@ TEST_CASE("the fitted motion is given at the record's samples where it is asked 
         motion["x_velocity"][99].get<double>() ==
         doctest::Approx(motion["x_dot"][99].get<double>() * omega0).epsilon(1e-12));
 
-    const Json few = identify_answer(read_identify_request(
+    const Json few = identified(read_identify_request(
         {{"preset", "fig15"}, {"include", {"motion"}}, {"max_points", 1000}}, csv));
     const std::size_t every = (n + 999) / 1000;
     CHECK(few["motion"]["tau"].size() == (n + every - 1) / every);
@@ -162,7 +162,7 @@ TEST_CASE("the direct estimate has the exponents of the answer, with histories, 
     const Json fields = {{"preset", "fig15"}, {"exponents", {"qr", "raw_product"}}};
     Json asking = fields;
     asking["include"] = {"direct_exponents"};
-    Json a = identify_answer(read_identify_request(asking, csv));
+    Json a = identified(read_identify_request(asking, csv));
     const Json e = a["direct"]["exponents"];
     CHECK(e["qr"]["history"]["tau"] == a["exponents"]["qr"]["history"]["tau"]);
     CHECK(
@@ -180,7 +180,7 @@ TEST_CASE("the direct estimate has the exponents of the answer, with histories, 
         doctest::Approx(a["impacts"]["tau"].back().get<double>()));
     // All else is as without.
     a["direct"].erase("exponents");
-    CHECK(a == identify_answer(read_identify_request(fields, csv)));
+    CHECK(a == identified(read_identify_request(fields, csv)));
 }
 
 TEST_CASE("what is of a record cannot be included where impacts come without one") {
@@ -193,28 +193,28 @@ TEST_CASE("what is of a record cannot be included where impacts come without one
 
 TEST_CASE("an edited list of moments is taken as it is") {
     const std::string csv = measured("fig15", 6);
-    const Json a = identify_answer(read_identify_request({{"preset", "fig15"}}, csv));
+    const Json a = identified(read_identify_request({{"preset", "fig15"}}, csv));
     CHECK(a["verdict"] == "not_decided");  // a chaotic motion may look like this for 6 s
     std::vector<double> times = a["impacts"]["time_s"];
-    const Json same = identify_answer(
-        read_identify_request({{"preset", "fig15"}, {"impact_times_s", times}}, csv));
+    const Json same =
+        identified(read_identify_request({{"preset", "fig15"}, {"impact_times_s", times}}, csv));
     CHECK(same["impacts"]["tau"].size() == times.size());
     CHECK(same["impacts"]["side"] == a["impacts"]["side"]);
     times.erase(times.begin() + 30);
-    const Json without = identify_answer(
-        read_identify_request({{"preset", "fig15"}, {"impact_times_s", times}}, csv));
+    const Json without =
+        identified(read_identify_request({{"preset", "fig15"}, {"impact_times_s", times}}, csv));
     CHECK(without["impacts"]["tau"].size() == times.size());
     CHECK(without["impacts"]["status"][30].get<std::string>().find("missing") != std::string::npos);
     CHECK(without["warnings"].dump().find("inconsistent") != std::string::npos);
 }
 
 TEST_CASE("impacts with their states give the exponents of the simulation that they come from") {
-    const Json a = simulate_answer(
+    const Json a = simulated(
         read_simulate_request(
             parse_object(R"({"preset":"fig20","include":["impacts","exponents"]})")),
         {});
     const Json b =
-        identify_answer(read_identify_request({{"preset", "fig20"}, {"impacts", a["impacts"]}}));
+        identified(read_identify_request({{"preset", "fig20"}, {"impacts", a["impacts"]}}));
     for (int k = 0; k < 4; ++k)
         CHECK(
             b["exponents"]["qr"]["final"][k].get<double>() ==
@@ -278,7 +278,7 @@ TEST_CASE("a quiet record, a clipped one, gaps, slow sampling and a wrong b are 
 
     const std::string csv = measured("fig15", 6);
     auto warnings = [&](const Json& fields, const std::string& text) {
-        return identify_answer(read_identify_request(fields, text))["warnings"].dump();
+        return identified(read_identify_request(fields, text))["warnings"].dump();
     };
     CHECK(warnings({{"preset", "fig15"}}, csv) == "[]");
     CHECK(
@@ -325,7 +325,7 @@ TEST_CASE(
     "a unit in a column's name is obeyed, in CSV and JSON, or refused where it is not known or "
     "contradicts the field") {
     const std::string csv = measured("fig15", 3, 20);  // weak impacts move with every digit
-    const Json a = identify_answer(read_identify_request({{"preset", "fig15"}}, csv));
+    const Json a = identified(read_identify_request({{"preset", "fig15"}}, csv));
     const auto same = [&](const Json& b) {
         REQUIRE(b["impacts"]["side"] == a["impacts"]["side"]);
         CHECK(
@@ -341,30 +341,30 @@ TEST_CASE(
          {"time_ms,displacement_mm,acceleration_g", "time (ms),displacement (mm),acceleration (g)",
           "Time [ms],Displacement [mm],Acceleration [g]", "t ms,x mm,a g", "t(ms),x[mm],a(g)"}) {
         CAPTURE(header);
-        same(identify_answer(
+        same(identified(
             read_identify_request({{"preset", "fig15"}}, rescaled(csv, header, 1e-3, 1e-3, g))));
     }
-    same(identify_answer(read_identify_request(
+    same(identified(read_identify_request(
         {{"preset", "fig15"}},
         rescaled(csv, "time_s,displacement (\xc2\xb5m),acceleration (m/s\xc2\xb2)", 1, 1e-6, 1))));
-    same(identify_answer(read_identify_request(
+    same(identified(read_identify_request(
         {{"preset", "fig15"}, {"displacement_column", "laser_mm"}, {"displacement_unit", "mm"}},
         rescaled(csv, "time_s,laser_mm,acceleration_m_s2", 1, 1e-3, 1))));
     // A name without a unit leaves it to the field.
-    same(identify_answer(read_identify_request(
+    same(identified(read_identify_request(
         {{"preset", "fig15"},
          {"time_unit", "ms"},
          {"displacement_column", "laser"},
          {"displacement_unit", "um"}},
         rescaled(csv, "t,laser,a", 1e-3, 1e-6, 1))));
-    same(identify_answer(read_identify_request(
+    same(identified(read_identify_request(
         {{"preset", "fig15"}, {"displacement_column", "laser_left"}},
         rescaled(csv, "time,laser_left,acceleration_1", 1, 1, 1))));
     Json record = Json::object();
     for (const CsvColumn& c :
          parse_csv(rescaled(csv, "time_ms,displacement_mm,acceleration_g", 1e-3, 1e-3, g)))
         record[c.name] = c.values;
-    same(identify_answer(read_identify_request({{"preset", "fig15"}, {"record", record}})));
+    same(identified(read_identify_request({{"preset", "fig15"}, {"record", record}})));
 
     const auto fault = [&](Json fields, const char* header) {
         fields["preset"] = "fig15";
@@ -398,11 +398,11 @@ TEST_CASE(
 TEST_CASE(
     "impacts in a list are judged as those of a record: momentum over the typical jump, R within "
     "[0, 1], no missing one flown over") {
-    const Json simulated = simulate_answer(
+    const Json run = simulated(
         read_simulate_request({{"preset", "fig20"}, {"include", {"impacts"}}, {"cycles", 200}}),
         {});
-    Json impacts = simulated["impacts"];
-    const double epsilon = simulated["parameters"]["epsilon"];
+    Json impacts = run["impacts"];
+    const double epsilon = run["parameters"]["epsilon"];
     const std::size_t n = impacts["tau"].size();
     REQUIRE(n > 100);
     std::vector<double> jumps;
@@ -416,12 +416,11 @@ TEST_CASE(
     // R twice as large.
     impacts["y_dot_after"][30] =
         2 * impacts["y_dot_after"][30].get<double>() - impacts["x_dot_after"][30].get<double>();
-    const Json a =
-        identify_answer(read_identify_request({{"preset", "fig20"}, {"impacts", impacts}}));
+    const Json a = identified(read_identify_request({{"preset", "fig20"}, {"impacts", impacts}}));
     const Json& error = a["impacts"]["momentum_error"];
     CHECK(error[20].get<double>() == doctest::Approx(0.5).epsilon(0.01));
-    const double change = impacts["y_dot_after"][30].get<double>() -
-                          simulated["impacts"]["y_dot_after"][30].get<double>();
+    const double change =
+        impacts["y_dot_after"][30].get<double>() - run["impacts"]["y_dot_after"][30].get<double>();
     CHECK(error[30].get<double>() == doctest::Approx(epsilon * change / typical).epsilon(0.01));
     CHECK(std::abs(error[10].get<double>()) < 1e-9);
     CHECK(a["impacts"]["status"][10] == "ok");
@@ -433,10 +432,10 @@ TEST_CASE(
 
     const auto thinned = [&](std::size_t every) {
         Json rest = Json::object();
-        for (const auto& [name, column] : simulated["impacts"].items())
+        for (const auto& [name, column] : run["impacts"].items())
             for (std::size_t i = 0; i < n; ++i)
                 if (i % every != every / 2) rest[name].push_back(column[i]);
-        return identify_answer(read_identify_request({{"preset", "fig20"}, {"impacts", rest}}));
+        return identified(read_identify_request({{"preset", "fig20"}, {"impacts", rest}}));
     };
     const Json few = thinned(50), many = thinned(10);
     CHECK(few["verdict"] == "chaotic");
@@ -453,7 +452,7 @@ TEST_CASE(
 
 TEST_CASE("there is no verdict and no advice where the motion does not explain the record") {
     const std::string csv = measured("fig15", 12);
-    const Json good = identify_answer(read_identify_request({{"preset", "fig15"}}, csv));
+    const Json good = identified(read_identify_request({{"preset", "fig15"}}, csv));
     CAPTURE(good["warnings"].dump());
     CHECK(good["verdict"] == "regular");
     CHECK(good["signal"]["misfit"]["displacement"] < 1.1);
@@ -465,7 +464,7 @@ TEST_CASE("there is no verdict and no advice where the motion does not explain t
         CAPTURE(wrong.dump());
         Json fields = wrong;
         fields["preset"] = "fig15";
-        const Json a = identify_answer(read_identify_request(fields, csv));
+        const Json a = identified(read_identify_request(fields, csv));
         CHECK(a["verdict"] == "not_decided");
         CHECK(
             a["warnings"].dump().find(

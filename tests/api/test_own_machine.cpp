@@ -72,7 +72,7 @@ TEST_CASE("an engineer's fields are the paper's by its definitions") {
     Json plain = {{"m1", 12},   {"k1", k1},    {"c1", c1},
                   {"m2", 0.12}, {"F", 0.0004}, {"f", 14.2},
                   {"R", 0.4},   {"b", 0.03},   {"include", Json::array()}};
-    const Json by_c1 = simulate_answer(read_simulate_request(plain), {})["parameters"];
+    const Json by_c1 = simulated(read_simulate_request(plain), {})["parameters"];
     for (const char* name : {"epsilon", "lambda", "G", "Omega"})
         CHECK(is_near(by_ratio[name], by_c1[name].get<double>(), 1e-13));
     CHECK(by_c1["origin"]["epsilon"] == "follows from m2, m1");
@@ -288,7 +288,7 @@ TEST_CASE("impacts that die out get no verdict") {
         answer(R"({"G":0,"x0":0.05,"y0":0.05,"b":0.004,"tau_end":3000,"include":["impacts"]})");
     REQUIRE(run["impacts"]["tau"].size() > 40);
     const Json found =
-        identify_answer(read_identify_request({{"b", 0.004}, {"impacts", run["impacts"]}}));
+        identified(read_identify_request({{"b", 0.004}, {"impacts", run["impacts"]}}));
     CHECK(found["verdict"].is_null());
     CHECK(found["verdict_reason"].get<std::string>().find("dies out") != std::string::npos);
 }
@@ -427,7 +427,7 @@ TEST_CASE(
     for (const std::string& system :
          {platform + R"(,"f":14)", std::string(R"("damping":"closed_form")")}) {
         const Json m =
-            manifold_answer(read_manifold_request(parse_object("{" + system + "}")))["manifold"];
+            slow_manifold(read_manifold_request(parse_object("{" + system + "}")))["manifold"];
         const Json& best = m["recommended"];
         CHECK(best["fold_share"] <= 0.3);
         CHECK(best["b"] < 0.4 * m["b_at_free_amplitude"].get<double>());
@@ -447,9 +447,9 @@ TEST_CASE(
             CHECK(s.lines.at(2 * start + 1)["x_rms_ratio"].get<double>() > 0.8);
         }
     }
-    CHECK(manifold_answer(
-              read_manifold_request(parse_object(R"({"G":0})")))["manifold"]["recommended"]
-              .is_null());
+    CHECK(
+        slow_manifold(read_manifold_request(parse_object(R"({"G":0})")))["manifold"]["recommended"]
+            .is_null());
 }
 
 TEST_CASE(
@@ -468,17 +468,17 @@ TEST_CASE(
     CHECK(line["best"]["x_max"] < 0.009);
     CHECK(line["depends_on_start"] == true);
     CHECK(
-        manifold_answer(read_manifold_request(
+        slow_manifold(read_manifold_request(
             parse_object("{" + system + "}")))["manifold"]["recommended"]["b"] < line["x_free"]);
 }
 
 TEST_CASE("no b is recommended where none reduces the motion") {
     const Json a =
-        manifold_answer(read_manifold_request(parse_object("{" + platform + R"(,"f":13.4})")));
+        slow_manifold(read_manifold_request(parse_object("{" + platform + R"(,"f":13.4})")));
     CHECK(a["manifold"]["recommended"].is_null());
     CHECK(warns(a, "no b is recommended"));
     CHECK(warns(
-        manifold_answer(read_manifold_request(parse_object(R"({"lambda":0})"))),
+        slow_manifold(read_manifold_request(parse_object(R"({"lambda":0})"))),
         "undamped oscillator at resonance"));
 }
 
@@ -502,7 +502,7 @@ TEST_CASE("a transient that is too short for the oscillator is warned of, and is
             "b":0.5},"axes":[{"parameter":"f","values":[14,14.2]}],
             "starts":[{"x0":0.02,"y0":0.02}])";
     const SweepRequest request = sweep_request(sweep + R"(,"cycles":100})");
-    const Json start = sweep_start(request);
+    const Json start = start_of_sweep(request);
     CHECK(warns(
         start,
         "after transient_cycles = 200 the oscillator's free motion still has 53 % of its "
@@ -510,7 +510,7 @@ TEST_CASE("a transient that is too short for the oscillator is warned of, and is
     CHECK(swept(request).warning.empty());
     CHECK(start["parameters"]["origin"]["f"] == "swept: the first of its axis");
     const Json patient =
-        sweep_start(sweep_request(sweep + R"(,"cycles":100,"transient_cycles":1500})"));
+        start_of_sweep(sweep_request(sweep + R"(,"cycles":100,"transient_cycles":1500})"));
     CHECK(patient["warnings"].empty());
 }
 
@@ -570,7 +570,7 @@ TEST_CASE("the state of a motion in a sweep's line leads a simulation to the sam
             parse_object("{" + platform + R"(,"f":13.95,"cycles":80,"include":["energy"]})");
         request.update(start["state"]);
         CHECK(is_near(
-            simulate_answer(read_simulate_request(request), {})["energy"]["peak"],
+            simulated(read_simulate_request(request), {})["energy"]["peak"],
             start["x_max"].get<double>(), 1e-9));
     }
 }

@@ -1,4 +1,7 @@
-// How long a sweep makes others wait, in the running service: node tests/bench/service.mjs
+// How long a sweep makes others wait, in the running service, and how fast it answers beside a bare
+// server: node tests/bench/service.mjs [PORT...], where the ports are those of other services to be
+// measured in turn with it.
+import {spawnSync} from "node:child_process";
 import {startService} from "../service.mjs";
 
 const service = await startService(["--sweeps", "1"]);
@@ -54,6 +57,9 @@ const free = await timed(9, async () => {
   return performance.now() - left;
 });
 leave();
+const answers = new URL("../../build/release/tests/bench_answers", import.meta.url).pathname;
+const ports = [new URL(service.url).port, ...process.argv.slice(2)];
+spawnSync(answers, ports, {stdio: "inherit"});
 await service.stop();
 
 const ms = (x) => `${x.toFixed(1)} ms`;

@@ -2,7 +2,23 @@
 
 #include "http/encoding.hpp"
 
+#include <set>
+#include <string>
+
 using namespace vines::http;
+
+TEST_CASE("a tag tells a body from others of its length, and from longer ones") {
+    const std::string body = "{\"tau\":[0.0,0.19634954084936207,0.39269908169872414]}\n";
+    std::set<std::string> tags = {entity_tag(body), entity_tag(body + '\0'), entity_tag("")};
+    for (std::size_t at = 0; at < body.size(); ++at)
+        for (const char c : {' ', '\0', '\xff'}) {
+            std::string other = body;
+            other[at] = c;
+            tags.insert(entity_tag(other));
+        }
+    CHECK(tags.size() == 3 + 3 * body.size());
+    CHECK(entity_tag(body) == entity_tag(std::string(body)));
+}
 
 TEST_CASE("gzip is taken by whoever names it, with any weight but 0, or takes all") {
     for (const char* header :

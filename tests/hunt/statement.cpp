@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "api/json_text.hpp"
 #include "api/simulate.hpp"
 
 namespace vines::hunt {
@@ -65,8 +66,8 @@ Statement simulation(const System& system, int cycles) {
         system, "\"cycles\":" + std::to_string(cycles) +
                     ",\"max_impacts\":" + std::to_string(most_impacts_of_a_request) +
                     ",\"include\":[\"exponents\",\"regime\"],\"exponents\":[\"qr\"]");
-    const api::Json answer =
-        api::simulate_answer(api::read_simulate_request(api::Json::parse(s.request)), {});
+    const api::Json answer = api::Json::parse(api::json_text(
+        api::simulate_answer(api::read_simulate_request(api::Json::parse(s.request)), {})));
     const api::Json &exponents = answer["exponents"], &regime = answer["regime"];
     s.complete = answer["status"]["reason"] == "tau_end";
     s.verdict = verdict_named(exponents["verdict"]);

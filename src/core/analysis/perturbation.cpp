@@ -288,7 +288,7 @@ void find_linear_stretch(
     for (; end < tau.size() && !parted(tau[end]); ++end) {
         if (!comparable[end]) continue;
         const double off = std::abs(r.distance[end] - r.tangent[end]);
-        if (!(r.distance[end] > 0 && off <= linear_share * r.tangent[end])) break;
+        if (!(r.distance[end] > 0 && off <= vines::linear_share * r.tangent[end])) break;
         r.linear_until = tau[end];
     }
     double first_impact = nan;

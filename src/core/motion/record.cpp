@@ -2,6 +2,17 @@
 
 namespace vines {
 
+namespace {
+
+/// Both masses at the time s of a stretch, where the oscillator's state is known.
+State with_mass(const Stretch& stretch, const Oscillation& o, double s) {
+    if (stretch.stuck_side != 0)
+        return {o.x_dot, o.x, o.x_dot, o.x + (stretch.y - stretch.start.x)};
+    return {o.x_dot, o.x, stretch.y_dot, stretch.y + stretch.y_dot * s};
+}
+
+}  // namespace
+
 void SeriesRecord::add(double at, const State& state, double acceleration) {
     series.tau.push_back(at);
     series.x.push_back(state.x);
@@ -12,9 +23,12 @@ void SeriesRecord::add(double at, const State& state, double acceleration) {
 }
 
 void SeriesRecord::on_stretch(const Stretch& stretch) {
+    SampledFlow& oscillator = stretch.stuck_side == 0 ? free_ : stuck_;
+    oscillator.begin(stretch.flow, stretch.start);
     for (double at = next_ * step_; at < stretch.tau + stretch.duration; at = ++next_ * step_) {
         const double s = std::max(0.0, at - stretch.tau);
-        add(at, stretch.at(s), stretch.x_ddot(s));
+        const Oscillation o = oscillator.at(s);
+        add(at, with_mass(stretch, o, s), stretch.flow.acceleration(o));
     }
     x_ddot_at_end_ = stretch.x_ddot(stretch.duration);
 }

@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/motion/sampled_flow.hpp"
 #include "core/motion/simulate.hpp"
 #include "core/motion/special_values.hpp"
 
@@ -34,7 +35,7 @@ struct Series {
 /// The motion at tau = 0, step, 2 step, ... and at the end of the run.
 class SeriesRecord : public Observer {
 public:
-    explicit SeriesRecord(double step) : step_(step) {}
+    explicit SeriesRecord(double step) : step_(step), free_(step), stuck_(step) {}
     void on_stretch(const Stretch&) override;
     void finish(const Outcome& outcome);
 
@@ -44,6 +45,7 @@ private:
     void add(double tau, const State& state, double x_ddot);
     double step_, x_ddot_at_end_ = 0;
     long next_ = 0;
+    SampledFlow free_, stuck_;
 };
 
 /// The states at one phase of the forcing, once a cycle: at tau = (k + phase/(2 pi)) 2 pi/Omega

@@ -1,0 +1,168 @@
+#include "api/json_text.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <utility>
+
+#include "api/column.hpp"
+#include "api/number_text.hpp"
+
+namespace vines::api {
+
+namespace {
+
+// "-9223372036854775808"
+constexpr std::size_t longest_integer = 20;
+
+/// Whether it stands between quotation marks as it is.
+bool is_plain(const std::string& text) {
+    return std::all_of(text.begin(), text.end(), [](char c) {
+        return c >= ' ' && c != '"' && c != '\\';  // char is signed: none beyond ASCII
+    });
+}
+
+/// No fewer bytes than the packed lists of a value take as text.
+std::size_t most_of_lists(const Json& json) {
+    std::size_t most = 0;
+    if (json.is_structured())
+        for (const Json& part : json) most += most_of_lists(part);
+    if (!json.is_binary()) return most;
+    // "-2.2250738585072014e-308", a comma, a share of the brackets around four.
+    constexpr std::size_t number = 26, integer = longest_integer + 1, flag = 6;
+    const std::size_t bytes = json.get_binary().size();
+    switch (packing_of(json)) {
+        case Packed::integers: return 2 + bytes / sizeof(int) * integer;
+        case Packed::flags: return 2 + bytes * flag;
+        default: return 2 + bytes / sizeof(double) * number;
+    }
+}
+
+}  // namespace
+
+char* JsonText::room(std::size_t length) {
+    if (piece_.size() - used_ < length) end();
+    return piece_.data() + used_;
+}
+
+void JsonText::end() {
+    if (used_ > 0) take_({piece_.data(), used_});
+    used_ = 0;
+}
+
+void JsonText::put(char c) {
+    *room(1) = c;
+    ++used_;
+}
+
+void JsonText::put(std::string_view text) {
+    while (!text.empty()) {
+        char* const to = room(1);
+        const std::size_t part = std::min(text.size(), piece_.size() - used_);
+        std::memcpy(to, text.data(), part);
+        used_ += part;
+        text.remove_prefix(part);
+    }
+}
+
+void JsonText::put_quoted(const std::string& text) {
+    if (!is_plain(text)) return put(std::string_view(Json(text).dump()));
+    put('"');
+    put(std::string_view(text));
+    put('"');
+}
+
+void JsonText::put_number(double number) {
+    char* const to = room(room_for_number);
+    used_ += static_cast<std::size_t>(write_number(to, number) - to);
+}
+
+void JsonText::put_entry(char before, double entry) {
+    char* const to = room(1 + room_for_number);
+    *to = before;
+    used_ += static_cast<std::size_t>(write_number(to + 1, entry) - to);
+}
+
+void JsonText::put_entry(char before, int entry) {
+    char* const to = room(1 + longest_integer);
+    *to = before;
+    used_ +=
+        static_cast<std::size_t>(std::to_chars(to + 1, to + 1 + longest_integer, entry).ptr - to);
+}
+
+void JsonText::put_entry(char before, bool entry) {
+    put(before);
+    put(std::string_view(entry ? "true" : "false"));
+}
+
+template <class Entry>
+void JsonText::put_entry(char before, const std::array<Entry, 4>& entry) {
+    put(before);
+    before = '[';
+    for (const Entry& part : entry) put_entry(std::exchange(before, ','), part);
+    put(']');
+}
+
+template <class Entry>
+void JsonText::put_list(const Json::binary_t& list) {
+    char before = '[';
+    for (std::size_t at = 0; at < list.size(); at += sizeof(Entry)) {
+        Entry entry;
+        std::memcpy(&entry, list.data() + at, sizeof entry);
+        put_entry(std::exchange(before, ','), entry);
+    }
+    put(std::string_view(list.empty() ? "[]" : "]"));
+}
+
+void JsonText::put_list(const Json& list) {
+    switch (packing_of(list)) {
+        case Packed::numbers: return put_list<double>(list.get_binary());
+        case Packed::quadruples: return put_list<Quadruple>(list.get_binary());
+        case Packed::matrices: return put_list<MatrixByRows>(list.get_binary());
+        case Packed::integers: return put_list<int>(list.get_binary());
+        case Packed::flags: return put_list<bool>(list.get_binary());
+        case Packed::no: return;
+    }
+}
+
+void JsonText::write(Json& json) {
+    using Type = Json::value_t;
+    switch (json.type()) {
+        case Type::object: {
+            char before = '{';
+            for (auto& [name, value] : json.get_ref<Json::object_t&>()) {
+                put(std::exchange(before, ','));
+                put_quoted(name);
+                put(':');
+                write(value);
+            }
+            return put(std::string_view(json.empty() ? "{}" : "}"));
+        }
+        case Type::array: {
+            char before = '[';
+            for (Json& value : json.get_ref<Json::array_t&>()) {
+                put(std::exchange(before, ','));
+                write(value);
+            }
+            return put(std::string_view(json.empty() ? "[]" : "]"));
+        }
+        case Type::binary:
+            put_list(json);
+            json = nullptr;
+            return;
+        case Type::number_float: return put_number(json.get<double>());
+        case Type::string: return put_quoted(json.get_ref<const std::string&>());
+        default: return put(std::string_view(json.dump()));
+    }
+}
+
+std::string json_text(Json json) {
+    std::string text;
+    text.reserve(most_of_lists(json));
+    JsonText out([&text](std::string_view piece) { text += piece; });
+    out.write(json);
+    out.end();
+    return text;
+}
+
+}  // namespace vines::api
