@@ -1,4 +1,4 @@
-// Numbers as text, fast: the shortest that reads back to the same bits, in the form that JSON has.
+// Numbers as text: the shortest that reads back to the same bits, in the form that JSON has.
 #pragma once
 
 #include <cstddef>
