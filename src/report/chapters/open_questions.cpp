@@ -82,7 +82,8 @@ void symmetric_impacts(Report& report) {
     });
     report.say(fmt::format(
         "Where two symmetric impacts per cycle (Fig. 11) become asymmetric (Fig. 12): at b = "
-        "{:.6f} mm {}; by eq. (1) at {:.6f} mm {}. The motion is there up to b = {:.6f} mm, where "
+        "{:.6f} mm {}; by eq. (1) at {:.6f} mm {}. By the closed form the motion is there up to b "
+        "= {:.6f} mm, where "
         "it meets a slower one in a fold.",
         1000 * here.breaking, crossing(here.breaking, Damping::closed_form), 1000 * other.breaking,
         crossing(other.breaking, Damping::equation_of_motion), 1000 * fold));
