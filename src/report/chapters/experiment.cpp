@@ -566,17 +566,13 @@ void experiment(Report& report, Runs& runs) {
     report.say(
         "The paper's records are not published. Three are computed in their place, from Table 4's "
         "oscillator with eq. (1)'s damping, with G = 10 mm at resonance and R = .85: 20 s at b = "
-        "15 "
-        "mm and 12 s at 9 mm, either after 20 s that are left out, and the first 12 s at 9 mm, "
-        "from "
-        "rest on. They are recorded at 2048 Hz with a noise of 2 um and .05 m/s^2 and pulses of .8 "
-        "ms. The identification "
-        "knows the parameters of Table 4, b and Omega, and nothing of the impacts, of R and of the "
-        "excitation; it fits one motion to the whole record, and beside that makes the paper's "
-        "direct estimate, impact by impact by (42) and (43). Its transfer matrices have eq. (1)'s "
-        "damping, as the motion has, not that of (19) to (21). Intervals of 90 % are by bootstrap "
-        "of "
-        "blocks of impacts.");
+        "15 mm and 12 s at 9 mm, either after 20 s that are left out, and the first 12 s at 9 mm, "
+        "from rest on. They are recorded at 2048 Hz with a noise of 2 um and .05 m/s^2 and pulses "
+        "of .8 ms. The identification knows the parameters of Table 4, b and Omega, and nothing of "
+        "the impacts, of R and of the excitation; it fits one motion to the whole record, and "
+        "beside that makes the paper's direct estimate, impact by impact by (42) and (43). Its "
+        "transfer matrices have eq. (1)'s damping, as the motion has, not that of (19) to (21). "
+        "Intervals of 90 % are by bootstrap of blocks of impacts.");
     parameters_of_table_4(report);
     const struct {
         double b, settling, seconds;
@@ -597,7 +593,8 @@ void experiment(Report& report, Runs& runs) {
     from_rest_on(report, from_rest);
     const auto& figure_11 = runs.response(0.015, Damping::equation_of_motion).run.regime->orbit;
     settled_motion(
-        report, settled, figure_11->exponents(table1(0.015, Damping::equation_of_motion))[0]);
+        report, settled,
+        figure_11.value().exponents(table1(0.015, Damping::equation_of_motion))[0]);
     signals(report, chaotic, "20, 21", 5);
     phase_portrait(report, chaotic, 22);
     section(report, chaotic, 23);

@@ -180,8 +180,7 @@ void at_the_papers_b(
         {.where = fmt::format("Fig. {}", e.figure),
          .what = fmt::format(
              "b = {:g} mm: of {} random starts, those that come to Type {} with {} impacts a "
-             "cycle, "
-             "and so to four negative exponents",
+             "cycle, and so to four negative exponents",
              mm, random_starts, name_of(e.type), e.impacts),
          .paper = fmt::format("Type {}, all four negative", name_of(e.type)),
          .here = fmt::format(
@@ -212,8 +211,7 @@ void figures_12_and_13(Report& report, Runs& runs) {
         const Exponents lambda = exponents_of(here);
         report.say(fmt::format(
             "At b = {:g} mm it is {}; its exponents are {} ({}), lambda2 over lambda3 {:.2f}. At "
-            "the "
-            "paper's own b the largest is {:.4f}, by eq. (1) {:.4f}, of the motions that are "
+            "the paper's own b the largest is {:.4f}, by eq. (1) {:.4f}, of the motions that are "
             "there.",
             1000 * e.b_here, described(*here.run.regime), in_words(lambda),
             here.run.regime->orbit ? "Floquet multipliers" : "qr", lambda[1] / lambda[2],

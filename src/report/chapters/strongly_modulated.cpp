@@ -76,8 +76,7 @@ void first_impact(Report& report, const Response& r, const Response& by_equation
     // A program that stops its steps where the mass is this near to a wall would be early by that.
     constexpr double tolerance = 1e-5;
     report.say(fmt::format(
-        "The first impact comes at {:.4f}; the mass is within {:g} m of the wall from {:.4f} "
-        "on.",
+        "The first impact comes at {:.4f}; the mass is within {:g} m of the wall from {:.4f} on.",
         tau, tolerance, first_within(r, tolerance)));
 }
 
