@@ -1,8 +1,8 @@
 // Numbers as they stand in an answer: lists of them, and null for a number that does not exist.
 //
 // A list is kept as its numbers lie in memory, in a binary value of the JSON library, whose subtype
-// says what they are. It stands for the array that json_text() writes of it (json_text.hpp): a
-// third of the memory of an array of JSON values, and a third of the time.
+// says what they are. It stands for the array that json_text() writes of it (json_text.hpp), in
+// half of the memory of an array of JSON values.
 #pragma once
 
 #include <array>

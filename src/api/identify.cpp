@@ -107,8 +107,7 @@ std::string sampling_advice(const RefinedImpacts& refined, double step, double o
     const double rate = omega0 / step * std::min(most, 2 * step / refined.pulse);
     return fmt::format(
         "the impacts' pulses last about {:.3g} ms, the samples are {:.3g} ms apart: pulses may "
-        "fall "
-        "between samples; sample at {:.4g} Hz or more",
+        "fall between samples; sample at {:.4g} Hz or more",
         1000 * refined.pulse / omega0, 1000 * step / omega0, std::ceil(rate));
 }
 

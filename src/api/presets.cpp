@@ -9,8 +9,7 @@ namespace {
 const char* const doi = "10.1007/s11071-017-4015-y";
 const char* const citation =
     "T. Li, C.-H. Lamarque, S. Seguy, A. Berlioz: Chaotic characteristic of a linear oscillator "
-    "coupled with vibro-impact nonlinear energy "
-    "sink. Nonlinear Dynamics 91 (2018) 2319-2330";
+    "coupled with vibro-impact nonlinear energy sink. Nonlinear Dynamics 91 (2018) 2319-2330";
 
 // The window of the paper's exponents (Table 2, first row).
 constexpr double window_start = 18.13, window_end = 1708.9;

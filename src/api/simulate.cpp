@@ -175,8 +175,8 @@ void add_manifold_warnings(
             "none to reduce");
     if (late && !recommended)
         warnings.push_back(
-            "no b is recommended: the server's time limit for one request was over before all "
-            "were tried");
+            "no b is recommended: the server's time limit for one request was over before all were "
+            "tried");
     else if (free && *free > 0 && !recommended)
         warnings.push_back(
             "no b is recommended: none of those tried reduces the motion at this frequency from "

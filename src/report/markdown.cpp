@@ -23,20 +23,25 @@ const char* const introduction =
     "# Li, Lamarque, Seguy, Berlioz (2018), recomputed\n\n"
     "The figures, tables and statements of *Nonlinear Dynamics* 91, 2319-2330, each with what the "
     "paper says beside what was computed here. A verdict follows from a number and the band in "
-    "which that lies if the statement holds; the last column says why it is that band.\n\n";
+    "which that lies if the statement holds; the last column says why it is that band. Where the "
+    "paper has a word alone (almost, a little, close to, typical, a lot), the limits are a reading "
+    "of it: a tenth, nine in ten, four times.\n\n";
 
 const char* const glossary =
     "Numbers are by the damping of the closed form (8) to (11), zeta = epsilon lambda, and by that "
     "of eq. (1), half as much, where a row says so; a row without a number by eq. (1) says nothing "
     "of it. In section 5 it is eq. (1) alone. Those of the rows not reproduced that speak of "
     "lambda2, lambda3, lambda4 or the sum being positive are one and the same thing; of those "
-    "reproduced, Figs. 6 and 7 are identities and Table 1 two divisions.\n\n"
+    "reproduced, Figs. 2, 6 and 7 are identities, Table 1 and Table 4's lambda are divisions, and "
+    "Fig. 11's negative exponents follow from its type. *Alone*: by the other damping a row does "
+    "not hold, or only in part.\n\n"
     "Exponents: *qr*, by a QR factorisation at each impact, which rounding does not spoil; *(33)*, "
     "from the eigenvalues of the product of transfer matrices, held exactly; *raw_product*, the "
     "same with the product in double precision and without scaling, as the paper presumably did "
     "it. *Contact*: an impact, or a whole chatter that ends with the mass stuck to the wall; a "
     "*stick* leaves two exponents minus infinity. *z*: contacts per cycle. *In step*: contacts "
-    "that alternate walls within 15 % of half a forcing cycle. *Types*: III, IV and V are "
+    "that alternate walls within 15 % of half a forcing cycle. *Types*, as they are told apart "
+    "here: III, IV and V are "
     "motions on a stable periodic orbit, the others are not; VI has more than two contacts per "
     "cycle, II has stretches in step, I has none. *sd*: standard deviation. *T*: the matrix (30) "
     "in Figs. 8 and 9, else the length of a window. Eigenvalues and exponents are sorted by size, "

@@ -125,7 +125,7 @@ async function noteSweep(keys, url, request) {
     );
 }
 
-/** The last line of a stream whose service is told to stop. */
+/** The progress of a long sweep, and the last line of its stream when the service is told to stop. */
 async function noteBrokenSweep(keys) {
   const service = await startService();
   const axes = [{parameter: "b", from: 0.008, to: 0.03, count: 20000}];
@@ -133,9 +133,19 @@ async function noteBrokenSweep(keys) {
     method: "POST",
     body: JSON.stringify({axes}),
   });
-  const text = response.text();
-  await service.stop();
-  noteLine(keys, JSON.parse((await text).trim().split("\n").at(-1)), ["b"]);
+  let text = "";
+  let stopped;
+  for await (const piece of response.body.pipeThrough(new TextDecoderStream())) {
+    text += piece;
+    if (text.includes('"type":"progress"')) stopped ??= service.stop();
+  }
+  await stopped;
+  const lines = text
+    .trim()
+    .split("\n")
+    .map((line) => JSON.parse(line));
+  for (const line of [lines.find((l) => l.type === "progress"), lines.at(-1)])
+    noteLine(keys, line, ["b"]);
 }
 
 function noteIdentification(keys, answer) {

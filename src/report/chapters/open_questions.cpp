@@ -82,8 +82,8 @@ void symmetric_impacts(Report& report) {
     });
     report.say(fmt::format(
         "Where two symmetric impacts per cycle (Fig. 11) become asymmetric (Fig. 12): at b = "
-        "{:.6f} mm {}; by eq. (1) at {:.6f} mm {}. The motion is there up to b = {:.6f} mm, where "
-        "it meets a slower one in a fold.",
+        "{:.6f} mm {}; by eq. (1) at {:.6f} mm {}. By the closed form the motion is there up to b "
+        "= {:.6f} mm, where it meets a slower one in a fold.",
         1000 * here.breaking, crossing(here.breaking, Damping::closed_form), 1000 * other.breaking,
         crossing(other.breaking, Damping::equation_of_motion), 1000 * fold));
 }
@@ -158,10 +158,8 @@ void captures(Report& report, Runs& runs) {
     report.say(fmt::format(
         "\"In this period, the transient response has disappeared\" (of Fig. 5): of {} runs at b = "
         "22 mm to tau = {:g} a periodic orbit captures {}{}, which {} chaotic until then by "
-        "lambda1 "
-        "and its standard error; the other {} are chaotic to their ends. Whether their chaos "
-        "lasts, "
-        "runs of this length do not decide.",
+        "lambda1 and its standard error; the other {} are chaotic to their ends. Whether their "
+        "chaos lasts, runs of this length do not decide.",
         Ensemble::runs, Ensemble::tau_end, e.captured, when, e.captured == 1 ? "was" : "were",
         Ensemble::runs - e.captured));
 }
@@ -176,10 +174,9 @@ void open_questions(Report& report, Runs& runs) {
     three_impacts(report);
     report.say(
         "Without a row: Fig. 1, a drawing; that Fig. 24 and Fig. 5 are \"consistent\", for which "
-        "the "
-        "paper gives no measure (each has its own rows); that irregular impacts are the \"common "
-        "base\" of all chaotic regimes (section 6), of which one is tested (section 4.1); friction "
-        "and the walls' materials (section 6), which are in no equation.");
+        "the paper gives no measure (each has its own rows); that irregular impacts are the "
+        "\"common base\" of all chaotic regimes (section 6), of which one is tested (section 4.1); "
+        "friction and the walls' materials (section 6), which are in no equation.");
     report.heading("Misprints that a reader may stumble over");
     report.say(
         "Below eq. (1) lambda_1 stands for lambda, the damping. In (7) tau = 0 stands for tau_0. "
@@ -188,8 +185,8 @@ void open_questions(Report& report, Runs& runs) {
         "(32) end there; in (33) u_i is u_k. (37) and (38) are the derivatives of the state "
         "variables, as columns. (41) is another condition than (40), not a simpler form of it. "
         "\"When b is further increased\" before Fig. 14: b falls from 4 to 3 mm. \"The evolution "
-        "of eigenvalues\" of Fig. 13 is that of exponents. Epsilon of Table 4 is .77 %. b = 0.09 "
-        "m below Fig. 17 is 0.009 m, |x - b| = b below Fig. 23 is |x - y| = b.");
+        "of eigenvalues\" of Fig. 13 is that of exponents. Epsilon of Table 4 is .77 %. b = 0.09 m "
+        "below Fig. 17 is 0.009 m, |x - b| = b below Fig. 23 is |x - y| = b.");
 }
 
 }  // namespace vines::report

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <map>
-#include <optional>
 
 #include "report/chapters.hpp"
 #include "report/exponent_claims.hpp"
@@ -86,9 +85,7 @@ Exponents exponents_of(const Response& r) {
 }
 
 /// "Four negative values ..."
-void negative(
-    Report& report, const std::string& where, const Response& r,
-    std::optional<Exponents> other = {}) {
+void negative(Report& report, const std::string& where, const Response& r, const Response& other) {
     const Exponents lambda = exponents_of(r), raw = r.run.exponents->product.raw_product();
     const std::string at = fmt::format(" at b = {:g} mm", 1000 * r.parameters.b);
     report.find(
@@ -96,11 +93,11 @@ void negative(
          .what = "largest exponent" + at,
          .paper = "all four negative",
          .here = fmt::format(
-             "{} ({}); by raw_product {}{}", in_words(lambda),
+             "{} ({}); by raw_product {}; by eq. (1) {:.4f}", in_words(lambda),
              r.run.regime->orbit ? "Floquet multipliers" : "qr", in_words(raw),
-             other ? fmt::format("; by eq. (1) {:.4f}", (*other)[0]) : ""),
+             exponents_of(other)[0]),
          .number = lambda[0],
-         .by_equation = other ? std::optional((*other)[0]) : std::nullopt,
+         .by_equation = exponents_of(other)[0],
          .band = {-infinity, 0},
          .because = "negative"});
 }
@@ -126,7 +123,7 @@ void figure_11(Report& report, const Response& r, const Response& by_equation) {
     report.heading("Fig. 11: two symmetric impacts per cycle, b = 15 mm (Type III)");
     show(report, r, 11, 1600);
     regime(report, "Fig. 11", "Type III", RegimeType::III, r, by_equation);
-    negative(report, "Fig. 11", r, exponents_of(by_equation));
+    negative(report, "Fig. 11", r, by_equation);
     almost_zero(report, "Fig. 11", r);
     if (!r.run.sticks.empty())
         report.say(fmt::format(
@@ -182,9 +179,10 @@ void at_the_papers_b(
     report.find(
         {.where = fmt::format("Fig. {}", e.figure),
          .what = fmt::format(
-             "b = {:g} mm: of {} random starts, those that come to Type {} with {} impacts a cycle",
+             "b = {:g} mm: of {} random starts, those that come to Type {} with {} impacts a "
+             "cycle, and so to four negative exponents",
              mm, random_starts, name_of(e.type), e.impacts),
-         .paper = fmt::format("Type {}", name_of(e.type)),
+         .paper = fmt::format("Type {}, all four negative", name_of(e.type)),
          .here = fmt::format(
              "{}; from the paper's start {}. By eq. (1) {}; {}", here, described(*r.run.regime),
              there, described(*by_equation.run.regime)),
@@ -206,18 +204,18 @@ void figures_12_and_13(Report& report, Runs& runs) {
         report.heading(fmt::format(
             "Fig. {}: Type {}, b = {:g} mm in the paper", e.figure, name_of(e.type),
             1000 * e.b_paper));
-        const std::string where = fmt::format("Fig. {}", e.figure);
         const Response &there = runs.response(e.b_paper),
                        &by_equation = runs.response(e.b_paper, Damping::equation_of_motion),
                        &here = runs.response(e.b_here);
         at_the_papers_b(report, e, there, by_equation);
-        negative(report, where, here);
-        if (e.figure == 12) almost_zero(report, where, here);
+        const Exponents lambda = exponents_of(here);
         report.say(fmt::format(
-            "At b = {:g} mm it is {}; the rows on exponents are of that motion. At the paper's own "
-            "b the largest is {:.4f}, by eq. (1) {:.4f}, of the motions that are there.",
-            1000 * e.b_here, described(*here.run.regime), exponents_of(there)[0],
-            exponents_of(by_equation)[0]));
+            "At b = {:g} mm it is {}; its exponents are {} ({}), lambda2 over lambda3 {:.2f}. At "
+            "the paper's own b the largest is {:.4f}, by eq. (1) {:.4f}, of the motions that are "
+            "there.",
+            1000 * e.b_here, described(*here.run.regime), in_words(lambda),
+            here.run.regime->orbit ? "Floquet multipliers" : "qr", lambda[1] / lambda[2],
+            exponents_of(there)[0], exponents_of(by_equation)[0]));
         show(report, here, e.figure, 1600);
     }
 }

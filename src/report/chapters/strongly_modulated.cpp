@@ -70,14 +70,13 @@ void first_impact(Report& report, const Response& r, const Response& by_equation
          .number = tau,
          .by_equation = other,
          .band = {18.12995, 18.13005},
-         .because = "the printed digits; in part: a tenth of a per cent, the same impact",
+         .because = "the printed digits; in part: a tenth of a per cent",
          .partly = Band{18.1119, 18.1481},
          .expected = Verdict::partly_by_closed_form});
     // A program that stops its steps where the mass is this near to a wall would be early by that.
     constexpr double tolerance = 1e-5;
     report.say(fmt::format(
-        "The first impact comes at {:.4f}; the mass is within {:g} m of the wall from {:.4f} "
-        "on.",
+        "The first impact comes at {:.4f}; the mass is within {:g} m of the wall from {:.4f} on.",
         tau, tolerance, first_within(r, tolerance)));
 }
 

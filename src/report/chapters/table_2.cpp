@@ -33,17 +33,18 @@ void lambda1(Report& report, const Ensemble& closed_form, const Ensemble& by_equ
     const double joint = joint_deviation(closed_form), other_joint = joint_deviation(by_equation);
     std::string each;
     double squares = 0;
-    for (const Table2Row& row : printed_table_2)
-        squares += std::pow(deviations(row, closed_form), 2);
-    for (const Table2Row& row : printed_table_2)
-        each += fmt::format("{}{:.1f}", each.empty() ? "" : ", ", deviations(row, closed_form));
+    for (const Table2Row& row : printed_table_2) {
+        const double off = deviations(row, closed_form);
+        squares += off * off;
+        each += fmt::format("{}{:.1f}", each.empty() ? "" : ", ", off);
+    }
     report.find(
         {.where = "Table 2",
          .what = "lambda1 of the three windows together: sd above the mean of many",
          .paper = ".1093, .1143, .1197",
          .here = fmt::format(
-             "{:.4f} +- {:.4f} over {} windows of 1690; {} sd each, of windows as long as its "
-             "own, {:.1f} together, their squares {:.1f}; eq. (1): {:.3f}, {:.0f} together",
+             "{:.4f} +- {:.4f} over {} windows of 1690; {} sd each, of windows as long as its own, "
+             "{:.1f} together, their squares {:.1f}; eq. (1): {:.3f}, {:.0f} together",
              here.mean, here.deviation, closed_form.windows.size(), each, joint, squares,
              other.mean, other_joint),
          .number = joint,

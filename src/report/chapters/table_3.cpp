@@ -128,12 +128,11 @@ void windows(Report& report, Runs& runs) {
     report.say(fmt::format(
         "If what is printed as lambda3 is rounding (Table 2), it is lambda1 less {:.0f}/T to "
         "{:.0f}/T, and tells how long each row's window is, which the paper does not. Their "
-        "lengths, {:.0f} "
-        "to {:.0f}, scatter by {:.0f} %, their numbers of contacts, {:.0f} +- {:.0f} on average, "
-        "by {:.0f} %; rounding alone scatters the three rows of Table 2 by {:.0f} %. One number "
-        "of contacts in all windows is therefore an inference, and {} is taken for it above. The "
-        "row of 22 mm is left out: its window is printed in Table 2, {:.0f} long, and holds some "
-        "{:.0f} contacts; this way it would be {:.0f}.",
+        "lengths, {:.0f} to {:.0f}, scatter by {:.0f} %, their numbers of contacts, {:.0f} +- "
+        "{:.0f} on average, by {:.0f} %; rounding alone scatters the three rows of Table 2 by "
+        "{:.0f} %. One number of contacts in all windows is therefore an inference, and {} is "
+        "taken for it above. The row of 22 mm is left out: its window is printed in Table 2, "
+        "{:.0f} long, and holds some {:.0f} contacts; this way it would be {:.0f}.",
         std::ranges::min(spreads), std::ranges::max(spreads), std::ranges::min(lengths),
         std::ranges::max(lengths), 100 * moments(lengths).scatter(), mean.mean,
         mean.deviation / std::sqrt(static_cast<double>(contacts.size())), 100 * mean.scatter(),
@@ -209,8 +208,8 @@ void order(Report& report, Runs& runs) {
          .by_equation = rise_over_error(runs, Damping::equation_of_motion),
          .band = {-infinity, -2.58},
          .because =
-             "a fall, as printed: of the means over windows, over its standard error, by more "
-             "than chance leaves once in 100 times",
+             "a fall, as printed: of the means over windows, over its standard error, by more than "
+             "chance leaves once in 100 times",
          .expected = Verdict::by_closed_form});
 }
 
@@ -240,8 +239,7 @@ void durations(Report& report, Runs& runs) {
             {.where = where,
              .what = fmt::format(
                  "Type II (16.5 to 31 mm): rank correlation of {} and the mean time of a stretch "
-                 "in "
-                 "step",
+                 "in step",
                  what),
              .paper = paper,
              .here = fmt::format(

@@ -323,7 +323,8 @@ void area_3(Report& report, const Response& window) {
         {.where = "Fig. 9, area 3",
          .what = "of the window's modulations, those with a higher amplitude than that of the "
                  "largest value of T",
-         .paper = "in area3, the largest value is observed",
+         .paper = "in area3, the largest value is observed; \"a close relation to the maximal "
+                  "amplitude\"",
          .here = fmt::format("{} of {}", higher, shown.size()),
          .number = static_cast<double>(higher),
          .band = exactly(0),

@@ -51,11 +51,12 @@ void limits_of_the_computer(Report& report, const TransferProduct& product) {
         "The exponents add up to -2 zeta + (2/T) (sum of ln R), whatever the motion: they cannot "
         "all be positive. \"Too large value of transfer matrix M in Eq. (32) will exceed the "
         "capability of computer\": at this lambda1 its entries overflow at T = {:.0f}; but from T "
-        "= {:.0f} on rounding hides lambda3. The unscaled product is then a matrix of rank one "
-        "plus rounding, and what stands for the third exponent is the floor lambda1 - "
-        "ln(1/2.2e-16)/T, the broken line: {:.4f} here, where raw_product has {:.4f} and qr "
-        "{:.4f}.",
-        range / qr[0], rounded_from(qr, 2), rounding_floor(raw[0], T), raw[2], qr[2]));
+        "= {:.0f} on rounding hides lambda3, from {:.0f} on lambda2. The unscaled product is then "
+        "a matrix of rank one plus rounding, and what stands for the third exponent is the floor "
+        "lambda1 - ln(1/2.2e-16)/T, the broken line: {:.4f} here, where raw_product has {:.4f} and "
+        "qr {:.4f}.",
+        range / qr[0], rounded_from(qr, 2), rounded_from(qr, 1), rounding_floor(raw[0], T), raw[2],
+        qr[2]));
 }
 
 void constancy(Report& report, const TransferProduct& product) {
@@ -78,8 +79,9 @@ void constancy(Report& report, const TransferProduct& product) {
     }
 }
 
-/// One impact: how far the k-th exponent lies below the mean of those at its neighbours, times T,
-/// which makes it the logarithm of an eigenvalue; and which share of all impacts is slower.
+/// One impact, T after the first: how far the k-th exponent lies below the mean of those at its
+/// neighbours, times T, which makes it the logarithm of an eigenvalue; and which share of all
+/// impacts is slower.
 struct Spike {
     double T, depth, rank;
 };
@@ -123,13 +125,12 @@ void spikes(Report& report, const Response& r, const TransferProduct& product) {
          .here = fmt::format("{:.0e} to {:.0e}", smallest, largest),
          .number = largest,
          .band = {0, 0.1},
-         .because = "a tenth or less"});
+         .because = "a tenth or less: close to zero beside its neighbours, as the product grows"});
     report.say(fmt::format(
         "Of these spikes the paper says that their impacts \"are probably related to the grazing "
         "bifurcation but cannot be justified with evidence here\". Here {:.2f} of all impacts are "
         "slower, and so nearer to grazing, than theirs (the median; {:.2f} to {:.2f}); by chance "
-        "it "
-        "would be .5.",
+        "it would be .5.",
         median(ranks), std::ranges::min(ranks), std::ranges::max(ranks)));
 }
 
