@@ -297,8 +297,10 @@ TEST_CASE("a thinned history keeps every second, fourth, ... impact and ends nea
 
 namespace {
 
-/// How lambda1 of 100 runs of 1709 spreads, over what one of them states; that spread itself is
-/// known to 7 %.
+/// How lambda1 of 100 runs of 1709 spreads, over what one of them states. From one group
+/// of 100 neighbouring starts to the next this ratio scatters by a tenth: of 12 groups of each of
+/// the 20 systems below it was .61 to 1.58, and .75 (31 mm, closed form) to 1.23 in the median.
+constexpr double least_ratio = 0.5, most_ratio = 1.75;
 struct Calibration {
     double ratio;
     int decided;
@@ -330,14 +332,18 @@ TEST_CASE(
          {0.0165, 0.017, 0.018, 0.020, 0.022, 0.025, 0.028, 0.031, 0.034, 0.040}},
         {Damping::equation_of_motion,
          {0.0205, 0.021, 0.022, 0.025, 0.0265, 0.028, 0.031, 0.034, 0.037, 0.040}}};
+    double sum = 0, systems = 0;
     for (const auto& [damping, values] : chaotic)
         for (const double b : values) {
             CAPTURE(b);
             const Calibration c = calibrated(table1(b, damping), 1e-9);
-            CHECK(c.ratio > 0.8);
-            CHECK(c.ratio < 1.25);
+            CHECK(c.ratio > least_ratio);
+            CHECK(c.ratio < most_ratio);
             CHECK(c.decided >= (damping == Damping::closed_form || b > 0.0215 ? 95 : 60));
+            sum += std::log(c.ratio), ++systems;
         }
+    // Twelve such means were 1.00 to 1.09.
+    CHECK(std::abs(sum / systems - std::log(1.05)) < 0.1);
 }
 
 TEST_CASE("the standard error holds at the onset of chaos, too") {
@@ -350,8 +356,8 @@ TEST_CASE("the standard error holds at the onset of chaos, too") {
         const double b = known.second;
         CAPTURE(b);
         const Calibration c = calibrated(table1(b, known.first), 2e-4);
-        CHECK(c.ratio > 0.8);
-        CHECK(c.ratio < 1.25);
+        CHECK(c.ratio > least_ratio);
+        CHECK(c.ratio < most_ratio);
     }
 }
 
