@@ -16,6 +16,11 @@ std::string in_words(const Exponents& lambda) {
         "{:.4f}, {:.4f}, {:.4f}, {:.4f}", lambda[0], lambda[1], lambda[2], lambda[3]);
 }
 
+Exponents exponents_of(const Response& r) {
+    const auto& orbit = r.run.regime->orbit;
+    return orbit ? orbit->exponents(r.parameters) : r.run.exponents->product.qr();
+}
+
 namespace {
 
 /// Of a history's values those of the second half of its window.

@@ -8,6 +8,9 @@ namespace vines::report {
 
 std::string in_words(const Exponents& lambda);
 
+/// Of the orbit that the run has come to, else of the window.
+Exponents exponents_of(const Response& response);
+
 /// Where the paper says that a motion is chaotic and that its four exponents are positive, and how.
 struct PositiveExponents {
     std::string where, chaotic, positive;

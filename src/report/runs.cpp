@@ -62,17 +62,17 @@ Ensemble one_run(const Parameters& p, const State& start, WindowsOf size) {
 
     Ensemble e;
     const bool captured = regime.capture && regime.capture->chaotic_before == true;
-    e.captured = captured;
     if (regime.orbit && !captured) {
         e.periodic = regime.orbit->exponents(p)[0];
         e.windows.push_back({Ensemble::tau_end, regime.orbit->exponents(p), nan});
         return e;
     }
-    if (captured) e.capture_tau = {regime.capture->tau.value_or(Ensemble::tau_end)};
-    e.chaotic_tau = captured ? regime.capture->tau.value_or(Ensemble::tau_end) : Ensemble::tau_end;
-    Wanted exponents = run_to(p, start, e.chaotic_tau);
+    const double until =
+        captured ? regime.capture->tau.value_or(Ensemble::tau_end) : Ensemble::tau_end;
+    if (captured) e.capture_tau = {until};
+    Wanted exponents = run_to(p, start, until);
     exponents.estimators = qr_and_raw_product;
-    exponents.windows = windows_of(size, p, start, e.chaotic_tau);
+    exponents.windows = windows_of(size, p, start, until);
     for (const WindowExponents& w : analyse(exponents).windows)
         if (!std::isnan(w.product.qr()[0])) e.windows.push_back(concluded(w.product));
     return e;
@@ -105,10 +105,8 @@ Ensemble make_ensemble(double b, WindowsOf size, Damping damping) {
     Ensemble all;
     for (const Ensemble& run : each) {
         all.windows.insert(all.windows.end(), run.windows.begin(), run.windows.end());
-        all.captured += run.captured;
         all.capture_tau.insert(
             all.capture_tau.end(), run.capture_tau.begin(), run.capture_tau.end());
-        all.chaotic_tau += run.chaotic_tau;
         if (run.periodic) all.periodic = run.periodic;
     }
     return all;

@@ -62,9 +62,7 @@ struct Ensemble {
         double raw_spread;
     };
     std::vector<Window> windows;
-    int captured = 0;                 ///< runs that were chaotic until an orbit captured them
-    std::vector<double> capture_tau;  ///< when
-    double chaotic_tau = 0;  ///< how long all of them were, together, until then or their end
+    std::vector<double> capture_tau;  ///< of each run that was chaotic until an orbit captured it
     /// lambda1 of the orbit that every run comes to without a chaotic transient.
     std::optional<double> periodic;
 

@@ -591,10 +591,8 @@ void experiment(Report& report, Runs& runs) {
     section(report, settled, 18);
     histories(report, from_rest, 19, ", of a motion from rest on");
     from_rest_on(report, from_rest);
-    const auto& figure_11 = runs.response(0.015, Damping::equation_of_motion).run.regime->orbit;
-    settled_motion(
-        report, settled,
-        figure_11.value().exponents(table1(0.015, Damping::equation_of_motion))[0]);
+    const Response& figure_11 = runs.response(0.015, Damping::equation_of_motion);
+    settled_motion(report, settled, exponents_of(figure_11)[0]);
     signals(report, chaotic, "20, 21", 5);
     phase_portrait(report, chaotic, 22);
     section(report, chaotic, 23);

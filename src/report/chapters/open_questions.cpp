@@ -152,6 +152,7 @@ void three_impacts(Report& report) {
 /// Whether the chaos at b = 22 mm is itself a transient, if a long one.
 void captures(Report& report, Runs& runs) {
     const Ensemble& e = runs.ensemble(0.022, WindowsOf::tau_1690);
+    const auto captured = std::ssize(e.capture_tau);
     std::string when;
     for (const double tau : e.capture_tau)
         when += fmt::format("{} {:.0f}", when.empty() ? ", at tau =" : ",", tau);
@@ -160,8 +161,8 @@ void captures(Report& report, Runs& runs) {
         "22 mm to tau = {:g} a periodic orbit captures {}{}, which {} chaotic until then by "
         "lambda1 and its standard error; the other {} are chaotic to their ends. Whether their "
         "chaos lasts, runs of this length do not decide.",
-        Ensemble::runs, Ensemble::tau_end, e.captured, when, e.captured == 1 ? "was" : "were",
-        Ensemble::runs - e.captured));
+        Ensemble::runs, Ensemble::tau_end, captured, when, captured == 1 ? "was" : "were",
+        Ensemble::runs - captured));
 }
 
 }  // namespace

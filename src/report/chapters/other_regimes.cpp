@@ -78,12 +78,6 @@ void figure_10(Report& report, const Response& r, const Response& by_equation) {
             r.run.stick_count));
 }
 
-/// Of the orbit that the run has come to, else of the window.
-Exponents exponents_of(const Response& r) {
-    const auto& orbit = r.run.regime->orbit;
-    return orbit ? orbit->exponents(r.parameters) : r.run.exponents->product.qr();
-}
-
 /// "Four negative values ..."
 void negative(Report& report, const std::string& where, const Response& r, const Response& other) {
     const Exponents lambda = exponents_of(r), raw = r.run.exponents->product.raw_product();

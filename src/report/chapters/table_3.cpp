@@ -164,18 +164,21 @@ int falls_in_type_II(const std::vector<double>& lambda1) {
 double rise_to_type_I(const std::vector<double>& lambda1) {
     return *std::max_element(lambda1.begin() + of_type_II, lambda1.end()) - lambda1[of_type_II - 1];
 }
-/// Of means over windows, over their standard errors.
+/// The same of means over windows, over its standard error.
 double rise_over_error(Runs& runs, Damping damping) {
-    const std::vector<double> lambda1 = lambda1_by(runs, damping);
-    double squares = 0;
-    for (const Table3Row& row : printed_table_3) {
-        const Ensemble& e = windows_at(runs, row.b, damping);
-        const double mean = e.lambda(0).mean;
-        if (row.b == highest_of_type_II ||
-            mean == *std::max_element(lambda1.begin() + of_type_II, lambda1.end()))
-            squares += std::pow(e.lambda(0).deviation, 2) / static_cast<double>(e.windows.size());
-    }
-    return rise_to_type_I(lambda1) / std::sqrt(squares);
+    const auto lambda1 = [&](const Table3Row& row) {
+        return windows_at(runs, row.b, damping).lambda(0);
+    };
+    const auto squared_error = [&](const Table3Row& row) {
+        const auto windows = windows_at(runs, row.b, damping).windows.size();
+        return std::pow(lambda1(row).deviation, 2) / static_cast<double>(windows);
+    };
+    // The table begins with Type I; then comes the highest b of Type II.
+    const Table3Row &a = printed_table_3[0], &b = printed_table_3[1],
+                    &type_I = lambda1(a).mean > lambda1(b).mean ? a : b,
+                    &type_II = printed_table_3[2];
+    return (lambda1(type_I).mean - lambda1(type_II).mean) /
+           std::sqrt(squared_error(type_I) + squared_error(type_II));
 }
 
 /// "With the increase of b ... transient Lyapunov exponents increase": of the strongly modulated
