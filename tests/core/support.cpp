@@ -5,6 +5,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "core/analysis/analysis.hpp"
+
 namespace vines::test {
 
 Reference read_reference(const std::string& name) {
@@ -75,6 +77,20 @@ System random_system(std::mt19937_64& engine) {
     s.start.y = s.start.x + (u(0, 1) < 0.1 ? (engine() % 2 ? 1 : -1) : u(-1, 1)) * p.b;
     s.start.y_dot = u(0, 1) < 0.2 ? s.start.x_dot : u(-0.03, 0.03);
     return s;
+}
+
+CapturedTransient captured_transient() {
+    for (int k = 0; k < 20; ++k) {
+        Parameters p = table1(0.022 + k * 1e-9, Damping::closed_form);
+        p.R_plus = p.R_minus = 0.5;
+        Wanted w{.parameters = p, .start = default_state(p), .tau_end = 20000};
+        w.parts.regime = true;
+        w.estimators = qr_alone;
+        const auto capture = analyse(w).regime->capture;
+        if (capture && capture->tau && *capture->tau > 2000 && *capture->tau < 9000)
+            return {p, *capture->tau};
+    }
+    throw std::runtime_error("no capture among twenty runs");
 }
 
 }  // namespace vines::test

@@ -21,7 +21,8 @@ struct Experiment {
     double lambda1;               ///< of them: what a perfect identification would give
 };
 
-/// The motion of Table 4's oscillator with its absorber from 20 s on, when it has settled.
+/// The motion of Table 4's oscillator with its absorber once it has settled, from 20 s on or later,
+/// where it does not stick.
 TrueMotion settled_motion(double b, double R_plus, double R_minus, double seconds);
 Experiment measured(
     const TrueMotion& motion, const Sensors& sensors, const Misinformation& told = {});

@@ -418,18 +418,19 @@ TEST_CASE("motions whose deviations grow like a power of time are not called cha
 }
 
 TEST_CASE("each window of a run has its own verdict") {
-    // Captured near tau = 4100 by the orbit with a chatter and a stick (an ulp of b matters).
-    const Parameters p = table1(0.022000000999999998, Damping::closed_form);
+    const auto [p, captured] = captured_transient();
     ContactRecord contacts;
     StroboscopicRecord stroboscopic(p);
-    Lyapunov first(p, 0, 1932, qr_alone), second(p, 0, 3764, qr_alone),
-        last(p, 4164, 20000, qr_alone);
+    Lyapunov first(p, 0, 0.5 * captured, qr_alone), second(p, 0, 0.9 * captured, qr_alone),
+        last(p, 1.1 * captured, 20000, qr_alone);
     Observer* const observers[] = {&contacts, &stroboscopic, &first, &second, &last};
     simulate(p, default_state(p), {20000, 10000000, {}}, observers);
     const Regime r = regime_of(
         p, default_state(p),
-        {contacts, stroboscopic, 4164, 20000, verdict_by_exponents(growth_of(last.product()))});
+        {contacts, stroboscopic, 1.1 * captured, 20000,
+         verdict_by_exponents(growth_of(last.product()))});
     REQUIRE(r.capture);
+    CHECK(r.capture->tau.value() == doctest::Approx(captured).epsilon(0.01));
     CHECK(r.capture->chaotic_before == true);
     for (const Lyapunov* window : {&first, &second}) {
         const Judgement j = judge(growth_of(window->product()), r, window->product().start_tau());
@@ -437,8 +438,8 @@ TEST_CASE("each window of a run has its own verdict") {
         CHECK(j.reason == VerdictReason::growth);
     }
     CHECK(
-        judge(growth_of(last.product()), r, std::max(r.capture->tau.value(), 4164.)).verdict ==
-        Verdict::regular);
+        judge(growth_of(last.product()), r, std::max(r.capture->tau.value(), 1.1 * captured))
+            .verdict == Verdict::regular);
 }
 
 TEST_CASE("nothing attracts without damping and with R = 1") {

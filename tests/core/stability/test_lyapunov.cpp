@@ -90,7 +90,9 @@ TEST_CASE("the sum rule holds through nearly grazing impacts, where entries of M
         TransferProduct product(
             p.epsilon, {.qr = true, .eigenvalues = true, .history = shortest_history});
         product.start(0);
-        double tau = 0;
+        // Sum of the largest entries of each M, and the rounding of a one.
+        double tau = 0, entries = 0;
+        constexpr double ulp = std::numeric_limits<double>::epsilon();
         for (int n = 0; n < 300; ++n) {
             const double s = uniform(engine, 0.5, 5);
             tau += s;
@@ -103,10 +105,13 @@ TEST_CASE("the sum rule holds through nearly grazing impacts, where entries of M
             c.relative_speed = c.side * (n % 10 == 0 ? speed : uniform(engine, 0.002, 0.02));
             const Impact i = impact_at(p, c, Flow::free(p).acceleration(c.lo), tau);
             const Leg flight = leg_of(Flow::free(p), s, false);
-            product.append({&flight, 1}, saltation(p, i), i.R, tau);
+            const Saltation M = saltation(p, i);
+            entries += M.r.cwiseAbs().maxCoeff();
+            product.append({&flight, 1}, M, i.R, tau);
         }
         CAPTURE(speed);
-        CHECK(product.sum_rule_residual() < 1e-10);
+        // An entry magnifies the rounding of what it meets.
+        CHECK(product.sum_rule_residual() < std::max(1e-10, entries * ulp / tau));
     }
 }
 
