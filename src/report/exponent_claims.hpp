@@ -23,7 +23,7 @@ void positive_exponents(
 /// (one value in twenty at either end), over its last value.
 double late_change(const ExponentHistory& history, int k);
 /// Almost constant, and nearly so.
-inline constexpr double small_change = 0.1, some_change = 0.3;
-inline const char* const why_small_change = "a tenth; in part: three tenths";
+inline constexpr double small_change = 0.1, some_change = 0.2;
+inline const char* const why_small_change = "a tenth; in part: a fifth";
 
 }  // namespace vines::report

@@ -1,5 +1,7 @@
 #include "report/runs.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <thread>
@@ -46,6 +48,16 @@ std::vector<Interval> windows_of(
         windows.push_back({contacts[first].tau, contacts[first + window_contacts].tau});
     return windows;
 }
+
+/// The paper's initial state, for k = 0, and others beside it.
+State start_beside(const Parameters& p, std::size_t k) {
+    State start = default_state(p);
+    start.y -= static_cast<double>(k) * 1e-6 * p.b;
+    return start;
+}
+
+// So that the median is known to a fifth of what they scatter by.
+constexpr std::size_t neighbour_runs = 50;
 
 Ensemble::Window concluded(const TransferProduct& product) {
     const double T = product.end_tau() - product.start_tau();
@@ -98,9 +110,7 @@ Ensemble make_ensemble(double b, WindowsOf size, Damping damping) {
     const Parameters p = table1(b, damping);
     std::vector<Ensemble> each(Ensemble::runs);
     parallel(each.size(), all_threads(), [&](std::size_t run) {
-        State start = default_state(p);
-        start.y -= static_cast<double>(run) * 1e-6 * b;
-        each[run] = one_run(p, start, size);
+        each[run] = one_run(p, start_beside(p, run), size);
     });
     Ensemble all;
     for (const Ensemble& run : each) {
@@ -183,6 +193,13 @@ Response long_response(double b) {
     return {p, analyse(wanted)};
 }
 
+std::string Typical::in_words(int decimals) const {
+    return fmt::format(
+        "{:.{}f}; of {} starts beside each other the median {:.{}f}, quartiles {:.{}f} and {:.{}f}",
+        first, decimals, neighbour_runs, median, decimals, lower_quartile, decimals, upper_quartile,
+        decimals);
+}
+
 const Response& Runs::response(double b, Damping damping) {
     const auto found = responses_.find({b, damping});
     if (found != responses_.end()) return found->second;
@@ -199,6 +216,21 @@ const Response& Runs::response(double b, Damping damping) {
         .manifold = true};
     wanted.estimators = all_estimators;
     return responses_.emplace(std::pair{b, damping}, Response{p, analyse(wanted)}).first->second;
+}
+
+const std::vector<Response>& Runs::neighbours(double b, Damping damping) {
+    const auto [at, is_new] = neighbours_.try_emplace({b, damping});
+    if (!is_new) return at->second;
+    const Parameters p = table1(b, damping);
+    std::vector<std::optional<Analysis>> runs(neighbour_runs);
+    parallel(neighbour_runs, all_threads(), [&](std::size_t k) {
+        Wanted wanted = run_to(p, start_beside(p, k), window_end);
+        wanted.parts = {.series = true, .exponents = true, .moduli = true, .regime = true};
+        wanted.estimators = {.qr = true, .raw_product = true};
+        runs[k].emplace(analyse(wanted));
+    });
+    for (auto& run : runs) at->second.push_back({p, std::move(*run)});
+    return at->second;
 }
 
 const Ensemble& Runs::ensemble(double b, WindowsOf size, Damping damping) {

@@ -2,6 +2,7 @@
 // ask of the simulation.
 #pragma once
 
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
@@ -86,14 +87,36 @@ std::vector<Regime> long_regimes(const std::vector<double>& b, Damping damping);
 /// series, the moduli and the regime alone. `b` in m.
 Response long_response(double b);
 
+/// A number of each of several chaotic runs, which are samples of one motion: that of the first,
+/// which is the paper's, and what is typical.
+struct Typical {
+    double first, median, lower_quartile, upper_quartile;
+
+    std::string in_words(int decimals) const;
+};
+/// NaN is left out; `runs` of Runs::neighbours().
+template <class Number>
+Typical typical(const std::vector<Response>& runs, Number number) {
+    std::vector<double> values;
+    for (const Response& r : runs) values.push_back(number(r));
+    const double first = values.front();
+    std::erase_if(values, [](double v) { return std::isnan(v); });
+    return {first, median(values), quantile(values, 0.25), quantile(values, 0.75)};
+}
+
 /// The runs that more than one chapter rests on: each is made when it is first asked for. `b` in m.
 class Runs {
 public:
     const Response& response(double b, Damping damping = Damping::closed_form);
+    /// That run and those of starts beside it: where the motion is chaotic, each of them soon is
+    /// another one, as that of another computer is. Without matrices, manifold and the eigenvalues
+    /// by compounds.
+    const std::vector<Response>& neighbours(double b, Damping damping = Damping::closed_form);
     const Ensemble& ensemble(double b, WindowsOf size, Damping damping = Damping::closed_form);
 
 private:
     std::map<std::pair<double, Damping>, Response> responses_;
+    std::map<std::pair<double, Damping>, std::vector<Response>> neighbours_;
     std::map<std::tuple<double, WindowsOf, Damping>, Ensemble> ensembles_;
 };
 

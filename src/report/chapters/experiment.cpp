@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "core/identification/measurement.hpp"
@@ -437,6 +438,31 @@ IdentifiedExponents by_closed_form(const Experiment& e) {
     return judged_by(e, p);
 }
 
+constexpr std::size_t following = 40;
+
+/// late_change() of lambda1 of the true motion, by (33), over stretches as long as the record that
+/// follow it.
+std::vector<double> late_changes_after(const Experiment& e) {
+    const Parameters& p = e.truth.parameters;
+    const double T = e.truth.seconds * e.truth.omega0;
+    std::vector<Lyapunov> stretches;
+    stretches.reserve(following);
+    std::vector<Observer*> observers;
+    double tau = e.truth.begin;
+    for (std::size_t k = 0; k < following; ++k) {
+        tau += T;
+        observers.push_back(
+            &stretches.emplace_back(p, tau, tau + T, ExponentOptions{.eigenvalues = true}));
+    }
+    simulate(
+        p, default_state(p), {.tau_end = tau + T, .max_impacts = std::numeric_limits<long>::max()},
+        observers);
+    std::vector<double> changes;
+    for (const Lyapunov& stretch : stretches)
+        changes.push_back(late_change(stretch.product().eigenvalues_history(), 0));
+    return changes;
+}
+
 void figure_24(Report& report, const Experiment& e) {
     const IdentifiedExponents& judged = e.result.judged;
     report.find(
@@ -463,14 +489,17 @@ void figure_24(Report& report, const Experiment& e) {
          .because = "all four, as in Fig. 5, with which the paper calls it consistent",
          .computed_record = true,
          .expected = Verdict::not_reproduced});
-    const double change = late_change(e.by_33(), 0);
+    const double change = late_change(e.by_33(), 0), typical_change = median(late_changes_after(e));
     report.find(
         {.where = "Fig. 24",
          .what = "b = 15 mm: lambda1 by (33), second half of the record: its range without spikes "
                  "over its last value",
          .paper = "almost already stable",
-         .here = fmt::format("{:.2f}", change),
-         .number = change,
+         .here = fmt::format(
+             "{:.2f}; of the true motion, over the {} stretches of that length that follow, the "
+             "median {:.2f}",
+             change, following, typical_change),
+         .number = typical_change,
          .band = {0, small_change},
          .because = std::string(why_small_change) + ". It depends on the record's length",
          .partly = Band{0, some_change},

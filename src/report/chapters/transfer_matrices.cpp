@@ -152,7 +152,8 @@ Intervals synchronised_stretches(const Regime& regime) {
     return stretches;
 }
 
-/// T's largest modulus while the motion is in step with the forcing, and while it is not.
+/// T's largest modulus while the motion is in step with the forcing, and while it is not; without
+/// the impacts of a chatter that are so close to each other that rounding hides it.
 struct LargestOfT {
     std::vector<double> in_step, out_of_step;
 };
@@ -161,6 +162,7 @@ LargestOfT largest_by_step(const Response& r, const Intervals& stretches) {
     LargestOfT found;
     for (std::size_t i = 0; i < r.run.moduli->tau.size(); ++i) {
         const double tau = r.run.moduli->tau[i];
+        if (std::isnan(r.run.moduli->T[i][0])) continue;
         const bool synchronised = std::ranges::any_of(
             stretches, [tau](const auto& s) { return tau > s.first && tau <= s.second; });
         (synchronised ? found.in_step : found.out_of_step).push_back(r.run.moduli->T[i][0]);
@@ -180,19 +182,34 @@ double log_spread(std::vector<double> v) {
     return quantile(v, 0.75) - quantile(v, 0.25);
 }
 
+/// Of the largest moduli of each run.
+template <class Number>
+Typical typical_of_step(const std::vector<Response>& runs, Number number) {
+    return typical(runs, [&](const Response& r) {
+        return number(largest_by_step(r, synchronised_stretches(*r.run.regime)));
+    });
+}
+
 /// "Greater than one in area1 and less than one in area2."
-void areas_1_and_2(Report& report, const LargestOfT& here, const LargestOfT& other) {
-    const double out = above_one(here.out_of_step), in = 1 - above_one(here.in_step),
-                 other_in = 1 - above_one(other.in_step);
+void areas_1_and_2(Report& report, Runs& runs) {
+    const auto of = [&](auto number) {
+        return std::pair{
+            typical_of_step(runs.neighbours(0.022), number),
+            typical_of_step(runs.neighbours(0.022, Damping::equation_of_motion), number)};
+    };
+    const auto out = of([](const LargestOfT& T) { return above_one(T.out_of_step); });
+    const auto in = of([](const LargestOfT& T) { return 1 - above_one(T.in_step); });
+    const auto spread =
+        of([](const LargestOfT& T) { return log_spread(T.out_of_step) / log_spread(T.in_step); });
     constexpr Band nearly_all = {0.9, 1}, most_of_them = {0.5, 1};
     const std::string nine_in_ten = "nine in ten; in part: more than half";
     report.find(
         {.where = "Fig. 9, area 1",
          .what = "out of step: share of impacts where T's largest modulus is above 1",
          .paper = "greater than one (a typical example)",
-         .here = fmt::format("{:.2f}, median {:.2f}", out, median(here.out_of_step)),
-         .number = out,
-         .by_equation = above_one(other.out_of_step),
+         .here = out.first.in_words(2),
+         .number = out.first.median,
+         .by_equation = out.second.median,
          .band = nearly_all,
          .because = nine_in_ten,
          .partly = most_of_them,
@@ -201,25 +218,20 @@ void areas_1_and_2(Report& report, const LargestOfT& here, const LargestOfT& oth
         {.where = "Fig. 9, area 2",
          .what = "in step, all of it: share of impacts where it is below 1",
          .paper = "less than one (a typical example)",
-         .here = fmt::format(
-             "{:.2f}, median {:.3f}; by eq. (1) {:.2f}, median {:.3f}", in, median(here.in_step),
-             other_in, median(other.in_step)),
-         .number = in,
-         .by_equation = other_in,
+         .here = fmt::format("{}; by eq. (1) {}", in.first.in_words(2), in.second.in_words(2)),
+         .number = in.first.median,
+         .by_equation = in.second.median,
          .band = nearly_all,
          .because = nine_in_ten,
          .partly = most_of_them,
          .expected = Verdict::partly_by_equation_of_motion});
-    const double ratio = log_spread(here.out_of_step) / log_spread(here.in_step);
     report.find(
         {.where = "Fig. 9",
          .what = "spread (quartiles of ln) of it out of step, over that in step",
          .paper = "changes a lot / almost the same value",
-         .here = fmt::format(
-             "{:.2f} / {:.2f} = {:.1f}", log_spread(here.out_of_step), log_spread(here.in_step),
-             ratio),
-         .number = ratio,
-         .by_equation = log_spread(other.out_of_step) / log_spread(other.in_step),
+         .here = spread.first.in_words(1),
+         .number = spread.first.median,
+         .by_equation = spread.second.median,
          .band = {4, infinity},
          .because = "several times as much"});
 }
@@ -313,20 +325,22 @@ void example_of_area_2(Report& report, const Response& r, const Intervals& stret
 
 /// "In area3, the largest value is observed and it has a close relation to the maximal amplitude of
 /// modulated displacement."
-void area_3(Report& report, const Response& window) {
-    const std::vector<Modulation> shown =
-        modulations(window, synchronised_stretches(*window.run.regime));
-    const double largest_T = std::ranges::max_element(shown, {}, &Modulation::T)->x;
-    const auto higher =
-        std::ranges::count_if(shown, [&](const Modulation& m) { return m.x > largest_T; });
+void area_3(Report& report, const std::vector<Response>& neighbours) {
+    const Typical higher = typical(neighbours, [](const Response& r) {
+        const std::vector<Modulation> shown = modulations(r, synchronised_stretches(*r.run.regime));
+        if (shown.empty()) return nan;
+        const double at_largest_T = std::ranges::max_element(shown, {}, &Modulation::T)->x;
+        return static_cast<double>(
+            std::ranges::count_if(shown, [&](const Modulation& m) { return m.x > at_largest_T; }));
+    });
     report.find(
         {.where = "Fig. 9, area 3",
          .what = "of the window's modulations, those with a higher amplitude than that of the "
                  "largest value of T",
          .paper = "in area3, the largest value is observed; \"a close relation to the maximal "
                   "amplitude\"",
-         .here = fmt::format("{} of {}", higher, shown.size()),
-         .number = static_cast<double>(higher),
+         .here = higher.in_words(0),
+         .number = higher.median,
          .band = exactly(0),
          .because = "area3 is at the maximal amplitude"});
     const Response r = long_response(0.022);
@@ -350,8 +364,7 @@ void area_3(Report& report, const Response& window) {
 }
 
 void figure_9(Report& report, Runs& runs) {
-    const Response &r = runs.response(0.022),
-                   &by_equation = runs.response(0.022, Damping::equation_of_motion);
+    const Response& r = runs.response(0.022);
     const Intervals stretches = synchronised_stretches(*r.run.regime);
     Plot x = displacement(*r.run.series), T = moduli(r, "|eig T|, largest", r.run.moduli->T, {0});
     T.logarithmic = true;
@@ -360,11 +373,9 @@ void figure_9(Report& report, Runs& runs) {
         {.name = "fig9",
          .caption = "Fig. 9: x and the largest modulus of T; synchronised stretches shaded",
          .plots = {x, T}});
-    areas_1_and_2(
-        report, largest_by_step(r, stretches),
-        largest_by_step(by_equation, synchronised_stretches(*by_equation.run.regime)));
+    areas_1_and_2(report, runs);
     example_of_area_2(report, r, stretches);
-    area_3(report, r);
+    area_3(report, runs.neighbours(0.022));
     where_chaos_comes_from(report, runs);
 }
 
