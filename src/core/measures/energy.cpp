@@ -1,26 +1,13 @@
 #include "core/measures/energy.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "core/motion/last_used.hpp"
+#include "core/motion/excursion.hpp"
 
 namespace vines {
 
 namespace {
-
-// Gauss-Legendre on [0, 1] with five nodes: right for polynomials up to degree 9. Over one cell, 2
-// pi/42 of the faster frequency, what it leaves of x'^2 is below 1e-16.
-struct Node {
-    double at, weight;
-};
-constexpr std::array<Node, 5> gauss = {
-    {{0.046910077030668004, 0.11846344252809454},
-     {0.23076534494715845, 0.23931433524968324},
-     {0.5, 0.28444444444444444},
-     {0.76923465505284155, 0.23931433524968324},
-     {0.95308992296933200, 0.11846344252809454}}};
 
 // Nobody waits for a decay that takes longer, in tau.
 constexpr double longest_decay = 1e6;
@@ -28,123 +15,85 @@ constexpr double longest_decay = 1e6;
 // A moment is bisected to some ulps of tau.
 constexpr double moment_rounding = 1e-15;
 
-Eigen::Vector4d vector(const Oscillation& o) { return {o.x, o.x_dot, o.sin_theta, o.cos_theta}; }
-
 }  // namespace
-
-Quadrature::Integrals& Quadrature::Integrals::operator+=(const Integrals& more) {
-    x_squared += more.x_squared;
-    x_dot_squared += more.x_dot_squared;
-    x_dot_sin += more.x_dot_sin;
-    return *this;
-}
-
-Quadrature::Quadrature(const Flow& flow) : flow_(flow) {
-    const Oscillation unit[4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
-    // The forms of one cell, in the state at its start.
-    Forms cell{Form::Zero(), Form::Zero(), Form::Zero()};
-    for (const Node& node : gauss) {
-        const double d = node.at * flow.cell(), weight = node.weight * flow.cell();
-        Eigen::Vector4d x, x_dot, sin;
-        for (int j = 0; j < 4; ++j) {
-            const Oscillation o = flow.along(flow.series(unit[j]), unit[j], d);
-            x(j) = o.x, x_dot(j) = o.x_dot, sin(j) = o.sin_theta;
-        }
-        cell.x_squared += weight * x * x.transpose();
-        cell.x_dot_squared += weight * x_dot * x_dot.transpose();
-        cell.x_dot_sin += weight * x_dot * sin.transpose();
-    }
-    from_start_.push_back({Form::Zero(), Form::Zero(), Form::Zero()});
-    for (int k = 0; k < Flow::cells; ++k) {
-        Eigen::Matrix4d over;
-        for (int j = 0; j < 4; ++j) over.col(j) = vector(flow.at(unit[j], k));
-        const Forms& before = from_start_.back();
-        from_start_.push_back(
-            {before.x_squared + over.transpose() * cell.x_squared * over,
-             before.x_dot_squared + over.transpose() * cell.x_dot_squared * over,
-             before.x_dot_sin + over.transpose() * cell.x_dot_sin * over});
-    }
-}
-
-std::shared_ptr<const Quadrature> Quadrature::shared(const Flow& flow) {
-    thread_local LastUsed<Flow::Coefficients, Quadrature> quadratures;
-    return quadratures.get(flow.coefficients(), [&flow] { return Quadrature(flow); });
-}
-
-Quadrature::Integrals Quadrature::over_part(const Oscillation& start, double duration) const {
-    const Flow::Series series = flow_.series(start);
-    Integrals sum;
-    for (const Node& node : gauss) {
-        const Oscillation o = flow_.along(series, start, node.at * duration);
-        sum.x_squared += node.weight * o.x * o.x;
-        sum.x_dot_squared += node.weight * o.x_dot * o.x_dot;
-        sum.x_dot_sin += node.weight * o.x_dot * o.sin_theta;
-    }
-    sum.x_squared *= duration, sum.x_dot_squared *= duration, sum.x_dot_sin *= duration;
-    return sum;
-}
-
-Quadrature::Integrals Quadrature::over_grid(const Oscillation& start, int cells) const {
-    const Eigen::Vector4d z = vector(start);
-    const Forms& f = from_start_[cells];
-    return {z.dot(f.x_squared * z), z.dot(f.x_dot_squared * z), z.dot(f.x_dot_sin * z)};
-}
-
-Quadrature::Integrals Quadrature::over(Oscillation o, double duration) const {
-    Integrals sum;
-    for (; duration > flow_.reach(); duration -= flow_.reach()) {
-        sum += over_grid(o, Flow::cells);
-        o = flow_.at(o, Flow::cells);
-    }
-    const int cells = static_cast<int>(duration / flow_.cell());
-    sum += over_grid(o, cells);
-    return sum += over_part(flow_.at(o, cells), std::max(0.0, duration - cells * flow_.cell()));
-}
 
 double energy_of(const Parameters& p, const State& s) {
     return 0.5 * (s.x_dot * s.x_dot + s.x * s.x + p.epsilon * s.y_dot * s.y_dot);
 }
 
+Energy::Law::Law(std::shared_ptr<const Flow> f)
+    : flow(std::move(f)),
+      antiderivative(Antiderivative::of(*flow)),
+      quadrature(antiderivative ? nullptr : Quadrature::shared(*flow)) {}
+
 Energy::Energy(const Parameters& p, double tau_start, double tau_end)
     : parameters_(p),
       tau_start_(tau_start),
       tau_end_(tau_end),
-      free_(Quadrature::shared(*Flow::shared_free(p))) {}
+      free_(Flow::shared_free(p)) {}
 
 void Energy::on_stretch(const Stretch& stretch) {
     const double from = std::max(0.0, tau_start_ - stretch.tau),
                  to = std::min(stretch.duration, tau_end_ - stretch.tau);
     if (!(from < to)) return;
-    if (stretch.stuck_side != 0 && !stuck_)
-        stuck_ = Quadrature::shared(*Flow::shared_stuck(parameters_));
-    if (duration_ == 0) start_ = energy_of(parameters_, stretch.at(from));
+    const bool is_stuck = stretch.stuck_side != 0;
+    if (is_stuck && !stuck_) stuck_.emplace(Flow::shared_stuck(parameters_));
+    const Law& law = is_stuck ? *stuck_ : free_;
     const Oscillation begin = from > 0 ? stretch.flow.after(stretch.start, from) : stretch.start;
-    integrals_ += (stretch.stuck_side == 0 ? free_ : stuck_)->over(begin, to - from);
-    peak_ = std::max(peak_, excursion(stretch.flow, begin, to - from).peak);
+    if (duration_ == 0) start_ = energy_of(begin, is_stuck ? begin.x_dot : stretch.y_dot);
+    // Where a stretch goes on by the law of the one before F cancels.
+    if (duration_ == 0 || last_.is_stuck != is_stuck) {
+        sum_ = integrals();
+        if (law.antiderivative) sum_ -= law.antiderivative->at(begin);
+    }
+    sum_ += law.antiderivative ? law.antiderivative->over_time(to - from)
+                               : law.quadrature->over(begin, to - from);
+    peak_ = peak_beyond(peak_, *law.flow, begin, to - from);
     duration_ += to - from;
-    end_ = energy_of(parameters_, stretch.at(to));
+    last_ = {begin, to - from, stretch.y_dot, is_stuck};
 }
 
 void Energy::on_impact(const Impact& i) {
     if (i.tau > tau_end_) return;
     // Belongs to what was before, as does the rounding of a stretch that ended a trifle later.
     if (i.tau <= tau_start_) {
-        integrals_ = {};
+        sum_ = {};
         duration_ = peak_ = 0;
         return;
     }
-    const double w = i.relative_speed_before, loss = (1 - i.R * i.R) * w * w * parameters_.epsilon /
-                                                     (2 * (1 + parameters_.epsilon));
-    impacts_ += loss;
-    end_ -= loss;
+    const double w = i.relative_speed_before;
+    impacts_ += (1 - i.R * i.R) * w * w * parameters_.epsilon / (2 * (1 + parameters_.epsilon));
+    const Oscillation after = {i.x, i.x_dot_after, i.sin_theta, i.cos_theta};
+    if (duration_ > 0 && free_.antiderivative)
+        sum_ += free_.antiderivative->across(after, i.x_dot_before);
+    last_ = {after, 0, i.y_dot_after, false};
 }
 
-double Energy::input() const {
-    return parameters_.epsilon * parameters_.A() * integrals_.x_dot_sin;
+Oscillation Energy::end() const {
+    return (last_.is_stuck ? *stuck_ : free_).flow->after(last_.begin, last_.duration);
 }
-double Energy::damper() const { return 2 * parameters_.zeta() * integrals_.x_dot_squared; }
+
+Integrals Energy::integrals() const {
+    Integrals sum = sum_;
+    if (duration_ == 0) return sum;
+    if (const auto& F = (last_.is_stuck ? *stuck_ : free_).antiderivative) sum += F->at(end());
+    return sum;
+}
+
+double Energy::energy_of(const Oscillation& o, double y_dot) const {
+    return vines::energy_of(parameters_, {o.x_dot, o.x, y_dot, 0});
+}
+
+double Energy::at_end() const {
+    const Oscillation o = end();
+    return energy_of(o, last_.is_stuck ? o.x_dot : last_.y_dot);
+}
+double Energy::input() const {
+    return parameters_.epsilon * parameters_.A() * integrals().x_dot_sin;
+}
+double Energy::damper() const { return 2 * parameters_.zeta() * integrals().x_dot_squared; }
 double Energy::rms() const {
-    return duration_ > 0 ? std::sqrt(integrals_.x_squared / duration_) : 0;
+    return duration_ > 0 ? std::sqrt(integrals().x_squared / duration_) : 0;
 }
 
 EnergyBalance balance_of(const Parameters& p, const Energy& e, const Interval& window) {
@@ -175,7 +124,7 @@ std::optional<double> free_amplitude(const Parameters& p) {
 }
 
 double unattached_rms(const Parameters& p, const State& start, double duration) {
-    const Quadrature::Integrals sum =
+    const Integrals sum =
         Quadrature::shared(*Flow::shared_free(p))
             ->over({start.x, start.x_dot, std::sin(p.phi()), std::cos(p.phi())}, duration);
     return std::sqrt(sum.x_squared / duration);
@@ -191,7 +140,7 @@ Unattached unattached(const Parameters& p, const State& start, double tau_start,
         duration > 0
             ? std::sqrt(Quadrature::shared(flow)->over(begin, duration).x_squared / duration)
             : 0,
-        excursion(flow, begin, duration).peak, free_amplitude(p)};
+        peak_beyond(0, flow, begin, duration), free_amplitude(p)};
 }
 
 namespace {

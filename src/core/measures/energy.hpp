@@ -8,35 +8,10 @@
 #include <optional>
 #include <vector>
 
+#include "core/measures/quadrature.hpp"
 #include "core/motion/simulate.hpp"
 
 namespace vines {
-
-/// Integrals over the motion of the oscillator, by tables over the flow's grid: exact to rounding.
-class Quadrature {
-public:
-    explicit Quadrature(const Flow& flow);
-    /// The same, as the thread has made it before where it can.
-    static std::shared_ptr<const Quadrature> shared(const Flow& flow);
-
-    struct Integrals {
-        double x_squared = 0, x_dot_squared = 0, x_dot_sin = 0;  ///< of x^2, x'^2 and x' sin(theta)
-        Integrals& operator+=(const Integrals& more);
-    };
-    /// Over 0 <= s <= duration from a state.
-    Integrals over(Oscillation start, double duration) const;
-
-private:
-    using Form = Eigen::Matrix4d;  // symmetric, of (x, x', sin theta, cos theta)
-    struct Forms {
-        Form x_squared, x_dot_squared, x_dot_sin;
-    };
-    Integrals over_grid(const Oscillation& start, int cells) const;
-    Integrals over_part(const Oscillation& start, double duration) const;
-
-    const Flow flow_;
-    std::vector<Forms> from_start_;  // to each point of the grid
-};
 
 /// The energy balance and the amplitude of x over [tau_start, tau_end].
 class Energy : public Observer {
@@ -52,9 +27,9 @@ public:
     double damper() const;  ///< dissipated by 2 zeta x'
     /// Dissipated in impacts: (1 - R^2)(x'- - y'-)^2 epsilon/(2 (1 + epsilon)) each.
     double impacts() const { return impacts_; }
-    double stored() const { return end_ - start_; }
+    double stored() const { return at_end() - at_start(); }
     double at_start() const { return start_; }
-    double at_end() const { return end_; }
+    double at_end() const;
     double residual() const { return input() - damper() - impacts() - stored(); }
     double rms() const;                    ///< of x, m
     double peak() const { return peak_; }  ///< of |x|, m
@@ -62,10 +37,29 @@ public:
 private:
     const Parameters parameters_;
     const double tau_start_, tau_end_;
-    const std::shared_ptr<const Quadrature> free_;
-    std::shared_ptr<const Quadrature> stuck_;  // from the first stretch of a stick on
-    Quadrature::Integrals integrals_;
-    double duration_ = 0, peak_ = 0, impacts_ = 0, start_ = 0, end_ = 0;
+    /// One law of motion, and what integrates along it.
+    struct Law {
+        explicit Law(std::shared_ptr<const Flow> flow);
+
+        std::shared_ptr<const Flow> flow;
+        std::optional<Antiderivative> antiderivative;
+        std::shared_ptr<const Quadrature> quadrature;  ///< in its place, where there is none
+    };
+    const Law free_;
+    std::optional<Law> stuck_;  // from the first stretch of a stick on
+    Integrals sum_;             // less F at the end, where F is
+    /// The last stretch, or after an impact the state behind it.
+    struct Last {
+        Oscillation begin;
+        double duration, y_dot;
+        bool is_stuck;
+    };
+    Last last_{};
+    double duration_ = 0, peak_ = 0, impacts_ = 0, start_ = 0;
+
+    Integrals integrals() const;
+    Oscillation end() const;
+    double energy_of(const Oscillation& o, double y_dot) const;
 };
 
 /// The energy balance of a window, and the amplitudes of x in it. Energies per unit of m1, in m^2.

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/measures/energy.hpp"
+#include "core/motion/excursion.hpp"
 
 namespace vines {
 
@@ -122,9 +122,10 @@ void HalfCycles::on_stretch(const Stretch& stretch) {
 
 void HalfCycles::pass(const Stretch& stretch, double from, double to) {
     if (!(from < to)) return;
-    const Excursion x = excursion(stretch.flow, stretch.flow.after(stretch.start, from), to - from);
-    peak_ = std::max(peak_, x.peak);
-    path_ += stretch.stuck_side == 0 ? std::abs(stretch.y_dot) * (to - from) : x.path;
+    const Oscillation begin = stretch.flow.after(stretch.start, from);
+    peak_ = peak_beyond(peak_, stretch.flow, begin, to - from);
+    path_ += stretch.stuck_side == 0 ? std::abs(stretch.y_dot) * (to - from)
+                                     : path_length(stretch.flow, begin, to - from);
 }
 
 }  // namespace vines

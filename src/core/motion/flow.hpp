@@ -97,14 +97,6 @@ public:
                from(of_sin_.x_apart) * o.sin_theta + from(of_cos_.x_apart) * o.cos_theta -
                (y0 + from(time_apart_) * y_dot);
     }
-    /// x' at the same grid times.
-    Block speeds(const Oscillation& o, int k) const {
-        const auto from = [k](const std::vector<double>& column) {
-            return Eigen::Map<const Block>(column.data() + k);
-        };
-        return from(of_x_.x_dot) * o.x + from(of_x_dot_.x_dot) * o.x_dot +
-               from(of_sin_.x_dot) * o.sin_theta + from(of_cos_.x_dot) * o.cos_theta;
-    }
     /// The whole state at grid time k h.
     Oscillation at(const Oscillation& o, int k) const;
     /// The same, but for the last ulp of the phasor's length.
@@ -164,15 +156,17 @@ public:
     /// The transfer matrix over any s >= 0, eq. (19).
     Transfer transfer(double s) const;
 
-    /// Upper bounds of |x|, |x''| and |x'''| over the reach, from the growth of the energy:
-    /// sqrt(stiffness x^2 + x'^2) rises no faster than the forcing, for any damping >= 0.
+    /// Upper bounds of |x|, |x''| and |x'''| over the reach, or over such a time, from the
+    /// growth of the energy: sqrt(stiffness x^2 + x'^2) rises no faster than the forcing, for any
+    /// damping >= 0.
     struct Bounds {
         double x, x_ddot, x_dddot;
     };
-    Bounds bounds(const Oscillation& o) const {
+    Bounds bounds(const Oscillation& o) const { return bounds(o, reach()); }
+    Bounds bounds(const Oscillation& o, double time) const {
         // d/ds (stiffness x^2 + x'^2)/2 = x' (forcing sin theta - damping x') <= |x'| |forcing|
         const double speed =
-            std::sqrt(stiffness_ * o.x * o.x + o.x_dot * o.x_dot) + std::abs(forcing_) * reach();
+            std::sqrt(stiffness_ * o.x * o.x + o.x_dot * o.x_dot) + std::abs(forcing_) * time;
         const double x = speed * inverse_root_stiffness_;
         const double x_ddot = stiffness_ * x + damping_ * speed + std::abs(forcing_);
         return {x, x_ddot, stiffness_ * speed + damping_ * x_ddot + std::abs(forcing_) * Omega_};
@@ -204,12 +198,5 @@ struct SeriesValue {
     double x, x_dot, half_x_ddot;
 };
 SeriesValue value_at(const Flow::Series& series, double d);
-
-/// How far x goes over 0 <= s <= duration: its largest modulus, and the length of its path up and
-/// down.
-struct Excursion {
-    double peak = 0, path = 0;
-};
-Excursion excursion(const Flow& flow, Oscillation start, double duration);
 
 }  // namespace vines

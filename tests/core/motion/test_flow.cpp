@@ -135,10 +135,3 @@ TEST_CASE("the bounds of the motion hold over the whole reach") {
         CHECK(j <= bounds.x_dddot);
     }
 }
-
-TEST_CASE("an excursion's path is the way up and down between its turning points") {
-    const Flow undamped(1, 0, 0, 1);
-    const Excursion e = excursion(undamped, {0, 1, 0, 1}, 10 * 2 * std::numbers::pi + 1);
-    CHECK(e.peak == doctest::Approx(1).epsilon(1e-14));
-    CHECK(e.path == doctest::Approx(40 + std::sin(1)).epsilon(1e-13));
-}
