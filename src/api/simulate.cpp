@@ -74,8 +74,6 @@ Result taken(Result& result) {
     return std::exchange(result, {});
 }
 
-constexpr std::size_t most_parts = 13;
-
 /// The parts of an answer, one by one while there is time, with their twins in SI.
 class Answer {
 public:
@@ -145,7 +143,6 @@ Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes
          {"parameters", describe_parameters(r)},
          {"status", describe_status(analysis.outcome, r.wanted.max_impacts, stop)},
          {"warnings", nullptr}});
-    make_room(answer, most_parts);
     if (analysis.outcome.reason != End::tau_end) warnings.push_back(answer["status"]["message"]);
     for (const Warning& w : analysis.warnings) warnings.push_back(text_of(w, most_bytes));
     Answer parts(r, stop, answer);
