@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "api/column.hpp"
+#include "api/object.hpp"
 #include "api/schema/words.hpp"
 
 namespace vines::api {
@@ -19,139 +20,150 @@ MatrixByRows by_rows(const Matrix4& m) {
 
 Json describe_system(const System& system) {
     const Parameters& p = system.parameters;
-    Json j = {
-        {"epsilon", p.epsilon}, {"lambda", p.lambda},   {"G", p.G}, {"Omega", p.Omega},
-        {"R_plus", p.R_plus},   {"R_minus", p.R_minus}, {"b", p.b}, {"damping", word(p.damping)}};
-    j["origin"] = system.origin;
-    if (system.si) j["si"] = fields_of(*system.si);
+    Json j = object(
+        {{"epsilon", p.epsilon},
+         {"lambda", p.lambda},
+         {"G", p.G},
+         {"Omega", p.Omega},
+         {"R_plus", p.R_plus},
+         {"R_minus", p.R_minus},
+         {"b", p.b},
+         {"damping", word(p.damping)},
+         {"origin", system.origin}});
+    if (system.si) append(j, {{"si", fields_of(*system.si)}});
     return j;
 }
 
 Json describe_derived(const System& system) {
     const Parameters& p = system.parameters;
     const double zeta = p.zeta();
-    Json j = {
-        {"zeta", zeta},
-        {"omega_d", zeta < 1 ? Json(std::sqrt(1 - zeta * zeta)) : Json(nullptr)},
-        {"A", p.A()},
-        {"phi", p.phi()},
-        {"cycle", p.cycle()}};
+    Json j = object(
+        {{"zeta", zeta},
+         {"omega_d", zeta < 1 ? Json(std::sqrt(1 - zeta * zeta)) : Json(nullptr)},
+         {"A", p.A()},
+         {"phi", p.phi()},
+         {"cycle", p.cycle()}});
     if (system.si) {
         const SiParameters& si = *system.si;
-        j.update(
-            {{"omega0", si.omega0()},
-             {"f0", si.f0()},
-             {"damping_ratio", si.damping_ratio()},
-             {"mass_ratio", si.epsilon()},
-             {"cycle_s", 1 / si.f}});
+        append(
+            j, {{"omega0", si.omega0()},
+                {"f0", si.f0()},
+                {"damping_ratio", si.damping_ratio()},
+                {"mass_ratio", si.epsilon()},
+                {"cycle_s", 1 / si.f}});
     }
     return j;
 }
 
 Json describe_series(const Series& s) {
-    return {{"tau", column(s.tau)}, {"x", column(s.x)},         {"x_dot", column(s.x_dot)},
-            {"y", column(s.y)},     {"y_dot", column(s.y_dot)}, {"x_ddot", column(s.x_ddot)}};
+    return object(
+        {{"tau", column(s.tau)},
+         {"x", column(s.x)},
+         {"x_dot", column(s.x_dot)},
+         {"y", column(s.y)},
+         {"y_dot", column(s.y_dot)},
+         {"x_ddot", column(s.x_ddot)}});
 }
 
 Json describe_impacts(const std::vector<Impact>& impacts, double epsilon, double typical_speed) {
-    return {
-        {"tau", column(impacts, [](const Impact& i) { return i.tau; })},
-        {"side", column(impacts, [](const Impact& i) { return i.side; })},
-        {"phase", column(impacts, [](const Impact& i) { return i.phase(); })},
-        {"x", column(impacts, [](const Impact& i) { return i.x; })},
-        {"x_dot_before", column(impacts, [](const Impact& i) { return i.x_dot_before; })},
-        {"x_dot_after", column(impacts, [](const Impact& i) { return i.x_dot_after; })},
-        {"y_dot_before", column(impacts, [](const Impact& i) { return i.y_dot_before; })},
-        {"y_dot_after", column(impacts, [](const Impact& i) { return i.y_dot_after; })},
-        {"x_ddot_before", column(impacts, [](const Impact& i) { return i.x_ddot_before; })},
-        {"relative_speed",
-         column(impacts, [](const Impact& i) { return std::abs(i.relative_speed_before); })},
-        {"impulse", column(impacts, [&](const Impact& i) { return i.impulse(epsilon); })},
-        {"relative_speed_ratio",
-         column(
-             impacts,
-             [&](const Impact& i) { return std::abs(i.relative_speed_before) / typical_speed; })},
-        {"grazing", column(impacts, [](const Impact& i) { return i.grazing; })}};
+    return object(
+        {{"tau", column(impacts, [](const Impact& i) { return i.tau; })},
+         {"side", column(impacts, [](const Impact& i) { return i.side; })},
+         {"phase", column(impacts, [](const Impact& i) { return i.phase(); })},
+         {"x", column(impacts, [](const Impact& i) { return i.x; })},
+         {"x_dot_before", column(impacts, [](const Impact& i) { return i.x_dot_before; })},
+         {"x_dot_after", column(impacts, [](const Impact& i) { return i.x_dot_after; })},
+         {"y_dot_before", column(impacts, [](const Impact& i) { return i.y_dot_before; })},
+         {"y_dot_after", column(impacts, [](const Impact& i) { return i.y_dot_after; })},
+         {"x_ddot_before", column(impacts, [](const Impact& i) { return i.x_ddot_before; })},
+         {"relative_speed",
+          column(impacts, [](const Impact& i) { return std::abs(i.relative_speed_before); })},
+         {"impulse", column(impacts, [&](const Impact& i) { return i.impulse(epsilon); })},
+         {"relative_speed_ratio",
+          column(
+              impacts,
+              [&](const Impact& i) { return std::abs(i.relative_speed_before) / typical_speed; })},
+         {"grazing", column(impacts, [](const Impact& i) { return i.grazing; })}});
 }
 
 Json describe_sticks(const std::vector<StuckPhase>& sticks) {
-    return {
-        {"side", column(sticks, [](const auto& s) { return s.start.side; })},
-        {"tau_start", column(sticks, [](const auto& s) { return s.start.tau; })},
-        {"tau_end", column(sticks, [](const auto& s) { return s.tau_end; })},
-        {"impacts", column(sticks, [](const auto& s) { return s.start.impacts; })}};
+    return object(
+        {{"side", column(sticks, [](const auto& s) { return s.start.side; })},
+         {"tau_start", column(sticks, [](const auto& s) { return s.start.tau; })},
+         {"tau_end", column(sticks, [](const auto& s) { return s.tau_end; })},
+         {"impacts", column(sticks, [](const auto& s) { return s.start.impacts; })}});
 }
 
 Json describe_touches(const std::vector<TangentContact>& touches) {
-    return {
-        {"tau", column(touches, [](const auto& t) { return t.tau; })},
-        {"side", column(touches, [](const auto& t) { return t.side; })}};
+    return object(
+        {{"tau", column(touches, [](const auto& t) { return t.tau; })},
+         {"side", column(touches, [](const auto& t) { return t.side; })}});
 }
 
 Json describe_moduli(const TransferModuli& m) {
-    return {
-        {"tau", column(m.tau)},
-        {"J", column(m.J)},
-        {"M", column(m.M)},
-        {"T", column(m.T)},
-        {"M_condition", column(m.M_condition)}};
+    return object(
+        {{"tau", column(m.tau)},
+         {"J", column(m.J)},
+         {"M", column(m.M)},
+         {"T", column(m.T)},
+         {"M_condition", column(m.M_condition)}});
 }
 
 Json describe_matrices(const TransferMatrices& m) {
-    return {
-        {"tau", column(m.tau)},
-        {"order", {"x_dot", "x", "y_dot", "y"}},
-        {"J", column(m.J, by_rows)},
-        {"M", column(m.M, by_rows)},
-        {"T", column(m.T, by_rows)}};
+    return object(
+        {{"tau", column(m.tau)},
+         {"order", {"x_dot", "x", "y_dot", "y"}},
+         {"J", column(m.J, by_rows)},
+         {"M", column(m.M, by_rows)},
+         {"T", column(m.T, by_rows)}});
 }
 
 Json describe_impact_section(const std::vector<SectionPoint>& points) {
-    return {
-        {"tau", column(points, [](const auto& p) { return p.impact.tau; })},
-        {"side", column(points, [](const auto& p) { return p.impact.side; })},
-        {"phase", column(points, [](const auto& p) { return p.impact.phase(); })},
-        {"x", column(points, [](const auto& p) { return p.impact.x; })},
-        {"x_dot_after", column(points, [](const auto& p) { return p.impact.x_dot_after; })},
-        {"y_dot_after", column(points, [](const auto& p) { return p.impact.y_dot_after; })},
-        {"time_difference", column(points, [](const auto& p) { return p.since; })}};
+    return object(
+        {{"tau", column(points, [](const auto& p) { return p.impact.tau; })},
+         {"side", column(points, [](const auto& p) { return p.impact.side; })},
+         {"phase", column(points, [](const auto& p) { return p.impact.phase(); })},
+         {"x", column(points, [](const auto& p) { return p.impact.x; })},
+         {"x_dot_after", column(points, [](const auto& p) { return p.impact.x_dot_after; })},
+         {"y_dot_after", column(points, [](const auto& p) { return p.impact.y_dot_after; })},
+         {"time_difference", column(points, [](const auto& p) { return p.since; })}});
 }
 
 Json describe_states(const std::vector<State>& states) {
-    return {
-        {"x", column(states, [](const State& s) { return s.x; })},
-        {"x_dot", column(states, [](const State& s) { return s.x_dot; })},
-        {"y", column(states, [](const State& s) { return s.y; })},
-        {"y_dot", column(states, [](const State& s) { return s.y_dot; })}};
+    return object(
+        {{"x", column(states, [](const State& s) { return s.x; })},
+         {"x_dot", column(states, [](const State& s) { return s.x_dot; })},
+         {"y", column(states, [](const State& s) { return s.y; })},
+         {"y_dot", column(states, [](const State& s) { return s.y_dot; })}});
 }
 
 Json describe_sections(const Sections& s) {
-    Json stroboscopic = {{"tau", column(s.tau)}};
+    Json stroboscopic = object({{"tau", column(s.tau)}});
     stroboscopic.update(describe_states(s.states));
-    return {
-        {"impact", describe_impact_section(s.impact)}, {"stroboscopic", std::move(stroboscopic)}};
+    return object(
+        {{"impact", describe_impact_section(s.impact)}, {"stroboscopic", std::move(stroboscopic)}});
 }
 
 Json describe_energy(const EnergyResult& e) {
     const EnergyBalance& b = e.balance;
-    Json j = {
-        {"window", {b.window.from, b.window.to}},
-        {"input", b.input},
-        {"damper", b.damper},
-        {"impacts", b.impacts},
-        {"stored", b.stored},
-        {"residual", b.residual},
-        {"share_impacts", or_null(b.share_impacts)},
-        {"at_start", b.at_start},
-        {"at_end", b.at_end},
-        {"rms", b.rms},
-        {"peak", b.peak},
-        {"without_absorber",
-         {{"rms", e.unattached->rms},
-          {"peak", e.unattached->peak},
-          {"amplitude", or_null(e.unattached->amplitude)}}},
-        {"rms_ratio", or_null(e.rms_ratio)},
-        {"peak_ratio", or_null(e.peak_ratio)}};
+    Json j = object(
+        {{"window", {b.window.from, b.window.to}},
+         {"input", b.input},
+         {"damper", b.damper},
+         {"impacts", b.impacts},
+         {"stored", b.stored},
+         {"residual", b.residual},
+         {"share_impacts", or_null(b.share_impacts)},
+         {"at_start", b.at_start},
+         {"at_end", b.at_end},
+         {"rms", b.rms},
+         {"peak", b.peak},
+         {"without_absorber", object(
+                                  {{"rms", e.unattached->rms},
+                                   {"peak", e.unattached->peak},
+                                   {"amplitude", or_null(e.unattached->amplitude)}})},
+         {"rms_ratio", or_null(e.rms_ratio)},
+         {"peak_ratio", or_null(e.peak_ratio)}});
     if (!e.decay) return j;
     auto moments = [](const DecayMoments& m) {
         return Json{{"tau_half", or_null(m.half)}, {"tau_tenth", or_null(m.tenth)}};
@@ -164,9 +176,9 @@ Json describe_energy(const EnergyResult& e) {
 namespace {
 
 Json describe_points(const std::vector<ManifoldPoint>& points) {
-    return {
-        {"C", column(points, [](const ManifoldPoint& m) { return m.C; })},
-        {"V", column(points, [](const ManifoldPoint& m) { return m.V; })}};
+    return object(
+        {{"C", column(points, [](const ManifoldPoint& m) { return m.C; })},
+         {"V", column(points, [](const ManifoldPoint& m) { return m.V; })}});
 }
 
 }  // namespace
@@ -174,20 +186,20 @@ Json describe_points(const std::vector<ManifoldPoint>& points) {
 Json describe_manifold(const Manifold& m) {
     auto point = [](const ManifoldPoint& of) { return Json{{"C", of.C}, {"V", of.V}}; };
     const bool breaks = m.symmetry_breaking.has_value();
-    return {
-        {"R", m.R},
-        {"Omega", m.Omega},
-        {"b", m.b},
-        {"fold", point(m.fold)},
-        {"activation_amplitude", m.fold.C},
-        {"symmetry_breaking", breaks ? point(*m.symmetry_breaking) : Json(nullptr)},
-        {"second_contact", point(m.second_contact)},
-        {"stable_ends_by", breaks ? "symmetry_breaking" : "second_contact"},
-        {"stable", describe_points(m.stable)},
-        {"unstable", describe_points(m.unstable)},
-        {"asymmetric", describe_points(m.asymmetric)},
-        {"free_amplitude", or_null(m.free_amplitude)},
-        {"b_at_free_amplitude", or_null(m.b_at_free_amplitude)}};
+    return object(
+        {{"R", m.R},
+         {"Omega", m.Omega},
+         {"b", m.b},
+         {"fold", point(m.fold)},
+         {"activation_amplitude", m.fold.C},
+         {"symmetry_breaking", breaks ? point(*m.symmetry_breaking) : Json(nullptr)},
+         {"second_contact", point(m.second_contact)},
+         {"stable_ends_by", breaks ? "symmetry_breaking" : "second_contact"},
+         {"stable", describe_points(m.stable)},
+         {"unstable", describe_points(m.unstable)},
+         {"asymmetric", describe_points(m.asymmetric)},
+         {"free_amplitude", or_null(m.free_amplitude)},
+         {"b_at_free_amplitude", or_null(m.b_at_free_amplitude)}});
 }
 
 Json describe_manifold(const ManifoldResult& m) {
@@ -199,8 +211,13 @@ Json describe_manifold(const ManifoldResult& m) {
 
 Json describe_recommendation(const std::optional<Recommendation>& r) {
     if (!r) return nullptr;
-    return {{"b", r->b},         {"fold_share", r->fold_share},  {"x_rms_ratio", r->x_rms_ratio},
-            {"x_max", r->x_max}, {"regime", name_of(r->regime)}, {"start", r->start.name}};
+    return object(
+        {{"b", r->b},
+         {"fold_share", r->fold_share},
+         {"x_rms_ratio", r->x_rms_ratio},
+         {"x_max", r->x_max},
+         {"regime", name_of(r->regime)},
+         {"start", r->start.name}});
 }
 
 }  // namespace vines::api

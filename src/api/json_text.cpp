@@ -129,22 +129,26 @@ void JsonText::write(Json& json) {
     using Type = Json::value_t;
     switch (json.type()) {
         case Type::object: {
+            auto& members = json.get_ref<Json::object_t&>();
             char before = '{';
-            for (auto& [name, value] : json.get_ref<Json::object_t&>()) {
+            for (auto& [name, value] : members) {
                 put(std::exchange(before, ','));
                 put_quoted(name);
                 put(':');
                 write(value);
             }
-            return put(std::string_view(json.empty() ? "{}" : "}"));
+            put(std::string_view(members.empty() ? "{}" : "}"));
+            return members.clear();
         }
         case Type::array: {
+            auto& values = json.get_ref<Json::array_t&>();
             char before = '[';
-            for (Json& value : json.get_ref<Json::array_t&>()) {
+            for (Json& value : values) {
                 put(std::exchange(before, ','));
                 write(value);
             }
-            return put(std::string_view(json.empty() ? "[]" : "]"));
+            put(std::string_view(values.empty() ? "[]" : "]"));
+            return values.clear();
         }
         case Type::binary:
             put_list(json);
@@ -152,6 +156,8 @@ void JsonText::write(Json& json) {
             return;
         case Type::number_float: return put_number(json.get<double>());
         case Type::string: return put_quoted(json.get_ref<const std::string&>());
+        case Type::boolean: return put(std::string_view(json.get<bool>() ? "true" : "false"));
+        case Type::null: return put(std::string_view("null"));
         default: return put(std::string_view(json.dump()));
     }
 }

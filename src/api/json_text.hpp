@@ -21,7 +21,7 @@ public:
     JsonText(const JsonText&) = delete;
     JsonText& operator=(const JsonText&) = delete;
 
-    /// Each packed list is freed once it is written.
+    /// What is written is freed: lists at once, members with their object.
     void write(Json& json);
     /// Hands out what is left.
     void end();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "api/column.hpp"
+#include "api/object.hpp"
 
 namespace vines::api {
 
@@ -62,6 +63,7 @@ Json scaled(const Json& value, double factor) {
 }
 
 void add(Json& object, std::span<const Twin> table, const SiParameters& si) {
+    make_room(object, object.size());
     for (const Twin& t : table)
         if (object.contains(t.name) && !object[t.name].is_string())
             object[t.si_name] =

@@ -7,6 +7,7 @@
 #include "api/describe.hpp"
 #include "api/describe_exponents.hpp"
 #include "api/describe_regime.hpp"
+#include "api/object.hpp"
 #include "api/perturbation.hpp"
 #include "api/schema/joined.hpp"
 #include "api/si_columns.hpp"
@@ -18,29 +19,29 @@ namespace {
 Json describe_parameters(const SimulateRequest& r) {
     const Wanted& w = r.wanted;
     Json j = describe_system(r.system);
-    j.update(
-        {{"x0", w.start.x},
-         {"x_dot0", w.start.x_dot},
-         {"y0", w.start.y},
-         {"y_dot0", w.start.y_dot},
-         {"tau_end", w.tau_end},
-         {"cycles", w.tau_end / w.parameters.cycle()},
-         {"window", {w.window.from, w.window.to}},
-         {"samples_per_cycle", w.samples_per_cycle},
-         {"section_phase", w.section_phase},
-         {"max_points", w.most_points},
-         {"max_impacts", w.max_impacts}});
+    append(
+        j, {{"x0", w.start.x},
+            {"x_dot0", w.start.x_dot},
+            {"y0", w.start.y},
+            {"y_dot0", w.start.y_dot},
+            {"tau_end", w.tau_end},
+            {"cycles", w.tau_end / w.parameters.cycle()},
+            {"window", {w.window.from, w.window.to}},
+            {"samples_per_cycle", w.samples_per_cycle},
+            {"section_phase", w.section_phase},
+            {"max_points", w.most_points},
+            {"max_impacts", w.max_impacts}});
     if (r.system.si)
-        j["si"].update(
-            {{"x_velocity0", w.start.x_dot * r.system.si->omega0()},
-             {"y_velocity0", w.start.y_dot * r.system.si->omega0()}});
-    j["derived"] = describe_derived(r.system);
+        append(
+            j["si"], {{"x_velocity0", w.start.x_dot * r.system.si->omega0()},
+                      {"y_velocity0", w.start.y_dot * r.system.si->omega0()}});
+    append(j, {{"derived", describe_derived(r.system)}});
     return j;
 }
 
 Json describe_status(const Outcome& outcome, long max_impacts, const Stop& stop) {
     auto status = [&](const std::string& reason, const std::string& message) {
-        return Json{{"reason", reason}, {"tau", outcome.tau}, {"message", message}};
+        return object({{"reason", reason}, {"tau", outcome.tau}, {"message", message}});
     };
     switch (outcome.reason) {
         case End::tau_end: return status("tau_end", "the run is complete");
@@ -114,7 +115,7 @@ private:
     template <class Describe>
     void put(const char* name, Describe describe) {
         if (stop_.late && stop_.late()) {
-            answer_[name] = nullptr;
+            append(answer_, {{name, nullptr}});
             left_out.push_back(name);
             return;
         }
@@ -123,7 +124,7 @@ private:
 
     void add(const char* name, Json part) {
         if (r_.system.si) add_si(part, *r_.system.si);
-        answer_[name] = std::move(part);
+        append(answer_, {{name, std::move(part)}});
     }
 
     const SimulateRequest& r_;
@@ -137,11 +138,11 @@ Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes
     Warnings warnings = r.system.notes;
     fit_answer(r, most_bytes, warnings);
     Analysis analysis = analyse(r.wanted, {.run = stop.asked, .late = stop.analysis_late});
-    Json answer;
-    answer["version"] = version();
-    answer["parameters"] = describe_parameters(r);
-    answer["status"] = describe_status(analysis.outcome, r.wanted.max_impacts, stop);
-    answer["warnings"] = nullptr;
+    Json answer = object(
+        {{"version", version()},
+         {"parameters", describe_parameters(r)},
+         {"status", describe_status(analysis.outcome, r.wanted.max_impacts, stop)},
+         {"warnings", nullptr}});
     if (analysis.outcome.reason != End::tau_end) warnings.push_back(answer["status"]["message"]);
     for (const Warning& w : analysis.warnings) warnings.push_back(text_of(w, most_bytes));
     Answer parts(r, stop, answer);

@@ -51,9 +51,14 @@ Coding coding_of(std::string_view element) {
 
 std::string gzip(const std::string& text) {
     z_stream stream{};
+    // Of 1.4 MB, the default answer, level 1 leaves 40 % in 14 ms; 2 the same in 16, 4 and 6 38 %
+    // in 31 and 88, 9 37 % in 158. Without a search for repetitions (Z_HUFFMAN_ONLY) 46 % are left
+    // after 12 ms.
+    constexpr int level = 1;
     constexpr int window = 15, with_gzip_header = 16, memory = 8;  // zlib's own, but for the header
     if (deflateInit2(
-            &stream, 1, Z_DEFLATED, window + with_gzip_header, memory, Z_DEFAULT_STRATEGY) != Z_OK)
+            &stream, level, Z_DEFLATED, window + with_gzip_header, memory, Z_DEFAULT_STRATEGY) !=
+        Z_OK)
         throw std::runtime_error("zlib: deflateInit2");
     std::string out;
     // The whole may be 4 GiB and more, of which zlib cannot count.

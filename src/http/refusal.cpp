@@ -43,9 +43,9 @@ std::optional<Response> refusal(
     if (!in.ranges.empty())
         return problem_response(
             416, "this service does not send parts of an answer; leave out the Range header");
-    const std::string methods = methods_at(routes, in.path);
-    if (methods.empty()) return problem_response(404, "there is nothing at " + in.path);
     if (!find_route(routes, in.method, in.path)) {
+        const std::string methods = methods_at(routes, in.path);
+        if (methods.empty()) return problem_response(404, "there is nothing at " + in.path);
         Response response =
             problem_response(405, fmt::format("{} takes {}, not {}", in.path, methods, in.method));
         response.headers.emplace_back("Allow", methods);

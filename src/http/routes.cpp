@@ -68,10 +68,11 @@ api::Stop stop_after(double seconds) {
 }
 
 Response simulate(const Json& object, const RouteOptions& options, ComputeGate& gate) {
-    const api::SimulateRequest request = api::read_simulate_request(object);
+    api::SimulateRequest request = api::read_simulate_request(object);
     const ComputeGate::Place place = place_in(gate);
     return limited_response(
-        api::simulate_answer(request, stop_after(options.deadline), options.answer_limit),
+        api::simulate_answer(
+            std::move(request), stop_after(options.deadline), options.answer_limit),
         options.answer_limit);
 }
 
