@@ -14,10 +14,11 @@ constexpr double little_step = 1e-6;
 
 enum class Found { contact, none, doubt };
 
-/// A flight from a wall, with the signs of all positions changed where that is the wall at x - y =
-/// -b: it always leaves x - y = b.
+/// A flight, with the signs of all positions changed where it leaves the wall at x - y = -b: if it
+/// leaves one at all, it leaves x - y = b.
 struct Flight {
     const Flow& flow;
+    bool leaves_wall;
     double mirror, b, limit;
     double w;  // the speed at which it leaves
     double y, y_dot;
@@ -26,7 +27,8 @@ struct Flight {
 
     Flight(const Flow& f, const FlightStart& start, double half_width, double until)
         : flow(f),
-          mirror(start.side),
+          leaves_wall(start.side != 0),
+          mirror(leaves_wall ? start.side : 1),
           b(half_width),
           limit(until),
           w(-mirror * start.relative_speed),
@@ -57,15 +59,15 @@ struct Flight {
         const double width = Flow::block * h, least = inside(width);
         const int blocks =
             limit < flow.reach() ? static_cast<int>(limit / width) + 1 : Flow::cells / Flow::block;
-        double left = b;  // x - y at a block's left end
-        bool left_inside = false;
+        double left = leaves_wall ? b : lo.x - y;  // x - y at a block's left end
+        bool left_inside = std::abs(left) < least;
         for (int from = 0; from < blocks; from += Flow::block) {
             const Flow::Block ends = flow.relative_positions_apart(lo, y, y_dot, from);
             for (int i = 0; i < Flow::block && from + i < blocks; ++i) {
                 const double right = ends[i];
                 const bool right_inside = std::abs(right) < least;
-                const bool empty =
-                    from + i == 0 ? leaves(right, width, least) : left_inside && right_inside;
+                const bool empty = from + i == 0 && leaves_wall ? leaves(right, width, least)
+                                                                : left_inside && right_inside;
                 if (!empty) {
                     const Found found = look(from + i, left, contact);
                     if (found != Found::none) return found;
@@ -81,10 +83,11 @@ struct Flight {
         const int from = Flow::block * block;
         const Flow::Block ends = flow.relative_positions(lo, y, y_dot, from + 1);
         const double least = inside(h);
+        if (from == 0 && !leaves_wall && std::abs(left) >= b - eta) return Found::doubt;
         for (int i = 0; i < Flow::block; ++i) {
             const int k = from + i;
             const double right = ends[i];
-            if (k == 0) {
+            if (k == 0 && leaves_wall) {
                 if (!leaves(right, h, least)) return hop(contact);
             } else if (std::abs(right) >= b - eta) {
                 return crossing(k, left, right, contact);
@@ -189,7 +192,8 @@ std::optional<Contact> fast_contact(
     const Flow& flow, const FlightStart& start, double b, double limit,
     std::vector<Touch>& touches) {
     std::optional<Contact> contact;
-    if (!(start.zeros == 1 && start.side * start.relative_speed < 0) ||
+    const bool leaves_at_once = start.zeros == 1 && start.side * start.relative_speed < 0;
+    if (!(leaves_at_once || start.side == 0) ||
         Flight(flow, start, b, limit).search(contact) == Found::doubt)
         contact = next_contact(flow, start, b, limit, touches);
     return contact;

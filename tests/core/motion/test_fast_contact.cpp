@@ -9,7 +9,7 @@ using namespace vines::test;
 
 namespace {
 
-/// A flight that leaves a wall of a random system, at a speed of any size.
+/// A flight of a random system that leaves a wall, at a speed of any size, or begins between them.
 struct RandomFlight {
     Flow flow;
     double b;
@@ -20,6 +20,9 @@ RandomFlight random_flight(std::mt19937_64& engine) {
     const System s = random_system(engine);
     const double theta = uniform(engine, 0, 6.3);
     const Oscillation lo{s.start.x, s.start.x_dot, std::sin(theta), std::cos(theta)};
+    if (engine() % 8 == 0)
+        return {
+            Flow::free(s.parameters), s.parameters.b, {lo, s.start.y, s.start.y_dot, 0, 0, 0}};
     const int side = engine() % 2 ? 1 : -1;
     const double speed =
         std::abs(s.start.x_dot - s.start.y_dot) * std::pow(10, -uniform(engine, 0, 12)) + 1e-12;
