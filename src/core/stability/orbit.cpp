@@ -39,44 +39,57 @@ constexpr double symmetric_within = 1e-6;
 Eigen::Vector4d vector(const State& s) { return {s.x_dot, s.x, s.y_dot, s.y}; }
 State state(const Eigen::Vector4d& v) { return {v(0), v(1), v(2), v(3)}; }
 
-/// The product of all transfer matrices of a run, as a matrix and by its exterior powers.
+/// The product of all transfer matrices of a run.
 class Monodromy : public Observer {
 public:
-    explicit Monodromy(const Parameters& p) : p_(p), powers_(p.epsilon) {}
+    explicit Monodromy(const Parameters& p) : p_(p) {}
     void on_stretch(const Stretch& stretch) override {
         const Leg leg = leg_of(stretch.flow, stretch.duration, stretch.stuck_side != 0);
-        matrix_ = transfer_of(leg, p_.epsilon) * matrix_;
-        powers_.pass(leg);
+        for (long part = 0; part < leg.parts; ++part) carry(matrix, leg, p_.epsilon);
     }
-    void on_impact(const Impact& impact) override {
-        const Saltation M = saltation(p_, impact);
-        matrix_ = M.times(matrix_);
-        powers_.strike(M, impact.R);
-    }
-    const Matrix4& matrix() const { return matrix_; }
-    /// Eigenvalues by descending modulus. The solver's error is one of the largest: small ones get
-    /// their moduli from the exterior powers.
-    std::array<std::complex<double>, 4> multipliers() const {
-        const Eigen::Vector4cd eigenvalues = eigenvalues_of(matrix_);
-        std::array<std::complex<double>, 4> values;
-        for (int k = 0; k < 4; ++k) values[k] = eigenvalues(k);
-        std::stable_sort(
-            values.begin(), values.end(), [](auto a, auto b) { return std::abs(a) > std::abs(b); });
-        const auto logs = powers_.log_moduli();
-        for (int k = 0; k < 4; ++k) {
-            const double modulus = std::abs(values[k]);
-            if (k >= powers_.rank() || modulus == 0) values[k] = 0;
-            else if (modulus < small_multiplier * std::abs(values[0]) && std::isfinite(logs[k]))
-                values[k] *= std::exp(logs[k]) / modulus;
-        }
-        return values;
-    }
+    void on_impact(const Impact& impact) override { matrix = saltation(p_, impact).times(matrix); }
+
+    Frame matrix = Frame::Identity();
 
 private:
     const Parameters p_;
-    Matrix4 matrix_ = Matrix4::Identity();
-    PowerProduct powers_;
 };
+
+/// Its exterior powers.
+class Powers : public Observer {
+public:
+    explicit Powers(const Parameters& p) : product(p.epsilon), p_(p) {}
+    void on_stretch(const Stretch& stretch) override {
+        product.pass(leg_of(stretch.flow, stretch.duration, stretch.stuck_side != 0));
+    }
+    void on_impact(const Impact& impact) override {
+        product.strike(saltation(p_, impact), impact.R);
+    }
+
+    PowerProduct product;
+
+private:
+    const Parameters p_;
+};
+
+/// Eigenvalues by descending modulus. The solver's error is one of the largest: small ones get
+/// their moduli from the exterior powers.
+std::array<std::complex<double>, 4> multipliers_of(
+    const Matrix4& monodromy, const PowerProduct& powers) {
+    const Eigen::Vector4cd eigenvalues = eigenvalues_of(monodromy);
+    std::array<std::complex<double>, 4> values;
+    for (int k = 0; k < 4; ++k) values[k] = eigenvalues(k);
+    std::stable_sort(
+        values.begin(), values.end(), [](auto a, auto b) { return std::abs(a) > std::abs(b); });
+    const auto logs = powers.log_moduli();
+    for (int k = 0; k < 4; ++k) {
+        const double modulus = std::abs(values[k]);
+        if (k >= powers.rank() || modulus == 0) values[k] = 0;
+        else if (modulus < small_multiplier * std::abs(values[0]) && std::isfinite(logs[k]))
+            values[k] *= std::exp(logs[k]) / modulus;
+    }
+    return values;
+}
 
 using Stop = std::function<bool()>;
 
@@ -102,18 +115,11 @@ double quiet_moment(const Parameters& p, const State& start, const Stop& stop) {
     return middle;
 }
 
-struct Return {
-    State state;
-    Monodromy monodromy;
-};
-std::optional<Return> after_period(
-    const Parameters& p, const State& s, double tau, int cycles, const Stop& stop) {
+std::optional<State> after_period(
+    const Parameters& p, const State& s, double tau, int cycles, const Stop& stop,
+    std::span<Observer* const> observers) {
     if (std::abs(s.x - s.y) > p.b) return std::nullopt;
-    Monodromy monodromy(p);
-    Observer* const observers[] = {&monodromy};
-    const auto end = follow(p, s, tau, cycles * p.cycle(), stop, observers);
-    if (!end) return std::nullopt;
-    return Return{*end, monodromy};
+    return follow(p, s, tau, cycles * p.cycle(), stop, observers);
 }
 
 /// Newton's method, in coordinates scaled to order one.
@@ -124,16 +130,18 @@ std::optional<State> close(
     const Eigen::Vector4d unit = vector(scale);
     double miss_before = infinity;
     for (int step = 0, worse = 0; step < most_steps; ++step) {
-        const auto back = after_period(p, s, tau, cycles, stop);
+        Monodromy monodromy(p);
+        Observer* const observers[] = {&monodromy};
+        const auto back = after_period(p, s, tau, cycles, stop, observers);
         if (!back) return std::nullopt;
-        const Eigen::Vector4d miss = (vector(back->state) - vector(s)).cwiseQuotient(unit);
+        const Eigen::Vector4d miss = (vector(*back) - vector(s)).cwiseQuotient(unit);
         const double size = miss.cwiseAbs().maxCoeff();
         if (size < closed_to_rounding || (size < closed && size > converging * miss_before))
             return s;
         if (size > miss_before && ++worse > most_worse_steps) return std::nullopt;
         miss_before = size;
         const Matrix4 D = unit.asDiagonal().inverse() *
-                          (back->monodromy.matrix() - Matrix4::Identity()) * unit.asDiagonal();
+                          (Matrix4(monodromy.matrix) - Matrix4::Identity()) * unit.asDiagonal();
         // Neutral directions (a mass at rest that is never hit) are left as they are: the smallest
         // step solves.
         Eigen::Vector4d correction = -smallest_solution(D, miss);
@@ -190,13 +198,16 @@ bool close_smallest(
     const Parameters& p, int cycles, const State& scale, const Stop& stop, PeriodicOrbit& orbit) {
     for (int divisor = 1; divisor <= cycles; ++divisor) {
         if (cycles % divisor != 0) continue;
-        const auto back = after_period(p, orbit.state, orbit.tau, divisor, stop);
+        Monodromy monodromy(p);
+        Powers powers(p);
+        Observer* const observers[] = {&monodromy, &powers};
+        const auto back = after_period(p, orbit.state, orbit.tau, divisor, stop, observers);
         if (!back) return false;
-        orbit.closure = distance(back->state, orbit.state, scale);
+        orbit.closure = distance(*back, orbit.state, scale);
         if (divisor < cycles && orbit.closure > divisor_closed) continue;
         orbit.cycles = divisor;
-        orbit.monodromy = back->monodromy.matrix();
-        orbit.multipliers = back->monodromy.multipliers();
+        orbit.monodromy = monodromy.matrix;
+        orbit.multipliers = multipliers_of(orbit.monodromy, powers.product);
         break;
     }
     return true;

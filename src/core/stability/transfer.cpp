@@ -42,9 +42,10 @@ Moduli ImpactTransfer::J_moduli() const {
     // eigenvalue solver would split.
     if (rank() == 4) {
         for (const Leg& leg : legs) {
-            const double n = static_cast<double>(leg.parts),
-                         half_trace = 0.5 * std::abs(leg.oscillator.a11 + leg.oscillator.a22);
-            const double d = half_trace * half_trace - std::exp(leg.log_det);
+            const auto& [a11, a12, a21, a22] = leg.oscillator;
+            const double n = static_cast<double>(leg.parts), half_trace = 0.5 * std::abs(a11 + a22);
+            // half_trace^2 less the determinant, without the ones that cancel in a short flight.
+            const double d = 0.25 * (a11 - a22) * (a11 - a22) + a12 * a21;
             const double large = d > 0 ? std::log(half_trace + std::sqrt(d)) : 0.5 * leg.log_det;
             moduli[2] = std::exp(n * large);
             moduli[3] = std::exp(n * (leg.log_det - large));
