@@ -47,7 +47,7 @@ public:
             const Flow::Block ends = flow_.relative_positions_apart(o_, 0, 0, from);
             for (int i = 0; i < Flow::block && from + i < blocks; ++i) {
                 if (std::max(std::abs(left), std::abs(ends[i])) + more > known_)
-                    cells((from + i) * Flow::block, left, Flow::block);
+                    block((from + i) * Flow::block, left, ends[i], more);
                 left = ends[i];
             }
         }
@@ -57,6 +57,23 @@ public:
     }
 
 private:
+    /// Far from the middle the spring outdoes all else: then x'' does not vanish, and x' vanishes
+    /// once, if it changes its sign.
+    void block(int from, double left, double right, double more) {
+        const double stiffness = flow_.coefficients()[0],
+                     rest = bounds_.x_ddot - stiffness * bounds_.x,
+                     least = std::min(std::abs(left), std::abs(right)) - more;
+        if (left * right < 0 || stiffness * least <= rest) return cells(from, left, Flow::block);
+        known_ = std::max({known_, std::abs(left), std::abs(right)});
+        double before = flow_.speed_at(o_, from);
+        if (before * flow_.speed_at(o_, from + Flow::block) > 0) return;
+        for (int k = from + 1; k <= from + Flow::block; ++k) {
+            const double now = flow_.speed_at(o_, k);
+            if (before * now <= 0) return turn(flow_.roughly_at(o_, k - 1), h_, now);
+            before = now;
+        }
+    }
+
     void cells(int from, double left, int count) {
         const Flow::Block ends = flow_.relative_positions(o_, 0, 0, from + 1);
         const double more = bounds_.x_ddot * (h_ * h_ / 8);
@@ -80,8 +97,9 @@ private:
         turn(left, d, x_dot);
     }
 
+    /// Up to a turning point |x'| falls: x comes no further than it would at its speed now.
     void turn(const Oscillation& left, double width, double x_dot_end) {
-        if (left.x_dot * x_dot_end < 0)
+        if (left.x_dot * x_dot_end < 0 && std::abs(left.x) + std::abs(left.x_dot) * width > known_)
             known_ = std::max(known_, std::abs(turning_value(flow_, left, width, x_dot_end)));
     }
 

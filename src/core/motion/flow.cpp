@@ -201,7 +201,11 @@ Oscillation Flow::after(Oscillation o, double s) const {
     for (; s >= reach(); s -= reach()) o = at(o, cells);
     const int k = static_cast<int>(s / cell_);
     o = at(o, k);
-    return along(series(o), o, std::max(0.0, s - k * cell_));
+    const double d = std::max(0.0, s - k * cell_);
+    Oscillation next = turned(o, d);
+    const auto [x, x_dot] = near_series(o).at(d);
+    next.x = x, next.x_dot = x_dot;
+    return next;
 }
 
 // The oscillator's block of J, eq. (19).

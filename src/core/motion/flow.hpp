@@ -99,7 +99,13 @@ public:
     }
     /// The whole state at grid time k h.
     Oscillation at(const Oscillation& o, int k) const;
-    /// The same, but for the last ulp of the phasor's length.
+    /// x' alone.
+    double speed_at(const Oscillation& o, int k) const {
+        const Row& r = rows_[static_cast<std::size_t>(k)];
+        return r.x_dot[0] * o.x + r.x_dot[1] * o.x_dot + r.x_dot[2] * o.sin_theta +
+               r.x_dot[3] * o.cos_theta;
+    }
+    /// The whole state, but for the last ulp of the phasor's length.
     Oscillation roughly_at(const Oscillation& o, int k) const {
         const Row& r = rows_[static_cast<std::size_t>(k)];
         return {

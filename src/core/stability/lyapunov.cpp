@@ -102,8 +102,33 @@ struct TransferProduct::Qr {
         double logarithm() const { return logs + std::log(product); }
     };
 
-    Frame frame = Frame::Identity();
-    std::array<Growth, 4> lengths;
+    /// Deviations that span what the first one, two, three and four of them have become, and the
+    /// growth that was taken out of them.
+    struct Columns {
+        Frame frame = Frame::Identity();
+        std::array<Growth, 4> lengths;
+
+        /// Gram-Schmidt on the first columns; the exponents grow by their lengths.
+        void orthonormalise(int count) {
+            Matrix4 base = frame;  // by columns
+            for (int k = 0; k < count; ++k) {
+                Eigen::Vector4d q = base.col(k);
+                for (int j = 0; j < k; ++j) q -= base.col(j).dot(q) * base.col(j);
+                const double length = q.norm();
+                base.col(k) = q * (1 / length);
+                lengths[k].grow(length);
+            }
+            if (count < 4) base.rightCols(4 - count).setZero();
+            frame = base;
+        }
+    };
+    Columns columns;
+    // By how much the columns may differ in length, or hide each other, since they were
+    // orthonormal: a bound of their condition number. Gram-Schmidt, a chain of four roots and four
+    // divisions, takes as long as the rest of an impact, so that two or three share it; up to this
+    // bound the last of the four lengths keeps twelve digits.
+    static constexpr double most_skewed = 1e4;
+    double skewed = 1;
     // What the first two and three deviations span, from the exterior powers; and the determinant.
     Area area = Area::Unit(0);
     Volume volume{Eigen::Vector4d::UnitW()};
@@ -112,24 +137,20 @@ struct TransferProduct::Qr {
     Growth impacts_det;                   // of the impacts
     Thinned thinned;
 
-    /// Gram-Schmidt on the first columns; the exponents grow by their lengths.
-    void orthonormalise(int columns) {
-        Matrix4 base = frame;  // by columns
-        for (int k = 0; k < columns; ++k) {
-            Eigen::Vector4d q = base.col(k);
-            for (int j = 0; j < k; ++j) q -= base.col(j).dot(q) * base.col(j);
-            const double length = q.norm();
-            base.col(k) = q * (1 / length);
-            lengths[k].grow(length);
-        }
-        if (columns < 4) base.rightCols(4 - columns).setZero();
-        frame = base;
+    void orthonormalise(int rank) {
+        columns.orthonormalise(rank);
+        skewed = 1;
+    }
+    void skew(double by, int rank) {
+        skewed *= by;
+        if (skewed > most_skewed) orthonormalise(rank);
     }
 
     /// Deviations of x' - y' shrunk by `factor`, x' + epsilon y' and the positions kept: S for
     /// factor -R.
     void shrink(double factor, double epsilon) {
         const double nu = 1 / (1 + epsilon), mu = epsilon * nu;
+        Frame& frame = columns.frame;
         const Eigen::RowVector4d relative = (1 - factor) * (frame.row(0) - frame.row(2));
         frame.row(0) -= mu * relative;
         frame.row(2) += nu * relative;
@@ -157,6 +178,7 @@ struct TransferProduct::Qr {
     ///
     /// the lengths are V_k/V_{k-1}. Of all four columns it is the determinant 1 + g^T r = -R.
     void shear(const Eigen::Vector4d& r, double R, int rank) {
+        Frame& frame = columns.frame;
         const Eigen::Vector4d a = frame.transpose() * wall_normal(), p = frame.transpose() * r;
         Eigen::Vector4d rest = r;
         double before = 1, dot = 1, head = 0;
@@ -166,7 +188,7 @@ struct TransferProduct::Qr {
             rest -= p(k) * frame.col(k);
             const double spanned_volume =
                 k < 3 ? std::sqrt(dot * dot + head * rest.squaredNorm()) : R;
-            lengths[k].grow(spanned_volume / before);
+            columns.lengths[k].grow(spanned_volume / before);
             before = spanned_volume;
         }
         const Eigen::HouseholderQR<Matrix4> factors(frame + r * a.transpose());
@@ -174,15 +196,18 @@ struct TransferProduct::Qr {
     }
 
     void pass(const Leg& leg, double epsilon, int rank) {
+        const bool is_strong = leg.parts > 1 || leg.stuck;
         for (long k = 0; k < leg.parts; ++k) {
-            if (k > 0) orthonormalise(rank);
-            carry(frame, leg, epsilon);
+            if (is_strong) orthonormalise(rank);
+            carry(columns.frame, leg, epsilon);
             area = carried(area, leg, epsilon);
             if (rank > 2) volume = carried(volume, leg);
             rescale(rank);
             log_det += leg.log_det;
         }
-        if (leg.parts > 1 || leg.stuck) orthonormalise(rank);
+        if (is_strong) return orthonormalise(rank);
+        const auto& [a11, a12, a21, a22] = leg.oscillator;
+        skew((1 + leg.duration) / (a11 * a22 - a12 * a21), rank);
     }
 
     void strike(const Saltation& M, double R, double epsilon, int rank) {
@@ -190,8 +215,8 @@ struct TransferProduct::Qr {
             orthonormalise(rank);
             strike_apart(M, R, epsilon, rank);
         } else {
-            frame = M.times(frame);
-            orthonormalise(rank);
+            columns.frame = M.times(columns.frame);
+            skew((1 + 2 * M.r.cwiseAbs().maxCoeff()) / R, rank);
         }
         area = carried(area, M, R);
         if (rank > 2) volume = carried(volume, M, R);
@@ -220,8 +245,10 @@ struct TransferProduct::Qr {
     Sums sums(int rank) const {
         Sums s;
         double sum = 0;
+        Columns now = columns;
+        now.orthonormalise(rank);
         for (int k = 0; k < rank; ++k) {
-            s.logs[k] = lengths[k].logarithm();
+            s.logs[k] = now.lengths[k].logarithm();
             sum += s.logs[k];
             if (k == 1)
                 s.misses[k] = std::abs(sum - (log_area + 0.5 * std::log(area.squaredNorm())));
