@@ -290,7 +290,7 @@ TEST_CASE("a quiet record, a clipped one, gaps, slow sampling and a wrong b are 
          from = end + 1, ++number) {
         const std::string line = csv.substr(from, end - from + 1);
         if (number < 3000 || number > 3040) gap += line;
-        if (number % 4 == 0) slow += line;
+        if (number % 3 == 0) slow += line;
         const std::size_t comma = line.rfind(',');
         clipped += line.substr(0, comma + 1) +
                    std::to_string(std::min(std::stod(line.substr(comma + 1)), 3.0)) + "\n";

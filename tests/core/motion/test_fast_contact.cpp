@@ -21,8 +21,7 @@ RandomFlight random_flight(std::mt19937_64& engine) {
     const double theta = uniform(engine, 0, 6.3);
     const Oscillation lo{s.start.x, s.start.x_dot, std::sin(theta), std::cos(theta)};
     if (engine() % 8 == 0)
-        return {
-            Flow::free(s.parameters), s.parameters.b, {lo, s.start.y, s.start.y_dot, 0, 0, 0}};
+        return {Flow::free(s.parameters), s.parameters.b, {lo, s.start.y, s.start.y_dot, 0, 0, 0}};
     const int side = engine() % 2 ? 1 : -1;
     const double speed =
         std::abs(s.start.x_dot - s.start.y_dot) * std::pow(10, -uniform(engine, 0, 12)) + 1e-12;
