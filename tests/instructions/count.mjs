@@ -84,13 +84,15 @@ const now = counted(parts);
 let grown = 0;
 for (const {name, unit} of parts) {
   const change = now[name] / before[name] - 1;
-  const size = `${(100 * Math.abs(change)).toFixed(1)} %`;
+  const percent = (100 * change).toFixed(1);
+  const line = `${name}, ${now[name]} instructions per ${unit}, recorded ${before[name]}`;
   // NaN: a part that nothing is recorded of.
-  const bad = !(change <= most);
-  const word = bad ? "GREW" : change < -most ? "shrank" : "as before";
-  const by = change === 0 ? "" : ` (${size} ${change < 0 ? "less" : "more"})`;
-  console.log(`${word}: ${name}, ${now[name]} instructions per ${unit}, of ${before[name]}${by}`);
-  grown += bad;
-  if (bad || change < -most) console.log(`  if it is to stay so: ${anew}`);
+  if (Math.abs(change) <= most) {
+    console.log(`as before: ${line}`);
+    continue;
+  }
+  const less = change < 0;
+  console.log(`${less ? "SHRANK" : "GREW"}: ${line}, ${percent} %; if it is to stay so: ${anew}`);
+  if (!less) grown += 1;
 }
 process.exit(grown === 0 ? 0 : 1);
