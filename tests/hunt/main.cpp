@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "damping.hpp"
+#include "flights.hpp"
 #include "verdicts.hpp"
 
 int main(int count, char** arguments) {
@@ -12,7 +13,7 @@ int main(int count, char** arguments) {
         "that repeats "
         "it.");
     app.option_defaults()->always_capture_default();
-    int systems = 2000, damped = 200, first = 0, threads = 2;
+    int systems = 2000, damped = 200, flights = 1000000, first = 0, threads = 2;
     std::uint64_t seed = 1;
     app.add_option(
         "--systems", systems,
@@ -21,13 +22,18 @@ int main(int count, char** arguments) {
         "--damped", damped,
         "strongly damped systems whose exponents are compared with multi-precision ones");
     app.add_option(
+        "--flights", flights,
+        "random flights whose contacts are judged by dense sampling in extended precision");
+    app.add_option(
         "--first", first,
-        "the first system of the seed to be judged: --damped 0 --systems 1 --first 61 repeats one");
-    app.add_option("--seed", seed, "of both");
+        "the first system and flight of the seed to be judged: --damped 0 --flights 0 --systems 1 "
+        "--first 61 repeats one");
+    app.add_option("--seed", seed, "of all");
     app.add_option("--threads", threads);
     CLI11_PARSE(app, count, arguments);
 
     const bool exponents = damped == 0 || vines::hunt::hunt_exponents(damped, seed, threads);
     const bool verdicts = systems == 0 || vines::hunt::hunt_verdicts(systems, seed, first, threads);
-    return exponents && verdicts ? 0 : 1;
+    const bool contacts = flights == 0 || vines::hunt::hunt_contacts(flights, seed, first, threads);
+    return exponents && verdicts && contacts ? 0 : 1;
 }
