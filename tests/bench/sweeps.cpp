@@ -1,3 +1,4 @@
+#include <ctime>
 #include <string>
 
 #include "core/stability/lyapunov.hpp"
@@ -35,8 +36,23 @@ void spectrum_alone(const Parameters& p, double cycles) {
 
 using Point = std::function<void(const Parameters&)>;
 
-double sweep(int threads, const Point& point) {
-    return seconds_of([&] {
+/// How many cores a piece of work had: on a busy machine less than its threads could use.
+class Cores {
+public:
+    double seconds_of(const std::function<void()>& work) {
+        const std::clock_t before = std::clock();  // of all threads
+        const double seconds = bench::seconds_of(work);
+        cores_.push_back(static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC / seconds);
+        return seconds;
+    }
+    std::string told() const { return ", on " + digits(median(cores_)) + " cores"; }
+
+private:
+    std::vector<double> cores_;
+};
+
+double sweep(int threads, const Point& point, Cores& cores) {
+    return cores.seconds_of([&] {
         parallel(values_of_b, threads, [&](std::size_t i) {
             point(closed_form(between(0.002, 0.040, i, values_of_b), 0.6));
         });
@@ -61,24 +77,28 @@ void bench_sweep_of_b() {
         {"1000 cycles, all that a point holds", measured(0)},
         {"200 + 1000 cycles, all that a point holds", measured(200)}};
     std::vector<std::function<double()>> measurements;
-    for (const auto& kind : kinds)
+    Cores cores[std::size(kinds)][2];
+    for (std::size_t k = 0; k < std::size(kinds); ++k)
         for (int threads : {1, 2})
-            measurements.push_back([&kind, threads] { return sweep(threads, kind.point); });
+            measurements.push_back([&kinds, &cores, k, threads] {
+                return sweep(threads, kinds[k].point, cores[k][threads - 1]);
+            });
     const auto times = in_turn(rounds, measurements);
     for (std::size_t k = 0; k < std::size(kinds); ++k) {
         const std::string name = "1000 values of b, 2 to 40 mm, " + std::string(kinds[k].name);
         const auto &one = times[2 * k], &two = times[2 * k + 1];
         row(name + ", one thread", one, "s", rate(one, values_of_b));
         row(name + ", two threads", two, "s",
-            rate(two, values_of_b) + ", parallel efficiency " +
-                digits(50 * median(ratios(one, two))) + " %");
+            rate(two, values_of_b) + ", " + digits(median(ratios(one, two))) +
+                " times as fast as one" + cores[k][1].told());
     }
 }
 
 void bench_map() {
     constexpr std::size_t columns = 120, lines = 80;
+    Cores cores;
     const auto map = [&] {
-        return seconds_of([&] {
+        return cores.seconds_of([&] {
             parallel(columns * lines, 2, [&](std::size_t i) {
                 const Parameters p = closed_form(
                     between(0.002, 0.040, i % columns, columns),
@@ -89,7 +109,7 @@ void bench_map() {
     };
     const auto times = in_turn(rounds, {map});
     row("map of 120 x 80 points, b 2 to 40 mm, R .3 to .9, 100 + 200 cycles, two threads", times[0],
-        "s", rate(times[0], columns * lines));
+        "s", rate(times[0], columns * lines) + cores.told());
 }
 
 }  // namespace
