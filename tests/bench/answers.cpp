@@ -1,12 +1,11 @@
 // How fast running services answer over a connection that is kept, beside a bare server of the same
-// library that has the same bytes ready: bench_answers PORT... All are asked in turn, the medians
-// count.
+// library that has the same bytes ready, as rows of scripts/bench's table: bench_answers PORT...
+// All are asked in turn.
 #include <arpa/inet.h>
 #include <httplib.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -14,6 +13,10 @@
 #include <string>
 #include <thread>
 #include <vector>
+
+#include "table.hpp"
+
+using namespace vines::bench;
 
 namespace {
 
@@ -87,14 +90,9 @@ private:
     std::thread thread_;
 };
 
-double median(std::vector<double> v) {
-    std::nth_element(v.begin(), v.begin() + static_cast<long>(v.size() / 2), v.end());
-    return v[v.size() / 2];
-}
-
-std::string post(const std::string& body) {
-    return "POST /v1/simulate HTTP/1.1\r\nHost: localhost\r\nContent-Length: " +
-           std::to_string(body.size()) + "\r\n\r\n" + body;
+std::string post(const std::string& body, const char* headers = "") {
+    return std::string("POST /v1/simulate HTTP/1.1\r\nHost: localhost\r\n") + headers +
+           "Content-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body;
 }
 std::string get(const std::string& query) {
     return "GET /v1/simulate?" + query + " HTTP/1.1\r\nHost: localhost\r\n\r\n";
@@ -112,27 +110,36 @@ double microseconds(int port, const std::string& request, int count) {
     return taken.count() / count;
 }
 
-void bench(
-    const char* name, const std::string& request, int count, const std::vector<int>& services) {
+void bench_answer(
+    const std::string& name, const std::string& request, int count,
+    const std::vector<int>& services) {
     std::string body = std::string(Connection(services[0]).ask(request));
     const std::size_t size = body.size();
     const BareServer bare(std::move(body));
     std::vector<int> ports = services;
     ports.push_back(bare.port);
-    constexpr int rounds = 9;
-    std::vector<std::vector<double>> times(ports.size());
-    for (int k = 0; k < rounds; ++k)
-        for (std::size_t i = 0; i < ports.size(); ++i)
-            times[i].push_back(microseconds(ports[i], request, count));
-    const double of_bare = median(times.back());
-    std::printf("%-40s %8zu bytes, bare %8.1f us;", name, size, of_bare);
+    std::vector<std::function<double()>> measurements;
+    for (int port : ports)
+        measurements.push_back(
+            [&request, port, count] { return microseconds(port, request, count); });
+    const auto times = in_turn(9, measurements);
+    const std::string what = "over HTTP: " + name + ", " + std::to_string(size) + " bytes";
     for (std::size_t i = 0; i < services.size(); ++i) {
-        const double of_service = median(times[i]);
-        std::printf(
-            " service %8.1f us, at %3.0f %% of the bare rate;", of_service,
-            100 * of_bare / of_service);
+        const std::string who =
+            what + (services.size() > 1 ? ", at port " + std::to_string(services[i]) : "");
+        row(who, times[i], "us",
+            ", at " + digits(100 * median(ratios(times.back(), times[i]))) +
+                " % of the rate of a bare server");
     }
-    std::printf("\n");
+}
+
+/// Without the bare server: it would pack the packed bytes once more.
+void bench_gzipped(int port) {
+    const std::string request = post("{}", "Accept-Encoding: gzip\r\n");
+    const std::size_t size = Connection(port).ask(request).size();
+    const auto times = in_turn(9, {[&] { return microseconds(port, request, 10); }});
+    row("over HTTP: the default request, gzipped, " + std::to_string(size) + " bytes", times[0],
+        "us");
 }
 
 }  // namespace
@@ -144,16 +151,15 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "bench_answers PORT...\n");
         return 2;
     }
-    std::printf("one connection, one request after the other; median of 9 rounds\n");
-    bench(
-        "impacts of tau_end = 200", post(R"({"tau_end":200,"include":["impacts"]})"), 500,
-        services);
-    bench(
-        "a run of tau_end = 20, nothing of it", post(R"({"tau_end":20,"include":[]})"), 500,
-        services);
-    bench("the README's first request", get("preset=fig11&include=regime,energy"), 30, services);
-    bench(
-        "10,000 samples of tau_end = 1709",
+    bench_answer(
+        "impacts to tau = 200", post(R"({"tau_end":200,"include":["impacts"]})"), 500, services);
+    bench_answer(
+        "a run to tau = 20, nothing of it", post(R"({"tau_end":20,"include":[]})"), 500, services);
+    bench_answer(
+        "the README's first request", get("preset=fig11&include=regime,energy"), 30, services);
+    bench_answer(
+        "10,000 samples to tau = 1709",
         post(R"({"tau_end":1709,"samples_per_cycle":36.764,"include":["series"]})"), 30, services);
-    bench("the default request", post("{}"), 30, services);
+    bench_answer("the default request", post("{}"), 30, services);
+    bench_gzipped(services[0]);
 }

@@ -1,6 +1,6 @@
-// How long a sweep makes others wait, in the running service, and how fast it answers beside a bare
-// server: node tests/bench/service.mjs [PORT...], where the ports are those of other services to be
-// measured in turn with it.
+// How long a sweep makes others wait, in the running service, how fast its lines come and how fast
+// it answers beside a bare server, as rows of scripts/bench's table: node tests/bench/service.mjs
+// [PORT...], where the ports are those of other services to be measured in turn with it.
 import {spawnSync} from "node:child_process";
 import {startService} from "../service.mjs";
 
@@ -33,13 +33,18 @@ const startSweep = async () => {
   }
 };
 
-/** Least and median of so many times, in ms. What else the machine does only adds. */
+/** So many times, ascending, in ms. What else the machine does only adds. */
 const timed = async (count, work) => {
   const times = [];
   for (let i = 0; i < count; ++i) times.push(await work());
-  times.sort((a, b) => a - b);
-  return {least: times[0], median: times[count >> 1]};
+  return times.sort((a, b) => a - b);
 };
+
+const ms = (x) => x.toFixed(1);
+const row = (what, times, remark = "") =>
+  console.log(
+    `| ${what} | ${ms(times[times.length >> 1])} ms${remark} | ${ms(times[0])} to ${ms(times.at(-1))} |`,
+  );
 
 const simulation = async () => {
   const started = performance.now();
@@ -57,15 +62,33 @@ const free = await timed(9, async () => {
   return performance.now() - left;
 });
 leave();
+
+// A sweep whose points cost little shows what its lines cost.
+const many = JSON.stringify({
+  base: {damping: "closed_form"},
+  axes: [{parameter: "b", from: 0.002, to: 0.04, count: 1000}],
+  transient_cycles: 0,
+  cycles: 1,
+});
+let size = 0;
+const lines = await timed(9, async () => {
+  for (;;) {
+    const started = performance.now();
+    const response = await post("/v1/sweep", many);
+    const text = await response.text();
+    size = text.length;
+    if (response.status === 200) return performance.now() - started;
+  }
+});
+
+row("over HTTP: a simulation alone", alone);
+row("the same beside a sweep on all cores", beside);
+console.log(
+  `| the least of the one over the least of the other | ${(beside[0] / alone[0]).toFixed(2)}, to be below 2 | |`,
+);
+row("a sweep whose client left gives its room back after", free, ", to be below 200");
+row(`over HTTP: a sweep of 1000 points of one cycle each, ${size} bytes of lines`, lines);
 const answers = new URL("../../build/release/tests/bench_answers", import.meta.url).pathname;
 const ports = [new URL(service.url).port, ...process.argv.slice(2)];
 spawnSync(answers, ports, {stdio: "inherit"});
 await service.stop();
-
-const ms = (x) => `${x.toFixed(1)} ms`;
-console.log(
-  `a simulation alone: ${ms(alone.median)}, beside a sweep on all cores: ${ms(beside.median)} (median of 31); ratio of the least: ${(beside.least / alone.least).toFixed(2)}, to be below 2`,
-);
-console.log(
-  `a sweep whose client left gives its room back after ${ms(free.median)} (median of 9), to be below 200 ms`,
-);
