@@ -219,8 +219,8 @@ const Response& Runs::response(double b, Damping damping) {
 }
 
 const std::vector<Response>& Runs::neighbours(double b, Damping damping) {
-    const auto [at, is_new] = neighbours_.try_emplace({b, damping});
-    if (!is_new) return at->second;
+    const auto found = neighbours_.find({b, damping});
+    if (found != neighbours_.end()) return found->second;
     const Parameters p = table1(b, damping);
     std::vector<std::optional<Analysis>> runs(neighbour_runs);
     parallel(neighbour_runs, all_threads(), [&](std::size_t k) {
@@ -229,8 +229,9 @@ const std::vector<Response>& Runs::neighbours(double b, Damping damping) {
         wanted.estimators = {.qr = true, .raw_product = true};
         runs[k].emplace(analyse(wanted));
     });
-    for (auto& run : runs) at->second.push_back({p, std::move(*run)});
-    return at->second;
+    std::vector<Response> responses;
+    for (auto& run : runs) responses.push_back({p, std::move(*run)});
+    return neighbours_.emplace(std::pair{b, damping}, std::move(responses)).first->second;
 }
 
 const Ensemble& Runs::ensemble(double b, WindowsOf size, Damping damping) {

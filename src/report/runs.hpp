@@ -94,7 +94,7 @@ struct Typical {
 
     std::string in_words(int decimals) const;
 };
-/// NaN is left out; `runs` of Runs::neighbours().
+/// NaN is left out of the median and the quartiles; `runs` of Runs::neighbours().
 template <class Number>
 Typical typical(const std::vector<Response>& runs, Number number) {
     std::vector<double> values;
@@ -109,8 +109,8 @@ class Runs {
 public:
     const Response& response(double b, Damping damping = Damping::closed_form);
     /// That run and those of starts beside it: where the motion is chaotic, each of them soon is
-    /// another one, as that of another computer is. Without matrices, manifold and the eigenvalues
-    /// by compounds.
+    /// another one, as that of another computer is. Series, moduli and regime alone, and the
+    /// exponents by qr and raw_product.
     const std::vector<Response>& neighbours(double b, Damping damping = Damping::closed_form);
     const Ensemble& ensemble(double b, WindowsOf size, Damping damping = Damping::closed_form);
 

@@ -23,8 +23,8 @@ double energy_of(const Parameters& p, const State& s) {
 
 Energy::Law::Law(std::shared_ptr<const Flow> f)
     : flow(std::move(f)),
-      antiderivative(Antiderivative::of(*flow)),
-      quadrature(antiderivative ? nullptr : Quadrature::shared(*flow)) {}
+      quadrature(Quadrature::shared(*flow)),
+      antiderivative(Antiderivative::of(*flow)) {}
 
 Energy::Energy(const Parameters& p, double tau_start, double tau_end)
     : parameters_(p),
@@ -41,32 +41,34 @@ void Energy::on_stretch(const Stretch& stretch) {
     const Law& law = is_stuck ? *stuck_ : free_;
     const Oscillation begin = from > 0 ? stretch.flow.after(stretch.start, from) : stretch.start;
     if (duration_ == 0) start_ = energy_of(begin, is_stuck ? begin.x_dot : stretch.y_dot);
+    const bool in_closed_form = law.antiderivative && duration_ >= law.antiderivative->settled();
     // Where a stretch goes on by the law of the one before F cancels.
-    if (duration_ == 0 || last_.is_stuck != is_stuck) {
+    if (duration_ == 0 || last_.is_stuck != is_stuck || last_.in_closed_form != in_closed_form) {
         sum_ = integrals();
-        if (law.antiderivative) sum_ -= law.antiderivative->at(begin);
+        if (in_closed_form) sum_ -= law.antiderivative->at(begin);
     }
-    sum_ += law.antiderivative ? law.antiderivative->over_time(to - from)
-                               : law.quadrature->over(begin, to - from);
+    sum_ += in_closed_form ? law.antiderivative->over_time(to - from)
+                           : law.quadrature->over(begin, to - from);
     peak_ = peak_beyond(peak_, *law.flow, begin, to - from);
     duration_ += to - from;
-    last_ = {begin, to - from, stretch.y_dot, is_stuck};
+    last_ = {begin, to - from, stretch.y_dot, is_stuck, in_closed_form};
 }
 
 void Energy::on_impact(const Impact& i) {
     if (i.tau > tau_end_) return;
+    const Oscillation after = {i.x, i.x_dot_after, i.sin_theta, i.cos_theta};
     // Belongs to what was before, as does the rounding of a stretch that ended a trifle later.
     if (i.tau <= tau_start_) {
         sum_ = {};
         duration_ = peak_ = 0;
+        start_ = energy_of(after, i.y_dot_after);
+        last_ = {after, 0, i.y_dot_after, false, false};
         return;
     }
     const double w = i.relative_speed_before;
     impacts_ += (1 - i.R * i.R) * w * w * parameters_.epsilon / (2 * (1 + parameters_.epsilon));
-    const Oscillation after = {i.x, i.x_dot_after, i.sin_theta, i.cos_theta};
-    if (duration_ > 0 && free_.antiderivative)
-        sum_ += free_.antiderivative->across(after, i.x_dot_before);
-    last_ = {after, 0, i.y_dot_after, false};
+    if (last_.in_closed_form) sum_ += free_.antiderivative->across(after, i.x_dot_before);
+    last_ = {after, 0, i.y_dot_after, false, last_.in_closed_form};
 }
 
 Oscillation Energy::end() const {
@@ -75,8 +77,7 @@ Oscillation Energy::end() const {
 
 Integrals Energy::integrals() const {
     Integrals sum = sum_;
-    if (duration_ == 0) return sum;
-    if (const auto& F = (last_.is_stuck ? *stuck_ : free_).antiderivative) sum += F->at(end());
+    if (last_.in_closed_form) sum += (last_.is_stuck ? *stuck_ : free_).antiderivative->at(end());
     return sum;
 }
 

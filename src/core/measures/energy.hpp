@@ -42,8 +42,8 @@ private:
         explicit Law(std::shared_ptr<const Flow> flow);
 
         std::shared_ptr<const Flow> flow;
-        std::optional<Antiderivative> antiderivative;
-        std::shared_ptr<const Quadrature> quadrature;  ///< in its place, where there is none
+        std::shared_ptr<const Quadrature> quadrature;
+        std::optional<Antiderivative> antiderivative;  ///< in its place, once a window is long
     };
     const Law free_;
     std::optional<Law> stuck_;  // from the first stretch of a stick on
@@ -52,7 +52,7 @@ private:
     struct Last {
         Oscillation begin;
         double duration, y_dot;
-        bool is_stuck;
+        bool is_stuck, in_closed_form;
     };
     Last last_{};
     double duration_ = 0, peak_ = 0, impacts_ = 0, start_ = 0;

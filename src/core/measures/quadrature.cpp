@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "core/motion/last_used.hpp"
 
@@ -25,12 +26,8 @@ constexpr std::array<Node, 5> gauss = {
 
 Eigen::Vector4d vector(const Oscillation& o) { return {o.x, o.x_dot, o.sin_theta, o.cos_theta}; }
 
-}  // namespace
-
-namespace {
-
-// What decays or turns more slowly than this, per unit of tau, leaves F so large beside what is
-// integrated over a cycle that a digit in 16 of it is a digit in 12 of that.
+// What decays or turns more slowly than this, per unit of tau, would have to be waited for longer
+// than runs last.
 constexpr double slowest = 1e-3;
 
 /// The slowest rate at which products of two of the four components change, but for sin^2 + cos^2,
@@ -62,7 +59,8 @@ WideForm symmetric(int place) {
 
 std::optional<Antiderivative> Antiderivative::of(const Flow& flow) {
     const Flow::Coefficients c = flow.coefficients();
-    if (!(slowest_rate(c) > slowest)) return {};
+    const double rate = slowest_rate(c);
+    if (!(rate > slowest)) return {};
     const auto [stiffness, damping, forcing, Omega] = c;
     WideForm L;
     L << 0, 1, 0, 0, -stiffness, -damping, forcing, 0, 0, 0, 0, Omega, 0, 0, -Omega, 0;
@@ -87,6 +85,7 @@ std::optional<Antiderivative> Antiderivative::of(const Flow& flow) {
     F.x_squared_ = form(0, 1);
     F.x_dot_squared_ = form(4, 1);
     F.x_dot_sin_ = form(5, 0.5L);
+    F.settled_ = 2 * std::numbers::pi + 1 / rate;
     return F;
 }
 

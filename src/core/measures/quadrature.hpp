@@ -1,5 +1,6 @@
-// Integrals over the motion of the linear oscillator between events: in closed form where it is
-// well conditioned, else by tables over the flow's grid. Both are exact to rounding.
+// Integrals over the motion of the linear oscillator between events: by tables over the flow's
+// grid, exact to rounding, and in closed form, exact to rounding of the motion without the
+// absorber.
 #pragma once
 
 #include <memory>
@@ -36,6 +37,9 @@ public:
     /// z^T P z is much larger than what it changes by.
     static std::optional<Antiderivative> of(const Flow& flow);
 
+    /// From then on, in tau, the integrals are no longer small beside F: from rest they begin as
+    /// high powers of the time, while F is of the size of the steady motion from the start.
+    double settled() const { return settled_; }
     Integrals at(const Oscillation& o) const;
     /// at() before an impact less at() after it: x' alone has changed.
     Integrals across(const Oscillation& after, double x_dot_before) const;
@@ -52,8 +56,10 @@ private:
         double across(const Oscillation& after, double x_dot_before) const;
     };
     Form x_squared_, x_dot_squared_, x_dot_sin_;
+    double settled_;
 };
 
+/// By Gauss's rule on each cell of the flow's grid, whose forms are summed in a table.
 class Quadrature {
 public:
     explicit Quadrature(const Flow& flow);

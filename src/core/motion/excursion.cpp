@@ -7,21 +7,53 @@ namespace vines {
 
 namespace {
 
-/// x where x' = 0 within 0 < d < width from `left`, x' being of opposite signs at the two ends.
-/// Newton's steps with an acceleration that is right to 1e-5 of itself: after two of them the
-/// turning point is 1e-7 off, and x by the square of what the last correction leaves of that.
+bool signs_differ(double a, double b) { return (a < 0) != (b < 0); }
+
+/// x where x' = 0 within 0 < d < width from `left`, x' being of opposite signs at the two ends and
+/// x'' of one sign between them. Newton's steps with an acceleration that is right to 1e-5 of
+/// itself; the last one is taken by its parabola, of which 1e-18 is left out.
 double turning_value(const Flow& flow, const Oscillation& left, double width, double x_dot_end) {
+    constexpr double last_step = 1e-5;
     const Flow::Near series = flow.near_series(left);
     const double a = flow.acceleration(left), rate = flow.jerk(left), snap = flow.snap(left);
     double d = width * left.x_dot / (left.x_dot - x_dot_end);
     for (int step = 0;; ++step) {
         const auto [x, x_dot] = series.at(d);
         const double ahead = -x_dot / (a + d * (rate + 0.5 * d * snap));
+        if (std::abs(ahead) <= last_step * width) return x + 0.5 * ahead * x_dot;
         // Hardly any acceleration: then x hardly changes.
-        if (!(std::abs(ahead) <= width)) return x;
-        if (step == 2) return x + 0.5 * ahead * x_dot;
+        if (step == 8 || !(std::abs(ahead) <= width)) return x;
         d = std::clamp(d + ahead, 0.0, width);
     }
+}
+
+/// Visits x at the turning points within a cell or a part of one, from `left` to `right`: one, or
+/// where x'' changes its sign between them two.
+template <class Visit>
+void visit_turns(
+    const Flow& flow, const Oscillation& left, double width, const Oscillation& right,
+    const Visit& visit) {
+    const auto part = [&](const Oscillation& from, double length, const Oscillation& to) {
+        if (length > 0 && signs_differ(from.x_dot, to.x_dot))
+            visit(turning_value(flow, from, length, to.x_dot));
+    };
+    const double a = flow.acceleration(left), b = flow.acceleration(right);
+    if (!signs_differ(a, b)) return part(left, width, right);
+    // x'' = 0 by two steps of the secant: x' hardly changes beside it.
+    const Flow::Near series = flow.near_series(left);
+    const auto at = [&](double d) {
+        Oscillation o = flow.turned(left, d);
+        const auto [x, x_dot] = series.at(d);
+        o.x = x, o.x_dot = x_dot;
+        return o;
+    };
+    double d = width * a / (a - b);
+    Oscillation middle = at(d);
+    const double slope = flow.jerk(middle);
+    if (slope != 0) d = std::clamp(d - flow.acceleration(middle) / slope, 0.0, width);
+    middle = at(d);
+    part(left, d, middle);
+    part(middle, width - d, right);
 }
 
 /// One look at the grid: the flight from o on, for a part of the flow's reach.
@@ -63,24 +95,31 @@ private:
         const double stiffness = flow_.coefficients()[0],
                      rest = bounds_.x_ddot - stiffness * bounds_.x,
                      least = std::min(std::abs(left), std::abs(right)) - more;
-        if (left * right < 0 || stiffness * least <= rest) return cells(from, left, Flow::block);
+        if (signs_differ(left, right) || stiffness * least <= rest)
+            return cells(from, left, Flow::block);
         known_ = std::max({known_, std::abs(left), std::abs(right)});
         double before = flow_.speed_at(o_, from);
-        if (before * flow_.speed_at(o_, from + Flow::block) > 0) return;
+        if (!signs_differ(before, flow_.speed_at(o_, from + Flow::block))) return;
         for (int k = from + 1; k <= from + Flow::block; ++k) {
             const double now = flow_.speed_at(o_, k);
-            if (before * now <= 0) return turn(flow_.roughly_at(o_, k - 1), h_, now);
+            if (signs_differ(before, now)) return once(flow_.roughly_at(o_, k - 1), now);
             before = now;
         }
+    }
+
+    /// A cell within which x' falls to zero: x comes no further than it would at its speed now.
+    void once(const Oscillation& left, double x_dot_end) {
+        if (std::abs(left.x) + std::abs(left.x_dot) * h_ > known_)
+            visit(turning_value(flow_, left, h_, x_dot_end));
     }
 
     void cells(int from, double left, int count) {
         const Flow::Block ends = flow_.relative_positions(o_, 0, 0, from + 1);
         const double more = bounds_.x_ddot * (h_ * h_ / 8);
         for (int i = 0; i < count; ++i) {
-            known_ = std::max(known_, std::abs(ends[i]));
+            visit(ends[i]);
             if (std::max(std::abs(left), std::abs(ends[i])) + more > known_)
-                turn(flow_.roughly_at(o_, from + i), h_, flow_.roughly_at(o_, from + i + 1).x_dot);
+                turns(flow_.roughly_at(o_, from + i), h_, flow_.roughly_at(o_, from + i + 1));
             left = ends[i];
         }
     }
@@ -92,16 +131,15 @@ private:
         const Oscillation left = flow_.roughly_at(o_, cells_);
         if (std::abs(left.x) + d * (std::abs(left.x_dot) + 0.5 * d * bounds_.x_ddot) <= known_)
             return;
-        const auto [x, x_dot] = flow_.near_series(left).at(d);
-        known_ = std::max(known_, std::abs(x));
-        turn(left, d, x_dot);
+        const Oscillation right = flow_.after(left, d);
+        visit(right.x);
+        turns(left, d, right);
     }
 
-    /// Up to a turning point |x'| falls: x comes no further than it would at its speed now.
-    void turn(const Oscillation& left, double width, double x_dot_end) {
-        if (left.x_dot * x_dot_end < 0 && std::abs(left.x) + std::abs(left.x_dot) * width > known_)
-            known_ = std::max(known_, std::abs(turning_value(flow_, left, width, x_dot_end)));
+    void turns(const Oscillation& left, double width, const Oscillation& right) {
+        visit_turns(flow_, left, width, right, [this](double x) { visit(x); });
     }
+    void visit(double x) { known_ = std::max(known_, std::abs(x)); }
 
     double known_;
     const Flow& flow_;
@@ -127,22 +165,18 @@ double path_length(const Flow& flow, Oscillation o, double duration) {
         path += std::abs(x - last);
         last = x;
     };
-    // Within a cell x' changes its sign once, or so little that rounding cannot tell.
-    const auto turn = [&](const Oscillation& left, double width, double x_dot_end) {
-        if (left.x_dot * x_dot_end < 0) visit(turning_value(flow, left, width, x_dot_end));
-    };
     while (duration > 0) {
         const double part = std::min(duration, flow.reach());
         const int cells = std::min(static_cast<int>(part / flow.cell()), Flow::cells);
         Oscillation left = o;
         for (int k = 1; k <= cells; ++k) {
             const Oscillation right = flow.at(o, k);
-            turn(left, flow.cell(), right.x_dot);
+            visit_turns(flow, left, flow.cell(), right, visit);
             left = right;
         }
         const double d = std::max(0.0, part - cells * flow.cell());
-        o = flow.along(flow.series(left), left, d);
-        turn(left, d, o.x_dot);
+        o = flow.after(left, d);
+        visit_turns(flow, left, d, o, visit);
         visit(o.x);
         duration -= part;
     }

@@ -123,11 +123,11 @@ struct TransferProduct::Qr {
         }
     };
     Columns columns;
-    // By how much the columns may differ in length, or hide each other, since they were
-    // orthonormal: a bound of their condition number. Gram-Schmidt, a chain of four roots and four
-    // divisions, takes as long as the rest of an impact, so that two or three share it; up to this
-    // bound the last of the four lengths keeps twelve digits.
-    static constexpr double most_skewed = 1e4;
+    // How far the columns may be from orthonormal: a bound of their condition number, the product
+    // of those of the matrices since Gram-Schmidt. That takes, with its chain of four roots and
+    // four divisions, as long as the rest of an impact, so that two or three share it. The bound is
+    // generous; what it lets pass costs the last of the four lengths four to six digits of sixteen.
+    static constexpr double most_skewed = 1e6;
     double skewed = 1;
     // What the first two and three deviations span, from the exterior powers; and the determinant.
     Area area = Area::Unit(0);
@@ -141,9 +141,10 @@ struct TransferProduct::Qr {
         columns.orthonormalise(rank);
         skewed = 1;
     }
+    /// Before a matrix of such a condition number.
     void skew(double by, int rank) {
+        if (skewed * by > most_skewed) orthonormalise(rank);
         skewed *= by;
-        if (skewed > most_skewed) orthonormalise(rank);
     }
 
     /// Deviations of x' - y' shrunk by `factor`, x' + epsilon y' and the positions kept: S for
@@ -197,17 +198,19 @@ struct TransferProduct::Qr {
 
     void pass(const Leg& leg, double epsilon, int rank) {
         const bool is_strong = leg.parts > 1 || leg.stuck;
+        const auto& [a11, a12, a21, a22] = leg.oscillator;
+        // [1 0; s 1] of the free mass beside the oscillator's block.
+        const double s = leg.duration, condition = (2 + s * s) / (a11 * a22 - a12 * a21);
         for (long k = 0; k < leg.parts; ++k) {
             if (is_strong) orthonormalise(rank);
+            else skew(condition, rank);
             carry(columns.frame, leg, epsilon);
             area = carried(area, leg, epsilon);
             if (rank > 2) volume = carried(volume, leg);
             rescale(rank);
             log_det += leg.log_det;
         }
-        if (is_strong) return orthonormalise(rank);
-        const auto& [a11, a12, a21, a22] = leg.oscillator;
-        skew((1 + leg.duration) / (a11 * a22 - a12 * a21), rank);
+        if (is_strong) orthonormalise(rank);
     }
 
     void strike(const Saltation& M, double R, double epsilon, int rank) {
@@ -215,8 +218,10 @@ struct TransferProduct::Qr {
             orthonormalise(rank);
             strike_apart(M, R, epsilon, rank);
         } else {
+            // |g|^2 = 2, and the determinants of I + r g^T and of S are -R.
+            const double stretch = 1 + std::sqrt(2 * M.r.squaredNorm());
+            skew(stretch * stretch / R, rank);
             columns.frame = M.times(columns.frame);
-            skew((1 + 2 * M.r.cwiseAbs().maxCoeff()) / R, rank);
         }
         area = carried(area, M, R);
         if (rank > 2) volume = carried(volume, M, R);

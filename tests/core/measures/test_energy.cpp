@@ -70,6 +70,36 @@ TEST_CASE("rms and peak of x are those of dense samples") {
     CHECK(energy.peak() == doctest::Approx(peak).epsilon(1e-6));
 }
 
+TEST_CASE("from rest the rms is right however short the window and slow the forcing") {
+    for (const double Omega : {0.01, 0.1, 1.0})
+        for (const double tau_end : {0.003, 0.01, 0.1, 6.3, 30.0, 100.0}) {
+            Parameters p = table1(0.022, Damping::equation_of_motion);
+            p.Omega = Omega;
+            p.b = 10;  // no impact
+            const State rest{0, 0, 0, 0};
+            Energy energy(p, 0, tau_end);
+            record(p, rest, tau_end, 1000, {&energy});
+            CAPTURE(Omega);
+            CAPTURE(tau_end);
+            CHECK(
+                energy.rms() ==
+                doctest::Approx(unattached_rms(p, rest, tau_end)).epsilon(1e-11).scale(0));
+            CHECK(std::abs(energy.residual()) < 1e-11 * energy.damper() + 1e-11 * energy.at_end());
+        }
+}
+
+TEST_CASE("a window that begins at the last impact has the energy behind it") {
+    const Parameters p = table1(0.015, Damping::closed_form);
+    const Impact last = record(p, default_state(p), 1000, 20).impacts.back();
+    Energy energy(p, last.tau, 1000);
+    record(p, default_state(p), 1000, 20, {&energy});
+    CHECK(energy.duration() == 0);
+    CHECK(energy.at_end() == energy.at_start());
+    CHECK(
+        energy.at_end() ==
+        energy_of(p, {last.x_dot_after, last.x, last.y_dot_after, last.x - last.side * p.b}));
+}
+
 TEST_CASE("without the absorber the oscillator comes to its steady amplitude") {
     for (double Omega : {0.4, 1.0, 2.3}) {
         Parameters p = table1(0.022, Damping::closed_form);

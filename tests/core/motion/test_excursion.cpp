@@ -38,3 +38,43 @@ TEST_CASE(
         CHECK(peak_beyond(peak * 0.999, flow, o, duration) == doctest::Approx(peak).epsilon(1e-14));
     }
 }
+
+TEST_CASE("a cell in which x turns twice hides neither turning point, nor its path") {
+    struct Hidden {
+        Flow flow;
+        Oscillation o;
+        double duration;
+    };
+    const Hidden cases[] = {
+        {Flow(1, 0, 1.5252315441919298e-13, 1),
+         {-9.1182569653238184e-17, 1.88004911350202e-18, -0.063464861245323065, .99798407371416098},
+         0.24475594717473992},
+        {Flow(1, 2.0728766299839321, .20013100117313037, 44.561239108220519),
+         {-.049216289672793699, 9.5961661366129187e-07, -.28399014775085252, .95882719818558060},
+         3.2591505812357608},
+        {Flow(1, 2.1171081278399538e-06, .051098031686742151, 1),
+         {-2.7952686601817959e-05, 4.6160201235301187e-06, .06805593846425155, -.99768150691478186},
+         0.1496}};
+    for (const Hidden& c : cases) {
+        double sampled = 0, path = 0, last = c.o.x;
+        constexpr int samples = 20000;
+        for (int k = 0; k <= samples; ++k) {
+            const double x = c.flow.after(c.o, c.duration * k / samples).x;
+            sampled = std::max(sampled, std::abs(x));
+            path += std::abs(x - last);
+            last = x;
+        }
+        CHECK(
+            peak_beyond(0, c.flow, c.o, c.duration) ==
+            doctest::Approx(sampled).epsilon(1e-7).scale(0));
+        CHECK(path_length(c.flow, c.o, c.duration) == doctest::Approx(path).epsilon(1e-5).scale(0));
+    }
+}
+
+TEST_CASE("a swing so small that products of its speeds vanish has its peak, too") {
+    const Flow flow(.5326, 4.8e-4, 0, .21);
+    const Oscillation o = {-8.3e-149, 5.5e-149, 0, 1}, larger = {-8.3e-9, 5.5e-9, 0, 1};
+    CHECK(
+        1e140 * peak_beyond(0, flow, o, 15) ==
+        doctest::Approx(peak_beyond(0, flow, larger, 15)).epsilon(1e-12).scale(0));
+}
