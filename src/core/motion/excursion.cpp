@@ -39,7 +39,7 @@ void visit_turns(
     };
     const double a = flow.acceleration(left), b = flow.acceleration(right);
     if (!signs_differ(a, b)) return part(left, width, right);
-    // x'' = 0 by two steps of the secant: x' hardly changes beside it.
+    // x'' = 0 by a step of the secant and one of Newton's: x' hardly changes beside it.
     const Flow::Near series = flow.near_series(left);
     const auto at = [&](double d) {
         Oscillation o = flow.turned(left, d);
