@@ -131,7 +131,7 @@ public:
             static_assert(near_pairs == 6);
             const double q = d * d, q_squared = q * q, q_fourth = q_squared * q_squared;
             const auto value = [=](const NearSeries& c) {
-                const auto pair = [&c](int k) { return c.segment<2>(2 * k); };
+                const auto pair = [&c](Eigen::Index k) { return c.segment<2>(2 * k); };
                 const Eigen::Array2d sum = pair(0) + pair(1) * q +
                                            (pair(2) + pair(3) * q) * q_squared +
                                            (pair(4) + pair(5) * q) * q_fourth;
