@@ -48,8 +48,10 @@ ExponentOptions window_estimators(const Wanted& w) {
     return options;
 }
 
+}  // namespace
+
 /// All that one pass over the motion is observed by.
-struct Observers {
+struct AnalysisRun::Observers {
     explicit Observers(const Wanted& w)
         : series(series_step(w)),
           impacts(w.most_listed),
@@ -106,7 +108,7 @@ struct Observers {
 };
 
 /// From observers to the parts of the result, in its order: each function is one part.
-class Conclusion {
+class AnalysisRun::Conclusion {
 public:
     Conclusion(const Wanted& w, const Interrupt& interrupt, Observers& o, Analysis& a)
         : w_(w),
@@ -344,19 +346,34 @@ private:
     Analysis& a_;
 };
 
-}  // namespace
-
-Analysis analyse(const Wanted& w, const Interrupt& interrupt) {
+AnalysisRun::AnalysisRun(const Wanted& w, const Interrupt& interrupt)
+    : wanted_(w),
+      interrupt_(interrupt),
+      observers_(std::make_unique<Observers>(wanted_)) {
     assert(w.window.from < w.tau_end && w.most_points > 0 && w.most_listed > 0);
-    Observers observers(w);
+}
+AnalysisRun::~AnalysisRun() = default;
+
+RunPlan AnalysisRun::plan() {
+    return {
+        wanted_.parameters,
+        wanted_.start,
+        {.tau_end = wanted_.tau_end, .max_impacts = wanted_.max_impacts, .stop = interrupt_.run},
+        observers_->wanted(wanted_)};
+}
+
+Analysis AnalysisRun::conclude(const Outcome& outcome) {
     Analysis a;
-    a.outcome = simulate(
-        w.parameters, w.start,
-        {.tau_end = w.tau_end, .max_impacts = w.max_impacts, .stop = interrupt.run},
-        observers.wanted(w));
-    a.reached = {std::min(w.window.from, a.outcome.tau), std::min(w.window.to, a.outcome.tau)};
-    Conclusion(w, interrupt, observers, a).conclude();
+    a.outcome = outcome;
+    a.reached = {
+        std::min(wanted_.window.from, outcome.tau), std::min(wanted_.window.to, outcome.tau)};
+    Conclusion(wanted_, interrupt_, *observers_, a).conclude();
     return a;
+}
+
+Analysis analyse(const Wanted& wanted, const Interrupt& interrupt) {
+    AnalysisRun run(wanted, interrupt);
+    return run.conclude(simulate(run.plan()));
 }
 
 }  // namespace vines

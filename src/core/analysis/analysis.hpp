@@ -5,6 +5,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -127,5 +128,24 @@ struct Analysis {
 };
 
 Analysis analyse(const Wanted& wanted, const Interrupt& interrupt = {});
+
+/// The same in two steps, for who runs the motion together with others.
+class AnalysisRun {
+public:
+    AnalysisRun(const Wanted& wanted, const Interrupt& interrupt);
+    ~AnalysisRun();
+
+    /// What is to be run; its observers are in here.
+    RunPlan plan();
+    /// Once that has ended.
+    Analysis conclude(const Outcome& outcome);
+
+private:
+    struct Observers;
+    class Conclusion;
+    const Wanted wanted_;
+    const Interrupt interrupt_;
+    const std::unique_ptr<Observers> observers_;
+};
 
 }  // namespace vines

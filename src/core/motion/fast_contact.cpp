@@ -7,11 +7,6 @@ namespace vines {
 
 namespace {
 
-// The state is carried over the last step, below this share of a cell (1.5e-7), by its Taylor
-// polynomial to the second order. The step itself is Halley's, with a curvature that is right to
-// 5e-4: its error is below (1.5e-7)^2 5e-4 = 1e-17.
-constexpr double little_step = 1e-6;
-
 enum class Found { contact, none, doubt };
 
 /// A flight, with the signs of all positions changed where it leaves the wall at x - y = -b: if it
@@ -124,7 +119,7 @@ struct Flight {
             f2 + d * (3 * f3 + d * (6 * f4 + d * (10 * f5))));
         const Flow::Near series = flow.near_series(o);
         const double y_left = y + y_dot * (k * h);
-        for (int i = 0; i < 4 && d > 0 && d <= h + little_step * h; ++i) {
+        for (int i = 0; i < most_crossing_steps && d > 0 && d <= h + little_step * h; ++i) {
             const auto [x, x_dot] = series.at(d);
             const double step = halley(
                 wall * (x - (y_left + y_dot * d)) - b, wall * (x_dot - y_dot),
@@ -188,13 +183,15 @@ struct Flight {
 
 }  // namespace
 
+bool is_plain(const FlightStart& start) {
+    return start.side == 0 || (start.zeros == 1 && start.side * start.relative_speed < 0);
+}
+
 std::optional<Contact> fast_contact(
     const Flow& flow, const FlightStart& start, double b, double limit,
     std::vector<Touch>& touches) {
     std::optional<Contact> contact;
-    const bool leaves_at_once = start.zeros == 1 && start.side * start.relative_speed < 0;
-    if (!(leaves_at_once || start.side == 0) ||
-        Flight(flow, start, b, limit).search(contact) == Found::doubt)
+    if (!is_plain(start) || Flight(flow, start, b, limit).search(contact) == Found::doubt)
         contact = next_contact(flow, start, b, limit, touches);
     return contact;
 }

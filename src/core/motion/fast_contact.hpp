@@ -7,6 +7,10 @@
 
 namespace vines {
 
+/// Whether a flight begins between the walls, or leaves one at once: the others are all left to
+/// next_contact().
+bool is_plain(const FlightStart& start);
+
 /// The same contact as next_contact(), to rounding.
 std::optional<Contact> fast_contact(
     const Flow& flow, const FlightStart& start, double b, double limit,

@@ -133,6 +133,31 @@ std::shared_ptr<const Flow> Flow::shared_stuck(const Parameters& p) {
     return shared(stuck_coefficients(p));
 }
 
+FlowTables Flow::tables() const {
+    static_assert(sizeof(Row) == 10 * sizeof(double));  // as flight_search.inl reads them
+    FlowTables t{
+        cell_,
+        reach(),
+        stiffness_,
+        damping_,
+        forcing_,
+        Omega_,
+        inverse_root_stiffness_,
+        {},
+        time_apart_.data(),
+        rows_.front().x.data(),
+        time_.data(),
+        {},
+        {}};
+    const Response* const parts[4] = {&of_x_, &of_x_dot_, &of_sin_, &of_cos_};
+    for (int j = 0; j < 4; ++j) {
+        t.apart[j] = parts[j]->x_apart.data();
+        t.near_x[j] = parts[j]->near.x.data();
+        t.near_x_dot[j] = parts[j]->near.x_dot.data();
+    }
+    return t;
+}
+
 namespace {
 
 /// One Newton step keeps a phasor's length 1 over millions of turns.

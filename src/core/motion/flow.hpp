@@ -15,7 +15,9 @@
 #include <memory>
 #include <vector>
 
+#include "core/motion/flight_lanes.hpp"
 #include "core/motion/parameters.hpp"
+#include "core/motion/search_limits.hpp"
 
 namespace vines {
 
@@ -34,10 +36,11 @@ struct Transfer {
 class Flow {
 public:
     /// The grid reaches 3 periods of the faster of forcing and oscillator.
-    static constexpr int cells = 128;
+    static constexpr int cells = flow_cells;
     /// Of the Taylor series within a cell: its remainder is below 1e-20 of the motion.
     static constexpr int degree = 13;
-    static constexpr int block = 4;  ///< grid points that relative_positions() evaluates at once
+    static constexpr int block =
+        flow_block;  ///< grid points that relative_positions() evaluates at once
     using Series = Eigen::Array<double, degree + 1, 1>;
     using Block = Eigen::Array<double, block, 1>;
 
@@ -121,7 +124,7 @@ public:
     }
     /// The same, shorter: the coefficients of x and of x' by pairs of an even and an odd power, for
     /// |d| <= h. Remainders below 1e-18 of the motion.
-    static constexpr int near_pairs = 6;
+    static constexpr int near_pairs = near_terms / 2;
     using NearSeries = Eigen::Array<double, 2 * near_pairs, 1>;
     struct Near {
         NearSeries x, x_dot;
@@ -161,6 +164,9 @@ public:
     Oscillation after(Oscillation o, double s) const;
     /// The transfer matrix over any s >= 0, eq. (19).
     Transfer transfer(double s) const;
+
+    /// For flights in lanes; while this flow is where it is.
+    FlowTables tables() const;
 
     /// Upper bounds of |x|, |x''| and |x'''| over the reach, or over such a time, from the
     /// growth of the energy: sqrt(stiffness x^2 + x'^2) rises no faster than the forcing, for any

@@ -19,10 +19,6 @@ constexpr double last_step = 1e-6;
 // to the second order, whose remainder, (1e-7)^3 h^3/6 of x''', lies below an ulp of x.
 constexpr double last_step_in_cell = 1e-7;
 
-// Rounding of g on the grid: five products and as many sums, each within half an ulp of the largest
-// term, and as much again in the table and the state that they are made of, with a margin of three.
-constexpr double grid_rounding = 16 * ulp;
-
 /// A polynomial with its bound of the third derivative on [0, h].
 class CrossingSearch {
 public:

@@ -8,6 +8,7 @@
 #include <functional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "core/motion/fast_contact.hpp"
 #include "core/motion/impact.hpp"
@@ -76,5 +77,14 @@ struct Outcome {
 Outcome simulate(
     const Parameters& parameters, const State& start, const Limits& limits,
     std::span<Observer* const> observers);
+
+/// What it takes, to be run later.
+struct RunPlan {
+    Parameters parameters;
+    State start;
+    Limits limits;
+    std::vector<Observer*> observers = {};
+};
+Outcome simulate(const RunPlan& plan);
 
 }  // namespace vines

@@ -20,8 +20,11 @@ constexpr double closed = 1e-10;
 // does not shrink the miss to a tenth has met rounding: near the orbit it would square it.
 constexpr double closed_to_rounding = 1e-14, converging = 0.1;
 // Newton's method gives up after so many steps, or so many that led further away; a step out of the
-// cavity is halved so many times.
+// cavity is halved so many times. And where the motion stretches deviations by more, in units of the
+// scale: an ulp of the state alone then moves its return by more than `closed`. It is so at returns
+// of a chaotic motion after many cycles, of which half of all steps were.
 constexpr int most_steps = 25, most_worse_steps = 2, most_halvings = 6;
+constexpr double most_stretch = 1e6;
 // A divisor of the period closes, too, if the state misses itself by no more than this.
 constexpr double divisor_closed = 1e3 * closed;
 // An eigenvalue this much smaller than the largest one has lost six digits to the solver's error,
@@ -142,6 +145,7 @@ std::optional<State> close(
         miss_before = size;
         const Matrix4 D = unit.asDiagonal().inverse() *
                           (Matrix4(monodromy.matrix) - Matrix4::Identity()) * unit.asDiagonal();
+        if (!(D.norm() < most_stretch)) return std::nullopt;
         // Neutral directions (a mass at rest that is never hit) are left as they are: the smallest
         // step solves.
         Eigen::Vector4d correction = -smallest_solution(D, miss);

@@ -51,6 +51,31 @@ PointResult measure(
     const Parameters& parameters, const State& start, const PointOptions& options,
     const std::function<bool()>& stop);
 
+/// The same run by run, for who does them together with others.
+class PointRun {
+public:
+    PointRun(
+        const Parameters& parameters, const State& start, const PointOptions& options,
+        std::function<bool()> stop);
+
+    /// The transient, the measured part, none: as RunLine::next().
+    std::optional<RunPlan> next(const std::optional<Outcome>& last);
+    /// Once there is none.
+    PointResult take() { return std::move(result_); }
+
+private:
+    std::optional<RunPlan> measured_from(const State& begin);
+    void conclude(const Outcome& outcome);
+
+    const Parameters parameters_;
+    const State start_;
+    const PointOptions options_;
+    const std::function<bool()> stop_;
+    State begin_;  ///< of the measured part
+    std::optional<AnalysisRun> analysis_;
+    PointResult result_;
+};
+
 /// Whether two runs of the same point end in different motions, as far as this shows without a
 /// doubt: only one without impacts, or different periods or impacts per period, or an rms of x that
 /// differs by 1 % between periodic ones, by a fourth between others.

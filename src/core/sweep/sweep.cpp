@@ -3,12 +3,11 @@
 #include <algorithm>
 
 #include "core/sweep/parallel.hpp"
+#include "core/sweep/points.hpp"
 
 namespace vines {
 
 namespace {
-
-struct Stopped {};
 
 /// A second start is tried at about so many points of a sweep with a single one.
 constexpr std::size_t second_starts = 16;
@@ -18,18 +17,6 @@ struct Row {
     Place place;
     std::vector<std::size_t> wanted;
     std::vector<SweepPoint> points;
-};
-
-/// A place in the computing that is held while it is in scope.
-class Turn {
-public:
-    explicit Turn(Pace& pace) : pace_(pace) { pace_.begin(); }
-    ~Turn() { pace_.end(); }
-    Turn(const Turn&) = delete;
-    Turn& operator=(const Turn&) = delete;
-
-private:
-    Pace& pace_;
 };
 
 class Sweep {
@@ -43,11 +30,8 @@ public:
 
     void run() {
         if (plan_.by_rows()) return run_rows();
-        parallel(plan_.lines.size(), threads_, [&](std::size_t i) {
-            const std::size_t line = plan_.lines[i];
-            SweepPoint point = begun(plan_.grid.place_of(line));
-            if (point.system) run_single(point, line);
-            hand_out(line, point);
+        run_points(plan_.lines.size(), threads_, plan_.options, pace_, [this](std::size_t i) {
+            return single(plan_.lines[i]);
         });
     }
 
@@ -61,32 +45,40 @@ private:
     }
 
     PointResult run_from(const PointSystem& system, const State& start) {
-        const Turn turn(pace_);
-        if (pace_.stop_or_yield()) throw Stopped();
-        PointOptions options = plan_.options;
-        options.max_impacts = system.max_impacts;
-        PointResult result =
-            measure(system.parameters, start, options, [this] { return pace_.stop_or_yield(); });
-        if (result.outcome.reason == End::stopped || pace_.stop_or_yield()) throw Stopped();
-        ++pace_.runs;
-        return result;
+        return run_point(system, start, plan_.options, pace_);
     }
 
-    /// From its own start, and, at every so many points, from another one.
-    void run_single(SweepPoint& point, std::size_t count) {
-        const State& start = point.system->start;
-        point.motions.push_back({"", start, run_from(*point.system, start)});
-        if (plan_.grid.starts == 1 && count % every_ == 0) try_second(point);
+    /// A line's point, handed out at once where there is nothing to run.
+    std::optional<PointTask> single(std::size_t line) {
+        SweepPoint point = begun(plan_.grid.place_of(line));
+        if (!point.system) {
+            hand_out(line, point);
+            return std::nullopt;
+        }
+        const PointSystem system = *point.system;
+        return PointTask{
+            system, starts_of(system, line),
+            [this, line, point = std::move(point)](std::vector<Motion> motions) mutable {
+                take_single(point, std::move(motions));
+                hand_out(line, point);
+            }};
     }
 
-    /// From the middle, or where that was the start, from the wall.
-    void try_second(SweepPoint& point) {
-        const auto starts = default_starts(point.system->parameters);
-        const State& first = point.system->start;
+    /// Its own, and, at every so many points, another one: the middle, or where that was its own,
+    /// the wall.
+    std::vector<NamedStart> starts_of(const PointSystem& system, std::size_t count) const {
+        const State& first = system.start;
+        std::vector<NamedStart> starts = {{"", first}};
+        if (plan_.grid.starts != 1 || count % every_ != 0) return starts;
         const bool from_middle =
             first.x == 0 && first.x_dot == 0 && first.y == 0 && first.y_dot == 0;
-        const NamedStart& other = starts[from_middle ? 1 : 0];
-        point.second = Motion{other.name, other.state, run_from(*point.system, other.state)};
+        starts.push_back(default_starts(system.parameters)[from_middle ? 1 : 0]);
+        return starts;
+    }
+
+    static void take_single(SweepPoint& point, std::vector<Motion> motions) {
+        if (motions.size() > 1) point.second = std::move(motions[1]);
+        point.motions.push_back(std::move(motions[0]));
     }
 
     void run_rows() {
@@ -123,18 +115,24 @@ private:
     void run_fresh(std::span<Row> rows) {
         const std::size_t n = plan_.grid.row();
         for (Row& row : rows) row.points.resize(n);
-        parallel(rows.size() * n, threads_, [&](std::size_t task) {
-            Row& row = rows[task / n];
-            const std::size_t k = task % n;
-            Place place = row.place;
-            place.at[plan_.grid.inner()] = k;
-            SweepPoint& point = row.points[k] = begun(place);
-            if (!point.system || plan_.carry != Carry::none) return;
-            if (!plan_.default_set) return run_single(point, row.wanted[0] * n + k);
-            for (const NamedStart& start : default_starts(point.system->parameters))
-                point.motions.push_back(
-                    {start.name, start.state, run_from(*point.system, start.state)});
+        run_points(rows.size() * n, threads_, plan_.options, pace_, [&](std::size_t task) {
+            return fresh(rows[task / n], task % n);
         });
+    }
+
+    /// Of the k-th point of a row.
+    std::optional<PointTask> fresh(Row& row, std::size_t k) {
+        Place place = row.place;
+        place.at[plan_.grid.inner()] = k;
+        SweepPoint& point = row.points[k] = begun(place);
+        if (!point.system || plan_.carry != Carry::none) return std::nullopt;
+        if (!plan_.default_set)
+            return PointTask{
+                *point.system, starts_of(*point.system, row.wanted[0] * plan_.grid.row() + k),
+                [&point](std::vector<Motion> motions) { take_single(point, std::move(motions)); }};
+        return PointTask{
+            *point.system, default_starts(point.system->parameters),
+            [&point](std::vector<Motion> motions) { point.motions = std::move(motions); }};
     }
 
     /// Up and down are independent of each other, so they may run at the same time.

@@ -1,12 +1,12 @@
 // Sweeps: all points of a grid on all cores, in chains where one goes on from its neighbour.
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <vector>
 
 #include "core/sweep/grid.hpp"
 #include "core/sweep/motions.hpp"
+#include "core/sweep/pace.hpp"
 #include "core/sweep/starts.hpp"
 
 namespace vines {
@@ -37,18 +37,6 @@ struct SweepPlan {
 
 private:
     std::size_t runs_per_point() const { return default_set ? most_starts : 1; }
-};
-
-/// What a sweep asks of the place that it runs in.
-class Pace {
-public:
-    virtual ~Pace() = default;
-    virtual void begin() {}  ///< before a run, on the thread that does it
-    virtual void end() {}
-    /// Asked every few events; true stops the sweep.
-    virtual bool stop_or_yield() { return false; }
-
-    std::atomic<std::size_t> runs = 0;  ///< that are done: of SweepPlan::runs()
 };
 
 /// Takes what was computed, from several threads at once: a point for each line, or, where an axis

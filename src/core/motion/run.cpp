@@ -1,0 +1,178 @@
+#include "core/motion/run.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+
+namespace vines {
+
+namespace {
+
+// A chatter is over when the rest of it would last less than this: then its impacts, of which there
+// are infinitely many, can no longer be told from its limit at the accuracy that a result is read
+// with. The relative speed is then near 1e-12 of a typical one, far above anything that rounding
+// does to it (guard.hpp, property 3).
+constexpr double chatter_rest = 1e-9;
+// The rest is summed as a geometric series, as if the acceleration stayed the same. It changes by
+// less than this share.
+constexpr double chatter_drift = 1e-4;
+
+// How often the stop function is asked, in events (a flight without a contact within its reach is
+// one, too).
+constexpr long events_per_look = 64;
+
+}  // namespace
+
+Run::Run(
+    const Parameters& p, const State& start, const Limits& limits,
+    std::span<Observer* const> observers)
+    : p_(p),
+      limits_(limits),
+      observers_(observers),
+      free_table_(Flow::shared_free(p)),
+      free_(*free_table_),
+      clock_(limits.tau_start),
+      y_(start.y),
+      y_dot_(start.y_dot),
+      longest_hop_(std::numbers::pi / std::max(1.0, p.Omega)) {
+    const double theta = p.Omega * limits.tau_start + p.phi();
+    lo_ = {start.x, start.x_dot, std::sin(theta), std::cos(theta)};
+    side_ = wall_of(start, p.b);
+    end_rounding_ = 0.5 * (limits.tau_end - std::nextafter(limits.tau_end, 0));
+    relative_speed_ = start.x_dot - start.y_dot;
+    assert(is_physical(p));
+    assert(std::abs(start.x - start.y) <= p.b + position_rounding(free_.bounds(lo_), start.y, p.b));
+    if (side_ != 0) meet_wall_at_start();
+}
+
+bool Run::is_over() {
+    if (!end_ && std::max(impacts_, others_) >= limits_.max_impacts) end_ = End::max_impacts;
+    if (!end_ && limits_.stop && events_++ % events_per_look == 0 && limits_.stop())
+        end_ = End::stopped;
+    return end_.has_value();
+}
+
+Outcome Run::outcome() const {
+    return {*end_, clock_.tau(), {lo_.x_dot, lo_.x, y_dot_, y_}, impacts_};
+}
+
+/// Emits a stretch of the given flow and moves the clock over it. The caller sets the state at
+/// its end.
+void Run::pass(const Flow& flow, double duration, int stuck_side) {
+    if (duration > 0)
+        tell(&Observer::on_stretch, {flow, clock_.tau(), duration, lo_, y_, y_dot_, stuck_side});
+    clock_.advance(duration);
+}
+
+void Run::meet_wall_at_start() {
+    y_ = lo_.x - side_ * p_.b;
+    if (side_ * relative_speed_ > 0) strike({0, side_, lo_, relative_speed_});
+    else leave_or_stick();
+}
+
+// A contact whose tau rounds to tau_end belongs to the run, so that behind one what rests may be
+// negative: by half an ulp of tau_end, over which nothing moves.
+double Run::flight_limit() const {
+    return std::min(clock_.until(limits_.tau_end) + end_rounding_, free_.reach());
+}
+
+void Run::fly() {
+    touches_.clear();
+    const auto contact = fast_contact(free_, flight(), p_.b, flight_limit(), touches_);
+    for (const Touch& t : touches_) touch(clock_.tau() + t.s, t.side);
+    fly_to(contact);
+}
+
+void Run::fly_to(const std::optional<Contact>& contact) {
+    const double rest = clock_.until(limits_.tau_end), limit = std::min(rest, free_.reach());
+    pass(free_, contact ? contact->s : limit, 0);
+    if (contact) {
+        lo_ = contact->lo;
+        y_ = lo_.x - contact->side * p_.b;
+        side_ = contact->side;
+        if (contact->relative_speed != 0) return strike(*contact);
+        // The approach has lost its speed to rounding: tangent.
+        touch(clock_.tau(), side_);
+        relative_speed_ = 0;
+        return leave_or_stick();
+    }
+    if (limit == rest) end_ = End::tau_end;
+    y_ += y_dot_ * limit;
+    lo_ = limit == free_.reach() ? free_.at(lo_, Flow::cells)
+                                 : free_.after(lo_, std::max(0.0, limit));
+    side_ = 0;
+    hop_ = 0;
+}
+
+void Run::touch(double tau, int side) {
+    ++others_;
+    tell(&Observer::on_touch, tau, side);
+}
+
+void Run::strike(const Contact& contact) {
+    const Impact i = impact_at(p_, contact, free_.acceleration(contact.lo), clock_.tau());
+    const bool pressed = i.side * i.x_ddot_before > 0 && contact.s < hop_;
+    chatter_ = i.side == last_side_ && pressed ? chatter_ + 1 : 1;
+    last_side_ = i.side;
+    ++impacts_;
+    lo_.x_dot = i.x_dot_after;
+    y_dot_ = i.y_dot_after;
+    relative_speed_ = i.relative_speed_after;
+    tell(&Observer::on_impact, i);
+    leave_or_stick();
+}
+
+/// On the wall side_ with a relative speed that is zero or leads away from it: which derivative
+/// of the gap leads.
+void Run::leave_or_stick() {
+    const double press = side_ * free_.acceleration(lo_), press_rate = side_ * free_.jerk(lo_);
+    hop_ = press > 0 ? longest_hop_ : 0;
+    if (relative_speed_ != 0) {
+        zeros_ = 1;
+        const double R = p_.restitution(side_);
+        // Geometric series of 2 w/press.
+        const double rest = 2 * std::abs(relative_speed_) / (press * (1 - R));
+        if (press > 0 && R < 1 && rest < chatter_rest &&
+            std::abs(press_rate) * rest < chatter_drift * press)
+            stick(rest, 0);
+        // All three zero: at rest together, for good.
+    } else if (press > 0 || (press == 0 && press_rate >= 0)) {
+        stick(0, press == 0);
+    } else {
+        zeros_ = press < 0 ? 2 : 3;
+    }
+}
+
+/// The stuck phase up to its release. What is left of the chatter passes as a part of it: the
+/// centre of mass moves by the same law. `zeros` as in next_release.
+void Run::stick(double chatter_left, int zeros) {
+    ++others_;
+    if (!stuck_) stuck_ = Flow::shared_stuck(p_);
+    // The velocity of the centre of mass.
+    lo_.x_dot -= p_.epsilon / (1 + p_.epsilon) * relative_speed_;
+    tell(
+        &Observer::on_stick, {std::min(clock_.tau() + chatter_left, limits_.tau_end), side_,
+                              relative_speed_ == 0 && last_side_ != side_ ? 0 : chatter_});
+    relative_speed_ = 0;
+    last_side_ = 0;
+    for (bool released = false; !released && !end_;) {
+        y_ = lo_.x - side_ * p_.b;
+        y_dot_ = lo_.x_dot;
+        const double rest = clock_.until(limits_.tau_end), limit = std::min(rest, stuck_->reach());
+        const auto release = next_release(*stuck_, lo_, side_, zeros, limit);
+        const double s = release ? *release : limit;
+        pass(*stuck_, s, side_);
+        lo_ = stuck_->after(lo_, std::max(0.0, s));
+        released = release.has_value();
+        zeros = 0;
+        if (!released && limit == rest) end_ = End::tau_end;
+        if (!released && limits_.stop && limits_.stop()) end_ = End::stopped;
+    }
+    y_ = lo_.x - side_ * p_.b;
+    y_dot_ = lo_.x_dot;
+    zeros_ = 3;  // at the release x'' = 0 as well
+    tell(&Observer::on_release, clock_.tau());
+}
+
+}  // namespace vines

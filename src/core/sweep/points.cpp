@@ -1,0 +1,115 @@
+#include "core/sweep/points.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <deque>
+#include <utility>
+
+#include "core/motion/together.hpp"
+#include "core/sweep/parallel.hpp"
+
+namespace vines {
+
+namespace {
+
+PointOptions options_of(const PointSystem& system, PointOptions options) {
+    options.max_impacts = system.max_impacts;
+    return options;
+}
+
+/// A run has ended, and its result is worth something.
+void count(const PointResult& result, Pace& pace) {
+    if (result.outcome.reason == End::stopped || pace.stop_or_yield()) throw Stopped();
+    ++pace.runs;
+}
+
+/// One point after the other, in a lane.
+class PointLine : public RunLine {
+public:
+    using NextTask = std::function<std::optional<PointTask>()>;
+
+    PointLine(const NextTask& next_task, const PointOptions& options, Pace& pace, Turn& turn)
+        : next_task_(next_task),
+          options_(options),
+          pace_(pace),
+          turn_(turn) {}
+
+    std::optional<RunPlan> next(const std::optional<Outcome>& last) override {
+        std::optional<RunPlan> plan;
+        if (run_) plan = run_->next(last);
+        while (!plan) {
+            if (run_) end_motion();
+            if (!begin_motion()) return std::nullopt;
+            plan = run_->next(std::nullopt);
+        }
+        return plan;
+    }
+
+private:
+    void end_motion() {
+        const NamedStart& start = task_->starts[motions_.size()];
+        motions_.push_back({start.name, start.state, run_->take()});
+        run_.reset();
+        count(motions_.back().result, pace_);
+        if (motions_.size() < task_->starts.size()) return;
+        task_->done(std::exchange(motions_, {}));
+        task_.reset();
+    }
+
+    bool begin_motion() {
+        if (!task_) task_ = next_task_();
+        if (!task_) return false;
+        turn_.again();
+        if (pace_.stop_or_yield()) throw Stopped();
+        run_.emplace(
+            task_->system.parameters, task_->starts[motions_.size()].state,
+            options_of(task_->system, options_), [this] { return pace_.stop_or_yield(); });
+        return true;
+    }
+
+    const NextTask& next_task_;
+    const PointOptions& options_;
+    Pace& pace_;
+    Turn& turn_;
+    std::optional<PointTask> task_;
+    std::optional<PointRun> run_;
+    std::vector<Motion> motions_;  // of the task at hand
+};
+
+}  // namespace
+
+PointResult run_point(
+    const PointSystem& system, const State& start, PointOptions options, Pace& pace) {
+    const Turn turn(pace);
+    if (pace.stop_or_yield()) throw Stopped();
+    PointResult result = measure(system.parameters, start, options_of(system, options), [&pace] {
+        return pace.stop_or_yield();
+    });
+    count(result, pace);
+    return result;
+}
+
+void run_points(
+    std::size_t count, int threads, const PointOptions& options, Pace& pace,
+    const std::function<std::optional<PointTask>(std::size_t)>& task_at) {
+    std::atomic<std::size_t> taken = 0;
+    const PointLine::NextTask next_task = [&] {
+        std::optional<PointTask> task;
+        for (std::size_t i; !task && (i = taken++) < count;) task = task_at(i);
+        return task;
+    };
+    const std::size_t groups = std::min(count, static_cast<std::size_t>(std::max(threads, 1)));
+    parallel(groups, threads, [&](std::size_t) {
+        // So many that every thread has some.
+        const std::size_t lines =
+            std::min(static_cast<std::size_t>(most_lines), (count + groups - 1) / groups);
+        Turn turn(pace);
+        std::deque<PointLine> all;
+        std::vector<RunLine*> going;
+        for (std::size_t k = 0; k < lines; ++k)
+            going.push_back(&all.emplace_back(next_task, options, pace, turn));
+        simulate_together(going);
+    });
+}
+
+}  // namespace vines
