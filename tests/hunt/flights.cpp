@@ -6,7 +6,7 @@
 #include <mutex>
 
 #include "../core/support.hpp"
-#include "core/motion/fast_contact.hpp"
+#include "core/motion/in_lanes.hpp"
 #include "core/sweep/parallel.hpp"
 #include "dense_flight.hpp"
 #include "systems.hpp"
@@ -128,6 +128,35 @@ void say(int number, const RandomFlight& f, const FlightStart& s, double limit, 
     std::fflush(stdout);
 }
 
+bool same(const std::optional<Contact>& a, const std::optional<Contact>& b) {
+    if (!a || !b) return !a && !b;
+    return a->s == b->s && a->side == b->side && a->lo.x == b->lo.x && a->lo.x_dot == b->lo.x_dot &&
+           a->lo.sin_theta == b->lo.sin_theta && a->lo.cos_theta == b->lo.cos_theta &&
+           a->relative_speed == b->relative_speed;
+}
+
+/// The searches in lanes that do not find the same contact, to the last bit, or leave it open.
+std::string differing_searches(
+    const Flow& flow, const FlightStart& start, double b, double limit,
+    const std::optional<Contact>& alone) {
+    std::string differing;
+    const FlowTables tables = flow.tables();
+    for (const NamedSearch& by : flight_searches()) {
+        FlightLanes flights;
+        flights.tables = &tables;
+        put(flights, start, b, limit);
+        search(flights, by.search);
+        if (flights.found[0] == FlightLanes::open) continue;
+        if (same(
+                alone, flights.found[0] == FlightLanes::contact
+                           ? std::optional(contact_of(flights, 0))
+                           : std::nullopt))
+            continue;
+        differing += std::string(" ") + by.name;
+    }
+    return differing;
+}
+
 Tally hunt_flight(std::uint64_t seed, int number) {
     std::mt19937_64 engine = engine_of(seed, number);
     const RandomFlight f = random_flight(engine);
@@ -147,6 +176,13 @@ Tally hunt_flight(std::uint64_t seed, int number) {
         if (!judgement.wrong.empty()) {
             ++tally.wrong;
             say(number, f, start, limit, judgement.wrong.c_str());
+        }
+        if (is_plain(start)) {
+            const std::string differing = differing_searches(f.flow, start, f.b, limit, found);
+            if (!differing.empty()) {
+                ++tally.wrong;
+                say(number, f, start, limit, ("otherwise in lanes:" + differing).c_str());
+            }
         }
         if (found) {
             ++tally.contacts;

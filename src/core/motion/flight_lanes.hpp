@@ -26,8 +26,9 @@ struct FlightLanes {
     static constexpr int lanes = 8;
     using Column = double[lanes];
 
-    int count = 0;  ///< lanes in use, the first ones
-    const FlowTables* tables[lanes];
+    int count = 0;             ///< lanes in use, the first ones
+    bool transfers = false;    ///< whether the flights' transfer matrices are wanted as well
+    const FlowTables* tables;  ///< of all
 
     /// What flies: FlightStart, with side as a number; the half-width b; and how far to look.
     alignas(64) Column x, x_dot, sin_theta, cos_theta, y, y_dot, side, relative_speed, b, limit;
@@ -36,6 +37,7 @@ struct FlightLanes {
     enum Found : int { contact, none, open };
     Found found[lanes];
     alignas(64) Column s, wall, contact_x, contact_x_dot, contact_sin, contact_cos, contact_speed;
+    alignas(64) Column a11, a12, a21, a22;  ///< Transfer of the flight up to the contact
 };
 
 /// Finds the contacts of all lanes in use. Flights that begin on a wall leave it at once: one

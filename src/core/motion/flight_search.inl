@@ -20,41 +20,15 @@ struct Oscillations {
     Real x, x_dot, sin_theta, cos_theta;
 };
 
-/// One number of each lane's flow.
-template <bool same>
-struct Tables {
-    const FlowTables* const* of;
-
-    Real operator()(double FlowTables::* number) const {
-        if (same) return all(of[0]->*number);
-        Real v;
-        for (int i = 0; i < width; ++i) v[i] = of[i]->*number;
-        return v;
-    }
-    Real operator()(const double* FlowTables::* column, int at) const {
-        if (same) return all((of[0]->*column)[at]);
-        Real v;
-        for (int i = 0; i < width; ++i) v[i] = (of[i]->*column)[at];
-        return v;
-    }
-    Real operator()(const double* (FlowTables::*columns)[4], int part, int at) const {
-        if (same) return all((of[0]->*columns)[part][at]);
-        Real v;
-        for (int i = 0; i < width; ++i) v[i] = (of[i]->*columns)[part][at];
-        return v;
-    }
-};
-
 /// The columns of FlowTables::rows.
 constexpr int row_x = 0, row_x_dot = 4, row_cos = 8, row_sin = 9, row_length = 10;
 
-template <bool same>
 class Search {
 public:
     Search(FlightLanes& flights, int from)
         : flights_(flights),
           from_(from),
-          tables_{flights.tables + from},
+          tables_(*flights.tables),
           leaves_wall_(~equal(column(flights.side), Real{})),
           mirror_(select(leaves_wall_, column(flights.side), all(1))),
           b_(column(flights.b)),
@@ -64,14 +38,14 @@ public:
           y_dot_(mirror_ * column(flights.y_dot)),
           lo_{mirror_ * column(flights.x), mirror_ * column(flights.x_dot),
               mirror_ * column(flights.sin_theta), mirror_ * column(flights.cos_theta)},
-          h_(tables_(&FlowTables::h)),
-          stiffness_(tables_(&FlowTables::stiffness)),
-          damping_(tables_(&FlowTables::damping)),
-          forcing_(tables_(&FlowTables::forcing)),
-          Omega_(tables_(&FlowTables::Omega)) {
-        const Real force = absolute(forcing_), reach = tables_(&FlowTables::reach);
+          h_(all(tables_.h)),
+          stiffness_(all(tables_.stiffness)),
+          damping_(all(tables_.damping)),
+          forcing_(all(tables_.forcing)),
+          Omega_(all(tables_.Omega)) {
+        const Real force = absolute(forcing_), reach = all(tables_.reach);
         const Real speed = root(stiffness_ * lo_.x * lo_.x + lo_.x_dot * lo_.x_dot) + force * reach;
-        const Real x = speed * tables_(&FlowTables::inverse_root_stiffness);
+        const Real x = speed * all(tables_.inverse_root_stiffness);
         M2_ = stiffness_ * x + damping_ * speed + force;
         M3_ = stiffness_ * speed + damping_ * M2_ + force * Omega_;
         eta_ = grid_rounding * (x + b_ + absolute(y_));
@@ -86,6 +60,7 @@ public:
             flying = any(stopped) ? look(stopped) : Mask{};
         } while (any(flying));
         if (any(crosses_)) cross();
+        if (flights_.transfers && any(crosses_)) transfer();
         report();
     }
 
@@ -120,22 +95,21 @@ private:
     Rows rows_at(Real k) const {
         Rows rows;
         for (int i = 0; i < width; ++i)
-            rows.of[i] = tables_.of[i]->rows + static_cast<int>(k[i]) * row_length;
+            rows.of[i] = tables_.rows + static_cast<int>(k[i]) * row_length;
         return rows;
     }
 
     /// On to the first block behind block_ that is not proven empty. Gives the lanes that have one.
     Mask march(Mask flying) {
-        const Real wide = flow_block * h_, least = inside(wide),
-                   reach = tables_(&FlowTables::reach);
+        const Real wide = flow_block * h_, least = inside(wide), reach = all(tables_.reach);
         const Real last =
             select(less(limit_, reach), limit_ / wide, all(flow_cells / flow_block - 1));
         Real left = select(leaves_wall_, b_, lo_.x - y_), at{};
         Mask left_inside = less(absolute(left), least), stopped{};
         for (int block = 0; any(flying); ++block, at += 1) {
             const Real right = relative_position(
-                [this, block](int part) { return tables_(&FlowTables::apart, part, block); },
-                tables_(&FlowTables::time_apart, block));
+                [this, block](int part) { return all(tables_.apart[part][block]); },
+                all(tables_.time_apart[block]));
             const Mask right_inside = less(absolute(right), least);
             Mask empty = left_inside & right_inside;
             if (block == 0)
@@ -219,15 +193,24 @@ private:
             return half(0) + d * half(1);
         }
     };
+    /// Of a motion that begins as one part of the state, of size 1 and alone.
+    Near near_series(int part) const {
+        Near n;
+        for (int k = 0; k < near_terms; ++k) {
+            n.x[k] = all(tables_.near_x[part][k]);
+            n.x_dot[k] = all(tables_.near_x_dot[part][k]);
+        }
+        return n;
+    }
     Near near_series(const Oscillations& o) const {
         Near n;
         for (int k = 0; k < near_terms; ++k) {
-            const auto sum = [&](const double*(FlowTables::* columns)[4]) {
-                return tables_(columns, 0, k) * o.x + tables_(columns, 1, k) * o.x_dot +
-                       tables_(columns, 2, k) * o.sin_theta + tables_(columns, 3, k) * o.cos_theta;
+            const auto sum = [&o, k](const double* const(&columns)[4]) {
+                return all(columns[0][k]) * o.x + all(columns[1][k]) * o.x_dot +
+                       all(columns[2][k]) * o.sin_theta + all(columns[3][k]) * o.cos_theta;
             };
-            n.x[k] = sum(&FlowTables::near_x);
-            n.x_dot[k] = sum(&FlowTables::near_x_dot);
+            n.x[k] = sum(tables_.near_x);
+            n.x_dot[k] = sum(tables_.near_x_dot);
         }
         return n;
     }
@@ -294,6 +277,24 @@ private:
         keep(s, wall, state_after(o, d, x, x_dot, step));
     }
 
+    /// The transfer matrix of the flight, as Flow::transfer() has it.
+    void transfer() {
+        const Real s = select(crosses_, column(flights_.s), Real{});
+        Real k = s / h_;
+        for (int i = 0; i < width; ++i) k[i] = static_cast<int>(k[i]);
+        const Real over = s - k * h_, d = select(less(Real{}, over), over, Real{});
+        const Rows rows = rows_at(k);
+        const Real a11 = rows(row_x_dot + 1), a12 = rows(row_x_dot), a21 = rows(row_x + 1),
+                   a22 = rows(row_x);
+        const Near unforced = near_series(1);
+        const Real u = Near::value(unforced.x, d), u_dot = Near::value(unforced.x_dot, d);
+        const Real t12 = -stiffness_ * u, t22 = u_dot + damping_ * u;
+        store(flights_.a11 + from_, u_dot * a11 + t12 * a21);
+        store(flights_.a12 + from_, u_dot * a12 + t12 * a22);
+        store(flights_.a21 + from_, u * a11 + t22 * a21);
+        store(flights_.a22 + from_, u * a12 + t22 * a22);
+    }
+
     /// By the series' x and x' at d, and over the last step by its Taylor polynomial.
     Oscillations state_after(const Oscillations& o, Real d, Real x, Real x_dot, Real step) const {
         Oscillations at = turned(o, d);
@@ -325,7 +326,7 @@ private:
 
     FlightLanes& flights_;
     const int from_;
-    const Tables<same> tables_;
+    const FlowTables& tables_;
     // As in Flight of fast_contact.cpp: mirrored so that the wall that is left is at x - y = b.
     const Mask leaves_wall_;
     const Real mirror_;
@@ -341,13 +342,7 @@ private:
 };
 
 void search_lanes(FlightLanes& flights) {
-    for (int from = 0; from < flights.count; from += width) {
-        bool same = true;
-        for (int i = 1; i < width; ++i)
-            same = same && flights.tables[from + i]->rows == flights.tables[from]->rows;
-        if (same) Search<true>(flights, from).run();
-        else Search<false>(flights, from).run();
-    }
+    for (int from = 0; from < flights.count; from += width) Search(flights, from).run();
 }
 
 }  // namespace

@@ -101,12 +101,12 @@ Flow::Flow(double stiffness, double damping, double forcing, double Omega)
     }
 }
 
-namespace {
-
 // x'' + 2 zeta x' + x = epsilon A sin(theta), eq. (2).
-Flow::Coefficients free_coefficients(const Parameters& p) {
+Flow::Coefficients Flow::free_coefficients(const Parameters& p) {
     return {1, 2 * p.zeta(), p.epsilon * p.A(), p.Omega};
 }
+
+namespace {
 
 // The same force on both masses.
 Flow::Coefficients stuck_coefficients(const Parameters& p) {

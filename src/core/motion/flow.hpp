@@ -59,6 +59,7 @@ public:
     static std::shared_ptr<const Flow> shared_free(const Parameters& parameters);
     static std::shared_ptr<const Flow> shared_stuck(const Parameters& parameters);
 
+    static Coefficients free_coefficients(const Parameters& parameters);
     Coefficients coefficients() const { return {stiffness_, damping_, forcing_, Omega_}; }
     double cell() const { return cell_; }  ///< width h of a cell
     /// Longest time that one look at the grid can bridge.

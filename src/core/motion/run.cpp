@@ -59,9 +59,11 @@ Outcome Run::outcome() const {
 
 /// Emits a stretch of the given flow and moves the clock over it. The caller sets the state at
 /// its end.
-void Run::pass(const Flow& flow, double duration, int stuck_side) {
+void Run::pass(const Flow& flow, double duration, int stuck_side, const Transfer* over) {
     if (duration > 0)
-        tell(&Observer::on_stretch, {flow, clock_.tau(), duration, lo_, y_, y_dot_, stuck_side});
+        tell(
+            &Observer::on_stretch,
+            {flow, clock_.tau(), duration, lo_, y_, y_dot_, stuck_side, over});
     clock_.advance(duration);
 }
 
@@ -81,12 +83,12 @@ void Run::fly() {
     touches_.clear();
     const auto contact = fast_contact(free_, flight(), p_.b, flight_limit(), touches_);
     for (const Touch& t : touches_) touch(clock_.tau() + t.s, t.side);
-    fly_to(contact);
+    fly_to(contact, nullptr);
 }
 
-void Run::fly_to(const std::optional<Contact>& contact) {
+void Run::fly_to(const std::optional<Contact>& contact, const Transfer* over) {
     const double rest = clock_.until(limits_.tau_end), limit = std::min(rest, free_.reach());
-    pass(free_, contact ? contact->s : limit, 0);
+    pass(free_, contact ? contact->s : limit, 0, over);
     if (contact) {
         lo_ = contact->lo;
         y_ = lo_.x - contact->side * p_.b;
@@ -162,7 +164,7 @@ void Run::stick(double chatter_left, int zeros) {
         const double rest = clock_.until(limits_.tau_end), limit = std::min(rest, stuck_->reach());
         const auto release = next_release(*stuck_, lo_, side_, zeros, limit);
         const double s = release ? *release : limit;
-        pass(*stuck_, s, side_);
+        pass(*stuck_, s, side_, nullptr);
         lo_ = stuck_->after(lo_, std::max(0.0, s));
         released = release.has_value();
         zeros = 0;

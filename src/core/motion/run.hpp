@@ -44,14 +44,16 @@ public:
     /// Finds that contact, and goes on to the flight behind it.
     void fly();
     /// Goes on by the one that was found: fast_contact() of this flight, without a touch before it.
-    void fly_to(const std::optional<Contact>& contact);
+    /// `over`: the flight's transfer matrix, where it is known already; else null.
+    void fly_to(const std::optional<Contact>& contact, const Transfer* over);
+    bool is_observed() const { return !observers_.empty(); }
 
 private:
     template <class... Arguments>
     void tell(void (Observer::*event)(Arguments...), std::type_identity_t<Arguments>... arguments) {
         for (Observer* o : observers_) (o->*event)(arguments...);
     }
-    void pass(const Flow& flow, double duration, int stuck_side);
+    void pass(const Flow& flow, double duration, int stuck_side, const Transfer* over);
     void meet_wall_at_start();
     void touch(double tau, int side);
     void strike(const Contact& contact);

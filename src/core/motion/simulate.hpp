@@ -23,6 +23,7 @@ struct Stretch {
     Oscillation start;
     double y, y_dot;  ///< of the free mass at the start; where stuck: x - side b, x'
     int stuck_side;   ///< 0 where the mass flies freely
+    const Transfer* transfer = nullptr;  ///< flow.transfer(duration), where it is known already
 
     /// The state of both masses at 0 <= s <= duration.
     State at(double s) const;

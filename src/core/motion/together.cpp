@@ -6,6 +6,7 @@
 #include <deque>
 #include <optional>
 
+#include "core/motion/in_lanes.hpp"
 #include "core/motion/run.hpp"
 
 namespace vines {
@@ -40,84 +41,36 @@ private:
     FlowTables tables_{};
 };
 
-void put(FlightLanes& flights, int lane, const FlowTables& tables, const Run& run) {
-    const FlightStart f = run.flight();
-    flights.tables[lane] = &tables;
-    flights.x[lane] = f.lo.x;
-    flights.x_dot[lane] = f.lo.x_dot;
-    flights.sin_theta[lane] = f.lo.sin_theta;
-    flights.cos_theta[lane] = f.lo.cos_theta;
-    flights.y[lane] = f.y;
-    flights.y_dot[lane] = f.y_dot;
-    flights.side[lane] = f.side;
-    flights.relative_speed[lane] = f.relative_speed;
-    flights.b[lane] = run.b();
-    flights.limit[lane] = run.flight_limit();
-}
-
-Contact contact_of(const FlightLanes& f, int lane) {
-    return {
-        f.s[lane],
-        static_cast<int>(f.wall[lane]),
-        {f.contact_x[lane], f.contact_x_dot[lane], f.contact_sin[lane], f.contact_cos[lane]},
-        f.contact_speed[lane]};
-}
-
-/// A vector's lanes are all in use: what is left over flies as the first one does.
-void fill(FlightLanes& flights) {
-    for (int lane = flights.count; lane < FlightLanes::lanes; ++lane) {
-        flights.tables[lane] = flights.tables[0];
-        for (auto* column :
-             {&flights.x, &flights.x_dot, &flights.sin_theta, &flights.cos_theta, &flights.y,
-              &flights.y_dot, &flights.side, &flights.relative_speed, &flights.b, &flights.limit})
-            (*column)[lane] = (*column)[0];
-    }
-}
-
-/// A flight of every run.
-void fly(std::span<Lane*> lanes, FlightSearch search) {
+/// A flight of every run: those of the first one's flow together, the others alone.
+void fly(std::span<Lane*> lanes, FlightSearch by) {
     FlightLanes flights;
     std::array<Lane*, FlightLanes::lanes> in_lane;
+    const Flow& flow = lanes[0]->run().flow();
     for (Lane* lane : lanes) {
-        if (!search || !is_plain(lane->run().flight())) {
-            lane->run().fly();
+        Run& run = lane->run();
+        if (lanes.size() == 1 || !by || &run.flow() != &flow || !is_plain(run.flight())) {
+            run.fly();
             continue;
         }
-        put(flights, flights.count, lane->tables(), lane->run());
-        in_lane[flights.count++] = lane;
+        in_lane[flights.count] = lane;
+        put(flights, run.flight(), run.b(), run.flight_limit());
+        flights.transfers |= run.is_observed();
     }
     if (flights.count == 0) return;
-    fill(flights);
-    search(flights);
+    flights.tables = &in_lane[0]->tables();
+    search(flights, by);
     for (int i = 0; i < flights.count; ++i) {
         Run& run = in_lane[i]->run();
         if (flights.found[i] == FlightLanes::open) run.fly();
-        else if (flights.found[i] == FlightLanes::none) run.fly_to(std::nullopt);
-        else run.fly_to(contact_of(flights, i));
+        else if (flights.found[i] == FlightLanes::none) run.fly_to(std::nullopt, nullptr);
+        else {
+            const Transfer over = transfer_of(flights, i);
+            run.fly_to(contact_of(flights, i), flights.transfers ? &over : nullptr);
+        }
     }
 }
 
-/// The widest, but none where that is two lanes wide: a flight alone is as fast.
-FlightSearch best_search() {
-    static const FlightSearch search = [] {
-        const auto searches = flight_searches();
-        return searches.size() > 1 ? searches.back().search : nullptr;
-    }();
-    return search;
-}
-
 }  // namespace
-
-std::vector<NamedSearch> flight_searches() {
-    std::vector<NamedSearch> searches = {baseline_search()};
-#ifdef __x86_64__
-    if (__builtin_cpu_supports("avx2")) searches.push_back(avx2_search());
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-        __builtin_cpu_supports("avx512vl"))
-        searches.push_back(avx512_search());
-#endif
-    return searches;
-}
 
 void simulate_together(std::span<RunLine* const> lines) { simulate_together(lines, best_search()); }
 

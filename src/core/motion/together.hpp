@@ -3,7 +3,8 @@
 //
 // A run's flights are those that it has alone, bit for bit (flight_lanes.hpp). What is no plain
 // flight (a chatter's hop, a stuck phase, a doubtful cell) a run does by itself, and when it ends,
-// the next one of its line takes its place: no lane waits for another one.
+// the next one of its line takes its place: no lane waits for another one. Lanes share one flow,
+// whose tables they read: runs of another one than the first's fly alone.
 #pragma once
 
 #include <vector>
@@ -27,8 +28,5 @@ inline constexpr int most_lines = FlightLanes::lanes;
 void simulate_together(std::span<RunLine* const> lines);
 /// The same by one of the searches; none: each flight alone.
 void simulate_together(std::span<RunLine* const> lines, FlightSearch search);
-
-/// The searches that this processor can do, the widest last.
-std::vector<NamedSearch> flight_searches();
 
 }  // namespace vines

@@ -16,11 +16,23 @@ constexpr double least_radius = 1e-8;
 
 }  // namespace
 
+namespace {
+
+double parts_of(const Flow& flow, double duration) {
+    return std::max(1.0, std::ceil(flow.fastest_decay() * duration / most_contraction));
+}
+
+}  // namespace
+
 Leg leg_of(const Flow& flow, double duration, bool stuck) {
-    const double parts =
-                     std::max(1.0, std::ceil(flow.fastest_decay() * duration / most_contraction)),
-                 part = duration / parts;
+    const double parts = parts_of(flow, duration), part = duration / parts;
     return {flow.transfer(part), part, -flow.damping() * part, static_cast<long>(parts), stuck};
+}
+
+Leg leg_of(const Stretch& s) {
+    const bool stuck = s.stuck_side != 0;
+    if (!s.transfer || parts_of(s.flow, s.duration) > 1) return leg_of(s.flow, s.duration, stuck);
+    return {*s.transfer, s.duration, -s.flow.damping() * s.duration, 1, stuck};
 }
 
 namespace {

@@ -10,7 +10,7 @@
 
 #include <array>
 
-#include "core/motion/impact.hpp"
+#include "core/motion/simulate.hpp"
 
 namespace vines {
 
@@ -28,6 +28,7 @@ struct Leg {
     bool stuck;
 };
 Leg leg_of(const Flow& flow, double duration, bool stuck);
+Leg leg_of(const Stretch& stretch);
 
 /// Carries deviations over one part: J of eq. (19), or of a stuck leg the
 /// projection onto the centre of mass and its motion; epsilon: mass ratio.

@@ -20,9 +20,9 @@ constexpr double closed = 1e-10;
 // does not shrink the miss to a tenth has met rounding: near the orbit it would square it.
 constexpr double closed_to_rounding = 1e-14, converging = 0.1;
 // Newton's method gives up after so many steps, or so many that led further away; a step out of the
-// cavity is halved so many times. And where the motion stretches deviations by more, in units of the
-// scale: an ulp of the state alone then moves its return by more than `closed`. It is so at returns
-// of a chaotic motion after many cycles, of which half of all steps were.
+// cavity is halved so many times. And where the motion stretches deviations by more, in units of
+// the scale: an ulp of the state alone then moves its return by more than `closed`. It is so at
+// returns of a chaotic motion after many cycles, of which half of all steps were.
 constexpr int most_steps = 25, most_worse_steps = 2, most_halvings = 6;
 constexpr double most_stretch = 1e6;
 // A divisor of the period closes, too, if the state misses itself by no more than this.
@@ -47,7 +47,7 @@ class Monodromy : public Observer {
 public:
     explicit Monodromy(const Parameters& p) : p_(p) {}
     void on_stretch(const Stretch& stretch) override {
-        const Leg leg = leg_of(stretch.flow, stretch.duration, stretch.stuck_side != 0);
+        const Leg leg = leg_of(stretch);
         for (long part = 0; part < leg.parts; ++part) carry(matrix, leg, p_.epsilon);
     }
     void on_impact(const Impact& impact) override { matrix = saltation(p_, impact).times(matrix); }
@@ -62,9 +62,7 @@ private:
 class Powers : public Observer {
 public:
     explicit Powers(const Parameters& p) : product(p.epsilon), p_(p) {}
-    void on_stretch(const Stretch& stretch) override {
-        product.pass(leg_of(stretch.flow, stretch.duration, stretch.stuck_side != 0));
-    }
+    void on_stretch(const Stretch& stretch) override { product.pass(leg_of(stretch)); }
     void on_impact(const Impact& impact) override {
         product.strike(saltation(p_, impact), impact.R);
     }

@@ -9,12 +9,13 @@ namespace vines {
 
 void Passage::extend(const Stretch& stretch) {
     const bool stuck = stretch.stuck_side != 0;
-    double duration = stretch.duration;
-    if (!legs_.empty() && legs_.back().stuck == stuck) {
-        duration += legs_.back().duration * static_cast<double>(legs_.back().parts);
-        legs_.pop_back();
+    if (legs_.empty() || legs_.back().stuck != stuck) {
+        legs_.push_back(leg_of(stretch));
+        return;
     }
-    legs_.push_back(leg_of(stretch.flow, duration, stuck));
+    Leg& leg = legs_.back();
+    leg = leg_of(
+        stretch.flow, stretch.duration + leg.duration * static_cast<double>(leg.parts), stuck);
 }
 
 Moduli eigenvalue_moduli(const Matrix4& m) {

@@ -23,13 +23,41 @@ void count(const PointResult& result, Pace& pace) {
     ++pace.runs;
 }
 
+/// The tasks that a thread takes, in batches of one flow.
+class Batches {
+public:
+    using TakeTask = std::function<std::optional<PointTask>()>;
+
+    explicit Batches(const TakeTask& take) : take_(take) {}
+
+    /// Whether there is another one.
+    bool begin() {
+        if (!held_) held_ = take_();
+        if (held_) flow_ = flow_of(*held_);
+        return held_.has_value();
+    }
+    /// The next task of the one that has begun.
+    std::optional<PointTask> next() {
+        if (!held_) held_ = take_();
+        if (!held_ || flow_of(*held_) != flow_) return std::nullopt;
+        return std::exchange(held_, std::nullopt);
+    }
+
+private:
+    static Flow::Coefficients flow_of(const PointTask& task) {
+        return Flow::free_coefficients(task.system.parameters);
+    }
+
+    const TakeTask& take_;
+    Flow::Coefficients flow_{};
+    std::optional<PointTask> held_;
+};
+
 /// One point after the other, in a lane.
 class PointLine : public RunLine {
 public:
-    using NextTask = std::function<std::optional<PointTask>()>;
-
-    PointLine(const NextTask& next_task, const PointOptions& options, Pace& pace, Turn& turn)
-        : next_task_(next_task),
+    PointLine(Batches& batches, const PointOptions& options, Pace& pace, Turn& turn)
+        : batches_(batches),
           options_(options),
           pace_(pace),
           turn_(turn) {}
@@ -57,7 +85,7 @@ private:
     }
 
     bool begin_motion() {
-        if (!task_) task_ = next_task_();
+        if (!task_) task_ = batches_.next();
         if (!task_) return false;
         turn_.again();
         if (pace_.stop_or_yield()) throw Stopped();
@@ -67,7 +95,7 @@ private:
         return true;
     }
 
-    const NextTask& next_task_;
+    Batches& batches_;
     const PointOptions& options_;
     Pace& pace_;
     Turn& turn_;
@@ -93,7 +121,7 @@ void run_points(
     std::size_t count, int threads, const PointOptions& options, Pace& pace,
     const std::function<std::optional<PointTask>(std::size_t)>& task_at) {
     std::atomic<std::size_t> taken = 0;
-    const PointLine::NextTask next_task = [&] {
+    const Batches::TakeTask take = [&] {
         std::optional<PointTask> task;
         for (std::size_t i; !task && (i = taken++) < count;) task = task_at(i);
         return task;
@@ -104,11 +132,14 @@ void run_points(
         const std::size_t lines =
             std::min(static_cast<std::size_t>(most_lines), (count + groups - 1) / groups);
         Turn turn(pace);
-        std::deque<PointLine> all;
-        std::vector<RunLine*> going;
-        for (std::size_t k = 0; k < lines; ++k)
-            going.push_back(&all.emplace_back(next_task, options, pace, turn));
-        simulate_together(going);
+        Batches batches(take);
+        while (batches.begin()) {
+            std::deque<PointLine> all;
+            std::vector<RunLine*> going;
+            for (std::size_t k = 0; k < lines; ++k)
+                going.push_back(&all.emplace_back(batches, options, pace, turn));
+            simulate_together(going);
+        }
     });
 }
 

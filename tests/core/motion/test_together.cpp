@@ -5,6 +5,7 @@
 #include <deque>
 
 #include "../support.hpp"
+#include "core/motion/in_lanes.hpp"
 
 using namespace vines;
 using namespace vines::test;
@@ -14,11 +15,13 @@ namespace {
 /// All that a run tells, to the last bit.
 struct Told : Observer {
     void on_stretch(const Stretch& s) override {
-        add({s.tau, s.duration, s.start.x, s.start.x_dot, s.start.sin_theta, s.start.cos_theta, s.y,
+        add(
+            {s.tau, s.duration, s.start.x, s.start.x_dot, s.start.sin_theta, s.start.cos_theta, s.y,
              s.y_dot, 1.0 * s.stuck_side});
     }
     void on_impact(const Impact& i) override {
-        add({i.tau, 1.0 * i.side, i.x, i.x_dot_before, i.y_dot_before, i.relative_speed_before,
+        add(
+            {i.tau, 1.0 * i.side, i.x, i.x_dot_before, i.y_dot_before, i.relative_speed_before,
              i.sin_theta, i.cos_theta});
     }
     void on_touch(double tau, int side) override { add({tau, 1.0 * side}); }
@@ -43,7 +46,7 @@ bool same(const Followed& a, const Followed& b) {
            s.x_dot == t.x_dot && s.y == t.y && s.y_dot == t.y_dot;
 }
 
-const Limits limits{.tau_end = 300, .max_impacts = 2000};
+const Limits limits{.tau_end = 120, .max_impacts = 500};
 
 std::vector<Followed> alone(const std::vector<System>& systems) {
     std::vector<Followed> all;
@@ -59,8 +62,9 @@ std::vector<Followed> alone(const std::vector<System>& systems) {
 /// Each line follows every so manieth system.
 class Every : public RunLine {
 public:
-    Every(const std::vector<System>& systems, std::size_t first, std::size_t step,
-          std::vector<Followed>& found)
+    Every(
+        const std::vector<System>& systems, std::size_t first, std::size_t step,
+        std::vector<Followed>& found)
         : systems_(systems),
           step_(step),
           next_(first),
@@ -95,17 +99,25 @@ std::vector<Followed> together(
 
 std::vector<System> sweep_of_b() {
     std::vector<System> systems;
-    for (double b = 0.001; b < 0.05; b += 0.0007) {
+    for (double b = 0.001; b < 0.05; b += 0.001) {
         const Parameters p = table1(b, Damping::closed_form);
         systems.push_back({p, default_state(p)});
     }
     return systems;
 }
 
+/// Of each random flow so many systems, that fly together.
 std::vector<System> random_systems() {
     std::mt19937_64 engine(11);
     std::vector<System> systems;
-    for (int i = 0; i < 300; ++i) systems.push_back(random_system(engine));
+    for (int i = 0; i < 60; ++i) {
+        System system = random_system(engine);
+        for (double share = 1; share > 0.2; share *= 0.8) {
+            systems.push_back(system);
+            systems.back().parameters.b *= share;
+            systems.back().start.y = systems.back().start.x - systems.back().parameters.b * share;
+        }
+    }
     return systems;
 }
 
