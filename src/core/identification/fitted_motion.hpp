@@ -21,7 +21,7 @@ struct FittedMotion {
     /// Of the forcing force_sin sin(Omega tau) + force_cos cos(Omega tau), m.
     double force_sin, force_cos;
     /// Of what is left of each sensor, standard deviation; NaN without it.
-    double noise_x, noise_x_ddot;
+    double noise_x = nan, noise_x_ddot = nan;
     /// That over the sensor's own noise, taken from the signal beside the pulses: 1 if all is
     /// explained.
     double misfit_x = nan, misfit_x_ddot = nan;
