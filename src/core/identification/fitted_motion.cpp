@@ -7,8 +7,6 @@
 #include <cmath>
 
 #include "core/identification/oscillator_model.hpp"
-#include "core/identification/robust.hpp"
-#include "core/identification/spikes.hpp"
 
 namespace vines {
 
@@ -18,8 +16,6 @@ namespace {
 // jump. Far smaller, and the equations lose digits; larger, and the kink in x tells less of the
 // moment.
 constexpr double continuity_share = 0.05;
-// A sensor without noise would weigh infinitely: less than this, in m, is no sensor's.
-constexpr double least_sensor_noise = 1e-12;
 // Added to the diagonal of the normal equations, where a single sample adds about 1/noise^2, far
 // above 1: what no sample says anything of comes out as zero, what one does is left as it is.
 constexpr double ridge = 1e-9;
@@ -35,11 +31,6 @@ struct FitSample {
     std::size_t index, interval;  ///< its own, and that of its interval
     ModelRows rows;
     bool in_pulse;  ///< its acceleration is the pulse's
-};
-
-/// The noise that each sensor's samples are weighed by; NaN without it.
-struct SensorNoise {
-    double x, x_ddot;
 };
 
 /// The normal equations N z = g of one interval's samples, z = its start and the forcing.
@@ -102,13 +93,6 @@ private:
     Eigen::VectorXd right_;
 };
 
-SensorNoise sensor_noise(const MeasuredRecord& r) {
-    const auto noise = [&](const std::vector<double>& signal) {
-        return signal.empty() ? nan : std::max(difference_noise(r.tau, signal), least_sensor_noise);
-    };
-    return {noise(r.x), noise(r.x_ddot)};
-}
-
 /// Of moments that ascend the interval that each falls into; at the start of one into that.
 class Intervals {
 public:
@@ -169,12 +153,12 @@ private:
 };
 
 std::vector<IntervalEquations> equations_of(
-    const MeasuredRecord& r, const FitSamples& samples, const SensorNoise& sigma) {
+    const MeasuredRecord& r, const RecordStatistics& statistics, const FitSamples& samples) {
     std::vector<IntervalEquations> equations(samples.intervals());
     samples.each([&](const FitSample& s) {
-        if (!r.x.empty()) equations[s.interval].add(s.rows.x, r.x[s.index], sigma.x);
+        if (!r.x.empty()) equations[s.interval].add(s.rows.x, r.x[s.index], statistics.x.noise);
         if (!r.x_ddot.empty() && !s.in_pulse)
-            equations[s.interval].add(s.rows.x_ddot, r.x_ddot[s.index], sigma.x_ddot);
+            equations[s.interval].add(s.rows.x_ddot, r.x_ddot[s.index], statistics.x_ddot.noise);
     });
     return equations;
 }
@@ -248,16 +232,18 @@ void meet_at_impacts(
 /// the nine in ten that lie closest: a motion may be wrong in a part of the record, but a few odd
 /// samples are no misfit.
 double misfit_of(
-    std::vector<double> residual, const std::vector<double>& tau, const std::vector<double>& signal,
+    std::vector<double> residual, const SignalStatistics& signal,
     const std::vector<char>& spoiled) {
     // Of a normal distribution lie within that many standard deviations.
     constexpr double ninety_percent = 1.645;
-    const double left = quantile_of_moduli(std::move(residual), 0.9) / ninety_percent;
-    return left / std::hypot(difference_noise(tau, signal, spoiled), least_noise_of(signal));
+    return quantile_of_moduli(std::move(residual), 0.9) / ninety_percent /
+           std::hypot(signal.differences.noise(spoiled), signal.least_noise);
 }
 
 /// Sets what the motion leaves of the sensors.
-void take_residuals(const MeasuredRecord& r, const FitSamples& samples, FittedMotion& m) {
+void take_residuals(
+    const MeasuredRecord& r, const RecordStatistics& statistics, const FitSamples& samples,
+    FittedMotion& m) {
     std::vector<double> of_x, of_x_ddot;
     std::vector<char> spoiled(r.tau.size());
     of_x.reserve(r.x.size()), of_x_ddot.reserve(r.x_ddot.size());
@@ -273,30 +259,30 @@ void take_residuals(const MeasuredRecord& r, const FitSamples& samples, FittedMo
     });
     if (!r.x.empty()) {
         m.noise_x = robust_deviation(of_x);
-        m.misfit_x = misfit_of(std::move(of_x), r.tau, r.x, spoiled);
+        m.misfit_x = misfit_of(std::move(of_x), statistics.x, spoiled);
     }
     if (!r.x_ddot.empty()) {
         m.noise_x_ddot = robust_deviation(of_x_ddot);
-        m.misfit_x_ddot = misfit_of(std::move(of_x_ddot), r.tau, r.x_ddot, spoiled);
+        m.misfit_x_ddot = misfit_of(std::move(of_x_ddot), statistics.x_ddot, spoiled);
     }
 }
 
 }  // namespace
 
 FittedMotion fit_motion(
-    const Parameters& p, const MeasuredRecord& r, const std::vector<double>& impacts,
-    double pulse) {
+    const Parameters& p, const MeasuredRecord& r, const RecordStatistics& statistics,
+    const std::vector<double>& impacts, double pulse) {
     const OscillatorModel model(p);
     FittedMotion m;
     m.tau = {r.tau.front()};
     m.tau.insert(m.tau.end(), impacts.begin(), impacts.end());
-    const SensorNoise sigma = sensor_noise(r);
-    const FitSamples samples(model, r, m.tau, 0.5 * pulse + pulse_margin * sample_interval(r));
-    const std::vector<IntervalEquations> own = equations_of(r, samples, sigma);
+    const FitSamples samples(model, r, m.tau, 0.5 * pulse + pulse_margin * statistics.step);
+    const std::vector<IntervalEquations> own = equations_of(r, statistics, samples);
     const std::vector<ModelRows> ends = ends_of(model, m.tau);
-    solve_together(own, ends, continuity_share * (r.x.empty() ? sigma.x_ddot : sigma.x), m);
+    const double noise = r.x.empty() ? statistics.x_ddot.noise : statistics.x.noise;
+    solve_together(own, ends, continuity_share * noise, m);
     meet_at_impacts(model, ends, solve_apart(own, m), m);
-    take_residuals(r, samples, m);
+    take_residuals(r, statistics, samples, m);
     return m;
 }
 

@@ -5,7 +5,7 @@
 // forcing for all; x is continuous at the impacts.
 #pragma once
 
-#include "core/identification/measured_record.hpp"
+#include "core/identification/record_statistics.hpp"
 #include "core/motion/parameters.hpp"
 #include "core/motion/special_values.hpp"
 
@@ -36,10 +36,10 @@ struct FittedMotion {
 };
 
 /// `impacts`: their moments, ascending, within the record. `pulse`: how long each one spoils the
-/// acceleration, in tau.
+/// acceleration, in tau. `statistics`: of the record.
 FittedMotion fit_motion(
-    const Parameters& parameters, const MeasuredRecord& record, const std::vector<double>& impacts,
-    double pulse);
+    const Parameters& parameters, const MeasuredRecord& record, const RecordStatistics& statistics,
+    const std::vector<double>& impacts, double pulse);
 
 /// The oscillator at some moments: columns of equal length, m and derivatives in tau.
 struct OscillatorSeries {

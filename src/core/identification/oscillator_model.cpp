@@ -37,14 +37,16 @@ ModelRows OscillatorModel::Interval::at(double s) {
     const int cell = static_cast<int>(s / flow.cell());
     if (looks != looks_ || cell != cell_) look_up(looks, cell);
     const double d = std::max(0.0, s - cell * flow.cell());
+    // The last part of the motion is forced a quarter of a turn ahead of the one before it.
+    const Oscillation turned = flow.turned(near_[2], d);
+    const double force[] = {0, 0, turned.sin_theta, turned.cos_theta};
     ModelRows rows;
     for (std::size_t k = 0; k < series_.size(); ++k) {
         const auto row = static_cast<Eigen::Index>(k);
         const auto [x, x_dot] = series_[k].at(d);
-        const double force = k >= 2 ? flow.turned(near_[k], d).sin_theta : 0;
         rows.x(row) = x;
         rows.x_dot(row) = x_dot;
-        rows.x_ddot(row) = -x - model_.damping_ * x_dot + force;
+        rows.x_ddot(row) = -x - model_.damping_ * x_dot + force[k];
     }
     return rows;
 }

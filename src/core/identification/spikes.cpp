@@ -204,7 +204,7 @@ double typical_jump(const std::vector<Spike>& spikes) {
 Spikes find_spikes(const MeasuredRecord& r, double sigmas) {
     const std::size_t n = r.tau.size();
     const double reach = std::max(background_least, background_samples * sample_interval(r));
-    Spikes found{{}, difference_noise(r.tau, r.x_ddot)};
+    Spikes found{{}, ThirdDifferences(r.tau, r.x_ddot).noise()};
     // First what stands out from the median of its neighbourhood; then, again and again, from the
     // parabola through the rest.
     std::vector<double> residual = without_median(r, reach);
