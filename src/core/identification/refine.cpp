@@ -102,9 +102,9 @@ void place_impacts(Refinement& f) {
     std::vector<ImpactPulse> impacts;
     for (std::size_t i = 0; i < f.spikes.size(); ++i)
         impacts.emplace_back(f.parameters, f.record, motion, i, reach);
-    const double pulse = best_pulse(impacts, motion.noise_x_ddot, f.step, f.refined.pulse);
+    const double pulse = best_pulse(impacts, f.step, f.refined.pulse);
     for (std::size_t i = 0; i < f.spikes.size(); ++i)
-        f.spikes[i].tau = impacts[i].moment(pulse, motion.noise_x_ddot, f.step).tau;
+        f.spikes[i].tau = impacts[i].moment(pulse, f.step);
     fit(f, pulse);
 }
 
