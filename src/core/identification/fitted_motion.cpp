@@ -112,7 +112,7 @@ Eigen::Vector4d unknowns_of(const FittedMotion& m, std::size_t i) {
     return {m.x[i], m.x_dot[i], m.force_sin, m.force_cos};
 }
 
-/// Visits the samples of a record in order. Their rows would take ten times as much memory as the
+/// Visits the samples of a record in order. Their rows would take four times the memory of the
 /// record, and are made twice instead.
 class FitSamples {
 public:

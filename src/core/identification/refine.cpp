@@ -86,6 +86,7 @@ void fit(Refinement& f, double pulse) {
     }
     refined.pulse = pulse;
     if (!f.statistics) f.statistics.emplace(f.record);
+    refined.motion = {};  // its residual is as long as the record
     refined.motion = fit_motion(f.parameters, f.record, *f.statistics, refined.tau, pulse);
     for (std::size_t i = 0; i < f.spikes.size(); ++i) {
         Spike& s = f.spikes[i];
