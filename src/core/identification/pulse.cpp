@@ -1,6 +1,7 @@
 #include "core/identification/pulse.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -20,6 +21,8 @@ constexpr double shortest_pulse_steps = 0.3, longest_pulse_steps = 6;
 constexpr double pulse_ratio = 1.06;
 // Of about so many impacts, evenly spread over the record.
 constexpr std::size_t pulses_compared = 100;
+// Moments that are tried on either side of the fitted one, over half a pulse or one step.
+constexpr int moments_tried = 40;
 
 }  // namespace
 
@@ -49,12 +52,14 @@ ImpactPulse::ImpactPulse(
 }
 
 /// Sum of squares, in units of the noise: of the acceleration's samples without the pulse, half a
-/// sine of area x_dot_jump_, and of the jump of x between the intervals' own motions.
-double ImpactPulse::misfit(double tau, double pulse) const {
+/// sine of area x_dot_jump_, and of the jump of x between the intervals' own motions. Where that is
+/// no less than `enough`, a part of the sum that is no less, either.
+double ImpactPulse::misfit(double tau, double pulse, double enough) const {
     const double x_jump = (x_jump_ + x_jump_rate_ * (tau - tau_)) / x_jump_error_,
                  height = 0.5 * std::numbers::pi / pulse;
     double sum = x_jump * x_jump;
     for (const Sample& sample : samples_) {
+        if (sum >= enough) return sum;
         const double s = sample.tau - tau;
         if (std::abs(s) < 0.5 * pulse) {
             const double shape = height * std::cos(std::numbers::pi * s / pulse),
@@ -67,28 +72,27 @@ double ImpactPulse::misfit(double tau, double pulse) const {
     return sum;
 }
 
-ImpactPulse::Misfits ImpactPulse::misfits(double pulse, double step) const {
-    Misfits tried;
-    const double width = width_tried(pulse, step);
-    for (int k = -moments_tried; k <= moments_tried; ++k)
-        tried[k + moments_tried] = misfit(tau_ + width * k / moments_tried, pulse);
-    return tried;
+double ImpactPulse::moment_tried(int k, double pulse, double step) const {
+    return tau_ + std::max(step, 0.5 * pulse) * k / moments_tried;
 }
 
-double ImpactPulse::width_tried(double pulse, double step) { return std::max(step, 0.5 * pulse); }
-
 double ImpactPulse::least_misfit(double pulse, double step) const {
-    const Misfits tried = misfits(pulse, step);
-    return *std::min_element(tried.begin(), tried.end());
+    double least = misfit(tau_, pulse, infinity);
+    for (int k = 1; k <= moments_tried; ++k)  // outwards, where most misfits soon are too large
+        for (const int side : {-1, 1})
+            least = std::min(least, misfit(moment_tried(side * k, pulse, step), pulse, least));
+    return least;
 }
 
 double ImpactPulse::moment(double pulse, double step) const {
-    const Misfits tried = misfits(pulse, step);
-    const double width = width_tried(pulse, step),
-                 least = *std::min_element(tried.begin(), tried.end());
+    std::array<double, 2 * moments_tried + 1> misfits;
+    for (int k = -moments_tried; k <= moments_tried; ++k)
+        misfits[k + moments_tried] = misfit(moment_tried(k, pulse, step), pulse, infinity);
+    const double width = std::max(step, 0.5 * pulse),
+                 least = *std::min_element(misfits.begin(), misfits.end());
     double sum = 0, first = 0;
     for (int k = -moments_tried; k <= moments_tried; ++k) {
-        const double likelihood = std::exp(-0.5 * (tried[k + moments_tried] - least));
+        const double likelihood = std::exp(-0.5 * (misfits[k + moments_tried] - least));
         sum += likelihood;
         first += likelihood * width * k / moments_tried;
     }

@@ -2,8 +2,6 @@
 // the samples, and its length.
 #pragma once
 
-#include <array>
-
 #include "core/identification/fitted_motion.hpp"
 
 namespace vines {
@@ -25,12 +23,9 @@ public:
     double moment(double pulse, double step) const;
 
 private:
-    /// Moments that are tried on either side of the fitted one, over half a pulse or one step.
-    static constexpr int moments_tried = 40;
-    static double width_tried(double pulse, double step);
-    using Misfits = std::array<double, 2 * moments_tried + 1>;
-    Misfits misfits(double pulse, double step) const;
-    double misfit(double tau, double pulse) const;
+    /// Of the moments tried, 0 the fitted one.
+    double moment_tried(int k, double pulse, double step) const;
+    double misfit(double tau, double pulse, double enough) const;
 
     struct Sample {
         double tau, x_ddot;
