@@ -4,6 +4,7 @@
 
 #include "api/column.hpp"
 #include "api/describe_exponents.hpp"
+#include "api/object.hpp"
 
 namespace vines::api {
 
@@ -25,67 +26,73 @@ const char* describe_type(const Regime& r) {
 
 /// A period's multipliers, by descending modulus.
 Json describe_multipliers(const PeriodicOrbit& orbit) {
-    return {
-        {"re", column(orbit.multipliers, [](auto m) { return m.real(); })},
-        {"im", column(orbit.multipliers, [](auto m) { return m.imag(); })},
-        {"modulus", column(orbit.multipliers, [](auto m) { return std::abs(m); })}};
+    return object(
+        {{"re", column(orbit.multipliers, [](auto m) { return m.real(); })},
+         {"im", column(orbit.multipliers, [](auto m) { return m.imag(); })},
+         {"modulus", column(orbit.multipliers, [](auto m) { return std::abs(m); })}});
 }
 
 Json describe_capture(const Capture& c) {
-    return {
-        {"tau", or_null(c.tau)},
-        {"status", c.tau ? "captured" : "on_its_way"},
-        {"chaotic_before", or_null(c.chaotic_before)},
-        {"exponents_before", describe_final(c.before)},
-        {"exponents_after", describe_final(c.after)}};
+    return object(
+        {{"tau", or_null(c.tau)},
+         {"status", c.tau ? "captured" : "on_its_way"},
+         {"chaotic_before", or_null(c.chaotic_before)},
+         {"exponents_before", describe_final(c.before)},
+         {"exponents_after", describe_final(c.after)}});
+}
+
+Json describe_point(const PeriodicOrbit& o) {
+    return object(
+        {{"tau", o.tau},
+         {"x_dot", o.state.x_dot},
+         {"x", o.state.x},
+         {"y_dot", o.state.y_dot},
+         {"y", o.state.y}});
 }
 
 void add_orbit(Json& j, const std::optional<PeriodicOrbit>& orbit) {
-    auto of_orbit = [&](const char* name, auto value) {
-        j[name] = orbit ? Json(value(*orbit)) : Json(nullptr);
-    };
-    of_orbit("period_cycles", [](const PeriodicOrbit& o) { return o.cycles; });
-    of_orbit("impacts_per_period", [](const PeriodicOrbit& o) { return o.contacts; });
-    of_orbit("chatter_impacts_per_period", [](const PeriodicOrbit& o) {
-        return o.impacts - o.contacts;
-    });
-    of_orbit("sticks_per_period", [](const PeriodicOrbit& o) { return o.sticks; });
-    of_orbit("symmetric", [](const PeriodicOrbit& o) { return o.symmetric; });
-    of_orbit("stable", [](const PeriodicOrbit& o) { return o.stable(); });
-    of_orbit("closure", [](const PeriodicOrbit& o) { return o.closure; });
-    of_orbit("multipliers", describe_multipliers);
-    of_orbit("orbit", [](const PeriodicOrbit& o) {
-        return Json{
-            {"tau", o.tau},
-            {"x_dot", o.state.x_dot},
-            {"x", o.state.x},
-            {"y_dot", o.state.y_dot},
-            {"y", o.state.y}};
-    });
+    const auto of_orbit = [&](auto value) { return orbit ? Json(value(*orbit)) : Json(nullptr); };
+    using Orbit = PeriodicOrbit;
+    append(
+        j, {{"period_cycles", of_orbit([](const Orbit& o) { return o.cycles; })},
+            {"impacts_per_period", of_orbit([](const Orbit& o) { return o.contacts; })},
+            {"chatter_impacts_per_period",
+             of_orbit([](const Orbit& o) { return o.impacts - o.contacts; })},
+            {"sticks_per_period", of_orbit([](const Orbit& o) { return o.sticks; })},
+            {"symmetric", of_orbit([](const Orbit& o) { return o.symmetric; })},
+            {"stable", of_orbit([](const Orbit& o) { return o.stable(); })},
+            {"closure", of_orbit([](const Orbit& o) { return o.closure; })},
+            {"multipliers", of_orbit(describe_multipliers)},
+            {"orbit", of_orbit(describe_point)}});
+}
+
+Json describe_stretches(const std::vector<SynchronyStretch>& stretches) {
+    return object(
+        {{"tau_start", column(stretches, [](const auto& s) { return s.tau_start; })},
+         {"tau_end", column(stretches, [](const auto& s) { return s.tau_end; })},
+         {"synchronised", column(stretches, [](const auto& s) { return s.synchronised; })},
+         {"contacts", column(stretches, [](const auto& s) { return s.contacts; })}});
 }
 
 }  // namespace
 
 Json describe_regime(const Regime& r) {
-    Json j = {{"type", name_of(r.type)},
-              {"description", describe_type(r)},
-              {"z", r.z},
-              {"z_overall", r.z_overall},
-              {"contacts", r.contacts},
-              {"periodic", r.orbit.has_value()}};
+    Json j = object(
+        {{"type", name_of(r.type)},
+         {"description", describe_type(r)},
+         {"z", r.z},
+         {"z_overall", r.z_overall},
+         {"contacts", r.contacts},
+         {"periodic", r.orbit.has_value()}});
     add_orbit(j, r.orbit);
-    j["capture"] = r.capture ? describe_capture(*r.capture) : Json(nullptr);
-    j["cycles_with"] = column(r.cycles_with);
-    j["share_two_impacts"] = r.cycles_with.size() > 2 ? r.cycles_with[2] : 0;
-    j["z_moving"] = {{"tau", column(r.moving_tau)}, {"z", column(r.moving_z)}};
-    j["synchronised"] = {
-        {"share", r.synchronised}, {"longest_half_cycles", r.longest_synchronised}};
-    const auto& stretches = r.stretches;
-    j["stretches"] = {
-        {"tau_start", column(stretches, [](const auto& s) { return s.tau_start; })},
-        {"tau_end", column(stretches, [](const auto& s) { return s.tau_end; })},
-        {"synchronised", column(stretches, [](const auto& s) { return s.synchronised; })},
-        {"contacts", column(stretches, [](const auto& s) { return s.contacts; })}};
+    append(
+        j, {{"capture", r.capture ? describe_capture(*r.capture) : Json(nullptr)},
+            {"cycles_with", column(r.cycles_with)},
+            {"share_two_impacts", r.cycles_with.size() > 2 ? r.cycles_with[2] : 0},
+            {"z_moving", object({{"tau", column(r.moving_tau)}, {"z", column(r.moving_z)}})},
+            {"synchronised",
+             object({{"share", r.synchronised}, {"longest_half_cycles", r.longest_synchronised}})},
+            {"stretches", describe_stretches(r.stretches)}});
     return j;
 }
 

@@ -7,8 +7,6 @@
 #include <cmath>
 
 #include "core/identification/oscillator_model.hpp"
-#include "core/identification/robust.hpp"
-#include "core/identification/spikes.hpp"
 
 namespace vines {
 
@@ -18,8 +16,6 @@ namespace {
 // jump. Far smaller, and the equations lose digits; larger, and the kink in x tells less of the
 // moment.
 constexpr double continuity_share = 0.05;
-// A sensor without noise would weigh infinitely: less than this, in m, is no sensor's.
-constexpr double least_sensor_noise = 1e-12;
 // Added to the diagonal of the normal equations, where a single sample adds about 1/noise^2, far
 // above 1: what no sample says anything of comes out as zero, what one does is left as it is.
 constexpr double ridge = 1e-9;
@@ -32,14 +28,9 @@ constexpr double misfit_limit = 1.25;
 
 /// One sample as the model sees it.
 struct FitSample {
-    std::size_t interval;
-    Eigen::Vector4d x, x_ddot;
+    std::size_t index, interval;  ///< its own, and that of its interval
+    ModelRows rows;
     bool in_pulse;  ///< its acceleration is the pulse's
-};
-
-/// The noise that each sensor's samples are weighed by; NaN without it.
-struct SensorNoise {
-    double x, x_ddot;
 };
 
 /// The normal equations N z = g of one interval's samples, z = its start and the forcing.
@@ -102,13 +93,6 @@ private:
     Eigen::VectorXd right_;
 };
 
-SensorNoise sensor_noise(const MeasuredRecord& r) {
-    const auto noise = [&](const std::vector<double>& signal) {
-        return signal.empty() ? nan : std::max(difference_noise(r.tau, signal), least_sensor_noise);
-    };
-    return {noise(r.x), noise(r.x_ddot)};
-}
-
 /// Of moments that ascend the interval that each falls into; at the start of one into that.
 class Intervals {
 public:
@@ -128,33 +112,54 @@ Eigen::Vector4d unknowns_of(const FittedMotion& m, std::size_t i) {
     return {m.x[i], m.x_dot[i], m.force_sin, m.force_cos};
 }
 
-/// `starts`: of the intervals; a sample closer to an impact than `spoiled` lies in its pulse.
-std::vector<FitSample> samples_of(
-    const OscillatorModel& model, const MeasuredRecord& r, const std::vector<double>& starts,
-    double spoiled) {
-    std::vector<FitSample> samples;
-    samples.reserve(r.tau.size());
-    Intervals intervals(starts);
-    for (const double tau : r.tau) {
-        const std::size_t i = intervals.at(tau);
-        const ModelRows rows = model.at(starts[i], tau - starts[i]);
-        const bool in_pulse = (i > 0 && tau - starts[i] < spoiled) ||
-                              (i + 1 < starts.size() && starts[i + 1] - tau < spoiled);
-        samples.push_back({i, rows.x, rows.x_ddot, in_pulse});
+/// Visits the samples of a record in order. Their rows would take four times the memory of the
+/// record, and are made twice instead.
+class FitSamples {
+public:
+    /// `starts`: of the intervals; a sample closer to an impact than `spoiled` lies in its pulse.
+    FitSamples(
+        const OscillatorModel& model, const MeasuredRecord& r, const std::vector<double>& starts,
+        double spoiled)
+        : model_(model),
+          r_(r),
+          starts_(starts),
+          spoiled_(spoiled) {}
+
+    std::size_t intervals() const { return starts_.size(); }
+
+    template <class Visit>
+    void each(const Visit& visit) const {
+        Intervals intervals(starts_);
+        for (std::size_t k = 0; k < r_.tau.size();) {
+            const std::size_t i = intervals.at(r_.tau[k]);
+            OscillatorModel::Interval interval(model_, starts_[i]);
+            for (; k < r_.tau.size() && intervals.at(r_.tau[k]) == i; ++k) {
+                const double since = r_.tau[k] - starts_[i];
+                visit(FitSample{k, i, interval.at(since), in_pulse(i, r_.tau[k])});
+            }
+        }
     }
-    return samples;
-}
+
+private:
+    bool in_pulse(std::size_t i, double tau) const {
+        return (i > 0 && tau - starts_[i] < spoiled_) ||
+               (i + 1 < starts_.size() && starts_[i + 1] - tau < spoiled_);
+    }
+
+    const OscillatorModel& model_;
+    const MeasuredRecord& r_;
+    const std::vector<double>& starts_;
+    const double spoiled_;
+};
 
 std::vector<IntervalEquations> equations_of(
-    const MeasuredRecord& r, const std::vector<FitSample>& samples, const SensorNoise& sigma,
-    std::size_t intervals) {
-    std::vector<IntervalEquations> equations(intervals);
-    for (std::size_t k = 0; k < samples.size(); ++k) {
-        const FitSample& s = samples[k];
-        if (!r.x.empty()) equations[s.interval].add(s.x, r.x[k], sigma.x);
+    const MeasuredRecord& r, const RecordStatistics& statistics, const FitSamples& samples) {
+    std::vector<IntervalEquations> equations(samples.intervals());
+    samples.each([&](const FitSample& s) {
+        if (!r.x.empty()) equations[s.interval].add(s.rows.x, r.x[s.index], statistics.x.noise);
         if (!r.x_ddot.empty() && !s.in_pulse)
-            equations[s.interval].add(s.x_ddot, r.x_ddot[k], sigma.x_ddot);
-    }
+            equations[s.interval].add(s.rows.x_ddot, r.x_ddot[s.index], statistics.x_ddot.noise);
+    });
     return equations;
 }
 
@@ -227,66 +232,76 @@ void meet_at_impacts(
 /// the nine in ten that lie closest: a motion may be wrong in a part of the record, but a few odd
 /// samples are no misfit.
 double misfit_of(
-    const std::vector<double>& residual, const std::vector<double>& tau,
-    const std::vector<double>& signal, const std::vector<char>& spoiled) {
-    const double noise = std::hypot(difference_noise(tau, signal, spoiled), least_noise_of(signal));
+    std::vector<double> residual, const SignalStatistics& signal,
+    const std::vector<char>& spoiled) {
     // Of a normal distribution lie within that many standard deviations.
     constexpr double ninety_percent = 1.645;
-    return quantile_of_moduli(residual, 0.9) / ninety_percent / noise;
+    return quantile_of_moduli(std::move(residual), 0.9) / ninety_percent /
+           std::hypot(signal.differences.noise(spoiled), signal.least_noise);
 }
 
 /// Sets what the motion leaves of the sensors.
 void take_residuals(
-    const MeasuredRecord& r, const std::vector<FitSample>& samples, FittedMotion& m) {
+    const MeasuredRecord& r, const RecordStatistics& statistics, const FitSamples& samples,
+    FittedMotion& m) {
     std::vector<double> of_x, of_x_ddot;
-    std::vector<char> spoiled;
-    for (std::size_t k = 0; k < samples.size(); ++k) {
-        const FitSample& s = samples[k];
+    std::vector<char> spoiled(r.tau.size());
+    of_x.reserve(r.x.size()), of_x_ddot.reserve(r.x_ddot.size());
+    m.x_ddot_residual.resize(r.x_ddot.size());
+    samples.each([&](const FitSample& s) {
         const Eigen::Vector4d unknowns = unknowns_of(m, s.interval);
-        spoiled.push_back(s.in_pulse);
-        if (!r.x.empty()) of_x.push_back(r.x[k] - s.x.dot(unknowns));
-        if (r.x_ddot.empty()) continue;
-        m.x_ddot_residual.push_back(r.x_ddot[k] - s.x_ddot.dot(unknowns));
-        if (!s.in_pulse) of_x_ddot.push_back(m.x_ddot_residual.back());
+        spoiled[s.index] = s.in_pulse;
+        if (!r.x.empty()) of_x.push_back(r.x[s.index] - s.rows.x.dot(unknowns));
+        if (r.x_ddot.empty()) return;
+        const double left = r.x_ddot[s.index] - s.rows.x_ddot.dot(unknowns);
+        m.x_ddot_residual[s.index] = left;
+        if (!s.in_pulse) of_x_ddot.push_back(left);
+    });
+    if (!r.x.empty()) {
+        m.noise_x = robust_deviation(of_x);
+        m.misfit_x = misfit_of(std::move(of_x), statistics.x, spoiled);
     }
-    m.noise_x = r.x.empty() ? nan : robust_deviation(of_x);
-    m.noise_x_ddot = r.x_ddot.empty() ? nan : robust_deviation(of_x_ddot);
-    m.misfit_x = r.x.empty() ? nan : misfit_of(of_x, r.tau, r.x, spoiled);
-    m.misfit_x_ddot = r.x_ddot.empty() ? nan : misfit_of(of_x_ddot, r.tau, r.x_ddot, spoiled);
+    if (!r.x_ddot.empty()) {
+        m.noise_x_ddot = robust_deviation(of_x_ddot);
+        m.misfit_x_ddot = misfit_of(std::move(of_x_ddot), statistics.x_ddot, spoiled);
+    }
 }
 
 }  // namespace
 
 FittedMotion fit_motion(
-    const Parameters& p, const MeasuredRecord& r, const std::vector<double>& impacts,
-    double pulse) {
+    const Parameters& p, const MeasuredRecord& r, const RecordStatistics& statistics,
+    const std::vector<double>& impacts, double pulse) {
     const OscillatorModel model(p);
     FittedMotion m;
     m.tau = {r.tau.front()};
     m.tau.insert(m.tau.end(), impacts.begin(), impacts.end());
-    const SensorNoise sigma = sensor_noise(r);
-    const std::vector<FitSample> samples =
-        samples_of(model, r, m.tau, 0.5 * pulse + pulse_margin * sample_interval(r));
-    const std::vector<IntervalEquations> own = equations_of(r, samples, sigma, m.tau.size());
+    const FitSamples samples(model, r, m.tau, 0.5 * pulse + pulse_margin * statistics.step);
+    const std::vector<IntervalEquations> own = equations_of(r, statistics, samples);
     const std::vector<ModelRows> ends = ends_of(model, m.tau);
-    solve_together(own, ends, continuity_share * (r.x.empty() ? sigma.x_ddot : sigma.x), m);
+    const double noise = r.x.empty() ? statistics.x_ddot.noise : statistics.x.noise;
+    solve_together(own, ends, continuity_share * noise, m);
     meet_at_impacts(model, ends, solve_apart(own, m), m);
-    take_residuals(r, samples, m);
+    take_residuals(r, statistics, samples, m);
     return m;
 }
 
 OscillatorSeries motion_at(
     const Parameters& p, const FittedMotion& m, const std::vector<double>& moments) {
     const OscillatorModel model(p);
-    Intervals intervals(m.tau);
     OscillatorSeries series{moments, {}, {}, {}};
-    for (const double tau : moments) {
-        const std::size_t i = intervals.at(tau);
-        const ModelRows rows = model.at(m.tau[i], tau - m.tau[i]);
+    for (auto* column : {&series.x, &series.x_dot, &series.x_ddot}) column->reserve(moments.size());
+    Intervals intervals(m.tau);
+    for (std::size_t k = 0; k < moments.size();) {
+        const std::size_t i = intervals.at(moments[k]);
+        OscillatorModel::Interval interval(model, m.tau[i]);
         const Eigen::Vector4d unknowns = unknowns_of(m, i);
-        series.x.push_back(rows.x.dot(unknowns));
-        series.x_dot.push_back(rows.x_dot.dot(unknowns));
-        series.x_ddot.push_back(rows.x_ddot.dot(unknowns));
+        for (; k < moments.size() && intervals.at(moments[k]) == i; ++k) {
+            const ModelRows rows = interval.at(moments[k] - m.tau[i]);
+            series.x.push_back(rows.x.dot(unknowns));
+            series.x_dot.push_back(rows.x_dot.dot(unknowns));
+            series.x_ddot.push_back(rows.x_ddot.dot(unknowns));
+        }
     }
     return series;
 }

@@ -5,7 +5,7 @@
 // forcing for all; x is continuous at the impacts.
 #pragma once
 
-#include "core/identification/measured_record.hpp"
+#include "core/identification/record_statistics.hpp"
 #include "core/motion/parameters.hpp"
 #include "core/motion/special_values.hpp"
 
@@ -21,7 +21,7 @@ struct FittedMotion {
     /// Of the forcing force_sin sin(Omega tau) + force_cos cos(Omega tau), m.
     double force_sin, force_cos;
     /// Of what is left of each sensor, standard deviation; NaN without it.
-    double noise_x, noise_x_ddot;
+    double noise_x = nan, noise_x_ddot = nan;
     /// That over the sensor's own noise, taken from the signal beside the pulses: 1 if all is
     /// explained.
     double misfit_x = nan, misfit_x_ddot = nan;
@@ -36,10 +36,10 @@ struct FittedMotion {
 };
 
 /// `impacts`: their moments, ascending, within the record. `pulse`: how long each one spoils the
-/// acceleration, in tau.
+/// acceleration, in tau. `statistics`: of the record.
 FittedMotion fit_motion(
-    const Parameters& parameters, const MeasuredRecord& record, const std::vector<double>& impacts,
-    double pulse);
+    const Parameters& parameters, const MeasuredRecord& record, const RecordStatistics& statistics,
+    const std::vector<double>& impacts, double pulse);
 
 /// The oscillator at some moments: columns of equal length, m and derivatives in tau.
 struct OscillatorSeries {

@@ -54,9 +54,10 @@ KinkFit kink_fit(
     const KinkWindow& w, double noise) {
     KinkFit fit{Eigen::MatrixXd(w.count, 3), Eigen::VectorXd(w.count)};
     const Eigen::Vector4d own(m.own_x[i], m.own_x_dot[i], m.force_sin, m.force_cos);
+    OscillatorModel::Interval interval(model, m.tau[i]);
     for (std::size_t k = 0; k < w.count; ++k) {
         const auto row = static_cast<Eigen::Index>(k);
-        const ModelRows at = model.at(m.tau[i], r.tau[w.first + k] - m.tau[i]);
+        const ModelRows at = interval.at(r.tau[w.first + k] - m.tau[i]);
         fit.rows.block<1, 2>(row, 0) = at.x.head<2>().transpose() / noise;
         fit.residual(row) = (r.x[w.first + k] - at.x.dot(own)) / noise;
     }

@@ -24,13 +24,6 @@ constexpr std::size_t pulses_compared = 100;
 // Moments that are tried on either side of the fitted one, over half a pulse or one step.
 constexpr int moments_tried = 40;
 
-/// Half a sine of area 1 and length `pulse` about 0.
-double pulse_shape(double s, double pulse) {
-    return std::abs(s) < 0.5 * pulse
-               ? 0.5 * std::numbers::pi / pulse * std::cos(std::numbers::pi * s / pulse)
-               : 0;
-}
-
 }  // namespace
 
 ImpactPulse::ImpactPulse(
@@ -40,7 +33,8 @@ ImpactPulse::ImpactPulse(
       x_dot_jump_(m.x_dot[impact + 1] - m.x_dot_before[impact]),
       x_jump_(m.x_jump[impact]),
       x_jump_error_(m.x_jump_error[impact]),
-      x_jump_rate_(m.x_jump_rate[impact]) {
+      x_jump_rate_(m.x_jump_rate[impact]),
+      noise_(m.noise_x_ddot) {
     const double tau = tau_;
     const auto first = std::lower_bound(r.tau.begin(), r.tau.end(), tau - reach),
                last = std::upper_bound(r.tau.begin(), r.tau.end(), tau + reach);
@@ -52,45 +46,66 @@ ImpactPulse::ImpactPulse(
         const double jerk = -x_dot - 2 * p.zeta() * base +
                             p.Omega * (m.force_sin * std::cos(p.Omega * tau) -
                                        m.force_cos * std::sin(p.Omega * tau));
-        samples_.push_back({*it, r.x_ddot[k] - base - jerk * s});
+        const double x_ddot = r.x_ddot[k] - base - jerk * s, in_noise = x_ddot / noise_;
+        samples_.push_back({*it, x_ddot, in_noise * in_noise});
     }
 }
 
-/// Sum of squares, in units of the noise: of the acceleration's samples, and of the jump of x
-/// between the intervals' own motions.
-double ImpactPulse::misfit(double tau, double pulse, double noise) const {
-    const double x_jump = (x_jump_ + x_jump_rate_ * (tau - tau_)) / x_jump_error_;
+/// Sum of squares, in units of the noise: of the acceleration's samples without the pulse, half a
+/// sine of area x_dot_jump_, and of the jump of x between the intervals' own motions. Where that is
+/// no less than `enough`, a part of the sum that is no less, either.
+double ImpactPulse::misfit(double tau, double pulse, double enough) const {
+    const double x_jump = (x_jump_ + x_jump_rate_ * (tau - tau_)) / x_jump_error_,
+                 height = 0.5 * std::numbers::pi / pulse;
     double sum = x_jump * x_jump;
-    for (const Sample& s : samples_) {
-        const double d = (s.x_ddot - x_dot_jump_ * pulse_shape(s.tau - tau, pulse)) / noise;
-        sum += d * d;
+    for (const Sample& sample : samples_) {
+        if (sum >= enough) return sum;
+        const double s = sample.tau - tau;
+        if (std::abs(s) < 0.5 * pulse) {
+            const double shape = height * std::cos(std::numbers::pi * s / pulse),
+                         d = (sample.x_ddot - x_dot_jump_ * shape) / noise_;
+            sum += d * d;
+        } else {
+            sum += sample.squared;
+        }
     }
     return sum;
 }
 
-ImpactPulse::Moment ImpactPulse::moment(double pulse, double noise, double step) const {
-    const double width = std::max(step, 0.5 * pulse);
+double ImpactPulse::moment_tried(int k, double pulse, double step) const {
+    return tau_ + std::max(step, 0.5 * pulse) * k / moments_tried;
+}
+
+double ImpactPulse::least_misfit(double pulse, double step) const {
+    double least = misfit(tau_, pulse, infinity);
+    for (int k = 1; k <= moments_tried; ++k)  // outwards, where most misfits soon are too large
+        for (const int side : {-1, 1})
+            least = std::min(least, misfit(moment_tried(side * k, pulse, step), pulse, least));
+    return least;
+}
+
+double ImpactPulse::moment(double pulse, double step) const {
     std::array<double, 2 * moments_tried + 1> misfits;
     for (int k = -moments_tried; k <= moments_tried; ++k)
-        misfits[k + moments_tried] = misfit(tau_ + width * k / moments_tried, pulse, noise);
-    const double least = *std::min_element(misfits.begin(), misfits.end());
+        misfits[k + moments_tried] = misfit(moment_tried(k, pulse, step), pulse, infinity);
+    const double width = std::max(step, 0.5 * pulse),
+                 least = *std::min_element(misfits.begin(), misfits.end());
     double sum = 0, first = 0;
     for (int k = -moments_tried; k <= moments_tried; ++k) {
         const double likelihood = std::exp(-0.5 * (misfits[k + moments_tried] - least));
         sum += likelihood;
         first += likelihood * width * k / moments_tried;
     }
-    return {std::isfinite(first / sum) ? tau_ + first / sum : tau_, least};
+    return std::isfinite(first / sum) ? tau_ + first / sum : tau_;
 }
 
-double best_pulse(
-    const std::vector<ImpactPulse>& impacts, double noise, double step, double present) {
+double best_pulse(const std::vector<ImpactPulse>& impacts, double step, double present) {
     double least = infinity, best = present;
     for (double length = std::min(shortest_pulse_steps * step, shortest_pulse);
          length < std::max(longest_pulse_steps * step, longest_pulse); length *= pulse_ratio) {
         std::vector<double> misfits;
         for (std::size_t i = 0; i < impacts.size(); i += 1 + impacts.size() / pulses_compared)
-            misfits.push_back(impacts[i].moment(length, noise, step).misfit);
+            misfits.push_back(impacts[i].least_misfit(length, step));
         const double typical = median(misfits);
         if (typical < least) least = typical, best = length;
     }

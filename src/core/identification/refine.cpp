@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
+#include <utility>
 
 #include "core/identification/displacement.hpp"
 #include "core/identification/kinks.hpp"
@@ -44,15 +47,27 @@ struct Refinement {
     double step;  // between samples
     RefinedImpacts refined = {{}, {}, 0, {}, {}, true};
     std::vector<Rejected> rejected = {};
+    std::optional<RecordStatistics> statistics = {};  // of the record; none once that has changed
 };
 
+/// Two spikes that are closer than that may be the same.
+double same_within(const Refinement& f) { return 0.5 * (f.refined.pulse + f.step); }
+
 bool is_same(const Refinement& f, const Spike& a, const Spike& b) {
-    return std::abs(a.tau - b.tau) < 0.5 * (f.refined.pulse + f.step) && a.side == b.side;
+    return std::abs(a.tau - b.tau) < same_within(f) && a.side == b.side;
 }
 
-bool holds(const Refinement& f, const std::vector<Spike>& spikes, const Spike& s) {
+bool any_is_same(const Refinement& f, std::span<const Spike> spikes, const Spike& s) {
     return std::any_of(
         spikes.begin(), spikes.end(), [&](const Spike& k) { return is_same(f, s, k); });
+}
+
+/// The same of spikes in order of time, of which only those nearby are looked at.
+bool holds(const Refinement& f, std::span<const Spike> spikes, const Spike& s) {
+    const double near = 2 * same_within(f);
+    const auto earlier = [](const Spike& k, double tau) { return k.tau < tau; };
+    const auto first = std::lower_bound(spikes.begin(), spikes.end(), s.tau - near, earlier);
+    return any_is_same(f, {first, std::lower_bound(first, spikes.end(), s.tau + near, earlier)}, s);
 }
 
 /// The motion between the impacts as they are known now.
@@ -70,7 +85,9 @@ void fit(Refinement& f, double pulse) {
         refined.side.push_back(s.side);
     }
     refined.pulse = pulse;
-    refined.motion = fit_motion(f.parameters, f.record, refined.tau, pulse);
+    if (!f.statistics) f.statistics.emplace(f.record);
+    refined.motion = {};  // its residual is as long as the record
+    refined.motion = fit_motion(f.parameters, f.record, *f.statistics, refined.tau, pulse);
     for (std::size_t i = 0; i < f.spikes.size(); ++i) {
         Spike& s = f.spikes[i];
         if (s.side != 0) continue;  // one of which only the moment was given
@@ -86,16 +103,16 @@ void place_impacts(Refinement& f) {
     std::vector<ImpactPulse> impacts;
     for (std::size_t i = 0; i < f.spikes.size(); ++i)
         impacts.emplace_back(f.parameters, f.record, motion, i, reach);
-    const double pulse = best_pulse(impacts, motion.noise_x_ddot, f.step, f.refined.pulse);
+    const double pulse = best_pulse(impacts, f.step, f.refined.pulse);
     for (std::size_t i = 0; i < f.spikes.size(); ++i)
-        f.spikes[i].tau = impacts[i].moment(pulse, motion.noise_x_ddot, f.step).tau;
+        f.spikes[i].tau = impacts[i].moment(pulse, f.step);
     fit(f, pulse);
 }
 
 /// The spikes in what the motion leaves of the acceleration.
 std::vector<Spike> spikes_beside_motion(const Refinement& f) {
     const FittedMotion& motion = f.refined.motion;
-    const double noise = std::max(motion.noise_x_ddot, least_noise_of(f.record.x_ddot)),
+    const double noise = std::max(motion.noise_x_ddot, f.statistics->x_ddot.least_noise),
                  longest =
                      std::max(longest_spike_pulses * f.refined.pulse, longest_spike_steps * f.step);
     return spikes_in(f.record, motion.x_ddot_residual, noise, f.sigmas, longest);
@@ -141,6 +158,7 @@ void reject(Refinement& f, const Spike& spike) {
     if (before == f.rejected.end()) {
         f.rejected.push_back({spike, 1});
     } else if (++before->times == most_rejections) {
+        f.statistics.reset();
         for (std::size_t k = 0; k < f.record.tau.size(); ++k)
             if (std::abs(f.record.tau[k] - spike.tau) < f.step)
                 f.record.x_ddot[k] -= f.refined.motion.x_ddot_residual[k];
@@ -157,24 +175,24 @@ std::vector<Spike> kept_of(Refinement& f, const std::vector<Spike>& seen) {
     return kept;
 }
 
-/// Adds the spikes and kinks that are new to those kept, and says whether there are any.
+/// Adds the spikes and kinks that are new to those kept, which are in order of time, and says
+/// whether there are any.
 bool add_found(const Refinement& f, std::vector<Spike> found, std::vector<Spike>& kept) {
     if (!f.record.x.empty()) {
         const std::vector<Spike> kinks =
             find_kinks(f.parameters, f.record, f.refined.motion, f.refined.motion.noise_x);
         found.insert(found.end(), kinks.begin(), kinks.end());
     }
-    bool any = false;
+    std::vector<Spike> added;
     for (const Spike& s : found) {
         const bool hopeless =
             std::any_of(f.rejected.begin(), f.rejected.end(), [&](const Rejected& d) {
                 return d.times >= most_rejections && is_same(f, d.spike, s);
             });
-        if (hopeless || holds(f, kept, s)) continue;
-        kept.push_back(s);
-        any = true;
+        if (!hopeless && !holds(f, kept, s) && !any_is_same(f, added, s)) added.push_back(s);
     }
-    return any;
+    kept.insert(kept.end(), added.begin(), added.end());
+    return !added.empty();
 }
 
 /// What was rejected and did not come back.
@@ -196,7 +214,7 @@ RefinedImpacts refine_impacts(
     if (!record.x.empty()) mend_displacement(f.record, typical_jump(f.spikes));
     if (record.x_ddot.empty()) {
         fit(f, 0);
-        return f.refined;
+        return std::move(f.refined);
     }
     fit(f, first_pulse_steps * f.step);
     for (int round = 1; round <= most_rounds && !f.spikes.empty(); ++round) {
@@ -212,7 +230,7 @@ RefinedImpacts refine_impacts(
         if (!f.refined.settled) fit(f, f.refined.pulse);
     }
     f.refined.dropped = dropped_of(f);
-    return f.refined;
+    return std::move(f.refined);
 }
 
 }  // namespace vines

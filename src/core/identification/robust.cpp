@@ -37,28 +37,35 @@ double error_of_median(const std::vector<double>& off) {
     return 1.25 * robust_deviation(off) / std::sqrt(static_cast<double>(off.size()));
 }
 
-double difference_noise(
-    const std::vector<double>& tau, const std::vector<double>& v,
-    const std::vector<char>& spoiled) {
-    if (v.size() < 4) return nan;
+ThirdDifferences::ThirdDifferences(const std::vector<double>& tau, const std::vector<double>& v) {
+    if (v.size() < 4) return;
     const double step = (tau.back() - tau.front()) / static_cast<double>(tau.size() - 1);
-    std::vector<double> third;
-    for (std::size_t i = 3; i < v.size(); ++i) {
+    scaled_.reserve(v.size() - 3);
+    for (std::size_t i = 0; i + 3 < v.size(); ++i) {
         // One sample may be missing among the four.
-        if (tau[i] - tau[i - 3] > 4.5 * step) continue;
+        if (tau[i + 3] - tau[i] > 4.5 * step) {
+            scaled_.push_back(nan);
+            continue;
+        }
         double difference = 0, variance = 0;
-        bool clean = true;
-        for (std::size_t j = i - 3; j <= i; ++j) {
+        for (std::size_t j = i; j <= i + 3; ++j) {
             double product = 1;
-            for (std::size_t k = i - 3; k <= i; ++k)
+            for (std::size_t k = i; k <= i + 3; ++k)
                 if (k != j) product *= (tau[j] - tau[k]) / step;
             difference += v[j] / product;
             variance += 1 / (product * product);
-            clean = clean && (spoiled.empty() || !spoiled[j]);
         }
-        if (clean) third.push_back(difference / std::sqrt(variance));
+        scaled_.push_back(difference / std::sqrt(variance));
     }
-    return robust_deviation(std::move(third));
+}
+
+double ThirdDifferences::noise(const std::vector<char>& spoiled) const {
+    std::vector<double> clean;
+    clean.reserve(scaled_.size());
+    for (std::size_t i = 0; i < scaled_.size(); ++i)
+        if (!spoiled[i] && !spoiled[i + 1] && !spoiled[i + 2] && !spoiled[i + 3])
+            clean.push_back(scaled_[i]);
+    return robust_deviation(std::move(clean));
 }
 
 }  // namespace vines

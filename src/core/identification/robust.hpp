@@ -20,9 +20,19 @@ double error_of_median(const std::vector<double>& off);
 
 /// White noise of a smooth signal from its third differences, whose variance is 20 times that of
 /// the noise at equal steps: a parabola leaves none. Divided differences, so that steps may differ;
-/// not over gaps, nor where `spoiled` (empty: nowhere).
-double difference_noise(
-    const std::vector<double>& tau, const std::vector<double>& values,
-    const std::vector<char>& spoiled = {});
+/// not over gaps.
+class ThirdDifferences {
+public:
+    /// `tau` and `values` of equal length.
+    ThirdDifferences(const std::vector<double>& tau, const std::vector<double>& values);
+
+    /// NaN of fewer than four values.
+    double noise() const { return robust_deviation(scaled_); }
+    /// Where four neighbours are not `spoiled`, which has an entry for each value.
+    double noise(const std::vector<char>& spoiled) const;
+
+private:
+    std::vector<double> scaled_;  // such that each has the variance of the noise; NaN over gaps
+};
 
 }  // namespace vines

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/identification/robust.hpp"
 #include "core/motion/special_values.hpp"
@@ -39,49 +40,116 @@ struct Neighbourhood {
     }
 };
 
+/// Values in order, without those that are NaN.
+class OrderedValues {
+public:
+    void add(double value) {
+        if (!std::isnan(value)) values_.insert(place_of(value), value);
+    }
+    void remove(double value) {
+        if (!std::isnan(value)) values_.erase(place_of(value));
+    }
+    /// NaN of nothing.
+    double median() const {
+        if (values_.empty()) return nan;
+        const std::size_t middle = values_.size() / 2;
+        return values_.size() % 2 ? values_[middle] : 0.5 * (values_[middle] + values_[middle - 1]);
+    }
+
+private:
+    std::vector<double>::iterator place_of(double value) {
+        return std::lower_bound(values_.begin(), values_.end(), value);
+    }
+    std::vector<double> values_;
+};
+
 /// What stands out from the median of its neighbourhood: the first guess.
 std::vector<double> without_median(const MeasuredRecord& r, double reach) {
-    std::vector<double> residual(r.tau.size()), window;
+    std::vector<double> residual(r.tau.size());
+    OrderedValues values;
     Neighbourhood near;
     for (std::size_t k = 0; k < r.tau.size(); ++k) {
+        const Neighbourhood before = near;
         near.move_to(k, r.tau, reach);
-        window.assign(
-            r.x_ddot.begin() + static_cast<std::ptrdiff_t>(near.from),
-            r.x_ddot.begin() + static_cast<std::ptrdiff_t>(near.to));
-        residual[k] = r.x_ddot[k] - median(window);
+        for (std::size_t j = before.from; j < std::min(before.to, near.from); ++j)
+            values.remove(r.x_ddot[j]);
+        for (std::size_t j = std::max(before.to, near.from); j < near.to; ++j)
+            values.add(r.x_ddot[j]);
+        residual[k] = r.x_ddot[k] - values.median();
     }
     return residual;
 }
 
+/// The least-squares parabola through samples, as its normal equations N z = g.
+struct ParabolaEquations {
+    double count = 0, s = 0, s_squared = 0, s_cubed = 0, s_fourth = 0;
+    Eigen::Vector3d g = Eigen::Vector3d::Zero();
+
+    void add(double at, double value) {
+        const double squared = at * at;
+        count += 1;
+        s += at;
+        s_squared += squared;
+        s_cubed += at * squared;
+        s_fourth += squared * squared;
+        g += Eigen::Vector3d(value, at * value, squared * value);
+    }
+    /// The parabola at 0.
+    double solve() const {
+        Eigen::Matrix3d N;
+        N << count, s, s_squared, s, s_squared, s_cubed, s_squared, s_cubed, s_fourth;
+        return N.ldlt().solve(g)(0);
+    }
+};
+
 /// What is left of the acceleration without its smooth background: a parabola through the unmasked
 /// neighbours of each sample.
-std::vector<double> without_background(
-    const MeasuredRecord& r, const std::vector<char>& masked, double reach) {
-    std::vector<double> residual(r.tau.size(), 0);
-    Neighbourhood near;
-    for (std::size_t k = 0; k < r.tau.size(); ++k) {
-        near.move_to(k, r.tau, reach);
-        Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
-        Eigen::Vector3d g = Eigen::Vector3d::Zero();
-        int used = 0;
-        for (std::size_t j = near.from; j < near.to; ++j) {
-            if (masked[j]) continue;
-            const double s = (r.tau[j] - r.tau[k]) / reach;
-            const Eigen::Vector3d row(1, s, s * s);
-            N += row * row.transpose();
-            g += row * r.x_ddot[j];
-            ++used;
+class Background {
+public:
+    Background(const MeasuredRecord& r, double reach)
+        : r_(r),
+          reach_(reach),
+          residual_(r.tau.size(), 0) {}
+
+    const std::vector<double>& residual() const { return residual_; }
+
+    /// By another mask than the last one: only samples with a neighbour at which the two differ are
+    /// looked at anew.
+    void mask(std::vector<char> masked) {
+        const std::vector<char> before = std::exchange(masked_, std::move(masked));
+        Neighbourhood near;
+        std::size_t changed = 0;
+        for (std::size_t k = 0; k < r_.tau.size(); ++k) {
+            near.move_to(k, r_.tau, reach_);
+            changed = std::max(changed, near.from);
+            while (changed < near.to && !before.empty() && masked_[changed] == before[changed])
+                ++changed;
+            if (changed < near.to) residual_[k] = residual_at(k, near);
         }
-        if (used >= parabola_samples) residual[k] = r.x_ddot[k] - N.ldlt().solve(g)(0);
     }
-    return residual;
-}
+
+    const std::vector<char>& masked() const { return masked_; }
+
+private:
+    /// 0 where too few neighbours are left.
+    double residual_at(std::size_t k, const Neighbourhood& near) const {
+        ParabolaEquations equations;
+        for (std::size_t j = near.from; j < near.to; ++j)
+            if (!masked_[j]) equations.add((r_.tau[j] - r_.tau[k]) / reach_, r_.x_ddot[j]);
+        return equations.count >= parabola_samples ? r_.x_ddot[k] - equations.solve() : 0;
+    }
+
+    const MeasuredRecord& r_;
+    const double reach_;
+    std::vector<char> masked_;
+    std::vector<double> residual_;
+};
 
 double noise_beside(const std::vector<char>& masked, const std::vector<double>& residual) {
     std::vector<double> quiet;
     for (std::size_t k = 0; k < residual.size(); ++k)
         if (!masked[k]) quiet.push_back(residual[k]);
-    return robust_deviation(quiet);
+    return robust_deviation(std::move(quiet));
 }
 
 /// Samples above the noise, each with its neighbours.
@@ -136,22 +204,23 @@ double typical_jump(const std::vector<Spike>& spikes) {
 Spikes find_spikes(const MeasuredRecord& r, double sigmas) {
     const std::size_t n = r.tau.size();
     const double reach = std::max(background_least, background_samples * sample_interval(r));
-    Spikes found{{}, difference_noise(r.tau, r.x_ddot)};
+    Spikes found{{}, ThirdDifferences(r.tau, r.x_ddot).noise()};
     // First what stands out from the median of its neighbourhood; then, again and again, from the
     // parabola through the rest.
     std::vector<double> residual = without_median(r, reach);
     const double coarse = std::max(found.noise, robust_deviation(residual));
     std::vector<char> masked(n, 0);
     for (std::size_t k = 0; k < n; ++k) masked[k] = std::abs(residual[k]) > masking_sigmas * coarse;
+    residual = {};
+    Background background(r, reach);
     for (int round = 0; round < masking_rounds; ++round) {
-        residual = without_background(r, masked, reach);
-        found.noise = noise_beside(masked, residual);
-        std::vector<char> next = mask_of(residual, found.noise);
-        if (next == masked) break;
-        masked = std::move(next);
+        background.mask(std::move(masked));
+        found.noise = noise_beside(background.masked(), background.residual());
+        masked = mask_of(background.residual(), found.noise);
+        if (masked == background.masked()) break;
     }
     found.noise = std::max(found.noise, least_noise_of(r.x_ddot));
-    found.spikes = spikes_in(r, residual, found.noise, sigmas, infinity);
+    found.spikes = spikes_in(r, background.residual(), found.noise, sigmas, infinity);
     return found;
 }
 

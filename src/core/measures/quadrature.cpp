@@ -58,6 +58,11 @@ WideForm symmetric(int place) {
 }  // namespace
 
 std::optional<Antiderivative> Antiderivative::of(const Flow& flow) {
+    thread_local LastUsed<Flow::Coefficients, std::optional<Antiderivative>> antiderivatives;
+    return *antiderivatives.get(flow.coefficients(), [&flow] { return solved_for(flow); });
+}
+
+std::optional<Antiderivative> Antiderivative::solved_for(const Flow& flow) {
     const Flow::Coefficients c = flow.coefficients();
     const double rate = slowest_rate(c);
     if (!(rate > slowest)) return {};

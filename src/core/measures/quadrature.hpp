@@ -34,7 +34,8 @@ struct Integrals {
 class Antiderivative {
 public:
     /// None where it is ill conditioned: where hardly anything is damped, or at resonance. There
-    /// z^T P z is much larger than what it changes by.
+    /// z^T P z is much larger than what it changes by. As the thread has made it before where it
+    /// can.
     static std::optional<Antiderivative> of(const Flow& flow);
 
     /// From then on, in tau, the integrals are no longer small beside F: from rest they begin as
@@ -48,6 +49,8 @@ public:
     }
 
 private:
+    static std::optional<Antiderivative> solved_for(const Flow& flow);
+
     struct Form {
         Eigen::Matrix4d P;
         double rate;

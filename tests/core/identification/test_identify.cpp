@@ -164,6 +164,24 @@ TEST_CASE(
     CHECK(worst < 5 * 2e-6);  // of 24,000 samples of the noise
 }
 
+TEST_CASE("a fitted motion at a moment is the same whichever moments are asked for with it") {
+    Parameters p;
+    p.damping = Damping::closed_form;
+    FittedMotion m;
+    m.tau = {0, 50, 50.1}, m.x = {0.01, -0.02, 0.03}, m.x_dot = {0, 0.02, -0.01};
+    m.force_sin = 0.001, m.force_cos = 0.002;
+    // The first and the last interval are longer than one look at a flow bridges.
+    std::vector<double> moments;
+    for (int k = 0; k < 3000; ++k) moments.push_back(0.041 * k);
+    const OscillatorSeries all = motion_at(p, m, moments);
+    for (std::size_t k = 0; k < moments.size(); ++k) {
+        const OscillatorSeries alone = motion_at(p, m, {moments[k]});
+        CHECK(all.x[k] == alone.x[0]);
+        CHECK(all.x_dot[k] == alone.x_dot[0]);
+        CHECK(all.x_ddot[k] == alone.x_ddot[0]);
+    }
+}
+
 TEST_CASE(
     "the exponents of the direct estimate are of the impacts that the fit takes, though noise puts "
     "some of them at fault") {
