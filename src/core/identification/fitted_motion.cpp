@@ -9,6 +9,7 @@
 #include "core/identification/oscillator_model.hpp"
 #include "core/identification/robust.hpp"
 #include "core/identification/spikes.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines {
 
@@ -229,7 +230,8 @@ void meet_at_impacts(
 double misfit_of(
     const std::vector<double>& residual, const std::vector<double>& tau,
     const std::vector<double>& signal, const std::vector<char>& spoiled) {
-    const double noise = std::hypot(difference_noise(tau, signal, spoiled), least_noise_of(signal));
+    const double noise =
+        elementary::hypot(difference_noise(tau, signal, spoiled), least_noise_of(signal));
     // Of a normal distribution lie within that many standard deviations.
     constexpr double ninety_percent = 1.645;
     return quantile_of_moduli(residual, 0.9) / ninety_percent / noise;

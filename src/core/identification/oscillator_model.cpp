@@ -1,6 +1,6 @@
 #include "core/identification/oscillator_model.hpp"
 
-#include <cmath>
+#include "core/motion/elementary.hpp"
 
 namespace vines {
 
@@ -10,7 +10,7 @@ OscillatorModel::OscillatorModel(const Parameters& p)
       flow_(1, 2 * p.zeta(), 1, p.Omega) {}
 
 ModelRows OscillatorModel::at(double tau, double s) const {
-    const double sin = std::sin(Omega_ * tau), cos = std::cos(Omega_ * tau);
+    const double sin = elementary::sin(Omega_ * tau), cos = elementary::cos(Omega_ * tau);
     const Oscillation parts[4] = {
         flow_.after({1, 0, 0, 0}, s), flow_.after({0, 1, 0, 0}, s),
         flow_.after({0, 0, sin, cos}, s), flow_.after({0, 0, cos, -sin}, s)};

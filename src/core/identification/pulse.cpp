@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/identification/robust.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines {
 
@@ -27,7 +28,7 @@ constexpr int moments_tried = 40;
 /// Half a sine of area 1 and length `pulse` about 0.
 double pulse_shape(double s, double pulse) {
     return std::abs(s) < 0.5 * pulse
-               ? 0.5 * std::numbers::pi / pulse * std::cos(std::numbers::pi * s / pulse)
+               ? 0.5 * std::numbers::pi / pulse * elementary::cos(std::numbers::pi * s / pulse)
                : 0;
 }
 
@@ -50,8 +51,8 @@ ImpactPulse::ImpactPulse(
         const double s = *it - tau, base = s < 0 ? m.x_ddot_before[impact] : m.x_ddot_after[impact];
         const double x_dot = s < 0 ? m.x_dot_before[impact] : m.x_dot[impact + 1];
         const double jerk = -x_dot - 2 * p.zeta() * base +
-                            p.Omega * (m.force_sin * std::cos(p.Omega * tau) -
-                                       m.force_cos * std::sin(p.Omega * tau));
+                            p.Omega * (m.force_sin * elementary::cos(p.Omega * tau) -
+                                       m.force_cos * elementary::sin(p.Omega * tau));
         samples_.push_back({*it, r.x_ddot[k] - base - jerk * s});
     }
 }
@@ -76,7 +77,7 @@ ImpactPulse::Moment ImpactPulse::moment(double pulse, double noise, double step)
     const double least = *std::min_element(misfits.begin(), misfits.end());
     double sum = 0, first = 0;
     for (int k = -moments_tried; k <= moments_tried; ++k) {
-        const double likelihood = std::exp(-0.5 * (misfits[k + moments_tried] - least));
+        const double likelihood = elementary::exp(-0.5 * (misfits[k + moments_tried] - least));
         sum += likelihood;
         first += likelihood * width * k / moments_tried;
     }

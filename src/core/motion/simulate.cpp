@@ -6,6 +6,8 @@
 #include <numbers>
 #include <optional>
 
+#include "core/motion/elementary.hpp"
+
 namespace vines {
 
 namespace {
@@ -52,7 +54,7 @@ public:
           y_(start.y),
           y_dot_(start.y_dot) {
         const double theta = p.Omega * limits.tau_start + p.phi();
-        lo_ = {start.x, start.x_dot, std::sin(theta), std::cos(theta)};
+        lo_ = {start.x, start.x_dot, elementary::sin(theta), elementary::cos(theta)};
         side_ = wall_of(start, p.b);
         end_rounding_ = 0.5 * (limits.tau_end - std::nextafter(limits.tau_end, 0));
         relative_speed_ = start.x_dot - start.y_dot;
