@@ -25,13 +25,6 @@ constexpr std::size_t pulses_compared = 100;
 // Moments that are tried on either side of the fitted one, over half a pulse or one step.
 constexpr int moments_tried = 40;
 
-/// Half a sine of area 1 and length `pulse` about 0.
-double pulse_shape(double s, double pulse) {
-    return std::abs(s) < 0.5 * pulse
-               ? 0.5 * std::numbers::pi / pulse * elementary::cos(std::numbers::pi * s / pulse)
-               : 0;
-}
-
 }  // namespace
 
 ImpactPulse::ImpactPulse(
@@ -62,8 +55,13 @@ ImpactPulse::ImpactPulse(
 double ImpactPulse::misfit(double tau, double pulse, double noise) const {
     const double x_jump = (x_jump_ + x_jump_rate_ * (tau - tau_)) / x_jump_error_;
     double sum = x_jump * x_jump;
-    for (const Sample& s : samples_) {
-        const double d = (s.x_ddot - x_dot_jump_ * pulse_shape(s.tau - tau, pulse)) / noise;
+    // Half a sine of area 1 about tau.
+    const double height = 0.5 * std::numbers::pi / pulse;
+    for (const Sample& sample : samples_) {
+        const double s = sample.tau - tau;
+        const double shape =
+            std::abs(s) < 0.5 * pulse ? height * elementary::cos(std::numbers::pi * s / pulse) : 0;
+        const double d = (sample.x_ddot - x_dot_jump_ * shape) / noise;
         sum += d * d;
     }
     return sum;

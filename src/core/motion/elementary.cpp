@@ -225,23 +225,42 @@ struct ReducedAngle {
     DoubleDouble rest;  // |rest| <= step/2 = 0.0491
 };
 
-ReducedAngle reduced(double x) {
-    // So far n, and with it what the third part of pi leaves out, is small enough.
+/// For less than 1024 steps, to 2^-95: the products with parts of 26 bits are exact. x is so near
+/// to n steps that the first difference is, too.
+inline ReducedAngle less_few_steps(double x, double n) {
+    constexpr double first = head_of(angle_step[0]), second = angle_step[0] - first;
+    const DoubleDouble near = exact_sum(x - n * first, -n * second);
+    return {static_cast<std::int64_t>(n), ordered_sum(near.high, near.low - n * angle_step[1])};
+}
+
+/// For any number of steps, to 2^-62 of the rest as long as they are less than 2^35.
+ReducedAngle less_many_steps(double x) {
+    // So far the number of steps, and with it what the third part of pi leaves out, is small
+    // enough.
     constexpr double furthest = 0x1p47;
+    if (!(std::abs(x) < infinity)) return {0, {nan, 0}};
     if (std::abs(x) > furthest) x = std::fmod(x, 2 * pi[0]);
     const double n = nearest_whole(x * steps_per_radian);
-    if (n == 0) return {0, {x, 0}};
     const DoubleDouble first = exact_product(n, angle_step[0]),
                        second = exact_product(n, angle_step[1]);
-    // x is so near to n steps that the first difference is exact.
     const DoubleDouble nearer = exact_sum(x - first.high, -first.low),
                        near = exact_sum(nearer.high, -second.high);
     const double low = (nearer.low + near.low) - second.low - n * angle_step[2];
     return {static_cast<std::int64_t>(n), ordered_sum(near.high, low)};
 }
 
+inline ReducedAngle reduced(double x) {
+    const double n = nearest_whole(x * steps_per_radian);
+    if (n == 0) return {0, {x, 0}};
+    if (std::abs(n) < 1024) {
+        const ReducedAngle angle = less_few_steps(x, n);
+        if (std::abs(angle.rest.high) > 0x1p-30) return angle;
+    }
+    return less_many_steps(x);
+}
+
 /// sin(a + r) = sin a + r cos a + (sin r - r) cos a + (cos r - 1) sin a.
-double sine_at(std::int64_t steps, const DoubleDouble& r) {
+inline double sine_at(std::int64_t steps, const DoubleDouble& r) {
     const auto at = [](std::int64_t k) { return sine_table[k & (turn_steps - 1)]; };
     const HeadAndRest sine = at(steps), cosine = at(steps + right_angle);
     const double r_head = head_of(r.high), r_rest = (r.high - r_head) + r.low,
@@ -263,13 +282,11 @@ double sine_at(std::int64_t steps, const DoubleDouble& r) {
 double sin(double x) {
     // x - x^3/6 is x; 0 keeps its sign.
     if (std::abs(x) < 0x1p-28) return x;
-    if (!(std::abs(x) < infinity)) return nan;
     const ReducedAngle angle = reduced(x);
     return sine_at(angle.steps, angle.rest);
 }
 
 double cos(double x) {
-    if (!(std::abs(x) < infinity)) return nan;
     const ReducedAngle angle = reduced(x);
     return sine_at(angle.steps + right_angle, angle.rest);
 }
