@@ -56,10 +56,10 @@ constexpr auto log_table = [] {
     std::array<LogCell, log_cells> table;
     for (int i = 0; i < log_cells; ++i) {
         const double middle = std::bit_cast<double>(least_z + i * cell_size + cell_size / 2);
-        const double thousandths = static_cast<int>(1024 / middle + 0.5);
+        const double parts_of_1024 = static_cast<int>(1024 / middle + 0.5);
         table[i] = {
-            thousandths / 1024,
-            on_grid(logarithm_by_series(1024 - thousandths, 1024 + thousandths))};
+            parts_of_1024 / 1024,
+            on_grid(logarithm_by_series(1024 - parts_of_1024, 1024 + parts_of_1024))};
     }
     return table;
 }();
@@ -126,7 +126,7 @@ constexpr auto exp_table = [] {
     std::array<DoubleDouble, exp_steps> table;
     for (int i = 0; i < exp_steps; ++i) {
         const DoubleDouble r = ln_2 * DoubleDouble{1.0 * i / exp_steps};
-        // The 27th term of the series is below 2^-107.
+        // The term behind the 27th is below 2^-110.
         DoubleDouble sum = {1};
         for (int n = 27; n > 0; --n)
             sum = DoubleDouble{1} + sum * r / DoubleDouble{static_cast<double>(n)};
@@ -195,7 +195,7 @@ struct HeadAndRest {
 };
 
 /// sin or cos of an angle up to pi/4 by its series, from the first term on: the term behind the
-/// 14th is below 2^-108.
+/// 14th is below 2^-107.
 constexpr DoubleDouble sine_series(const DoubleDouble& angle, int first) {
     const DoubleDouble minus_square = DoubleDouble{-1} * angle * angle;
     DoubleDouble sum = {1};
