@@ -6,6 +6,7 @@
 
 #include "api/column.hpp"
 #include "api/schema/words.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines::api {
 
@@ -26,7 +27,7 @@ std::string reason_of(const Judgement& judgement, const Growth& g, const Regime&
     auto orbit = [&] {
         return fmt::format(
             "a stable periodic orbit, whose largest multiplier has the modulus {:.4g}",
-            std::abs(r.orbit->multipliers[0]));
+            elementary::modulus(r.orbit->multipliers[0]));
     };
     auto captured = [&] {
         return "a periodic orbit captures the motion " +

@@ -1,10 +1,9 @@
 #include "api/describe_regime.hpp"
 
-#include <cmath>
-
 #include "api/column.hpp"
 #include "api/describe_exponents.hpp"
 #include "api/object.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines::api {
 
@@ -29,7 +28,7 @@ Json describe_multipliers(const PeriodicOrbit& orbit) {
     return object(
         {{"re", column(orbit.multipliers, [](auto m) { return m.real(); })},
          {"im", column(orbit.multipliers, [](auto m) { return m.imag(); })},
-         {"modulus", column(orbit.multipliers, [](auto m) { return std::abs(m); })}});
+         {"modulus", column(orbit.multipliers, elementary::modulus)}});
 }
 
 Json describe_capture(const Capture& c) {

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "api/record_columns.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines::api {
 
@@ -189,7 +190,7 @@ void read_impacts(IdentifyRequest& r, const Json& given) {
                 {"/impacts/side/" + std::to_string(i), v("side"), Json::array({-1, 1}),
                  "a side is 1 or -1"});
         const double x_ddot = flow->acceleration(
-            {v("x"), v("x_dot_before"), std::sin(v("phase")), std::cos(v("phase"))});
+            {v("x"), v("x_dot_before"), elementary::sin(v("phase")), elementary::cos(v("phase"))});
         r.measurement.impacts.push_back(
             {.tau = v("tau"),
              .side = static_cast<int>(v("side")),

@@ -1,6 +1,5 @@
 #include "api/si_columns.hpp"
 
-#include <cmath>
 #include <span>
 #include <string>
 #include <utility>
@@ -8,6 +7,7 @@
 
 #include "api/column.hpp"
 #include "api/object.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines::api {
 
@@ -66,8 +66,8 @@ void add(Json& object, std::span<const Twin> table, const SiParameters& si) {
     make_room(object, object.size());
     for (const Twin& t : table)
         if (object.contains(t.name) && !object[t.name].is_string())
-            object[t.si_name] =
-                scaled(object[t.name], std::pow(si.omega0(), t.power) * (t.per_m1 ? si.m1 : 1));
+            object[t.si_name] = scaled(
+                object[t.name], elementary::pow(si.omega0(), t.power) * (t.per_m1 ? si.m1 : 1));
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 #include "api/sweep_axis.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "api/schema/check.hpp"
 #include "api/schema/tables.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines::api {
 
@@ -29,7 +29,7 @@ std::vector<double> spaced(double from, double to, std::size_t count, bool logar
         const double share =
             count > 1 ? static_cast<double>(i) / static_cast<double>(count - 1) : 0;
         values.push_back(
-            logarithmic ? from * std::pow(to / from, share) : from + share * (to - from));
+            logarithmic ? from * elementary::pow(to / from, share) : from + share * (to - from));
     }
     if (count > 1) values.back() = to;
     return values;

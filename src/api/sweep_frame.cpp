@@ -9,6 +9,7 @@
 #include "api/describe.hpp"
 #include "api/json_text.hpp"
 #include "api/simulate.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines::api {
 
@@ -20,9 +21,9 @@ constexpr double most_left = 0.01;
 /// Where the transient leaves much of what the oscillator does by itself, as it does where the ball
 /// is not met; else empty.
 std::string transient_warning(const Parameters& p, double cycles) {
-    const double per_cycle = p.zeta() * p.cycle(), left = std::exp(-per_cycle * cycles);
+    const double per_cycle = p.zeta() * p.cycle(), left = elementary::exp(-per_cycle * cycles);
     if (!(left > most_left)) return "";
-    const double enough = std::ceil(-std::log(most_left) / per_cycle);
+    const double enough = std::ceil(-elementary::log(most_left) / per_cycle);
     return fmt::format(
                "after transient_cycles = {:.0f} the oscillator's free motion still has {:.0f} % of "
                "its amplitude",

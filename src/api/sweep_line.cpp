@@ -8,6 +8,7 @@
 #include "api/describe.hpp"
 #include "api/schema/words.hpp"
 #include "api/si_columns.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines::api {
 
@@ -74,7 +75,7 @@ void add_regime(Json& line, const Regime& regime, double cycle) {
     line["capture_cycle"] =
         capture && capture->tau ? Json(std::round(*capture->tau / cycle)) : Json(nullptr);
     line["multiplier"] =
-        of_orbit([](const PeriodicOrbit& o) { return std::abs(o.multipliers[0]); });
+        of_orbit([](const PeriodicOrbit& o) { return elementary::modulus(o.multipliers[0]); });
     line["synchronised"] = regime.synchronised;
 }
 

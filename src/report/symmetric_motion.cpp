@@ -66,8 +66,9 @@ SymmetricMotion motion_at(const Parameters& p, const HalfCycle& h, const Flow& f
         -saltation(p, impact).matrix() * transfer_of(leg_of(flow, h.duration, false), p.epsilon);
     const Eigen::Vector4cd values = eigenvalues_of(map);
     SymmetricMotion motion{V, {values[0], values[1], values[2], values[3]}};
-    std::ranges::sort(
-        motion.multipliers, [](const auto& a, const auto& b) { return std::abs(a) > std::abs(b); });
+    std::ranges::sort(motion.multipliers, [](const auto& a, const auto& b) {
+        return elementary::modulus(a) > elementary::modulus(b);
+    });
     return motion;
 }
 

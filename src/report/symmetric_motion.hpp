@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "core/motion/elementary.hpp"
 #include "core/stability/transfer.hpp"
 
 namespace vines::report {
@@ -14,7 +15,7 @@ struct SymmetricMotion {
     /// Of the map over half a period and the mirror (x, y) -> (-x, -y): -M J. Descending moduli.
     std::array<std::complex<double>, 4> multipliers;
 
-    bool stable() const { return std::abs(multipliers[0]) < 1; }
+    bool stable() const { return elementary::modulus(multipliers[0]) < 1; }
 };
 
 /// The faster of the two that there may be, and the slower one; empty beyond the fold where both

@@ -14,9 +14,8 @@ const program =
   process.env.INSTRUCTION_PARTS ??
   new URL("../../build/release/tests/instruction_parts", import.meta.url).pathname;
 
-// The C library picks memcpy, sin, cos and exp by the processor; these are the ones that every
-// x86-64 has. Left to it, the copies alone are 7 % of a trajectory, and sin, cos and exp .6 % of a
-// point.
+// The C library picks memcpy by the processor; this is the one that every x86-64 has. Left to it,
+// the copies alone are 7 % of a trajectory.
 const everywhere = {
   ...process.env,
   GLIBC_TUNABLES: "glibc.cpu.hwcaps=-AVX,-AVX2,-FMA,-FMA4,-BMI2,-ERMS,-SSSE3",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/motion/elementary.hpp"
 #include "core/motion/random.hpp"
 #include "core/motion/special_values.hpp"
 #include "core/stability/lyapunov.hpp"
@@ -301,7 +302,7 @@ void find_linear_stretch(
     for (std::size_t i = 0; i < end; ++i)
         if (comparable[i] && tau[i] >= first_impact) {
             moments.push_back(tau[i]);
-            logs.push_back(std::log(r.distance[i]));
+            logs.push_back(elementary::log(r.distance[i]));
         }
     const Interval stretch{first_impact, r.linear_until};
     r.linear = {stretch, slope_through(moments, logs), lambda1_over(p, start, stretch, limits)};

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/identification/oscillator_model.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines {
 
@@ -237,7 +238,7 @@ double misfit_of(
     // Of a normal distribution lie within that many standard deviations.
     constexpr double ninety_percent = 1.645;
     return quantile_of_moduli(std::move(residual), 0.9) / ninety_percent /
-           std::hypot(signal.differences.noise(spoiled), signal.least_noise);
+           elementary::hypot(signal.differences.noise(spoiled), signal.least_noise);
 }
 
 /// Sets what the motion leaves of the sensors.

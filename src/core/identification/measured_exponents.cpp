@@ -28,7 +28,7 @@ constexpr std::size_t fewest_of_decay = 20;
 constexpr double least_fall = 2;
 
 // Blocks as long as the memory of the motion, some impacts, drawn anew so many times.
-constexpr double shortest_block = 4, longest_block = 20;
+constexpr std::size_t shortest_block = 4, longest_block = 20;
 constexpr int draws = 1000;
 // The bounds of its 90 % interval among so many sorted draws.
 constexpr std::size_t low_draw = 50, high_draw = 949;
@@ -163,8 +163,9 @@ namespace {
 /// Always the same ones.
 std::vector<double> drawn_slopes(const GrowthSteps& steps) {
     const std::size_t n = steps.log.size();
-    const auto block = static_cast<std::size_t>(
-        std::clamp(std::cbrt(static_cast<double>(n)) * 2, shortest_block, longest_block));
+    // The cube root of 8 n.
+    std::size_t block = shortest_block;
+    while (block < longest_block && (block + 1) * (block + 1) * (block + 1) <= 8 * n) ++block;
     std::mt19937_64 engine(2018);
     std::vector<double> slopes;
     for (int draw = 0; draw < draws; ++draw) {

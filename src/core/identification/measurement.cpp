@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/motion/elementary.hpp"
 #include "core/motion/record.hpp"
 #include "core/motion/special_values.hpp"
 
@@ -25,8 +26,8 @@ void take_restitution(Parameters& p, const Identification& found) {
 
 /// G of a forcing amplitude, eq. (3).
 double G_of(const Parameters& p, const FittedMotion& motion) {
-    return std::hypot(motion.force_sin, motion.force_cos) / p.epsilon /
-           std::hypot(1.0, p.lambda * p.epsilon * p.Omega);
+    return elementary::hypot(motion.force_sin, motion.force_cos) / p.epsilon /
+           elementary::hypot(1.0, p.lambda * p.epsilon * p.Omega);
 }
 
 /// The stretches without the passages to impacts whose relative speed is not known.
@@ -67,7 +68,7 @@ std::optional<ForwardRun> forward_run(
     if (known == found.impacts.end()) return std::nullopt;
     const IdentifiedImpact& first = *known;
     // simulate() measures the phase of the forcing from that of eq. (3); the record has its own.
-    const double phase = std::atan2(motion.force_cos, motion.force_sin),
+    const double phase = elementary::atan2(motion.force_cos, motion.force_sin),
                  start = std::fmod(first.tau + (phase - p.phi()) / p.Omega, p.cycle());
     const State state{first.x_dot_after, first.x, first.y_dot_after, first.x - first.side * p.b};
     ImpactRecord impacts;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/motion/elementary.hpp"
+
 namespace vines {
 
 OscillatorModel::OscillatorModel(const Parameters& p)
@@ -13,7 +15,8 @@ OscillatorModel::OscillatorModel(const Parameters& p)
 OscillatorModel::Interval::Interval(const OscillatorModel& model, double tau)
     : model_(model),
       start_([&model, tau] {
-          const double sin = std::sin(model.Omega_ * tau), cos = std::cos(model.Omega_ * tau);
+          const double sin = elementary::sin(model.Omega_ * tau),
+                       cos = elementary::cos(model.Omega_ * tau);
           return Parts{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, sin, cos}, {0, 0, cos, -sin}}};
       }()),
       far_(start_) {}

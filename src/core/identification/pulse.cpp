@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/identification/robust.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines {
 
@@ -44,8 +45,8 @@ ImpactPulse::ImpactPulse(
         const double s = *it - tau, base = s < 0 ? m.x_ddot_before[impact] : m.x_ddot_after[impact];
         const double x_dot = s < 0 ? m.x_dot_before[impact] : m.x_dot[impact + 1];
         const double jerk = -x_dot - 2 * p.zeta() * base +
-                            p.Omega * (m.force_sin * std::cos(p.Omega * tau) -
-                                       m.force_cos * std::sin(p.Omega * tau));
+                            p.Omega * (m.force_sin * elementary::cos(p.Omega * tau) -
+                                       m.force_cos * elementary::sin(p.Omega * tau));
         const double x_ddot = r.x_ddot[k] - base - jerk * s, in_noise = x_ddot / noise_;
         samples_.push_back({*it, x_ddot, in_noise * in_noise});
     }
@@ -62,7 +63,7 @@ double ImpactPulse::misfit(double tau, double pulse, double enough) const {
         if (sum >= enough) return sum;
         const double s = sample.tau - tau;
         if (std::abs(s) < 0.5 * pulse) {
-            const double shape = height * std::cos(std::numbers::pi * s / pulse),
+            const double shape = height * elementary::cos(std::numbers::pi * s / pulse),
                          d = (sample.x_ddot - x_dot_jump_ * shape) / noise_;
             sum += d * d;
         } else {
@@ -92,7 +93,7 @@ double ImpactPulse::moment(double pulse, double step) const {
                  least = *std::min_element(misfits.begin(), misfits.end());
     double sum = 0, first = 0;
     for (int k = -moments_tried; k <= moments_tried; ++k) {
-        const double likelihood = std::exp(-0.5 * (misfits[k + moments_tried] - least));
+        const double likelihood = elementary::exp(-0.5 * (misfits[k + moments_tried] - least));
         sum += likelihood;
         first += likelihood * width * k / moments_tried;
     }

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "core/motion/elementary.hpp"
 #include "core/motion/random.hpp"
 #include "core/motion/record.hpp"
 
@@ -19,7 +20,7 @@ constexpr double outlier_x = 5e-4, outlier_a = 10;
 /// The start at rest as the impact that the first flight begins with.
 Impact at_rest(const Parameters& p) {
     Impact rest{};
-    rest.sin_theta = std::sin(p.phi()), rest.cos_theta = std::cos(p.phi());
+    rest.sin_theta = elementary::sin(p.phi()), rest.cos_theta = elementary::cos(p.phi());
     return rest;
 }
 
@@ -71,7 +72,8 @@ void add_pulses(
         for (auto k = static_cast<std::size_t>(first);
              k < r.tau.size() && r.tau[k] < impact.tau + pulse; ++k)
             if (std::abs(r.tau[k] - impact.tau) < 0.5 * pulse)
-                r.x_ddot[k] += peak * std::cos(std::numbers::pi * (r.tau[k] - impact.tau) / pulse);
+                r.x_ddot[k] +=
+                    peak * elementary::cos(std::numbers::pi * (r.tau[k] - impact.tau) / pulse);
     }
 }
 
@@ -84,7 +86,7 @@ void rescale(std::vector<double>& x, const Sensors& s) {
 /// Standard normal, by Box and Muller.
 double normal(std::mt19937_64& engine) {
     const double u = uniform(engine, 1e-300, 1), v = uniform(engine, 0, 1);
-    return std::sqrt(-2 * std::log(u)) * std::cos(2 * std::numbers::pi * v);
+    return std::sqrt(-2 * elementary::log(u)) * elementary::cos(2 * std::numbers::pi * v);
 }
 
 /// `noise_a`: per unit of tau squared, as that of outliers below.
@@ -98,9 +100,10 @@ void add_noise(double noise_x, double noise_a, std::mt19937_64& engine, Measured
 /// Fourth-order Butterworth low pass by the bilinear transform, in place; `corner` over the
 /// sampling rate.
 void low_pass(std::vector<double>& v, double corner) {
-    const double k = std::tan(std::numbers::pi * corner);
+    const double angle = std::numbers::pi * corner,
+                 k = elementary::sin(angle) / elementary::cos(angle);
     for (int section = 0; section < 2; ++section) {
-        const double q = 1 / (2 * std::sin(std::numbers::pi * (2 * section + 1) / 8)),
+        const double q = 1 / (2 * elementary::sin(std::numbers::pi * (2 * section + 1) / 8)),
                      norm = 1 / (1 + k / q + k * k);
         const double b = k * k * norm, a1 = 2 * (k * k - 1) * norm, a2 = (1 - k / q + k * k) * norm;
         double x1 = v[0], x2 = v[0], y1 = v[0], y2 = v[0];

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/motion/elementary.hpp"
 #include "core/motion/excursion.hpp"
 
 namespace vines {
@@ -127,14 +128,16 @@ std::optional<double> free_amplitude(const Parameters& p) {
 double unattached_rms(const Parameters& p, const State& start, double duration) {
     const Integrals sum =
         Quadrature::shared(*Flow::shared_free(p))
-            ->over({start.x, start.x_dot, std::sin(p.phi()), std::cos(p.phi())}, duration);
+            ->over(
+                {start.x, start.x_dot, elementary::sin(p.phi()), elementary::cos(p.phi())},
+                duration);
     return std::sqrt(sum.x_squared / duration);
 }
 
 Unattached unattached(const Parameters& p, const State& start, double tau_start, double tau_end) {
     const auto table = Flow::shared_free(p);
     const Flow& flow = *table;
-    const Oscillation o{start.x, start.x_dot, std::sin(p.phi()), std::cos(p.phi())};
+    const Oscillation o{start.x, start.x_dot, elementary::sin(p.phi()), elementary::cos(p.phi())};
     const Oscillation begin = flow.after(o, tau_start);
     const double duration = tau_end - tau_start;
     return {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/measures/energy.hpp"
+#include "core/motion/elementary.hpp"
 #include "core/motion/excursion.hpp"
 
 namespace vines {
@@ -24,7 +26,7 @@ double manifold_C(double R, double Omega, double b, double V) {
     assert(R >= 0 && R <= 1 && Omega > 0 && V >= 0);
     const double W = V / Omega;
     // C^2 = (pi W/2 - b)^2 + k^2 W^2
-    return std::hypot(quarter_turn * W - b, k_of(R) * W);
+    return elementary::hypot(quarter_turn * W - b, k_of(R) * W);
 }
 
 ManifoldPoint manifold_fold(double R, double Omega, double b) {
@@ -44,11 +46,12 @@ ManifoldPoint manifold_second_contact(double R, double Omega, double b) {
     // from above.
     double below = 0, u = std::min(quarter_turn, std::sqrt(3 * R));
     for (double middle = u / 2; middle > below && middle < u; middle = below + (u - below) / 2)
-        (std::sin(middle) < (1 + R) * middle * std::cos(middle) ? below : u) = middle;
+        (elementary::sin(middle) < (1 + R) * middle * elementary::cos(middle) ? below : u) = middle;
     // The minimum itself, (1 - k cos t)/sin t there, written so that nothing cancels; with R = 0
     // the mass stays on the wall from t = 0 on.
-    const double sin_u = std::sin(u),
-                 q = u > 0 ? (R / (1 + R) + k_of(R) * sin_u * sin_u) / (sin_u * std::cos(u)) : 0;
+    const double sin_u = elementary::sin(u),
+                 q = u > 0 ? (R / (1 + R) + k_of(R) * sin_u * sin_u) / (sin_u * elementary::cos(u))
+                           : 0;
     const double V = Omega * b / (quarter_turn - q);
     return {manifold_C(R, Omega, b, V), V};
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/motion/elementary.hpp"
 #include "core/motion/last_used.hpp"
 
 namespace vines {
@@ -36,9 +37,9 @@ double slowest_rate(const Flow::Coefficients& c) {
     const auto [stiffness, damping, forcing, Omega] = c;
     const double half = 0.5 * damping, turning = stiffness - half * half;
     if (turning > 0)
-        return std::min({damping, std::hypot(half, std::sqrt(turning) - Omega), 2 * Omega});
+        return std::min({damping, elementary::hypot(half, std::sqrt(turning) - Omega), 2 * Omega});
     const double slow = half - std::sqrt(-turning);
-    return std::min({2 * slow, std::hypot(slow, Omega), 2 * Omega});
+    return std::min({2 * slow, elementary::hypot(slow, Omega), 2 * Omega});
 }
 
 using Wide = long double;

@@ -155,8 +155,9 @@ std::vector<std::size_t> returns(std::span<const State> states, const State& sca
         if (miss > near ||
             (back > 0 && distance(states[last - 1], states[back - 1], scale) > 2 * near))
             continue;
-        found.push_back(
-            {static_cast<int>(std::floor(std::log10(std::max(miss, rounding)))), cycles});
+        int decade = 0;
+        for (double next = 10 * rounding; miss >= next; next *= 10) ++decade;
+        found.push_back({decade, cycles});
     }
     std::stable_sort(found.begin(), found.end(), [](const Return& a, const Return& b) {
         return a.decade < b.decade;

@@ -4,12 +4,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/motion/elementary.hpp"
 #include "core/motion/special_values.hpp"
 
 namespace vines {
 
 double Impact::phase() const {
-    const double theta = std::atan2(sin_theta, cos_theta);
+    const double theta = elementary::atan2(sin_theta, cos_theta);
     return theta < 0 ? theta + 2 * std::numbers::pi : theta;
 }
 

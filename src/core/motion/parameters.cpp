@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "core/motion/elementary.hpp"
+
 namespace vines {
 
 namespace {
@@ -53,9 +55,9 @@ double Parameters::zeta() const {
 }
 
 // Eq. (3): the base moves spring and damper.
-double Parameters::A() const { return G * std::hypot(1.0, lambda * epsilon * Omega); }
+double Parameters::A() const { return G * elementary::hypot(1.0, lambda * epsilon * Omega); }
 
-double Parameters::phi() const { return std::atan(lambda * epsilon * Omega); }
+double Parameters::phi() const { return elementary::atan(lambda * epsilon * Omega); }
 
 State default_state(const Parameters& parameters) { return {0, 0, 0, 0.95 * parameters.b}; }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/motion/elementary.hpp"
+
 namespace vines {
 
 namespace {
@@ -37,7 +39,7 @@ Run::Run(
       y_dot_(start.y_dot),
       longest_hop_(std::numbers::pi / std::max(1.0, p.Omega)) {
     const double theta = p.Omega * limits.tau_start + p.phi();
-    lo_ = {start.x, start.x_dot, std::sin(theta), std::cos(theta)};
+    lo_ = {start.x, start.x_dot, elementary::sin(theta), elementary::cos(theta)};
     side_ = wall_of(start, p.b);
     end_rounding_ = 0.5 * (limits.tau_end - std::nextafter(limits.tau_end, 0));
     relative_speed_ = start.x_dot - start.y_dot;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/motion/elementary.hpp"
 #include "core/motion/special_values.hpp"
 #include "core/stability/linear.hpp"
 
@@ -137,15 +138,15 @@ void PowerProduct::Scaled<n>::rescale() {
     const double norm = matrix.norm();
     if (norm == 0) return;
     matrix /= norm;
-    log_scale += std::log(norm);
+    log_scale += elementary::log(norm);
 }
 
 /// ln of the largest modulus of an eigenvalue.
 template <int n>
 double PowerProduct::Scaled<n>::log_radius() const {
     if (!matrix.allFinite()) return nan;
-    const double radius = eigenvalues_of(matrix).cwiseAbs().maxCoeff();
-    return radius > least_radius ? log_scale + std::log(radius) : nan;
+    const double radius = eigenvalues_of(matrix).unaryExpr(&elementary::modulus).maxCoeff();
+    return radius > least_radius ? log_scale + elementary::log(radius) : nan;
 }
 
 void PowerProduct::pass(const Leg& leg) {
@@ -176,7 +177,7 @@ void PowerProduct::strike(const Saltation& M, double R) {
     for (int k = 0; k < 4; ++k)
         third_.matrix.col(k) = carried(Volume{third_.matrix.col(k)}, M, R).normal;
     third_.rescale();
-    log_det_ += 2 * std::log(R);
+    log_det_ += 2 * elementary::log(R);
 }
 
 Moduli PowerProduct::log_moduli() const {

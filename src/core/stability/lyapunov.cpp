@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/motion/elementary.hpp"
 #include "core/motion/special_values.hpp"
 #include "core/stability/linear.hpp"
 
@@ -75,7 +76,7 @@ Status status_of(double exponent) {
 }
 
 double rounding_floor(double lambda1, double T) {
-    return lambda1 + std::log(std::numeric_limits<double>::epsilon()) / T;
+    return lambda1 + elementary::log(std::numeric_limits<double>::epsilon()) / T;
 }
 
 struct TransferProduct::Qr {
@@ -95,11 +96,11 @@ struct TransferProduct::Qr {
         void grow(double factor) {
             product *= factor;
             if (!is_in_range(product)) {
-                logs += std::log(product);
+                logs += elementary::log(product);
                 product = 1;
             }
         }
-        double logarithm() const { return logs + std::log(product); }
+        double logarithm() const { return logs + elementary::log(product); }
     };
 
     /// Deviations that span what the first one, two, three and four of them have become, and the
@@ -160,8 +161,10 @@ struct TransferProduct::Qr {
     /// M = (I + r g^T) S, for g^T S = g^T. First S, in parts of which none shrinks by more than
     /// e^-most_contraction; then the shear.
     void strike_apart(const Saltation& M, double R, double epsilon, int rank) {
-        const double parts = R > 0 ? std::max(1.0, std::ceil(-std::log(R) / most_contraction)) : 1,
-                     part = std::pow(R, 1 / parts);
+        const double parts = R > 0
+                                 ? std::max(1.0, std::ceil(-elementary::log(R) / most_contraction))
+                                 : 1,
+                     part = elementary::pow(R, 1 / parts);
         for (int k = 1; k < parts; ++k) {
             shrink(part, epsilon);
             orthonormalise(rank);
@@ -234,7 +237,7 @@ struct TransferProduct::Qr {
         auto keep = [](auto& of, double& log) {
             const double squared = of.squaredNorm();
             if (is_in_range(squared)) return;
-            log += 0.5 * std::log(squared);
+            log += 0.5 * elementary::log(squared);
             of *= 1 / std::sqrt(squared);
         };
         keep(area, log_area);
@@ -256,10 +259,11 @@ struct TransferProduct::Qr {
             s.logs[k] = now.lengths[k].logarithm();
             sum += s.logs[k];
             if (k == 1)
-                s.misses[k] = std::abs(sum - (log_area + 0.5 * std::log(area.squaredNorm())));
-            if (k == 2)
                 s.misses[k] =
-                    std::abs(sum - (log_volume + 0.5 * std::log(volume.normal.squaredNorm())));
+                    std::abs(sum - (log_area + 0.5 * elementary::log(area.squaredNorm())));
+            if (k == 2)
+                s.misses[k] = std::abs(
+                    sum - (log_volume + 0.5 * elementary::log(volume.normal.squaredNorm())));
             if (k == 3) s.misses[k] = std::abs(sum - (log_det + impacts_det.logarithm()));
         }
         return s;
@@ -286,7 +290,8 @@ struct TransferProduct::Raw {
         const Eigen::Vector4cd eigenvalues = eigenvalues_of(product);
         if (!eigenvalues.allFinite()) return no_exponents;
         Exponents lambda;
-        for (int k = 0; k < 4; ++k) lambda[k] = std::log(std::abs(eigenvalues(k))) / T;  // (33)
+        for (int k = 0; k < 4; ++k)
+            lambda[k] = elementary::log(elementary::modulus(eigenvalues(k))) / T;  // (33)
         std::sort(lambda.begin(), lambda.end(), std::greater<>());
         return lambda;
     }

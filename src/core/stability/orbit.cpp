@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/motion/contacts.hpp"
+#include "core/motion/elementary.hpp"
 #include "core/motion/record.hpp"
 #include "core/motion/special_values.hpp"
 #include "core/stability/linear.hpp"
@@ -80,14 +81,16 @@ std::array<std::complex<double>, 4> multipliers_of(
     const Eigen::Vector4cd eigenvalues = eigenvalues_of(monodromy);
     std::array<std::complex<double>, 4> values;
     for (int k = 0; k < 4; ++k) values[k] = eigenvalues(k);
-    std::stable_sort(
-        values.begin(), values.end(), [](auto a, auto b) { return std::abs(a) > std::abs(b); });
+    std::stable_sort(values.begin(), values.end(), [](auto a, auto b) {
+        return elementary::modulus(a) > elementary::modulus(b);
+    });
     const auto logs = powers.log_moduli();
     for (int k = 0; k < 4; ++k) {
-        const double modulus = std::abs(values[k]);
+        const double modulus = elementary::modulus(values[k]);
         if (k >= powers.rank() || modulus == 0) values[k] = 0;
-        else if (modulus < small_multiplier * std::abs(values[0]) && std::isfinite(logs[k]))
-            values[k] *= std::exp(logs[k]) / modulus;
+        else if (
+            modulus < small_multiplier * elementary::modulus(values[0]) && std::isfinite(logs[k]))
+            values[k] *= elementary::exp(logs[k]) / modulus;
     }
     return values;
 }
@@ -179,7 +182,7 @@ Exponents PeriodicOrbit::exponents(const Parameters& p) const {
     Exponents lambda;
     // Multipliers below what rounding leaves of a zero are zero: the orbit sticks, or R = 0.
     for (int k = 0; k < 4; ++k)
-        lambda[k] = std::log(std::abs(multipliers[k])) / (cycles * p.cycle());
+        lambda[k] = elementary::log(elementary::modulus(multipliers[k])) / (cycles * p.cycle());
     return lambda;
 }
 
@@ -275,6 +278,14 @@ std::optional<PeriodicOrbit> find_orbit(
 
 namespace {
 
+/// z^n, n > 0, by squaring.
+std::complex<double> power(std::complex<double> z, int n) {
+    std::complex<double> result = 1;
+    for (; n > 0; n /= 2, z *= z)
+        if (n % 2 == 1) result *= z;
+    return result;
+}
+
 /// Deviations from an orbit in the eigenvectors of its monodromy matrix: there a small one shrinks,
 /// period by period, by the multipliers' moduli, however far from orthogonal the eigenvectors are.
 class EigenCoordinates {
@@ -290,7 +301,7 @@ public:
         return base_.to_coordinates * (vector(s) - at_).cwiseQuotient(unit_);
     }
     Eigen::Vector4cd after(Eigen::Vector4cd deviation, int periods) const {
-        for (int k = 0; k < 4; ++k) deviation(k) *= std::pow(base_.values(k), periods);
+        for (int k = 0; k < 4; ++k) deviation(k) *= power(base_.values(k), periods);
         return deviation;
     }
     bool usable() const { return base_.to_coordinates.allFinite(); }
@@ -325,8 +336,8 @@ bool attracts(
     // oscillator that converges.
     const bool untouched = orbit.contacts == 0 && orbit.state.y_dot == 0;
     const double largest = untouched ? spectral_radius(orbit.monodromy.topLeftCorner<2, 2>())
-                                     : std::abs(orbit.multipliers[0]);
-    const double per_period = -std::log(largest);
+                                     : elementary::modulus(orbit.multipliers[0]);
+    const double per_period = -elementary::log(largest);
     if (!(per_period > least_contraction)) return false;
     std::optional<State> s = follow(p, at_whole_cycle, 0, orbit.tau, stop);
     auto distant = [&] { return distance(*s, orbit.state, scale); };
@@ -344,7 +355,7 @@ bool attracts(
     const EigenCoordinates coordinates(orbit, scale, untouched);
     if (!coordinates.usable()) return false;
     const int periods = most_periods / spans;
-    const double contraction = 1 - std::pow(largest, periods);
+    const double contraction = 1 - elementary::pow(largest, periods);
     for (int span = 0; span < spans; ++span) {
         const Eigen::Vector4cd before = coordinates.of(*s),
                                linear = coordinates.after(before, periods);

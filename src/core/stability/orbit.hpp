@@ -11,6 +11,7 @@
 #include <functional>
 #include <optional>
 
+#include "core/motion/elementary.hpp"
 #include "core/stability/lyapunov.hpp"
 
 namespace vines {
@@ -33,7 +34,7 @@ struct PeriodicOrbit {
 
     Eigen::Matrix4d monodromy;  ///< derivative of the return map there
 
-    bool stable() const { return std::abs(multipliers[0]) < 1; }
+    bool stable() const { return elementary::modulus(multipliers[0]) < 1; }
     /// ln|multiplier| / period: the exponents of every motion that the orbit attracts; -infinity
     /// for a multiplier of 0.
     Exponents exponents(const Parameters& parameters) const;

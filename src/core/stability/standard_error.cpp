@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/motion/elementary.hpp"
 #include "core/motion/special_values.hpp"
 
 namespace vines {
@@ -59,7 +60,7 @@ Exponents standard_error(const ExponentHistory& h, double start) {
     std::array<double, error_lags + 1> weights;
     double taken = 1;
     for (int lag = 0; lag <= error_lags; ++lag) {
-        weights[lag] = 0.5 * (1 + std::cos(std::numbers::pi * lag / error_lags));
+        weights[lag] = 0.5 * (1 + elementary::cos(std::numbers::pi * lag / error_lags));
         if (lag > 0) taken += 2 * weights[lag];
     }
     // The mean that is removed takes its share of white growth's variance, and about half of it

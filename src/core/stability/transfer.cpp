@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/motion/elementary.hpp"
 #include "core/stability/linear.hpp"
 
 namespace vines {
@@ -21,7 +22,7 @@ void Passage::extend(const Stretch& stretch) {
 Moduli eigenvalue_moduli(const Matrix4& m) {
     const Eigen::Vector4cd eigenvalues = eigenvalues_of(m);
     Moduli moduli;
-    for (int k = 0; k < 4; ++k) moduli[k] = std::abs(eigenvalues(k));
+    for (int k = 0; k < 4; ++k) moduli[k] = elementary::modulus(eigenvalues(k));
     std::sort(moduli.begin(), moduli.end(), std::greater<>());
     return moduli;
 }
@@ -47,16 +48,17 @@ Moduli ImpactTransfer::J_moduli() const {
             const double n = static_cast<double>(leg.parts), half_trace = 0.5 * std::abs(a11 + a22);
             // half_trace^2 less the determinant, without the ones that cancel in a short flight.
             const double d = 0.25 * (a11 - a22) * (a11 - a22) + a12 * a21;
-            const double large = d > 0 ? std::log(half_trace + std::sqrt(d)) : 0.5 * leg.log_det;
-            moduli[2] = std::exp(n * large);
-            moduli[3] = std::exp(n * (leg.log_det - large));
+            const double large =
+                d > 0 ? elementary::log(half_trace + std::sqrt(d)) : 0.5 * leg.log_det;
+            moduli[2] = elementary::exp(n * large);
+            moduli[3] = elementary::exp(n * (leg.log_det - large));
         }
         return moduli;
     }
     PowerProduct product(epsilon);
     for (const Leg& leg : legs) product.pass(leg);
     moduli = product.log_moduli();
-    for (double& m : moduli) m = std::exp(m);
+    for (double& m : moduli) m = elementary::exp(m);
     return moduli;
 }
 
@@ -66,7 +68,7 @@ Moduli ImpactTransfer::T_moduli() const {
     for (const Leg& leg : legs) product.pass(leg);
     product.strike(M, R);
     Moduli moduli = product.log_moduli();
-    for (double& m : moduli) m = std::exp(m);
+    for (double& m : moduli) m = elementary::exp(m);
     return moduli;
 }
 

@@ -14,6 +14,7 @@
 
 #include "core/identification/measurement.hpp"
 #include "core/identification/synthetic_record.hpp"
+#include "core/motion/elementary.hpp"
 #include "core/motion/special_values.hpp"
 #include "core/sweep/parallel.hpp"
 #include "report/chapters.hpp"
@@ -157,8 +158,8 @@ double scatter(const Experiment& e) {
     const Group plus = group_of(e, 1), minus = group_of(e, -1);
     const Moments x = moments(plus.x), v = moments(plus.x_dot), other_x = moments(minus.x),
                   other_v = moments(minus.x_dot);
-    return std::hypot(x.deviation, v.deviation) /
-           std::hypot(x.mean - other_x.mean, v.mean - other_v.mean);
+    return elementary::hypot(x.deviation, v.deviation) /
+           elementary::hypot(x.mean - other_x.mean, v.mean - other_v.mean);
 }
 
 /// Of the times between impacts.

@@ -8,6 +8,7 @@
 #include "report/chapters.hpp"
 #include "report/plots.hpp"
 
+#include "core/motion/elementary.hpp"
 #include "core/motion/special_values.hpp"
 
 namespace vines::report {
@@ -37,19 +38,20 @@ void parameters_of_table_1(Report& report, const Parameters& p) {
 class PrintedClosedForm {
 public:
     PrintedClosedForm(const Parameters& p, double x20, double x10) : decay_(p.epsilon * p.lambda) {
+        using elementary::cos, elementary::sin;
         const double O = p.Omega, e = p.epsilon, l = p.lambda, A = p.A(), phi = p.phi(),
                      D = O * O * O * O + (4 * e * e * l * l - 2) * O * O + 1;
-        f1_ = -e * A * ((O * O - 1) * std::cos(phi) - 2 * l * e * O * std::sin(phi)) / D;
-        f2_ = -e * A * ((O * O - 1) * std::sin(phi) + 2 * l * e * std::cos(phi) * O) / D;
+        f1_ = -e * A * ((O * O - 1) * cos(phi) - 2 * l * e * O * sin(phi)) / D;
+        f2_ = -e * A * ((O * O - 1) * sin(phi) + 2 * l * e * cos(phi) * O) / D;
         omega_d_ = std::sqrt(1 - e * e * l * l);
         q1_ = x20 - f2_;
         p1_ = -(-x10 - e * l * x20 + e * l * f2_ + f1_ * O) / omega_d_;
         Omega_ = O;
     }
     double x(double tau) const {
-        return std::exp(-decay_ * tau) *
-                   (p1_ * std::sin(omega_d_ * tau) + q1_ * std::cos(omega_d_ * tau)) +
-               f1_ * std::sin(Omega_ * tau) + f2_ * std::cos(Omega_ * tau);
+        using elementary::cos, elementary::exp, elementary::sin;
+        return exp(-decay_ * tau) * (p1_ * sin(omega_d_ * tau) + q1_ * cos(omega_d_ * tau)) +
+               f1_ * sin(Omega_ * tau) + f2_ * cos(Omega_ * tau);
     }
 
 private:
@@ -63,7 +65,7 @@ double damping_obeyed(const Parameters& p, const PrintedClosedForm& motion, doub
     const auto x = [&](int k) { return motion.x(tau + k * h); };
     const double x_dot = (x(-2) - 8 * x(-1) + 8 * x(1) - x(2)) / (12 * h),
                  x_ddot = (-x(-2) + 16 * x(-1) - 30 * x(0) + 16 * x(1) - x(2)) / (12 * h * h);
-    return (p.epsilon * p.A() * std::sin(p.Omega * tau + p.phi()) - x_ddot - x(0)) /
+    return (p.epsilon * p.A() * elementary::sin(p.Omega * tau + p.phi()) - x_ddot - x(0)) /
            (p.epsilon * p.lambda * x_dot);
 }
 

@@ -2,6 +2,7 @@
 // than two impacts per cycle and falls with two.
 #include <fmt/format.h>
 
+#include "core/motion/elementary.hpp"
 #include "core/motion/flow.hpp"
 #include "report/chapters.hpp"
 #include "report/plots.hpp"
@@ -37,7 +38,8 @@ double first_within(const Response& r, double tolerance) {
     const Parameters& p = r.parameters;
     const Flow flow = Flow::free(p);
     const State start = default_state(p);
-    const Oscillation from{start.x, start.x_dot, std::sin(p.phi()), std::cos(p.phi())};
+    const Oscillation from{
+        start.x, start.x_dot, elementary::sin(p.phi()), elementary::cos(p.phi())};
     const Impact& first = r.run.impacts.front();
     // On its last way to the wall, which takes less than the half cycle before: bisected.
     double outside = first.tau - p.cycle() / 4, inside = first.tau;

@@ -9,6 +9,7 @@
 #include "report/chapters.hpp"
 #include "report/plots.hpp"
 
+#include "core/motion/elementary.hpp"
 #include "core/motion/special_values.hpp"
 
 namespace vines::report {
@@ -35,7 +36,7 @@ double error_of_J(const Response& r) {
     double error = 0, tau_before = r.run.impacts.front().tau;
     for (std::size_t i = 0; i < moduli.tau.size(); ++i) {
         const Moduli& J = moduli.J[i];
-        const double decay = std::exp(-r.parameters.zeta() * (moduli.tau[i] - tau_before));
+        const double decay = elementary::exp(-r.parameters.zeta() * (moduli.tau[i] - tau_before));
         if (J[3] > 0)
             error =
                 std::max({error, std::abs(J[3] - decay), std::abs(J[0] - 1), std::abs(J[1] - 1)});
@@ -178,7 +179,7 @@ double above_one(const std::vector<double>& v) {
 
 /// Spread of the logarithms, between the quartiles.
 double log_spread(std::vector<double> v) {
-    for (double& x : v) x = std::log(x);
+    for (double& x : v) x = elementary::log(x);
     return quantile(v, 0.75) - quantile(v, 0.25);
 }
 

@@ -12,6 +12,7 @@
 #include "report/exponent_claims.hpp"
 #include "report/plots.hpp"
 
+#include "core/motion/elementary.hpp"
 #include "core/motion/special_values.hpp"
 
 namespace vines::report {
@@ -39,14 +40,14 @@ void their_sum(Report& report, const TransferProduct& product, const TransferPro
 /// From this length of the window on, the product in double precision holds nothing of the k-th
 /// exponent.
 double rounded_from(const Exponents& qr, int k) {
-    return -std::log(std::numeric_limits<double>::epsilon()) / (qr[0] - qr[k]);
+    return -elementary::log(std::numeric_limits<double>::epsilon()) / (qr[0] - qr[k]);
 }
 
 /// What a product in double precision can hold of the exponents, and until when.
 void limits_of_the_computer(Report& report, const TransferProduct& product) {
     const Exponents qr = product.qr(), raw = product.raw_product();
     const double T = product.end_tau() - product.start_tau(),
-                 range = std::log(std::numeric_limits<double>::max());
+                 range = elementary::log(std::numeric_limits<double>::max());
     report.say(fmt::format(
         "The exponents add up to -2 zeta + (2/T) (sum of ln R), whatever the motion: they cannot "
         "all be positive. \"Too large value of transfer matrix M in Eq. (32) will exceed the "
@@ -114,8 +115,8 @@ void spikes(Report& report, const Response& r, const TransferProduct& product) {
     const std::vector<Spike> spikes = spikes_of(r, product.eigenvalues_history(), 0);
     std::vector<double> ranks;
     for (std::size_t i = 0; i < deepest; ++i) ranks.push_back(spikes[i].rank);
-    const double smallest = std::exp(-spikes[0].depth),
-                 largest = std::exp(-spikes[deepest - 1].depth);
+    const double smallest = elementary::exp(-spikes[0].depth),
+                 largest = elementary::exp(-spikes[deepest - 1].depth);
     report.find(
         {.where = "Fig. 5",
          .what = fmt::format(

@@ -1,0 +1,375 @@
+#include "core/motion/elementary.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "core/motion/double_double.hpp"
+#include "core/motion/special_values.hpp"
+
+// All go the same way: the argument is reduced to one of a table, whose value is known to twice the
+// digits, and a small rest r. The result is a large part, which is exact, and a small one of
+// ordinary doubles, at most 2^-7 of it, whose few roundings so weigh less than 2^-6 of an ulp.
+// Series end where the first term that is left out is below 2^-62 of the result. The tables are
+// computed by the compiler.
+
+namespace vines::elementary {
+
+namespace {
+
+/// 2 artanh(numerator/denominator), ln of (denominator + numerator)/(denominator - numerator), for
+/// a quotient up to 1/3: its 34th term is below 2^-109.
+constexpr DoubleDouble logarithm_by_series(double numerator, double denominator) {
+    const DoubleDouble u = DoubleDouble{numerator} / DoubleDouble{denominator}, square = u * u;
+    DoubleDouble sum;
+    for (int n = 67; n > 0; n -= 2) sum = sum * square + DoubleDouble{2} / DoubleDouble{1.0 * n};
+    return sum * u;
+}
+
+constexpr DoubleDouble ln_2 = logarithm_by_series(1, 3);
+
+/// To a multiple of 2^-42: eleven digits before the point are left for sums of such to be exact.
+constexpr DoubleDouble on_grid(const DoubleDouble& a) {
+    constexpr double shift = 0x1.8p10;  // whose ulp is 2^-42
+    const double high = (a.high + shift) - shift;
+    return {high, (a.high - high) + a.low};
+}
+
+constexpr DoubleDouble ln_2_on_grid = on_grid(ln_2);
+
+constexpr std::uint64_t mantissa_bits = 52, bits_of_1 = std::uint64_t{0x3ff} << mantissa_bits;
+
+// ln x = k ln 2 + ln c + ln(z/c), x = 2^k z. A table's cell holds 2^45 doubles; the first, 76 and a
+// half of them below 1, begins at 0.703. The cell about 1 has c = 1, so that nothing cancels there.
+constexpr int cell_bits = 45, log_cells = 128, cells_below_1 = 76;
+constexpr std::uint64_t cell_size = std::uint64_t{1} << cell_bits,
+                        least_z = bits_of_1 - cells_below_1 * cell_size - cell_size / 2;
+
+struct LogCell {
+    double inverse;  // 1/c, of 11 bits: its product with 42 bits is exact
+    DoubleDouble logarithm;
+};
+
+constexpr auto log_table = [] {
+    std::array<LogCell, log_cells> table;
+    for (int i = 0; i < log_cells; ++i) {
+        const double middle = std::bit_cast<double>(least_z + i * cell_size + cell_size / 2);
+        const double parts_of_1024 = static_cast<int>(1024 / middle + 0.5);
+        table[i] = {
+            parts_of_1024 / 1024,
+            on_grid(logarithm_by_series(1024 - parts_of_1024, 1024 + parts_of_1024))};
+    }
+    return table;
+}();
+
+/// ln x as an unevaluated sum, to 2^-69 and 2^-62 of it; `bits`: those of x, which is normal; `k`:
+/// of powers of two that x was multiplied by.
+inline DoubleDouble log_parts(std::uint64_t bits, int k) {
+    const std::uint64_t from_least = bits - least_z;
+    k = static_cast<int>(static_cast<std::int64_t>(from_least) >> mantissa_bits) - k;
+    const LogCell& cell = log_table[(from_least >> cell_bits) % log_cells];
+    const std::uint64_t z = bits - (from_least & ~std::uint64_t{0} << mantissa_bits);
+    // r = z/c - 1, |r| < 0.0052: exact in two parts, for those of z have 42 and 11 bits.
+    const double z_head = std::bit_cast<double>(z & ~std::uint64_t{0x7ff}),
+                 z_tail = std::bit_cast<double>(z) - z_head;
+    const auto [r, r_low] = ordered_sum(z_head * cell.inverse - 1, z_tail * cell.inverse);
+    // ln(1 + r) - r
+    const double square = r * r,
+                 rest = square * ((-1. / 2 + r * (1. / 3)) +
+                                  square * ((-1. / 4 + r * (1. / 5)) +
+                                            square * ((-1. / 6 + r * (1. / 7)) - square / 8)));
+    // Zero or larger than r.
+    const double coarse = k * ln_2_on_grid.high + cell.logarithm.high;
+    const auto [high, low] = ordered_sum(coarse, r);
+    return {high, (low + (r_low + k * ln_2_on_grid.low + cell.logarithm.low)) + rest};
+}
+
+constexpr std::uint64_t least_normal = std::uint64_t{1} << mantissa_bits,
+                        bits_of_infinity = std::uint64_t{0x7ff} << mantissa_bits;
+
+bool is_positive_normal(std::uint64_t bits) {
+    return bits - least_normal < bits_of_infinity - least_normal;
+}
+
+/// That of a number, positive and finite.
+DoubleDouble log_parts(double x) {
+    const auto bits = std::bit_cast<std::uint64_t>(x);
+    return bits >= least_normal ? log_parts(bits, 0)
+                                : log_parts(std::bit_cast<std::uint64_t>(x * 0x1p54), 54);
+}
+
+}  // namespace
+
+double log(double x) {
+    const auto bits = std::bit_cast<std::uint64_t>(x);
+    if (!is_positive_normal(bits)) {
+        if (x == 0) return -infinity;
+        if (!(x > 0 && x < infinity)) return x > 0 ? x : nan;
+        const DoubleDouble parts = log_parts(x);
+        return parts.high + parts.low;
+    }
+    const DoubleDouble parts = log_parts(bits, 0);
+    return parts.high + parts.low;
+}
+
+namespace {
+
+// e^x = 2^(n/128) e^r
+constexpr int exp_steps = 128;
+// Its head has 26 bits: times n, which is below 2^18, it is exact.
+constexpr double exp_step_head = head_of(ln_2.high) / exp_steps,
+                 exp_step_rest = ((ln_2.high - head_of(ln_2.high)) + ln_2.low) / exp_steps;
+
+constexpr auto exp_table = [] {
+    std::array<DoubleDouble, exp_steps> table;
+    for (int i = 0; i < exp_steps; ++i) {
+        const DoubleDouble r = ln_2 * DoubleDouble{1.0 * i / exp_steps};
+        // The term behind the 27th is below 2^-110.
+        DoubleDouble sum = {1};
+        for (int n = 27; n > 0; --n)
+            sum = DoubleDouble{1} + sum * r / DoubleDouble{static_cast<double>(n)};
+        table[i] = sum;
+    }
+    return table;
+}();
+
+/// The whole number next to x, |x| < 2^51.
+double nearest_whole(double x) {
+    constexpr double shift = 0x1.8p52;
+    return (x + shift) - shift;
+}
+
+/// e^(x + low), |low| at most an ulp of x.
+double exp_of(double x, double low) {
+    // The ends, beyond which the result is infinite or 0.
+    if (!(x < 710)) return x > 0 ? infinity : x;
+    if (x < -746) return 0;
+    constexpr double steps_per_unit = exp_steps / ln_2.high;
+    const double n = nearest_whole(x * steps_per_unit);
+    const int whole = static_cast<int>(n), k = whole >> 7;
+    const double r = (x - n * exp_step_head) - (n * exp_step_rest - low);  // |r| < 0.0028
+    const double growth =
+        r + r * r * (1. / 2 + r * (1. / 6 + r * (1. / 24 + r * (1. / 120 + r * (1. / 720)))));
+    const DoubleDouble& start = exp_table[whole & (exp_steps - 1)];
+    const double result = start.high + (start.low + start.high * growth);
+    // 2^k in two factors, for 2^1024 and 2^-1075 are no doubles.
+    const int first = k / 2;
+    const auto power_of_2 = [](int power) {
+        return std::bit_cast<double>(bits_of_1 + (static_cast<std::uint64_t>(power) << 52));
+    };
+    return result * power_of_2(first) * power_of_2(k - first);
+}
+
+}  // namespace
+
+double exp(double x) { return exp_of(x, 0); }
+
+double pow(double x, double y) {
+    if (y == 0 || x == 1) return 1;
+    if (!(x >= 0) || std::isnan(y)) return nan;
+    if (x == 0 || x == infinity) return (x > 0) == (y > 0) ? infinity : 0;
+    const DoubleDouble sum = log_parts(x), logarithm = ordered_sum(sum.high, sum.low);
+    const double rough = logarithm.high * y;
+    // Beyond the ends of exp, where the parts of the product might overflow.
+    if (!(std::abs(rough) < 800)) return rough > 0 ? infinity : 0;
+    const DoubleDouble product = exact_product(logarithm.high, y);
+    return exp_of(product.high, product.low + logarithm.low * y);
+}
+
+namespace {
+
+// pi to 160 bits.
+constexpr double pi[3] = {0x1.921fb54442d18p+1, 0x1.1a62633145c07p-53, -0x1.f1976b7ed8fbcp-109};
+
+// sin(x) = sin(n step + r)
+constexpr int turn_steps = 64, right_angle = turn_steps / 4;
+constexpr double steps_per_radian = turn_steps / (2 * pi[0]);
+constexpr double angle_step[3] = {pi[0] / 32, pi[1] / 32, pi[2] / 32};
+
+/// A number as 26 bits and what is left.
+struct HeadAndRest {
+    double head = 0, rest = 0;
+    constexpr double value() const { return head + rest; }
+};
+
+/// sin or cos of an angle up to pi/4 by its series, from the first term on: the term behind the
+/// 14th is below 2^-107.
+constexpr DoubleDouble sine_series(const DoubleDouble& angle, int first) {
+    const DoubleDouble minus_square = DoubleDouble{-1} * angle * angle;
+    DoubleDouble sum = {1};
+    for (int n = first + 26; n > first; n -= 2)
+        sum = DoubleDouble{1} + sum * minus_square / DoubleDouble{1.0 * n * (n - 1)};
+    return first == 1 ? sum * angle : sum;
+}
+
+constexpr auto sine_table = [] {
+    std::array<HeadAndRest, turn_steps> table;
+    for (int i = 0; i <= right_angle; ++i) {
+        const bool near_0 = 2 * i <= right_angle;
+        const DoubleDouble angle = DoubleDouble{angle_step[0], angle_step[1]} *
+                                   DoubleDouble{1.0 * (near_0 ? i : right_angle - i)};
+        const DoubleDouble sine = sine_series(angle, near_0 ? 1 : 0);
+        const double head = head_of(sine.high);
+        const HeadAndRest entry = {head, (sine.high - head) + sine.low};
+        table[i] = table[2 * right_angle - i] = entry;
+        for (const int k : {2 * right_angle + i, 4 * right_angle - i})
+            table[k % turn_steps] = i == 0 ? HeadAndRest{} : HeadAndRest{-entry.head, -entry.rest};
+    }
+    return table;
+}();
+
+struct ReducedAngle {
+    std::int64_t steps;
+    DoubleDouble rest;  // |rest| <= step/2 = 0.0491
+};
+
+/// For less than 1024 steps, to 2^-95: the products with parts of 26 bits are exact. x is so near
+/// to n steps that the first difference is, too.
+inline ReducedAngle less_few_steps(double x, double n) {
+    constexpr double first = head_of(angle_step[0]), second = angle_step[0] - first;
+    const DoubleDouble near = exact_sum(x - n * first, -n * second);
+    return {static_cast<std::int64_t>(n), ordered_sum(near.high, near.low - n * angle_step[1])};
+}
+
+/// For any number of steps, to 2^-62 of the rest as long as they are less than 2^35.
+ReducedAngle less_many_steps(double x) {
+    // So far the number of steps, and with it what the third part of pi leaves out, is small
+    // enough.
+    constexpr double furthest = 0x1p47;
+    if (!(std::abs(x) < infinity)) return {0, {nan, 0}};
+    if (std::abs(x) > furthest) x = std::fmod(x, 2 * pi[0]);
+    const double n = nearest_whole(x * steps_per_radian);
+    const DoubleDouble first = exact_product(n, angle_step[0]),
+                       second = exact_product(n, angle_step[1]);
+    const DoubleDouble nearer = exact_sum(x - first.high, -first.low),
+                       near = exact_sum(nearer.high, -second.high);
+    const double low = (nearer.low + near.low) - second.low - n * angle_step[2];
+    return {static_cast<std::int64_t>(n), ordered_sum(near.high, low)};
+}
+
+inline ReducedAngle reduced(double x) {
+    const double n = nearest_whole(x * steps_per_radian);
+    if (n == 0) return {0, {x, 0}};
+    if (std::abs(n) < 1024) {
+        const ReducedAngle angle = less_few_steps(x, n);
+        if (std::abs(angle.rest.high) > 0x1p-30) return angle;
+    }
+    return less_many_steps(x);
+}
+
+/// sin(a + r) = sin a + r cos a + (sin r - r) cos a + (cos r - 1) sin a.
+inline double sine_at(std::int64_t steps, const DoubleDouble& r) {
+    const auto at = [](std::int64_t k) { return sine_table[k & (turn_steps - 1)]; };
+    const HeadAndRest sine = at(steps), cosine = at(steps + right_angle);
+    const double r_head = head_of(r.high), r_rest = (r.high - r_head) + r.low,
+                 square = r.high * r.high;
+    // sin(r)/r - 1, cos(r) - 1
+    const double sine_less =
+        square * (-1. / 6 + square * (1. / 120 + square * (-1. / 5040 + square / 362880)));
+    const double cosine_less =
+        square * (-1. / 2 + square * (1. / 24 + square * (-1. / 720 + square / 40320)));
+    // sin a is 0 or the larger.
+    const DoubleDouble large = ordered_sum(sine.head, cosine.head * r_head);
+    const double small = sine.rest + cosine.head * r_rest + cosine.rest * r.high +
+                         cosine.value() * (r.high * sine_less) + sine.value() * cosine_less;
+    return large.high + (large.low + small);
+}
+
+}  // namespace
+
+double sin(double x) {
+    // x - x^3/6 is x; 0 keeps its sign.
+    if (std::abs(x) < 0x1p-28) return x;
+    const ReducedAngle angle = reduced(x);
+    return sine_at(angle.steps, angle.rest);
+}
+
+double cos(double x) {
+    const ReducedAngle angle = reduced(x);
+    return sine_at(angle.steps + right_angle, angle.rest);
+}
+
+namespace {
+
+// atan u = atan t + atan((u - t)/(1 + t u)), t = i/64, u up to 1.
+constexpr int atan_steps = 64;
+
+constexpr auto atan_table = [] {
+    std::array<DoubleDouble, atan_steps + 1> table;
+    for (int i = 1; i <= atan_steps; ++i) {
+        const DoubleDouble further =
+            DoubleDouble{atan_steps} / DoubleDouble{1.0 * (atan_steps * atan_steps + i * (i - 1))};
+        const DoubleDouble minus_square = DoubleDouble{-1} * further * further;
+        // Up to 1/64: the term behind the ninth is below 2^-110.
+        DoubleDouble sum;
+        for (int n = 17; n > 0; n -= 2)
+            sum = sum * minus_square + DoubleDouble{1} / DoubleDouble{1.0 * n};
+        table[i] = table[i - 1] + sum * further;
+    }
+    return table;
+}();
+
+// Below this share of the other, the smaller side of a right angle changes no digit.
+constexpr double least_side = 0x1p-60;
+
+/// A power of two that takes the larger of two sides, and with it the smaller, to where products
+/// and their low parts are in the range of double.
+double scale_of(double larger) {
+    return larger > 0x1p400 ? 0x1p-600 : larger < 0x1p-400 ? 0x1p600 : 1;
+}
+
+/// base + sign atan(opposite/adjacent), 0 < opposite <= adjacent.
+double angle_from(const DoubleDouble& base, int sign, double opposite, double adjacent) {
+    const double whole = nearest_whole(opposite / adjacent * atan_steps), t = whole / atan_steps;
+    // Exact, for t has 7 bits: no product with 26 rounds.
+    const DoubleDouble along = exact_product(t, adjacent), up = exact_product(t, opposite);
+    const DoubleDouble q = (DoubleDouble{opposite} + DoubleDouble{-along.high, -along.low}) /
+                           (DoubleDouble{adjacent} + up);  // |q| <= 1/128
+    const double square = q.high * q.high;
+    const double less = square * (-1. / 3 + square * (1. / 5 + square * (-1. / 7 + square / 9)));
+    const DoubleDouble& known = atan_table[static_cast<int>(whole)];
+    const DoubleDouble first = exact_sum(base.high, sign * known.high),
+                       sum = exact_sum(first.high, sign * q.high);
+    const double small = base.low + sign * (known.low + (q.low + q.high * less));
+    return sum.high + (sum.low + (first.low + small));
+}
+
+/// That of the positive quadrant, or with x < 0 of the next one: 0 <= y, |x| <= infinity.
+double angle_above(double y, double x) {
+    constexpr DoubleDouble half_turn = {pi[0], pi[1]}, quarter = {pi[0] / 2, pi[1] / 2};
+    const double width = std::abs(x);
+    const bool is_steep = y > width;
+    const DoubleDouble base = is_steep ? quarter : std::signbit(x) ? half_turn : DoubleDouble{};
+    if (width == infinity && y == infinity) return angle_above(1, std::copysign(1, x));
+    const double larger = std::max(width, y), smaller = std::min(width, y);
+    if (smaller <= least_side * larger) return base.high == 0 && larger > 0 ? y / width : base.high;
+    const double scale = scale_of(larger);
+    return angle_from(base, is_steep == std::signbit(x) ? 1 : -1, smaller * scale, larger * scale);
+}
+
+}  // namespace
+
+double atan2(double y, double x) {
+    if (std::isnan(x) || std::isnan(y)) return nan;
+    return std::copysign(angle_above(std::abs(y), x), y);
+}
+
+double atan(double x) { return atan2(x, 1); }
+
+double hypot(double x, double y) {
+    const double larger = std::max(std::abs(x), std::abs(y)),
+                 smaller = std::min(std::abs(x), std::abs(y));
+    if (std::isinf(x) || std::isinf(y)) return infinity;
+    if (std::isnan(x) || std::isnan(y)) return nan;
+    if (!(smaller > least_side * larger)) return larger + smaller;
+    const double scale = scale_of(larger), a = larger * scale, b = smaller * scale;
+    const DoubleDouble squares = exact_product(a, a) + exact_product(b, b);
+    const double root = std::sqrt(squares.high);
+    const DoubleDouble back = exact_product(root, root);
+    const double rest = ((squares.high - back.high) - back.low) + squares.low;
+    return (root + rest / (2 * root)) / scale;
+}
+
+}  // namespace vines::elementary

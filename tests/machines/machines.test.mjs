@@ -1,0 +1,61 @@
+// Whether an answer depends on the processor. The C library chooses variants of its functions by
+// what the processor offers; told to do without fused operations, it computes as an older one does.
+import assert from "node:assert/strict";
+import {spawnSync} from "node:child_process";
+import {readFileSync} from "node:fs";
+import {test} from "node:test";
+import {identifications, requests} from "../golden/requests.mjs";
+import {startService} from "../service.mjs";
+
+const older = {GLIBC_TUNABLES: "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F,-FMA4"};
+
+/** Why there is nothing to compare here, or false. */
+const nothingToCompare = () => {
+  if (!process.report.getReport().header.glibcVersionRuntime)
+    return "the C library is not glibc: it cannot be told what the processor offers";
+  if (!/ fma /.test(readFileSync("/proc/cpuinfo", "utf8")))
+    return "the processor has no fused operations that could be left out";
+  return false;
+};
+
+const post = async (url, {path, body, type = "application/json"}) => {
+  const text = typeof body === "string" ? body : JSON.stringify(body);
+  const options = body === undefined ? {} : {method: "POST", body: text};
+  return await fetch(url + path, {...options, headers: {"Content-Type": type}});
+};
+/** A sweep's points come in any order, its progress by the clock. */
+const steady = (text) =>
+  text
+    .split("\n")
+    .filter((line) => !line.startsWith('{"type":"progress"'))
+    .sort()
+    .join("\n");
+const answerOf = async (url, request) => steady(await (await post(url, request)).text());
+
+test("an answer is the same, byte for byte, on a processor without fused operations", {
+  skip: nothingToCompare(),
+}, async () => {
+  const services = [await startService(), await startService([], older)];
+  try {
+    const ask = async (body) => (await post(services[0].url, {path: "/v1/simulate", body})).json();
+    const asked = requests.filter(({path}) => path.startsWith("/v1/"));
+    for (const request of [...asked, ...(await identifications(ask))]) {
+      const [here, there] = await Promise.all(services.map(({url}) => answerOf(url, request)));
+      assert.ok(here === there, `${request.name} differs`);
+    }
+  } finally {
+    await Promise.all(services.map(({stop}) => stop()));
+  }
+});
+
+test("core and api call no function of the C library that its variants round differently", () => {
+  const inexact =
+    /^c?(sin|cos|sincos|tan|exp|exp2|exp10|expm1|log|log2|log10|log1p|pow|cbrt|hypot|erf|erfc|[lt]gamma|a?(sin|cos|tan)h?|atan2|abs|arg)[fl]?$/;
+  for (const library of process.env.LIBRARIES.split(" ")) {
+    const {status, stdout} = spawnSync("nm", ["-u", library], {encoding: "utf8"});
+    assert.equal(status, 0, library);
+    const called = [...stdout.matchAll(/^ *U (\w+)$/gm)].map(([, name]) => name);
+    assert.ok(called.length > 0, library);
+    assert.deepEqual([...new Set(called.filter((name) => inexact.test(name)))], [], library);
+  }
+});
