@@ -30,8 +30,10 @@ public:
 
     void run() {
         if (plan_.by_rows()) return run_rows();
-        run_points(plan_.lines.size(), threads_, plan_.options, pace_, [this](std::size_t i) {
-            return single(plan_.lines[i]);
+        const std::size_t first = plan_.grid.steps[0], others = plan_.lines.size() / first;
+        const bool across = first_axis_changes_flow();
+        run_points(plan_.lines.size(), threads_, plan_.options, pace_, [&](std::size_t i) {
+            return single(plan_.lines[across ? i % others * first + i / others : i]);
         });
     }
 
@@ -42,6 +44,19 @@ private:
         SweepPoint point;
         point.system = plan_.system_at(place);
         return point;
+    }
+
+    /// Points of one flow fly side by side: where it is another one at each step of the first axis,
+    /// lines are begun along the other axes.
+    bool first_axis_changes_flow() const {
+        if (plan_.lines.size() != plan_.grid.lines() || plan_.grid.steps[0] < 2) return false;
+        Place place = plan_.grid.place_of(0);
+        const auto one = plan_.system_at(place);
+        place.at[0] = 1;
+        const auto next = plan_.system_at(place);
+        return one && next &&
+               Flow::free_coefficients(one->parameters) !=
+                   Flow::free_coefficients(next->parameters);
     }
 
     PointResult run_from(const PointSystem& system, const State& start) {
