@@ -1,9 +1,12 @@
+#include <atomic>
 #include <ctime>
+#include <deque>
 #include <string>
 
+#include "core/motion/together.hpp"
 #include "core/stability/lyapunov.hpp"
 #include "core/sweep/parallel.hpp"
-#include "core/sweep/point.hpp"
+#include "core/sweep/points.hpp"
 #include "parts.hpp"
 #include "table.hpp"
 
@@ -26,15 +29,50 @@ double between(double from, double to, std::size_t k, std::size_t count) {
     return from + (to - from) * static_cast<double>(k) / static_cast<double>(count - 1);
 }
 
-/// The simulation and its exponents, and nothing else.
-void spectrum_alone(const Parameters& p, double cycles) {
-    const double end = cycles * p.cycle();
-    Lyapunov lyapunov(p, 0, end, qr_alone);
-    Observer* const observers[] = {&lyapunov};
-    simulate(p, default_state(p), {end, 1000000, {}}, observers);
+Parameters value_of_b(std::size_t i) {
+    return closed_form(between(0.002, 0.040, i, values_of_b), 0.6);
 }
 
-using Point = std::function<void(const Parameters&)>;
+/// The simulations of all values of b and their exponents, and nothing else.
+void spectra(int threads, double cycles) {
+    std::atomic<std::size_t> next = 0;
+    class Line : public RunLine {
+    public:
+        Line(std::atomic<std::size_t>& next, double cycles) : next_(next), cycles_(cycles) {}
+        std::optional<RunPlan> next(const std::optional<Outcome>&) override {
+            const std::size_t i = next_++;
+            if (i >= values_of_b) return std::nullopt;
+            const Parameters p = value_of_b(i);
+            const double end = cycles_ * p.cycle();
+            lyapunov_.emplace(p, 0, end, qr_alone);
+            return RunPlan{
+                p, default_state(p), {.tau_end = end, .max_impacts = 1000000}, {&*lyapunov_}};
+        }
+
+    private:
+        std::atomic<std::size_t>& next_;
+        const double cycles_;
+        std::optional<Lyapunov> lyapunov_;
+    };
+    parallel(static_cast<std::size_t>(threads), threads, [&](std::size_t) {
+        std::deque<Line> lines;
+        std::vector<RunLine*> going;
+        for (int k = 0; k < most_lines; ++k) going.push_back(&lines.emplace_back(next, cycles));
+        simulate_together(going);
+    });
+}
+
+/// Points with all that they hold.
+void points(
+    int threads, std::size_t count, const PointOptions& options,
+    const std::function<Parameters(std::size_t)>& parameters_of) {
+    Pace pace;
+    run_points(count, threads, options, pace, [&](std::size_t i) {
+        const Parameters p = parameters_of(i);
+        const State start = default_state(p);
+        return PointTask{{p, start, options.max_impacts}, {{"", start}}, [](const auto&) {}};
+    });
+}
 
 /// How many cores a piece of work had: on a busy machine less than its threads could use.
 class Cores {
@@ -51,29 +89,22 @@ private:
     std::vector<double> cores_;
 };
 
-double sweep(int threads, const Point& point, Cores& cores) {
-    return cores.seconds_of([&] {
-        parallel(values_of_b, threads, [&](std::size_t i) {
-            point(closed_form(between(0.002, 0.040, i, values_of_b), 0.6));
-        });
-    });
-}
-
 std::string rate(const std::vector<double>& seconds, std::size_t points) {
     return ", " + digits(static_cast<double>(points) / median(seconds)) + " points per second";
 }
 
 void bench_sweep_of_b() {
     const auto measured = [](double transient) {
-        return [transient](const Parameters& p) {
-            measure(p, default_state(p), {.transient_cycles = transient, .cycles = 1000}, {});
+        return [transient](int threads) {
+            points(
+                threads, values_of_b, {.transient_cycles = transient, .cycles = 1000}, value_of_b);
         };
     };
     const struct {
         const char* name;
-        Point point;
+        std::function<void(int)> by;
     } kinds[] = {
-        {"1000 cycles, all four exponents", [](const Parameters& p) { spectrum_alone(p, 1000); }},
+        {"1000 cycles, all four exponents", [](int threads) { spectra(threads, 1000); }},
         {"1000 cycles, all that a point holds", measured(0)},
         {"200 + 1000 cycles, all that a point holds", measured(200)}};
     std::vector<std::function<double()>> measurements;
@@ -81,7 +112,7 @@ void bench_sweep_of_b() {
     for (std::size_t k = 0; k < std::size(kinds); ++k)
         for (int threads : {1, 2})
             measurements.push_back([&kinds, &cores, k, threads] {
-                return sweep(threads, kinds[k].point, cores[k][threads - 1]);
+                return cores[k][threads - 1].seconds_of([&] { kinds[k].by(threads); });
             });
     const auto times = in_turn(rounds, measurements);
     for (std::size_t k = 0; k < std::size(kinds); ++k) {
@@ -95,15 +126,14 @@ void bench_sweep_of_b() {
 }
 
 void bench_map() {
-    constexpr std::size_t columns = 120, lines = 80;
+    static constexpr std::size_t columns = 120, lines = 80;
     Cores cores;
     const auto map = [&] {
         return cores.seconds_of([&] {
-            parallel(columns * lines, 2, [&](std::size_t i) {
-                const Parameters p = closed_form(
+            points(2, columns * lines, {.transient_cycles = 100, .cycles = 200}, [](std::size_t i) {
+                return closed_form(
                     between(0.002, 0.040, i % columns, columns),
                     between(0.3, 0.9, i / columns, lines));
-                measure(p, default_state(p), {.transient_cycles = 100, .cycles = 200}, {});
             });
         });
     };
