@@ -59,9 +59,10 @@ struct Observers {
           lyapunov(w.parameters, w.window.from, w.window.to, main_estimators(w)),
           windows(w.parameters, window_estimators(w)),
           transfers(w.parameters, w.window.from, w.window.to, w.most_points),
-          whole_cycles(w.parameters),
+          whole_cycles(w.parameters, {.most = kept_states, .until = w.window.to}),
           stroboscopic(w.parameters, 0, w.section_phase),
           decay(w.parameters, w.window.from, decay_shares),
+          rhythm(w.parameters, w.window, w.parts.regime ? w.most_points : 0),
           half_cycles(w.parameters, w.window.from, w.window.to, w.most_points) {
         for (const Interval& window : w.windows) windows.add(window.from, window.to);
         if (w.parts.energy) energy.emplace(w.parameters, w.window.from, w.window.to);
@@ -79,7 +80,7 @@ struct Observers {
         observe(w.parts.series, series);
         observe(w.parts.impacts || w.parts.section, impacts);
         observe(w.parts.section, section, stroboscopic);
-        observe(is_judged(w), lyapunov, whole_cycles, contacts);
+        observe(is_judged(w), lyapunov, whole_cycles, rhythm);
         observe(!w.windows.empty(), windows);
         observe(w.parts.moduli || w.parts.matrices, transfers);
         if (energy) list.push_back(&*energy);
@@ -100,7 +101,7 @@ struct Observers {
     StroboscopicRecord whole_cycles, stroboscopic;
     std::optional<Energy> energy;  // its tables take their time
     Decay decay;
-    ContactRecord contacts;
+    Rhythm rhythm;
     HalfCycles half_cycles;
     std::optional<ComparedRun> compared;
 };
@@ -124,7 +125,7 @@ public:
         transfers();
         if (w_.parts.section) sections();
         if (w_.parts.energy) energy();
-        if (w_.parts.regime) thin_regime();
+        if (w_.parts.regime) regime();
         if (w_.parts.manifold) manifold();
         if (w_.perturbation) perturbation();
     }
@@ -189,7 +190,7 @@ private:
     void find_regime(const Growth& growth) {
         a_.regime = regime_of(
             w_.parameters, w_.start,
-            {.contacts = o_.contacts,
+            {.rhythm = o_.rhythm,
              .stroboscopic = o_.whole_cycles,
              .tau_start = a_.reached.from,
              .tau_end = a_.reached.to,
@@ -294,19 +295,10 @@ private:
             .with_absorber = {o_.decay.tau[0], o_.decay.tau[1]}, .without = {alone[0], alone[1]}};
     }
 
-    /// The verdicts have used all of it; of what is shown the moving z is thinned to most_points,
-    /// and the stretches are the last so many.
-    void thin_regime() {
-        Regime& r = *a_.regime;
-        const std::size_t every = r.moving_tau.size() / w_.most_points + 1;
-        for (auto* column : {&r.moving_tau, &r.moving_z}) {
-            for (std::size_t k = 0; k * every < column->size(); ++k)
-                (*column)[k] = (*column)[k * every];
-            column->resize((column->size() + every - 1) / every);
-        }
-        if (r.stretches.size() > w_.most_points)
-            warn(warning::StretchesCut{r.stretches.size(), w_.most_points});
-        trim_to_last(r.stretches, w_.most_points);
+    void regime() {
+        const Regime& r = *a_.regime;
+        if (r.stretch_count > static_cast<long>(r.stretches.size()))
+            warn(warning::StretchesCut{static_cast<std::size_t>(r.stretch_count), w_.most_points});
         if (r.search_stopped) warn(warning::OrbitSearchStopped{});
         if (r.capture && r.capture->chaotic_before == true)
             warn(warning::CapturedTransient{
