@@ -95,6 +95,16 @@ test("the memory of a run that is asked for its exponents does not grow with its
   assert.ok(half > 1 && whole < half + 4, `${half} and ${whole} MB`);
 });
 
+test("the memory of an answer that lists many impacts does not grow with them", async () => {
+  const peak = (max_impacts) => peakOf({b: 0.015, tau_end: 1e7, max_impacts, include: ["impacts"]});
+  const [half, whole] = [await peak(250000), await peak(500000)];
+  assert.ok(whole.bytes > 1e8, `${whole.bytes} bytes`);
+  assert.ok(
+    half.megabytes > 1 && whole.megabytes < half.megabytes + 20,
+    `${half.megabytes} and ${whole.megabytes} MB`,
+  );
+});
+
 test("identify takes a CSV file with its fields as a query, or the service's JSON", async () => {
   const asked = '{"preset":"fig20","include":["impacts","exponents"],"exponents":["qr"]}';
   const simulated = JSON.parse((await run(["simulate"], {input: asked})).out);

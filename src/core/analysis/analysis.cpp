@@ -10,12 +10,6 @@ namespace vines {
 
 namespace {
 
-/// |x''/(x'- - y'-)| from which on an impact is nearly tangent: without the wall the mass would
-/// have turned back within 1/1800 of a unit of tau. M's condition number is then about 14
-/// (x''/(x'- - y'-))^2 at Table 1's R = .6, so that a relative error of one ulp in what M acts on
-/// is one of 1e-8 in what it gives.
-constexpr double nearly_tangent = 1800;
-
 /// Points on each branch of the manifold beside a run: a smooth curve on a screen.
 constexpr std::size_t manifold_points = 200;
 
@@ -52,7 +46,7 @@ ExponentOptions window_estimators(const Wanted& w) {
 struct Observers {
     explicit Observers(const Wanted& w)
         : series(series_step(w)),
-          impacts(w.most_listed),
+          impacts(w.most_listed, w.most_kept),
           section(w.window.from, w.window.to, w.most_points),
           sticks(w.most_listed),
           touches(w.most_listed),
@@ -91,7 +85,7 @@ struct Observers {
     }
 
     SeriesRecord series;
-    ImpactRecord impacts;
+    ImpactList impacts;
     SectionRecord section;
     StickRecord sticks;
     TouchRecord touches;
@@ -155,25 +149,23 @@ private:
     }
 
     void lists() {
-        if (w_.parts.impacts) {
-            a_.impacts = last_of(o_.impacts, "impacts");
-            a_.touches = last_of(o_.touches, "touches");
-        } else {
-            a_.impacts = std::move(o_.impacts.entries);
-        }
+        impacts();
+        if (w_.parts.impacts) a_.touches = last_of(o_.touches, "touches");
         a_.stick_count = o_.sticks.seen;
         a_.sticks = last_of(o_.sticks, "sticks");
-        a_.typical_speed = median_speed(a_.impacts);
         if (!a_.touches.empty()) warn(warning::Touched{});
     }
 
-    static double median_speed(const std::vector<Impact>& impacts) {
-        if (impacts.empty()) return 1;
-        std::vector<double> speeds;
-        for (const Impact& i : impacts) speeds.push_back(std::abs(i.relative_speed_before));
-        const auto middle = speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / 2);
-        std::nth_element(speeds.begin(), middle, speeds.end());
-        return *middle;
+    void impacts() {
+        ImpactList& list = o_.impacts;
+        list.finish();
+        const ImpactRange listed = list.listed();
+        if (w_.parts.impacts && listed.first > 0)
+            warn(warning::ListCut{
+                "impacts", listed.first + listed.count, static_cast<std::size_t>(listed.count)});
+        if (!list.kept()) a_.unkept_impacts = listed;
+        a_.impacts = std::move(list.entries);
+        a_.typical_speed = list.typical_speed;
     }
 
     /// The regime, which looks at the growth of the deviations, and the exponents of all windows,
@@ -210,22 +202,17 @@ private:
     }
 
     /// Impacts next to a tangent contact, which shift the eigenvalues of every product that they
-    /// are in. Those of a chatter (the wall presses: side x'' > 0) are slow as well, but no
-    /// neighbouring motion misses them.
+    /// are in.
     void grazing() {
         long count = 0;
-        const Impact* nearest = nullptr;
-        for (const Impact& i : a_.impacts) {
-            if (i.side * i.x_ddot_before > 0 || i.tau < w_.window.from || i.tau > w_.window.to)
-                continue;
-            const double speed = std::abs(i.relative_speed_before);
-            if (!(std::abs(i.x_ddot_before) > nearly_tangent * speed)) continue;
+        const ImpactList::NearlyTangent* nearest = nullptr;
+        for (const auto& i : o_.impacts.nearly_tangent) {
+            if (i.tau < w_.window.from || i.tau > w_.window.to) continue;
             ++count;
-            if (!nearest || speed < std::abs(nearest->relative_speed_before)) nearest = &i;
+            if (!nearest || i.speed < nearest->speed) nearest = &i;
         }
         if (count > 0)
-            warn(warning::NearlyTangent{
-                count, nearest->tau, std::abs(nearest->relative_speed_before) / a_.typical_speed});
+            warn(warning::NearlyTangent{count, nearest->tau, nearest->speed / a_.typical_speed});
     }
 
     void transfers() {
