@@ -34,7 +34,8 @@ enum class Packed : std::uint8_t {
     quadruples,  ///< of such
     matrices,    ///< 4 x 4 of such, by rows
     integers,
-    flags
+    flags,
+    to_come  ///< made while it is written: a ListToCome
 };
 
 using Quadruple = std::array<double, 4>;
@@ -78,6 +79,26 @@ Json column(const Elements& elements) {
 /// The packing of a value of an answer.
 inline Packed packing_of(const Json& value) {
     return value.is_binary() ? static_cast<Packed>(value.get_binary().subtype()) : Packed::no;
+}
+
+/// In the place of a list that is too long to be kept: which column it is, and by what its numbers
+/// are multiplied.
+struct ListToCome {
+    int column;
+    double factor;
+};
+
+inline Json to_come(const ListToCome& list) {
+    std::vector<std::uint8_t> bytes(sizeof list);
+    std::memcpy(bytes.data(), &list, sizeof list);
+    return Json::binary(std::move(bytes), static_cast<std::uint8_t>(Packed::to_come));
+}
+
+/// Of a value that is one.
+inline ListToCome list_to_come(const Json& value) {
+    ListToCome list;
+    std::memcpy(&list, value.get_binary().data(), sizeof list);
+    return list;
 }
 
 /// Puts another number in the place of each in a packed list of doubles.

@@ -65,27 +65,6 @@ Json describe_series(const Series& s) {
          {"x_ddot", column(s.x_ddot)}});
 }
 
-Json describe_impacts(const std::vector<Impact>& impacts, double epsilon, double typical_speed) {
-    return object(
-        {{"tau", column(impacts, [](const Impact& i) { return i.tau; })},
-         {"side", column(impacts, [](const Impact& i) { return i.side; })},
-         {"phase", column(impacts, [](const Impact& i) { return i.phase(); })},
-         {"x", column(impacts, [](const Impact& i) { return i.x; })},
-         {"x_dot_before", column(impacts, [](const Impact& i) { return i.x_dot_before; })},
-         {"x_dot_after", column(impacts, [](const Impact& i) { return i.x_dot_after; })},
-         {"y_dot_before", column(impacts, [](const Impact& i) { return i.y_dot_before; })},
-         {"y_dot_after", column(impacts, [](const Impact& i) { return i.y_dot_after; })},
-         {"x_ddot_before", column(impacts, [](const Impact& i) { return i.x_ddot_before; })},
-         {"relative_speed",
-          column(impacts, [](const Impact& i) { return std::abs(i.relative_speed_before); })},
-         {"impulse", column(impacts, [&](const Impact& i) { return i.impulse(epsilon); })},
-         {"relative_speed_ratio",
-          column(
-              impacts,
-              [&](const Impact& i) { return std::abs(i.relative_speed_before) / typical_speed; })},
-         {"grazing", column(impacts, [](const Impact& i) { return i.grazing; })}});
-}
-
 Json describe_sticks(const std::vector<StuckPhase>& sticks) {
     return object(
         {{"side", column(sticks, [](const auto& s) { return s.start.side; })},

@@ -15,9 +15,6 @@ Json describe_derived(const System& system);
 
 /// Columns of equal length; x and y in m, derivatives in tau.
 Json describe_series(const Series& series);
-/// Columns, one entry for each impact. `typical_speed`, in m per unit of tau: what
-/// relative_speed_ratio is measured by.
-Json describe_impacts(const std::vector<Impact>& impacts, double epsilon, double typical_speed);
 Json describe_sticks(const std::vector<StuckPhase>& sticks);
 Json describe_touches(const std::vector<TangentContact>& touches);
 

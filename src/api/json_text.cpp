@@ -5,7 +5,6 @@
 #include <cstring>
 #include <utility>
 
-#include "api/column.hpp"
 #include "api/number_text.hpp"
 
 namespace vines::api {
@@ -104,7 +103,7 @@ void JsonText::put_entry(char before, const std::array<Entry, 4>& entry) {
 }
 
 template <class Entry>
-void JsonText::put_list(const Json::binary_t& list) {
+void JsonText::put_list(std::span<const std::uint8_t> list) {
     char before = '[';
     for (std::size_t at = 0; at < list.size(); at += sizeof(Entry)) {
         Entry entry;
@@ -114,13 +113,14 @@ void JsonText::put_list(const Json::binary_t& list) {
     put(std::string_view(list.empty() ? "[]" : "]"));
 }
 
-void JsonText::put_list(const Json& list) {
-    switch (packing_of(list)) {
-        case Packed::numbers: return put_list<double>(list.get_binary());
-        case Packed::quadruples: return put_list<Quadruple>(list.get_binary());
-        case Packed::matrices: return put_list<MatrixByRows>(list.get_binary());
-        case Packed::integers: return put_list<int>(list.get_binary());
-        case Packed::flags: return put_list<bool>(list.get_binary());
+void JsonText::put_list(const PackedList& list) {
+    switch (list.packing) {
+        case Packed::numbers: return put_list<double>(list.bytes);
+        case Packed::quadruples: return put_list<Quadruple>(list.bytes);
+        case Packed::matrices: return put_list<MatrixByRows>(list.bytes);
+        case Packed::integers: return put_list<int>(list.bytes);
+        case Packed::flags: return put_list<bool>(list.bytes);
+        case Packed::to_come:
         case Packed::no: return;
     }
 }
@@ -151,7 +151,8 @@ void JsonText::write(Json& json) {
             return values.clear();
         }
         case Type::binary:
-            put_list(json);
+            if (packing_of(json) == Packed::to_come) put_list(source_->list(list_to_come(json)));
+            else put_list({packing_of(json), json.get_binary()});
             json = nullptr;
             return;
         case Type::number_float: return put_number(json.get<double>());

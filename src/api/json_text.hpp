@@ -3,13 +3,29 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 
-#include "api/schema/json.hpp"
+#include "api/column.hpp"
 
 namespace vines::api {
+
+/// The numbers of a list as they lie in memory.
+struct PackedList {
+    Packed packing;
+    std::span<const std::uint8_t> bytes;
+};
+
+/// Makes lists that are to come, one after the other as they stand in an answer.
+class ListSource {
+public:
+    virtual ~ListSource() = default;
+    /// Valid until the next.
+    virtual PackedList list(const ListToCome&) = 0;
+};
 
 /// Writes text in pieces.
 class JsonText {
@@ -17,7 +33,10 @@ public:
     /// Takes one piece after the other.
     using Take = std::function<void(std::string_view)>;
 
-    explicit JsonText(Take take) : take_(std::move(take)) {}
+    /// `source`: of an answer with lists to come.
+    explicit JsonText(Take take, ListSource* source = nullptr)
+        : take_(std::move(take)),
+          source_(source) {}
     JsonText(const JsonText&) = delete;
     JsonText& operator=(const JsonText&) = delete;
 
@@ -38,12 +57,13 @@ private:
     template <class Entry>
     void put_entry(char before, const std::array<Entry, 4>& entry);
     template <class Entry>
-    void put_list(const Json::binary_t& list);
-    void put_list(const Json& list);
+    void put_list(std::span<const std::uint8_t> list);
+    void put_list(const PackedList& list);
     /// Where so many more characters fit.
     char* room(std::size_t length);
 
     const Take take_;
+    ListSource* const source_;
     std::array<char, 16384> piece_;
     std::size_t used_ = 0;
 };

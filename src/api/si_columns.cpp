@@ -54,6 +54,11 @@ constexpr Twin energies[] = {
 Json scaled(const Json& value, double factor) {
     if (value.is_number()) return value.get<double>() * factor;
     if (value.is_null()) return nullptr;  // a number that does not exist
+    if (packing_of(value) == Packed::to_come) {
+        ListToCome list = list_to_come(value);
+        list.factor *= factor;
+        return to_come(list);
+    }
     Json list = value;
     if (value.is_binary())
         change_numbers(list, [factor](double number) { return number * factor; });

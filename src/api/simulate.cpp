@@ -74,6 +74,10 @@ Result taken(Result& result) {
     return std::exchange(result, {});
 }
 
+ImpactScales scales_of(const SimulateRequest& r, const Analysis& a) {
+    return {r.wanted.parameters.epsilon, a.typical_speed};
+}
+
 /// The parts of an answer, one by one while there is time, with their twins in SI.
 class Answer {
 public:
@@ -86,8 +90,8 @@ public:
         const ExponentOptions& shown = r_.wanted.estimators;
         part("series", [&] { return describe_series(*taken(a.series)); });
         part("impacts", [&] {
-            return describe_impacts(
-                taken(a.impacts), r_.wanted.parameters.epsilon, a.typical_speed);
+            if (a.unkept_impacts) return describe_impacts_to_come();
+            return describe_impacts(taken(a.impacts), scales_of(r_, a));
         });
         add("sticking", describe_sticks(a.sticks));
         if (!a.touches.empty()) add("touches", describe_touches(a.touches));
@@ -134,9 +138,11 @@ private:
 
 }  // namespace
 
-Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes) {
+SimulateAnswer simulate_in_parts(
+    SimulateRequest r, const Stop& stop, std::size_t most_bytes, std::size_t most_kept) {
     Warnings warnings = r.system.notes;
     fit_answer(r, most_bytes, warnings);
+    r.wanted.most_kept = most_kept;
     Analysis analysis = analyse(r.wanted, {.run = stop.asked, .late = stop.analysis_late});
     Json answer = object(
         {{"version", version()},
@@ -159,7 +165,24 @@ Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes
             "null: " +
             joined(parts.left_out));
     answer["warnings"] = warnings;
-    return answer;
+    if (!analysis.unkept_impacts || !answer.contains("impacts") || answer["impacts"].is_null())
+        return {std::move(answer), std::nullopt};
+    return {
+        std::move(answer), ListedRun{r.wanted, *analysis.unkept_impacts, scales_of(r, analysis)}};
+}
+
+void write_answer(
+    SimulateAnswer answer, Pace& pace, const JsonText::Take& take, std::size_t list_bytes) {
+    std::optional<ImpactLists> lists;
+    if (answer.run) lists.emplace(*answer.run, answer.json, pace, list_bytes);
+    JsonText text(take, lists ? &*lists : nullptr);
+    text.write(answer.json);
+    text.end();
+    take("\n");
+}
+
+Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes) {
+    return simulate_in_parts(std::move(r), stop, most_bytes, everything).json;
 }
 
 namespace {

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "api/answer_size.hpp"
+#include "api/impact_columns.hpp"
 
 namespace vines::api {
 
@@ -19,7 +20,30 @@ struct Stop {
     std::function<bool()> late = {};
 };
 
-/// An answer of no more than about so many bytes of JSON: see fit_answer().
+/// An answer. Its lists of impacts, where they are too long to be kept, are to come of `run`.
+struct SimulateAnswer {
+    Json json;
+    std::optional<ListedRun> run;
+};
+
+// So many impacts, their columns in both units and the text of these take 45 MB.
+inline constexpr std::size_t most_kept_impacts = 1 << 15;
+// A column of numbers, and one of sides, of the longest list that can be asked for.
+inline constexpr std::size_t most_listed_bytes = 24 << 20;
+
+/// Of no more than about `most_bytes` of JSON: see fit_answer(). More listed impacts than
+/// `most_kept` are to come.
+SimulateAnswer simulate_in_parts(
+    SimulateRequest request, const Stop& stop, std::size_t most_bytes = any_size,
+    std::size_t most_kept = most_kept_impacts);
+
+/// Writes its text, a line, in pieces. Lists to come are made while it is written, as many at a
+/// time as fit into `list_bytes`, by runs at `pace`. Throws BrokenOff where that stops one.
+void write_answer(
+    SimulateAnswer answer, Pace& pace, const JsonText::Take& take,
+    std::size_t list_bytes = most_listed_bytes);
+
+/// The same with all lists.
 Json simulate_answer(SimulateRequest request, const Stop& stop, std::size_t most_bytes = any_size);
 
 /// The manifold, and the b that is recommended beside it: none once stop.asked() is true.

@@ -10,6 +10,7 @@
 #include <iostream>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace vines::cli {
 
@@ -18,21 +19,6 @@ namespace {
 /// The reason is errno's: call it next after what failed.
 [[noreturn]] void fail(const char* what, const std::string& path) {
     throw std::runtime_error(fmt::format("cannot {} {}: {}", what, path, std::strerror(errno)));
-}
-
-void replace_file(const std::string& path, const std::string& text) {
-    const std::string next = path + ".part";
-    const int file = ::open(next.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    bool ok = file >= 0;
-    for (std::size_t at = 0; ok && at < text.size();) {
-        const ssize_t n = ::write(file, text.data() + at, text.size() - at);
-        if (n < 0 && errno == EINTR) continue;
-        ok = n > 0;
-        if (ok) at += static_cast<std::size_t>(n);
-    }
-    ok = ok && ::fsync(file) == 0;
-    if (file >= 0) ok = ::close(file) == 0 && ok;
-    if (!ok || ::rename(next.c_str(), path.c_str()) != 0) fail("write", path);
 }
 
 }  // namespace
@@ -59,10 +45,40 @@ std::string read_file(const std::string& path) {
     return text.str();
 }
 
+Output::Output(const std::string& path)
+    : path_(is_standard(path) ? "" : path),
+      next_(path_.empty() ? "" : path_ + ".part"),
+      file_(
+          path_.empty() ? STDOUT_FILENO
+                        : ::open(next_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+    if (file_ < 0) fail();
+}
+
+Output::~Output() {
+    if (!path_.empty() && file_ >= 0) ::close(file_);
+}
+
+void Output::fail() { cli::fail("write", path_.empty() ? "to stdout" : path_); }
+
+void Output::write(std::string_view text) {
+    while (!text.empty()) {
+        const ssize_t n = ::write(file_, text.data(), text.size());
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) fail();
+        text.remove_prefix(static_cast<std::size_t>(n));
+    }
+}
+
+void Output::end() {
+    if (path_.empty()) return;
+    const bool ok = ::fsync(file_) == 0 && ::close(std::exchange(file_, -1)) == 0;
+    if (!ok || ::rename(next_.c_str(), path_.c_str()) != 0) fail();
+}
+
 void write_all(const std::string& path, const std::string& text) {
-    if (!is_standard(path)) return replace_file(path, text);
-    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
-        fail("write", "to stdout");
+    Output out(path);
+    out.write(text);
+    out.end();
 }
 
 Appending::Appending(const std::string& path) : path_(path), file_(std::fopen(path.c_str(), "ab")) {

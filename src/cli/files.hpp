@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <string>
+#include <string_view>
 
 namespace vines::cli {
 
@@ -20,8 +21,24 @@ bool is_standard(const std::string& path);
 std::string read_all(const std::string& path);
 std::string read_file(const std::string& path);
 
-/// A file is replaced at once: another one sees the old text or the new. Throws std::runtime_error
-/// with the reason.
+/// A text on its way to a file or stdout. A file is replaced at its end, at once: another one sees
+/// the old text or the new. All throw std::runtime_error with the reason.
+class Output {
+public:
+    explicit Output(const std::string& path);
+    ~Output();
+    Output(const Output&) = delete;
+    Output& operator=(const Output&) = delete;
+    void write(std::string_view text);
+    void end();
+
+private:
+    [[noreturn]] void fail();
+    const std::string path_, next_;  // "" for stdout
+    int file_;
+};
+
+/// The same of a whole text.
 void write_all(const std::string& path, const std::string& text);
 
 /// Appends lines to a file as they come, each in one write, so that a killed run keeps all of them.

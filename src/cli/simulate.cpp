@@ -2,8 +2,8 @@
 #include "api/simulate.hpp"
 
 #include <memory>
+#include <utility>
 
-#include "api/json_text.hpp"
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/files.hpp"
@@ -18,8 +18,14 @@ int simulate(const Files& files) {
         api::read_simulate_request(api::parse_object(read_all(files.input)));
     const api::Stop stop{
         .asked = stopped, .reason = "interrupted", .message = "ended by a signal, before tau_end"};
-    write_all(files.output, api::json_text(api::simulate_answer(request, stop)) + "\n");
-    return stopped() ? incomplete : complete;
+    api::SimulateAnswer answer = api::simulate_in_parts(request, stop);
+    const int code = stopped() ? incomplete : complete;
+    Output out(files.output);
+    Pace pace;  // a signal that comes now lets the answer be written
+    api::write_answer(
+        std::move(answer), pace, [&out](std::string_view piece) { out.write(piece); });
+    out.end();
+    return code;
 }
 
 }  // namespace

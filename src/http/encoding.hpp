@@ -1,6 +1,7 @@
 // How the bytes of a body travel: compressed, or not at all where the client has them already.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -9,6 +10,19 @@ namespace vines::http {
 /// gzip, level 1: a third of the size in a tenth of level 6's time, for columns of numbers. Throws
 /// std::runtime_error where zlib fails.
 std::string gzip(const std::string& text);
+
+/// The same of a text that comes in pieces.
+class Gzip {
+public:
+    Gzip();
+    ~Gzip();
+    /// What can be told of the whole by now; with `last` all.
+    std::string add(std::string_view text, bool last = false);
+
+private:
+    struct Stream;
+    const std::unique_ptr<Stream> stream_;
+};
 
 /// Whether a request with this header Accept-Encoding takes gzip (RFC 9110, 12.5.3): by its name,
 /// or by "*" where its name is not there. Empty: no.

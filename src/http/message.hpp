@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -21,8 +22,8 @@ struct Request {
 class Writer {
 public:
     virtual ~Writer() = default;
-    virtual bool write(const std::string& text) = 0;  ///< false: the client is gone
-    virtual bool present() = 0;                       ///< whether it still is there
+    virtual bool write(std::string_view text) = 0;  ///< false: the client is gone
+    virtual bool present() = 0;                     ///< whether it still is there
 };
 
 struct Response {
@@ -30,8 +31,10 @@ struct Response {
     std::string content_type = "application/json";
     std::string body = {};
     std::vector<std::pair<std::string, std::string>> headers = {};
-    /// In place of a body: writes it and returns at its end.
-    std::function<void(Writer&)> stream = {};
+    /// In place of a body: writes it and returns at its end, or before that with false, which
+    /// breaks the connection off, so that nobody takes a part for the whole.
+    std::function<bool(Writer&)> stream = {};
+    bool compressible = false;  ///< of a stream: for clients that take gzip
 };
 
 }  // namespace vines::http

@@ -1,7 +1,6 @@
 #include "http/routes.hpp"
 
 #include <fmt/format.h>
-#include <malloc.h>
 
 #include <chrono>
 
@@ -11,6 +10,8 @@
 #include "api/presets.hpp"
 #include "api/schema/parameters.hpp"
 #include "api/simulate.hpp"
+#include "http/answer_stream.hpp"
+#include "http/memory.hpp"
 #include "http/page.hpp"
 #include "http/problem_response.hpp"
 #include "http/sweep_stream.hpp"
@@ -30,9 +31,7 @@ constexpr std::size_t large = 16 << 20;
 /// As json_response(), for answers that may be large: Problem 413 beyond the limit.
 Response limited_response(Json answer, std::size_t limit) {
     std::string text = api::json_text(std::move(answer)) + "\n";
-#ifdef __GLIBC__
-    if (text.size() >= large) malloc_trim(0);
-#endif
+    if (text.size() >= large) give_memory_back();
     if (text.size() > limit)
         throw Problem(
             413, fmt::format(
@@ -70,10 +69,11 @@ api::Stop stop_after(double seconds) {
 Response simulate(const Json& object, const RouteOptions& options, ComputeGate& gate) {
     api::SimulateRequest request = api::read_simulate_request(object);
     const ComputeGate::Place place = place_in(gate);
-    return limited_response(
-        api::simulate_answer(
-            std::move(request), stop_after(options.deadline), options.answer_limit),
-        options.answer_limit);
+    api::SimulateAnswer answer = api::simulate_in_parts(
+        std::move(request), stop_after(options.deadline), options.answer_limit,
+        options.most_kept_impacts);
+    if (answer.run) return stream_answer(std::move(answer), gate);
+    return limited_response(std::move(answer.json), options.answer_limit);
 }
 
 Response manifold(const Json& object, const RouteOptions& options, ComputeGate& gate) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "api/simulate.hpp"
 #include "http/compute_gate.hpp"
 #include "http/route.hpp"
 
@@ -14,6 +15,8 @@ struct RouteOptions {
     std::size_t sweep_points = 100000;     ///< of one sweep, at most
     std::size_t record_limit = 64 << 20;   ///< bytes of a measurement sent to /v1/identify
     std::size_t answer_limit = 128 << 20;  ///< bytes of an answer's JSON
+    /// More listed impacts than this leave as a stream, with columns that are made meanwhile.
+    std::size_t most_kept_impacts = api::most_kept_impacts;
     /// Serve the page from this folder instead of the program; empty: do not.
     std::string web_dir = {};
 };

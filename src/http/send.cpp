@@ -19,12 +19,32 @@ void set_head(httplib::Response& out, const Response& response) {
 class SinkWriter : public Writer {
 public:
     explicit SinkWriter(httplib::DataSink& sink) : sink_(sink) {}
-    bool write(const std::string& text) override { return sink_.write(text.data(), text.size()); }
+    bool write(std::string_view text) override {
+        return text.empty() || sink_.write(text.data(), text.size());
+    }
     bool present() override { return sink_.is_writable(); }
 
 private:
     httplib::DataSink& sink_;
 };
+
+/// Compresses on the way to another one.
+class GzipWriter : public Writer {
+public:
+    explicit GzipWriter(Writer& out) : out_(out) {}
+    bool write(std::string_view text) override { return out_.write(gzip_.add(text)); }
+    bool present() override { return out_.present(); }
+    bool end() { return out_.write(gzip_.add({}, true)); }
+
+private:
+    Writer& out_;
+    Gzip gzip_;
+};
+
+bool write_gzipped(const Response& response, Writer& out) {
+    GzipWriter writer(out);
+    return response.stream(writer) && writer.end();
+}
 
 }  // namespace
 
@@ -58,15 +78,21 @@ void send(const httplib::Request& request, httplib::Response& out, Response resp
         });
 }
 
-void send_stream(httplib::Response& out, Response response) {
+void send_stream(const httplib::Request& request, httplib::Response& out, Response response) {
+    const bool zip =
+        response.compressible && accepts_gzip(request.get_header_value("Accept-Encoding"));
+    if (response.compressible) out.set_header("Vary", "Accept-Encoding");
+    if (zip) out.set_header("Content-Encoding", "gzip");
+    // What comes in chunks the library would compress, too, once it has seen this.
+    const_cast<httplib::Request&>(request).headers.erase("Accept-Encoding");
     set_head(out, response);
+    const std::string type = response.content_type;
     out.set_chunked_content_provider(
-        response.content_type,
-        [stream = std::move(response.stream)](std::size_t, httplib::DataSink& sink) {
+        type, [response = std::move(response), zip](std::size_t, httplib::DataSink& sink) {
             SinkWriter writer(sink);
-            stream(writer);
-            sink.done();
-            return true;
+            const bool whole = zip ? write_gzipped(response, writer) : response.stream(writer);
+            if (whole) sink.done();
+            return whole;
         });
 }
 

@@ -13,7 +13,8 @@ namespace vines::http {
 void send(
     const httplib::Request& request, httplib::Response& out, Response response, bool close = false);
 
-/// A response with `stream` in place of a body.
-void send_stream(httplib::Response& out, Response response);
+/// A response with `stream` in place of a body: without a length or an ETag, and compressed where
+/// it may be and the client takes it.
+void send_stream(const httplib::Request& request, httplib::Response& out, Response response);
 
 }  // namespace vines::http

@@ -112,8 +112,15 @@ struct Server::Implementation {
             return Handled::Handled;
         }
         if (in.method == "POST") return Handled::Unhandled;  // the body comes next
-        send(in, out, find_route(routes, in.method, in.path)->answer(to_request(in, "")));
+        answer(in, out, "");
         return Handled::Handled;
+    }
+
+    void answer(const httplib::Request& in, httplib::Response& out, std::string body) {
+        Response response =
+            find_route(routes, in.method, in.path)->answer(to_request(in, std::move(body)));
+        if (response.stream) send_stream(in, out, std::move(response));
+        else send(in, out, std::move(response));
     }
 
     /// Reads the body as it is: read by the library, one of the type that curl -d sends would be
@@ -133,10 +140,7 @@ struct Server::Implementation {
         if (!complete)
             return send(
                 in, out, problem_response(400, "the body ended before its Content-Length"), true);
-        Response response =
-            find_route(routes, "POST", in.path)->answer(to_request(in, std::move(body)));
-        if (response.stream) return send_stream(out, std::move(response));
-        send(in, out, std::move(response));
+        answer(in, out, std::move(body));
     }
 
     void log(const httplib::Request& in, const httplib::Response& out) {

@@ -125,6 +125,7 @@ Response stream_sweep(api::SweepRequest request, ComputeGate& gate) {
         .headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}},
         .stream = [request = std::move(request), &gate, room](Writer& out) {
             stream(request, gate, out);
+            return true;
         }};
 }
 

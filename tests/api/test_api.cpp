@@ -579,6 +579,36 @@ TEST_CASE("what a long run would fill memory with is cut to its last max_points,
     CHECK(early["warnings"].dump().find("before its window") != std::string::npos);
 }
 
+TEST_CASE("lists that are made while an answer is written have the bytes of kept ones") {
+    const Json request = parse_object(
+        R"({"preset":"fig20","tau_end":400,"include":["impacts","exponents","section"]})");
+    const std::string whole = json_text(simulate_answer(read_simulate_request(request), {})) + "\n";
+    // One list at a time, some, all.
+    for (const std::size_t list_bytes : {0, 5000, 10000000}) {
+        SimulateAnswer answer = simulate_in_parts(read_simulate_request(request), {}, any_size, 10);
+        REQUIRE(answer.run);
+        struct CountedRuns : Pace {
+            void begin() override { ++runs; }
+        } pace;
+        std::string text;
+        write_answer(
+            std::move(answer), pace, [&text](std::string_view piece) { text += piece; },
+            list_bytes);
+        CHECK(text == whole);
+        const std::size_t runs = pace.runs;
+        if (list_bytes == 0) CHECK(runs == 21);
+        else if (list_bytes == 5000) CHECK((runs > 1 && runs < 21));
+        else CHECK(runs == 1);
+    }
+}
+
+TEST_CASE("an answer whose lists are kept comes of no further run") {
+    const SimulateRequest request = read_simulate_request({{"include", {"section"}}});
+    CHECK_FALSE(simulate_in_parts(request, {}).run);
+    // Listed are none.
+    CHECK_FALSE(simulate_in_parts(request, {}, any_size, 10).run);
+}
+
 TEST_CASE("caps end a run as a result that says so") {
     Json a = answer(R"({"max_impacts":10,"include":["impacts"]})");
     CHECK(a["status"]["reason"] == "max_impacts");

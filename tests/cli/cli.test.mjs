@@ -1,6 +1,7 @@
 // The subcommands, as a terminal and a batch system use them.
 import assert from "node:assert/strict";
 import {spawn} from "node:child_process";
+import {readFileSync} from "node:fs";
 import {appendFile, mkdtemp, readFile, rm, writeFile} from "node:fs/promises";
 import {tmpdir} from "node:os";
 import {join} from "node:path";
@@ -63,6 +64,45 @@ test("simulate answers as the service does, from a file or stdin to a file or st
   await writeFile(at("request.json"), body);
   assert.equal((await run(["simulate", at("request.json"), "-o", at("answer.json")])).code, 0);
   assert.equal(await readFile(at("answer.json"), "utf8"), answer);
+});
+
+/**
+ * The most memory that a simulation held, in MB, and how long its answer is. Its end is written as
+ * it is read, so that the process is still there to be looked at.
+ */
+const peakOf = (request) =>
+  new Promise((resolve) => {
+    const child = spawn(program, ["simulate"]);
+    let megabytes = 0;
+    let bytes = 0;
+    child.stdout.on("data", (piece) => {
+      bytes += piece.length;
+      try {
+        const status = readFileSync(`/proc/${child.pid}/status`, "utf8");
+        megabytes = Number(status.match(/VmHWM:\s+(\d+)/)[1]) / 1024;
+      } catch {
+        // It has ended.
+      }
+    });
+    child.on("close", () => resolve({megabytes, bytes}));
+    child.stdin.end(JSON.stringify(request));
+  });
+
+test("the memory of a run that is asked for its exponents does not grow with its impacts", async () => {
+  const peak = async (max_impacts) =>
+    (await peakOf({b: 0.015, tau_end: 1e7, max_impacts, include: ["exponents"]})).megabytes;
+  const [half, whole] = [await peak(250000), await peak(500000)];
+  assert.ok(half > 1 && whole < half + 4, `${half} and ${whole} MB`);
+});
+
+test("the memory of an answer that lists many impacts does not grow with them", async () => {
+  const peak = (max_impacts) => peakOf({b: 0.015, tau_end: 1e7, max_impacts, include: ["impacts"]});
+  const [half, whole] = [await peak(250000), await peak(500000)];
+  assert.ok(whole.bytes > 1e8, `${whole.bytes} bytes`);
+  assert.ok(
+    half.megabytes > 1 && whole.megabytes < half.megabytes + 20,
+    `${half.megabytes} and ${whole.megabytes} MB`,
+  );
 });
 
 test("identify takes a CSV file with its fields as a query, or the service's JSON", async () => {

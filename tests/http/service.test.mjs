@@ -1,7 +1,7 @@
 // The running service, over real sockets.
 import assert from "node:assert/strict";
 import {spawn} from "node:child_process";
-import {mkdtemp, readFile, rm} from "node:fs/promises";
+import {mkdtemp, readFile, rm, writeFile} from "node:fs/promises";
 import {request as httpRequest} from "node:http";
 import net from "node:net";
 import {tmpdir} from "node:os";
@@ -322,6 +322,53 @@ test("malformed requests get an answer and leave the service well", async () => 
     await raw(text, 300);
   await problem(await post(`${"[".repeat(100000)}`), 400);
   assert.equal((await fetch(`${service.url}/healthz`)).status, 200);
+});
+
+test("an answer with very many impacts leaves as a stream of the same bytes", async () => {
+  const body = '{"b":0.015,"tau_end":1e6,"max_impacts":40000,"include":["impacts"]}';
+  const file = join(await mkdtemp(join(tmpdir(), "vines-")), "request.json");
+  await writeFile(file, body);
+  const [, whole] = await run(["simulate", file]);
+  for (const coding of ["identity", "br, gzip"]) {
+    const {headers, bytes} = await new Promise((resolve) => {
+      const options = {method: "POST", host, port, path: "/v1/simulate"};
+      const sent = {"Accept-Encoding": coding, "Content-Length": body.length};
+      const request = httpRequest({...options, headers: sent}, async (response) => {
+        const pieces = [];
+        for await (const piece of response) pieces.push(piece);
+        resolve({headers: response.headers, bytes: Buffer.concat(pieces)});
+      });
+      request.end(body);
+    });
+    assert.equal(headers["transfer-encoding"], "chunked");
+    assert.equal(headers.vary, "Accept-Encoding");
+    assert.equal(headers["content-encoding"], coding === "identity" ? undefined : "gzip");
+    const text = coding === "identity" ? bytes : gunzipSync(bytes);
+    assert.ok(text.length > 8e6);
+    assert.ok(text.equals(Buffer.from(whole)));
+  }
+  const query = "b=0.015&tau_end=1e6&max_impacts=40000&include=impacts";
+  const got = await fetch(`${service.url}/v1/simulate?${query}`);
+  assert.equal(got.headers.get("etag"), null);
+  assert.equal(got.headers.get("cache-control"), "no-store");
+  assert.equal(await got.text(), whole);
+});
+
+test("a streamed answer is given up when its client leaves", async () => {
+  const streaming = await startService(["--answer-limit", "2000000000"]);
+  const body = '{"b":0.015,"tau_end":1e7,"max_impacts":2000000,"include":["impacts"]}';
+  const leave = new AbortController();
+  const response = await fetch(`${streaming.url}/v1/simulate`, {
+    method: "POST",
+    body,
+    signal: leave.signal,
+  });
+  await response.body.getReader().read();
+  const before = await computed(streaming.pid);
+  leave.abort();
+  await new Promise((resolve) => setTimeout(resolve, 2000));
+  assert.ok((await computed(streaming.pid)) < before + 1.5);
+  await streaming.stop();
 });
 
 test("large answers are compressed by gzip when asked for, small ones are not", async () => {

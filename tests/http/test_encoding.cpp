@@ -37,3 +37,16 @@ TEST_CASE("gzip is not sent to whoever does not name it, or gives it the weight 
         CHECK_FALSE(accepts_gzip(header));
     }
 }
+
+TEST_CASE("a text that is compressed piece by piece is the one that is compressed at once") {
+    std::string text;
+    for (int k = 0; k < 300000; ++k) text += std::to_string(k % 9973 * 7919 % 9973) + ",";
+    REQUIRE(text.size() > (1 << 20));
+    Gzip pieces;
+    std::string zipped;
+    for (std::size_t at = 0; at < text.size(); at += 16384)
+        zipped += pieces.add(std::string_view(text).substr(at, 16384));
+    zipped += pieces.add({}, true);
+    CHECK(zipped == gzip(text));
+    CHECK(zipped.size() < text.size() / 2);
+}

@@ -13,13 +13,32 @@ namespace {
 
 Response answer_of(
     ComputeGate& gate, const RouteOptions& options, const std::string& method,
-    const std::string& path) {
+    const std::string& path, const std::string& body = "{}") {
     const std::vector<Route> routes = make_routes(options, gate);
     const Route* route = find_route(routes, method, path);
     REQUIRE(route);
     return route->answer(
-        {.method = method, .path = path, .query = {}, .content_type = {}, .body = "{}"});
+        {.method = method, .path = path, .query = {}, .content_type = {}, .body = body});
 }
+
+/// Takes so many bytes, then it is gone.
+class Client : public Writer {
+public:
+    explicit Client(std::size_t most = 1 << 30) : most_(most) {}
+    bool write(std::string_view piece) override {
+        text += piece;
+        return text.size() < most_;
+    }
+    bool present() override { return text.size() < most_; }
+    std::string text;
+
+private:
+    const std::size_t most_;
+};
+
+// In SI: with twins of columns that are to come.
+const char* const many_impacts =
+    R"({"preset": "fig20", "tau_end": 400, "include": ["impacts", "series", "exponents"]})";
 
 bool warns_of(const Json& answer, const std::string& text) {
     return answer["warnings"].dump().find(text) != std::string::npos;
@@ -49,4 +68,53 @@ TEST_CASE("a manifold is answered without a recommended b where there is no time
     const Json whole = Json::parse(answer_of(gate, {}, "GET", "/v1/manifold").body);
     CHECK(whole["manifold"]["recommended"].is_object());
     CHECK_FALSE(warns_of(whole, "time limit"));
+}
+
+TEST_CASE("an answer that leaves as a stream has the bytes of the same one in one piece") {
+    ComputeGate gate({.running = 1});
+    for (const char* body :
+         {many_impacts, R"({"b": 0.003, "tau_end": 300, "include": ["impacts", "regime"]})",
+          R"({"b": 0.015, "tau_end": 300, "max_impacts": 77, "include": ["impacts"]})"}) {
+        CAPTURE(body);
+        const Response whole = answer_of(gate, {}, "POST", "/v1/simulate", body),
+                       streamed =
+                           answer_of(gate, {.most_kept_impacts = 20}, "POST", "/v1/simulate", body);
+        REQUIRE_FALSE(whole.stream);
+        REQUIRE(streamed.stream);
+        Client client;
+        CHECK(streamed.stream(client));
+        CHECK(client.text == whole.body);
+    }
+}
+
+TEST_CASE("the last impacts of a list that is cut leave as a stream, too") {
+    ComputeGate gate({.running = 1});
+    const RouteOptions whole{.answer_limit = 150000},
+        streamed{.answer_limit = 150000, .most_kept_impacts = 20};
+    const char* const body = R"({"b": 0.003, "include": ["impacts"]})";
+    const Response one = answer_of(gate, whole, "POST", "/v1/simulate", body);
+    CHECK(warns_of(Json::parse(one.body), "impacts"));
+    Client client;
+    CHECK(answer_of(gate, streamed, "POST", "/v1/simulate", body).stream(client));
+    CHECK(client.text == one.body);
+}
+
+TEST_CASE("a stream whose client leaves is broken off, and holds no place") {
+    ComputeGate gate({.running = 1, .waiting = 0});
+    const Response response =
+        answer_of(gate, {.most_kept_impacts = 20}, "POST", "/v1/simulate", many_impacts);
+    Client client(20000);
+    CHECK_FALSE(response.stream(client));
+    CHECK(client.text.size() < 40000);
+    CHECK(gate.enter());
+}
+
+TEST_CASE("an answer that has begun is finished while the server is about to stop") {
+    ComputeGate gate({.running = 1});
+    const Response response =
+        answer_of(gate, {.most_kept_impacts = 20}, "POST", "/v1/simulate", many_impacts);
+    gate.close_to_sweeps();
+    Client client;
+    CHECK(response.stream(client));
+    CHECK(Json::accept(client.text));
 }

@@ -10,12 +10,6 @@ namespace vines {
 
 namespace {
 
-/// |x''/(x'- - y'-)| from which on an impact is nearly tangent: without the wall the mass would
-/// have turned back within 1/1800 of a unit of tau. M's condition number is then about 14
-/// (x''/(x'- - y'-))^2 at Table 1's R = .6, so that a relative error of one ulp in what M acts on
-/// is one of 1e-8 in what it gives.
-constexpr double nearly_tangent = 1800;
-
 /// Points on each branch of the manifold beside a run: a smooth curve on a screen.
 constexpr std::size_t manifold_points = 200;
 
@@ -54,16 +48,17 @@ ExponentOptions window_estimators(const Wanted& w) {
 struct AnalysisRun::Observers {
     explicit Observers(const Wanted& w)
         : series(series_step(w)),
-          impacts(w.most_listed),
+          impacts(w.most_listed, w.most_kept),
           section(w.window.from, w.window.to, w.most_points),
           sticks(w.most_listed),
           touches(w.most_listed),
           lyapunov(w.parameters, w.window.from, w.window.to, main_estimators(w)),
           windows(w.parameters, window_estimators(w)),
           transfers(w.parameters, w.window.from, w.window.to, w.most_points),
-          whole_cycles(w.parameters),
+          whole_cycles(w.parameters, {.most = kept_states, .until = w.window.to}),
           stroboscopic(w.parameters, 0, w.section_phase),
           decay(w.parameters, w.window.from, decay_shares),
+          rhythm(w.parameters, w.window, w.parts.regime ? w.most_points : 0),
           half_cycles(w.parameters, w.window.from, w.window.to, w.most_points) {
         for (const Interval& window : w.windows) windows.add(window.from, window.to);
         if (w.parts.energy) energy.emplace(w.parameters, w.window.from, w.window.to);
@@ -81,7 +76,7 @@ struct AnalysisRun::Observers {
         observe(w.parts.series, series);
         observe(w.parts.impacts || w.parts.section, impacts);
         observe(w.parts.section, section, stroboscopic);
-        observe(is_judged(w), lyapunov, whole_cycles, contacts);
+        observe(is_judged(w), lyapunov, whole_cycles, rhythm);
         observe(!w.windows.empty(), windows);
         observe(w.parts.moduli || w.parts.matrices, transfers);
         if (energy) list.push_back(&*energy);
@@ -92,7 +87,7 @@ struct AnalysisRun::Observers {
     }
 
     SeriesRecord series;
-    ImpactRecord impacts;
+    ImpactList impacts;
     SectionRecord section;
     StickRecord sticks;
     TouchRecord touches;
@@ -102,7 +97,7 @@ struct AnalysisRun::Observers {
     StroboscopicRecord whole_cycles, stroboscopic;
     std::optional<Energy> energy;  // its tables take their time
     Decay decay;
-    ContactRecord contacts;
+    Rhythm rhythm;
     HalfCycles half_cycles;
     std::optional<ComparedRun> compared;
 };
@@ -126,7 +121,7 @@ public:
         transfers();
         if (w_.parts.section) sections();
         if (w_.parts.energy) energy();
-        if (w_.parts.regime) thin_regime();
+        if (w_.parts.regime) regime();
         if (w_.parts.manifold) manifold();
         if (w_.perturbation) perturbation();
     }
@@ -156,25 +151,23 @@ private:
     }
 
     void lists() {
-        if (w_.parts.impacts) {
-            a_.impacts = last_of(o_.impacts, "impacts");
-            a_.touches = last_of(o_.touches, "touches");
-        } else {
-            a_.impacts = std::move(o_.impacts.entries);
-        }
+        impacts();
+        if (w_.parts.impacts) a_.touches = last_of(o_.touches, "touches");
         a_.stick_count = o_.sticks.seen;
         a_.sticks = last_of(o_.sticks, "sticks");
-        a_.typical_speed = median_speed(a_.impacts);
         if (!a_.touches.empty()) warn(warning::Touched{});
     }
 
-    static double median_speed(const std::vector<Impact>& impacts) {
-        if (impacts.empty()) return 1;
-        std::vector<double> speeds;
-        for (const Impact& i : impacts) speeds.push_back(std::abs(i.relative_speed_before));
-        const auto middle = speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / 2);
-        std::nth_element(speeds.begin(), middle, speeds.end());
-        return *middle;
+    void impacts() {
+        ImpactList& list = o_.impacts;
+        list.finish();
+        const ImpactRange listed = list.listed();
+        if (w_.parts.impacts && listed.first > 0)
+            warn(warning::ListCut{
+                "impacts", listed.first + listed.count, static_cast<std::size_t>(listed.count)});
+        if (!list.kept()) a_.unkept_impacts = listed;
+        a_.impacts = std::move(list.entries);
+        a_.typical_speed = list.typical_speed;
     }
 
     /// The regime, which looks at the growth of the deviations, and the exponents of all windows,
@@ -191,7 +184,7 @@ private:
     void find_regime(const Growth& growth) {
         a_.regime = regime_of(
             w_.parameters, w_.start,
-            {.contacts = o_.contacts,
+            {.rhythm = o_.rhythm,
              .stroboscopic = o_.whole_cycles,
              .tau_start = a_.reached.from,
              .tau_end = a_.reached.to,
@@ -211,22 +204,17 @@ private:
     }
 
     /// Impacts next to a tangent contact, which shift the eigenvalues of every product that they
-    /// are in. Those of a chatter (the wall presses: side x'' > 0) are slow as well, but no
-    /// neighbouring motion misses them.
+    /// are in.
     void grazing() {
         long count = 0;
-        const Impact* nearest = nullptr;
-        for (const Impact& i : a_.impacts) {
-            if (i.side * i.x_ddot_before > 0 || i.tau < w_.window.from || i.tau > w_.window.to)
-                continue;
-            const double speed = std::abs(i.relative_speed_before);
-            if (!(std::abs(i.x_ddot_before) > nearly_tangent * speed)) continue;
+        const ImpactList::NearlyTangent* nearest = nullptr;
+        for (const auto& i : o_.impacts.nearly_tangent) {
+            if (i.tau < w_.window.from || i.tau > w_.window.to) continue;
             ++count;
-            if (!nearest || speed < std::abs(nearest->relative_speed_before)) nearest = &i;
+            if (!nearest || i.speed < nearest->speed) nearest = &i;
         }
         if (count > 0)
-            warn(warning::NearlyTangent{
-                count, nearest->tau, std::abs(nearest->relative_speed_before) / a_.typical_speed});
+            warn(warning::NearlyTangent{count, nearest->tau, nearest->speed / a_.typical_speed});
     }
 
     void transfers() {
@@ -296,19 +284,10 @@ private:
             .with_absorber = {o_.decay.tau[0], o_.decay.tau[1]}, .without = {alone[0], alone[1]}};
     }
 
-    /// The verdicts have used all of it; of what is shown the moving z is thinned to most_points,
-    /// and the stretches are the last so many.
-    void thin_regime() {
-        Regime& r = *a_.regime;
-        const std::size_t every = r.moving_tau.size() / w_.most_points + 1;
-        for (auto* column : {&r.moving_tau, &r.moving_z}) {
-            for (std::size_t k = 0; k * every < column->size(); ++k)
-                (*column)[k] = (*column)[k * every];
-            column->resize((column->size() + every - 1) / every);
-        }
-        if (r.stretches.size() > w_.most_points)
-            warn(warning::StretchesCut{r.stretches.size(), w_.most_points});
-        trim_to_last(r.stretches, w_.most_points);
+    void regime() {
+        const Regime& r = *a_.regime;
+        if (r.stretch_count > static_cast<long>(r.stretches.size()))
+            warn(warning::StretchesCut{static_cast<std::size_t>(r.stretch_count), w_.most_points});
         if (r.search_stopped) warn(warning::OrbitSearchStopped{});
         if (r.capture && r.capture->chaotic_before == true)
             warn(warning::CapturedTransient{

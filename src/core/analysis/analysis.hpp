@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/analysis/impact_list.hpp"
 #include "core/analysis/perturbation.hpp"
 #include "core/analysis/warning.hpp"
 #include "core/analysis/window_exponents.hpp"
@@ -51,6 +52,8 @@ struct Wanted {
     /// The longest series; of what is longer otherwise, the last so many entries.
     std::size_t most_points = everything;
     std::size_t most_listed = everything;  ///< the last so many impacts, sticks, touches
+    /// Of more listed impacts than this none is kept: Analysis::unkept_impacts.
+    std::size_t most_kept = everything;
 };
 
 /// What may end the work from outside: asked every few events. Empty: nothing.
@@ -111,6 +114,8 @@ struct Analysis {
     Interval reached;  ///< what of the window the run has reached
     std::optional<Series> series;
     std::vector<Impact> impacts;
+    /// In place of them, where they were too many to be kept: repeat_impacts() tells them.
+    std::optional<ImpactRange> unkept_impacts;
     double typical_speed = 1;  ///< median of the impacts' relative speeds
     std::vector<StuckPhase> sticks;
     long stick_count = 0;  ///< of all, listed or not

@@ -10,14 +10,6 @@ namespace vines {
 
 namespace {
 
-// Fig. 9's synchronised parts: at b = 34 and 40 mm there are none, at 31 mm and below there are
-// (shared border of Types I and II); the border does not move between 10 and 20 %.
-constexpr double synchrony_tolerance = 0.15;
-// Two impacts per cycle over two cycles: a shorter alternation happens by chance.
-constexpr long shortest_stretch = 4;
-constexpr int moving_cycles = 10;
-// A period that the run may have closed: in cycles.
-constexpr std::size_t longest_period = 512;
 // States that differ by less, in units of their scale, may be a return; Newton's method decides. A
 // run that is chaotic by its exponents comes as close as that by chance, all the time.
 constexpr double near_return = 0.1, near_return_of_chaos = 1e-3;
@@ -36,68 +28,22 @@ constexpr double past_last_cycle = 1e-12;
 // A run has been captured once it stays this close to the orbit.
 constexpr double captured_within = 0.1;
 
-std::vector<CountedContact> within(const std::vector<CountedContact>& all, double from, double to) {
-    const auto before = [](const CountedContact& c, double tau) { return c.tau < tau; };
-    const auto first = std::lower_bound(all.begin(), all.end(), from, before);
-    return {first, std::lower_bound(first, all.end(), std::nextafter(to, infinity), before)};
-}
-
-/// A phase of the forcing cycle that contacts stay away from, as a share of the cycle: there cycles
-/// are cut for counting.
-double quiet_phase(const std::vector<CountedContact>& contacts, double cycle) {
-    constexpr int bins = 64;
-    std::array<long, bins> count{};
-    for (const CountedContact& c : contacts)
-        ++count[std::min(
-            bins - 1, static_cast<int>((c.tau / cycle - std::floor(c.tau / cycle)) * bins))];
-    // The middle of the longest run of bins with the fewest contacts (a run may go over the end).
-    const long fewest = *std::min_element(count.begin(), count.end());
-    int best = 0, best_length = 0;
-    for (int from = 0; from < bins; ++from) {
-        int length = 0;
-        while (length < bins && count[(from + length) % bins] == fewest) ++length;
-        if (length > best_length) best = from, best_length = length;
-    }
-    return (best + 0.5 * best_length) / bins;
-}
-
-void count_cycles(
-    Regime& r, const std::vector<CountedContact>& contacts, double cycle, double from, double to) {
-    const double cut = contacts.empty() ? 0 : quiet_phase(contacts, cycle);
-    const long first = static_cast<long>(std::ceil(from / cycle - cut)),
-               last = static_cast<long>(std::floor(to / cycle - cut));
-    if (last <= first) return;
-    std::vector<int> per_cycle(last - first, 0);
-    for (const CountedContact& c : contacts) {
-        const double k = std::floor(c.tau / cycle - cut) - first;
-        if (k >= 0 && k < per_cycle.size()) ++per_cycle[static_cast<std::size_t>(k)];
-    }
-    r.cycles_with.assign(*std::max_element(per_cycle.begin(), per_cycle.end()) + 1, 0);
-    for (int n : per_cycle) ++r.cycles_with[n];
-    for (double& share : r.cycles_with) share /= static_cast<double>(per_cycle.size());
-    long sum = 0;
-    for (std::size_t k = 0; k < per_cycle.size(); ++k) {
-        sum += per_cycle[k] - (k >= moving_cycles ? per_cycle[k - moving_cycles] : 0);
-        if (k + 1 < moving_cycles) continue;
-        r.moving_tau.push_back(
-            (first + static_cast<long>(k) + 1 + cut - 0.5 * moving_cycles) * cycle);
-        r.moving_z.push_back(static_cast<double>(sum) / moving_cycles);
-    }
-}
-
-/// How often the masses meet in the window.
-void count_contacts(
-    Regime& r, const std::vector<CountedContact>& contacts, double cycle, const RegimeEvidence& e) {
-    r.contacts = static_cast<long>(contacts.size());
-    if (r.contacts > 1)
-        r.z_overall = static_cast<double>(r.contacts - 1) * cycle /
-                      (contacts.back().tau - contacts.front().tau);
-    else if (e.tau_end > e.tau_start)
-        r.z_overall = static_cast<double>(r.contacts) * cycle / (e.tau_end - e.tau_start);
-    r.z = r.z_overall;
-    count_cycles(
-        r, contacts, cycle, contacts.empty() ? e.tau_start : contacts.front().tau - cycle,
-        e.tau_end);
+/// How often the masses meet in the window, and in which rhythm.
+void count_contacts(Regime& r, const RegimeEvidence& e) {
+    e.rhythm.finish({e.tau_start, e.tau_end});
+    const Synchrony& synchrony = e.rhythm.synchrony;
+    r.contacts = synchrony.contacts;
+    r.z = r.z_overall = e.rhythm.z();
+    CycleCounts counts = e.rhythm.cycle_counts();
+    r.moving_tau = std::move(counts.moving_tau);
+    r.moving_z = std::move(counts.moving_z);
+    r.cycles_with = std::move(counts.cycles_with);
+    r.stretches = e.rhythm.last_stretches();
+    r.stretch_count = synchrony.stretches.seen;
+    r.longest_synchronised = synchrony.longest;
+    if (r.contacts > 0)
+        r.synchronised =
+            static_cast<double>(synchrony.in_stretches) / static_cast<double>(r.contacts);
 }
 
 /// Those at whole cycles up to tau_end.
@@ -105,38 +51,6 @@ std::span<const State> states_before(const StroboscopicRecord& record, double ta
     std::size_t end = record.states.size();
     while (end > 0 && record.tau(end - 1) > tau_end) --end;
     return std::span(record.states).first(end);
-}
-
-void find_stretches(Regime& r, const std::vector<CountedContact>& c, double half_cycle) {
-    const std::size_t n = c.size();
-    auto in_step = [&](std::size_t i) {
-        return c[i + 1].side != c[i].side &&
-               std::abs(c[i + 1].tau - c[i].tau - half_cycle) < synchrony_tolerance * half_cycle;
-    };
-    std::size_t free_from = 0;  // the first contact that no stretch has yet
-    long in_stretches = 0;
-    auto desynchronised = [&](std::size_t to) {
-        if (to > free_from)
-            r.stretches.push_back(
-                {c[free_from].tau, c[to].tau, false, static_cast<long>(to - free_from) + 1});
-    };
-    for (std::size_t i = 0; i + 1 < n;) {
-        std::size_t end = i;
-        while (end + 1 < n && in_step(end)) ++end;
-        const long half_cycles = static_cast<long>(end - i);
-        r.longest_synchronised = std::max(r.longest_synchronised, half_cycles);
-        if (half_cycles >= shortest_stretch) {
-            desynchronised(i);
-            r.stretches.push_back({c[i].tau, c[end].tau, true, half_cycles + 1});
-            in_stretches += half_cycles + 1;
-            free_from = end;
-        }
-        i = std::max(end, i + 1);
-    }
-    if (n > 0) {
-        desynchronised(n - 1);
-        r.synchronised = static_cast<double>(in_stretches) / static_cast<double>(n);
-    }
 }
 
 /// Numbers of cycles after which the last state may have returned: the closest returns first; of
@@ -229,27 +143,73 @@ std::optional<PeriodicOrbit> orbit_of(
     return std::nullopt;
 }
 
-/// The first whole cycle from which on the run stays next to the orbit; none where it is not there
-/// at its end.
-std::optional<std::size_t> captured_from(
-    const Parameters& p, const PeriodicOrbit& orbit, std::span<const State> states,
-    const State& scale) {
-    const std::vector<State> along = whole_cycle_states(p, orbit);
-    const std::size_t n = along.size(), end = phase_of(states.back(), along, scale);
-    std::size_t k = states.size();
-    while (k > 0 && distance(states[k - 1], along[(end + n - (states.size() - k) % n) % n], scale) <
-                        captured_within)
-        --k;
-    return k < states.size() ? std::optional(k) : std::nullopt;
+/// The whole cycles of a run beside an orbit that it is next to at one of them.
+class BesideOrbit {
+public:
+    BesideOrbit(
+        const Parameters& p, const PeriodicOrbit& orbit, const State& scale, long k,
+        const State& state)
+        : along_(whole_cycle_states(p, orbit)),
+          scale_(scale),
+          period_(static_cast<long>(along_.size())),
+          phase_(static_cast<long>(phase_of(state, along_, scale)) - k % period_ + period_) {}
+
+    /// Whether the state at the k-th is next to the orbit where that is then.
+    bool is_next(long k, const State& state) const {
+        const State& there = along_[static_cast<std::size_t>((phase_ + k) % period_)];
+        return distance(state, there, scale_) < captured_within;
+    }
+
+private:
+    const std::vector<State> along_;
+    const State scale_;
+    const long period_, phase_;
+};
+
+/// Which of the first whole cycles of a run is the last that is not next to an orbit.
+class LastApart : public Stroboscope {
+public:
+    LastApart(const Parameters& p, const BesideOrbit& beside, long before)
+        : Stroboscope(p),
+          beside_(beside),
+          before_(before) {}
+    long cycle = -1;
+
+private:
+    void take(long k, const State& state) override {
+        if (k < before_ && !beside_.is_next(k, state)) cycle = k;
+    }
+    const BesideOrbit& beside_;
+    const long before_;
+};
+
+/// The moment of the first whole cycle from which on the run stays next to the orbit; none where it
+/// is not there at its end.
+std::optional<double> captured_from(
+    const Parameters& p, const State& start, const PeriodicOrbit& orbit,
+    std::span<const State> states, const State& scale, const RegimeEvidence& e) {
+    const long first = e.stroboscopic.first(), end = first + static_cast<long>(states.size());
+    const BesideOrbit beside(p, orbit, scale, end - 1, states.back());
+    long from = end;
+    while (from > first && beside.is_next(from - 1, states[from - 1 - first])) --from;
+    if (from == end) return std::nullopt;
+    // It was there already at the first that is kept: those before it come of a second run. Where
+    // that is stopped, the first that is kept stands.
+    if (from == first && first > 0) {
+        LastApart last(p, beside, first);
+        Observer* const observers[] = {&last};
+        const Limits limits{e.stroboscopic.tau_of(first), std::numeric_limits<long>::max(), e.stop};
+        if (simulate(p, start, limits, observers).reason == End::tau_end) from = last.cycle + 1;
+    }
+    return e.stroboscopic.tau_of(from);
 }
 
 /// When the run came to the orbit, and its exponents before and after.
 Capture capture_by(
     const Parameters& p, const State& start, std::span<const State> states, const State& scale,
     const RegimeEvidence& e, const PeriodicOrbit& orbit, bool exponents_before) {
-    const auto from = captured_from(p, orbit, states, scale);
     Capture capture{
-        from ? std::optional(e.stroboscopic.tau(*from)) : std::nullopt,
+        captured_from(p, start, orbit, states, scale, e),
         {nan, nan, nan, nan},
         orbit.exponents(p),
         std::nullopt};
@@ -289,10 +249,7 @@ Regime regime_of(
     const Parameters& p, const State& start, const RegimeEvidence& e, bool exponents_before) {
     Regime r;
     r.forced = p.G > 0;
-    const std::vector<CountedContact> contacts =
-        within(e.contacts.contacts, e.tau_start, e.tau_end);
-    count_contacts(r, contacts, p.cycle(), e);
-    find_stretches(r, contacts, 0.5 * p.cycle());
+    count_contacts(r, e);
     const std::span<const State> states = states_before(e.stroboscopic, e.tau_end);
     // The first in the window only says whether there are any.
     if (r.forced && states.size() > 1 && e.stroboscopic.tau(states.size() - 2) >= e.tau_start) {

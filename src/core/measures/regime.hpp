@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/motion/contacts.hpp"
+#include "core/measures/rhythm.hpp"
 #include "core/motion/record.hpp"
 #include "core/stability/orbit.hpp"
 #include "core/stability/verdict.hpp"
@@ -17,18 +17,10 @@ namespace vines {
 /// asymmetric ones, periodic. V: any other periodic response. VI: any other irregular response.
 enum class RegimeType { none, I, II, III, IV, V, VI };
 
-/// A stretch of contacts that alternate sides at intervals within 15 % of half a forcing period
-/// (synchronised: the paper's "area2" in Fig. 9), or what lies between two of them.
-struct SynchronyStretch {
-    double tau_start, tau_end;
-    bool synchronised;
-    long contacts;
-};
-
 /// How a run comes to the periodic orbit that attracts it.
 struct Capture {
-    /// From when on it stays next to it; none: it ends before that, and following it further showed
-    /// where it goes.
+    /// From when on it stays next to it, or later where the time to look was over; none: it ends
+    /// before that, and following it further showed where it goes.
     std::optional<double> tau;
     /// By qr, from the run's first impact to tau, or to its end; NaN where there is too little.
     Exponents before;
@@ -45,23 +37,34 @@ struct Regime {
     long contacts = 0;  ///< in the window
     /// Contacts per forcing cycle: of the orbit if periodic, else from the first to the last.
     double z = 0;
-    double z_overall = 0;                      ///< from the first to the last, in any case
+    double z_overall = 0;  ///< from the first to the last, in any case
+    // Lists, as far as RegimeEvidence::rhythm makes them.
     std::vector<double> moving_tau, moving_z;  ///< over 10 cycles around tau
     std::vector<double> cycles_with;           ///< share of cycles with 0, 1, 2, ... contacts
-    std::vector<SynchronyStretch> stretches;
-    double synchronised = 0;             ///< share of the contacts in synchronised stretches
-    long longest_synchronised = 0;       ///< half cycles of the longest
-    std::optional<PeriodicOrbit> orbit;  ///< the stable orbit that the run has come to
-    std::optional<Capture> capture;      ///< with it
+    std::vector<SynchronyStretch> stretches;   ///< the last of them
+    long stretch_count = 0;                    ///< of all
+    double synchronised = 0;                   ///< share of the contacts in synchronised stretches
+    long longest_synchronised = 0;             ///< half cycles of the longest
+    std::optional<PeriodicOrbit> orbit;        ///< the stable orbit that the run has come to
+    std::optional<Capture> capture;            ///< with it
     /// The search for an orbit was ended by RegimeEvidence::stop.
     bool search_stopped = false;
 };
 
+// A period that the run may have closed: in cycles.
+inline constexpr std::size_t longest_period = 512;
+/// The search for an orbit looks at so many states of the run's end, and one before them.
+inline constexpr std::size_t fewest_states = longest_period + 2;
+/// So many are kept of a run: 2 MB. What an orbit captured earlier is run once more to find out
+/// when.
+inline constexpr std::size_t kept_states = 1 << 16;
+
 /// What a run must have been observed by.
 struct RegimeEvidence {
-    const ContactRecord& contacts;
-    const StroboscopicRecord& stroboscopic;  ///< from tau = 0 on
-    double tau_start, tau_end;               ///< the window to be judged; tau_end within the run
+    Rhythm& rhythm;  ///< of the window; regime_of() finishes it
+    /// From tau = 0 to the window's end, or of that the last fewest_states or more.
+    const StroboscopicRecord& stroboscopic;
+    double tau_start, tau_end;  ///< the window to be judged; tau_end within the run
     /// Chaotic: a run that is not periodic yet is not followed further.
     Verdict by_exponents = Verdict::not_decided;
     std::function<bool()> stop = {};  ///< as in Limits: ends the search for an orbit

@@ -28,4 +28,23 @@ public:
     long impacts = 0;
 };
 
+/// Tells the same contacts one by one and keeps none of them, but for the impacts that may be a
+/// chatter still: only its stick makes one contact of them.
+class ContactStream : public Observer {
+public:
+    explicit ContactStream(const Parameters& parameters);
+
+    void on_impact(const Impact& impact) override;
+    void on_stick(const StickStart& start) override;
+
+protected:
+    virtual void on_contact(const CountedContact& contact) = 0;
+    /// Tells what is held back; after the run.
+    void tell_held();
+
+private:
+    const double longest_hop_;
+    std::vector<CountedContact> held_;
+};
+
 }  // namespace vines

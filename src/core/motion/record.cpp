@@ -1,5 +1,7 @@
 #include "core/motion/record.hpp"
 
+#include <algorithm>
+
 namespace vines {
 
 namespace {
@@ -38,11 +40,13 @@ void SeriesRecord::finish(const Outcome& outcome) {
         add(outcome.tau, outcome.state, x_ddot_at_end_);
 }
 
-void StroboscopicRecord::on_stretch(const Stretch& stretch) {
-    const double end = stretch.tau + stretch.duration;
+void Stroboscope::on_stretch(const Stretch& stretch) {
+    const double end = std::min(stretch.tau + stretch.duration, until_);
     // One at the very end of a stretch is taken before whatever happens there.
-    while (tau(states.size()) <= end)
-        states.push_back(stretch.at(std::max(0.0, tau(states.size()) - stretch.tau)));
+    for (double at = tau_of(next_); at <= end; at = tau_of(next_)) {
+        const long k = next_++;
+        take(k, stretch.at(std::max(0.0, at - stretch.tau)));
+    }
 }
 
 }  // namespace vines

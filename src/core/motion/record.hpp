@@ -48,24 +48,56 @@ private:
     SampledFlow free_, stuck_;
 };
 
-/// The states at one phase of the forcing, once a cycle: at tau = (k + phase/(2 pi)) 2 pi/Omega
-/// with k = first, first + 1, ... So theta = phi + phase.
-class StroboscopicRecord : public Observer {
+/// Takes the states at one phase of the forcing, once a cycle: at tau = (k + phase/(2 pi)) 2
+/// pi/Omega with k = first, first + 1, ... So theta = phi + phase.
+class Stroboscope : public Observer {
 public:
-    explicit StroboscopicRecord(const Parameters& parameters, long first = 0, double phase = 0)
+    explicit Stroboscope(
+        const Parameters& parameters, long first = 0, double phase = 0, double until = infinity)
         : cycle_(parameters.cycle()),
           after_(phase / parameters.Omega),
-          first_(first) {}
+          until_(until),
+          next_(first) {}
     void on_stretch(const Stretch&) override;
 
-    double tau(std::size_t k) const {
-        return static_cast<double>(first_ + static_cast<long>(k)) * cycle_ + after_;
-    }
+    /// Moment of the k-th.
+    double tau_of(long k) const { return static_cast<double>(k) * cycle_ + after_; }
+
+protected:
+    virtual void take(long k, const State& state) = 0;
+    long next() const { return next_; }
+
+private:
+    const double cycle_, after_, until_;
+    long next_;
+};
+
+/// Of the states at whole cycles up to a moment the last so many.
+struct LastStates {
+    std::size_t most;
+    double until;
+};
+
+/// Keeps them all, or of LastStates up to half more.
+class StroboscopicRecord : public Stroboscope {
+public:
+    explicit StroboscopicRecord(const Parameters& parameters, long first = 0, double phase = 0)
+        : Stroboscope(parameters, first, phase) {}
+    StroboscopicRecord(const Parameters& parameters, const LastStates& last)
+        : Stroboscope(parameters, 0, 0, last.until),
+          most_(last.most) {}
+
+    /// Number k of the first that is kept.
+    long first() const { return next() - static_cast<long>(states.size()); }
+    double tau(std::size_t k) const { return tau_of(first() + static_cast<long>(k)); }
     std::vector<State> states;  ///< the k-th at tau(k)
 
 private:
-    const double cycle_, after_;
-    const long first_;
+    void take(long, const State& state) override {
+        states.push_back(state);
+        keep_last(states, most_);
+    }
+    const std::size_t most_ = everything;
 };
 
 /// The last `most` entries of a list that grows with a run: it keeps up to half more. `seen` counts

@@ -109,3 +109,53 @@ TEST_CASE("further windows are judged one by one, in the order in which they are
     CHECK(a.windows[0].product.end_tau() <= 300);
     CHECK(a.windows[1].product.qr() == a.exponents->product.qr());
 }
+
+TEST_CASE("impacts that are too many to be kept are told by the same run once more") {
+    const Parameters p = table1(0.003, Damping::closed_form);
+    Wanted w{.parameters = p, .start = default_state(p), .tau_end = 500};
+    w.parts = {.impacts = true, .section = true};
+    for (const std::size_t most_listed : {everything, std::size_t{100}}) {
+        w.most_listed = most_listed;
+        w.most_kept = everything;
+        const Analysis kept = analyse(w);
+        CHECK_FALSE(kept.unkept_impacts);
+        w.most_kept = 40;
+        const Analysis a = analyse(w);
+        CHECK(a.impacts.empty());
+        REQUIRE(a.unkept_impacts);
+        REQUIRE(a.unkept_impacts->count == static_cast<long>(kept.impacts.size()));
+        CHECK(a.typical_speed == kept.typical_speed);
+        CHECK(a.warnings.size() == kept.warnings.size());
+        std::vector<Impact> again;
+        CHECK(repeat_impacts(
+            w.parameters, w.start, {.tau_end = w.tau_end, .max_impacts = w.max_impacts},
+            *a.unkept_impacts, [&](const Impact& i) { again.push_back(i); }));
+        REQUIRE(again.size() == kept.impacts.size());
+        for (std::size_t k = 0; k < again.size(); ++k) {
+            CHECK(again[k].tau == kept.impacts[k].tau);
+            CHECK(again[k].side == kept.impacts[k].side);
+            CHECK(again[k].y_dot_after == kept.impacts[k].y_dot_after);
+        }
+    }
+}
+
+TEST_CASE("a run that was stopped is repeated up to the impact that it came to") {
+    const Parameters p = table1(0.003, Damping::closed_form);
+    Wanted w{.parameters = p, .start = default_state(p), .tau_end = 1e5};
+    w.parts.impacts = true;
+    w.most_kept = 40;
+    int looks = 0;
+    const Analysis a = analyse(w, {.run = [&looks] { return ++looks > 20; }});
+    REQUIRE(a.outcome.reason == End::stopped);
+    REQUIRE(a.unkept_impacts);
+    REQUIRE(a.unkept_impacts->count == a.outcome.impacts);
+    long told = 0;
+    const Limits limits{.tau_end = w.tau_end, .max_impacts = w.max_impacts};
+    CHECK(repeat_impacts(
+        w.parameters, w.start, limits, *a.unkept_impacts, [&](const Impact&) { ++told; }));
+    CHECK(told == a.outcome.impacts);
+    Limits late = limits;
+    late.stop = [] { return true; };
+    CHECK_FALSE(
+        repeat_impacts(w.parameters, w.start, late, *a.unkept_impacts, [](const Impact&) {}));
+}

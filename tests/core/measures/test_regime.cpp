@@ -15,11 +15,11 @@ namespace {
 constexpr Damping closed = Damping::closed_form, eom = Damping::equation_of_motion;
 
 Regime judge(const Parameters& p, const State& start, double tau_end = 1709, double tau_start = 0) {
-    ContactRecord contacts;
+    Rhythm rhythm(p, {tau_start, tau_end}, everything);
     StroboscopicRecord stroboscopic(p);
-    Observer* const observers[] = {&contacts, &stroboscopic};
+    Observer* const observers[] = {&rhythm, &stroboscopic};
     const Outcome outcome = simulate(p, start, {tau_end, 10000000, {}}, observers);
-    return regime_of(p, start, {contacts, stroboscopic, tau_start, outcome.tau});
+    return regime_of(p, start, {rhythm, stroboscopic, tau_start, outcome.tau});
 }
 /// What a run of so many cycles says of itself.
 struct Judged {
@@ -28,14 +28,14 @@ struct Judged {
     double lambda1;
 };
 Judged judged(const Parameters& p, const State& start, double cycles) {
-    ContactRecord contacts;
+    Rhythm rhythm(p, {0, cycles * p.cycle()}, everything);
     StroboscopicRecord stroboscopic(p);
     Lyapunov lyapunov(p, 0, cycles * p.cycle(), qr_alone);
-    Observer* const observers[] = {&contacts, &stroboscopic, &lyapunov};
+    Observer* const observers[] = {&rhythm, &stroboscopic, &lyapunov};
     const Outcome outcome = simulate(p, start, {cycles * p.cycle(), 10000000, {}}, observers);
     const Growth growth = growth_of(lyapunov.product());
     Regime regime =
-        regime_of(p, start, {contacts, stroboscopic, 0, outcome.tau, verdict_by_exponents(growth)});
+        regime_of(p, start, {rhythm, stroboscopic, 0, outcome.tau, verdict_by_exponents(growth)});
     const Judgement verdict = judge(growth, regime, lyapunov.product().start_tau());
     return {std::move(regime), verdict, growth.lambda1};
 }
@@ -419,15 +419,15 @@ TEST_CASE("motions whose deviations grow like a power of time are not called cha
 
 TEST_CASE("each window of a run has its own verdict") {
     const auto [p, captured] = captured_transient();
-    ContactRecord contacts;
+    Rhythm rhythm(p, {1.1 * captured, 20000}, everything);
     StroboscopicRecord stroboscopic(p);
     Lyapunov first(p, 0, 0.5 * captured, qr_alone), second(p, 0, 0.9 * captured, qr_alone),
         last(p, 1.1 * captured, 20000, qr_alone);
-    Observer* const observers[] = {&contacts, &stroboscopic, &first, &second, &last};
+    Observer* const observers[] = {&rhythm, &stroboscopic, &first, &second, &last};
     simulate(p, default_state(p), {20000, 10000000, {}}, observers);
     const Regime r = regime_of(
         p, default_state(p),
-        {contacts, stroboscopic, 1.1 * captured, 20000,
+        {rhythm, stroboscopic, 1.1 * captured, 20000,
          verdict_by_exponents(growth_of(last.product()))});
     REQUIRE(r.capture);
     CHECK(r.capture->tau.value() == doctest::Approx(captured).epsilon(0.01));
@@ -495,4 +495,46 @@ TEST_CASE("shares of cycles add up to one, and stretches follow each other witho
     CHECK(r.synchronised > 0.3);
     CHECK(r.synchronised < 0.9);
     CHECK(judge(0.040, Damping::closed_form).synchronised == 0);
+}
+
+TEST_CASE("a run of which the last states alone are kept tells the same capture") {
+    const auto [p, captured] = captured_transient();
+    const State start = default_state(p);
+    for (const double tau_end : {20000.0, captured + 3000}) {
+        Rhythm rhythms[] = {{p, {0, tau_end}, 0}, {p, {0, tau_end}, 0}, {p, {0, tau_end}, 0}};
+        StroboscopicRecord all(p), last(p, {fewest_states, tau_end});
+        Observer* const observers[] = {&rhythms[0], &rhythms[1], &rhythms[2], &all, &last};
+        simulate(p, start, {tau_end, 10000000, {}}, observers);
+        REQUIRE(last.states.size() < all.states.size());
+        const Regime whole = regime_of(p, start, {rhythms[0], all, 0, tau_end}, false),
+                     again = regime_of(p, start, {rhythms[1], last, 0, tau_end}, false);
+        REQUIRE(whole.capture);
+        REQUIRE(again.capture);
+        CHECK(whole.capture->tau.value() == doctest::Approx(captured).epsilon(0.01));
+        CHECK(again.capture->tau == whole.capture->tau);
+        CHECK(again.capture->after == whole.capture->after);
+        CHECK(again.type == whole.type);
+    }
+}
+
+TEST_CASE("where there is no time to run again, a capture is known from the states that are kept") {
+    const auto [p, captured] = captured_transient();
+    const State start = default_state(p);
+    const double tau_end = 20000;
+    Rhythm rhythm(p, {0, tau_end}, 0);
+    StroboscopicRecord last(p, {fewest_states, tau_end});
+    Observer* const observers[] = {&rhythm, &last};
+    simulate(p, start, {tau_end, 10000000, {}}, observers);
+    // Late only for what starts anew at tau = 0 and takes as long as that.
+    long looks = 0;
+    const Regime r = regime_of(
+        p, start,
+        {.rhythm = rhythm,
+         .stroboscopic = last,
+         .tau_start = 0,
+         .tau_end = tau_end,
+         .stop = [&looks] { return ++looks > 500; }},
+        false);
+    REQUIRE(r.capture);
+    CHECK(r.capture->tau == last.tau_of(last.first()));
 }

@@ -78,6 +78,22 @@ TEST_CASE("stroboscopic states are those of the motion at one phase of each cycl
     }
 }
 
+TEST_CASE("states are kept up to a moment, and of those the last") {
+    const Parameters p = table1(0.022, Damping::closed_form);
+    StroboscopicRecord all(p), last(p, {8, 150});
+    record(p, default_state(p), 300, 100000, {&all, &last});
+    const long end = last.first() + static_cast<long>(last.states.size());
+    CHECK(last.tau_of(end - 1) <= 150);
+    CHECK(last.tau_of(end) > 150);
+    CHECK(last.states.size() >= 8);
+    CHECK(last.states.size() <= 12);
+    for (std::size_t k = 0; k < last.states.size(); ++k) {
+        const std::size_t same = k + static_cast<std::size_t>(last.first());
+        CHECK(last.tau(k) == all.tau(same));
+        CHECK(last.states[k].x == all.states[same].x);
+    }
+}
+
 TEST_CASE("a section holds the impacts of its window, each with the time since the one before") {
     const Parameters p = table1(0.022, Damping::closed_form);
     SectionRecord whole(0, 300, everything), late(100, 200, everything), last(0, 300, 4);

@@ -1,0 +1,185 @@
+#include "core/measures/rhythm.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace vines {
+
+namespace {
+
+// Fig. 9's synchronised parts: at b = 34 and 40 mm there are none, at 31 mm and below there are
+// (shared border of Types I and II); the border does not move between 10 and 20 %.
+constexpr double synchrony_tolerance = 0.15;
+constexpr int moving_cycles = 10;
+
+/// A phase of the forcing cycle that contacts stay away from, in parts of the cycle: there cycles
+/// are cut for counting.
+int quiet_position(const CyclePositions& positions) {
+    constexpr int bins = CyclePositions::parts / 2;
+    std::array<long, bins> count{};
+    positions.each([&](std::int64_t at) { ++count[at % CyclePositions::parts / 2]; });
+    // The middle of the longest run of bins with the fewest contacts (a run may go over the end).
+    const long fewest = *std::min_element(count.begin(), count.end());
+    int best = 0, best_length = 0;
+    for (int from = 0; from < bins; ++from) {
+        int length = 0;
+        while (length < bins && count[(from + length) % bins] == fewest) ++length;
+        if (length > best_length) best = from, best_length = length;
+    }
+    return 2 * best + best_length;
+}
+
+/// Rounded down.
+long whole_cycles(std::int64_t positions) {
+    const std::int64_t parts = CyclePositions::parts, before = positions < 0 ? parts - 1 : 0;
+    return static_cast<long>((positions - before) / parts);
+}
+
+/// Takes the numbers of contacts in one cycle after the other.
+class CycleCounter {
+public:
+    /// Of the moving z one entry in `every` is kept.
+    CycleCounter(CycleCounts& counts, std::size_t every) : counts_(counts), every_(every) {}
+
+    /// `middle`: of the cycles that the moving z is taken over, if this is the last of them.
+    void add(int contacts, double middle) {
+        auto& with = counts_.cycles_with;
+        if (with.size() <= static_cast<std::size_t>(contacts)) with.resize(contacts + 1, 0);
+        ++with[contacts];
+        int& oldest = latest_[cycles_ % moving_cycles];
+        sum_ += contacts - oldest;
+        oldest = contacts;
+        ++cycles_;
+        if (cycles_ < moving_cycles || (cycles_ - moving_cycles) % every_ != 0) return;
+        counts_.moving_tau.push_back(middle);
+        counts_.moving_z.push_back(static_cast<double>(sum_) / moving_cycles);
+    }
+    void finish() {
+        for (double& share : counts_.cycles_with) share /= static_cast<double>(cycles_);
+    }
+
+private:
+    CycleCounts& counts_;
+    const std::size_t every_;
+    std::size_t cycles_ = 0;
+    long sum_ = 0;
+    std::array<int, moving_cycles> latest_{};
+};
+
+}  // namespace
+
+bool Synchrony::in_step(const CountedContact& next) const {
+    return next.side != last_.side &&
+           std::abs(next.tau - last_.tau - half_cycle_) < synchrony_tolerance * half_cycle_;
+}
+
+void Synchrony::add(const CountedContact& contact) {
+    if (contacts == 0) {
+        alternating_from_ = free_from_ = {contact.tau, 0};
+    } else if (!in_step(contact)) {
+        end_alternation();
+        alternating_from_ = {contact.tau, contacts};
+    }
+    last_ = contact;
+    ++contacts;
+}
+
+void Synchrony::end_alternation() {
+    const Mark last{last_.tau, contacts - 1};
+    const long half_cycles = last.number - alternating_from_.number;
+    longest = std::max(longest, half_cycles);
+    if (half_cycles < shortest_stretch) return;
+    desynchronised(alternating_from_);
+    stretches.add({alternating_from_.tau, last.tau, true, half_cycles + 1});
+    in_stretches += half_cycles + 1;
+    free_from_ = last;
+}
+
+void Synchrony::desynchronised(const Mark& to) {
+    if (to.number > free_from_.number)
+        stretches.add({free_from_.tau, to.tau, false, to.number - free_from_.number + 1});
+}
+
+void Synchrony::finish() {
+    if (contacts == 0) return;
+    end_alternation();
+    desynchronised({last_.tau, contacts - 1});
+}
+
+void CyclePositions::add(double cycles) {
+    const auto position = static_cast<std::int64_t>(std::floor(cycles * parts));
+    std::int64_t step = position - last_;
+    last_ = position;
+    for (; step > low_bits; step >>= bits)
+        bytes_.push_back(static_cast<std::uint8_t>((step & low_bits) | (low_bits + 1)));
+    bytes_.push_back(static_cast<std::uint8_t>(step));
+}
+
+Rhythm::Rhythm(const Parameters& p, const Interval& window, std::size_t most_listed)
+    : ContactStream(p),
+      synchrony(0.5 * p.cycle(), most_listed),
+      cycle_(p.cycle()),
+      window_(window),
+      most_listed_(most_listed) {}
+
+void Rhythm::on_contact(const CountedContact& contact) {
+    if (contact.tau < window_.from) before_ = contact;
+    else if (contact.tau <= window_.to) count(contact);
+}
+
+void Rhythm::count(const CountedContact& contact) {
+    if (contacts() == 0) first_ = contact.tau;
+    last_ = contact.tau;
+    synchrony.add(contact);
+    if (most_listed_ > 0) positions_.add(contact.tau / cycle_);
+}
+
+void Rhythm::finish(const Interval& reached) {
+    tell_held();
+    // Of a window that the run does not reach its end is left: a moment.
+    if (before_ && before_->tau >= reached.from) count(*before_);
+    synchrony.finish();
+    reached_ = reached;
+}
+
+double Rhythm::z() const {
+    if (contacts() > 1) return static_cast<double>(contacts() - 1) * cycle_ / (last_ - first_);
+    const double duration = reached_.to - reached_.from;
+    return duration > 0 ? static_cast<double>(contacts()) * cycle_ / duration : 0;
+}
+
+std::vector<SynchronyStretch> Rhythm::last_stretches() {
+    trim_to_last(synchrony.stretches.entries, most_listed_);
+    return std::move(synchrony.stretches.entries);
+}
+
+CycleCounts Rhythm::cycle_counts() const {
+    CycleCounts counts;
+    if (most_listed_ == 0) return counts;
+    const int cut_position = contacts() > 0 ? quiet_position(positions_) : 0;
+    const double cut = static_cast<double>(cut_position) / CyclePositions::parts,
+                 from = contacts() > 0 ? first_ - cycle_ : reached_.from;
+    const long first = static_cast<long>(std::ceil(from / cycle_ - cut)),
+               cycles = static_cast<long>(std::floor(reached_.to / cycle_ - cut)) - first;
+    if (cycles <= 0) return counts;
+    const auto moving = static_cast<std::size_t>(std::max(0L, cycles + 1 - moving_cycles));
+    CycleCounter counter(counts, moving / most_listed_ + 1);
+    long cycle = 0;
+    int in_cycle = 0;
+    auto count_up_to = [&](long to) {
+        for (; cycle < std::min(to, cycles); ++cycle, in_cycle = 0)
+            counter.add(in_cycle, (first + cycle + 1 + cut - 0.5 * moving_cycles) * cycle_);
+    };
+    positions_.each([&](std::int64_t position) {
+        const long at = whole_cycles(position - cut_position) - first;
+        count_up_to(at);
+        if (at == cycle) ++in_cycle;
+    });
+    count_up_to(cycles);
+    counter.finish();
+    return counts;
+}
+
+}  // namespace vines

@@ -1,0 +1,14 @@
+// An answer that is written while its longest lists are made, behind a gate, and broken off when
+// its client leaves.
+#pragma once
+
+#include "api/simulate.hpp"
+#include "http/compute_gate.hpp"
+#include "http/message.hpp"
+
+namespace vines::http {
+
+/// The gate outlives the response.
+Response stream_answer(api::SimulateAnswer answer, ComputeGate& gate);
+
+}  // namespace vines::http

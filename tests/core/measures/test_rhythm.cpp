@@ -1,0 +1,135 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "../support.hpp"
+#include "core/measures/rhythm.hpp"
+
+using namespace vines;
+using namespace vines::test;
+
+namespace {
+
+class Told : public ContactStream {
+public:
+    using ContactStream::ContactStream;
+    void finish() { tell_held(); }
+    std::vector<CountedContact> contacts;
+
+private:
+    void on_contact(const CountedContact& contact) override { contacts.push_back(contact); }
+};
+
+/// A system with chatters, sticks and contacts on one side as well as an even alternation.
+Parameters some_system(std::mt19937_64& engine) {
+    Parameters p = table1(uniform(engine, 0.002, 0.035), Damping::closed_form);
+    // At small R the mass often meets the same wall twice in a cycle, and sticks at the second.
+    const double most_R = uniform(engine, 0, 1) < 0.5 ? 0.3 : 1;
+    p.R_plus = uniform(engine, 0, most_R);
+    p.R_minus = uniform(engine, 0, most_R);
+    p.Omega = uniform(engine, 0.9, 1.1);
+    return p;
+}
+
+/// Contacts per cycle of a whole run, counted from a list: each cycle is a look at all of them.
+long contacts_between(const std::vector<CountedContact>& contacts, double from, double to) {
+    return std::count_if(contacts.begin(), contacts.end(), [&](const CountedContact& c) {
+        return c.tau >= from && c.tau < to;
+    });
+}
+
+}  // namespace
+
+TEST_CASE("contacts told one by one are those of the list") {
+    std::mt19937_64 engine(31);
+    int sticks = 0;
+    for (int n = 0; n < 100; ++n) {
+        const Parameters p = some_system(engine);
+        ContactRecord list;
+        Told told(p);
+        record(p, default_state(p), 400, 100000, {&list, &told});
+        told.finish();
+        sticks += static_cast<int>(list.sticks.size());
+        REQUIRE(told.contacts.size() == list.contacts.size());
+        for (std::size_t k = 0; k < told.contacts.size(); ++k) {
+            CHECK(told.contacts[k].tau == list.contacts[k].tau);
+            CHECK(told.contacts[k].side == list.contacts[k].side);
+        }
+    }
+    CHECK(sticks > 500);
+}
+
+TEST_CASE("the moving z counts the contacts of ten cycles, the shares those of one") {
+    std::mt19937_64 engine(32);
+    for (int n = 0; n < 30; ++n) {
+        const Parameters p = some_system(engine);
+        ContactRecord list;
+        Rhythm rhythm(p, {0, 300}, everything);
+        record(p, default_state(p), 300, 100000, {&list, &rhythm});
+        rhythm.finish({0, 300});
+        const auto& contacts = list.contacts;
+        REQUIRE(rhythm.contacts() == static_cast<long>(contacts.size()));
+        const CycleCounts counts = rhythm.cycle_counts();
+        REQUIRE(counts.moving_tau.size() > 1);
+        const double cycle = p.cycle();
+        double mean = 0, sum = 0;
+        for (std::size_t k = 0; k < counts.moving_tau.size(); ++k) {
+            const double tau = counts.moving_tau[k];
+            CHECK(
+                counts.moving_z[k] * 10 ==
+                doctest::Approx(contacts_between(contacts, tau - 5 * cycle, tau + 5 * cycle)));
+        }
+        for (std::size_t k = 0; k < counts.cycles_with.size(); ++k) {
+            sum += counts.cycles_with[k];
+            mean += static_cast<double>(k) * counts.cycles_with[k];
+        }
+        CHECK(sum == doctest::Approx(1));
+        const double from = counts.moving_tau.front() - 5 * cycle,
+                     to = counts.moving_tau.back() + 5 * cycle;
+        CHECK(
+            mean * std::round((to - from) / cycle) ==
+            doctest::Approx(contacts_between(contacts, from, to)));
+    }
+}
+
+TEST_CASE("a bound of the lists keeps every so many of the moving z, and the last stretches") {
+    const Parameters p = table1(0.022, Damping::closed_form);
+    const std::size_t most = 7;
+    Rhythm all(p, {0, 2000}, everything), thinned(p, {0, 2000}, most), none(p, {0, 2000}, 0);
+    record(p, default_state(p), 2000, 1000000, {&all, &thinned, &none});
+    for (Rhythm* rhythm : {&all, &thinned, &none}) rhythm->finish({0, 2000});
+    const CycleCounts whole = all.cycle_counts(), few = thinned.cycle_counts();
+    const std::size_t every = whole.moving_z.size() / most + 1;
+    REQUIRE(few.moving_z.size() == (whole.moving_z.size() + every - 1) / every);
+    for (std::size_t k = 0; k < few.moving_z.size(); ++k) {
+        CHECK(few.moving_tau[k] == whole.moving_tau[k * every]);
+        CHECK(few.moving_z[k] == whole.moving_z[k * every]);
+    }
+    CHECK(few.cycles_with == whole.cycles_with);
+    CHECK(none.cycle_counts().cycles_with.empty());
+    const auto stretches = all.last_stretches(), last = thinned.last_stretches();
+    REQUIRE(stretches.size() > most);
+    REQUIRE(last.size() == most);
+    CHECK(last.back().tau_end == stretches.back().tau_end);
+    CHECK(last.front().tau_start == stretches[stretches.size() - most].tau_start);
+    CHECK(none.last_stretches().empty());
+    for (const Rhythm* rhythm : {&thinned, &none}) {
+        CHECK(rhythm->contacts() == all.contacts());
+        CHECK(rhythm->z() == all.z());
+        CHECK(rhythm->synchrony.longest == all.synchrony.longest);
+        CHECK(rhythm->synchrony.in_stretches == all.synchrony.in_stretches);
+        CHECK(rhythm->synchrony.stretches.seen == all.synchrony.stretches.seen);
+    }
+}
+
+TEST_CASE("positions are given back as they were added, pauses of many cycles too") {
+    CyclePositions positions;
+    const std::vector<double> cycles = {0, 0, 0.25, 0.5, 1.49, 1.5, 5.125, 1000, 2e6};
+    for (const double at : cycles) positions.add(at);
+    std::vector<double> back;
+    positions.each([&](std::int64_t at) { back.push_back(static_cast<double>(at)); });
+    REQUIRE(back.size() == cycles.size());
+    for (std::size_t k = 0; k < cycles.size(); ++k)
+        CHECK(back[k] == std::floor(cycles[k] * CyclePositions::parts));
+}
