@@ -48,6 +48,11 @@ Run::Run(
     if (side_ != 0) meet_wall_at_start();
 }
 
+Outcome Run::to_its_end() {
+    while (!is_over()) fly();
+    return outcome();
+}
+
 bool Run::is_over() {
     if (!end_ && std::max(impacts_, others_) >= limits_.max_impacts) end_ = End::max_impacts;
     if (!end_ && limits_.stop && events_++ % events_per_look == 0 && limits_.stop())

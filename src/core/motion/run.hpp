@@ -32,7 +32,10 @@ public:
     Run(const Parameters& parameters, const State& start, const Limits& limits,
         std::span<Observer* const> observers);
 
-    /// Asked before each flight: the last one may have reached a limit.
+    /// From flight to flight, until it is over.
+    Outcome to_its_end();
+
+    // Or step by step. Asked before each flight: the last one may have reached a limit.
     bool is_over();
     Outcome outcome() const;
 

@@ -13,9 +13,7 @@ State Stretch::at(double s) const {
 Outcome simulate(
     const Parameters& parameters, const State& start, const Limits& limits,
     std::span<Observer* const> observers) {
-    Run run(parameters, start, limits, observers);
-    while (!run.is_over()) run.fly();
-    return run.outcome();
+    return Run(parameters, start, limits, observers).to_its_end();
 }
 
 Outcome simulate(const RunPlan& plan) {
