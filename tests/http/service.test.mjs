@@ -449,7 +449,7 @@ test("the deadline and the answer's limit hold for all that can be asked for at 
   const {fields} = await getJson("/v1/parameters");
   const include = fields.find((f) => f.name === "include").choices;
   const lists = {max_points: 1e6, max_impacts: 2e6};
-  const body = JSON.stringify({b: 0.003, tau_end: 1e6, ...lists, include});
+  const body = JSON.stringify({b: 0.003, tau_end: 1e7, ...lists, include});
   const response = await fetch(`${hasty.url}/v1/simulate`, {method: "POST", body});
   const text = await response.text();
   const seconds = await computed(hasty.pid);
