@@ -20,7 +20,7 @@ using Clock = std::chrono::steady_clock;
 constexpr auto look = std::chrono::milliseconds(50);
 constexpr auto report = std::chrono::milliseconds(200);
 
-/// Each point behind the gate, giving way to urgent work.
+/// A sweep's threads behind the gate, giving way to urgent work.
 class GatePace : public api::Pace {
 public:
     explicit GatePace(ComputeGate& gate) : gate_(gate) {}
@@ -37,9 +37,9 @@ public:
     void stop() { stop_.request_stop(); }
 
 private:
-    /// That of the point which the calling thread computes. One for each thread, not for each pace:
-    /// a thread computes one point after the other and has no place between them, so that it never
-    /// has those of two sweeps.
+    /// That of the points which the calling thread computes. One for each thread, not for each
+    /// pace: a thread has none before its first point nor behind its last, so that it never has
+    /// those of two sweeps.
     static ComputeGate::Place& place() {
         thread_local ComputeGate::Place place;
         return place;

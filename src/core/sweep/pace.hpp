@@ -9,7 +9,8 @@ namespace vines {
 class Pace {
 public:
     virtual ~Pace() = default;
-    virtual void begin() {}  ///< before a run, on the thread that does it
+    /// Before a thread's first run, and, behind an end(), before each of its runs.
+    virtual void begin() {}
     virtual void end() {}
     /// Asked every few events; true stops the sweep.
     virtual bool stop_or_yield() { return false; }

@@ -12,6 +12,21 @@ namespace vines {
 
 namespace {
 
+// A thread's points hold no more together than one of so many cycles, or points of a section.
+constexpr double most_cycles_together = 1e6;
+constexpr std::size_t most_section_points_together = 100'000;
+
+/// How many points a thread runs side by side.
+std::size_t most_together(const PointOptions& o) {
+    const double by_cycles = most_cycles_together / std::max(1.0, o.cycles);
+    const std::size_t by_section =
+        o.section == SectionKind::none
+            ? most_lines
+            : most_section_points_together / std::max<std::size_t>(o.section_points, 1);
+    const auto most = static_cast<std::size_t>(std::min<double>(by_cycles, most_lines));
+    return std::max<std::size_t>(std::min(most, by_section), 1);
+}
+
 PointOptions options_of(const PointSystem& system, PointOptions options) {
     options.max_impacts = system.max_impacts;
     return options;
@@ -123,14 +138,16 @@ void run_points(
     std::atomic<std::size_t> taken = 0;
     const Batches::TakeTask take = [&] {
         std::optional<PointTask> task;
-        for (std::size_t i; !task && (i = taken++) < count;) task = task_at(i);
+        for (std::size_t i; (i = taken++) < count;) {
+            if ((task = task_at(i))) break;
+            if (pace.stop_or_yield()) throw Stopped();
+        }
         return task;
     };
     const std::size_t groups = std::min(count, static_cast<std::size_t>(std::max(threads, 1)));
     parallel(groups, threads, [&](std::size_t) {
         // So many that every thread has some.
-        const std::size_t lines =
-            std::min(static_cast<std::size_t>(most_lines), (count + groups - 1) / groups);
+        const std::size_t lines = std::min(most_together(options), (count + groups - 1) / groups);
         Turn turn(pace);
         Batches batches(take);
         while (batches.begin()) {

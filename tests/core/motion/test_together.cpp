@@ -18,6 +18,8 @@ struct Told : Observer {
         add(
             {s.tau, s.duration, s.start.x, s.start.x_dot, s.start.sin_theta, s.start.cos_theta, s.y,
              s.y_dot, 1.0 * s.stuck_side});
+        const Transfer t = s.transfer ? *s.transfer : s.flow.transfer(s.duration);
+        add({t.a11, t.a12, t.a21, t.a22});
     }
     void on_impact(const Impact& i) override {
         add(
