@@ -21,13 +21,21 @@ ComputeGate::Place ComputeGate::enter() {
 
 ComputeGate::Place ComputeGate::enter_patiently(const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
+    const long ticket = next_ticket_++;
+    tickets_.insert(ticket);
+    patient_ = static_cast<int>(tickets_.size());
     // The wait registers with the token before it looks, so that a stop at any time ends it. The
     // one who stops must not hold the mutex, and has no way to.
-    const bool passes = changed_.wait(
-        lock, stop, [this] { return closed_to_sweeps_ || (free_ > 0 && urgent_ == 0); });
-    if (!passes || closed_to_sweeps_) return nullptr;
-    --free_;
-    return Place(this);
+    const bool passes = changed_.wait(lock, stop, [this, ticket] {
+        return closed_to_sweeps_ || (free_ > 0 && urgent_ == 0 && ticket == *tickets_.begin());
+    });
+    tickets_.erase(ticket);
+    patient_ = static_cast<int>(tickets_.size());
+    const bool enters = passes && !closed_to_sweeps_;
+    if (enters) --free_;
+    // The next one was told of its place when it was not yet its turn.
+    if (free_ > 0 && !tickets_.empty()) changed_.notify_all();
+    return Place(enters ? this : nullptr);
 }
 
 void ComputeGate::leave() {

@@ -10,6 +10,7 @@
 #include <condition_variable>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <stop_token>
 #include <thread>
 
@@ -39,11 +40,13 @@ public:
     using Place = std::unique_ptr<ComputeGate, Leave>;
     /// For urgent work: waits for a place; none where the queue is full.
     Place enter();
-    /// For patient work: waits for a place behind all urgent work; none once it is stopped or the
-    /// gate is closed to sweeps.
+    /// For patient work: waits for a place behind all urgent work, and behind the patient work that
+    /// came before; none once it is stopped or the gate is closed to sweeps.
     Place enter_patiently(const std::stop_token& stop);
     /// Whether patient work should give its place back and enter again.
     bool wanted() const { return urgent_ > 0; }
+    /// Whether other patient work waits for one.
+    bool wanted_patiently() const { return patient_ > 0; }
 
     /// Room for one sweep, or none (null) where there are as many as may be, or the gate is closed
     /// to them.
@@ -65,8 +68,11 @@ private:
     // is closed to sweeps.
     std::condition_variable_any changed_;
     int free_, sweeps_ = 0;
+    long next_ticket_ = 0;
+    std::set<long> tickets_;  ///< of the patient work that waits
     // Changed under the mutex; read without it by work that only takes a look.
-    std::atomic<int> urgent_ = 0;  ///< waiting
+    std::atomic<int> urgent_ = 0;   ///< waiting
+    std::atomic<int> patient_ = 0;  ///< waiting
     std::atomic<bool> closed_to_sweeps_ = false;
 };
 

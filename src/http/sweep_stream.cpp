@@ -20,16 +20,23 @@ using Clock = std::chrono::steady_clock;
 constexpr auto look = std::chrono::milliseconds(50);
 constexpr auto report = std::chrono::milliseconds(200);
 
+// So long a sweep keeps a place that another one waits for.
+constexpr auto turn = std::chrono::milliseconds(20);
+
 /// A sweep's threads behind the gate, giving way to urgent work.
 class GatePace : public api::Pace {
 public:
     explicit GatePace(ComputeGate& gate) : gate_(gate) {}
-    void begin() override { place() = gate_.enter_patiently(stop_.get_token()); }
+    void begin() override {
+        place() = gate_.enter_patiently(stop_.get_token());
+        entered() = Clock::now();
+    }
     void end() override { place().reset(); }
     bool stop_or_yield() override {
-        if (place() && gate_.wanted()) {
-            place().reset();
-            place() = gate_.enter_patiently(stop_.get_token());
+        const bool is_long = gate_.wanted_patiently() && Clock::now() - entered() > turn;
+        if (place() && (gate_.wanted() || is_long)) {
+            end();
+            begin();
         }
         return stop_.stop_requested() || gate_.closed_to_sweeps() || !place();
     }
@@ -43,6 +50,10 @@ private:
     static ComputeGate::Place& place() {
         thread_local ComputeGate::Place place;
         return place;
+    }
+    static Clock::time_point& entered() {
+        thread_local Clock::time_point moment;
+        return moment;
     }
     ComputeGate& gate_;
     std::stop_source stop_;

@@ -63,6 +63,40 @@ TEST_CASE("patient work that gives its place back gets it again behind the urgen
     }
 }
 
+TEST_CASE("patient work gets its places in the order in which it came") {
+    ComputeGate gate({.running = 1});
+    const std::stop_source stop;
+    for (int round = 0; round < 200; ++round) {
+        ComputeGate::Place place = gate.enter_patiently(stop.get_token());
+        CHECK(!gate.wanted_patiently());
+        std::atomic<bool> served = false;
+        std::thread other([&] {
+            const ComputeGate::Place own = gate.enter_patiently(stop.get_token());
+            served = own != nullptr;
+        });
+        wait_until([&] { return gate.wanted_patiently(); });
+        place.reset();
+        place = gate.enter_patiently(stop.get_token());
+        CHECK(place);
+        CHECK(served);
+        other.join();
+    }
+}
+
+TEST_CASE("patient work that is stopped does not keep those behind it waiting") {
+    ComputeGate gate({.running = 1});
+    std::stop_source first_stop;
+    const std::stop_source stop;
+    ComputeGate::Place place = gate.enter_patiently(stop.get_token());
+    std::thread first([&] { CHECK(!gate.enter_patiently(first_stop.get_token())); });
+    wait_until([&] { return gate.wanted_patiently(); });
+    std::thread second([&] { CHECK(gate.enter_patiently(stop.get_token())); });
+    first_stop.request_stop();
+    first.join();
+    place.reset();
+    second.join();
+}
+
 TEST_CASE(
     "of two places that come free at once patient work gets the one that urgent work leaves") {
     const std::stop_source stop;

@@ -126,6 +126,14 @@ std::optional<State> after_period(
     return follow(p, s, tau, cycles * p.cycle(), stop, observers);
 }
 
+/// Of the eigenvalues: whatever the units, it is below the norm in them.
+double largest_modulus(const Matrix4& monodromy) {
+    double largest = 0;
+    for (const std::complex<double>& value : eigenvalues_of(monodromy))
+        largest = std::max(largest, elementary::modulus(value));
+    return monodromy.allFinite() ? largest : infinity;
+}
+
 /// Newton's method, in coordinates scaled to order one.
 std::optional<State> close(
     const Parameters& p, State s, double tau, int cycles, const State& scale, double reach,
@@ -146,7 +154,8 @@ std::optional<State> close(
         miss_before = size;
         const Matrix4 D = unit.asDiagonal().inverse() *
                           (Matrix4(monodromy.matrix) - Matrix4::Identity()) * unit.asDiagonal();
-        if (!(D.norm() < most_stretch)) return std::nullopt;
+        if (!(D.norm() < most_stretch) && !(largest_modulus(monodromy.matrix) < most_stretch))
+            return std::nullopt;
         // Neutral directions (a mass at rest that is never hit) are left as they are: the smallest
         // step solves.
         Eigen::Vector4d correction = -smallest_solution(D, miss);

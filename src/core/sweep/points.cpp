@@ -5,6 +5,7 @@
 #include <deque>
 #include <utility>
 
+#include "core/motion/in_lanes.hpp"
 #include "core/motion/together.hpp"
 #include "core/sweep/parallel.hpp"
 
@@ -23,6 +24,7 @@ std::size_t most_together(const PointOptions& o) {
         o.section == SectionKind::none
             ? most_lines
             : most_section_points_together / std::max<std::size_t>(o.section_points, 1);
+    if (!best_search()) return 1;
     const auto most = static_cast<std::size_t>(std::min<double>(by_cycles, most_lines));
     return std::max<std::size_t>(std::min(most, by_section), 1);
 }
