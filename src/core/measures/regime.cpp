@@ -154,11 +154,11 @@ public:
           period_(static_cast<long>(along_.size())),
           phase_(static_cast<long>(phase_of(state, along_, scale)) - k % period_ + period_) {}
 
-    /// Whether the state at the k-th is next to the orbit where that is then.
-    bool is_next(long k, const State& state) const {
-        const State& there = along_[static_cast<std::size_t>((phase_ + k) % period_)];
-        return distance(state, there, scale_) < captured_within;
+    /// How far the state at the k-th is from where the orbit is then.
+    double apart(long k, const State& state) const {
+        return distance(state, along_[static_cast<std::size_t>((phase_ + k) % period_)], scale_);
     }
+    bool is_next(long k, const State& state) const { return apart(k, state) < captured_within; }
 
 private:
     const std::vector<State> along_;
@@ -166,7 +166,8 @@ private:
     const long period_, phase_;
 };
 
-/// Which of the first whole cycles of a run is the last that is not next to an orbit.
+/// Which of the first whole cycles of a run is the last that is not next to the orbit that attracts
+/// it at the end. Once it is on that it stays there.
 class LastApart : public Stroboscope {
 public:
     LastApart(const Parameters& p, const BesideOrbit& beside, long before)
@@ -174,10 +175,14 @@ public:
           beside_(beside),
           before_(before) {}
     long cycle = -1;
+    bool arrived = false;
 
 private:
     void take(long k, const State& state) override {
-        if (k < before_ && !beside_.is_next(k, state)) cycle = k;
+        if (k >= before_ || arrived) return;
+        const double apart = beside_.apart(k, state);
+        if (!(apart < captured_within)) cycle = k;
+        arrived = apart < on_the_orbit;
     }
     const BesideOrbit& beside_;
     const long before_;
@@ -198,8 +203,12 @@ std::optional<double> captured_from(
     if (from == first && first > 0) {
         LastApart last(p, beside, first);
         Observer* const observers[] = {&last};
-        const Limits limits{e.stroboscopic.tau_of(first), std::numeric_limits<long>::max(), e.stop};
-        if (simulate(p, start, limits, observers).reason == End::tau_end) from = last.cycle + 1;
+        const Limits limits{
+            .tau_end = e.stroboscopic.tau_of(first),
+            .max_impacts = std::numeric_limits<long>::max(),
+            .stop = [&] { return last.arrived || (e.stop && e.stop()); }};
+        const End end_of_run = simulate(p, start, limits, observers).reason;
+        if (last.arrived || end_of_run == End::tau_end) from = last.cycle + 1;
     }
     return e.stroboscopic.tau_of(from);
 }

@@ -320,9 +320,6 @@ private:
     EigenBase base_;
 };
 
-// So close, in units of the scale, the motion is on the orbit: from order one a chance return would
-// need 1e16 cycles or more.
-constexpr double there = 1e-8;
 // From order one to there takes this many times the contraction's own time, and some more while it
 // is not linear yet.
 constexpr double decay_times = 24;
@@ -351,7 +348,7 @@ bool attracts(
     std::optional<State> s = follow(p, at_whole_cycle, 0, orbit.tau, stop);
     auto distant = [&] { return distance(*s, orbit.state, scale); };
     auto pass = [&](int periods) {
-        for (int k = 0; k < periods && s && distant() >= there; ++k)
+        for (int k = 0; k < periods && s && distant() >= on_the_orbit; ++k)
             s = follow(p, *s, orbit.tau, orbit.cycles * p.cycle(), stop);
         return s.has_value();
     };
@@ -359,7 +356,7 @@ bool attracts(
 
     const int most_periods = std::max(most_cycles / orbit.cycles, least_periods);
     const double needed = decay_times / per_period + more_periods;
-    if (needed <= most_periods) return pass(static_cast<int>(needed)) && distant() < there;
+    if (needed <= most_periods) return pass(static_cast<int>(needed)) && distant() < on_the_orbit;
 
     const EigenCoordinates coordinates(orbit, scale, untouched);
     if (!coordinates.usable()) return false;
@@ -369,7 +366,7 @@ bool attracts(
         const Eigen::Vector4cd before = coordinates.of(*s),
                                linear = coordinates.after(before, periods);
         if (!pass(periods)) return false;
-        if (distant() < there) return true;
+        if (distant() < on_the_orbit) return true;
         if ((coordinates.of(*s) - linear).norm() >
             linear_return_share * contraction * before.norm())
             return false;

@@ -52,6 +52,10 @@ std::optional<PeriodicOrbit> find_orbit(
     const Parameters& parameters, const State& at_whole_cycle, int cycles, const State& scale,
     double reach, const std::function<bool()>& stop);
 
+/// So close, in units of the scale, a motion is on an orbit that attracts it, and stays: from order
+/// one a chance return would need 1e16 cycles or more.
+inline constexpr double on_the_orbit = 1e-8;
+
 /// Whether a stable orbit attracts the motion from a state at a whole cycle. The proof is to follow
 /// it: it comes so close that no chance explains it, or, where the orbit contracts too slowly for
 /// that, it moves as the orbit's own linear map says, far more precisely than that contracts. A
