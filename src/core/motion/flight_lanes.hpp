@@ -17,7 +17,6 @@ struct FlowTables {
     const double* time_apart;
     /// Of each grid time: x from the four parts, x' from them, cos and sin of the phasor's turn.
     const double* rows;
-    const double* time;
     /// 12 Taylor coefficients of x, and of x', from each part.
     const double *near_x[4], *near_x_dot[4];
 };

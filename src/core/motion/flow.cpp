@@ -136,19 +136,18 @@ std::shared_ptr<const Flow> Flow::shared_stuck(const Parameters& p) {
 FlowTables Flow::tables() const {
     static_assert(sizeof(Row) == 10 * sizeof(double));  // as flight_search.inl reads them
     FlowTables t{
-        cell_,
-        reach(),
-        stiffness_,
-        damping_,
-        forcing_,
-        Omega_,
-        inverse_root_stiffness_,
-        {},
-        time_apart_.data(),
-        rows_.front().x.data(),
-        time_.data(),
-        {},
-        {}};
+        .h = cell_,
+        .reach = reach(),
+        .stiffness = stiffness_,
+        .damping = damping_,
+        .forcing = forcing_,
+        .Omega = Omega_,
+        .inverse_root_stiffness = inverse_root_stiffness_,
+        .apart = {},
+        .time_apart = time_apart_.data(),
+        .rows = rows_.front().x.data(),
+        .near_x = {},
+        .near_x_dot = {}};
     const Response* const parts[4] = {&of_x_, &of_x_dot_, &of_sin_, &of_cos_};
     for (int j = 0; j < 4; ++j) {
         t.apart[j] = parts[j]->x_apart.data();

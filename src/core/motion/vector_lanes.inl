@@ -31,6 +31,7 @@ Real root(Real v) {
     for (int i = 0; i < width; ++i) v[i] = __builtin_sqrt(v[i]);
     return v;
 }
+
 // Which lanes something is true of: a bit for each where the processor has masks, else all bits of
 // a number.
 #if vines_lanes == 8
