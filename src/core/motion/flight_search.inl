@@ -3,6 +3,8 @@
 // that: sums, products, roots and comparisons of vectors are the compiler's, each rounded as IEEE
 // has it, none fused. Comments on why it is done so stand in fast_contact.cpp, whose steps these
 // are.
+#include <cstddef>
+
 #include "core/motion/flight_lanes.hpp"
 #include "core/motion/search_limits.hpp"
 #include "core/motion/vector_lanes.inl"
@@ -95,15 +97,14 @@ private:
     Rows rows_at(Real k) const {
         Rows rows;
         for (int i = 0; i < width; ++i)
-            rows.of[i] = tables_.rows + static_cast<int>(k[i]) * row_length;
+            rows.of[i] = tables_.rows + std::ptrdiff_t{row_length} * static_cast<int>(k[i]);
         return rows;
     }
 
     /// On to the first block behind block_ that is not proven empty. Gives the lanes that have one.
     Mask march(Mask flying) {
         const Real wide = flow_block * h_, least = inside(wide), reach = all(tables_.reach);
-        const Real last =
-            select(less(limit_, reach), limit_ / wide, all(flow_cells / flow_block - 1));
+        const Real last = select(less(limit_, reach), limit_ / wide, all(flow_blocks - 1));
         Real left = select(leaves_wall_, b_, lo_.x - y_), at{};
         Mask left_inside = less(absolute(left), least), stopped{};
         for (int block = 0; any(flying); ++block, at += 1) {

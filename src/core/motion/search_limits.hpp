@@ -5,7 +5,7 @@
 namespace vines {
 
 /// The grid of Flow: how many cells it has, and how many grid points are looked at at once.
-inline constexpr int flow_cells = 128, flow_block = 4;
+inline constexpr int flow_cells = 128, flow_block = 4, flow_blocks = flow_cells / flow_block;
 /// Taylor coefficients of x, and of x', within a cell (Flow::Near).
 inline constexpr int near_terms = 12;
 
