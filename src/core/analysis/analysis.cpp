@@ -248,7 +248,7 @@ private:
             m.tau.push_back(t.tau);
             m.J.push_back(t.J_moduli());
             m.M.push_back(t.M_moduli());
-            m.M_condition.push_back(t.M.condition(t.R));
+            m.M_condition.push_back(t.M.condition());
         }
     }
 

@@ -84,8 +84,7 @@ void ComparedContacts::on_impact(const Impact& i) {
          .before = {i.x, i.x_dot_before, i.sin_theta, i.cos_theta},
          .y_dot_before = i.y_dot_before,
          .deviation = state_of(deviation_)});
-    const Saltation M = saltation(parameters_, i);
-    deviation_ = M.S * deviation_ + M.r * wall_normal().dot(deviation_);  // (26)
+    deviation_ = saltation(parameters_, i).times(deviation_);  // (26)
 }
 
 void ComparedContacts::on_stick(const StickStart& start) {

@@ -42,7 +42,7 @@ void append(
     impact.relative_speed_before = i.x_dot_before - i.y_dot_before;
     impact.x_ddot_before = i.x_ddot_before;
     const Leg flight = leg_of(flow, duration, false);
-    product.append({&flight, 1}, saltation(p, impact), impact.R, product.end_tau() + duration);
+    product.append({&flight, 1}, saltation(p, impact), product.end_tau() + duration);
 }
 
 }  // namespace

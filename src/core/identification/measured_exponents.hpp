@@ -2,7 +2,7 @@
 //
 // The transfer matrix of a stretch is only known where each impact in it is. So the impacts fall
 // into stretches that are known throughout. `qr` adds up the growth of the deviations over them and
-// divides by the time that they last together; the frame is carried over a gap, for along the
+// divides by the time that they last together; they are carried over a gap, for along the
 // motion the growing directions change little from impact to impact. (With 10 % of the impacts
 // lost, lambda1 comes out 2 % smaller; started anew behind each gap, 50 % larger.) A product over a
 // gap does not exist: `eigenvalues` and `raw_product` are of the longest stretch.

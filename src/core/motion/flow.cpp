@@ -88,7 +88,6 @@ Flow::Flow(double stiffness, double damping, double forcing, double Omega)
     for (int k = 0; k <= cells + block * block; ++k) {
         for (int j = 0; j < 4; ++j) {
             parts[j]->x.push_back((double)state[j].x);
-            parts[j]->x_dot.push_back((double)state[j].x_dot);
             if (k > 0 && k % block == 0) parts[j]->x_apart.push_back((double)state[j].x);
         }
         time_.push_back(k * cell_);
@@ -235,24 +234,24 @@ Oscillation Flow::after(Oscillation o, double s) const {
 // The oscillator's block of J, eq. (19).
 Transfer Flow::transfer(double s) const {
     assert(s >= 0);
-    Transfer j;
-    auto then = [&j](const Transfer& t) {
-        j = {
+    const auto after = [](const Transfer& t, const Transfer& j) -> Transfer {
+        return {
             t.a11 * j.a11 + t.a12 * j.a21, t.a11 * j.a12 + t.a12 * j.a22,
             t.a21 * j.a11 + t.a22 * j.a21, t.a21 * j.a12 + t.a22 * j.a22};
     };
-    auto row = [&](int k) {
-        return Transfer{of_x_dot_.x_dot[k], of_x_.x_dot[k], of_x_dot_.x[k], of_x_.x[k]};
+    const auto row = [this](int k) -> Transfer {
+        const Row& r = rows_[static_cast<std::size_t>(k)];
+        return {r.x_dot[1], r.x_dot[0], r.x[1], r.x[0]};
     };
-    for (; s >= reach(); s -= reach()) then(row(cells));
+    long reaches = 0;
+    for (; s >= reach(); s -= reach()) ++reaches;
     const int k = static_cast<int>(s / cell_);
     const double d = std::max(0.0, s - k * cell_);
-    then(row(k));
-
     // Within a cell: with u the unforced motion from (x', x) = (1, 0), that from (0, 1) is
     // u' + damping u.
     const auto [u, u_dot] = of_x_dot_.near.at(d);
-    then({u_dot, -stiffness_ * u, u, u_dot + damping_ * u});
+    Transfer j = after({u_dot, -stiffness_ * u, u, u_dot + damping_ * u}, row(k));
+    for (; reaches > 0; --reaches) j = after(j, row(cells));
     return j;
 }
 

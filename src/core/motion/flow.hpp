@@ -189,16 +189,16 @@ private:
     double stiffness_, damping_, forcing_, Omega_;
     double cell_;  // h
     double inverse_root_stiffness_, fastest_decay_;
-    // What one part of a state, of size 1 and alone, becomes: x and x' at the grid times k h, and
-    // the Taylor coefficients of x within a cell. A state becomes the sum of its four parts.
+    // What one part of a state, of size 1 and alone, becomes: x at the grid times k h, and the
+    // Taylor coefficients of x within a cell. A state becomes the sum of its four parts.
     struct Response {
-        std::vector<double> x, x_dot, x_apart;
+        std::vector<double> x, x_apart;
         Series series;
         Near near;
     };
     Response of_x_, of_x_dot_, of_sin_, of_cos_;
     std::vector<double> time_, time_apart_;  // the grid times
-    // The same numbers by grid times k h, with the turn of the phasor by then.
+    // x and x' of all four by grid times k h, with the turn of the phasor by then.
     struct Row {
         std::array<double, 4> x, x_dot;
         double cos, sin;

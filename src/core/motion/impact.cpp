@@ -39,38 +39,32 @@ Impact impact_at(const Parameters& p, const Contact& contact, double x_ddot, dou
 
 Eigen::Vector4d wall_normal() { return {0, 1, 0, -1}; }
 
-// M = S + r g^T, eq. (27).
-Matrix4 Saltation::matrix() const { return S + r * wall_normal().transpose(); }
-
-Frame Saltation::times(const Frame& d) const {
-    const Eigen::RowVector4d relative = d.row(1) - d.row(3);
-    Frame out;
-    out.row(0) = S(0, 0) * d.row(0) + S(0, 2) * d.row(2) + r(0) * relative;
-    out.row(1) = d.row(1) + r(1) * relative;
-    out.row(2) = S(2, 0) * d.row(0) + S(2, 2) * d.row(2) + r(2) * relative;
-    out.row(3) = d.row(3) + r(3) * relative;
-    return out;
+// S, eq. (25): the impact as a linear map of (x', x, y', y), which leaves positions alone.
+Matrix4 Saltation::S() const {
+    Matrix4 S = Matrix4::Identity();
+    S(0, 0) -= on_x, S(0, 2) += on_x;
+    S(2, 0) += on_y, S(2, 2) -= on_y;
+    return S;
 }
 
-double Saltation::condition(double R) const {
+// M = S + r g^T, eq. (27).
+Matrix4 Saltation::matrix() const { return S() + r() * wall_normal().transpose(); }
+
+double Saltation::condition() const {
     // M^-1 = S^-1 - S^-1 r g^T S^-1/(1 + g^T S^-1 r). S leaves positions alone and g sees nothing
     // else, so that g^T S^-1 = g^T and 1 + g^T r = -R: no large entry of r is left to cancel.
     if (R == 0) return infinity;
-    const Matrix4 S_inverse = S.inverse();
-    return matrix().norm() * (S_inverse + S_inverse * r * wall_normal().transpose() / R).norm();
+    const Matrix4 S_inverse = S().inverse();
+    return matrix().norm() * (S_inverse + S_inverse * r() * wall_normal().transpose() / R).norm();
 }
 
 Saltation saltation(const Parameters& p, const Impact& i) {
-    const double mu = p.epsilon / (1 + p.epsilon), nu = 1 / (1 + p.epsilon), e = 1 + i.R;
+    const double on_y = (1 + i.R) / (1 + p.epsilon), on_x = p.epsilon * on_y;
     const double kappa = i.x_ddot_before / i.relative_speed_before;
-    Saltation m;
-    // S, eq. (25): the impact as a linear map of (x', x, y', y), which leaves positions alone.
-    m.S << 1 - e * mu, 0, e * mu, 0, 0, 1, 0, 0, e * nu, 0, 1 - e * nu, 0, 0, 0, 0, 1;
     // r = (f+ - S f-)/(x'- - y'-) with f = (x'', x', 0, y'), eq. (27): a deviation meets the wall
     // earlier or later. x'' jumps by -2 zeta (x'+ - x'-), the velocities by their share of
     // (1 + R)(x'- - y'-).
-    m.r << e * mu * (kappa + 2 * p.zeta()), -e * mu, -e * nu * kappa, e * nu;
-    return m;
+    return {i.R, on_x, on_y, on_x * (kappa + 2 * p.zeta()), -on_y * kappa};
 }
 
 }  // namespace vines

@@ -39,19 +39,32 @@ inline constexpr double grazing_depth = 1e-9;
 /// The velocities after a contact, eq. (4): x' + epsilon y' kept, x' - y' reversed with factor R.
 Impact impact_at(const Parameters& parameters, const Contact& contact, double x_ddot, double tau);
 
-/// M = S + r g^T with g^T = [0 1 0 -1] (23) and r = (f+ - S f-)/(g^T f-), eq. (27). Kept as its two
-/// parts, because the entries of r grow without bound towards grazing while every determinant of M
-/// is linear in r.
+/// M = S + r g^T with g^T = [0 1 0 -1] (23) and r = (f+ - S f-)/(g^T f-), eq. (27). Kept as what
+/// its entries are made of, because those of r grow without bound towards grazing while every
+/// determinant of M is linear in them.
 struct Saltation {
-    Matrix4 S;          ///< eq. (25)
-    Eigen::Vector4d r;  ///< entries 0 and 2 hold x''/(x'- - y'-)
+    double R;
+    double on_x, on_y;      ///< shares (1 + R) epsilon/(1 + epsilon) and (1 + R)/(1 + epsilon)
+    double turn_x, turn_y;  ///< entries 0 and 2 of r: they hold x''/(x'- - y'-)
 
+    Matrix4 S() const;  ///< eq. (25)
+    Eigen::Vector4d r() const { return {turn_x, -on_x, turn_y, on_y}; }
     Matrix4 matrix() const;
-    /// matrix() * deviations, with a third of the multiplications.
-    Frame times(const Frame& deviations) const;
+    /// matrix() * deviations, by rows, in 13 operations a deviation.
+    template <class Deviations>
+    Deviations times(const Deviations& d) const {
+        using Row = Eigen::Matrix<double, 1, Deviations::ColsAtCompileTime>;
+        const Row rate = d.row(0) - d.row(2), gap = d.row(1) - d.row(3);
+        Deviations out;
+        out.row(0) = d.row(0) - on_x * rate + turn_x * gap;
+        out.row(1) = d.row(1) - on_x * gap;
+        out.row(2) = d.row(2) + on_y * rate + turn_y * gap;
+        out.row(3) = d.row(3) + on_y * gap;
+        return out;
+    }
     /// Condition number in the Frobenius norm: by how much M may magnify a relative error. It grows
     /// as (x''/(x'- - y'-))^2 towards grazing; infinite for R = 0.
-    double condition(double R) const;
+    double condition() const;
 };
 
 /// The vector g of eq. (23): d(x - y)/dPhi, normal to both walls in the space of states.

@@ -15,12 +15,9 @@ namespace {
 // product.
 constexpr double least_radius = 1e-8;
 
-}  // namespace
-
-namespace {
-
 double parts_of(const Flow& flow, double duration) {
-    return std::max(1.0, std::ceil(flow.fastest_decay() * duration / most_contraction));
+    const double contraction = flow.fastest_decay() * duration;
+    return contraction > most_contraction ? std::ceil(contraction / most_contraction) : 1;
 }
 
 }  // namespace
@@ -107,30 +104,75 @@ Volume carried(const Volume& volume, const Leg& leg) {
          det * n(3)}};
 }
 
-Area carried(const Area& w, const Saltation& M, double R) {
-    // (S + r g^T) w = S w + r ^ S (i_g w), with i_g w what g = (0, 1, 0, -1) leaves of w. S mixes
-    // x' and y' alone, and its determinant is -R.
-    const double p = M.S(0, 0), q = M.S(0, 2), u = M.S(2, 0), v = M.S(2, 2);
-    const double g0 = w(2) - w(0), g1 = w(4), g2 = w(3) + w(5), g3 = w(4);
-    const double s0 = p * g0 + q * g2, s2 = u * g0 + v * g2;
-    const Eigen::Vector4d& r = M.r;
+namespace {
+
+/// M in the coordinates (x', x, z', z) with z = x - y: z' becomes -R z' + turn z and z becomes
+/// -R z, x' gains -on_x z' + turn_x z and x gains -on_x z.
+struct Relative {
+    double R, on_x, turn_x, turn;
+    double mixed;  ///< R turn_x - on_x turn, where R x''/(x'- - y'-) cancels: x'' is linear in all
+};
+Relative relative(const Saltation& M) {
+    const double turn = M.turn_x - M.turn_y;
+    return {M.R, M.on_x, M.turn_x, turn, M.R * M.turn_x - M.on_x * turn};
+}
+
+}  // namespace
+
+Area carried(const Area& w, const Saltation& M) {
+    const auto [R, on_x, turn_x, turn, mixed] = relative(M);
+    // In the coordinates of x and z: 12 is x, z'; 23 is z', z.
+    const double u02 = -w(1), u03 = w(0) - w(2), u12 = -w(0) - w(3), u13 = -w(4),
+                 u23 = u03 + w(3) + w(5);
+    const double on_u23 = on_x * u23;
+    const double v01 = w(0) - on_x * (u03 - u12 - on_u23) - turn_x * u13,
+                 v02 = turn * u03 - R * u02 + mixed * u23, v03 = R * (on_u23 - u03),
+                 v12 = turn * u13 - R * (u12 + on_u23), v13 = -R * u13, v23 = R * R * u23;
     Area out;
-    out << p * w(0) - q * w(3) + r(0) * g1 - r(1) * s0, -R * w(1) + r(0) * s2 - r(2) * s0,
-        p * w(2) + q * w(5) + r(0) * g3 - r(3) * s0, v * w(3) - u * w(0) + r(1) * s2 - r(2) * g1,
-        w(4) + r(1) * g3 - r(3) * g1, u * w(2) + v * w(5) + r(2) * g3 - r(3) * s2;
+    out << v01, -v02, v01 - v03, -v01 - v12, -v13, v01 - v03 + v12 + v23;
     return out;
 }
 
-Volume carried(const Volume& volume, const Saltation& M, double R) {
-    // det(M) M^-T n. With g^T S^-1 = g^T and det(M) = R^2 that is R (R S^-1)^T n + g (R S^-1 r).n,
-    // for R = 0 as well.
-    const double p = M.S(0, 0), q = M.S(0, 2), u = M.S(2, 0), v = M.S(2, 2);
-    const Eigen::Vector4d &n = volume.normal, &r = M.r;
-    const double along = (q * r(2) - v * r(0)) * n(0) + R * r(1) * n(1) +
-                         (u * r(0) - p * r(2)) * n(2) + R * r(3) * n(3);
+Volume carried(const Volume& volume, const Saltation& M) {
+    // det(M) M^-T n.
+    const auto [R, on_x, turn_x, turn, mixed] = relative(M);
+    const Eigen::Vector4d& n = volume.normal;
+    const double along_x_dot = n(0) + n(2), along_x = n(1) + n(3);
+    const double along_z_dot = R * (n(2) - on_x * along_x_dot),
+                 along_z = mixed * along_x_dot + turn * n(2) + R * (n(3) - on_x * along_x);
+    return {{R * R * along_x_dot + along_z_dot, R * R * along_x + along_z, -along_z_dot, -along_z}};
+}
+
+void Flag::pass(const Leg& leg, double epsilon) {
+    carry(deviation, leg, epsilon);
+    area = carried(area, leg, epsilon);
+    volume = carried(volume, leg);
+    content *= leg.stuck ? 0 : determinant(leg.oscillator);
+}
+
+void Flag::strike(const Saltation& M) {
+    deviation = M.times(deviation);
+    area = carried(area, M);
+    volume = carried(volume, M);
+    content *= M.R * M.R;
+}
+
+std::array<double, 4> Flag::squares() const {
     return {
-        {R * (u * n(2) - v * n(0)), R * R * n(1) + along, R * (q * n(0) - p * n(2)),
-         R * R * n(3) - along}};
+        deviation.squaredNorm(), area.squaredNorm(), volume.normal.squaredNorm(),
+        content * content};
+}
+
+std::array<double, 2> Flag::gaps() const {
+    const Eigen::Vector4d &d = deviation, &n = volume.normal;
+    const Area& w = area;
+    const Eigen::Vector4d spanned(
+        d(0) * w(3) - d(1) * w(1) + d(2) * w(0), d(0) * w(4) - d(1) * w(2) + d(3) * w(0),
+        d(0) * w(5) - d(2) * w(2) + d(3) * w(1), d(1) * w(5) - d(2) * w(4) + d(3) * w(3));
+    const Eigen::Vector4d seen(
+        w(0) * n(1) + w(1) * n(2) + w(2) * n(3), -w(0) * n(0) + w(3) * n(2) + w(4) * n(3),
+        -w(1) * n(0) - w(3) * n(1) + w(5) * n(3), -w(2) * n(0) - w(4) * n(1) - w(5) * n(2));
+    return {spanned.norm() / (d.norm() * w.norm()), seen.norm() / (w.norm() * n.norm())};
 }
 
 template <int n>
@@ -167,17 +209,17 @@ void PowerProduct::pass(const Leg& leg) {
     }
 }
 
-void PowerProduct::strike(const Saltation& M, double R) {
-    if (R == 0) rank_ = std::min(rank_, 3);
+void PowerProduct::strike(const Saltation& M) {
+    if (M.R == 0) rank_ = std::min(rank_, 3);
     first_.matrix = M.times(first_.matrix);
     first_.rescale();
-    for (int k = 0; k < 6; ++k) second_.matrix.col(k) = carried(Area(second_.matrix.col(k)), M, R);
+    for (int k = 0; k < 6; ++k) second_.matrix.col(k) = carried(Area(second_.matrix.col(k)), M);
     second_.rescale();
     if (rank_ < 3) return;
     for (int k = 0; k < 4; ++k)
-        third_.matrix.col(k) = carried(Volume{third_.matrix.col(k)}, M, R).normal;
+        third_.matrix.col(k) = carried(Volume{third_.matrix.col(k)}, M).normal;
     third_.rescale();
-    log_det_ += 2 * elementary::log(R);
+    log_det_ += 2 * elementary::log(M.R);
 }
 
 Moduli PowerProduct::log_moduli() const {

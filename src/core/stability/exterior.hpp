@@ -47,8 +47,26 @@ struct Volume {
 Area carried(const Area& area, const Leg& leg, double epsilon);  ///< over one part
 /// Over one part; zero after a stick.
 Volume carried(const Volume& volume, const Leg& leg);
-Area carried(const Area& area, const Saltation& M, double R);
-Volume carried(const Volume& volume, const Saltation& M, double R);
+Area carried(const Area& area, const Saltation& M);
+Volume carried(const Volume& volume, const Saltation& M);
+
+/// What the first deviation, the first two, three and all four of them span: a length, an area, a
+/// volume and a content. Carried from (x', x, y', y) = the unit vectors they are the products of
+/// the diagonal of R in a QR factorisation of all matrices passed: nothing needs to be made
+/// orthogonal.
+struct Flag {
+    Eigen::Vector4d deviation = Eigen::Vector4d::Unit(0);
+    Area area = Area::Unit(0);
+    Volume volume{Eigen::Vector4d::Unit(3)};
+    double content = 1;
+
+    void pass(const Leg& leg, double epsilon);  ///< one part of it
+    void strike(const Saltation& M);
+    std::array<double, 4> squares() const;  ///< of the four sizes
+    /// Sines of the angles by which the deviation leaves the plane of the area, and that the space
+    /// of the volume: how far rounding has carried the parts apart. NaN of what is zero.
+    std::array<double, 2> gaps() const;
+};
 
 /// Moduli of four eigenvalues, or their logarithms; descending.
 using Moduli = std::array<double, 4>;
@@ -61,7 +79,7 @@ public:
     explicit PowerProduct(double epsilon) : epsilon_(epsilon) {}
 
     void pass(const Leg& leg);
-    void strike(const Saltation& M, double R);
+    void strike(const Saltation& M);
 
     /// 4; 2 once a stick has left only deviations of the centre of mass; 3 after an impact with
     /// R = 0.

@@ -1,6 +1,5 @@
 #include "core/stability/lyapunov.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,7 +14,7 @@ namespace vines {
 namespace {
 
 // Products of lengths, and squares of areas and volumes, are kept within these bounds by taking
-// their logarithms out: a third of double's exponents, so that the next factor stays in its range.
+// their logarithms out: a third of double's exponents, so that the next factors stay in its range.
 constexpr double least_product = 1e-100, most_product = 1e100;
 bool is_in_range(double product) { return product > least_product && product < most_product; }
 
@@ -62,6 +61,15 @@ Exponents per_time(const Exponents& logs, int rank, double T) {
     return lambda;
 }
 
+/// The same in descending order, with NaN where it is: over a short window, or one of strong
+/// damping, the deviations need not have turned into that order.
+Exponents descending(Exponents logs, int rank, double T) {
+    for (int k = 1; k < rank; ++k)
+        for (int j = k; j > 0 && (logs[j] > logs[j - 1] || std::isnan(logs[j - 1])); --j)
+            std::swap(logs[j], logs[j - 1]);
+    return per_time(logs, rank, T);
+}
+
 const ExponentHistory& none() {
     static const ExponentHistory empty;
     return empty;
@@ -80,193 +88,76 @@ double rounding_floor(double lambda1, double T) {
 }
 
 struct TransferProduct::Qr {
-    // Above this |r| (it is x''/(x'- - y'-)) the columns of M Q hide each other: a volume of them
-    // computed from the sums would have a relative error of |r|^2 ulp. Below, that error is under
-    // 1e-12.
-    static constexpr double steep = 100;
-    // Below this R the columns hide each other as well: by R an impact shrinks deviations of
-    // x' - y'.
-    static constexpr double dull = 0.02;
-
     explicit Qr(std::size_t history) : thinned(history) {}
 
-    /// A product since its last logarithm was taken, and the logarithms.
-    struct Growth {
-        double product = 1, logs = 0;
-        void grow(double factor) {
-            product *= factor;
-            if (!is_in_range(product)) {
-                logs += elementary::log(product);
-                product = 1;
-            }
-        }
-        double logarithm() const { return logs + elementary::log(product); }
-    };
-
-    /// Deviations that span what the first one, two, three and four of them have become, and the
-    /// growth that was taken out of them.
-    struct Columns {
-        Frame frame = Frame::Identity();
-        std::array<Growth, 4> lengths;
-
-        /// Gram-Schmidt on the first columns; the exponents grow by their lengths.
-        void orthonormalise(int count) {
-            Matrix4 base = frame;  // by columns
-            for (int k = 0; k < count; ++k) {
-                Eigen::Vector4d q = base.col(k);
-                for (int j = 0; j < k; ++j) q -= base.col(j).dot(q) * base.col(j);
-                const double length = q.norm();
-                base.col(k) = q * (1 / length);
-                lengths[k].grow(length);
-            }
-            if (count < 4) base.rightCols(4 - count).setZero();
-            frame = base;
-        }
-    };
-    Columns columns;
-    // How far the columns may be from orthonormal: a bound of their condition number, the product
-    // of those of the matrices since Gram-Schmidt. That takes, with its chain of four roots and
-    // four divisions, as long as the rest of an impact, so that two or three share it. The bound is
-    // generous; what it lets pass costs the last of the four lengths four to six digits of sixteen.
-    static constexpr double most_skewed = 1e6;
-    double skewed = 1;
-    // What the first two and three deviations span, from the exterior powers; and the determinant.
-    Area area = Area::Unit(0);
-    Volume volume{Eigen::Vector4d::UnitW()};
-    double log_area = 0, log_volume = 0;  // what was taken out of them
-    double log_det = 0;                   // of the legs
-    Growth impacts_det;                   // of the impacts
+    Flag flag;
+    Exponents taken{};  // logarithms that were taken out of its four sizes
+    // What the law makes of the fourth: e^(-2 zeta s) of J, R^2 of M.
+    double log_det_J = 0, log_det_M = 0, det_M = 1;
+    int unseen = 0;  // impacts since the sizes were looked at
     Thinned thinned;
 
-    void orthonormalise(int rank) {
-        columns.orthonormalise(rank);
-        skewed = 1;
-    }
-    /// Before a matrix of such a condition number.
-    void skew(double by, int rank) {
-        if (skewed * by > most_skewed) orthonormalise(rank);
-        skewed *= by;
-    }
-
-    /// Deviations of x' - y' shrunk by `factor`, x' + epsilon y' and the positions kept: S for
-    /// factor -R.
-    void shrink(double factor, double epsilon) {
-        const double nu = 1 / (1 + epsilon), mu = epsilon * nu;
-        Frame& frame = columns.frame;
-        const Eigen::RowVector4d relative = (1 - factor) * (frame.row(0) - frame.row(2));
-        frame.row(0) -= mu * relative;
-        frame.row(2) += nu * relative;
-    }
-
-    /// M = (I + r g^T) S, for g^T S = g^T. First S, in parts of which none shrinks by more than
-    /// e^-most_contraction; then the shear.
-    void strike_apart(const Saltation& M, double R, double epsilon, int rank) {
-        const double parts = R > 0
-                                 ? std::max(1.0, std::ceil(-elementary::log(R) / most_contraction))
-                                 : 1,
-                     part = elementary::pow(R, 1 / parts);
-        for (int k = 1; k < parts; ++k) {
-            shrink(part, epsilon);
-            orthonormalise(rank);
-        }
-        shrink(-part, epsilon);
-        orthonormalise(rank);
-        shear(M.r, R, rank);
-    }
-
-    /// Replaces the orthonormal columns Q by an orthonormal base of (I + r g^T) Q = Q + r a^T with
-    /// a = Q^T g. With p = Q^T r the Gram determinant of the first k columns is, written so that
-    /// nothing cancels,
-    ///
-    ///     V_k^2 = (1 + sum_{j<=k} p_j a_j)^2 + (sum_{j<=k} a_j^2) |r - sum_{j<=k} p_j q_j|^2:
-    ///
-    /// the lengths are V_k/V_{k-1}. Of all four columns it is the determinant 1 + g^T r = -R.
-    void shear(const Eigen::Vector4d& r, double R, int rank) {
-        Frame& frame = columns.frame;
-        const Eigen::Vector4d a = frame.transpose() * wall_normal(), p = frame.transpose() * r;
-        Eigen::Vector4d rest = r;
-        double before = 1, dot = 1, head = 0;
-        for (int k = 0; k < rank; ++k) {
-            dot += p(k) * a(k);
-            head += a(k) * a(k);
-            rest -= p(k) * frame.col(k);
-            const double spanned_volume =
-                k < 3 ? std::sqrt(dot * dot + head * rest.squaredNorm()) : R;
-            columns.lengths[k].grow(spanned_volume / before);
-            before = spanned_volume;
-        }
-        const Eigen::HouseholderQR<Matrix4> factors(frame + r * a.transpose());
-        frame = factors.householderQ();
-    }
-
-    void pass(const Leg& leg, double epsilon, int rank) {
-        const bool is_strong = leg.parts > 1 || leg.stuck;
-        const auto& [a11, a12, a21, a22] = leg.oscillator;
-        // [1 0; s 1] of the free mass beside the oscillator's block.
-        const double s = leg.duration, condition = (2 + s * s) / (a11 * a22 - a12 * a21);
+    void pass(const Leg& leg, double epsilon) {
         for (long k = 0; k < leg.parts; ++k) {
-            if (is_strong) orthonormalise(rank);
-            else skew(condition, rank);
-            carry(columns.frame, leg, epsilon);
-            area = carried(area, leg, epsilon);
-            if (rank > 2) volume = carried(volume, leg);
-            rescale(rank);
-            log_det += leg.log_det;
+            flag.pass(leg, epsilon);
+            log_det_J += leg.log_det;
+            if (leg.parts > 1 || leg.stuck) rescale();
         }
-        if (is_strong) orthonormalise(rank);
     }
 
-    void strike(const Saltation& M, double R, double epsilon, int rank) {
-        if (R < dull || M.r.cwiseAbs().maxCoeff() > steep) {
-            orthonormalise(rank);
-            strike_apart(M, R, epsilon, rank);
-        } else {
-            // |g|^2 = 2, and the determinants of I + r g^T and of S are -R.
-            const double stretch = 1 + std::sqrt(2 * M.r.squaredNorm());
-            skew(stretch * stretch / R, rank);
-            columns.frame = M.times(columns.frame);
-        }
-        area = carried(area, M, R);
-        if (rank > 2) volume = carried(volume, M, R);
-        rescale(rank);
-        impacts_det.grow(R * R);
+    void strike(const Saltation& M) {
+        flag.strike(M);
+        det_M *= M.R * M.R;
+        // Other impacts, with a flight of one part, let no size grow by more than 1e17 (where the
+        // flight lasts 1e10), nor shrink by more than 1e10.
+        const bool is_strong = M.R < 1e-3 || std::abs(M.turn_y) > 1e6;
+        if (is_strong || ++unseen == 4) rescale();
     }
 
-    /// Keeps area and volume within the range of double.
-    void rescale(int rank) {
-        auto keep = [](auto& of, double& log) {
-            const double squared = of.squaredNorm();
-            if (is_in_range(squared)) return;
-            log += 0.5 * elementary::log(squared);
-            of *= 1 / std::sqrt(squared);
+    /// Keeps the sizes within the range of double; what has lost its rank stays zero.
+    void rescale() {
+        unseen = 0;
+        const auto squares = flag.squares();
+        auto may_stay = [](double square) { return is_in_range(square) || square == 0; };
+        auto keep = [&](int k, auto& size) {
+            if (may_stay(squares[k])) return;
+            taken[k] += 0.5 * elementary::log(squares[k]);
+            size *= 1 / std::sqrt(squares[k]);
         };
-        keep(area, log_area);
-        if (rank > 2) keep(volume.normal, log_volume);
+        keep(0, flag.deviation);
+        keep(1, flag.area);
+        keep(2, flag.volume.normal);
+        keep(3, flag.content);
+        if (is_in_range(det_M)) return;
+        log_det_M += elementary::log(det_M);
+        det_M = 1;
     }
 
-    struct Sums {
+    /// Growth of the first deviation, and by how much the next ones make that of area, volume and
+    /// content larger: the diagonal of R.
+    Exponents logs(int rank) const {
+        const auto squares = flag.squares();
         Exponents logs{};
-        /// By how much the sum of the first logarithms misses the area, the volume, the
-        /// determinant.
-        std::array<double, 4> misses{};
-    };
-    Sums sums(int rank) const {
-        Sums s;
-        double sum = 0;
-        Columns now = columns;
-        now.orthonormalise(rank);
+        double before = 0;
         for (int k = 0; k < rank; ++k) {
-            s.logs[k] = now.lengths[k].logarithm();
-            sum += s.logs[k];
-            if (k == 1)
-                s.misses[k] =
-                    std::abs(sum - (log_area + 0.5 * elementary::log(area.squaredNorm())));
-            if (k == 2)
-                s.misses[k] = std::abs(
-                    sum - (log_volume + 0.5 * elementary::log(volume.normal.squaredNorm())));
-            if (k == 3) s.misses[k] = std::abs(sum - (log_det + impacts_det.logarithm()));
+            const double sum = taken[k] + 0.5 * elementary::log(squares[k]);
+            logs[k] = sum - before;
+            before = sum;
         }
-        return s;
+        return logs;
+    }
+
+    /// By how much each of the four may be wrong: the parts of the flag part, and the determinants
+    /// of the matrices miss their law.
+    std::array<double, 4> misses(int rank) const {
+        const auto [plane, space] = flag.gaps();
+        const double law = log_det_J + log_det_M + elementary::log(det_M),
+                     found = taken[3] + elementary::log(std::abs(flag.content));
+        std::array<double, 4> misses{};
+        if (rank > 1) misses[1] = plane;
+        if (rank > 2) misses[2] = space;
+        if (rank > 3) misses[3] = std::abs(found - law);
+        return misses;
     }
 };
 
@@ -284,6 +175,12 @@ struct TransferProduct::Raw {
 
     Matrix4 product = Matrix4::Identity();
     Thinned thinned;
+
+    void multiply(std::span<const Leg> legs, const Saltation& M, double epsilon) {
+        Matrix4 J = Matrix4::Identity();
+        for (const Leg& leg : legs) J = transfer_of(leg, epsilon) * J;
+        product = M.matrix() * J * product;  // T_n ... T_1, eq. (30)
+    }
 
     Exponents exponents(double T) const {
         if (!(T > 0) || !product.allFinite()) return no_exponents;
@@ -310,31 +207,29 @@ void TransferProduct::start(double tau) {
     impacts_ = 1;
 }
 
-void TransferProduct::append(std::span<const Leg> legs, const Saltation& M, double R, double tau) {
+void TransferProduct::append(std::span<const Leg> legs, const Saltation& M, double tau) {
     end_ = tau;
     ++impacts_;
     auto record = [&](auto& estimator, auto exponents) {
         if (!estimator.thinned.wants_next()) return estimator.thinned.skip();
         estimator.thinned.push(tau, exponents());
     };
-    Matrix4 J = Matrix4::Identity();
     for (const Leg& leg : legs) {
         if (leg.stuck) rank_ = 2;
-        if (qr_) qr_->pass(leg, epsilon_, rank_);
+        if (qr_) qr_->pass(leg, epsilon_);
         if (powers_) powers_->product.pass(leg);
-        if (raw_) J = transfer_of(leg, epsilon_) * J;
     }
-    if (R == 0) rank_ = std::min(rank_, 3);
+    if (M.R == 0) rank_ = std::min(rank_, 3);
     if (qr_) {
-        qr_->strike(M, R, epsilon_, rank_);
-        record(*qr_, [&] { return qr(); });
+        qr_->strike(M);
+        record(*qr_, [&] { return descending(qr_->logs(rank_), rank_, tau - start_); });
     }
     if (powers_) {
-        powers_->product.strike(M, R);
+        powers_->product.strike(M);
         record(*powers_, [&] { return eigenvalues(); });
     }
     if (raw_) {
-        raw_->product = M.matrix() * J * raw_->product;  // T_n ... T_1, eq. (30)
+        raw_->multiply(legs, M, epsilon_);
         record(*raw_, [&] { return raw_product(); });
     }
 }
@@ -342,16 +237,12 @@ void TransferProduct::append(std::span<const Leg> legs, const Saltation& M, doub
 Exponents TransferProduct::qr() const {
     if (!qr_) return no_exponents;
     const double T = end_ - start_;
-    auto [logs, misses] = qr_->sums(rank_);
+    Exponents logs = qr_->logs(rank_);
+    const auto misses = qr_->misses(rank_);
     // The k-th exponent is the difference of two sums.
     for (int k = 1; k < rank_; ++k)
         if (!(std::max(misses[k], misses[k - 1]) <= most_residual * T)) logs[k] = nan;
-    // Over a short window, or one of strong damping, the columns need not have turned into
-    // descending order.
-    for (int k = 1; k < rank_; ++k)
-        for (int j = k; j > 0 && (logs[j] > logs[j - 1] || std::isnan(logs[j - 1])); --j)
-            std::swap(logs[j], logs[j - 1]);
-    return per_time(logs, rank_, T);
+    return descending(logs, rank_, T);
 }
 Exponents TransferProduct::eigenvalues() const {
     return powers_ ? per_time(powers_->product.log_moduli(), rank_, end_ - start_) : no_exponents;
@@ -371,7 +262,7 @@ const ExponentHistory& TransferProduct::raw_product_history() const {
 
 double TransferProduct::sum_rule_residual() const {
     if (!qr_ || impacts_ < 2) return nan;
-    const auto misses = qr_->sums(rank_).misses;
+    const auto misses = qr_->misses(rank_);
     return *std::max_element(misses.begin(), misses.end()) / (end_ - start_);
 }
 
@@ -389,8 +280,7 @@ void Lyapunov::on_stretch(const Stretch& stretch) {
 void Lyapunov::on_impact(const Impact& impact) {
     if (impact.tau < tau_start_ || impact.tau > tau_end_) return;
     if (product_.impacts() == 0) product_.start(impact.tau);
-    else
-        product_.append(since_impact_.legs(), saltation(parameters_, impact), impact.R, impact.tau);
+    else product_.append(since_impact_.legs(), saltation(parameters_, impact), impact.tau);
     since_impact_.reset();
 }
 

@@ -1,7 +1,9 @@
 // Transient Lyapunov exponents of a sequence of transfer matrices, by three estimators.
 //
-//   qr           Benettin's: orthonormal deviations carried by T_i = M_i J_i (30), a QR
-//                factorisation at every impact. The reference.
+//   qr           Benettin's: how the length of a deviation, the area of two, the volume of three
+//   and
+//                the content of four grow that are carried by T_i = M_i J_i (30), as logarithms of
+//                the diagonal of R in a QR factorisation at every impact. The reference.
 //   eigenvalues  ln|eigenvalues of T_n ... T_1| / T, eq. (33), all four moduli right over any
 //                window: the largest eigenvalue of each exterior power of the product (the k-th
 //                has the k-fold products of its eigenvalues), each product scaled as it grows.
@@ -15,10 +17,9 @@
 //
 // A stick leaves only the deviations of the centre of mass (rank 2), an impact with R = 0 leaves
 // none of x - y (rank 3): from there on the exponents beyond the rank are minus infinity, and the
-// rule says nothing. The first two still add up to the growth of the area that the first two
-// deviations span, the first three to that of a volume; both are carried by the exterior powers,
-// which shares no step with a QR factorisation. `qr` is checked against them, and at rank 4 against
-// the rule.
+// rule says nothing. At rank 4 `qr` is checked against it; at any rank the deviation must lie in
+// the plane of the area, and that in the space of the volume (exterior.hpp, Flag), though each is
+// carried by itself.
 #pragma once
 
 #include <array>
@@ -75,17 +76,17 @@ public:
     /// Starts the window at the impact at tau (whose own matrices do not belong to it).
     void start(double tau);
     /// The legs from the impact before to the impact at tau, and its M.
-    void append(std::span<const Leg> legs, const Saltation& M, double R, double tau);
+    void append(std::span<const Leg> legs, const Saltation& M, double tau);
 
     double start_tau() const { return start_; }
     double end_tau() const { return end_; }
     long impacts() const { return impacts_; }  ///< of the window, the first included
     int rank() const { return rank_; }
-    /// By how much the sums of qr's first exponents miss the area, the volume and, at rank 4, the
-    /// sum rule: the largest of them, per unit of tau; NaN without qr or two impacts.
+    /// By how much qr misses the sum rule (at rank 4), or its parts have come apart: the larger,
+    /// per unit of tau; NaN without qr or two impacts.
     double sum_rule_residual() const;
-    /// The exponents at the last impact, descending; NaN where there are none, or where a sum
-    /// misses by more than `most_residual`.
+    /// The exponents at the last impact, descending; NaN where there are none, or of those that
+    /// miss by more than `most_residual`.
     Exponents qr() const;
     Exponents eigenvalues() const;
     Exponents raw_product() const;

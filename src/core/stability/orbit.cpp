@@ -64,9 +64,7 @@ class Powers : public Observer {
 public:
     explicit Powers(const Parameters& p) : product(p.epsilon), p_(p) {}
     void on_stretch(const Stretch& stretch) override { product.pass(leg_of(stretch)); }
-    void on_impact(const Impact& impact) override {
-        product.strike(saltation(p_, impact), impact.R);
-    }
+    void on_impact(const Impact& impact) override { product.strike(saltation(p_, impact)); }
 
     PowerProduct product;
 

@@ -66,7 +66,7 @@ Moduli ImpactTransfer::J_moduli() const {
 Moduli ImpactTransfer::T_moduli() const {
     PowerProduct product(epsilon);
     for (const Leg& leg : legs) product.pass(leg);
-    product.strike(M, R);
+    product.strike(M);
     Moduli moduli = product.log_moduli();
     for (double& m : moduli) m = elementary::exp(m);
     return moduli;
@@ -78,7 +78,6 @@ void TransferRecord::on_impact(const Impact& impact) {
         const auto legs = passage_.legs();
         transfers.push_back(
             {impact.tau,
-             impact.R,
              parameters_.epsilon,
              saltation(parameters_, impact),
              {legs.begin(), legs.end()}});

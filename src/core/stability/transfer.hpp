@@ -27,7 +27,7 @@ Moduli eigenvalue_moduli(const Matrix4& m);
 /// The three matrices of one impact: J from the impact before it, its own M, and T = M J.
 struct ImpactTransfer {
     double tau;
-    double R, epsilon;
+    double epsilon;
     Saltation M;
     std::vector<Leg> legs;  ///< from the impact before it
 
@@ -37,7 +37,7 @@ struct ImpactTransfer {
     Moduli J_moduli() const;
     /// Exactly 1, 1, R, R (section 4): in the coordinates of the centre of mass and of x - y, M is
     /// triangular.
-    Moduli M_moduli() const { return {1, 1, R, R}; }
+    Moduli M_moduli() const { return {1, 1, M.R, M.R}; }
     /// By the exterior powers, so that all four are right however strong the damping, however large
     /// the entries of M.
     Moduli T_moduli() const;

@@ -117,7 +117,7 @@ TEST_CASE("exponents that miss the sum rule are warned of") {
         const double flight = run.impacts[k].tau - run.impacts[k - 1].tau;
         Leg leg = leg_of(Flow::free(p), flight, false);
         leg.log_det += 0.1;  // which is not that of its matrix
-        product.append({&leg, 1}, saltation(p, run.impacts[k]), 0.6, run.impacts[k].tau);
+        product.append({&leg, 1}, saltation(p, run.impacts[k]), run.impacts[k].tau);
     }
     for (const bool histories : {false, true}) {
         std::vector<Warning> warnings;

@@ -1,6 +1,8 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/LU>
+#include <Eigen/QR>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -57,17 +59,13 @@ Leg random_leg(std::mt19937_64& engine, const Parameters& p, bool stuck) {
     return leg_of(stuck ? Flow::stuck(p) : Flow::free(p), uniform(engine, 0, 0.5), stuck);
 }
 
-struct Strike {
-    Saltation M;
-    double R;
-};
-Strike random_strike(std::mt19937_64& engine, const Parameters& p) {
+Saltation random_strike(std::mt19937_64& engine, const Parameters& p) {
     const auto u = [&] { return uniform(engine, -1, 1); };
     const double angle = u();
     Contact c{0, u() < 0 ? -1 : 1, {u(), u(), std::sin(angle), std::cos(angle)}, 0};
     c.relative_speed = c.side * uniform(engine, 0.1, 1);
     const Impact impact = impact_at(p, c, u(), 0);
-    return {saltation(p, impact), impact.R};
+    return saltation(p, impact);
 }
 
 }  // namespace
@@ -81,10 +79,10 @@ TEST_CASE("areas and volumes are carried by the minors of J and M") {
         carry(J, leg, p.epsilon);
         CHECK((area_matrix(leg, p.epsilon) - second_minors(J)).norm() < 1e-12 * J.squaredNorm());
         CHECK((volume_matrix(leg) - cofactors(J)).norm() < 1e-12 * std::pow(J.norm(), 3));
-        const auto [M, R] = random_strike(engine, p);
+        const Saltation M = random_strike(engine, p);
         const Matrix4 m = M.matrix();
-        CHECK((area_matrix(M, R) - second_minors(m)).norm() < 1e-12 * m.squaredNorm());
-        CHECK((volume_matrix(M, R) - cofactors(m)).norm() < 1e-12 * std::pow(m.norm(), 3));
+        CHECK((area_matrix(M) - second_minors(m)).norm() < 1e-12 * m.squaredNorm());
+        CHECK((volume_matrix(M) - cofactors(m)).norm() < 1e-12 * std::pow(m.norm(), 3));
     }
 }
 
@@ -130,11 +128,42 @@ TEST_CASE("areas and volumes are carried as the deviations that span them") {
             (carried(volume(v), leg).normal - volume(after_leg).normal).norm() <
             1e-12 * (1 + std::pow(after_leg.norm(), 3)));
         CHECK(
-            (carried(area(v), M, impact.R) - area(after_impact)).norm() <
+            (carried(area(v), M) - area(after_impact)).norm() <
             1e-12 * (1 + after_impact.squaredNorm()));
         CHECK(
-            (carried(volume(v), M, impact.R).normal - volume(after_impact).normal).norm() <
+            (carried(volume(v), M).normal - volume(after_impact).normal).norm() <
             1e-12 * (1 + std::pow(after_impact.norm(), 3)));
+    }
+}
+
+TEST_CASE("a flag's sizes are those of a QR factorisation at every impact") {
+    std::mt19937_64 engine(9);
+    for (const double b : {0.022, 0.015, 0.003}) {
+        const Parameters p = table1(b, Damping::closed_form);
+        Flag flag;
+        Matrix4 frame = Matrix4::Identity();
+        std::array<double, 4> sizes = {1, 1, 1, 1};
+        for (int n = 0; n < 30; ++n) {
+            const Leg leg = random_leg(engine, p, false);
+            const Saltation M = random_strike(engine, p);
+            flag.pass(leg, p.epsilon);
+            flag.strike(M);
+            const Eigen::HouseholderQR<Matrix4> factors(
+                M.matrix() * transfer_of(leg, p.epsilon) * frame);
+            frame = factors.householderQ();
+            double all = 1;
+            for (int k = 0; k < 4; ++k) sizes[k] *= all *= std::abs(factors.matrixQR()(k, k));
+            const auto squares = flag.squares();
+            for (int k = 0; k < 4; ++k)
+                CHECK(std::sqrt(squares[k]) == doctest::Approx(sizes[k]).epsilon(1e-9).scale(0));
+            for (const double gap : flag.gaps()) CHECK(gap < 1e-12);
+        }
+        Flag apart = flag;
+        apart.deviation += 1e-6 * apart.deviation.norm() * Eigen::Vector4d(1, -2, 3, 1);
+        CHECK(apart.gaps()[0] > 1e-8);
+        apart = flag;
+        apart.volume.normal += 1e-6 * apart.volume.normal.norm() * Eigen::Vector4d(1, -2, 3, 1);
+        CHECK(apart.gaps()[1] > 1e-8);
     }
 }
 
@@ -164,9 +193,9 @@ TEST_CASE("a product's moduli are those of its matrix where that can still tell 
     Matrix4 plain = Matrix4::Identity();
     for (int n = 0; n < 3; ++n) {
         const Leg leg = random_leg(engine, p, false);
-        const auto [M, R] = random_strike(engine, p);
+        const Saltation M = random_strike(engine, p);
         product.pass(leg);
-        product.strike(M, R);
+        product.strike(M);
         plain = M.matrix() * transfer_of(leg, p.epsilon) * plain;
     }
     CHECK(product.rank() == 4);
@@ -181,12 +210,11 @@ TEST_CASE("an impact with R = 0 leaves rank 3, a stick rank 2, and what is lost 
     Parameters soft = p;
     soft.R_plus = soft.R_minus = 0;
     PowerProduct product(p.epsilon);
-    product.strike(random_strike(engine, soft).M, 0);
+    product.strike(random_strike(engine, soft));
     CHECK(product.rank() == 3);
     product.pass(random_leg(engine, p, true));
     CHECK(product.rank() == 2);
-    const auto [M, R] = random_strike(engine, p);
-    product.strike(M, R);
+    product.strike(random_strike(engine, p));
     CHECK(product.rank() == 2);
     const Moduli logs = product.log_moduli();
     CHECK(std::isfinite(logs[1]));

@@ -106,8 +106,8 @@ TEST_CASE("the sum rule holds through nearly grazing impacts, where entries of M
             const Impact i = impact_at(p, c, Flow::free(p).acceleration(c.lo), tau);
             const Leg flight = leg_of(Flow::free(p), s, false);
             const Saltation M = saltation(p, i);
-            entries += M.r.cwiseAbs().maxCoeff();
-            product.append({&flight, 1}, M, i.R, tau);
+            entries += M.r().cwiseAbs().maxCoeff();
+            product.append({&flight, 1}, M, tau);
         }
         CAPTURE(speed);
         // An entry magnifies the rounding of what it meets.

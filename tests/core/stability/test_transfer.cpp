@@ -26,7 +26,7 @@ TEST_CASE("J has the moduli e^(-zeta s) twice and 1 twice, T has the determinant
             1e-13);
         // In a chatter entries of M grow as those of r: past 1e7 the moduli drown in them, and to
         // the plain solver, which splits the nearly defective pairs, long before.
-        const double steepness = t.M.r.cwiseAbs().maxCoeff();
+        const double steepness = t.M.r().cwiseAbs().maxCoeff();
         if (std::isnan(T[0] + T[1] + T[2] + T[3])) {
             CHECK(steepness > 1e7);
             continue;
@@ -41,7 +41,7 @@ TEST_CASE("J has the moduli e^(-zeta s) twice and 1 twice, T has the determinant
 TEST_CASE("overdamped flights have two different moduli") {
     Parameters p = table1(0.01, Damping::equation_of_motion);
     p.lambda = 4 / p.epsilon;  // zeta = 2
-    ImpactTransfer t{0, 0.6, p.epsilon, {}, {leg_of(Flow::free(p), 0.7, false)}};
+    ImpactTransfer t{0, p.epsilon, {}, {leg_of(Flow::free(p), 0.7, false)}};
     const Moduli J = t.J_moduli();
     CHECK(J[2] == doctest::Approx(std::exp((-2 + std::sqrt(3)) * 0.7)));
     CHECK(J[3] == doctest::Approx(std::exp((-2 - std::sqrt(3)) * 0.7)));
@@ -71,11 +71,12 @@ TEST_CASE("the condition number of M is that of its singular values, and grows t
         i.relative_speed_before = speed * 0.01;
         const Saltation m = saltation(p, i);
         const Matrix4 M = m.matrix();
-        CHECK(m.condition(i.R) >= before);
+        CHECK(m.condition() >= before);
         if (speed > 1e-3)
-            CHECK(m.condition(i.R) == doctest::Approx(M.norm() * M.inverse().norm()).epsilon(1e-6));
-        before = m.condition(i.R);
+            CHECK(m.condition() == doctest::Approx(M.norm() * M.inverse().norm()).epsilon(1e-6));
+        before = m.condition();
     }
     CHECK(before > 1e8);
-    CHECK(std::isinf(saltation(p, i).condition(0)));
+    i.R = 0;
+    CHECK(std::isinf(saltation(p, i).condition()));
 }
