@@ -35,6 +35,7 @@ void bench_case(const Case& c) {
     const auto times = in_turn(
         9, {[&] {
                 ImpactRecord record;
+                record.entries.reserve(impacts);
                 return run(record);
             },
             [&] {

@@ -21,6 +21,15 @@ double series_step(const Wanted& w) {
     return std::max(asked, w.tau_end / static_cast<double>(w.most_points - 1));
 }
 
+/// Most responses have fewer impacts per cycle.
+constexpr double many_impacts_per_cycle = 4;
+
+std::size_t impacts_expected(const Wanted& w) {
+    const double expected = many_impacts_per_cycle * (w.tau_end / w.parameters.cycle() + 1);
+    return static_cast<std::size_t>(
+        std::min({expected, static_cast<double>(w.max_impacts), static_cast<double>(w.most_kept)}));
+}
+
 /// Verdict and regime rest on qr, whether or not it is shown.
 bool is_judged(const Wanted& w) {
     return w.parts.regime || w.parts.exponents || !w.windows.empty();
@@ -60,6 +69,10 @@ struct AnalysisRun::Observers {
           decay(w.parameters, w.window.from, decay_shares),
           rhythm(w.parameters, w.window, w.parts.regime ? w.most_points : 0),
           half_cycles(w.parameters, w.window.from, w.window.to, w.most_points) {
+        // Lists that move while they grow take longer than the flights. What is not used of their
+        // room takes no memory.
+        if (w.parts.series) series.expect(w.tau_end);
+        if (w.parts.impacts) impacts.entries.reserve(impacts_expected(w));
         for (const Interval& window : w.windows) windows.add(window.from, window.to);
         if (w.parts.energy) energy.emplace(w.parameters, w.window.from, w.window.to);
         if (w.perturbation)  // what is left of it once the start is rounded

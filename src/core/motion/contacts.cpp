@@ -1,8 +1,5 @@
 #include "core/motion/contacts.hpp"
 
-#include <algorithm>
-#include <numbers>
-
 namespace vines {
 
 namespace {
@@ -30,9 +27,9 @@ void ContactRecord::on_stick(const StickStart& start) {
 }
 
 // A chatter stays on its side, and its flights take less than half a cycle of the faster of forcing
-// and oscillator (simulate.cpp, longest_hop_).
+// and oscillator (Run::longest_hop_).
 ContactStream::ContactStream(const Parameters& p)
-    : longest_hop_((1 + hop_margin) * std::numbers::pi / std::max(1.0, p.Omega)) {}
+    : longest_hop_((1 + hop_margin) * p.faster_half_cycle()) {}
 
 void ContactStream::on_impact(const Impact& impact) {
     if (!held_.empty() &&

@@ -51,6 +51,8 @@ struct Parameters {
     double A() const;     ///< forcing amplitude over epsilon, m, eq. (3)
     double phi() const;   ///< forcing phase at tau = 0, eq. (3)
     double cycle() const { return 2 * std::numbers::pi / Omega; }  ///< of the forcing, in tau
+    /// Half a cycle of the faster of forcing and oscillator, in tau.
+    double faster_half_cycle() const { return std::numbers::pi / (Omega > 1 ? Omega : 1); }
     double restitution(int side) const { return side > 0 ? R_plus : R_minus; }
 };
 

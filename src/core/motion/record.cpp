@@ -6,6 +6,8 @@ namespace vines {
 
 namespace {
 
+constexpr double most_expected = 1e6;
+
 /// Both masses at the time s of a stretch, where the oscillator's state is known.
 State with_mass(const Stretch& stretch, const Oscillation& o, double s) {
     if (stretch.stuck_side != 0)
@@ -14,6 +16,13 @@ State with_mass(const Stretch& stretch, const Oscillation& o, double s) {
 }
 
 }  // namespace
+
+void SeriesRecord::expect(double tau_end) {
+    const auto moments = static_cast<std::size_t>(std::min(tau_end / step_, most_expected)) + 2;
+    for (auto* column :
+         {&series.tau, &series.x, &series.x_dot, &series.y, &series.y_dot, &series.x_ddot})
+        column->reserve(moments);
+}
 
 void SeriesRecord::add(double at, const State& state, double acceleration) {
     series.tau.push_back(at);

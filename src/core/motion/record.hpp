@@ -36,6 +36,8 @@ struct Series {
 class SeriesRecord : public Observer {
 public:
     explicit SeriesRecord(double step) : step_(step), free_(step), stuck_(step) {}
+    /// Makes room for all of a run, or for the first million moments.
+    void expect(double tau_end);
     void on_stretch(const Stretch&) override;
     void finish(const Outcome& outcome);
 

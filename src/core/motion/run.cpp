@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 
 #include "core/motion/elementary.hpp"
 
@@ -37,7 +36,7 @@ Run::Run(
       clock_(limits.tau_start),
       y_(start.y),
       y_dot_(start.y_dot),
-      longest_hop_(std::numbers::pi / std::max(1.0, p.Omega)) {
+      longest_hop_(p.faster_half_cycle()) {
     const double theta = p.Omega * limits.tau_start + p.phi();
     lo_ = {start.x, start.x_dot, elementary::sin(theta), elementary::cos(theta)};
     side_ = wall_of(start, p.b);

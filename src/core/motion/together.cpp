@@ -48,12 +48,13 @@ void fly(std::span<Lane*> lanes, FlightSearch by) {
     const Flow& flow = lanes[0]->run().flow();
     for (Lane* lane : lanes) {
         Run& run = lane->run();
-        if (lanes.size() == 1 || !by || &run.flow() != &flow || !is_plain(run.flight())) {
+        const FlightStart flight = run.flight();
+        if (lanes.size() == 1 || !by || &run.flow() != &flow || !is_plain(flight)) {
             run.fly();
             continue;
         }
         in_lane[flights.count] = lane;
-        put(flights, run.flight(), run.b(), run.flight_limit());
+        put(flights, flight, run.b(), run.flight_limit());
         flights.transfers |= run.is_observed();
     }
     if (flights.count == 0) return;
