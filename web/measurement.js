@@ -6,7 +6,7 @@ import {Form} from "./form.js";
 import {ImpactList} from "./impact_list.js";
 import {summariseMeasurement} from "./measurement_summary.js";
 import {draw, drawRecord, mark, redraw} from "./measurement_views.js";
-import {parse, recordOf, spikeNear} from "./record.js";
+import {parse, recordOf, spikeNear, textOf} from "./record.js";
 import {copy, save} from "./take_away.js";
 
 const groups = {
@@ -152,7 +152,7 @@ async function take(chosen) {
   $("measure-run").disabled = false;
   quoteLine("");
   say("reading …");
-  reading = chosen.text().then((all) => {
+  reading = textOf(chosen).then((all) => {
     if (file === chosen) text = all;
     return parse(all);
   });

@@ -8,10 +8,36 @@ const pause = () =>
     setTimeout(resolve);
   });
 
-/** The character between the columns, as the first line has it. */
-function separatorOf(header) {
-  if (header.includes(";")) return ";";
-  return header.includes("\t") ? "\t" : ",";
+/** The text of a file, whatever its encoding; its lines end by LF. */
+export async function textOf(file) {
+  const bytes = new Uint8Array(await file.arrayBuffer());
+  const begins = (first, second) => bytes[0] === first && bytes[1] === second;
+  const hasZeros = (from) => bytes[from] === 0 && bytes[from + 2] === 0;
+  let encoding = "utf-8";
+  if (begins(0xff, 0xfe) || hasZeros(1)) encoding = "utf-16le";
+  else if (begins(0xfe, 0xff) || hasZeros(0)) encoding = "utf-16be";
+  let text;
+  try {
+    text = new TextDecoder(encoding, {fatal: true}).decode(bytes);
+  } catch {
+    text = new TextDecoder("windows-1252").decode(bytes);
+  }
+  return text.includes("\r") ? text.replace(/\r\n?/g, "\n") : text;
+}
+
+/** The cells of a line without empty ones behind the last; what stands in quotes holds no comma. */
+function cellsOf(line, separator) {
+  let cells;
+  if (separator === " ") cells = line.trim().split(/[ \t]+/);
+  else if (line.includes('"'))
+    cells = line
+      .match(/"[^"]*"|[^"]+/g)
+      .map((part) => (part[0] === '"' ? part.slice(1, -1).replaceAll(",", ".") : part))
+      .join("")
+      .split(separator);
+  else cells = line.split(separator);
+  while (cells.length && !cells.at(-1).trim()) cells.pop();
+  return cells;
 }
 
 /** A cell as a number, NaN for what is none. A decimal comma needs another separator. */
@@ -23,33 +49,69 @@ function numberOf(text, separator) {
   return Number(separator === "," ? cell : cell.replaceAll(",", "."));
 }
 
+const isComment = (line) => /^\s*(#|%|\/\/)/.test(line);
+
+/** That by which the line is numbers, two or more; undefined: none. */
+function separatorOfNumbers(line, said) {
+  return (said ? [said] : [";", "\t", ",", " "]).find((separator) => {
+    const cells = cellsOf(line, separator);
+    return cells.length > 1 && cells.every((cell) => !Number.isNaN(numberOf(cell, separator)));
+  });
+}
+
+/** Names and units above `count` columns of numbers, from the lines there; null: there are none. */
+function headingOf({last, before, comment}, count, separator) {
+  const cells = (line) => cellsOf(line, separator).map(trimmed);
+  const fits = (row) =>
+    row.length === count && row.every((cell) => Number.isNaN(numberOf(cell, separator)));
+  const [low, high, aside] = [last, before, comment].map(cells);
+  if (fits(high) && low.length && low.length <= count && low.every(isUnit))
+    return {names: high, units: low};
+  const names = [low, aside, high].find(fits);
+  return names ? {names, units: []} : null;
+}
+
 /**
- * The columns of a CSV text: {names, columns}, columns of numbers; lines that the service would
- * refuse are left out.
+ * The columns of a CSV text: {names, units, columns}, columns of numbers; lines that the service
+ * would refuse are left out.
  */
 export async function parse(text) {
-  let separator = ",";
-  let names = null;
+  const above = {last: "", before: "", comment: ""};
+  let said;
+  let separator;
+  let heading = null;
   let columns = [];
   let rows = 0;
-  let from = text.charCodeAt(0) === 0xfeff ? 1 : 0;
+  let from = 0;
   for (let line = 1; from < text.length; ++line) {
     const at = text.indexOf("\n", from);
     const to = at < 0 ? text.length : at;
     const cells = text.slice(from, to);
     from = to + 1;
     if (line % atOnce === 0) await pause();
-    if (!cells.trim() || cells[0] === "#") continue;
-    if (!names) {
-      separator = separatorOf(cells);
-      names = cells.split(separator).map(trimmed);
-      // A number takes two characters at least.
-      const most = Math.ceil((text.length - to) / (2 * names.length)) + 1;
-      columns = names.map(() => new Float64Array(most));
+    if (!cells.trim()) continue;
+    if (isComment(cells)) {
+      if (!heading) above.comment = cells.replace(/^\s*(#|%|\/\/)/, "");
       continue;
     }
-    const parts = cells.split(separator);
-    if (parts.length !== names.length) continue;
+    if (!heading) {
+      said ??= /^\s*sep=(.)\s*$/i.exec(cells)?.[1];
+      separator = separatorOfNumbers(cells, said);
+      if (separator) {
+        const count = cellsOf(cells, separator).length;
+        heading = headingOf(above, count, separator);
+        if (!heading) break;
+        // A number takes two characters at least.
+        const most = Math.ceil((text.length - to + cells.length) / (2 * count)) + 1;
+        columns = heading.names.map(() => new Float64Array(most));
+      } else {
+        above.before = above.last;
+        above.last = cells;
+        continue;
+      }
+    }
+    const parts = cellsOf(cells, separator);
+    if (parts.length !== columns.length) continue;
     let good = true;
     for (let k = 0; k < parts.length; ++k) {
       const value = numberOf(parts[k], separator);
@@ -58,7 +120,8 @@ export async function parse(text) {
     }
     if (good) ++rows;
   }
-  return {names: names ?? [], columns: columns.map((column) => column.slice(0, rows))};
+  const {names, units} = heading ?? {names: [], units: []};
+  return {names, units, columns: columns.map((column) => column.slice(0, rows))};
 }
 
 function find(names, asked, name, beginnings) {
@@ -95,7 +158,17 @@ const spelling = (text) =>
     .replace(/[\u00b5\u03bc]/g, "u")
     .replace(/\u00b2/g, "2")
     .replace(/\u207b/g, "-")
-    .replace(/[ ^*\u00b7]/g, "");
+    .replace(/[ ^*()[\]\u00b7]/g, "");
+const otherUnits = new Set(
+  "- 1 n a deg degc \u00b0c k pa bar % rad kn nm cm dm km mil in inch ft us ns min h hz v mv mg gal cm/s2 mm/s2 ft/s2 m/s mm/s".split(
+    " ",
+  ),
+);
+/** Whether a cell is what stands in a row of units below the names. */
+const isUnit = (cell) => {
+  const written = spelling(cell);
+  return !written || written in spellings || otherUnits.has(written);
+};
 
 /**
  * The unit that a column's name says, in brackets or behind a blank or underscore; undefined where
@@ -131,12 +204,13 @@ const scaled = (column, unit) => (units[unit] === 1 ? column : column.map((v) =>
  * What the fields make of the columns: {t (s), x (mm), a (m/s^2)}, null for one that is not there;
  * sent: those columns by name, in the record's units.
  */
-export function recordOf({names, columns}, fields) {
+export function recordOf({names, units: row = [], columns}, fields) {
   const time = find(names, fields.time_column, "time_s", ["time", "t"]);
   const x = find(names, fields.displacement_column, "displacement_m", ["displacement", "x"]);
   const a = find(names, fields.acceleration_column, "acceleration_m_s2", ["acceleration", "a"]);
   if (time < 0 || !columns[time].length || (x < 0 && a < 0)) return null;
-  const unit = (k, asked, usual) => unitIn(names[k]) ?? asked ?? usual;
+  const unit = (k, asked, usual) =>
+    unitIn(names[k]) ?? spellings[spelling(row[k] ?? "")] ?? asked ?? usual;
   const t = scaled(columns[time], unit(time, fields.time_unit, "s"));
   const kept = whereAscending(t); // as the plots need it
   const present = [time, x, a].filter((k) => k >= 0);

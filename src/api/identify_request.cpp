@@ -15,12 +15,10 @@ namespace {
 
 constexpr std::size_t fewest_samples = 100;
 
-using Columns = std::vector<CsvColumn>;
-
-/// What would make every later step wrong without a word: line numbers count the header.
+/// What would make every later step wrong without a word. `lines`: of a text, those of the samples.
 void check_record(
-    const std::vector<double>& time, const MeasuredRecord& r, double omega0,
-    std::vector<std::string>& notes) {
+    const std::vector<double>& time, const std::vector<std::uint32_t>& lines,
+    const MeasuredRecord& r, double omega0, std::vector<std::string>& notes) {
     const std::size_t n = time.size();
     if (n < fewest_samples)
         refuse(
@@ -31,8 +29,10 @@ void check_record(
         if (!(time[i] > time[i - 1]))
             refuse(
                 {{"/record/time_s/" + std::to_string(i), time[i], nullptr,
-                  "line " + std::to_string(i + 2) + ", column of time: time must increase, but " +
-                      Json(time[i]).dump() + " follows " + Json(time[i - 1]).dump()}});
+                  (lines.empty() ? "sample " + std::to_string(i)
+                                 : "line " + std::to_string(lines[i])) +
+                      ", column of time: time must increase, but " + Json(time[i]).dump() +
+                      " follows " + Json(time[i - 1]).dump()}});
     const std::vector<TimeGap> gaps = time_gaps(r);
     if (!gaps.empty())
         notes.push_back(
@@ -92,7 +92,8 @@ IdentifyRequest read_fields(const Json& given, bool with_record) {
     return r;
 }
 
-void read_record(IdentifyRequest& r, const Json& fields, const Columns& columns) {
+void read_record(IdentifyRequest& r, const Json& fields, const Csv& csv) {
+    const std::vector<CsvColumn>& columns = csv.columns;
     const RecordColumn time = find_column(columns, fields, time_quantity),
                        x = find_column(columns, fields, displacement_quantity),
                        a = find_column(columns, fields, acceleration_quantity);
@@ -121,7 +122,7 @@ void read_record(IdentifyRequest& r, const Json& fields, const Columns& columns)
         for (double v : x.column->values) record.x.push_back(v * x.factor);
     if (a.column)
         for (double v : a.column->values) record.x_ddot.push_back(v * a.factor / (omega0 * omega0));
-    check_record(seconds, record, omega0, r.notes);
+    check_record(seconds, csv.lines, record, omega0, r.notes);
     if (!x.column)
         r.notes.push_back(
             "without a displacement, x at the impacts rests on the acceleration alone, whose "
@@ -207,12 +208,12 @@ void read_impacts(IdentifyRequest& r, const Json& given) {
 }
 
 /// The columns of a record in JSON, all of one length.
-Columns read_record_columns(const Json& record) {
-    Columns columns;
+std::vector<CsvColumn> read_record_columns(const Json& record) {
+    std::vector<CsvColumn> columns;
     if (!record.is_object())
         refuse({{"/record", nullptr, nullptr, "record is an object of columns"}});
     for (const auto& [name, values] : record.items()) {
-        CsvColumn column{name, {}};
+        CsvColumn column{name, {}, {}};
         if (!values.is_array())
             refuse({{"/record/" + name, nullptr, nullptr, "a column is an array of numbers"}});
         for (std::size_t i = 0; i < values.size(); ++i) {
@@ -249,7 +250,7 @@ IdentifyRequest read_identify_request(const Json& object) {
         read_impacts(r, object["impacts"]);
         return r;
     }
-    read_record(r, fields, read_record_columns(object["record"]));
+    read_record(r, fields, {read_record_columns(object["record"]), {}});
     return r;
 }
 

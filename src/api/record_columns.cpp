@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cctype>
 #include <optional>
-#include <set>
 
 #include "api/problem.hpp"
 #include "api/schema/joined.hpp"
+#include "api/units.hpp"
 
 namespace vines::api {
 
@@ -32,19 +32,8 @@ std::string lower(std::string text) {
     return text;
 }
 
-/// As the spellings of units are written.
-std::string spelling(std::string text) {
-    for (const auto& [written, plain] :
-         {std::pair("\u00b5", "u"), std::pair("\u03bc", "u"), std::pair("\u00b2", "2"),
-          std::pair("\u207b", "-"), std::pair("\u00b7", "")})
-        for (std::size_t at; (at = text.find(written)) != std::string::npos;)
-            text.replace(at, std::string(written).size(), plain);
-    std::erase_if(text, [](char c) { return c == ' ' || c == '^' || c == '*'; });
-    return lower(text);
-}
-
 const Unit* known(const Quantity& q, const std::string& text) {
-    const std::string written = spelling(text);
+    const std::string written = unit_spelling(text);
     const auto it = std::find_if(q.units.begin(), q.units.end(), [&](const Unit& u) {
         return std::find(u.spellings.begin(), u.spellings.end(), written) != u.spellings.end();
     });
@@ -77,47 +66,62 @@ std::optional<Suffix> suffix_of(const Quantity& q, const std::string& name) {
     return number ? std::nullopt : std::optional(Suffix{text, false});
 }
 
-/// Units of a laboratory that no quantity here is read in.
-bool is_foreign(const std::string& text) {
-    static const std::set<std::string> foreign = {
-        "nm",  "cm", "dm", "km", "mil", "in", "inch", "ft",    "us",    "ns",
-        "min", "h",  "hz", "v",  "mv",  "mg", "gal",  "cm/s2", "mm/s2", "ft/s2",
-        "s",   "ms", "m",  "mm", "um",  "g",  "m/s",  "mm/s"};
-    return foreign.contains(spelling(text));
-}
-
 std::vector<std::string> unit_names(const Quantity& q) {
     std::vector<std::string> names;
     for (const Unit& u : q.units) names.push_back(u.name);
     return names;
 }
 
-double unit_factor(const Quantity& q, const Json& fields, const std::string& column) {
+/// `remark`: behind the list of the units that are.
+[[noreturn]] void refuse_unit(
+    const Quantity& q, const CsvColumn& column, const std::string& unit,
+    const std::string& remark) {
+    refuse(
+        {{(Json::json_pointer("/record") / column.name).to_string(), unit, unit_names(q),
+          "column " + column.name + ": the unit \"" + unit + "\" is not known; known are " +
+              joined(unit_names(q)) + remark}});
+}
+
+/// The unit that the row of units says; null: none.
+const Unit* unit_of_row(const Quantity& q, const CsvColumn& column) {
+    if (unit_spelling(column.unit).empty()) return nullptr;
+    const Unit* said = known(q, column.unit);
+    if (!said) refuse_unit(q, column, column.unit, "");
+    return said;
+}
+
+/// The unit that the name says; null: none.
+const Unit* unit_of_name(const Quantity& q, const CsvColumn& column, bool named_by_request) {
+    const std::optional<Suffix> suffix = suffix_of(q, column.name);
+    if (!suffix) return nullptr;
+    if (const Unit* said = known(q, suffix->text)) return said;
+    // A column that the request names may be called anything but by another unit.
+    if (!suffix->in_brackets && named_by_request && !is_foreign_unit(suffix->text)) return nullptr;
+    refuse_unit(
+        q, column, suffix->text,
+        suffix->in_brackets ? "" : ". If it is no unit, name the column in " + q.name + "_column");
+}
+
+double unit_factor(const Quantity& q, const Json& fields, const CsvColumn& column) {
     const std::string field = q.name + "_unit";
     const Unit* asked = nullptr;
     if (fields.contains(field))
         asked = &*std::find_if(
             q.units.begin(), q.units.end(),
             [name = fields[field].get<std::string>()](const Unit& u) { return u.name == name; });
-    const std::optional<Suffix> suffix = suffix_of(q, column);
-    const Unit* said = suffix ? known(q, suffix->text) : nullptr;
-    if (suffix && !said) {
-        // A column that the request names may be called anything but by another unit.
-        if (!suffix->in_brackets && fields.contains(q.name + "_column") &&
-            !is_foreign(suffix->text))
-            return (asked ? asked : &q.units[0])->factor;
+    const Unit* said = unit_of_name(q, column, fields.contains(q.name + "_column"));
+    const Unit* below = unit_of_row(q, column);
+    if (said && below && said != below)
         refuse(
-            {{(Json::json_pointer("/record") / column).to_string(), suffix->text, unit_names(q),
-              "column " + column + ": the unit \"" + suffix->text + "\" is not known; known are " +
-                  joined(unit_names(q)) +
-                  (suffix->in_brackets
-                       ? ""
-                       : ". If it is no unit, name the column in " + q.name + "_column")}});
-    }
+            {{(Json::json_pointer("/record") / column.name).to_string(), column.unit,
+              Json::array({said->name}),
+              "column " + column.name + " says " + said->name + ", but the row of units " +
+                  below->name}});
+    if (!said) said = below;
     if (said && asked && said != asked)
         refuse(
             {{"/" + field, fields[field], Json::array({said->name}),
-              field + " is " + asked->name + ", but the column " + column + " says " +
+              field + " is " + asked->name + ", but the column " + column.name + " says " +
                   said->name}});
     return (said ? said : asked ? asked : &q.units[0])->factor;
 }
@@ -131,7 +135,7 @@ RecordColumn find_column(
             return fits(lower(c.name));
         });
         return it == columns.end() ? RecordColumn{nullptr, 1}
-                                   : RecordColumn{&*it, unit_factor(q, fields, it->name)};
+                                   : RecordColumn{&*it, unit_factor(q, fields, *it)};
     };
     const std::string field = q.name + "_column";
     if (fields.contains(field)) {

@@ -8,8 +8,7 @@
 
 namespace vines::api {
 
-/// A unit by its name in the fields, and how headers may write it once blanks, ^ and * are gone and
-/// a superscript is a digit.
+/// A unit by its name in the fields, and its unit_spelling()s.
 struct Unit {
     std::string name;
     double factor;  ///< to SI
@@ -29,9 +28,9 @@ struct RecordColumn {
     double factor;            ///< to SI
 };
 /// The column that the request names, else the default, else the first with one of the beginnings.
-/// Its unit is what its name says - displacement_mm, time (ms), acceleration [g] -, else the
-/// request's field, else the default. Problem 422 where the name says a unit that is not known, or
-/// another one than the field.
+/// Its unit is what its name says - displacement_mm, time (ms), acceleration [g] - or the row of
+/// units, else the request's field, else the default. Problem 422 where a unit is not known, or two
+/// of these say different ones.
 RecordColumn find_column(
     const std::vector<CsvColumn>& columns, const Json& fields, const Quantity& quantity);
 

@@ -105,7 +105,7 @@ TEST_CASE(
             a["exponents"]["qr"]["final"][0].get<double>()) < 0.02);
     CHECK(Json::parse(a.dump()) == a);
     Json record = Json::object();
-    for (const CsvColumn& c : parse_csv(csv)) record[c.name] = c.values;
+    for (const CsvColumn& c : parse_csv(csv).columns) record[c.name] = c.values;
     CHECK(identified(read_identify_request({{"preset", "fig15"}, {"record", record}})) == a);
     // Other names, separators and units say the same.
     std::string german = measured("fig15", 12, 0, ';');
@@ -126,7 +126,7 @@ TEST_CASE("the fitted motion is given at the record's samples where it is asked 
         identified(read_identify_request({{"preset", "fig15"}, {"include", {"motion"}}}, csv));
     const Json &motion = a["motion"], &impacts = a["impacts"];
     const double omega0 = a["parameters"]["derived"]["omega0"];
-    const std::vector<CsvColumn> record = parse_csv(csv);
+    const std::vector<CsvColumn> record = parse_csv(csv).columns;
     const std::size_t n = record[0].values.size();
     for (const auto& [name, column] : motion.items()) CHECK(column.size() == n);
     std::size_t next = 0, far = 0;
@@ -248,8 +248,8 @@ TEST_CASE("what is wrong with a record is named with its line and column") {
         detail(replaced_line(csv, 7, "0.0001,1e-3,1"))
             .find("line 7, column of time: time must increase") == 0);
     CHECK(
-        detail(csv.substr(header.size())).find("line 1: the first line must name the columns") ==
-        0);
+        detail(csv.substr(header.size()))
+            .find("line 1: a line above the numbers must name the columns") == 0);
     CHECK(detail("") == "the record is empty: it needs a header and lines of numbers");
     CHECK(detail(header + "0,0,0\n1,0,0\n").find("at least 100") != std::string::npos);
     CHECK(
@@ -350,6 +350,12 @@ TEST_CASE(
     same(identified(read_identify_request(
         {{"preset", "fig15"}, {"displacement_column", "laser_mm"}, {"displacement_unit", "mm"}},
         rescaled(csv, "time_s,laser_mm,acceleration_m_s2", 1, 1e-3, 1))));
+    // A row of units below the names, whether these say it as well or not.
+    for (const char* header :
+         {"Time,Displacement,Acceleration 1\nms,mm,g", "t (ms),x,a\n(ms),[mm],[g]",
+          "t,x mm,a\nms,,g"})
+        same(identified(
+            read_identify_request({{"preset", "fig15"}}, rescaled(csv, header, 1e-3, 1e-3, g))));
     // A name without a unit leaves it to the field.
     same(identified(read_identify_request(
         {{"preset", "fig15"},
@@ -362,7 +368,7 @@ TEST_CASE(
         rescaled(csv, "time,laser_left,acceleration_1", 1, 1, 1))));
     Json record = Json::object();
     for (const CsvColumn& c :
-         parse_csv(rescaled(csv, "time_ms,displacement_mm,acceleration_g", 1e-3, 1e-3, g)))
+         parse_csv(rescaled(csv, "time_ms,displacement_mm,acceleration_g", 1e-3, 1e-3, g)).columns)
         record[c.name] = c.values;
     same(identified(read_identify_request({{"preset", "fig15"}, {"record", record}})));
 
@@ -380,6 +386,13 @@ TEST_CASE(
         unknown.detail.find(
             "column displacement_inch: the unit \"inch\" is not known; known are m, mm, um") == 0);
     CHECK(fault(Json::object(), "time (min),displacement_m,acceleration_m_s2").value == "min");
+    const FieldError below = fault(Json::object(), "time_s,x,a\ns,inch,m/s^2");
+    CHECK(below.pointer == "/record/x");
+    CHECK(below.value == "inch");
+    CHECK(
+        fault(Json::object(), "time_s,x_mm,a\ns,um,m/s^2").detail ==
+        "column x_mm says mm, but the row of units um");
+    CHECK(fault({{"time_unit", "s"}}, "t,x,a\nms,mm,g").pointer == "/time_unit");
     CHECK(
         fault(
             {{"acceleration_column", "sensor [mV]"}, {"acceleration_unit", "g"}},

@@ -1083,10 +1083,10 @@ test("a platform by hand: typed over Fig. 3 it is simulated in seconds; its swee
 
 // Measurements.
 
-const asFile = (text, name = "record.csv") => ({
+const asFile = (text, name = "record.csv", encoding = "utf8") => ({
   name,
   mimeType: "text/csv",
-  buffer: Buffer.from(text),
+  buffer: Buffer.from(text, encoding),
 });
 
 /** A page that has identified a record. */
@@ -1146,6 +1146,34 @@ test("a record shows itself when it is chosen; identified, its impacts, section,
   const file = await downloaded(page, "#measure-download");
   assert.equal(JSON.parse(file.text).verdict, "regular");
   assert.equal(file.name, "record-identified.json");
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("a spreadsheet's file with a preamble, a row of units and decimal commas is the same record", async () => {
+  const g = 9.80665;
+  const [, ...samples] = (await regular()).trim().split("\n");
+  const inUnits = samples.map((line) => {
+    const [t, x, a] = line.split(",").map(Number);
+    return [1e3 * t, 1e3 * x, a / g].join(";").replaceAll(".", ",");
+  });
+  const above = [
+    "\ufeffsep=;",
+    "Gerät;LMS 7;",
+    "",
+    "Time;Displacement;Acceleration 1;",
+    "ms;mm;[g];",
+  ];
+  const text = [...above, ...inUnits.map((line) => `${line};`), ";;"].join("\r\n");
+  const page = await visit("?tab=measurement&preset=fig15");
+  await page.setInputFiles("#measure-file", asFile(text, "record.txt", "utf16le"));
+  await page.waitForSelector("#plot-measured-a canvas");
+  assert.match(await page.textContent("#measure-about"), new RegExp(`, ${samples.length} samples`));
+  await page.click("#measure-run");
+  await identified(page, 1);
+  assert.match(await page.textContent("#measure-summary"), /impacts68 0 left out/);
+  for (const name of ["a canvas", "x canvas"])
+    assert.ok((await pixels(page, `#plot-measured-${name}`, "plus")) > 20, name);
   assert.deepEqual(browser.complaints, []);
   await page.close();
 });

@@ -1,0 +1,20 @@
+// Units as records write them.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace vines::api {
+
+/// In one way of writing: lower case, without blanks, brackets, ^ and *, u for the Greek mu, digits
+/// in place of superscripts.
+std::string unit_spelling(std::string_view text);
+
+/// Whether a cell is what stands in a row of units below the names: a unit, of whatever quantity,
+/// or nothing.
+bool is_unit(std::string_view text);
+
+/// Whether a name may end in this one, which no quantity of a record is read in.
+bool is_foreign_unit(std::string_view text);
+
+}  // namespace vines::api

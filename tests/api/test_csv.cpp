@@ -1,0 +1,107 @@
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "api/csv.hpp"
+#include "support.hpp"
+
+using namespace vines::test;
+
+namespace {
+
+using namespace std::string_literals;
+
+/// What all texts below say.
+void check_is_the_record(std::string_view text) {
+    CAPTURE(text);
+    const Csv csv = parse_csv(text);
+    REQUIRE(csv.columns.size() == 2);
+    CHECK(csv.columns[0].name == "time_s");
+    CHECK(csv.columns[1].name == "x_mm");
+    CHECK(csv.columns[0].values == std::vector{0.0, 0.001, 0.002});
+    CHECK(csv.columns[1].values == std::vector{1.5, -2.5, 3e-5});
+}
+
+std::string utf16(std::string_view ascii, bool big_end_first, bool mark) {
+    std::string text = !mark ? "" : big_end_first ? "\xfe\xff" : "\xff\xfe";
+    for (const char c : ascii) text += big_end_first ? "\0"s + c : c + "\0"s;
+    return text;
+}
+
+std::string problem(std::string_view text) {
+    return problem_of([&] { parse_csv(text); }).what();
+}
+
+}  // namespace
+
+TEST_CASE("a record is the same by any separator, line end, decimal sign and encoding") {
+    const std::string plain = "time_s,x_mm\n0,1.5\n0.001,-2.5\n0.002,3e-5\n";
+    check_is_the_record(plain);
+    check_is_the_record("time_s,x_mm\r\n0,1.5\r\n0.001,-2.5\r\n0.002,3e-5");
+    check_is_the_record("time_s,x_mm\r0,1.5\r0.001,-2.5\r0.002,3e-5\r");
+    check_is_the_record("time_s;x_mm\n0;1,5\n0,001;-2,5\n0,002;3E-5\n");
+    check_is_the_record("time_s\tx_mm\n0\t1,5\n0,001\t-2,5\n0,002\t3e-5\n");
+    check_is_the_record("  time_s     x_mm\n  0.000     1.5\n 0.001    -2.5\n 0.002  +3e-5  \n");
+    check_is_the_record("time_s x_mm\n0,000 1,5\n0,001 -2,5\n0,002 3e-5\n");
+    check_is_the_record("\"time_s\",\"x_mm\"\n0,\"1,5\"\n\"0,001\",\"-2,5\"\n0.002,\"3e-5\"\n");
+    check_is_the_record("\xef\xbb\xbf" + plain);
+    for (const bool big_end_first : {false, true})
+        for (const bool mark : {false, true})
+            check_is_the_record(utf16(plain, big_end_first, mark));
+}
+
+TEST_CASE("what stands above, between and behind the numbers is passed over") {
+    check_is_the_record("sep=;\ntime_s;x_mm\n0;1,5\n0,001;-2,5\n0,002;3e-5\n");
+    check_is_the_record("time_s,x_mm,,\n0,1.5,,\n0.001,-2.5,,\n0.002,3e-5,,\n,,,\n");
+    check_is_the_record("time_s;x_mm;\n0;1.5;\n0.001;-2.5;\n0.002;3e-5;\n");
+    check_is_the_record(
+        "# a comment\n% another, of two cells\n// a third\n\ntime_s,x_mm\n0,1.5\n\n# 7,8\n"
+        "0.001,-2.5\n0.002,3e-5\n");
+    check_is_the_record(
+        "Device,LMS 7\nSampling (Hz),2048\nChannels,2\n\ntime_s,x_mm\n0,1.5\n0.001,-2.5\n"
+        "0.002,3e-5\n");
+    check_is_the_record(
+        "A preamble; as plain text\n2048\ntime_s\tx_mm\n0\t1.5\n0.001\t-2.5\n0.002\t3e-5\n");
+    check_is_the_record("# time_s x_mm\n0 1.5\n0.001 -2.5\n0.002 3e-5\n");
+    check_is_the_record("%time_s,x_mm\n0,1.5\n0.001,-2.5\n0.002,3e-5\n");
+}
+
+TEST_CASE("a row of units stands below the names") {
+    for (const char* text :
+         {"Time,Acceleration 1\ns,m/s^2\n0,1\n1,2\n", "Time;Acceleration 1\n[s];[m/s^2]\n0;1\n1;2\n",
+          "head\nTime\tAcceleration 1\n(s)\t(m/s^2)\n0\t1\n1\t2\n"}) {
+        CAPTURE(text);
+        const Csv csv = parse_csv(text);
+        REQUIRE(csv.columns.size() == 2);
+        CHECK(csv.columns[0].name == "Time");
+        CHECK(csv.columns[1].name == "Acceleration 1");
+        CHECK(csv.columns[1].unit.find("m/s^2") != std::string::npos);
+        CHECK(csv.columns[1].values == std::vector{1.0, 2.0});
+    }
+    // Names that could be units are names.
+    CHECK(parse_csv("t,a\n0,1\n").columns[1].name == "a");
+}
+
+TEST_CASE("the lines of the samples are those of the file") {
+    const Csv csv = parse_csv("head\r\n\r\ntime_s,x\r\n0,1\r\n# pause\r\n1,2\r\n");
+    CHECK(csv.lines == std::vector<std::uint32_t>{4, 6});
+}
+
+TEST_CASE("letters beyond ASCII in a record of another encoding are read as Latin-1") {
+    CHECK(parse_csv("Zeit \xb5s,x\n0,1\n").columns[0].name == "Zeit \u00b5s");
+    CHECK(parse_csv("Zeit \u00b5s,x\n0,1\n").columns[0].name == "Zeit \u00b5s");
+}
+
+TEST_CASE("what is no record is refused with the line and the reason") {
+    CHECK(problem("") == "the record is empty: it needs a header and lines of numbers");
+    CHECK(problem("time_s,x\n") == "the record is empty: it needs a header and lines of numbers");
+    CHECK(problem("0,1\n1,2\n").find("line 1: a line above the numbers must name") == 0);
+    CHECK(problem("time_s,x,y\n0,1\n") == "line 2: has 2 columns, the header has 3");
+    CHECK(problem("time_s,x\n0,1\n1,2,3\n") == "line 3: has 3 columns, the header has 2");
+    CHECK(problem("time_s,x\n0,1\n1,\n") == "line 3, column x: there is no number");
+    CHECK(problem("time_s,x\n0,1\n,2\n") == "line 3, column time_s: there is no number");
+    CHECK(problem("time_s,x\n0,one\n1,2\n") == "line 2, column x: \"one\" is no number");
+    CHECK(problem("time_s,x\n0,1\n1,inf\n") == "line 3, column x: the number is not finite");
+    // A decimal comma beside separating ones.
+    CHECK(problem("time_s,x\n0,001,1,5\n") == "line 2: has 4 columns, the header has 2");
+}
