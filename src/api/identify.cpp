@@ -185,10 +185,10 @@ Json describe_motion(
 }
 
 /// The spikes of a record, or Problem 422 where there are too few to identify anything.
-std::vector<Spike> read_spikes(const IdentifyRequest& r) {
+std::vector<Spike> read_spikes(const IdentifyRequest& r, const IdentificationWatch& watch) {
     const Measurement& m = r.measurement;
     if (!m.is_record()) return {};
-    Spikes found = spikes_of(m);
+    Spikes found = spikes_of(m, watch);
     if (found.spikes.size() >= 2) return std::move(found.spikes);
     const double omega0 = r.system.si->omega0();
     throw Problem(
@@ -270,9 +270,39 @@ System identified_system(const IdentifyRequest& r, const MeasurementResult& resu
 
 }  // namespace
 
-Json identify_answer(const IdentifyRequest& r) {
+std::string words_of(IdentificationStage stage, int round) {
+    switch (stage) {
+        case IdentificationStage::spikes: return "looking for spikes";
+        case IdentificationStage::impacts:
+            return "refining the impacts" + (round > 0 ? fmt::format(", round {}", round) : "");
+        case IdentificationStage::exponents: break;
+    }
+    return "computing the exponents";
+}
+
+namespace {
+
+MeasurementResult watched_result(const IdentifyRequest& r, const IdentificationWatch& watch) {
+    try {
+        return conclude(r.measurement, read_spikes(r, watch), watch);
+    } catch (const IdentificationStopped& at) {
+        const std::size_t samples = r.measurement.record.tau.size();
+        throw Problem(
+            413,
+            fmt::format(
+                "the identification was stopped while {} ({}): a shorter record, fewer samples a "
+                "second or a higher threshold take less time",
+                words_of(at.stage, at.round),
+                samples > 0 ? fmt::format("a record of {} samples", samples)
+                            : fmt::format("{} impacts", r.measurement.impacts.size())));
+    }
+}
+
+}  // namespace
+
+Json identify_answer(const IdentifyRequest& r, const IdentificationWatch& watch) {
     const Measurement& m = r.measurement;
-    const MeasurementResult result = conclude(m, read_spikes(r));
+    const MeasurementResult result = watched_result(r, watch);
     const std::vector<std::string> doubts = all_doubts(result);
     Warnings warnings = r.notes;
     if (result.refined) add_fit_warnings(r, result, warnings);

@@ -5,7 +5,11 @@
 
 namespace vines::api {
 
-/// Problem 422 where the record shows no impacts.
-Json identify_answer(const IdentifyRequest& request);
+/// Problem 422 where the record shows no impacts, 413 with the stage that was reached where the
+/// watch stops it.
+Json identify_answer(const IdentifyRequest& request, const IdentificationWatch& watch = {});
+
+/// "looking for spikes", "refining the impacts, round 3", ...
+std::string words_of(IdentificationStage stage, int round);
 
 }  // namespace vines::api

@@ -91,7 +91,9 @@ Json answer(const std::string& description, const std::string& type, const Json&
 Json operation(const std::string& id, const std::string& summary, Json responses) {
     const std::pair<const char*, const char*> problems[] = {
         {"400", "not JSON, or a name twice"},
-        {"413", "the body, or the answer, is larger than the server takes"},
+        {"413",
+         "the body, or the answer, is larger than the server takes, or a record more work than its "
+         "deadline allows"},
         {"422", "fields at fault, each with its pointer, value and range"},
         {"503",
          "as many requests as the server takes are waiting; Retry-After says when to come back"}};

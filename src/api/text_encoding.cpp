@@ -26,8 +26,8 @@ std::optional<std::string> converted(std::string_view bytes, const char* encodin
     for (;;) {
         char* to = piece.data();
         std::size_t room = piece.size();
-        const bool whole = iconv(converter.get(), &from, &left, &to, &room) !=
-                           static_cast<std::size_t>(-1);
+        const bool whole =
+            iconv(converter.get(), &from, &left, &to, &room) != static_cast<std::size_t>(-1);
         text.append(piece.data(), piece.size() - room);
         if (whole) return text;
         if (errno != E2BIG) return std::nullopt;

@@ -14,7 +14,9 @@ std::string unit_spelling(std::string_view text) {
           std::pair("\u207b", "-"), std::pair("\u00b7", "")})
         for (std::size_t at; (at = spelling.find(written)) != std::string::npos;)
             spelling.replace(at, std::string_view(written).size(), plain);
-    std::erase_if(spelling, [](char c) { return std::string_view(" ^*()[]").find(c) != std::string_view::npos; });
+    std::erase_if(spelling, [](char c) {
+        return std::string_view(" ^*()[]").find(c) != std::string_view::npos;
+    });
     std::transform(spelling.begin(), spelling.end(), spelling.begin(), [](unsigned char c) {
         return std::tolower(c);
     });
@@ -31,7 +33,7 @@ bool is_foreign_unit(std::string_view text) {
 
 bool is_unit(std::string_view text) {
     static const std::set<std::string, std::less<>> others = {
-        "",  "-",   "1",    "sec",  "msec", "m/s2", "m_s2", "ms-2", "m/s/s", "n",
+        "",  "-",   "1",    "sec",     "msec", "m/s2", "m_s2", "ms-2", "m/s/s", "n",
         "a", "deg", "degc", "\u00b0c", "k",    "pa",   "bar",  "%",    "rad",   "kn"};
     return is_foreign_unit(text) || others.contains(unit_spelling(text));
 }

@@ -2,12 +2,17 @@
 #include "api/identify.hpp"
 
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "api/json_text.hpp"
 #include "api/query.hpp"
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/files.hpp"
+#include "cli/progress_bar.hpp"
+#include "cli/stop_signals.hpp"
+#include "program/tell.hpp"
 
 namespace vines::cli {
 
@@ -28,7 +33,22 @@ api::IdentifyRequest read_request(const std::string& text, const std::string& qu
 
 int identify(const IdentifyOptions& o) {
     const api::IdentifyRequest request = read_request(read_all(o.files.input), o.query);
-    write_all(o.files.output, api::json_text(api::identify_answer(request)) + "\n");
+    std::optional<StageLine> line(std::in_place);
+    const IdentificationWatch watch{
+        .stop = stopped, .reached = [&line](IdentificationStage stage, int round) {
+            line->show(api::words_of(stage, round) + " ...");
+        }};
+    std::string answer;
+    try {
+        answer = api::json_text(api::identify_answer(request, watch)) + "\n";
+    } catch (const api::Problem& problem) {
+        line.reset();
+        if (!stopped()) throw;
+        tell(problem.what());
+        return incomplete;
+    }
+    line.reset();
+    write_all(o.files.output, answer);
     return complete;
 }
 

@@ -48,4 +48,14 @@ void ProgressBar::draw(bool always) {
     std::fflush(stderr);
 }
 
+StageLine::~StageLine() { show(""); }
+
+void StageLine::show(const std::string& stage) {
+    if (!shown_) return;
+    const std::string blank(length_, ' ');
+    std::fputs(("\r" + blank + "\r" + stage).c_str(), stderr);
+    std::fflush(stderr);
+    length_ = stage.size();
+}
+
 }  // namespace vines::cli

@@ -1,10 +1,11 @@
-// A bar on stderr, where that is a terminal.
+// How far work has come, on stderr where that is a terminal.
 #pragma once
 
 #include <unistd.h>
 
 #include <chrono>
 #include <cstddef>
+#include <string>
 
 namespace vines::cli {
 
@@ -27,6 +28,21 @@ private:
     const bool shown_ = ::isatty(STDERR_FILENO) == 1;
     const Clock::time_point started_ = Clock::now();
     Clock::time_point drawn_{};
+};
+
+/// What work is at, in the same place.
+class StageLine {
+public:
+    StageLine() = default;
+    /// Wipes it.
+    ~StageLine();
+    StageLine(const StageLine&) = delete;
+    StageLine& operator=(const StageLine&) = delete;
+    void show(const std::string& stage);
+
+private:
+    const bool shown_ = ::isatty(STDERR_FILENO) == 1;
+    std::size_t length_ = 0;  ///< of what stands there
 };
 
 }  // namespace vines::cli

@@ -97,7 +97,9 @@ Response identify(const Request& r, const RouteOptions& options, ComputeGate& ga
         csv ? api::read_identify_request(api::from_query(api::identify_fields(), r.query), r.body)
             : api::read_identify_request(body_of(r));
     const ComputeGate::Place place = place_in(gate);
-    return limited_response(api::identify_answer(request), options.answer_limit);
+    return limited_response(
+        api::identify_answer(request, {.stop = stop_after(options.deadline).asked}),
+        options.answer_limit);
 }
 
 /// A route whose answer may throw a Problem.

@@ -188,6 +188,18 @@ test("an interrupted simulation answers with what it has and exit code 3", async
   assert.equal(JSON.parse(out).status.reason, "interrupted");
 });
 
+test("an interrupted identification says what it was at, with exit code 3", async () => {
+  const sample = (k) => `${k * 1e-9},0,${Math.sin(k)}`;
+  const {code, out, errors} = await run(["identify", "-q", "preset=fig15"], {
+    input: ["time_s,x,a", ...Array.from({length: 200000}, (_, k) => sample(k))].join("\n"),
+    signal: "SIGINT",
+    until: waitsForSignals,
+  });
+  assert.equal(code, 3);
+  assert.equal(out, "");
+  assert.match(errors, /^vines: the identification was stopped while looking for spikes/);
+});
+
 test("a sweep's file has its points in order, the same on stdout and on any number of threads", async () => {
   assert.equal((await run(["sweep", "-o", at("whole.ndjson")], {input: sweep})).code, 0);
   const whole = await readFile(at("whole.ndjson"), "utf8");

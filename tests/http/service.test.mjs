@@ -444,6 +444,25 @@ test("a request that computes too long ends with what it has", async () => {
   await hasty.stop();
 });
 
+test("a record that takes too long ends with the stage that was reached", async () => {
+  // All samples within the neighbourhood of each: the work grows with their square.
+  const sample = (k) => `${k * 1e-9},0,${Math.sin(k)}`;
+  const record = ["time_s,x,a", ...Array.from({length: 50000}, (_, k) => sample(k))].join("\n");
+  const hasty = await startService(["--deadline", "0.5"]);
+  const response = await fetch(`${hasty.url}/v1/identify?preset=fig15`, {
+    method: "POST",
+    headers: {"Content-Type": "text/csv"},
+    body: record,
+  });
+  assert.equal(response.status, 413);
+  assert.match(
+    (await response.json()).detail,
+    /stopped while looking for spikes \(a record of 50000/,
+  );
+  assert.ok((await computed(hasty.pid)) < 2);
+  await hasty.stop();
+});
+
 test("the deadline and the answer's limit hold for all that can be asked for at once, in time and memory", async () => {
   const hasty = await startService(["--deadline", "1", "--answer-limit", "50000000"]);
   const {fields} = await getJson("/v1/parameters");

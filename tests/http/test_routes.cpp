@@ -70,6 +70,20 @@ TEST_CASE("a manifold is answered without a recommended b where there is no time
     CHECK_FALSE(warns_of(whole, "time limit"));
 }
 
+TEST_CASE("an identification that its deadline ends says what it was at") {
+    ComputeGate gate({.running = 1});
+    std::string record = R"({"preset":"fig15","record":{"time_s":[0)", zeros = "[0";
+    for (int k = 1; k < 200; ++k) record += "," + std::to_string(0.001 * k), zeros += ",0";
+    record += "],\"a\":" + zeros + "]}}";
+    const Response late = answer_of(gate, {.deadline = 0}, "POST", "/v1/identify", record);
+    CHECK(late.status == 413);
+    CHECK(
+        Json::parse(late.body)["detail"].get<std::string>().find(
+            "the identification was stopped while looking for spikes (a record of 200 samples)") ==
+        0);
+    CHECK(answer_of(gate, {}, "POST", "/v1/identify", record).status == 422);
+}
+
 TEST_CASE("an answer that leaves as a stream has the bytes of the same one in one piece") {
     ComputeGate gate({.running = 1});
     for (const char* body :

@@ -90,11 +90,14 @@ std::optional<Spike> find_kink(
 }  // namespace
 
 std::vector<Spike> find_kinks(
-    const Parameters& p, const MeasuredRecord& r, const FittedMotion& m, double noise) {
+    const Parameters& p, const MeasuredRecord& r, const FittedMotion& m, double noise,
+    IdentificationProgress& progress) {
     const OscillatorModel model(p);
     std::vector<Spike> kinks;
-    for (std::size_t i = 0; i < m.tau.size(); ++i)
+    for (std::size_t i = 0; i < m.tau.size(); ++i) {
+        progress.look();
         if (const auto kink = find_kink(model, r, m, i, noise)) kinks.push_back(*kink);
+    }
     return kinks;
 }
 

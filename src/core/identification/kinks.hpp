@@ -14,6 +14,6 @@ inline constexpr double kink_sigmas = 7;
 /// `noise`: of x, its standard deviation.
 std::vector<Spike> find_kinks(
     const Parameters& parameters, const MeasuredRecord& record, const FittedMotion& motion,
-    double noise);
+    double noise, IdentificationProgress& progress);
 
 }  // namespace vines

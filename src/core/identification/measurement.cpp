@@ -61,7 +61,8 @@ std::optional<DirectEstimate> direct_estimate(
 }
 
 std::optional<ForwardRun> forward_run(
-    const Parameters& p, const Identification& found, const FittedMotion& motion, double tau_end) {
+    const Parameters& p, const Identification& found, const FittedMotion& motion, double tau_end,
+    const IdentificationProgress& progress) {
     const auto known = std::find_if(
         found.impacts.begin(), found.impacts.end(),
         [](const IdentifiedImpact& i) { return !i.is_left_out() && !std::isnan(i.y_dot_after); });
@@ -78,8 +79,10 @@ std::optional<ForwardRun> forward_run(
         p, state,
         {.tau_end = start + tau_end - first.tau,
          .max_impacts = most_forward_impacts,
+         .stop = progress.stop(),
          .tau_start = start},
         observers);
+    progress.look();
     for (Impact& i : impacts.entries) i.tau = i.tau - start + first.tau;
     return ForwardRun{first.tau, std::move(impacts.entries), lyapunov.product().qr()};
 }
@@ -99,9 +102,10 @@ double Measurement::step() const {
     return (record.tau.back() - record.tau.front()) / static_cast<double>(record.tau.size() - 1);
 }
 
-Spikes spikes_of(const Measurement& m) {
+Spikes spikes_of(const Measurement& m, const IdentificationWatch& watch) {
+    IdentificationProgress progress(watch);
     Spikes spikes{{}, nan};
-    if (!m.record.x_ddot.empty()) spikes = find_spikes(m.record, m.threshold);
+    if (!m.record.x_ddot.empty()) spikes = find_spikes(m.record, m.threshold, progress);
     if (m.moments.empty()) return spikes;
     std::vector<Spike> known;
     for (const double tau : m.moments) {
@@ -119,7 +123,9 @@ Spikes spikes_of(const Measurement& m) {
     return spikes;
 }
 
-MeasurementResult conclude(const Measurement& m, const std::vector<Spike>& spikes) {
+MeasurementResult conclude(
+    const Measurement& m, const std::vector<Spike>& spikes, const IdentificationWatch& watch) {
+    IdentificationProgress progress(watch);
     assert(m.is_record() ? spikes.size() >= 2 : m.impacts.size() >= 2);
     Parameters p = m.parameters;
     std::optional<RefinedImpacts> refined;
@@ -127,7 +133,8 @@ MeasurementResult conclude(const Measurement& m, const std::vector<Spike>& spike
     std::vector<Doubt> doubts;
     if (m.is_record()) {
         // With moments that are known no others are looked for.
-        refined = refine_impacts(p, m.record, spikes, m.moments.empty() ? m.threshold : 0);
+        refined =
+            refine_impacts(p, m.record, spikes, m.moments.empty() ? m.threshold : 0, progress);
         found = identify_impacts(p, refined->motion, refined->side, refined->pulse);
         p.G = G_of(p, refined->motion);
         doubts = doubts_of(p, *refined, found);
@@ -135,6 +142,7 @@ MeasurementResult conclude(const Measurement& m, const std::vector<Spike>& spike
         found = of_impacts(m.impacts);
     }
     if (!m.R_given) take_restitution(p, found);
+    progress.reach(IdentificationStage::exponents);
     Continuity continuity = continuity_of(p, found.impacts, time_gaps(m.record));
     MeasuredExponents exponents(p, found.impacts, continuity.stretches, m.estimators);
     IdentifiedExponents judged = judge_exponents(
@@ -144,9 +152,10 @@ MeasurementResult conclude(const Measurement& m, const std::vector<Spike>& spike
         judged.verdict = Verdict::not_decided;
     else if (p.G == 0 || dies_out(found.impacts)) judged.verdict = Verdict::none;
 
+    progress.look();
     auto direct = refined ? direct_estimate(m, *refined, continuity.stretches) : std::nullopt;
-    auto forward =
-        refined ? forward_run(p, found, refined->motion, m.record.tau.back()) : std::nullopt;
+    auto forward = refined ? forward_run(p, found, refined->motion, m.record.tau.back(), progress)
+                           : std::nullopt;
     return {
         .parameters = p,
         .found = std::move(found),

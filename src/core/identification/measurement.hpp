@@ -28,7 +28,7 @@ struct Measurement {
 
 /// The spikes of a record that its impacts are looked for in: at the known moments, or wherever one
 /// rises above the threshold.
-Spikes spikes_of(const Measurement& measurement);
+Spikes spikes_of(const Measurement& measurement, const IdentificationWatch& watch = {});
 
 /// The paper's estimate beside ours: velocities by differences, and what follows from them.
 struct DirectEstimate {
@@ -63,7 +63,10 @@ struct MeasurementResult {
     bool is_incomplete() const { return continuity.share > Continuity::most; }
 };
 
-/// `spikes`: of a record, at least two. `impacts` in place of a record: at least two.
-MeasurementResult conclude(const Measurement& measurement, const std::vector<Spike>& spikes);
+/// `spikes`: of a record, at least two. `impacts` in place of a record: at least two. Throws
+/// IdentificationStopped where the watch says so, as does spikes_of().
+MeasurementResult conclude(
+    const Measurement& measurement, const std::vector<Spike>& spikes,
+    const IdentificationWatch& watch = {});
 
 }  // namespace vines

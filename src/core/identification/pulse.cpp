@@ -100,13 +100,17 @@ double ImpactPulse::moment(double pulse, double step) const {
     return std::isfinite(first / sum) ? tau_ + first / sum : tau_;
 }
 
-double best_pulse(const std::vector<ImpactPulse>& impacts, double step, double present) {
+double best_pulse(
+    const std::vector<ImpactPulse>& impacts, double step, double present,
+    IdentificationProgress& progress) {
     double least = infinity, best = present;
     for (double length = std::min(shortest_pulse_steps * step, shortest_pulse);
          length < std::max(longest_pulse_steps * step, longest_pulse); length *= pulse_ratio) {
         std::vector<double> misfits;
-        for (std::size_t i = 0; i < impacts.size(); i += 1 + impacts.size() / pulses_compared)
+        for (std::size_t i = 0; i < impacts.size(); i += 1 + impacts.size() / pulses_compared) {
+            progress.look();  // each takes as long as many samples lie within its pulse
             misfits.push_back(impacts[i].least_misfit(length, step));
+        }
         const double typical = median(misfits);
         if (typical < least) least = typical, best = length;
     }

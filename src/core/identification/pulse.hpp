@@ -37,6 +37,8 @@ private:
 
 /// One pulse length for the record, in tau: that with the smallest typical misfit. A few odd spikes
 /// must not choose it. `present`: where there is no better one.
-double best_pulse(const std::vector<ImpactPulse>& impacts, double step, double present);
+double best_pulse(
+    const std::vector<ImpactPulse>& impacts, double step, double present,
+    IdentificationProgress& progress);
 
 }  // namespace vines

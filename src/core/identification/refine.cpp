@@ -45,6 +45,7 @@ struct Refinement {
     std::vector<Spike> spikes;  // of the impacts as they are known now
     double sigmas;
     double step;  // between samples
+    IdentificationProgress& progress;
     RefinedImpacts refined = {{}, {}, 0, {}, {}, true};
     std::vector<Rejected> rejected = {};
     std::optional<RecordStatistics> statistics = {};  // of the record; none once that has changed
@@ -101,11 +102,15 @@ void place_impacts(Refinement& f) {
     const FittedMotion& motion = f.refined.motion;
     const double reach = std::max(reach_pulses * f.refined.pulse, reach_steps * f.step);
     std::vector<ImpactPulse> impacts;
-    for (std::size_t i = 0; i < f.spikes.size(); ++i)
+    for (std::size_t i = 0; i < f.spikes.size(); ++i) {
+        f.progress.look();
         impacts.emplace_back(f.parameters, f.record, motion, i, reach);
-    const double pulse = best_pulse(impacts, f.step, f.refined.pulse);
-    for (std::size_t i = 0; i < f.spikes.size(); ++i)
+    }
+    const double pulse = best_pulse(impacts, f.step, f.refined.pulse, f.progress);
+    for (std::size_t i = 0; i < f.spikes.size(); ++i) {
+        f.progress.look();
         f.spikes[i].tau = impacts[i].moment(pulse, f.step);
+    }
     fit(f, pulse);
 }
 
@@ -179,8 +184,8 @@ std::vector<Spike> kept_of(Refinement& f, const std::vector<Spike>& seen) {
 /// whether there are any.
 bool add_found(const Refinement& f, std::vector<Spike> found, std::vector<Spike>& kept) {
     if (!f.record.x.empty()) {
-        const std::vector<Spike> kinks =
-            find_kinks(f.parameters, f.record, f.refined.motion, f.refined.motion.noise_x);
+        const std::vector<Spike> kinks = find_kinks(
+            f.parameters, f.record, f.refined.motion, f.refined.motion.noise_x, f.progress);
         found.insert(found.end(), kinks.begin(), kinks.end());
     }
     std::vector<Spike> added;
@@ -209,8 +214,10 @@ std::vector<Spike> dropped_of(const Refinement& f) {
 }  // namespace
 
 RefinedImpacts refine_impacts(
-    const Parameters& p, const MeasuredRecord& record, std::vector<Spike> spikes, double sigmas) {
-    Refinement f{p, record, std::move(spikes), sigmas, sample_interval(record)};
+    const Parameters& p, const MeasuredRecord& record, std::vector<Spike> spikes, double sigmas,
+    IdentificationProgress& progress) {
+    progress.reach(IdentificationStage::impacts);
+    Refinement f{p, record, std::move(spikes), sigmas, sample_interval(record), progress};
     if (!record.x.empty()) mend_displacement(f.record, typical_jump(f.spikes));
     if (record.x_ddot.empty()) {
         fit(f, 0);
@@ -218,6 +225,7 @@ RefinedImpacts refine_impacts(
     }
     fit(f, first_pulse_steps * f.step);
     for (int round = 1; round <= most_rounds && !f.spikes.empty(); ++round) {
+        progress.reach(IdentificationStage::impacts, round);
         place_impacts(f);
         const std::vector<Spike> seen = spikes_beside_motion(f);
         std::vector<Spike> kept = kept_of(f, seen);

@@ -26,6 +26,6 @@ struct RefinedImpacts {
 /// the given impacts stay, but for those that are dropped.
 RefinedImpacts refine_impacts(
     const Parameters& parameters, const MeasuredRecord& record, std::vector<Spike> spikes,
-    double sigmas);
+    double sigmas, IdentificationProgress& progress);
 
 }  // namespace vines

@@ -64,11 +64,13 @@ private:
 };
 
 /// What stands out from the median of its neighbourhood: the first guess.
-std::vector<double> without_median(const MeasuredRecord& r, double reach) {
+std::vector<double> without_median(
+    const MeasuredRecord& r, double reach, IdentificationProgress& progress) {
     std::vector<double> residual(r.tau.size());
     OrderedValues values;
     Neighbourhood near;
     for (std::size_t k = 0; k < r.tau.size(); ++k) {
+        progress.tick();
         const Neighbourhood before = near;
         near.move_to(k, r.tau, reach);
         for (std::size_t j = before.from; j < std::min(before.to, near.from); ++j)
@@ -106,9 +108,10 @@ struct ParabolaEquations {
 /// neighbours of each sample.
 class Background {
 public:
-    Background(const MeasuredRecord& r, double reach)
+    Background(const MeasuredRecord& r, double reach, IdentificationProgress& progress)
         : r_(r),
           reach_(reach),
+          progress_(progress),
           residual_(r.tau.size(), 0) {}
 
     const std::vector<double>& residual() const { return residual_; }
@@ -120,6 +123,7 @@ public:
         Neighbourhood near;
         std::size_t changed = 0;
         for (std::size_t k = 0; k < r_.tau.size(); ++k) {
+            progress_.tick();
             near.move_to(k, r_.tau, reach_);
             changed = std::max(changed, near.from);
             while (changed < near.to && !before.empty() && masked_[changed] == before[changed])
@@ -141,6 +145,7 @@ private:
 
     const MeasuredRecord& r_;
     const double reach_;
+    IdentificationProgress& progress_;
     std::vector<char> masked_;
     std::vector<double> residual_;
 };
@@ -201,18 +206,19 @@ double typical_jump(const std::vector<Spike>& spikes) {
     return spikes.empty() ? 0 : median(std::move(jumps));
 }
 
-Spikes find_spikes(const MeasuredRecord& r, double sigmas) {
+Spikes find_spikes(const MeasuredRecord& r, double sigmas, IdentificationProgress& progress) {
+    progress.reach(IdentificationStage::spikes);
     const std::size_t n = r.tau.size();
     const double reach = std::max(background_least, background_samples * sample_interval(r));
     Spikes found{{}, ThirdDifferences(r.tau, r.x_ddot).noise()};
     // First what stands out from the median of its neighbourhood; then, again and again, from the
     // parabola through the rest.
-    std::vector<double> residual = without_median(r, reach);
+    std::vector<double> residual = without_median(r, reach, progress);
     const double coarse = std::max(found.noise, robust_deviation(residual));
     std::vector<char> masked(n, 0);
     for (std::size_t k = 0; k < n; ++k) masked[k] = std::abs(residual[k]) > masking_sigmas * coarse;
     residual = {};
-    Background background(r, reach);
+    Background background(r, reach, progress);
     for (int round = 0; round < masking_rounds; ++round) {
         background.mask(std::move(masked));
         found.noise = noise_beside(background.masked(), background.residual());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/identification/measured_record.hpp"
+#include "core/identification/progress.hpp"
 
 namespace vines {
 
@@ -20,7 +21,7 @@ struct Spikes {
 };
 
 /// Spikes above `sigmas` times the noise. Needs x_ddot.
-Spikes find_spikes(const MeasuredRecord& record, double sigmas);
+Spikes find_spikes(const MeasuredRecord& record, double sigmas, IdentificationProgress& progress);
 
 /// Spikes of a residual of the acceleration (one value for each sample): neighbouring samples of
 /// one sign above the noise are one spike, unless they last longer than `longest`, in tau.

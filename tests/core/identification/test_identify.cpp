@@ -13,6 +13,8 @@ using namespace vines::test;
 
 namespace {
 
+IdentificationProgress unwatched;
+
 struct Result {
     RefinedImpacts refined;
     Identification found;
@@ -33,8 +35,8 @@ Experiment regular_record(double R_plus = 0.85, double R_minus = 0.85) {
 }
 
 Result identified(const Experiment& m) {
-    RefinedImpacts refined =
-        refine_impacts(m.parameters, m.record, find_spikes(m.record, 6).spikes, 6);
+    RefinedImpacts refined = refine_impacts(
+        m.parameters, m.record, find_spikes(m.record, 6, unwatched).spikes, 6, unwatched);
     Identification found =
         identify_impacts(m.parameters, refined.motion, refined.side, refined.pulse);
     Parameters p = m.parameters;
@@ -124,7 +126,7 @@ TEST_CASE(
 TEST_CASE(
     "an impact whose pulse falls between two samples is found by the kink of the displacement") {
     const Experiment m = measured(0.015, 0.85, 0.85, {.rate = 1024});
-    const std::vector<Spike> spikes = find_spikes(m.record, 6).spikes;
+    const std::vector<Spike> spikes = find_spikes(m.record, 6, unwatched).spikes;
     CHECK(static_cast<double>(spikes.size()) < 0.95 * static_cast<double>(m.impacts.size()));
     const Result r = identified(m);
     long found = 0;
@@ -141,7 +143,7 @@ TEST_CASE("noise alone has no spikes") {
     // The walls are out of reach.
     const Experiment m = measured(settled_motion(0.5, 0.85, 0.85, 12), {});
     CHECK(m.impacts.empty());
-    CHECK(find_spikes(m.record, 6).spikes.empty());
+    CHECK(find_spikes(m.record, 6, unwatched).spikes.empty());
 }
 
 TEST_CASE(
@@ -221,12 +223,12 @@ TEST_CASE("from rest, a record begins where all was at rest; a motion that stick
 TEST_CASE(
     "a picked spike without a jump of the velocity is dropped, and one picked twice is left out") {
     const Experiment m = regular_record();
-    std::vector<Spike> spikes = find_spikes(m.record, 6).spikes;
+    std::vector<Spike> spikes = find_spikes(m.record, 6, unwatched).spikes;
     const std::size_t all = spikes.size();
     Spike none = spikes[40];
     none.tau += 0.6 * (spikes[41].tau - spikes[40].tau);
     spikes.push_back(none);
-    const RefinedImpacts refined = refine_impacts(m.parameters, m.record, spikes, 0);
+    const RefinedImpacts refined = refine_impacts(m.parameters, m.record, spikes, 0, unwatched);
     CHECK(refined.dropped.size() == 1);
     CHECK(refined.tau.size() == all);
 }
@@ -234,9 +236,9 @@ TEST_CASE(
 TEST_CASE(
     "a missing impact makes its neighbours inconsistent, and they are left out with a reason") {
     const Experiment m = regular_record();
-    std::vector<Spike> spikes = find_spikes(m.record, 6).spikes;
+    std::vector<Spike> spikes = find_spikes(m.record, 6, unwatched).spikes;
     spikes.erase(spikes.begin() + 50);
-    const RefinedImpacts refined = refine_impacts(m.parameters, m.record, spikes, 0);
+    const RefinedImpacts refined = refine_impacts(m.parameters, m.record, spikes, 0, unwatched);
     const Identification found =
         identify_impacts(m.parameters, refined.motion, refined.side, refined.pulse);
     CHECK(found.impacts[49].is_left_out());
@@ -502,6 +504,38 @@ TEST_CASE(
             CAPTURE(b);
             CHECK(tally.wrong == 0);
             if (std::getenv("VINES_SEEDS")) tally.print(kind.name, b);
+        }
+    }
+}
+
+TEST_CASE(
+    "an identification tells its stages in their order, and ends in each where it is asked to") {
+    using Told = std::vector<std::pair<IdentificationStage, int>>;
+    const Experiment e = measured(settled_motion(0.009, 0.85, 0.85, 3), {});
+    Measurement m;
+    m.parameters = e.parameters;
+    m.record = e.record;
+    Told told;
+    const auto tell = [&told](IdentificationStage stage, int round) {
+        told.emplace_back(stage, round);
+    };
+    conclude(m, spikes_of(m, {.reached = tell}).spikes, {.reached = tell});
+    CHECK(std::is_sorted(told.begin(), told.end()));
+    CHECK(told.front() == std::pair(IdentificationStage::spikes, 0));
+    CHECK(told.back() == std::pair(IdentificationStage::exponents, 0));
+    CHECK(told.size() > 5);
+    for (const auto& [stage, round] : told) {
+        CAPTURE(round);
+        Told until;
+        const IdentificationWatch watch{
+            .stop = [&] { return !until.empty() && until.back() == std::pair(stage, round); },
+            .reached = [&](IdentificationStage s, int r) { until.emplace_back(s, r); }};
+        try {
+            conclude(m, spikes_of(m, watch).spikes, watch);
+            FAIL("it went on");
+        } catch (const IdentificationStopped& stopped) {
+            CHECK(stopped.stage == stage);
+            CHECK(stopped.round == round);
         }
     }
 }
