@@ -174,9 +174,11 @@ async function take(chosen) {
 async function request(fields, signal) {
   const asked = asQuery(fields);
   if (asked.length <= longestQuery) return identify(asked, file, signal);
-  const columns = Object.entries(recordOf(await reading, fields).sent);
-  const lists = Object.fromEntries(columns.map(([name, column]) => [name, [...column]]));
-  return identifyJson({...fields, record: lists}, signal);
+  const {sent, units} = recordOf(await reading, fields);
+  const lists = Object.fromEntries(
+    Object.entries(sent).map(([name, column]) => [name, [...column]]),
+  );
+  return identifyJson({...fields, ...units, record: lists}, signal);
 }
 
 async function run(more = {}) {

@@ -2,7 +2,7 @@
 
 const atOnce = 50000; // lines between two looks at the clock of the page
 
-const trimmed = (cell) => cell.replace(/^[\s"]+|[\s"]+$/g, "");
+const trimmed = (cell) => cell.trim();
 const pause = () =>
   new Promise((resolve) => {
     setTimeout(resolve);
@@ -25,27 +25,42 @@ export async function textOf(file) {
   return text.includes("\r") ? text.replace(/\r\n?/g, "\n") : text;
 }
 
-/** The cells of a line without empty ones behind the last; what stands in quotes holds no comma. */
+/** The same of a line with quotation marks, where a decimal comma becomes a point. */
+function quotedCellsOf(line, separator) {
+  const cells = [];
+  for (let from = 0; from <= line.length; ) {
+    const blanks = /^[ \t]*/.exec(line.slice(from, from + 100))[0].length;
+    const quote = line[from + blanks] === '"' ? line.indexOf('"', from + blanks + 1) : -1;
+    const at = line.indexOf(separator, quote < 0 ? from : quote);
+    const end = at < 0 ? line.length : at;
+    const cell = line.slice(from, end).trim();
+    const inside = quote < 0 ? null : cell.slice(1, -1);
+    cells.push(inside === null || inside.includes('"') ? cell : asPoint(inside));
+    from = end + 1;
+  }
+  return cells;
+}
+const asPoint = (cell) =>
+  /^[\s+-]*\d*,\d*(e[+-]?\d+)?\s*$/i.test(cell) ? cell.replace(",", ".") : cell;
+
+/** The cells of a line without empty ones behind the last. */
 function cellsOf(line, separator) {
   let cells;
   if (separator === " ") cells = line.trim().split(/[ \t]+/);
-  else if (line.includes('"'))
-    cells = line
-      .match(/"[^"]*"|[^"]+/g)
-      .map((part) => (part[0] === '"' ? part.slice(1, -1).replaceAll(",", ".") : part))
-      .join("")
-      .split(separator);
+  else if (line.includes('"')) cells = quotedCellsOf(line, separator);
   else cells = line.split(separator);
   while (cells.length && !cells.at(-1).trim()) cells.pop();
   return cells;
 }
 
+const isCode = /^\s*[+-]?0[xob]/i; // which JavaScript takes for a number
+
 /** A cell as a number, NaN for what is none. A decimal comma needs another separator. */
 function numberOf(text, separator) {
   const value = Number(text);
-  if (Number.isFinite(value) && value !== 0) return value;
+  if (Number.isFinite(value) && value !== 0 && !isCode.test(text)) return value;
   const cell = trimmed(text); // a zero may be an empty cell
-  if (cell === "") return NaN;
+  if (cell === "" || isCode.test(cell)) return NaN;
   return Number(separator === "," ? cell : cell.replaceAll(",", "."));
 }
 
@@ -67,8 +82,10 @@ function headingOf({last, before, comment}, count, separator) {
   const [low, high, aside] = [last, before, comment].map(cells);
   if (fits(high) && low.length && low.length <= count && low.every(isUnit))
     return {names: high, units: low};
-  const names = [low, aside, high].find(fits);
-  return names ? {names, units: []} : null;
+  const areUnits = (row) => row.length && row.length <= count && row.every(isUnit);
+  if (fits(aside) && !areUnits(aside) && areUnits(low)) return {names: aside, units: low};
+  if (fits(low)) return {names: low, units: [high, aside].find(areUnits) ?? []};
+  return fits(aside) ? {names: aside, units: []} : null;
 }
 
 /**
@@ -153,7 +170,7 @@ const spellings = {
   g: "g",
 };
 const spelling = (text) =>
-  text
+  (text.length > 32 ? "?" : text) // no unit is longer
     .toLowerCase()
     .replace(/[\u00b5\u03bc]/g, "u")
     .replace(/\u00b2/g, "2")
@@ -167,7 +184,7 @@ const otherUnits = new Set(
 /** Whether a cell is what stands in a row of units below the names. */
 const isUnit = (cell) => {
   const written = spelling(cell);
-  return !written || written in spellings || otherUnits.has(written);
+  return !written || Object.hasOwn(spellings, written) || otherUnits.has(written);
 };
 
 /**
@@ -175,6 +192,7 @@ const isUnit = (cell) => {
  * it says none.
  */
 export function unitIn(name) {
+  if (Object.hasOwn(spellings, spelling(name))) return spellings[spelling(name)];
   const brackets = /[([]([^)\]]*)/.exec(name);
   if (brackets) return spellings[spelling(brackets[1])];
   for (const {index} of name.matchAll(/[_ ]/g)) {
@@ -202,20 +220,25 @@ const scaled = (column, unit) => (units[unit] === 1 ? column : column.map((v) =>
 
 /**
  * What the fields make of the columns: {t (s), x (mm), a (m/s^2)}, null for one that is not there;
- * sent: those columns by name, in the record's units.
+ * sent: those columns by name, in the record's units; units: these as fields.
  */
 export function recordOf({names, units: row = [], columns}, fields) {
   const time = find(names, fields.time_column, "time_s", ["time", "t"]);
   const x = find(names, fields.displacement_column, "displacement_m", ["displacement", "x"]);
   const a = find(names, fields.acceleration_column, "acceleration_m_s2", ["acceleration", "a"]);
   if (time < 0 || !columns[time].length || (x < 0 && a < 0)) return null;
-  const unit = (k, asked, usual) =>
-    unitIn(names[k]) ?? spellings[spelling(row[k] ?? "")] ?? asked ?? usual;
+  const said = (k, asked) => unitIn(names[k]) ?? spellings[spelling(row[k] ?? "")] ?? asked;
+  const unit = (k, asked, usual) => said(k, asked) ?? usual;
   const t = scaled(columns[time], unit(time, fields.time_unit, "s"));
   const kept = whereAscending(t); // as the plots need it
   const present = [time, x, a].filter((k) => k >= 0);
   const sent = Object.fromEntries(present.map((k) => [names[k], columns[k]]));
   return {
+    units: {
+      time_unit: said(time, fields.time_unit),
+      displacement_unit: x < 0 ? undefined : said(x, fields.displacement_unit),
+      acceleration_unit: a < 0 ? undefined : said(a, fields.acceleration_unit),
+    },
     t: kept(t),
     x: x < 0 ? null : kept(scaled(columns[x], unit(x, fields.displacement_unit, "m"))),
     a: a < 0 ? null : kept(scaled(columns[a], unit(a, fields.acceleration_unit, "m/s2"))),

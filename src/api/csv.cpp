@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::string_view blanks = " \t";
 constexpr char by_blanks = ' ';
+// A line with more cells is no line of a record.
+constexpr std::size_t most_cells = 1000;
 
 std::string_view trimmed(std::string_view text) {
     const std::size_t first = text.find_first_not_of(blanks);
@@ -79,9 +81,11 @@ void split(std::string_view line, char separator, std::vector<Cell>& cells) {
             from < line.size() && line[from] == '"' ? line.find('"', from + 1) : line.npos;
         const bool is_quoted = quote != line.npos;
         const std::size_t end = end_of(is_quoted ? quote : from);
+        const bool is_whole = is_quoted && trimmed(line.substr(quote + 1, end - quote - 1)).empty();
         const std::string_view text =
-            is_quoted ? line.substr(from + 1, quote - from - 1) : line.substr(from, end - from);
-        cells.push_back({trimmed(text), is_quoted});
+            is_whole ? line.substr(from + 1, quote - from - 1) : line.substr(from, end - from);
+        cells.push_back({trimmed(text), is_whole});
+        if (cells.size() > most_cells) return;
         from = end + 1;
     }
     while (!cells.empty() && cells.back().text.empty()) cells.pop_back();
@@ -102,7 +106,7 @@ std::optional<double> number_of(const Cell& cell, char separator) {
         std::replace(copy.begin(), copy.end(), ',', '.');
         text = copy;
     }
-    if (text.starts_with('+')) text.remove_prefix(1);
+    if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
     double value;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
@@ -147,8 +151,9 @@ bool has_number(const std::vector<Cell>& cells, char separator) {
 /// That by which the line is numbers, two or more.
 std::optional<char> separator_of_numbers(std::string_view line, std::optional<char> said) {
     std::vector<Cell> cells;
-    for (const char separator : {';', '\t', ',', by_blanks}) {
-        if (said && separator != *said) continue;
+    std::string separators = said ? std::string(1, *said) : ";\t,";
+    if (!said) separators += by_blanks;
+    for (const char separator : separators) {
         split(line, separator, cells);
         const auto is_number = [separator](const Cell& c) {
             return number_of(c, separator).has_value();
@@ -166,7 +171,9 @@ public:
     void take(const Line& line) {
         if (is_comment(line.text)) comment_ = {line.number, comment_of(line.text)};
         else before_ = std::exchange(last_, line);
+        something_ = true;
     }
+    bool has_something() const { return something_; }
 
     /// Named columns without values, for `count` cells; `first` is the first line of numbers.
     std::vector<CsvColumn> columns(const Line& first, std::size_t count, char separator) const {
@@ -176,12 +183,18 @@ public:
         const auto fits = [&](const std::vector<Cell>& cells) {
             return cells.size() == count && !has_number(cells, separator);
         };
-        const bool units =
-            fits(before) &&
-            std::all_of(last.begin(), last.end(), [](const Cell& c) { return is_unit(c.text); }) &&
-            last.size() <= count && !last.empty();
-        if (units) return named(before, last);
-        if (fits(last)) return named(last, {});
+        const auto are_units = [count](const std::vector<Cell>& cells) {
+            return !cells.empty() && cells.size() <= count &&
+                   std::all_of(
+                       cells.begin(), cells.end(), [](const Cell& c) { return is_unit(c.text); });
+        };
+        if (fits(before) && are_units(last)) return named(before, last);
+        if (fits(comment) && !are_units(comment) && are_units(last)) return named(comment, last);
+        if (fits(last))
+            return named(
+                last, are_units(before)    ? before
+                      : are_units(comment) ? comment
+                                           : std::vector<Cell>());
         if (fits(comment)) return named(comment, {});
         if (last.size() == count && fits(before)) {
             // Not the names, but the first line of the numbers, and at fault.
@@ -210,6 +223,22 @@ private:
     }
 
     Line last_, before_, comment_;
+    bool something_ = false;
+};
+
+/// Which decimal signs a record has: with both, one of them may group thousands.
+class DecimalSigns {
+public:
+    void see(std::string_view number, std::size_t line, const std::string& column) {
+        const std::size_t at = number.find_first_of(".,");
+        if (at == number.npos) return;
+        (number[at] == ',' ? comma_ : point_) = true;
+        if (comma_ && point_)
+            fault(line, column, number, "the record has decimal points and decimal commas");
+    }
+
+private:
+    bool comma_ = false, point_ = false;
 };
 
 /// What a line like "sep=;" says, which spreadsheets write and read.
@@ -229,6 +258,7 @@ Csv parse_csv(std::string_view bytes) {
     Heading heading;
     std::optional<char> said, separator;
     std::vector<Cell> cells;
+    DecimalSigns signs;
     while (const auto line = lines.next()) {
         if (trimmed(line->text).empty()) continue;
         if (csv.columns.empty()) {
@@ -251,13 +281,19 @@ Csv parse_csv(std::string_view bytes) {
                 cells.push_back({});
             else fault_of_length(*line, cells.size(), csv.columns.size());
         }
-        for (std::size_t k = 0; k < cells.size(); ++k)
+        for (std::size_t k = 0; k < cells.size(); ++k) {
             csv.columns[k].values.push_back(
                 number_in(cells[k], *separator, line->number, csv.columns[k].name));
+            signs.see(cells[k].text, line->number, csv.columns[k].name);
+        }
         csv.lines.push_back(static_cast<std::uint32_t>(line->number));
     }
     if (csv.columns.empty())
-        throw Problem(422, "the record is empty: it needs a header and lines of numbers");
+        throw Problem(
+            422, heading.has_something()
+                     ? "the record has no line of two or more numbers, separated by semicolons, "
+                       "tabs, commas or blanks"
+                     : "the record is empty: it needs a header and lines of numbers");
     return csv;
 }
 

@@ -32,7 +32,7 @@ std::string lower(std::string text) {
     return text;
 }
 
-const Unit* known(const Quantity& q, const std::string& text) {
+const Unit* known(const Quantity& q, std::string_view text) {
     const std::string written = unit_spelling(text);
     const auto it = std::find_if(q.units.begin(), q.units.end(), [&](const Unit& u) {
         return std::find(u.spellings.begin(), u.spellings.end(), written) != u.spellings.end();
@@ -52,11 +52,14 @@ std::optional<Suffix> suffix_of(const Quantity& q, const std::string& name) {
         return Suffix{
             name.substr(open + 1, close == std::string::npos ? close : close - open - 1), true};
     }
+    // A column called by a unit alone.
+    if (known(q, name)) return Suffix{name, false};
     std::size_t last = std::string::npos;
     for (std::size_t at = name.find_first_of("_ "); at != std::string::npos;
          at = name.find_first_of("_ ", at + 1)) {
         // m_s2 before s2.
-        if (known(q, name.substr(at + 1))) return Suffix{name.substr(at + 1), false};
+        if (known(q, std::string_view(name).substr(at + 1)))
+            return Suffix{name.substr(at + 1), false};
         last = at;
     }
     if (last == std::string::npos) return {};

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/motion/elementary.hpp"
 #include "core/motion/special_values.hpp"
 
 namespace vines::report {
@@ -38,20 +37,6 @@ double rank_correlation(const std::vector<double>& a, const std::vector<double>&
     for (std::size_t i = 0; i < a.size(); ++i)
         product += (of_a[i] - m_a.mean) * (of_b[i] - m_b.mean);
     return product / (static_cast<double>(a.size()) - 1) / (m_a.deviation * m_b.deviation);
-}
-
-double two_sided_probability(const std::vector<double>& others, double value) {
-    const auto below = std::ranges::count_if(others, [value](double v) { return v <= value; }),
-               above = std::ranges::count_if(others, [value](double v) { return v >= value; });
-    return std::min(
-        1.0, 2 * static_cast<double>(1 + std::min(below, above)) /
-                 static_cast<double>(1 + others.size()));
-}
-
-double fisher_statistic(const std::vector<double>& probabilities) {
-    double sum = 0;
-    for (const double p : probabilities) sum -= 2 * elementary::log(p);
-    return sum;
 }
 
 double quantile(std::vector<double> values, double share) {

@@ -19,13 +19,6 @@ Moments moments(const std::vector<double>& values);
 /// Spearman's, -1 to 1: of pairs of equal length without ties.
 double rank_correlation(const std::vector<double>& a, const std::vector<double>& b);
 
-/// How often chance leaves a value as far out, on either side, as the given one lies among others:
-/// by its rank, so whatever their distribution; at least 2/(n + 1).
-double two_sided_probability(const std::vector<double>& others, double value);
-/// Fisher's: minus twice the sum of the logarithms of independent probabilities. By chance it is
-/// chi squared with twice as many degrees of freedom.
-double fisher_statistic(const std::vector<double>& probabilities);
-
 /// The value below which a share (below 1) of the others lies; NaN of nothing.
 double quantile(std::vector<double> values, double share);
 inline double median(std::vector<double> values) { return quantile(std::move(values), 0.5); }

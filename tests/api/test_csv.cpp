@@ -43,7 +43,7 @@ TEST_CASE("a record is the same by any separator, line end, decimal sign and enc
     check_is_the_record("time_s\tx_mm\n0\t1,5\n0,001\t-2,5\n0,002\t3e-5\n");
     check_is_the_record("  time_s     x_mm\n  0.000     1.5\n 0.001    -2.5\n 0.002  +3e-5  \n");
     check_is_the_record("time_s x_mm\n0,000 1,5\n0,001 -2,5\n0,002 3e-5\n");
-    check_is_the_record("\"time_s\",\"x_mm\"\n0,\"1,5\"\n\"0,001\",\"-2,5\"\n0.002,\"3e-5\"\n");
+    check_is_the_record("\"time_s\",\"x_mm\"\n0,\"1,5\"\n\"0,001\",\"-2,5\"\n\"0,002\",\"3e-5\"\n");
     check_is_the_record("\xef\xbb\xbf" + plain);
     for (const bool big_end_first : {false, true})
         for (const bool mark : {false, true})
@@ -79,6 +79,16 @@ TEST_CASE("a row of units stands below the names") {
         CHECK(csv.columns[1].unit.find("m/s^2") != std::string::npos);
         CHECK(csv.columns[1].values == std::vector{1.0, 2.0});
     }
+    for (const char* text :
+         {"# ms,mm\ntime,displacement\n0,1\n", "ms,mm\ntime,displacement\n0,1\n",
+          "# time,displacement\nms,mm\n0,1\n"}) {
+        CAPTURE(text);
+        const Csv csv = parse_csv(text);
+        CHECK(csv.columns[0].name == "time");
+        CHECK(csv.columns[0].unit == "ms");
+        CHECK(csv.columns[1].unit == "mm");
+    }
+    CHECK(parse_csv("sep=|\ntime|x\n0|1\n").columns[1].name == "x");
     // Names that could be units are names.
     CHECK(parse_csv("t,a\n0,1\n").columns[1].name == "a");
 }
@@ -95,7 +105,8 @@ TEST_CASE("letters beyond ASCII in a record of another encoding are read as Lati
 
 TEST_CASE("what is no record is refused with the line and the reason") {
     CHECK(problem("") == "the record is empty: it needs a header and lines of numbers");
-    CHECK(problem("time_s,x\n") == "the record is empty: it needs a header and lines of numbers");
+    CHECK(problem("time_s,x\n").find("the record has no line of two or more numbers") == 0);
+    CHECK(problem(std::string(1 << 20, ',')).find("the record has no line") == 0);
     CHECK(problem("0,1\n1,2\n").find("line 1: a line above the numbers must name") == 0);
     CHECK(problem("time_s,x,y\n0,1\n") == "line 2: has 2 columns, the header has 3");
     CHECK(problem("time_s,x\n0,1\n1,2,3\n") == "line 3: has 3 columns, the header has 2");
@@ -103,6 +114,14 @@ TEST_CASE("what is no record is refused with the line and the reason") {
     CHECK(problem("time_s,x\n0,1\n,2\n") == "line 3, column time_s: there is no number");
     CHECK(problem("time_s,x\n0,one\n1,2\n") == "line 2, column x: \"one\" is no number");
     CHECK(problem("time_s,x\n0,1\n1,inf\n") == "line 3, column x: the number is not finite");
+    CHECK(
+        problem("t;x\n0;1.5\n1;2,5\n") ==
+        "line 3, column x: the record has decimal points and decimal commas");
+    CHECK(
+        problem("t,x\n0.5,\"1,234\"\n") ==
+        "line 2, column x: the record has decimal points and decimal commas");
+    CHECK(problem("t,x\n0,1\n1,+-5\n") == "line 3, column x: \"+-5\" is no number");
+    CHECK(problem("t,x\n0,1\n1,\"2\"5\n") == "line 3, column x: \"\"2\"5\" is no number");
     // A decimal comma beside separating ones.
     CHECK(problem("time_s,x\n0,001,1,5\n") == "line 2: has 4 columns, the header has 2");
 }

@@ -207,16 +207,6 @@ TEST_CASE("a rank correlation is one of what rises together, however, and minus 
     CHECK(rank_correlation({1, 2, 3, 4, 5}, {2, 1, 4, 3, 5}) == doctest::Approx(0.8));
 }
 
-TEST_CASE("how far out a value lies is told by its rank on the nearer side, however far it is") {
-    const std::vector<double> others = {1, 2, 3, 4, 5, 6, 7, 8, 1000};
-    CHECK(two_sided_probability(others, 5) == 1);
-    CHECK(two_sided_probability(others, 0) == doctest::Approx(0.2));
-    CHECK(two_sided_probability(others, 900) == doctest::Approx(0.4));
-    CHECK(two_sided_probability(others, 1e9) == doctest::Approx(0.2));
-    CHECK(fisher_statistic({1, 1}) == 0);
-    CHECK(fisher_statistic({std::exp(-1.0), std::exp(-2.0)}) == doctest::Approx(6));
-}
-
 TEST_CASE("moments and quantiles are those of the numbers, and of none they are none") {
     const Moments m = moments({1, 2, 3, 4, 5});
     CHECK(m.mean == 3);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/identification/fitted_motion.hpp"
+#include "core/identification/progress.hpp"
 
 namespace vines {
 

@@ -70,13 +70,13 @@ Matrix4 transfer_of(const Leg& leg, double epsilon) {
 namespace {
 
 /// Of one part, which shrinks too little for the difference to lose digits.
-double determinant(const Transfer& a) { return a.a11 * a.a22 - a.a12 * a.a21; }
+double determinant_of(const Transfer& a) { return a.a11 * a.a22 - a.a12 * a.a21; }
 
 }  // namespace
 
 Area carried(const Area& w, const Leg& leg, double epsilon) {
     const auto& [a11, a12, a21, a22] = leg.oscillator;
-    const double det = determinant(leg.oscillator);
+    const double det = determinant_of(leg.oscillator);
     Area out;
     if (leg.stuck) {
         // The area of the two deviations of the centre of mass, (nu x' + mu y') and (nu x + mu y),
@@ -98,7 +98,7 @@ Volume carried(const Volume& volume, const Leg& leg) {
     // det(J) J^-T n
     const auto& [a11, a12, a21, a22] = leg.oscillator;
     const Eigen::Vector4d& n = volume.normal;
-    const double det = determinant(leg.oscillator);
+    const double det = determinant_of(leg.oscillator);
     return {
         {a22 * n(0) - a21 * n(1), a11 * n(1) - a12 * n(0), det * (n(2) - leg.duration * n(3)),
          det * n(3)}};
@@ -147,20 +147,17 @@ void Flag::pass(const Leg& leg, double epsilon) {
     carry(deviation, leg, epsilon);
     area = carried(area, leg, epsilon);
     volume = carried(volume, leg);
-    content *= leg.stuck ? 0 : determinant(leg.oscillator);
+    determinant *= leg.stuck ? 0 : determinant_of(leg.oscillator);
 }
 
 void Flag::strike(const Saltation& M) {
     deviation = M.times(deviation);
     area = carried(area, M);
     volume = carried(volume, M);
-    content *= M.R * M.R;
 }
 
-std::array<double, 4> Flag::squares() const {
-    return {
-        deviation.squaredNorm(), area.squaredNorm(), volume.normal.squaredNorm(),
-        content * content};
+std::array<double, 3> Flag::squares() const {
+    return {deviation.squaredNorm(), area.squaredNorm(), volume.normal.squaredNorm()};
 }
 
 std::array<double, 2> Flag::gaps() const {

@@ -50,19 +50,19 @@ Volume carried(const Volume& volume, const Leg& leg);
 Area carried(const Area& area, const Saltation& M);
 Volume carried(const Volume& volume, const Saltation& M);
 
-/// What the first deviation, the first two, three and all four of them span: a length, an area, a
-/// volume and a content. Carried from (x', x, y', y) = the unit vectors they are the products of
-/// the diagonal of R in a QR factorisation of all matrices passed: nothing needs to be made
-/// orthogonal.
+/// What the first deviation, the first two and three of them span: a length, an area and a volume;
+/// and the determinant of the flights, that of an impact being R^2. Carried from (x', x, y', y) =
+/// the unit vectors they are the products of the diagonal of R in a QR factorisation of all
+/// matrices passed: nothing needs to be made orthogonal.
 struct Flag {
     Eigen::Vector4d deviation = Eigen::Vector4d::Unit(0);
     Area area = Area::Unit(0);
     Volume volume{Eigen::Vector4d::Unit(3)};
-    double content = 1;
+    double determinant = 1;
 
     void pass(const Leg& leg, double epsilon);  ///< one part of it
     void strike(const Saltation& M);
-    std::array<double, 4> squares() const;  ///< of the four sizes
+    std::array<double, 3> squares() const;  ///< of length, area and volume
     /// Sines of the angles by which the deviation leaves the plane of the area, and that the space
     /// of the volume: how far rounding has carried the parts apart. NaN of what is zero.
     std::array<double, 2> gaps() const;

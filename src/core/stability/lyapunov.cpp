@@ -16,6 +16,9 @@ namespace {
 // Products of lengths, and squares of areas and volumes, are kept within these bounds by taking
 // their logarithms out: a third of double's exponents, so that the next factors stay in its range.
 constexpr double least_product = 1e-100, most_product = 1e100;
+constexpr double rounding = std::numeric_limits<double>::epsilon();
+// The sine of an angle that should be none, far above what rounding leaves of it.
+constexpr double widest_gap = 1e-6;
 bool is_in_range(double product) { return product > least_product && product < most_product; }
 
 constexpr Exponents no_exponents = {nan, nan, nan, nan};
@@ -61,8 +64,8 @@ Exponents per_time(const Exponents& logs, int rank, double T) {
     return lambda;
 }
 
-/// The same in descending order, with NaN where it is: over a short window, or one of strong
-/// damping, the deviations need not have turned into that order.
+/// The same in descending order, NaN behind: over a short window, or one of strong damping, the
+/// deviations need not have turned into that order.
 Exponents descending(Exponents logs, int rank, double T) {
     for (int k = 1; k < rank; ++k)
         for (int j = k; j > 0 && (logs[j] > logs[j - 1] || std::isnan(logs[j - 1])); --j)
@@ -91,72 +94,103 @@ struct TransferProduct::Qr {
     explicit Qr(std::size_t history) : thinned(history) {}
 
     Flag flag;
-    Exponents taken{};  // logarithms that were taken out of its four sizes
-    // What the law makes of the fourth: e^(-2 zeta s) of J, R^2 of M.
-    double log_det_J = 0, log_det_M = 0, det_M = 1;
+    std::array<double, 4> taken{};  // logarithms that were taken out of its four sizes
+    double log_det = 0;             // of the flights by the law: -2 zeta s
+    double R_product = 1, log_R = 0;
+    /// What rounding may have changed of the logarithms of length, area and volume.
+    std::array<double, 3> lost{};
     int unseen = 0;  // impacts since the sizes were looked at
     Thinned thinned;
 
     void pass(const Leg& leg, double epsilon) {
         for (long k = 0; k < leg.parts; ++k) {
             flag.pass(leg, epsilon);
-            log_det_J += leg.log_det;
+            log_det += leg.log_det;
             if (leg.parts > 1 || leg.stuck) rescale();
         }
     }
 
     void strike(const Saltation& M) {
+        // Others, with a flight of one part, let no size grow by more than 1e17 (where the flight
+        // lasts 1e10), nor shrink by more than 1e10.
+        const double steepness = std::abs(M.turn_x) + std::abs(M.turn_y);
+        if (M.R < 1e-3 || steepness > 1e6) return strike_strongly(M, steepness);
         flag.strike(M);
-        det_M *= M.R * M.R;
-        // Other impacts, with a flight of one part, let no size grow by more than 1e17 (where the
-        // flight lasts 1e10), nor shrink by more than 1e10.
-        const bool is_strong = M.R < 1e-3 || std::abs(M.turn_y) > 1e6;
-        if (is_strong || ++unseen == 4) rescale();
+        for (double& share : lost) share += rounding;
+        R_product *= M.R;
+        if (++unseen == 4) rescale();
+    }
+
+    /// x - y and x' - y' of a deviation are known to an ulp of x and x', of areas and volumes
+    /// alike, and M magnifies that by its entries: what this is of the sizes behind it.
+    void strike_strongly(const Saltation& M, double steepness) {
+        rescale();
+        const auto before = flag.squares();
+        flag.strike(M);
+        const auto after = flag.squares();
+        for (int k = 0; k < 3; ++k)
+            lost[k] += before[k] > 0
+                           ? rounding * (1 + (1 + steepness) * std::sqrt(before[k] / after[k]))
+                           : 0;
+        log_R += elementary::log(M.R);
+        rescale();
     }
 
     /// Keeps the sizes within the range of double; what has lost its rank stays zero.
     void rescale() {
         unseen = 0;
         const auto squares = flag.squares();
-        auto may_stay = [](double square) { return is_in_range(square) || square == 0; };
-        auto keep = [&](int k, auto& size) {
-            if (may_stay(squares[k])) return;
-            taken[k] += 0.5 * elementary::log(squares[k]);
-            size *= 1 / std::sqrt(squares[k]);
+        auto keep = [](double square, auto& size, double& log) {
+            if (is_in_range(square) || square == 0) return;
+            log += 0.5 * elementary::log(square);
+            size *= 1 / std::sqrt(square);
         };
-        keep(0, flag.deviation);
-        keep(1, flag.area);
-        keep(2, flag.volume.normal);
-        keep(3, flag.content);
-        if (is_in_range(det_M)) return;
-        log_det_M += elementary::log(det_M);
-        det_M = 1;
+        keep(squares[0], flag.deviation, taken[0]);
+        keep(squares[1], flag.area, taken[1]);
+        keep(squares[2], flag.volume.normal, taken[2]);
+        auto take = [](double& product, double& log) {
+            if (is_in_range(std::abs(product)) || product == 0) return;
+            log += elementary::log(std::abs(product));
+            product = product < 0 ? -1 : 1;
+        };
+        take(flag.determinant, taken[3]);
+        take(R_product, log_R);
     }
 
+    double log_det_found() const { return taken[3] + elementary::log(std::abs(flag.determinant)); }
+
     /// Growth of the first deviation, and by how much the next ones make that of area, volume and
-    /// content larger: the diagonal of R.
+    /// determinant larger: the diagonal of R.
     Exponents logs(int rank) const {
         const auto squares = flag.squares();
         Exponents logs{};
         double before = 0;
         for (int k = 0; k < rank; ++k) {
-            const double sum = taken[k] + 0.5 * elementary::log(squares[k]);
+            const double sum = k < 3 ? taken[k] + 0.5 * elementary::log(squares[k])
+                                     : log_det_found() + 2 * (log_R + elementary::log(R_product));
             logs[k] = sum - before;
             before = sum;
         }
         return logs;
     }
 
-    /// By how much each of the four may be wrong: the parts of the flag part, and the determinants
-    /// of the matrices miss their law.
-    std::array<double, 4> misses(int rank) const {
-        const auto [plane, space] = flag.gaps();
-        const double law = log_det_J + log_det_M + elementary::log(det_M),
-                     found = taken[3] + elementary::log(std::abs(flag.content));
+    /// By how much each of the four sums misses: the angles by which parts of the flag have come
+    /// apart, and the determinants their law. Where rounding may have changed one by more than
+    /// `most`, that.
+    std::array<double, 4> misses(int rank, double most) const {
+        const auto squares = flag.squares();
+        const auto gaps = flag.gaps();
         std::array<double, 4> misses{};
-        if (rank > 1) misses[1] = plane;
-        if (rank > 2) misses[2] = space;
-        if (rank > 3) misses[3] = std::abs(found - law);
+        for (int k = 0; k < std::min(rank, 3); ++k) {
+            if (!(lost[k] <= most)) misses[k] = lost[k];
+            if (!(squares[k] > 0)) misses[k] = infinity;
+        }
+        for (int k = 1; k < std::min(rank, 3); ++k) {
+            // Which of the two is wrong a gap does not tell.
+            const double gap = gaps[k - 1] <= widest_gap ? gaps[k - 1] : infinity;
+            misses[k - 1] = std::max(misses[k - 1], gap), misses[k] = std::max(misses[k], gap);
+        }
+        if (rank == 4) misses[3] = std::abs(log_det_found() - log_det);
         return misses;
     }
 };
@@ -238,10 +272,14 @@ Exponents TransferProduct::qr() const {
     if (!qr_) return no_exponents;
     const double T = end_ - start_;
     Exponents logs = qr_->logs(rank_);
-    const auto misses = qr_->misses(rank_);
-    // The k-th exponent is the difference of two sums.
-    for (int k = 1; k < rank_; ++k)
-        if (!(std::max(misses[k], misses[k - 1]) <= most_residual * T)) logs[k] = nan;
+    const auto misses = qr_->misses(rank_, most_residual * (end_ - start_));
+    // The k-th exponent is the difference of two sums. Where one is not known, it is not known
+    // either which place the ones behind it have among the others.
+    for (int k = 0; k < rank_; ++k)
+        if (!(misses[k] <= most_residual * T)) {
+            std::fill(logs.begin() + k, logs.begin() + rank_, nan);
+            break;
+        }
     return descending(logs, rank_, T);
 }
 Exponents TransferProduct::eigenvalues() const {
@@ -262,7 +300,7 @@ const ExponentHistory& TransferProduct::raw_product_history() const {
 
 double TransferProduct::sum_rule_residual() const {
     if (!qr_ || impacts_ < 2) return nan;
-    const auto misses = qr_->misses(rank_);
+    const auto misses = qr_->misses(rank_, most_residual * (end_ - start_));
     return *std::max_element(misses.begin(), misses.end()) / (end_ - start_);
 }
 

@@ -1,9 +1,8 @@
 // Transient Lyapunov exponents of a sequence of transfer matrices, by three estimators.
 //
-//   qr           Benettin's: how the length of a deviation, the area of two, the volume of three
-//   and
-//                the content of four grow that are carried by T_i = M_i J_i (30), as logarithms of
-//                the diagonal of R in a QR factorisation at every impact. The reference.
+//   qr           Benettin's: how length, area, volume and determinant of one to four deviations
+//                grow that are carried by T_i = M_i J_i (30): as the diagonal of R in a QR
+//                factorisation at every impact. The reference.
 //   eigenvalues  ln|eigenvalues of T_n ... T_1| / T, eq. (33), all four moduli right over any
 //                window: the largest eigenvalue of each exterior power of the product (the k-th
 //                has the k-fold products of its eigenvalues), each product scaled as it grows.
@@ -17,9 +16,10 @@
 //
 // A stick leaves only the deviations of the centre of mass (rank 2), an impact with R = 0 leaves
 // none of x - y (rank 3): from there on the exponents beyond the rank are minus infinity, and the
-// rule says nothing. At rank 4 `qr` is checked against it; at any rank the deviation must lie in
-// the plane of the area, and that in the space of the volume (exterior.hpp, Flag), though each is
-// carried by itself.
+// rule says nothing. At rank 4 the determinants of the flights, multiplied up, are held against it.
+// At any rank what rounding may have changed is added up where M magnifies it (near grazing, or
+// with a tiny R), and the deviation must lie in the plane of the area, and that in the space of the
+// volume (exterior.hpp, Flag), though each is carried by itself.
 #pragma once
 
 #include <array>
@@ -82,11 +82,12 @@ public:
     double end_tau() const { return end_; }
     long impacts() const { return impacts_; }  ///< of the window, the first included
     int rank() const { return rank_; }
-    /// By how much qr misses the sum rule (at rank 4), or its parts have come apart: the larger,
-    /// per unit of tau; NaN without qr or two impacts.
+    /// By how much qr misses the sum rule (at rank 4), or its parts have come apart, or, if that is
+    /// more than `most_residual`, rounding may have changed them: the largest, per unit of tau. NaN
+    /// without qr or two impacts.
     double sum_rule_residual() const;
-    /// The exponents at the last impact, descending; NaN where there are none, or of those that
-    /// miss by more than `most_residual`.
+    /// The exponents at the last impact, descending; NaN where there are none, or from the first on
+    /// that may be wrong by more than `most_residual`.
     Exponents qr() const;
     Exponents eigenvalues() const;
     Exponents raw_product() const;

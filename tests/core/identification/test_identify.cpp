@@ -524,18 +524,18 @@ TEST_CASE(
     CHECK(told.front() == std::pair(IdentificationStage::spikes, 0));
     CHECK(told.back() == std::pair(IdentificationStage::exponents, 0));
     CHECK(told.size() > 5);
-    for (const auto& [stage, round] : told) {
-        CAPTURE(round);
+    for (const auto& here : told) {
+        CAPTURE(here.second);
         Told until;
         const IdentificationWatch watch{
-            .stop = [&] { return !until.empty() && until.back() == std::pair(stage, round); },
+            .stop = [&] { return !until.empty() && until.back() == here; },
             .reached = [&](IdentificationStage s, int r) { until.emplace_back(s, r); }};
         try {
             conclude(m, spikes_of(m, watch).spikes, watch);
             FAIL("it went on");
         } catch (const IdentificationStopped& stopped) {
-            CHECK(stopped.stage == stage);
-            CHECK(stopped.round == round);
+            CHECK(stopped.stage == here.first);
+            CHECK(stopped.round == here.second);
         }
     }
 }

@@ -143,6 +143,7 @@ TEST_CASE("a flag's sizes are those of a QR factorisation at every impact") {
         Flag flag;
         Matrix4 frame = Matrix4::Identity();
         std::array<double, 4> sizes = {1, 1, 1, 1};
+        double impacts = 1;
         for (int n = 0; n < 30; ++n) {
             const Leg leg = random_leg(engine, p, false);
             const Saltation M = random_strike(engine, p);
@@ -154,7 +155,9 @@ TEST_CASE("a flag's sizes are those of a QR factorisation at every impact") {
             double all = 1;
             for (int k = 0; k < 4; ++k) sizes[k] *= all *= std::abs(factors.matrixQR()(k, k));
             const auto squares = flag.squares();
-            for (int k = 0; k < 4; ++k)
+            impacts *= M.R * M.R;
+            CHECK(flag.determinant * impacts == doctest::Approx(sizes[3]).epsilon(1e-9).scale(0));
+            for (int k = 0; k < 3; ++k)
                 CHECK(std::sqrt(squares[k]) == doctest::Approx(sizes[k]).epsilon(1e-9).scale(0));
             for (const double gap : flag.gaps()) CHECK(gap < 1e-12);
         }

@@ -522,6 +522,34 @@ TEST_CASE("under strong damping all four exponents are right, at any rank") {
     }
 }
 
+TEST_CASE("what rounding has reached behind a tiny R has no value, and what it has not is right") {
+    Parameters p;
+    p.epsilon = 3.5777223771207137e-05, p.lambda = 11105.539493358499, p.G = 0.061658938846328282;
+    p.Omega = 0.15725674231722098, p.b = 0.026854170639768374;
+    const State start{0.0059149439149146985, 0, -0.056531687868110039, -0.020834212450224508};
+    const auto product_of = [&](double R) {
+        p.R_plus = p.R_minus = R;
+        Lyapunov lyapunov(p, 0, 4000, qr_alone);
+        record(p, start, 4000, 6, {&lyapunov});
+        return lyapunov.take();
+    };
+    // By the product in 400 digits lambda1 would be off by 2e-6.
+    const TransferProduct lost = product_of(1.0249004442604184e-12);
+    CHECK(lost.sum_rule_residual() > most_residual);
+    for (const double lambda : lost.qr()) CHECK(status_of(lambda) == Status::not_converged);
+    for (const double R : {1e-60, 1e-82, 1e-170, 1e-300}) {
+        CAPTURE(R);
+        const TransferProduct product = product_of(R);
+        const Exponents qr = product.qr();
+        const double T = product.end_tau() - product.start_tau();
+        CHECK(product.sum_rule_residual() < 1e-12);
+        CHECK(qr[0] == doctest::Approx(-0.10411285435765848).epsilon(1e-9));
+        const double law =
+            -2 * p.zeta() + 2 / T * static_cast<double>(product.impacts() - 1) * std::log(R);
+        CHECK(qr[0] + qr[1] + qr[2] + qr[3] == doctest::Approx(law).epsilon(1e-12));
+    }
+}
+
 TEST_CASE("tiny restitution coefficients leave the exponents right: their sum obeys the rule") {
     for (double R : {0.5, 1e-2, 1e-4, 1e-8, 1e-12}) {
         CAPTURE(R);
