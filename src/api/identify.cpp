@@ -9,10 +9,12 @@
 #include "api/column.hpp"
 #include "api/describe.hpp"
 #include "api/describe_exponents.hpp"
+#include "api/fitted_unknowns.hpp"
 #include "api/identify_text.hpp"
 #include "api/schema/words.hpp"
 #include "api/si_columns.hpp"
 #include "api/simulate.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines::api {
 
@@ -53,19 +55,30 @@ Json describe_walls(const Identification& found) {
 
 /// What the record is like, as the fit sees it.
 Json describe_signal(const Measurement& m, const MeasurementResult& result, double omega0) {
-    const FittedMotion& motion = result.refined->motion;
+    const FoundImpacts& refined = *result.refined;
+    const JointFit& fit = refined.fit;
+    const double amplitude_sin = fit.values[Unknown::force_sin],
+                 amplitude_cos = fit.values[Unknown::force_cos];
+    // The fit's phase is that in the record's middle.
+    const double angle = fit.values[Unknown::Omega] * fit.tau_middle, sin = elementary::sin(angle),
+                 cos = elementary::cos(angle);
     return {
         {"samples", m.record.tau.size()},
         {"sampling_rate", omega0 / m.step()},
-        {"noise_displacement", finite_or_null(motion.noise_x)},
-        {"noise_acceleration", finite_or_null(motion.noise_x_ddot * omega0 * omega0)},
+        {"noise_displacement", finite_or_null(fit.noise_x)},
+        {"noise_acceleration", finite_or_null(fit.noise_a * omega0 * omega0)},
         {"misfit",
-         {{"displacement", finite_or_null(motion.misfit_x)},
-          {"acceleration", finite_or_null(motion.misfit_x_ddot)}}},
-        {"pulse_s", result.refined->pulse / omega0},
+         {{"displacement", finite_or_null(fit.misfit_x)},
+          {"acceleration", finite_or_null(fit.misfit_a)}}},
+        {"pulse_s", refined.pulse.length() / omega0},
+        {"pulse_delay_s",
+         refined.pulse.empty() ? Json(nullptr) : Json(refined.pulse.delay() / omega0)},
+        {"pulse_spoils_s",
+         Json::array({-refined.extent.before / omega0, refined.extent.after / omega0})},
+        {"pulses_unseen", refined.unseen},
         {"G", result.parameters.G},
-        {"force_sin", motion.force_sin},
-        {"force_cos", motion.force_cos}};
+        {"force_sin", amplitude_sin * cos + amplitude_cos * sin},
+        {"force_cos", amplitude_cos * cos - amplitude_sin * sin}};
 }
 
 Json describe_forward(const std::optional<ForwardRun>& run) {
@@ -99,16 +112,19 @@ const char* reason_of(const IdentifiedExponents& e) {
 
 /// How fast to sample, where impacts were not seen because their pulse fell between two samples;
 /// else empty.
-std::string sampling_advice(const RefinedImpacts& refined, double step, double omega0) {
-    // A pulse of a sample or more is seen. What is fitted of a shorter one is little more than that
-    // it is short.
-    if (refined.tau.empty() || refined.pulse >= step) return "";
-    constexpr double most = 4;
-    const double rate = omega0 / step * std::min(most, 2 * step / refined.pulse);
+std::string sampling_advice(const FoundImpacts& refined, double step, double omega0) {
+    const auto impacts = static_cast<double>(refined.fit.impacts.size()),
+               unseen = static_cast<double>(refined.unseen);
+    // A pulse now and then is lost in other ways.
+    constexpr double few = 0.03, most = 8;
+    if (!(unseen > few * impacts)) return "";
+    // A pulse shorter than a step is seen as often as it is long; two samples of each are enough.
+    const double rate = omega0 / step * std::min(most, 2 * impacts / (impacts - unseen));
     return fmt::format(
-        "the impacts' pulses last about {:.3g} ms, the samples are {:.3g} ms apart: pulses may "
-        "fall between samples; sample at {:.4g} Hz or more",
-        1000 * refined.pulse / omega0, 1000 * step / omega0, std::ceil(rate));
+        "the pulses of {} of {} impacts are not seen, though the displacement shows their kinks: "
+        "if "
+        "they fall between samples, {:.4g} ms apart, sample at {:.4g} Hz or more",
+        refined.unseen, refined.fit.impacts.size(), 1000 * step / omega0, std::ceil(rate));
 }
 
 /// The exponents as of a simulation, in the record's time.
@@ -176,40 +192,25 @@ Json describe_motion(
             "the motion is given at one of {} samples, so that it holds no more than max_points = "
             "{}",
             every, r.most_points));
-    const OscillatorSeries motion = motion_at(result.parameters, result.refined->motion, moments);
+    const std::vector<OscillatorMotion> motion = motion_at(result.refined->fit, moments);
     return {
-        {"tau", column(motion.tau)},
-        {"x", column(motion.x)},
-        {"x_dot", column(motion.x_dot)},
-        {"x_ddot", column(motion.x_ddot)}};
-}
-
-/// The spikes of a record, or Problem 422 where there are too few to identify anything.
-std::vector<Spike> read_spikes(const IdentifyRequest& r, const IdentificationWatch& watch) {
-    const Measurement& m = r.measurement;
-    if (!m.is_record()) return {};
-    Spikes found = spikes_of(m, watch);
-    if (found.spikes.size() >= 2) return std::move(found.spikes);
-    const double omega0 = r.system.si->omega0();
-    throw Problem(
-        422,
-        fmt::format(
-            "nothing in the acceleration looks like impacts: {} spike(s) rise above threshold = "
-            "{:.3g} standard deviations of the noise ({:.3g} m/s^2)",
-            found.spikes.size(), m.threshold, found.noise * omega0 * omega0),
-        {{"/threshold", m.threshold, Json::array({3, 1000}), "lower it, or give impact_times_s"}});
+        {"tau", column(moments)},
+        {"x", column(motion, [](const OscillatorMotion& m) { return m.x; })},
+        {"x_dot", column(motion, [](const OscillatorMotion& m) { return m.x_dot; })},
+        {"x_ddot", column(motion, [](const OscillatorMotion& m) { return m.x_ddot; })}};
 }
 
 /// What is odd about the fit of a record.
 void add_fit_warnings(
     const IdentifyRequest& r, const MeasurementResult& result, Warnings& warnings) {
-    const RefinedImpacts& refined = *result.refined;
+    const FoundImpacts& refined = *result.refined;
     const Identification& found = result.found;
     const double omega0 = r.system.si->omega0();
     if (!refined.dropped.empty())
         warnings.push_back(fmt::format(
             "{} spike(s) without a jump of the velocity were dropped, the first at {:.6g} s",
-            refined.dropped.size(), refined.dropped[0].tau / omega0));
+            refined.dropped.size(), refined.dropped[0] / omega0));
+    add_fitted_warnings(refined.fit, given_unknowns(r.measurement.parameters), omega0, warnings);
     if (!b_agrees(result.parameters, found))
         warnings.push_back(fmt::format(
             "the impacts' momentum fits b = {:.4g} m, not b = {:.4g} m ({})", found.b_fitted,
@@ -217,8 +218,9 @@ void add_fit_warnings(
     if (!std::isfinite(found.b_fitted))
         warnings.push_back(
             std::string("no b is fitted to the impacts' momentum: ") + text_of(found.b_fault));
-    // What is fitted of the pulses is advice only where the rest of the fit is right.
-    if (!result.doubts.empty() || r.measurement.record.x_ddot.empty()) return;
+    // Which pulses are seen is advice only where the impacts are right.
+    if (!result.doubts.empty() || result.is_incomplete() || r.measurement.record.x_ddot.empty())
+        return;
     const std::string advice = sampling_advice(refined, r.measurement.step(), omega0);
     if (!advice.empty()) warnings.push_back(advice);
 }
@@ -263,6 +265,10 @@ System identified_system(const IdentifyRequest& r, const MeasurementResult& resu
         used.origin["R_plus"] = used.origin["R_minus"] = "estimated from the impacts";
     if (r.measurement.is_record()) {
         used.si->F = result.parameters.G * result.parameters.epsilon;
+        if (!result.refined->fit.fixed[Unknown::Omega]) {
+            used.si->f = result.parameters.Omega * used.si->f0();
+            used.origin["f"] = used.origin["Omega"] = "fitted to the record";
+        }
         used.origin["F"] = used.origin["G"] = "fitted to the record";
     }
     return used;
@@ -284,7 +290,16 @@ namespace {
 
 MeasurementResult watched_result(const IdentifyRequest& r, const IdentificationWatch& watch) {
     try {
-        return conclude(r.measurement, read_spikes(r, watch), watch);
+        return conclude(r.measurement, watch);
+    } catch (const TooFewImpacts& few) {
+        throw Problem(
+            422,
+            fmt::format(
+                "nothing in the record looks like impacts: {} pulse(s) or kink(s) with threshold = "
+                "{:.3g} standard deviations of the noise",
+                few.seen, r.measurement.threshold),
+            {{"/threshold", r.measurement.threshold, Json::array({3, 1000}),
+              "lower it, or give impact_times_s"}});
     } catch (const IdentificationStopped& at) {
         const std::size_t samples = r.measurement.record.tau.size();
         throw Problem(
@@ -314,7 +329,10 @@ Json identify_answer(const IdentifyRequest& r, const IdentificationWatch& watch)
     const IdentifiedExponents& judged = result.judged;
     Json answer = {{"version", version()}, {"parameters", describe_system(used)}};
     answer["parameters"]["derived"] = describe_derived(used);
-    if (result.refined) answer["signal"] = describe_signal(m, result, r.system.si->omega0());
+    if (result.refined) {
+        answer["signal"] = describe_signal(m, result, r.system.si->omega0());
+        answer["fitted"] = describe_fitted(result.refined->fit, r.system.si->omega0());
+    }
     answer["impacts"] = describe_identified(found.impacts);
     answer["restitution"] = describe_walls(found);
     answer["b_fitted"] = {

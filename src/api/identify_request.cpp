@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "api/fitted_unknowns.hpp"
 #include "api/record_columns.hpp"
 #include "core/motion/elementary.hpp"
 
@@ -80,6 +81,7 @@ IdentifyRequest read_fields(const Json& given, bool with_record) {
             m.moments.push_back(t.get<double>() * r.system.si->omega0());
         std::sort(m.moments.begin(), m.moments.end());
     }
+    m.fixed = fixed_of(l.words("fixed"));
     m.estimators = read_estimators(l);
     m.estimators.qr = true;  // the verdict's
     r.include = l.words("include");
@@ -108,11 +110,6 @@ void read_record(IdentifyRequest& r, const Json& fields, const Csv& csv) {
             {{"/record", names, nullptr,
               "the record has neither a displacement nor an acceleration; name them in "
               "displacement_column and acceleration_column"}});
-    if (!a.column && r.measurement.moments.empty())
-        refuse(
-            {{"/record", nullptr, nullptr,
-              "impacts are found from the spikes of the acceleration, and the record has none: "
-              "give their moments in impact_times_s"}});
     const double omega0 = r.system.si->omega0();
     MeasuredRecord& record = r.measurement.record;
     std::vector<double> seconds;
@@ -127,8 +124,9 @@ void read_record(IdentifyRequest& r, const Json& fields, const Csv& csv) {
         r.notes.push_back(
             "without a displacement, x at the impacts rests on the acceleration alone, whose "
             "errors add up: y' and R are less certain");
-    if (!a.column)
-        r.notes.push_back("without an acceleration the moments of the impacts are taken as given");
+    if (!a.column && r.measurement.moments.empty())
+        r.notes.push_back(
+            "without an acceleration the impacts are those that kinks of the displacement show");
     for (double tau : r.measurement.moments)
         if (!(tau > record.tau.front() && tau < record.tau.back()))
             refuse(

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "api/request.hpp"
-#include "core/identification/measurement.hpp"
+#include "core/measurement/measurement.hpp"
 
 namespace vines::api {
 

@@ -24,7 +24,6 @@ const char* text_of(BFault fault) {
     switch (fault) {
         case BFault::none: return "";
         case BFault::no_flight: return "no impact has one on the other wall before or after it";
-        case BFault::unexplained: return "the fitted motion does not explain the record";
         case BFault::negative: return "it would be negative";
         case BFault::scattered: return "the impacts say different ones";
     }
@@ -37,8 +36,9 @@ const char* text_of(Doubt doubt) {
             return "the search for impacts did not settle: what one round finds the next one drops";
         case Doubt::unexplained:
             return "the fitted motion does not explain the record: it leaves more than the noise "
-                   "of the sensors (signal.misfit). Is a parameter wrong (frequency, mass, "
-                   "stiffness), or has a sensor an offset, a drift, a delay or another scale?";
+                   "of the sensors (signal.misfit). Are impacts hidden, is something fixed "
+                   "that is wrong, or does a sensor more than an offset, a drift, a delay and a "
+                   "scale?";
         case Doubt::b_disagrees: return "the impacts' momentum does not fit the given b";
     }
     return "";

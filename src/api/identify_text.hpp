@@ -1,7 +1,7 @@
 // What the core says of a measurement, as sentences.
 #pragma once
 
-#include "core/identification/identify.hpp"
+#include "core/measurement/identify.hpp"
 
 namespace vines::api {
 

@@ -1,9 +1,9 @@
 #include <cmath>
 #include <string>
 
-#include "../core/identification/laboratory.hpp"
+#include "../core/measurement/laboratory.hpp"
 #include "core/analysis/analysis.hpp"
-#include "core/identification/measurement.hpp"
+#include "core/measurement/measurement.hpp"
 #include "core/sweep/sweep.hpp"
 #include "parts.hpp"
 #include "table.hpp"

@@ -189,9 +189,9 @@ test("an interrupted simulation answers with what it has and exit code 3", async
 });
 
 test("an interrupted identification says what it was at, with exit code 3", async () => {
-  const sample = (k) => `${k * 1e-9},0,${Math.sin(k)}`;
+  const sample = (k) => `${k * 1e-9},${Math.sin(k)}`;
   const {code, out, errors} = await run(["identify", "-q", "preset=fig15"], {
-    input: ["time_s,x,a", ...Array.from({length: 200000}, (_, k) => sample(k))].join("\n"),
+    input: ["time_s,a", ...Array.from({length: 200000}, (_, k) => sample(k))].join("\n"),
     signal: "SIGINT",
     until: waitsForSignals,
   });

@@ -153,6 +153,7 @@ function noteIdentification(keys, answer) {
   keys.note("parameters", answer.parameters, ["origin"]);
   for (const part of [
     "signal",
+    "fitted",
     "impacts",
     "restitution",
     "b_fitted",

@@ -102,7 +102,7 @@ test("a measurement is sent as CSV with its fields in the query, and may be larg
   const send = (body, query = "preset=fig15", url = service.url) =>
     fetch(`${url}/v1/identify?${query}`, {method: "POST", body, headers});
   const quiet = await problem(await send(csv(60000)), 422); // 2 MB
-  assert.match(quiet.detail, /nothing in the acceleration looks like impacts/);
+  assert.match(quiet.detail, /nothing in the record looks like impacts/);
   const noNumber = await problem(await send(csv(200).replace("0.000488", "oops")), 422);
   assert.equal(noNumber.detail, 'line 3, column time_s: "oops" is no number');
   const unknown = await problem(await send(csv(200), "preset=fig15&q=1"), 422);
@@ -446,8 +446,8 @@ test("a request that computes too long ends with what it has", async () => {
 
 test("a record that takes too long ends with the stage that was reached", async () => {
   // All samples within the neighbourhood of each: the work grows with their square.
-  const sample = (k) => `${k * 1e-9},0,${Math.sin(k)}`;
-  const record = ["time_s,x,a", ...Array.from({length: 50000}, (_, k) => sample(k))].join("\n");
+  const sample = (k) => `${k * 1e-9},${Math.sin(k)}`;
+  const record = ["time_s,a", ...Array.from({length: 50000}, (_, k) => sample(k))].join("\n");
   const hasty = await startService(["--deadline", "0.5"]);
   const response = await fetch(`${hasty.url}/v1/identify?preset=fig15`, {
     method: "POST",

@@ -1,5 +1,6 @@
 // The table of /v1/identify: what of /v1/simulate holds for a record, and how to read its columns.
 #include "api/schema/tables.hpp"
+#include "api/schema/words.hpp"
 
 namespace vines::api {
 
@@ -58,7 +59,7 @@ FieldTable record_rows() {
         {.name = "threshold",
          .group = "record",
          .unit = "standard deviations of the noise",
-         .description = "height from which on a spike of the acceleration is an impact",
+         .description = "height from which on a spike of the acceleration may be an impact",
          .fallback = 6,
          .range = Range{3, 1000}},
         {.name = "impact_times_s",
@@ -67,8 +68,20 @@ FieldTable record_rows() {
          .unit = "s",
          .description =
              "moments of the impacts, from an edited list: then they are not searched for",
-         .fallback_note = "found from the spikes"},
+         .fallback_note = "found from the record"},
     };
+}
+
+Field fixed_row() {
+    return {
+        .name = "fixed",
+        .type = FieldType::choices,
+        .group = "record",
+        .description =
+            "what of a record is not fitted but taken as given: f, omega0 and zeta by the other "
+            "fields, a sensor without fault",
+        .fallback = Json::array(),
+        .choices = all_words<Unknown>()};
 }
 
 Field include_row() {
@@ -90,6 +103,7 @@ FieldTable make_identify_fields() {
         if (is_of_system(f) || f.name == "exponents" || f.name == "max_points")
             table.push_back(of_record(f));
     table.push_back(include_row());
+    table.push_back(fixed_row());
     for (Field& f : record_rows()) table.push_back(std::move(f));
     return table;
 }

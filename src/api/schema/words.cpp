@@ -25,6 +25,17 @@ constexpr Word<SectionKind> sections[] = {
 
 constexpr Word<Carry> carries[] = {{Carry::none, "none"}, {Carry::up, "up"}, {Carry::down, "down"}};
 
+constexpr Word<Unknown> fitted_unknowns[] = {
+    {Unknown::Omega, "f"},
+    {Unknown::x_offset, "displacement_offset"},
+    {Unknown::x_drift, "displacement_drift"},
+    {Unknown::x_gain, "displacement_gain"},
+    {Unknown::x_delay, "displacement_delay_s"},
+    {Unknown::a_offset, "acceleration_offset"},
+    {Unknown::a_drift, "acceleration_drift"},
+    {Unknown::stiffness, "omega0"},
+    {Unknown::damping, "zeta"}};
+
 }  // namespace
 
 template <>
@@ -46,6 +57,10 @@ std::span<const Word<SectionKind>> words() {
 template <>
 std::span<const Word<Carry>> words() {
     return carries;
+}
+template <>
+std::span<const Word<Unknown>> words() {
+    return fitted_unknowns;
 }
 
 }  // namespace vines::api

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "api/schema/json.hpp"
+#include "core/measurement/unknowns.hpp"
 #include "core/sweep/sweep.hpp"
 
 namespace vines::api {
@@ -31,6 +32,9 @@ template <>
 std::span<const Word<SectionKind>> words();
 template <>
 std::span<const Word<Carry>> words();
+/// Of those that a request can fix.
+template <>
+std::span<const Word<Unknown>> words();
 
 template <class Enum>
 const char* word_of(Enum value) {

@@ -12,8 +12,8 @@
 #include <limits>
 #include <optional>
 
-#include "core/identification/measurement.hpp"
-#include "core/identification/synthetic_record.hpp"
+#include "core/measurement/measurement.hpp"
+#include "core/measurement/synthetic_record.hpp"
 #include "core/motion/elementary.hpp"
 #include "core/motion/special_values.hpp"
 #include "core/sweep/parallel.hpp"
@@ -60,7 +60,7 @@ Experiment measure(double b, double settling, double seconds) {
         .record = record,
         .estimators = all_estimators,
         .direct_estimators = all_estimators};
-    MeasurementResult result = conclude(m, spikes_of(m).spikes);
+    MeasurementResult result = conclude(m);
     return {std::move(truth), record, std::move(result)};
 }
 
@@ -120,14 +120,13 @@ void signals(Report& report, const Experiment& e, const std::string& figures, do
 /// Figs. 17 and 22: the fitted motion as a curve, with the states before and after the impacts.
 void phase_portrait(Report& report, const Experiment& e, int figure) {
     // A record's sample every half a millisecond draws the curve well enough.
-    const OscillatorSeries motion =
-        motion_at(e.result.parameters, e.result.refined->motion, e.record.tau);
+    const std::vector<OscillatorMotion> motion = motion_at(e.result.refined->fit, e.record.tau);
     const double mm_per_second = 1000 * e.truth.omega0;
     Curve curve{.colour = grey}, before{.colour = red, .label = "before impacts", .dots = true},
         after{.colour = colours[0], .label = "after", .dots = true};
-    for (std::size_t i = 0; i < motion.tau.size(); ++i) {
-        curve.x.push_back(1000 * motion.x[i]);
-        curve.y.push_back(mm_per_second * motion.x_dot[i]);
+    for (const OscillatorMotion& m : motion) {
+        curve.x.push_back(1000 * m.x);
+        curve.y.push_back(mm_per_second * m.x_dot);
     }
     for (const IdentifiedImpact& i : e.result.found.impacts) {
         before.x.push_back(1000 * i.x), after.x.push_back(1000 * i.x);
@@ -300,8 +299,8 @@ void figure_17(Report& report, const Experiment& e) {
     double jump = 0, fastest = 0;
     for (const IdentifiedImpact& i : e.result.found.impacts)
         jump = std::max(jump, std::abs(i.x_dot_after - i.x_dot_before));
-    for (double v : motion_at(e.result.parameters, e.result.refined->motion, e.record.tau).x_dot)
-        fastest = std::max(fastest, std::abs(v));
+    for (const OscillatorMotion& m : motion_at(e.result.refined->fit, e.record.tau))
+        fastest = std::max(fastest, std::abs(m.x_dot));
     report.find(
         {.where = "Fig. 17",
          .what = "largest jump of x' at an impact over the largest x'",
@@ -427,10 +426,11 @@ void settled_motion(Report& report, const Experiment& settled, double of_figure_
 
 /// The exponents of a record by transfer matrices of such parameters.
 IdentifiedExponents judged_by(const Experiment& e, const Parameters& p) {
+    const MeasuredOscillator oscillator = MeasuredOscillator::given(p);
     const MeasuredExponents exponents(
-        p, e.result.found.impacts, e.result.continuity.stretches, qr_alone);
+        p, oscillator, e.result.found.impacts, e.result.continuity.stretches, qr_alone);
     return judge_exponents(
-        p, exponents.all().qr_history(), exponents.all().start_tau(),
+        oscillator, exponents.all().qr_history(), exponents.all().start_tau(),
         is_representative(e.result.found.impacts));
 }
 IdentifiedExponents by_closed_form(const Experiment& e) {

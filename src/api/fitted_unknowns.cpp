@@ -1,0 +1,91 @@
+#include "api/fitted_unknowns.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "api/column.hpp"
+#include "api/schema/words.hpp"
+
+namespace vines::api {
+
+namespace {
+
+double hertz(double Omega, double omega0) { return Omega * omega0 / (2 * std::numbers::pi); }
+
+struct ValueWithError {
+    double value, error;
+};
+
+/// In SI.
+ValueWithError in_si(const JointFit& fit, Unknown u, double omega0) {
+    const double value = fit.values[u], error = fit.errors[u],
+                 faster = std::sqrt(fit.values[Unknown::stiffness]);
+    switch (u) {
+        case Unknown::Omega: return {hertz(value, omega0), hertz(error, omega0)};
+        case Unknown::x_delay: return {value / omega0, error / omega0};
+        case Unknown::a_offset:
+        case Unknown::a_drift: return {value * omega0 * omega0, error * omega0 * omega0};
+        case Unknown::stiffness: return {omega0 * faster, 0.5 * omega0 / faster * error};
+        case Unknown::damping: return {0.5 * value / faster, 0.5 * error / faster};
+        default: return {value, error};
+    }
+}
+
+}  // namespace
+
+FixedUnknowns fixed_of(const std::set<std::string>& names) {
+    FixedUnknowns fixed{};
+    for (const std::string& name : names) fixed[value_of<Unknown>(name)] = true;
+    return fixed;
+}
+
+Json describe_fitted(const JointFit& fit, double omega0) {
+    Json j = Json::object();
+    for (const Word<Unknown>& w : words<Unknown>()) {
+        const ValueWithError v = in_si(fit, w.value, omega0);
+        const bool fixed = fit.fixed[w.value];
+        j[w.word] = {
+            {"value", finite_or_null(v.value)},
+            {"standard_error", fixed ? Json(nullptr) : Json(finite_or_null(v.error))},
+            {"fixed", fixed}};
+    }
+    return j;
+}
+
+void add_fitted_warnings(
+    const JointFit& fit, const UnknownValues& given, double omega0,
+    std::vector<std::string>& warnings) {
+    // Far beyond their errors, and large enough to matter to a laboratory.
+    constexpr double sigmas = 6, gain_off = 0.01, delay_off = 1e-4, frequency_off = 2e-4;
+    const auto off = [&](Unknown u, double least) {
+        const double by = std::abs(fit.values[u] - given[u]);
+        return !fit.fixed[u] && by > sigmas * fit.errors[u] && by > least;
+    };
+    if (off(Unknown::x_gain, gain_off))
+        warnings.push_back(fmt::format(
+            "the displacement is {:.4g} times what the acceleration says, and is taken for that: "
+            "is "
+            "a sensitivity wrong?",
+            fit.values[Unknown::x_gain]));
+    if (off(Unknown::x_delay, delay_off * omega0))
+        warnings.push_back(fmt::format(
+            "the displacement is {:.4g} ms {} the acceleration, which is corrected",
+            1000 * std::abs(fit.values[Unknown::x_delay]) / omega0,
+            fit.values[Unknown::x_delay] > 0 ? "behind" : "ahead of"));
+    if (off(Unknown::Omega, frequency_off * given[Unknown::Omega]))
+        warnings.push_back(fmt::format(
+            "the forcing has f = {:.6g} Hz, not f = {:.6g} Hz",
+            hertz(fit.values[Unknown::Omega], omega0), hertz(given[Unknown::Omega], omega0)));
+    // The search frees the oscillator only where the record contradicts.
+    if (!fit.fixed[Unknown::stiffness] || !fit.fixed[Unknown::damping])
+        warnings.push_back(fmt::format(
+            "the oscillator moves with omega0 = {:.5g} rad/s and zeta = {:.4g}, not with {:.5g} "
+            "rad/s and {:.4g}: is a mass, a stiffness or a damping wrong?",
+            omega0 * std::sqrt(fit.values[Unknown::stiffness]),
+            0.5 * fit.values[Unknown::damping] / std::sqrt(fit.values[Unknown::stiffness]), omega0,
+            0.5 * given[Unknown::damping]));
+}
+
+}  // namespace vines::api

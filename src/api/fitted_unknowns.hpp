@@ -1,0 +1,25 @@
+// What a record says of its sensors, of the forcing and of the oscillator: in SI, each value with
+// its standard error.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "api/schema/json.hpp"
+#include "core/measurement/joint_fit.hpp"
+
+namespace vines::api {
+
+/// Of words of Unknown.
+FixedUnknowns fixed_of(const std::set<std::string>& names);
+
+/// {word: {value, standard_error, fixed}}. `omega0`: the given one, rad/s.
+Json describe_fitted(const JointFit& fit, double omega0);
+
+/// What of it a user should know: a sensor, or a given value, that is wrong.
+void add_fitted_warnings(
+    const JointFit& fit, const UnknownValues& given, double omega0,
+    std::vector<std::string>& warnings);
+
+}  // namespace vines::api

@@ -1,0 +1,145 @@
+#include "core/measurement/frequency_scan.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "core/measurement/followed_flow.hpp"
+#include "core/motion/elementary.hpp"
+#include "core/motion/special_values.hpp"
+
+namespace vines {
+
+namespace {
+
+// So far on either side of the given frequency, relative.
+constexpr double widest = 0.01;
+// Between two that are tried the phase slips so much from the record's middle to its ends.
+constexpr double slip = 0.4;
+// Within a piece the slip of the phase is neglected: no longer than so many cycles.
+constexpr double longest_piece_cycles = 1.5;
+// Of the evidence for any forcing another frequency must have more by so much than the given one.
+constexpr double least_gain = 0.02;
+
+/// What a piece of the record says of the forcing there, whatever the piece starts from: S f = h.
+struct PieceEquations {
+    double tau;  ///< its middle
+    Eigen::Matrix2d S;
+    Eigen::Vector2d h;
+};
+
+/// Of one piece the normal equations in its start and the forcing.
+struct StartAndForce {
+    Eigen::Matrix4d N = Eigen::Matrix4d::Zero();
+    Eigen::Vector4d g = Eigen::Vector4d::Zero();
+    long samples = 0;
+
+    void add(const Eigen::Vector4d& row, double value, double noise) {
+        N.noalias() += row * row.transpose() / (noise * noise);
+        g.noalias() += row * (value / (noise * noise));
+        ++samples;
+    }
+    PieceEquations without_start(double tau) const {
+        // Far below what a sample adds (joint_fit.cpp), and above zero.
+        constexpr double ridge = 1e-9;
+        const Eigen::Matrix2d start =
+            (N.topLeftCorner<2, 2>() + ridge * Eigen::Matrix2d::Identity()).inverse();
+        const Eigen::Matrix2d mixed = N.bottomLeftCorner<2, 2>() * start;
+        return {
+            tau, N.bottomRightCorner<2, 2>() - mixed * N.topRightCorner<2, 2>(),
+            g.tail<2>() - mixed * g.head<2>()};
+    }
+};
+
+/// Starts of the pieces: the impacts, and more where they are far apart.
+std::vector<double> pieces_of(
+    const MeasuredRecord& r, const std::vector<double>& moments, double longest) {
+    std::vector<double> starts = {r.tau.front()};
+    const auto reach = [&](double to) {
+        while (to - starts.back() > longest) starts.push_back(starts.back() + longest);
+    };
+    for (const double tau : moments) {
+        reach(tau);
+        if (tau > starts.back()) starts.push_back(tau);
+    }
+    reach(r.tau.back());
+    return starts;
+}
+
+std::vector<PieceEquations> equations_of(
+    const JointFitInput& in, const std::vector<double>& starts, IdentificationProgress& progress) {
+    const MeasuredRecord& r = in.record;
+    const Parameters& p = in.parameters;
+    const Flow flow(1, 2 * p.zeta(), 1, p.Omega);
+    const double middle = 0.5 * (r.tau.front() + r.tau.back());
+    // An offset is none of the forcing's.
+    const double x_offset = r.x.empty() ? 0 : median(r.x),
+                 a_offset = r.x_ddot.empty() ? 0 : median(r.x_ddot);
+    std::vector<PieceEquations> all;
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+        progress.look();
+        const double end = i + 1 < starts.size() ? starts[i + 1] : infinity;
+        const double angle = p.Omega * (starts[i] - middle), sin = elementary::sin(angle),
+                     cos = elementary::cos(angle);
+        FollowedFlow<4> parts(
+            flow, {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, sin, cos}, {0, 0, cos, -sin}}});
+        StartAndForce equations;
+        for (; k < r.tau.size() && r.tau[k] < end; ++k) {
+            const auto m = parts.at(std::max(0.0, r.tau[k] - starts[i]), r.x.empty());
+            if (!r.x.empty() && (in.bad_x.empty() || !in.bad_x[k]))
+                equations.add(
+                    {m[0].x, m[1].x, m[2].x, m[3].x}, r.x[k] - x_offset, in.statistics.x.noise);
+            // Nearly all of an acceleration without pulses lies within the displacement's; without
+            // one it must do, and its pulses are as good as noise.
+            if (r.x.empty())
+                equations.add(
+                    {m[0].x_ddot, m[1].x_ddot, m[2].x_ddot, m[3].x_ddot}, r.x_ddot[k] - a_offset,
+                    in.statistics.x_ddot.noise);
+        }
+        if (equations.samples > 4)
+            all.push_back(equations.without_start(
+                starts[i] + 0.5 * (std::min(end, r.tau.back()) - starts[i])));
+    }
+    return all;
+}
+
+/// How much of the sum of squares a forcing whose phase runs ahead by `faster` explains.
+double explained(const std::vector<PieceEquations>& pieces, double faster, double middle) {
+    Eigen::Matrix2d S = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d h = Eigen::Vector2d::Zero();
+    for (const PieceEquations& piece : pieces) {
+        const double a = faster * (piece.tau - middle);
+        // sin and cos of the nominal phase by those of the faster one.
+        Eigen::Matrix2d turn;
+        turn << elementary::cos(a), -elementary::sin(a), elementary::sin(a), elementary::cos(a);
+        S += turn.transpose() * piece.S * turn;
+        h += turn.transpose() * piece.h;
+    }
+    const double value = h.dot(S.inverse() * h);
+    return std::isfinite(value) ? value : 0;
+}
+
+}  // namespace
+
+double scanned_frequency(
+    const JointFitInput& in, const std::vector<double>& moments, IdentificationProgress& progress) {
+    const MeasuredRecord& r = in.record;
+    const Parameters& p = in.parameters;
+    const double middle = 0.5 * (r.tau.front() + r.tau.back()),
+                 length = r.tau.back() - r.tau.front();
+    const std::vector<PieceEquations> pieces =
+        equations_of(in, pieces_of(r, moments, longest_piece_cycles * p.cycle()), progress);
+    const double step = slip / (0.5 * length);
+    const int steps = static_cast<int>(widest * p.Omega / step) + 1;
+    const double given = explained(pieces, 0, middle);
+    double best = given, faster = 0;
+    for (int k = -steps; k <= steps; ++k) {
+        progress.tick();
+        const double value = explained(pieces, k * step, middle);
+        if (value > best && value > (1 + least_gain) * given) best = value, faster = k * step;
+    }
+    return p.Omega + faster;
+}
+
+}  // namespace vines

@@ -1,0 +1,75 @@
+#include "core/measurement/identified_impact.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/measurement/robust.hpp"
+#include "core/motion/special_values.hpp"
+
+namespace vines {
+
+namespace {
+
+// What an impact of a real measurement may miss R in [0, 1] and the balance of momentum by, before
+// it is left out. Where the others keep momentum better than that, ten times their scatter is
+// enough: flown over two missing impacts it is off by a third.
+constexpr double R_tolerance = 0.15, momentum_tolerance = 0.35, least_momentum_tolerance = 0.1;
+constexpr double momentum_sigmas = 10;
+// What a flight may miss of its speed, and of the way between the walls.
+constexpr double flight_tolerance = 0.1;
+
+/// `since`: the time since the impact before it; `tolerance`: of the momentum.
+ImpactFault fault_of(const IdentifiedImpact& i, double since, double pulse, double tolerance) {
+    if (since < pulse) return ImpactFault::too_close;
+    if (!std::isnan(i.y_dot_before) && !(i.side * (i.x_dot_before - i.y_dot_before) > 0))
+        return ImpactFault::moves_away;
+    if (std::isnan(i.x_dot_before) || std::isnan(i.x_dot_after)) return ImpactFault::no_velocity;
+    // The first and the last: the flight on one side is not known, and R with it.
+    if (std::isnan(i.R)) return ImpactFault::none;
+    if (i.R < -R_tolerance || i.R > 1 + R_tolerance) return ImpactFault::R_impossible;
+    if (!(std::abs(i.momentum_error) < tolerance)) return ImpactFault::momentum_lost;
+    return ImpactFault::none;
+}
+
+}  // namespace
+
+void complete_impacts(const Parameters& p, std::vector<IdentifiedImpact>& impacts, double pulse) {
+    std::vector<double> jumps, errors;
+    for (const IdentifiedImpact& i : impacts)
+        jumps.push_back(std::abs(i.x_dot_after - i.x_dot_before));
+    const double typical = median(jumps);
+    for (IdentifiedImpact& i : impacts) {
+        // Eq. (4)
+        i.R = -(i.x_dot_after - i.y_dot_after) / (i.x_dot_before - i.y_dot_before);
+        i.momentum_error =
+            (i.x_dot_after - i.x_dot_before + p.epsilon * (i.y_dot_after - i.y_dot_before)) /
+            typical;
+        errors.push_back(i.momentum_error);
+    }
+    const double tolerance = std::min(
+        std::max(least_momentum_tolerance, momentum_sigmas * robust_deviation(errors)),
+        momentum_tolerance);
+    for (std::size_t k = 0; k < impacts.size(); ++k)
+        impacts[k].fault = fault_of(
+            impacts[k], k > 0 ? impacts[k].tau - impacts[k - 1].tau : infinity, pulse, tolerance);
+}
+
+bool flight_fits(
+    const Parameters& p, const IdentifiedImpact& from, const IdentifiedImpact& to,
+    double typical_speed) {
+    const double way = to.x - to.side * p.b - (from.x - from.side * p.b),
+                 flown = to.y_dot_before * (to.tau - from.tau);
+    return std::abs(to.y_dot_before - from.y_dot_after) < flight_tolerance * typical_speed &&
+           std::abs(way - flown) < flight_tolerance * p.b;
+}
+
+Restitution restitution_of(const std::vector<IdentifiedImpact>& impacts, int side) {
+    std::vector<double> R, off;
+    for (const IdentifiedImpact& i : impacts)
+        if (i.side == side && !i.is_left_out() && !std::isnan(i.R)) R.push_back(i.R);
+    const double centre = median(R);
+    for (double r : R) off.push_back(r - centre);
+    return {centre, error_of_median(off), static_cast<long>(R.size())};
+}
+
+}  // namespace vines

@@ -1,0 +1,127 @@
+#include "core/measurement/identify.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <compare>
+
+#include "core/measurement/robust.hpp"
+
+namespace vines {
+
+namespace {
+
+// Where the impacts themselves do not agree on b to half of it, it is not their b.
+constexpr double b_scatter = 0.5;
+// The given b may miss the fitted one by this share of it, or by so many standard errors.
+constexpr double b_tolerance = 0.03, b_sigmas = 5;
+
+/// y' of each flight is offset - b rate: y = x - side b at both of its ends (43).
+struct Flight {
+    double offset, rate;
+    double y_dot(double b) const { return offset - b * rate; }
+};
+
+/// A b, and what it weighs.
+struct WeightedB {
+    double b, weight;
+    auto operator<=>(const WeightedB&) const = default;
+};
+
+/// x' + epsilon y' is kept at every impact, and y' is linear in b: what each impact says of it.
+std::vector<WeightedB> b_of_impacts(
+    const Parameters& p, const std::vector<FittedImpact>& m, const std::vector<Flight>& flights) {
+    std::vector<WeightedB> said;
+    for (std::size_t i = 1; i < flights.size(); ++i) {
+        const double rate = flights[i].rate - flights[i - 1].rate;
+        const double b =
+            (m[i].jump() / p.epsilon + flights[i].offset - flights[i - 1].offset) / rate;
+        if (std::isfinite(b)) said.push_back({b, std::abs(rate)});
+    }
+    return said;
+}
+
+double weighted_median(std::vector<WeightedB> values) {
+    double total = 0, sum = 0;
+    for (const WeightedB& v : values) total += v.weight;
+    std::sort(values.begin(), values.end());
+    const auto middle = std::find_if(values.begin(), values.end(), [&](const WeightedB& v) {
+        return (sum += v.weight) >= 0.5 * total;
+    });
+    return middle == values.end() ? nan : middle->b;
+}
+
+/// The weighted median of what each impact says.
+void fit_b(
+    const Parameters& p, const std::vector<FittedImpact>& m, const std::vector<Flight>& flights,
+    Identification& found) {
+    const std::vector<WeightedB> said = b_of_impacts(p, m, flights);
+    if (said.empty()) {
+        found.b_fault = BFault::no_flight;
+        return;
+    }
+    const double b = weighted_median(said);
+    std::vector<double> off;
+    for (const WeightedB& s : said) off.push_back(s.b - b);
+    if (!(b > 0)) found.b_fault = BFault::negative;
+    else if (!(robust_deviation(off) < b_scatter * b)) found.b_fault = BFault::scattered;
+    else found.b_fitted = b, found.b_error = error_of_median(off);
+}
+
+/// `sides`: of the impacts. Over a gap nothing is known of a flight.
+std::vector<Flight> flights_of(
+    const std::vector<FittedImpact>& m, const std::vector<int>& sides,
+    const std::vector<TimeGap>& gaps) {
+    std::vector<Flight> flights;
+    for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
+        const double from = m[i].tau, to = m[i + 1].tau, duration = to - from;
+        const bool over_gap = std::any_of(
+            gaps.begin(), gaps.end(), [&](const TimeGap& g) { return g.from < to && from < g.to; });
+        if (over_gap) flights.push_back({nan, nan});
+        else
+            flights.push_back(
+                {(m[i + 1].x - m[i].x) / duration, (sides[i + 1] - sides[i]) / duration});
+    }
+    return flights;
+}
+
+}  // namespace
+
+Identification identify_impacts(
+    const Parameters& p, const std::vector<FittedImpact>& m, const std::vector<int>& sides,
+    const std::vector<TimeGap>& gaps, double pulse) {
+    Identification found;
+    const std::vector<Flight> flights = flights_of(m, sides, gaps);
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+        IdentifiedImpact impact{
+            .tau = m[i].tau,
+            .side = sides[i],
+            .x = m[i].x,
+            .x_dot_before = m[i].x_dot_before,
+            .x_dot_after = m[i].x_dot_after,
+            .x_ddot_before = m[i].x_ddot_before};
+        if (i > 0) impact.y_dot_before = flights[i - 1].y_dot(p.b);
+        if (i < flights.size()) impact.y_dot_after = flights[i].y_dot(p.b);
+        found.impacts.push_back(impact);
+    }
+    complete_impacts(p, found.impacts, pulse);
+    found.plus = restitution_of(found.impacts, 1);
+    found.minus = restitution_of(found.impacts, -1);
+    fit_b(p, m, flights, found);
+    return found;
+}
+
+bool b_agrees(const Parameters& p, const Identification& i) {
+    return !std::isfinite(i.b_fitted) ||
+           std::abs(i.b_fitted - p.b) <= std::max(b_tolerance * p.b, b_sigmas * i.b_error);
+}
+
+std::vector<Doubt> doubts_of(
+    const Parameters& p, const FoundImpacts& refined, const Identification& identification) {
+    std::vector<Doubt> doubts;
+    if (!refined.settled) doubts.push_back(Doubt::not_settled);
+    if (!explains(refined.fit)) doubts.push_back(Doubt::unexplained);
+    if (!b_agrees(p, identification)) doubts.push_back(Doubt::b_disagrees);
+    return doubts;
+}
+
+}  // namespace vines

@@ -1,0 +1,89 @@
+#include "core/measurement/interval_motion.hpp"
+
+#include "core/motion/elementary.hpp"
+
+namespace vines {
+
+namespace {
+
+// Derivatives by stiffness and damping are differences over that.
+constexpr double difference = 1e-6;
+
+std::array<Oscillation, 4> parts_of(double angle) {
+    const double sin = elementary::sin(angle), cos = elementary::cos(angle);
+    return {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, sin, cos}, {0, 0, cos, -sin}}};
+}
+
+std::array<Oscillation, 1> whole(const FittedInterval& i, double angle) {
+    return {{{i.x, i.x_dot, elementary::sin(angle), elementary::cos(angle)}}};
+}
+
+OscillatorMotion difference_of(const OscillatorMotion& moved, const OscillatorMotion& m) {
+    return {
+        (moved.x - m.x) / difference, (moved.x_dot - m.x_dot) / difference,
+        (moved.x_ddot - m.x_ddot) / difference};
+}
+
+}  // namespace
+
+OscillatorFlows::OscillatorFlows(const UnknownValues& v, bool moves)
+    : oscillator_moves(moves),
+      force(elementary::hypot(v[Unknown::force_sin], v[Unknown::force_cos])),
+      phase(elementary::atan2(v[Unknown::force_cos], v[Unknown::force_sin])),
+      Omega(v[Unknown::Omega]),
+      parts(v[Unknown::stiffness], v[Unknown::damping], 1, Omega),
+      by_stiffness(v[Unknown::stiffness] + difference, v[Unknown::damping], force, Omega),
+      by_damping(v[Unknown::stiffness], v[Unknown::damping] + difference, force, Omega) {}
+
+IntervalMotion::IntervalMotion(
+    const OscillatorFlows& f, const UnknownValues& v, double tau_middle, const FittedInterval& i)
+    : flows_(f),
+      since_middle_(i.tau - tau_middle),
+      start_{i.x, i.x_dot, v[Unknown::force_sin], v[Unknown::force_cos]},
+      parts_(f.parts, parts_of(f.Omega * since_middle_)),
+      by_stiffness_(f.by_stiffness, whole(i, f.Omega * since_middle_ + f.phase)),
+      by_damping_(f.by_damping, whole(i, f.Omega * since_middle_ + f.phase)) {}
+
+MotionRow IntervalMotion::at(double s, bool with_acceleration) {
+    MotionRow row{{}, parts_.at(s, with_acceleration), {}, {}, {}};
+    for (std::size_t k = 0; k < start_.size(); ++k) {
+        row.value.x += start_[k] * row.parts[k].x;
+        row.value.x_dot += start_[k] * row.parts[k].x_dot;
+        row.value.x_ddot += start_[k] * row.parts[k].x_ddot;
+    }
+    row.by_Omega = by_frequency(row.parts, s);
+    if (!flows_.oscillator_moves) return row;
+    row.by_stiffness = difference_of(by_stiffness_.at(s, with_acceleration)[0], row.value);
+    row.by_damping = difference_of(by_damping_.at(s, with_acceleration)[0], row.value);
+    return row;
+}
+
+/// The phase of the forcing runs ahead: all of it by as much as it did until the start, and what
+/// has acted since then by two thirds of the time, about, as if the response to it grew evenly.
+/// That is near enough for a step: an interval is far shorter than a record.
+OscillatorMotion IntervalMotion::by_frequency(
+    const std::array<OscillatorMotion, 4>& parts, double s) const {
+    const double ahead = since_middle_ + 2.0 / 3 * s, by_sin = -start_[3] * ahead,
+                 by_cos = start_[2] * ahead;
+    return {
+        by_sin * parts[2].x + by_cos * parts[3].x,
+        by_sin * parts[2].x_dot + by_cos * parts[3].x_dot,
+        by_sin * parts[2].x_ddot + by_cos * parts[3].x_ddot};
+}
+
+void take_derivatives(
+    const MotionRow& row, double OscillatorMotion::* member, Eigen::RowVector2d& by_start,
+    UnknownRow& by_unknowns) {
+    by_start << row.parts[0].*member, row.parts[1].*member;
+    const auto set = [&](Unknown u, double value) {
+        by_unknowns(static_cast<Eigen::Index>(u)) = value;
+    };
+    by_unknowns.setZero();
+    set(Unknown::force_sin, row.parts[2].*member);
+    set(Unknown::force_cos, row.parts[3].*member);
+    set(Unknown::Omega, row.by_Omega.*member);
+    set(Unknown::stiffness, row.by_stiffness.*member);
+    set(Unknown::damping, row.by_damping.*member);
+}
+
+}  // namespace vines

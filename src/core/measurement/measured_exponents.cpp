@@ -1,0 +1,200 @@
+#include "core/measurement/measured_exponents.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "core/measurement/robust.hpp"
+#include "core/motion/special_values.hpp"
+#include "core/stability/slope.hpp"
+
+namespace vines {
+
+namespace {
+
+constexpr double hiding_gap = 0.1;  // of a typical flight
+
+// Impacts from which on a record is representative; where the jumps are alike, from fewer on
+// (measured_exponents.hpp).
+constexpr std::size_t enough_impacts = 200, enough_if_alike = 80;
+// How alike they must be at the fewest, and by how much less for each impact more.
+constexpr double alike = 0.02, alike_per_impact = 0.001;
+constexpr double nine_in_ten = 0.9;
+
+// Fewer impacts do not show whether a motion dies out; one that does loses this factor from the
+// first quarter to the last.
+constexpr std::size_t fewest_of_decay = 20;
+constexpr double least_fall = 2;
+
+// Blocks as long as the memory of the motion, some impacts, drawn anew so many times.
+constexpr std::size_t shortest_block = 4, longest_block = 20;
+constexpr int draws = 1000;
+// The bounds of its 90 % interval among so many sorted draws.
+constexpr std::size_t low_draw = 50, high_draw = 949;
+
+/// T over the flight to impact i from the one before it, which the caller knows to fit.
+void append(
+    const Parameters& p, const Flow& flow, const IdentifiedImpact& i, double duration,
+    TransferProduct& product) {
+    Impact impact{};
+    impact.R = p.restitution(i.side);
+    impact.relative_speed_before = i.x_dot_before - i.y_dot_before;
+    impact.x_ddot_before = i.x_ddot_before;
+    const Leg flight = leg_of(flow, duration, false);
+    product.append({&flight, 1}, saltation(p, impact), product.end_tau() + duration);
+}
+
+}  // namespace
+
+Continuity continuity_of(
+    const Parameters& p, const std::vector<IdentifiedImpact>& impacts,
+    const std::vector<TimeGap>& gaps) {
+    Continuity c;
+    std::vector<double> flights, speeds;
+    for (std::size_t i = 1; i < impacts.size(); ++i) {
+        flights.push_back(impacts[i].tau - impacts[i - 1].tau);
+        speeds.push_back(std::abs(impacts[i].y_dot_before));
+    }
+    const double typical_flight = median(flights), typical_speed = median(speeds);
+    const auto over_gap = [&](double from, double to) {
+        return std::any_of(gaps.begin(), gaps.end(), [&](const TimeGap& g) {
+            return g.to - g.from > hiding_gap * typical_flight && g.from < to && g.to > from;
+        });
+    };
+    for (std::size_t i = 0; i < impacts.size(); ++i) {
+        if (impacts[i].is_left_out()) {
+            ++c.left_out;
+            continue;
+        }
+        const bool follows = i > 0 && !impacts[i - 1].is_left_out();
+        const bool known = follows && flight_fits(p, impacts[i - 1], impacts[i], typical_speed) &&
+                           !over_gap(impacts[i - 1].tau, impacts[i].tau);
+        if (known && !c.stretches.empty() && c.stretches.back().last == i - 1)
+            c.stretches.back().last = i;
+        else if (known) c.stretches.push_back({i - 1, i});
+        else if (follows) ++c.missing;
+    }
+    if (!impacts.empty())
+        c.share = static_cast<double>(c.left_out + c.missing) /
+                  static_cast<double>(static_cast<long>(impacts.size()) + c.missing);
+    return c;
+}
+
+ExponentOptions of_all_stretches(const ExponentOptions& asked) {
+    return {.qr = true, .history = asked.history};
+}
+
+ExponentOptions of_longest_stretch(const ExponentOptions& asked) {
+    return {
+        .eigenvalues = asked.eigenvalues,
+        .raw_product = asked.raw_product,
+        .history = asked.history};
+}
+
+MeasuredExponents::MeasuredExponents(
+    const Parameters& p, const MeasuredOscillator& oscillator,
+    const std::vector<IdentifiedImpact>& impacts, const std::vector<KnownStretch>& stretches,
+    const ExponentOptions& o)
+    : all_(p.epsilon, of_all_stretches(o)),
+      longest_(p.epsilon, of_longest_stretch(o)) {
+    // Deviations know nothing of the forcing.
+    const Flow flow(oscillator.stiffness, oscillator.damping, 0, p.Omega);
+    const auto feed = [&](const KnownStretch& s, TransferProduct& product) {
+        if (product.impacts() == 0) product.start(impacts[s.first].tau);
+        for (std::size_t i = s.first + 1; i <= s.last; ++i)
+            append(p, flow, impacts[i], impacts[i].tau - impacts[i - 1].tau, product);
+    };
+    const auto length = [&](const KnownStretch& s) {
+        return impacts[s.last].tau - impacts[s.first].tau;
+    };
+    for (const KnownStretch& s : stretches) {
+        starts_.push_back(
+            {starts_.empty() ? impacts[s.first].tau : all_.end_tau(), impacts[s.first].tau});
+        feed(s, all_);
+    }
+    const auto longest = std::max_element(
+        stretches.begin(), stretches.end(),
+        [&](const auto& a, const auto& b) { return length(a) < length(b); });
+    if (longest != stretches.end()) feed(*longest, longest_);
+}
+
+double MeasuredExponents::moment(double clock) const {
+    // The end of a stretch and the start of the next have one time of the clock: it is the end's.
+    auto after = std::lower_bound(
+        starts_.begin(), starts_.end(), clock,
+        [](const Start& s, double c) { return s.clock < c; });
+    if (after != starts_.begin()) --after;
+    return after == starts_.end() ? nan : after->tau + (clock - after->clock);
+}
+
+bool is_representative(const std::vector<IdentifiedImpact>& impacts) {
+    std::vector<double> jumps[2], off;
+    std::size_t known = 0;
+    for (const IdentifiedImpact& i : impacts) known += !i.is_left_out();
+    if (known >= enough_impacts || known < enough_if_alike) return known >= enough_impacts;
+    for (std::size_t k = impacts.size() / 2; k < impacts.size(); ++k)
+        if (!impacts[k].is_left_out())
+            jumps[impacts[k].side > 0].push_back(
+                std::abs(impacts[k].x_dot_after - impacts[k].x_dot_before));
+    for (const auto& of_side : jumps)
+        for (const double jump : of_side) off.push_back(jump / median(of_side) - 1);
+    return quantile_of_moduli(off, nine_in_ten) <
+           alike + alike_per_impact * static_cast<double>(known - enough_if_alike);
+}
+
+bool dies_out(const std::vector<IdentifiedImpact>& impacts) {
+    if (impacts.size() < fewest_of_decay) return false;
+    // Of a chatter only the first impact tells how strong it was.
+    std::array<double, 4> largest{};
+    const double start = impacts.front().tau, duration = impacts.back().tau - start;
+    for (const IdentifiedImpact& i : impacts) {
+        double& of_quarter =
+            largest[static_cast<std::size_t>(std::min(3.0, 4 * (i.tau - start) / duration))];
+        if (!i.is_left_out())
+            of_quarter = std::max(of_quarter, std::abs(i.x_dot_after - i.x_dot_before));
+    }
+    return std::is_sorted(largest.rbegin(), largest.rend()) && largest[3] > 0 &&
+           largest[3] * least_fall < largest[0];
+}
+
+namespace {
+
+/// Slopes of the record as blocks of its impacts, drawn again and again, make it anew; ascending.
+/// Always the same ones.
+std::vector<double> drawn_slopes(const GrowthSteps& steps) {
+    const std::size_t n = steps.log.size();
+    // The cube root of 8 n.
+    std::size_t block = shortest_block;
+    while (block < longest_block && (block + 1) * (block + 1) * (block + 1) <= 8 * n) ++block;
+    std::mt19937_64 engine(2018);
+    std::vector<double> slopes;
+    for (int draw = 0; draw < draws; ++draw) {
+        double s = 0, t = 0;
+        for (std::size_t got = 0; got < n; got += block) {
+            const std::size_t from = engine() % (n - block + 1);
+            for (std::size_t i = from; i < from + block; ++i)
+                s += steps.log[i], t += steps.duration[i];
+        }
+        slopes.push_back(s / t);
+    }
+    std::sort(slopes.begin(), slopes.end());
+    return slopes;
+}
+
+}  // namespace
+
+IdentifiedExponents judge_exponents(
+    const MeasuredOscillator& oscillator, const ExponentHistory& qr, double tau_start,
+    bool representative) {
+    const GrowthSteps steps = growth_steps(qr, tau_start);
+    IdentifiedExponents e{slope_of(steps), nan, nan, Verdict::not_decided};
+    if (steps.log.size() < fewest_steps_of_slope) return e;
+    const std::vector<double> slopes = drawn_slopes(steps);
+    e.low = slopes[low_draw], e.high = slopes[high_draw];
+    if (e.low > oscillator.zeta()) e.verdict = Verdict::chaotic;
+    if (e.high < oscillator.zeta() && representative) e.verdict = Verdict::regular;
+    return e;
+}
+
+}  // namespace vines

@@ -1,0 +1,181 @@
+#include "core/measurement/measurement.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "core/motion/elementary.hpp"
+#include "core/motion/record.hpp"
+#include "core/motion/special_values.hpp"
+
+namespace vines {
+
+namespace {
+
+/// Far above what a record of minutes holds.
+constexpr long most_forward_impacts = 100000;
+
+/// R of each wall that has impacts; rounding may have moved one beyond what an R can be.
+void take_restitution(Parameters& p, const Identification& found) {
+    if (std::isfinite(found.plus.R)) p.R_plus = std::clamp(found.plus.R, 0.0, 1.0);
+    if (std::isfinite(found.minus.R)) p.R_minus = std::clamp(found.minus.R, 0.0, 1.0);
+}
+
+/// G of a forcing amplitude, eq. (3).
+double G_of(const Parameters& p, const JointFit& fit) {
+    return elementary::hypot(fit.values[Unknown::force_sin], fit.values[Unknown::force_cos]) /
+           p.epsilon / elementary::hypot(1.0, p.lambda * p.epsilon * p.Omega);
+}
+
+/// The stretches without the passages to impacts whose relative speed is not known.
+std::vector<KnownStretch> with_speeds(
+    const std::vector<IdentifiedImpact>& impacts, const std::vector<KnownStretch>& stretches) {
+    std::vector<KnownStretch> known;
+    for (const KnownStretch& s : stretches)
+        for (std::size_t first = s.first, i = first + 1; i <= s.last; ++i) {
+            if (std::isnan(impacts[i].x_dot_before - impacts[i].y_dot_before)) first = i;
+            else if (first + 1 == i) known.push_back({first, i});
+            else known.back().last = i;
+        }
+    return known;
+}
+
+/// `stretches`: those of the fit.
+std::optional<DirectEstimate> direct_estimate(
+    const Measurement& m, const MeasuredOscillator& oscillator, const FoundImpacts& refined,
+    const std::vector<KnownStretch>& stretches) {
+    if (m.record.x.empty() || m.record.x_ddot.empty()) return std::nullopt;
+    Parameters p = m.parameters;
+    std::vector<double> moments;
+    for (const FittedImpact& i : refined.fit.impacts) moments.push_back(i.tau);
+    const double pulse = refined.pulse.length();
+    Identification found = identify_impacts(
+        p, direct_motion(m.record, moments, pulse), refined.side, refined.gaps, pulse);
+    if (!m.R_given) take_restitution(p, found);
+    const MeasuredExponents faultless(
+        p, oscillator, found.impacts,
+        continuity_of(p, found.impacts, time_gaps(m.record)).stretches, qr_alone);
+    std::vector<KnownStretch> known = with_speeds(found.impacts, stretches);
+    MeasuredExponents exponents(p, oscillator, found.impacts, known, m.direct_estimators);
+    return DirectEstimate{
+        std::move(found), faultless.all().qr(), std::move(known), std::move(exponents)};
+}
+
+/// The identified system in the time of its own oscillator, in which simulate() has it.
+Parameters in_own_time(const Parameters& p, const MeasuredOscillator& oscillator, double faster) {
+    Parameters own = p;
+    own.Omega /= faster;
+    own.lambda *= oscillator.damping / faster / (2 * p.zeta());
+    if (!std::isfinite(own.lambda)) own.lambda = 0;
+    return own;
+}
+
+/// `p`: with R of each wall.
+std::optional<ForwardRun> forward_run(
+    const Parameters& p, const MeasuredOscillator& oscillator, const Identification& found,
+    const JointFit& fit, double tau_end, const IdentificationProgress& progress) {
+    const auto known = std::find_if(
+        found.impacts.begin(), found.impacts.end(),
+        [](const IdentifiedImpact& i) { return !i.is_left_out() && !std::isnan(i.y_dot_after); });
+    if (known == found.impacts.end()) return std::nullopt;
+    const IdentifiedImpact& first = *known;
+    const double faster = std::sqrt(oscillator.stiffness);
+    Parameters own = in_own_time(p, oscillator, faster);
+    own.G = G_of(own, fit) / (faster * faster);
+    // simulate() measures the phase of the forcing from that of eq. (3); the record has its own.
+    const double phase = elementary::atan2(
+                     fit.values[Unknown::force_cos], fit.values[Unknown::force_sin]),
+                 start = std::fmod(
+                     faster * (first.tau - fit.tau_middle) + (phase - own.phi()) / own.Omega,
+                     own.cycle());
+    const State state{
+        first.x_dot_after / faster, first.x, first.y_dot_after / faster,
+        first.x - first.side * p.b};
+    ImpactRecord impacts;
+    Lyapunov lyapunov(own, 0, infinity, qr_alone);
+    Observer* const observers[] = {&impacts, &lyapunov};
+    simulate(
+        own, state,
+        {.tau_end = start + faster * (tau_end - first.tau),
+         .max_impacts = most_forward_impacts,
+         .stop = progress.stop(),
+         .tau_start = start},
+        observers);
+    progress.look();
+    for (Impact& i : impacts.entries) {
+        i.tau = (i.tau - start) / faster + first.tau;
+        i.x_dot_after *= faster;
+    }
+    Exponents lambda = lyapunov.product().qr();
+    for (double& l : lambda) l *= faster;
+    return ForwardRun{first.tau, std::move(impacts.entries), lambda};
+}
+
+/// What is known of the impacts without a record.
+Identification of_impacts(const std::vector<IdentifiedImpact>& impacts) {
+    Identification found;
+    found.impacts = impacts;
+    found.plus = restitution_of(impacts, 1);
+    found.minus = restitution_of(impacts, -1);
+    return found;
+}
+
+}  // namespace
+
+double Measurement::step() const {
+    return (record.tau.back() - record.tau.front()) / static_cast<double>(record.tau.size() - 1);
+}
+
+MeasurementResult conclude(const Measurement& m, const IdentificationWatch& watch) {
+    IdentificationProgress progress(watch);
+    assert(m.is_record() || m.impacts.size() >= 2);
+    Parameters p = m.parameters;
+    MeasuredOscillator oscillator = MeasuredOscillator::given(p);
+    std::optional<FoundImpacts> refined;
+    Identification found;
+    std::vector<Doubt> doubts;
+    if (m.is_record()) {
+        refined = find_impacts(
+            p, m.record, {.sigmas = m.threshold, .moments = m.moments, .fixed = m.fixed}, progress);
+        const JointFit& fit = refined->fit;
+        if (fit.impacts.size() < 2) throw TooFewImpacts{static_cast<long>(fit.impacts.size())};
+        p.Omega = fit.values[Unknown::Omega];
+        oscillator = {fit.values[Unknown::stiffness], fit.values[Unknown::damping]};
+        found =
+            identify_impacts(p, fit.impacts, refined->side, refined->gaps, refined->pulse.length());
+        p.G = G_of(p, fit);
+        doubts = doubts_of(p, *refined, found);
+    } else {
+        found = of_impacts(m.impacts);
+    }
+    if (!m.R_given) take_restitution(p, found);
+    progress.reach(IdentificationStage::exponents);
+    Continuity continuity = continuity_of(p, found.impacts, time_gaps(m.record));
+    MeasuredExponents exponents(p, oscillator, found.impacts, continuity.stretches, m.estimators);
+    IdentifiedExponents judged = judge_exponents(
+        oscillator, exponents.all().qr_history(), exponents.all().start_tau(),
+        is_representative(found.impacts));
+    if (!doubts.empty() || continuity.share > Continuity::most)
+        judged.verdict = Verdict::not_decided;
+    else if (p.G == 0 || dies_out(found.impacts)) judged.verdict = Verdict::none;
+
+    progress.look();
+    auto direct =
+        refined ? direct_estimate(m, oscillator, *refined, continuity.stretches) : std::nullopt;
+    auto forward =
+        refined ? forward_run(p, oscillator, found, refined->fit, m.record.tau.back(), progress)
+                : std::nullopt;
+    return {
+        .parameters = p,
+        .found = std::move(found),
+        .oscillator = oscillator,
+        .refined = std::move(refined),
+        .continuity = std::move(continuity),
+        .exponents = std::move(exponents),
+        .judged = judged,
+        .doubts = std::move(doubts),
+        .direct = std::move(direct),
+        .forward = std::move(forward)};
+}
+
+}  // namespace vines

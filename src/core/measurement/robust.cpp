@@ -1,0 +1,71 @@
+#include "core/measurement/robust.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "core/motion/special_values.hpp"
+
+namespace vines {
+
+double median(std::vector<double> v) {
+    std::erase_if(v, [](double x) { return std::isnan(x); });
+    if (v.empty()) return nan;
+    const auto middle = v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2);
+    std::nth_element(v.begin(), middle, v.end());
+    return v.size() % 2 ? *middle : 0.5 * (*middle + *std::max_element(v.begin(), middle));
+}
+
+double quantile_of_moduli(std::vector<double> v, double share) {
+    std::erase_if(v, [](double x) { return std::isnan(x); });
+    if (v.empty()) return nan;
+    for (double& x : v) x = std::abs(x);
+    const auto at =
+        v.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(v.size() - 1));
+    std::nth_element(v.begin(), at, v.end());
+    return *at;
+}
+
+double robust_deviation(std::vector<double> v) {
+    for (double& x : v) x = std::abs(x);
+    // Of a normal distribution half lies within 1/1.4826 standard deviations.
+    return 1.4826 * median(std::move(v));
+}
+
+double error_of_median(const std::vector<double>& off) {
+    // sqrt(pi/2)
+    return 1.25 * robust_deviation(off) / std::sqrt(static_cast<double>(off.size()));
+}
+
+ThirdDifferences::ThirdDifferences(const std::vector<double>& tau, const std::vector<double>& v) {
+    if (v.size() < 4) return;
+    const double step = (tau.back() - tau.front()) / static_cast<double>(tau.size() - 1);
+    scaled_.reserve(v.size() - 3);
+    for (std::size_t i = 0; i + 3 < v.size(); ++i) {
+        // One sample may be missing among the four.
+        if (tau[i + 3] - tau[i] > 4.5 * step) {
+            scaled_.push_back(nan);
+            continue;
+        }
+        double difference = 0, variance = 0;
+        for (std::size_t j = i; j <= i + 3; ++j) {
+            double product = 1;
+            for (std::size_t k = i; k <= i + 3; ++k)
+                if (k != j) product *= (tau[j] - tau[k]) / step;
+            difference += v[j] / product;
+            variance += 1 / (product * product);
+        }
+        scaled_.push_back(difference / std::sqrt(variance));
+    }
+}
+
+double ThirdDifferences::noise(const std::vector<char>& spoiled) const {
+    std::vector<double> clean;
+    clean.reserve(scaled_.size());
+    for (std::size_t i = 0; i < scaled_.size(); ++i)
+        if (!spoiled[i] && !spoiled[i + 1] && !spoiled[i + 2] && !spoiled[i + 3])
+            clean.push_back(scaled_[i]);
+    return robust_deviation(std::move(clean));
+}
+
+}  // namespace vines

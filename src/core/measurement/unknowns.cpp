@@ -1,0 +1,40 @@
+#include "core/measurement/unknowns.hpp"
+
+#include <algorithm>
+
+#include "core/motion/special_values.hpp"
+
+namespace vines {
+
+namespace {
+
+// Of the given values, relative: masses and springs are weighed and measured to better than that,
+// a damping hardly.
+constexpr double stiffness_prior = 0.02, damping_prior = 0.5, least_damping_prior = 1e-3;
+constexpr double frequency_prior = 0.02;
+// A displacement's scale is right to a tenth, and late by a fraction of a cycle.
+constexpr double gain_prior = 0.1, delay_prior = 0.1;
+
+}  // namespace
+
+UnknownValues given_unknowns(const Parameters& p) {
+    UnknownValues v{};
+    v[Unknown::x_gain] = 1;
+    v[Unknown::Omega] = p.Omega;
+    v[Unknown::stiffness] = 1;
+    v[Unknown::damping] = 2 * p.zeta();
+    return v;
+}
+
+UnknownValues priors(const Parameters& p) {
+    UnknownValues sigma;
+    sigma.fill(infinity);
+    sigma[Unknown::x_gain] = gain_prior;
+    sigma[Unknown::x_delay] = delay_prior;
+    sigma[Unknown::Omega] = frequency_prior * p.Omega;
+    sigma[Unknown::stiffness] = stiffness_prior;
+    sigma[Unknown::damping] = std::max(damping_prior * 2 * p.zeta(), least_damping_prior);
+    return sigma;
+}
+
+}  // namespace vines

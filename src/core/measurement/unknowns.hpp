@@ -1,0 +1,67 @@
+// The model of a record: states, unknowns, residuals, priors.
+//
+// The oscillator moves by x'' + c x' + k x = f_s sin(Omega (tau - tau_m)) + f_c cos(Omega (tau -
+// tau_m)) between impacts, eq. (2), with tau = omega0 t of the omega0 that was given: so k = 1 and
+// c = 2 zeta but for what was given wrong. tau_m is the record's middle. Each interval between two
+// impacts has a state (x, x') at its start; each impact has a moment.
+//
+// The sensors show, of a sample at tau, with u = (tau - tau_m)/(length of the record):
+//
+//     displacement  X = x_gain x(tau - x_delay) + x_offset + x_drift u + noise
+//     acceleration  A = x''(tau) + a_offset + a_drift u + pulses of the impacts + noise
+//
+// Residuals: those of all samples that no pulse spoils; at each impact that x is continuous, and
+// its moment by its pulse. Between its impacts the mass flies with one velocity from wall to wall,
+// eq. (43), at each impact x' + epsilon y' is kept (36), and R is that of eq. (4): from these
+// follow y', R and b (identify.hpp), and what they leave says which impacts are none.
+//
+// Priors: what was given of k and c is known to stiffness_prior and damping_prior, the clocks of
+// the two channels agree to delay_prior, and so on. They are wide: what a record says is far
+// sharper.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "core/motion/parameters.hpp"
+
+namespace vines {
+
+/// What holds for the whole record.
+enum class Unknown {
+    force_sin,  ///< f_s, m
+    force_cos,  ///< f_c, m
+    x_offset,   ///< m, in the middle of the record
+    x_drift,    ///< m over the record
+    a_offset,   ///< m per unit of tau squared
+    a_drift,
+    x_gain,   ///< of the displacement against the acceleration
+    x_delay,  ///< of the displacement behind the acceleration, in tau
+    Omega,
+    stiffness,  ///< k: of the oscillator's own frequency, squared, over the given one's
+    damping     ///< c
+};
+inline constexpr std::size_t unknowns = 11;
+
+/// A value of each of them, or an error.
+class UnknownValues : public std::array<double, unknowns> {
+public:
+    using std::array<double, unknowns>::operator[];
+    double& operator[](Unknown u) { return (*this)[static_cast<std::size_t>(u)]; }
+    double operator[](Unknown u) const { return (*this)[static_cast<std::size_t>(u)]; }
+};
+
+/// Which of them stay as they are.
+class FixedUnknowns : public std::array<bool, unknowns> {
+public:
+    using std::array<bool, unknowns>::operator[];
+    bool& operator[](Unknown u) { return (*this)[static_cast<std::size_t>(u)]; }
+    bool operator[](Unknown u) const { return (*this)[static_cast<std::size_t>(u)]; }
+};
+
+/// Of sensors without a fault, and the oscillator as it is given.
+UnknownValues given_unknowns(const Parameters& parameters);
+/// Standard deviations of the priors; infinite where there is none.
+UnknownValues priors(const Parameters& parameters);
+
+}  // namespace vines

@@ -1,0 +1,76 @@
+#include "laboratory.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+namespace vines::test {
+
+namespace {
+
+/// A wrong k1 is a wrong unit of time.
+void rescale_time(Experiment& e, double faster) {
+    e.omega0 *= faster;
+    e.parameters.Omega /= faster;
+    e.parameters.lambda /= faster;
+    for (double& tau : e.record.tau) tau *= faster;
+    for (double& a : e.record.x_ddot) a /= faster * faster;
+    for (Impact& i : e.impacts) i.tau *= faster;
+}
+
+}  // namespace
+
+TrueMotion settled_motion(double b, double R_plus, double R_minus, double seconds) {
+    const SiParameters table_4{4.168, 3.02, 11.47e3, 0.032, 0, 0};
+    Parameters p;
+    p.epsilon = table_4.epsilon(), p.lambda = table_4.lambda(), p.G = 0.01, p.b = b,
+    p.R_plus = R_plus, p.R_minus = R_minus;
+    // A chaotic motion sticks now and then: the first stretch that does not.
+    for (double settling = 20; settling < 200; settling += 10) try {
+            return vines::true_motion(p, table_4.omega0(), settling, seconds);
+        } catch (const std::domain_error&) {}
+    throw std::runtime_error("the motion sticks all the time");
+}
+
+Experiment measured(const TrueMotion& motion, const Sensors& sensors, const Misinformation& told) {
+    Experiment e{
+        motion.parameters,
+        motion.omega0,
+        synthetic_record(motion, sensors),
+        {motion.impacts.begin() + 1, motion.impacts.end()},
+        motion.exponents.qr()[0],
+        motion.parameters,
+        long_run_verdict(motion.parameters)};
+    e.parameters.Omega *= 1 + told.frequency;
+    e.parameters.lambda *= 1 + told.damping;
+    rescale_time(e, std::sqrt(1 + told.stiffness));
+    return e;
+}
+
+Verdict long_run_verdict(const Parameters& p) {
+    static std::vector<std::pair<Parameters, Verdict>> known;
+    const auto same = [&p](const auto& k) {
+        return k.first.b == p.b && k.first.R_plus == p.R_plus && k.first.R_minus == p.R_minus &&
+               k.first.G == p.G;
+    };
+    if (const auto k = std::find_if(known.begin(), known.end(), same); k != known.end())
+        return k->second;
+    const double begin = 2e4, end = 2e5;
+    Lyapunov lyapunov(p, begin, end, qr_alone);
+    Observer* const observers[] = {&lyapunov};
+    simulate(
+        p, default_state(p), {.tau_end = end, .max_impacts = std::numeric_limits<long>::max()},
+        observers);
+    const Verdict verdict =
+        lyapunov.product().qr()[0] > 0.004 ? Verdict::chaotic : Verdict::regular;
+    known.emplace_back(p, verdict);
+    return verdict;
+}
+
+Experiment measured(double b, double R_plus, double R_minus, const Sensors& sensors) {
+    return measured(settled_motion(b, R_plus, R_minus, 20), sensors);
+}
+
+}  // namespace vines::test

@@ -1,0 +1,58 @@
+// The table of docs/measurements.md: what becomes of an identification by each thing that a
+// laboratory does to a record.
+//
+//     scripts/laboratory --seeds 3 --seconds 20 --only Butterworth
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "effects.hpp"
+#include "score.hpp"
+
+int main(int argc, char** argv) {
+    using namespace vines;
+    using namespace vines::test;
+    int seeds = 1, first_seed = 1;
+    double seconds = 20, R = 0.85;
+    std::vector<double> widths = {0.015, 0.009};
+    std::string only;
+    CLI::App app("Identifies records of a simulated laboratory and holds them against the truth");
+    app.add_option("--seeds", seeds, "records of each effect and b");
+    app.add_option("--first-seed", first_seed, "of the first of them");
+    app.add_option("--seconds", seconds, "that a record lasts");
+    app.add_option("--b", widths, "m");
+    app.add_option("--R", R, "of both walls");
+    app.add_option("--only", only, "effects whose names hold this");
+    CLI11_PARSE(app, argc, argv);
+    fmt::print(
+        "| effect | b, mm | found of | false | within .1 ms | R off by | b off by | lambda1 off by "
+        "| verdict | s |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+    int right = 0, wrong_verdicts = 0, records = 0;
+    for (const double b : widths) {
+        const TrueMotion motion = settled_motion(b, R, R, seconds);
+        for (const Effect& effect : laboratory_effects()) {
+            if (effect.name.find(only) == std::string::npos) continue;
+            for (int k = 0; k < seeds; ++k) {
+                Sensors sensors = effect.sensors;
+                sensors.seed = static_cast<std::uint64_t>(first_seed + k);
+                const Score s = score_of(measured(motion, sensors, effect.told));
+                ++records, right += s.is_right(), wrong_verdicts += s.verdict_wrong;
+                const char* verdicts[] = {"regular", "chaotic", "none", "not decided"};
+                const char* verdict = s.verdict == Verdict::regular   ? verdicts[0]
+                                      : s.verdict == Verdict::chaotic ? verdicts[1]
+                                      : s.verdict == Verdict::none    ? verdicts[2]
+                                                                      : verdicts[3];
+                fmt::print(
+                    "| {} | {:g} | {} of {} | {} | {:.1f} % | {:.4f} | {:.2f} % | {:.1f} % | {}{} "
+                    "| {:.2f} |{}\n",
+                    effect.name, 1000 * b, s.found - s.flipped, s.impacts, s.false_ones,
+                    100 * s.within_100_us, s.R_error, 100 * s.b_error, 100 * s.lambda1_error,
+                    verdict, s.verdict_wrong ? " (wrong)" : "", s.seconds,
+                    s.is_right() ? "" : " !");
+                std::fflush(stdout);
+            }
+        }
+    }
+    fmt::print("\n{} of {} right, {} wrong verdicts\n", right, records, wrong_verdicts);
+    return wrong_verdicts > 0 ? 1 : 0;
+}
