@@ -91,7 +91,7 @@ void bench_identification(double samples, int rounds) {
     std::vector<double> seconds;
     double megabytes = 0;
     for (int k = 0; k < rounds; ++k) {
-        const Cost cost = cost_of([&] { conclude(measurement, spikes_of(measurement).spikes); });
+        const Cost cost = cost_of([&] { conclude(measurement); });
         seconds.push_back(cost.seconds);
         megabytes = cost.megabytes;
     }
