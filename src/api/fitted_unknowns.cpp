@@ -66,8 +66,7 @@ void add_fitted_warnings(
     if (off(Unknown::x_gain, gain_off))
         warnings.push_back(fmt::format(
             "the displacement is {:.4g} times what the acceleration says, and is taken for that: "
-            "is "
-            "a sensitivity wrong?",
+            "is a sensitivity wrong?",
             fit.values[Unknown::x_gain]));
     if (off(Unknown::x_delay, delay_off * omega0))
         warnings.push_back(fmt::format(

@@ -9,6 +9,20 @@
 #include "effects.hpp"
 #include "score.hpp"
 
+namespace {
+
+const char* words_of(vines::Verdict verdict) {
+    switch (verdict) {
+        case vines::Verdict::regular: return "regular";
+        case vines::Verdict::chaotic: return "chaotic";
+        case vines::Verdict::none: return "none";
+        case vines::Verdict::not_decided: break;
+    }
+    return "not decided";
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
     using namespace vines;
     using namespace vines::test;
@@ -37,17 +51,12 @@ int main(int argc, char** argv) {
                 sensors.seed = static_cast<std::uint64_t>(first_seed + k);
                 const Score s = score_of(measured(motion, sensors, effect.told));
                 ++records, right += s.is_right(), wrong_verdicts += s.verdict_wrong;
-                const char* verdicts[] = {"regular", "chaotic", "none", "not decided"};
-                const char* verdict = s.verdict == Verdict::regular   ? verdicts[0]
-                                      : s.verdict == Verdict::chaotic ? verdicts[1]
-                                      : s.verdict == Verdict::none    ? verdicts[2]
-                                                                      : verdicts[3];
                 fmt::print(
                     "| {} | {:g} | {} of {} | {} | {:.1f} % | {:.4f} | {:.2f} % | {:.1f} % | {}{} "
                     "| {:.2f} |{}\n",
                     effect.name, 1000 * b, s.found - s.flipped, s.impacts, s.false_ones,
                     100 * s.within_100_us, s.R_error, 100 * s.b_error, 100 * s.lambda1_error,
-                    verdict, s.verdict_wrong ? " (wrong)" : "", s.seconds,
+                    words_of(s.verdict), s.verdict_wrong ? " (wrong)" : "", s.seconds,
                     s.is_right() ? "" : " !");
                 std::fflush(stdout);
             }

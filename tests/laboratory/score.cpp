@@ -19,8 +19,7 @@ std::vector<TimeGap> long_gaps(const Experiment& e) {
     return gaps;
 }
 
-bool can_be_seen(const Experiment& e, const Impact& i) {
-    const std::vector<TimeGap> gaps = long_gaps(e);
+bool can_be_seen(const Experiment& e, const std::vector<TimeGap>& gaps, const Impact& i) {
     return std::none_of(gaps.begin(), gaps.end(), [&](const TimeGap& g) {
         const double margin = found_within * e.omega0;
         return i.tau > g.from - margin && i.tau < g.to + margin;
@@ -28,22 +27,13 @@ bool can_be_seen(const Experiment& e, const Impact& i) {
 }
 
 /// The exponent of the true impacts that can be seen: what a perfect identification would give.
-double true_lambda1(const Experiment& e, const std::vector<Impact>& seen) {
-    std::vector<IdentifiedImpact> impacts;
-    for (const Impact& i : seen)
-        impacts.push_back(
-            {.tau = i.tau,
-             .side = i.side,
-             .x = i.x,
-             .x_dot_before = i.x_dot_before,
-             .x_dot_after = i.x_dot_after,
-             .x_ddot_before = i.x_ddot_before,
-             .y_dot_before = i.x_dot_before - i.relative_speed_before,
-             .y_dot_after = i.y_dot_after});
+double true_lambda1(
+    const Experiment& e, const std::vector<TimeGap>& gaps, const std::vector<Impact>& seen) {
+    std::vector<IdentifiedImpact> impacts = listed(seen);
     complete_impacts(e.true_parameters, impacts, 0);
     const MeasuredExponents exponents(
         e.true_parameters, MeasuredOscillator::given(e.true_parameters), impacts,
-        continuity_of(e.true_parameters, impacts, long_gaps(e)).stretches, qr_alone);
+        continuity_of(e.true_parameters, impacts, gaps).stretches, qr_alone);
     return exponents.all().qr()[0];
 }
 
@@ -56,9 +46,10 @@ bool Score::is_right() const {
 
 Score score_of(const Experiment& e, const MeasurementResult& result) {
     Score s;
+    const std::vector<TimeGap> gaps = long_gaps(e);
     std::vector<Impact> seen;
     for (const Impact& i : e.impacts)
-        if (can_be_seen(e, i)) seen.push_back(i);
+        if (can_be_seen(e, gaps, i)) seen.push_back(i);
     s.impacts = static_cast<long>(seen.size());
     std::vector<char> taken(e.impacts.size(), 0);
     std::vector<double> off;
@@ -75,7 +66,7 @@ Score score_of(const Experiment& e, const MeasurementResult& result) {
             continue;
         }
         matched = 1;
-        s.found += can_be_seen(e, *nearest);
+        s.found += can_be_seen(e, gaps, *nearest);
         s.flipped += i.side != nearest->side;
         off.push_back(late);
     }
@@ -93,7 +84,7 @@ Score score_of(const Experiment& e, const MeasurementResult& result) {
     s.b_error = result.found.b_fitted / e.parameters.b - 1;
     // Of a regular motion lambda1 is near -zeta or 0: there .04 of 1/tau is the scale.
     const double lambda1 = result.exponents.all().qr()[0];
-    const double truth = !long_gaps(e).empty() ? true_lambda1(e, seen) : e.lambda1;
+    const double truth = !gaps.empty() ? true_lambda1(e, gaps, seen) : e.lambda1;
     s.lambda1_error = std::abs(lambda1 - truth) / std::max(std::abs(truth), 0.04);
     s.verdict = result.judged.verdict;
     s.verdict_wrong = s.verdict != Verdict::not_decided && s.verdict != e.verdict;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "core/measurement/robust.hpp"
 
@@ -45,8 +44,8 @@ public:
             for (std::size_t k = p; k-- > 0 && tau[p] - tau[k] < looked_before;)
                 if (!bad[k]) before[bin(tau[p] - tau[k])].push_back(share(k));
         }
-        hull(before, before_);
-        hull(after, after_);
+        hull(std::move(before), before_);
+        hull(std::move(after), after_);
     }
 
     /// Of the height of an event at p, what it may have so long after it.
@@ -67,17 +66,13 @@ private:
     std::size_t bin(double s) const { return static_cast<std::size_t>(s / step_ + 0.5); }
 
     /// Never rising away from the event: a ringing may beat with the sampling.
-    static void hull(std::vector<std::vector<double>>& seen, std::vector<double>& fading) {
+    /// `seen`: as many bins.
+    static void hull(std::vector<std::vector<double>> seen, std::vector<double>& fading) {
         double highest = 0;
         for (std::size_t b = fading.size(); b-- > 0;) {
-            if (b < seen.size() && seen[b].size() >= fewest_of_bin) {
-                auto& v = seen[b];
-                const auto at =
-                    v.begin() + static_cast<std::ptrdiff_t>(
-                                    quantile_of_fading * static_cast<double>(v.size() - 1));
-                std::nth_element(v.begin(), at, v.end());
-                highest = std::max(highest, *at);
-            }
+            if (seen[b].size() >= fewest_of_bin)
+                highest =
+                    std::max(highest, quantile_of_moduli(std::move(seen[b]), quantile_of_fading));
             fading[b] = highest;
         }
         // Next to the highest sample another one may be nearly as high.
@@ -137,11 +132,8 @@ double middle_of(const std::vector<double>& tau, const PulseSignal& signal, std:
 }  // namespace
 
 PulseEvents pulse_events(
-    const std::vector<double>& tau, const PulseSignal& signal, const std::vector<char>& bad,
-    double sigmas, IdentificationProgress& progress) {
-    std::vector<double> steps;
-    for (std::size_t k = 1; k < tau.size(); ++k) steps.push_back(tau[k] - tau[k - 1]);
-    const double step = median(std::move(steps));
+    const std::vector<double>& tau, double step, const PulseSignal& signal,
+    const std::vector<char>& bad, double sigmas, IdentificationProgress& progress) {
     const std::vector<std::size_t> order = standing_out(signal, bad, sigmas);
     // The highest within all that an event may last.
     const std::vector<std::size_t> highest =

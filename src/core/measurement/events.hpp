@@ -21,9 +21,9 @@ struct PulseEvents {
 };
 
 /// What stands out by `sigmas` times the noise and is no part of a higher event beside it: how
-/// events fade is read from the highest ones.
+/// events fade is read from the highest ones. `step`: between samples, typically.
 PulseEvents pulse_events(
-    const std::vector<double>& tau, const PulseSignal& signal, const std::vector<char>& bad,
-    double sigmas, IdentificationProgress& progress);
+    const std::vector<double>& tau, double step, const PulseSignal& signal,
+    const std::vector<char>& bad, double sigmas, IdentificationProgress& progress);
 
 }  // namespace vines

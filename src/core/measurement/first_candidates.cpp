@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/measurement/events.hpp"
 #include "core/measurement/kinks.hpp"
 
 namespace vines {
@@ -23,16 +22,10 @@ constexpr double attach_steps = 2.5, beside_kink = 0.5;
 // others leave behind.
 constexpr double most_odd_events = 0.1;
 
-Candidate candidate_of(const PulseEvent& e) {
-    return {.tau = e.tau, .height = e.height, .event = e.tau};
-}
-
 PulseEvents events_of(const SearchedRecord& in, IdentificationProgress& progress) {
     const PulseSignal signal = pulse_signal(in.record, in.bad, in.parameters.Omega, progress);
-    // What is clipped is high all the same.
-    std::vector<char> odd(in.bad.a);
-    for (char& b : odd) b = b > clipped;
-    return pulse_events(in.record.tau, signal, odd, in.sigmas, progress);
+    return pulse_events(
+        in.record.tau, in.statistics.step, signal, in.bad.a_without_clipped(), in.sigmas, progress);
 }
 
 bool are_sharp(const std::vector<Candidate>& kinks) {
@@ -105,6 +98,10 @@ void add_others(
 }
 
 }  // namespace
+
+Candidate candidate_of(const PulseEvent& e) {
+    return {.tau = e.tau, .height = e.height, .event = e.tau};
+}
 
 PulseExtent unknown_extent(const RecordStatistics& statistics) {
     return {first_spoiled_steps * statistics.step, first_spoiled_steps * statistics.step};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/measurement/candidate.hpp"
+#include "core/measurement/events.hpp"
 #include "core/measurement/extents.hpp"
 
 namespace vines {
@@ -25,6 +26,8 @@ struct FirstCandidates {
 /// Where the displacement is so sharp that its kinks show all impacts, they are the candidates,
 /// each with the event beside it. Else all events are, and the kinks between them.
 FirstCandidates first_candidates(const SearchedRecord& record, IdentificationProgress& progress);
+
+Candidate candidate_of(const PulseEvent& event);
 
 /// How long pulses are taken to last where nothing of them is known.
 PulseExtent unknown_extent(const RecordStatistics& statistics);

@@ -40,7 +40,7 @@ struct StartAndForce {
         ++samples;
     }
     PieceEquations without_start(double tau) const {
-        // Far below what a sample adds (joint_fit.cpp), and above zero.
+        // Far below what a sample adds, about one over its variance, and above zero.
         constexpr double ridge = 1e-9;
         const Eigen::Matrix2d start =
             (N.topLeftCorner<2, 2>() + ridge * Eigen::Matrix2d::Identity()).inverse();
@@ -87,7 +87,7 @@ std::vector<PieceEquations> equations_of(
         StartAndForce equations;
         for (; k < r.tau.size() && r.tau[k] < end; ++k) {
             const auto m = parts.at(std::max(0.0, r.tau[k] - starts[i]), r.x.empty());
-            if (!r.x.empty() && (in.bad_x.empty() || !in.bad_x[k]))
+            if (!r.x.empty() && !in.bad_x[k])
                 equations.add(
                     {m[0].x, m[1].x, m[2].x, m[3].x}, r.x[k] - x_offset, in.statistics.x.noise);
             // Nearly all of an acceleration without pulses lies within the displacement's; without

@@ -75,7 +75,7 @@ std::vector<Flight> flights_of(
     for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
         const double from = m[i].tau, to = m[i + 1].tau, duration = to - from;
         const bool over_gap = std::any_of(
-            gaps.begin(), gaps.end(), [&](const TimeGap& g) { return g.from < to && from < g.to; });
+            gaps.begin(), gaps.end(), [&](const TimeGap& g) { return g.overlaps(from, to); });
         if (over_gap) flights.push_back({nan, nan});
         else
             flights.push_back(

@@ -38,14 +38,10 @@ constexpr double pulse_margin = 0.1;
 std::vector<char> in_pulses(
     const MeasuredRecord& r, const std::vector<ImpactMoment>& impacts, double margin) {
     std::vector<char> spoiled(r.tau.size(), 0);
-    for (const ImpactMoment& i : impacts) {
-        auto k = std::lower_bound(r.tau.begin(), r.tau.end(), i.tau - i.spoiled_before - margin) -
-                 r.tau.begin();
-        for (; k < static_cast<std::ptrdiff_t>(r.tau.size()) &&
-               r.tau[static_cast<std::size_t>(k)] < i.tau + i.spoiled_after + margin;
-             ++k)
-            spoiled[static_cast<std::size_t>(k)] = 1;
-    }
+    for (const ImpactMoment& i : impacts)
+        for (std::size_t k = first_index(r, i.tau - i.spoiled_before - margin);
+             k < r.tau.size() && r.tau[k] < i.tau + i.spoiled_after + margin; ++k)
+            spoiled[k] = 1;
     return spoiled;
 }
 
@@ -181,9 +177,7 @@ private:
                     const double left = r_.x[k] - gain * row.value.x - v[Unknown::x_offset] -
                                         v[Unknown::x_drift] * u;
                     fit_.x_left[k] = left;
-                    if ((!in_.bad_x.empty() && in_.bad_x[k]) ||
-                        x_is_spoiled(i, r_.tau[k] - v[Unknown::x_delay]))
-                        return;
+                    if (in_.bad_x[k] || x_is_spoiled(i, r_.tau[k] - v[Unknown::x_delay])) return;
                     take_derivatives(row, &OscillatorMotion::x, by_start, by_unknowns);
                     by_start *= gain;
                     by_unknowns *= gain;
@@ -202,7 +196,7 @@ private:
                 const double left = r_.x_ddot[k] - row.value.x_ddot - v[Unknown::a_offset] -
                                     v[Unknown::a_drift] * u;
                 fit_.a_left[k] = left;
-                if (spoiled_[k] || (!in_.bad_a.empty() && in_.bad_a[k])) return;
+                if (spoiled_[k] || in_.bad_a[k]) return;
                 take_derivatives(row, &OscillatorMotion::x_ddot, by_start, by_unknowns);
                 set(Unknown::a_offset, 1);
                 set(Unknown::a_drift, u);
@@ -312,18 +306,13 @@ private:
 
     /// The deviations of what is left, by which the next step weighs it.
     void take_scales() {
-        const auto deviation = [&](const std::vector<double>& left, const std::vector<char>& bad,
-                                   const std::vector<char>& spoiled) {
-            std::vector<double> clean;
-            for (std::size_t k = 0; k < left.size(); ++k)
-                if ((bad.empty() || !bad[k]) && (spoiled.empty() || !spoiled[k]))
-                    clean.push_back(left[k]);
-            return robust_deviation(std::move(clean));
-        };
-        static const std::vector<char> none;
-        scale_x_ = std::max(deviation(fit_.x_left, in_.bad_x, none), in_.statistics.x.noise);
-        scale_a_ =
-            std::max(deviation(fit_.a_left, in_.bad_a, spoiled_), in_.statistics.x_ddot.noise);
+        std::vector<double> x, a;
+        for (std::size_t k = 0; k < fit_.x_left.size(); ++k)
+            if (!in_.bad_x[k]) x.push_back(fit_.x_left[k]);
+        for (std::size_t k = 0; k < fit_.a_left.size(); ++k)
+            if (!in_.bad_a[k] && !spoiled_[k]) a.push_back(fit_.a_left[k]);
+        scale_x_ = std::max(robust_deviation(std::move(x)), in_.statistics.x.noise);
+        scale_a_ = std::max(robust_deviation(std::move(a)), in_.statistics.x_ddot.noise);
         ++scales_taken_;
         // The first are of a motion of zero.
         trusted_ = scales_taken_ > 2;
@@ -390,7 +379,7 @@ private:
         std::vector<double> clean;
         std::vector<char> odd(spoiled_);
         for (std::size_t k = 0; k < left.size(); ++k) {
-            if (!bad.empty() && bad[k]) odd[k] = 1;
+            if (bad[k]) odd[k] = 1;
             if (!odd[k]) clean.push_back(left[k]);
         }
         return quantile_of_moduli(std::move(clean), 0.9) / ninety_percent /

@@ -60,7 +60,8 @@ struct JointFitInput {
     const Parameters& parameters;
     const MeasuredRecord& record;
     const RecordStatistics& statistics;
-    /// Samples that say nothing: clipped, dropped out, odd. One entry for each sample, or empty.
+    /// Samples that say nothing: clipped, dropped out, odd. One entry for each sample of a channel
+    /// that is there.
     const std::vector<char>& bad_x;
     const std::vector<char>& bad_a;
     /// What of the displacement an impact spoils, before and after it.

@@ -59,7 +59,7 @@ Continuity continuity_of(
     const double typical_flight = median(flights), typical_speed = median(speeds);
     const auto over_gap = [&](double from, double to) {
         return std::any_of(gaps.begin(), gaps.end(), [&](const TimeGap& g) {
-            return g.to - g.from > hiding_gap * typical_flight && g.from < to && g.to > from;
+            return g.to - g.from > hiding_gap * typical_flight && g.overlaps(from, to);
         });
     };
     for (std::size_t i = 0; i < impacts.size(); ++i) {

@@ -21,6 +21,8 @@ std::size_t first_index(const MeasuredRecord& record, double tau);
 /// A stretch of time without a sample, in tau.
 struct TimeGap {
     double from, to;
+
+    bool overlaps(double begin, double end) const { return from < end && begin < to; }
 };
 
 /// Steps of more than three typical ones.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "core/measurement/events.hpp"
 #include "core/measurement/missed_impact.hpp"
 
 namespace vines {
@@ -18,8 +17,7 @@ std::vector<Candidate> pulses(
     IdentificationProgress& progress) {
     const MeasuredRecord& r = in.record;
     PulseSignal signal{fit.a_left, fit.noise_a};
-    std::vector<char> passed_over(in.bad.a);
-    for (char& b : passed_over) b = b > clipped;
+    std::vector<char> passed_over = in.bad.a_without_clipped();
     for (const FittedImpact& i : fit.impacts) {
         const double from = i.tau - std::max(extent.before, beside_impact),
                      to = i.tau + std::max(extent.after, beside_impact);
@@ -27,8 +25,9 @@ std::vector<Candidate> pulses(
             passed_over[k] = 1;
     }
     std::vector<Candidate> found;
-    for (const PulseEvent& e : pulse_events(r.tau, signal, passed_over, in.sigmas, progress).events)
-        found.push_back({.tau = e.tau, .height = e.height, .event = e.tau});
+    const PulseEvents seen =
+        pulse_events(r.tau, in.statistics.step, signal, passed_over, in.sigmas, progress);
+    for (const PulseEvent& e : seen.events) found.push_back(candidate_of(e));
     if (static_cast<double>(found.size()) >
         most_overlooked * static_cast<double>(fit.impacts.size()))
         return {};

@@ -123,10 +123,7 @@ PulseSignal pulse_signal(
         progress.look();
         const double end = r.tau.front() + (r.tau.back() - r.tau.front()) * static_cast<double>(i) /
                                                static_cast<double>(stretches);
-        const std::size_t to =
-            i == stretches ? n
-                           : static_cast<std::size_t>(
-                                 std::lower_bound(r.tau.begin(), r.tau.end(), end) - r.tau.begin());
+        const std::size_t to = i == stretches ? n : first_index(r, end);
         if (i < stretches && to - from < fewest_samples_of_stretch) continue;
         const SampledStretch stretch(r, bad, Omega, from, to);
         const Eigen::VectorXd left = stretch.left();

@@ -48,7 +48,7 @@ std::vector<PulseSample> samples_of(
                                                       : infinity;
         for (std::size_t k = first_index(r, std::max(start, tau + begin));
              k < r.tau.size() && r.tau[k] < std::min(end, tau + begin + length); ++k) {
-            if (!bad_a.empty() && bad_a[k]) continue;
+            if (bad_a[k]) continue;
             samples.push_back({r.tau[k] - tau - begin, fit.a_left[k] / jump, jump * jump});
             total += jump * jump;
         }
@@ -192,7 +192,7 @@ PulseMoment pulse_moment(
         double sum = std::isfinite(x_jump) ? x_jump * x_jump : 0;
         for (std::size_t s = first_index(r, i.tau - around);
              s < r.tau.size() && r.tau[s] < i.tau + around; ++s) {
-            if (!bad_a.empty() && bad_a[s]) continue;
+            if (bad_a[s]) continue;
             const double off = (fit.a_left[s] - jump * pulse.at(r.tau[s] - tau)) / noise;
             // An odd sample counts no more than a few.
             sum += std::min(off * off, 25.0);

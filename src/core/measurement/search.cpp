@@ -22,8 +22,8 @@ constexpr double event_steps = 0.1;
 // A pulse spoils no more than this share of a typical flight, before and after an impact: something
 // of the acceleration must be left to fit.
 constexpr double most_spoiled = 0.35;
-// The record contradicts what is given from so many standard errors on.
-// and if it matters: k by more than that share, c by more than that one.
+// The record contradicts what is given from so many standard errors on,
+// where it matters: k is off by more than that share, c by more than that one.
 constexpr double contradiction = 5, least_of_stiffness = 3e-4, least_of_damping = 0.01;
 // A jump of x' has a sign from so many standard errors on.
 constexpr double side_sigmas = 3;
@@ -67,7 +67,6 @@ public:
             if (free_oscillator(r_, pulse_moments())) settle(refit, rounds_with_pulses);
             finish();
         }
-        found_.bad = std::move(bad_);
         return std::move(found_);
     }
 
@@ -100,6 +99,13 @@ private:
             candidates_.begin(), candidates_.end(), [](const Candidate& c) { return !c.is_gap; });
     }
 
+    /// Impacts without an event in the acceleration.
+    std::ptrdiff_t unseen() const {
+        return std::count_if(candidates_.begin(), candidates_.end(), [](const Candidate& c) {
+            return c.height == 0 && !c.is_gap;
+        });
+    }
+
     void scan_frequency() {
         std::vector<double> moments;
         for (const Candidate& c : candidates_) moments.push_back(c.tau);
@@ -121,9 +127,7 @@ private:
         refit();
         free_oscillator(by_x, event_moments());
         // Where nearly each has its pulse, nothing is to be found.
-        const auto unseen = std::count_if(
-            candidates_.begin(), candidates_.end(), [](const auto& c) { return c.height == 0; });
-        settle(refit, 20 * unseen > impacts() ? 2 : 1);
+        settle(refit, 20 * unseen() > impacts() ? 2 : 1);
     }
 
     std::vector<ImpactMoment> event_moments() const {
@@ -271,11 +275,7 @@ private:
                 found_.dropped.push_back(d.tau);
         std::sort(found_.dropped.begin(), found_.dropped.end());
         // Of given moments no pulses are looked for.
-        found_.unseen = !o_.moments.empty()
-                            ? 0
-                            : std::count_if(
-                                  candidates_.begin(), candidates_.end(),
-                                  [](const Candidate& c) { return c.height == 0 && !c.is_gap; });
+        found_.unseen = o_.moments.empty() ? unseen() : 0;
         for (std::size_t i = 0; i < candidates_.size(); ++i)
             if (!candidates_[i].is_gap) found_.side.push_back(side_of(i));
         std::erase_if(found_.fit.impacts, [](const FittedImpact& i) { return i.is_gap; });
@@ -286,7 +286,7 @@ private:
     const MeasuredRecord& r_;
     const SearchOptions& o_;
     IdentificationProgress& progress_;
-    BadSamples bad_;
+    const BadSamples bad_;
     const RecordStatistics statistics_;
     const SearchedRecord in_;
     FixedUnknowns fixed_;

@@ -2,7 +2,6 @@
 // overlooked and those that are none, until nothing changes.
 #pragma once
 
-#include "core/measurement/bad_samples.hpp"
 #include "core/measurement/joint_fit.hpp"
 #include "core/measurement/pulse_template.hpp"
 
@@ -14,7 +13,6 @@ struct FoundImpacts {
     std::vector<TimeGap> gaps;  ///< of the record, in which an impact could hide
     PulseTemplate pulse;
     PulseExtent extent{0, 0};
-    BadSamples bad;
     long unseen = 0;              ///< impacts whose pulse is not seen
     std::vector<double> dropped;  ///< moments of pulses, or given ones, at which x' does not jump
     bool settled = false;         ///< the last round neither dropped nor added one

@@ -106,9 +106,7 @@ void add_pulses(
     const TrueMotion& motion, const Sensors& s, std::mt19937_64& engine, MeasuredRecord& r) {
     const PulseShape shape(s);
     const auto add = [&](double tau, double jump) {
-        auto k = static_cast<std::size_t>(
-            std::lower_bound(r.tau.begin(), r.tau.end(), tau + shape.begin() * motion.omega0) -
-            r.tau.begin());
+        std::size_t k = first_index(r, tau + shape.begin() * motion.omega0);
         // Its integral over tau is the jump of x'.
         for (; k < r.tau.size() && r.tau[k] < tau + shape.end() * motion.omega0; ++k)
             r.x_ddot[k] += jump / motion.omega0 * shape.at((r.tau[k] - tau) / motion.omega0);

@@ -30,6 +30,9 @@ struct Experiment {
 TrueMotion settled_motion(double b, double R_plus, double R_minus, double seconds);
 Experiment measured(
     const TrueMotion& motion, const Sensors& sensors, const Misinformation& told = {});
+/// True impacts as one would list them.
+std::vector<IdentifiedImpact> listed(const std::vector<Impact>& impacts);
+
 /// By lambda1 of an hour.
 Verdict long_run_verdict(const Parameters& parameters);
 /// Of 20 s.

@@ -258,22 +258,6 @@ TEST_CASE("the b that fits the momentum is found though a wrong one is given") {
 
 namespace {
 
-/// The true impacts, as one would list them.
-std::vector<IdentifiedImpact> listed(const TrueMotion& motion) {
-    std::vector<IdentifiedImpact> impacts;
-    for (const Impact& i : motion.impacts)
-        impacts.push_back(
-            {.tau = i.tau,
-             .side = i.side,
-             .x = i.x,
-             .x_dot_before = i.x_dot_before,
-             .x_dot_after = i.x_dot_after,
-             .x_ddot_before = i.x_ddot_before,
-             .y_dot_before = i.y_dot_before,
-             .y_dot_after = i.y_dot_after});
-    return impacts;
-}
-
 /// Without some of them, at random.
 std::vector<IdentifiedImpact> without(const std::vector<IdentifiedImpact>& impacts, double share) {
     std::mt19937_64 engine(7);
@@ -294,7 +278,7 @@ TEST_CASE(
         const double lambda1 = motion.exponents.qr()[0];
         for (const double share : {0.0, 0.02, 0.1, 0.3}) {
             CAPTURE(share);
-            std::vector<IdentifiedImpact> impacts = without(listed(motion), share);
+            std::vector<IdentifiedImpact> impacts = without(listed(motion.impacts), share);
             complete_impacts(motion.parameters, impacts, 0);
             const Continuity c = continuity_of(motion.parameters, impacts, {});
             CHECK(c.left_out == 0);
@@ -330,7 +314,7 @@ TEST_CASE(
 TEST_CASE("a chaotic motion that is in step for a while is not called regular") {
     for (const double b : {0.011, 0.012}) {
         const TrueMotion motion = settled_motion(b, 0.85, 0.85, 200);
-        const std::vector<IdentifiedImpact> all = listed(motion);
+        const std::vector<IdentifiedImpact> all = listed(motion.impacts);
         for (const std::size_t n : {40u, 60u, 80u, 100u, 150u, 200u})
             for (std::size_t from = 0; from + n < all.size(); from += n / 2) {
                 CAPTURE(n);
@@ -354,7 +338,7 @@ TEST_CASE("a chaotic motion that is in step for a while is not called regular") 
 
 TEST_CASE("a gap of the record breaks the product where an impact could hide in it") {
     const TrueMotion motion = settled_motion(0.009, 0.85, 0.85, 20);
-    std::vector<IdentifiedImpact> impacts = listed(motion);
+    std::vector<IdentifiedImpact> impacts = listed(motion.impacts);
     complete_impacts(motion.parameters, impacts, 0);
     const double from = impacts[100].tau, flight = impacts[101].tau - from;
     CHECK(
@@ -372,7 +356,7 @@ TEST_CASE(
     "momentum is weighed by the typical jump, and an impact that does not keep it is left out "
     "whatever its own jump") {
     const TrueMotion motion = settled_motion(0.009, 0.85, 0.85, 10);
-    std::vector<IdentifiedImpact> impacts = listed(motion);
+    std::vector<IdentifiedImpact> impacts = listed(motion.impacts);
     std::vector<double> jumps;
     for (const IdentifiedImpact& i : impacts)
         jumps.push_back(std::abs(i.x_dot_after - i.x_dot_before));
