@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/measurement/joint_equations.hpp"
+#include "core/measurement/left_over.hpp"
 #include "core/motion/elementary.hpp"
 #include "core/motion/special_values.hpp"
 
@@ -368,38 +369,30 @@ private:
         }
     }
 
-    /// What a fit leaves of a sensor over the noise of that sensor, which is seen beside the
-    /// pulses. Of the nine in ten that lie closest: a motion may be wrong in a part of the record,
-    /// but a few odd samples are no misfit.
-    double misfit_of(
+    /// Of what a fit leaves of a sensor: `left` beside the pulses.
+    LeftOver left_over(
         const std::vector<double>& left, const SignalStatistics& signal,
         const std::vector<char>& bad) const {
-        // Of a normal distribution lie within that many standard deviations.
-        constexpr double ninety_percent = 1.645;
-        std::vector<double> clean;
         std::vector<char> odd(spoiled_);
-        for (std::size_t k = 0; k < left.size(); ++k) {
+        for (std::size_t k = 0; k < left.size(); ++k)
             if (bad[k]) odd[k] = 1;
-            if (!odd[k]) clean.push_back(left[k]);
-        }
-        return quantile_of_moduli(std::move(clean), 0.9) / ninety_percent /
-               elementary::hypot(signal.differences.noise(odd), signal.least_noise);
+        return vines::left_over(r_.tau, left, odd, in_.statistics.step, signal);
     }
 
     void take_misfits() {
-        fit_.noise_x = r_.x.empty() ? nan : robust_deviation(fit_.x_left);
-        fit_.misfit_x = r_.x.empty() ? nan : misfit_of(fit_.x_left, in_.statistics.x, in_.bad_x);
-        std::vector<double> beside;
-        for (std::size_t k = 0; k < fit_.a_left.size(); ++k)
-            if (!spoiled_[k]) beside.push_back(fit_.a_left[k]);
-        fit_.noise_a = r_.x_ddot.empty() ? nan : robust_deviation(std::move(beside));
-        fit_.misfit_a =
-            r_.x_ddot.empty() ? nan : misfit_of(fit_.a_left, in_.statistics.x_ddot, in_.bad_a);
-        // What is left beyond the noise makes all less certain.
-        double misfit = 1;
-        for (const double m : {fit_.misfit_x, fit_.misfit_a})
-            if (m > misfit) misfit = m;
-        for (double& e : fit_.errors) e *= misfit;
+        double uncertain = 1;
+        const auto take = [&](const LeftOver& l, double& noise, double& misfit) {
+            noise = l.noise, misfit = l.misfit, uncertain = std::max(uncertain, l.uncertainty);
+        };
+        fit_.noise_x = fit_.noise_a = fit_.misfit_x = fit_.misfit_a = nan;
+        if (!r_.x.empty())
+            take(left_over(fit_.x_left, in_.statistics.x, in_.bad_x), fit_.noise_x, fit_.misfit_x);
+        if (!r_.x_ddot.empty())
+            take(
+                left_over(fit_.a_left, in_.statistics.x_ddot, in_.bad_a), fit_.noise_a,
+                fit_.misfit_a);
+        // What is left beyond what the fit took for noise makes all less certain.
+        for (double& e : fit_.errors) e *= uncertain;
     }
 
     const JointFitInput& in_;

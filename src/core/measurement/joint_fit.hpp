@@ -46,7 +46,7 @@ struct JointFit {
     /// pulses and the noise. Empty without that sensor.
     std::vector<double> x_left, a_left;
     double noise_x = 0, noise_a = 0;  ///< standard deviations of that; NaN without the sensor
-    /// That over the sensor's own noise, taken from the signal beside the pulses: 1 if all is
+    /// That over what of it has nothing to do with the motion (left_over.hpp): 1 if all is
     /// explained.
     double misfit_x = 0, misfit_a = 0;
     bool converged = false;

@@ -418,6 +418,18 @@ TEST_CASE("what is fixed stays as it is given, and the record then is not explai
     CHECK(r.judged.verdict == Verdict::not_decided);
 }
 
+TEST_CASE("noise that a filter has coloured is no motion that was missed") {
+    const TrueMotion motion = settled_motion(0.015, 0.85, 0.85, 20);
+    for (const double corner : {0.4, 0.2}) {
+        CAPTURE(corner);
+        const MeasurementResult r =
+            identified(measured(motion, {.low_pass_x = corner, .low_pass_a = corner}));
+        CHECK(r.refined->fit.misfit_x < 1.1);
+        CHECK(r.refined->fit.misfit_a < 1.1);
+        CHECK(r.judged.verdict == Verdict::chaotic);
+    }
+}
+
 TEST_CASE("the oscillator is as it is given, unless the record contradicts") {
     const TrueMotion motion = settled_motion(0.015, 0.85, 0.85, 12);
     const JointFit as_given = identified(measured(motion, {})).refined->fit;
