@@ -340,9 +340,9 @@ Json identify_answer(const IdentifyRequest& r, const IdentificationWatch& watch)
     answer["exponents"] = describe_measured(
         result.exponents, m.estimators, result.continuity.stretches, found.impacts, warnings);
     answer["slope"] = {
-        {"lambda1", finite_or_null(judged.slope)},
-        {"low", finite_or_null(judged.low)},
-        {"high", finite_or_null(judged.high)}};
+        {"lambda1", finite_or_null(judged.slope.value)},
+        {"low", finite_or_null(judged.slope.low)},
+        {"high", finite_or_null(judged.slope.high)}};
     answer["verdict"] = word(judged.verdict);
     answer["verdict_reason"] = doubts.empty() ? reason_of(judged) : doubts[0];
     if (m.is_record()) {

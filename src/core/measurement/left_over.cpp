@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 
-
 namespace vines {
 
 namespace {
@@ -65,8 +64,10 @@ LeftOver left_over(
     const double missed = slow > differing ? slow - differing : 0;
     return {
         .noise = robust_deviation(clean),
-        .misfit = std::sqrt(1 + missed / (std::max(all - missed, 0.0) + squared(signal.least_noise))),
-        .uncertainty = slow > 0 ? std::sqrt(slow * static_cast<double>(blocks.samples)) / signal.noise : 1};
+        .misfit =
+            std::sqrt(1 + missed / (std::max(all - missed, 0.0) + squared(signal.least_noise))),
+        .uncertainty =
+            slow > 0 ? std::sqrt(slow * static_cast<double>(blocks.samples)) / signal.noise : 1};
 }
 
 }  // namespace vines

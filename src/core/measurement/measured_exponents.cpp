@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <random>
 
 #include "core/measurement/robust.hpp"
 #include "core/motion/special_values.hpp"
-#include "core/stability/slope.hpp"
 
 namespace vines {
 
@@ -27,12 +25,6 @@ constexpr double nine_in_ten = 0.9;
 constexpr std::size_t fewest_of_decay = 20;
 constexpr double least_fall = 2;
 
-// Blocks as long as the memory of the motion, some impacts, drawn anew so many times.
-constexpr std::size_t shortest_block = 4, longest_block = 20;
-constexpr int draws = 1000;
-// The bounds of its 90 % interval among so many sorted draws.
-constexpr std::size_t low_draw = 50, high_draw = 949;
-
 /// T over the flight to impact i from the one before it, which the caller knows to fit.
 void append(
     const Parameters& p, const Flow& flow, const IdentifiedImpact& i, double duration,
@@ -43,6 +35,19 @@ void append(
     impact.x_ddot_before = i.x_ddot_before;
     const Leg flight = leg_of(flow, duration, false);
     product.append({&flight, 1}, saltation(p, impact), product.end_tau() + duration);
+}
+
+std::vector<SlowState> slow_states(
+    const Parameters& p, const std::vector<IdentifiedImpact>& impacts) {
+    std::vector<double> amplitudes;
+    std::vector<SlowState> states;
+    for (const IdentifiedImpact& i : impacts) {
+        states.push_back(slow_state(i.x, i.x_dot_after, p.Omega * i.tau));
+        amplitudes.push_back(states.back().norm());
+    }
+    const double typical = median(std::move(amplitudes));
+    for (SlowState& s : states) s /= typical;
+    return states;
 }
 
 }  // namespace
@@ -100,10 +105,17 @@ MeasuredExponents::MeasuredExponents(
       longest_(p.epsilon, of_longest_stretch(o)) {
     // Deviations know nothing of the forcing.
     const Flow flow(oscillator.stiffness, oscillator.damping, 0, p.Omega);
-    const auto feed = [&](const KnownStretch& s, TransferProduct& product) {
+    const auto feed = [&](const KnownStretch& s, TransferProduct& product, const auto& fed) {
         if (product.impacts() == 0) product.start(impacts[s.first].tau);
-        for (std::size_t i = s.first + 1; i <= s.last; ++i)
+        for (std::size_t i = s.first + 1; i <= s.last; ++i) {
             append(p, flow, impacts[i], impacts[i].tau - impacts[i - 1].tau, product);
+            fed(i);
+        }
+    };
+    const std::vector<SlowState> states = slow_states(p, impacts);
+    const auto follow = [&](std::size_t i) {
+        const SlowState before = slow_.empty() ? SlowState::Zero() : slow_.back().state;
+        slow_.push_back({all_.end_tau(), before + (states[i] - states[i - 1])});
     };
     const auto length = [&](const KnownStretch& s) {
         return impacts[s.last].tau - impacts[s.first].tau;
@@ -111,12 +123,12 @@ MeasuredExponents::MeasuredExponents(
     for (const KnownStretch& s : stretches) {
         starts_.push_back(
             {starts_.empty() ? impacts[s.first].tau : all_.end_tau(), impacts[s.first].tau});
-        feed(s, all_);
+        feed(s, all_, follow);
     }
     const auto longest = std::max_element(
         stretches.begin(), stretches.end(),
         [&](const auto& a, const auto& b) { return length(a) < length(b); });
-    if (longest != stretches.end()) feed(*longest, longest_);
+    if (longest != stretches.end()) feed(*longest, longest_, [](std::size_t) {});
 }
 
 double MeasuredExponents::moment(double clock) const {
@@ -126,6 +138,17 @@ double MeasuredExponents::moment(double clock) const {
         [](const Start& s, double c) { return s.clock < c; });
     if (after != starts_.begin()) --after;
     return after == starts_.end() ? nan : after->tau + (clock - after->clock);
+}
+
+MeasuredSlope MeasuredExponents::slope() const {
+    const ExponentHistory& h = all_.qr_history();
+    std::vector<SlowState> states;
+    auto at = slow_.begin();
+    for (const double clock : h.tau) {
+        while (at != slow_.end() && at->clock < clock) ++at;
+        states.push_back(at == slow_.end() ? SlowState::Zero() : at->state);
+    }
+    return measured_slope(h, all_.start_tau(), states);
 }
 
 bool is_representative(const std::vector<IdentifiedImpact>& impacts) {
@@ -158,42 +181,11 @@ bool dies_out(const std::vector<IdentifiedImpact>& impacts) {
            largest[3] * least_fall < largest[0];
 }
 
-namespace {
-
-/// Slopes of the record as blocks of its impacts, drawn again and again, make it anew; ascending.
-/// Always the same ones.
-std::vector<double> drawn_slopes(const GrowthSteps& steps) {
-    const std::size_t n = steps.log.size();
-    // The cube root of 8 n.
-    std::size_t block = shortest_block;
-    while (block < longest_block && (block + 1) * (block + 1) * (block + 1) <= 8 * n) ++block;
-    std::mt19937_64 engine(2018);
-    std::vector<double> slopes;
-    for (int draw = 0; draw < draws; ++draw) {
-        double s = 0, t = 0;
-        for (std::size_t got = 0; got < n; got += block) {
-            const std::size_t from = engine() % (n - block + 1);
-            for (std::size_t i = from; i < from + block; ++i)
-                s += steps.log[i], t += steps.duration[i];
-        }
-        slopes.push_back(s / t);
-    }
-    std::sort(slopes.begin(), slopes.end());
-    return slopes;
-}
-
-}  // namespace
-
 IdentifiedExponents judge_exponents(
-    const MeasuredOscillator& oscillator, const ExponentHistory& qr, double tau_start,
-    bool representative) {
-    const GrowthSteps steps = growth_steps(qr, tau_start);
-    IdentifiedExponents e{slope_of(steps), nan, nan, Verdict::not_decided};
-    if (steps.log.size() < fewest_steps_of_slope) return e;
-    const std::vector<double> slopes = drawn_slopes(steps);
-    e.low = slopes[low_draw], e.high = slopes[high_draw];
-    if (e.low > oscillator.zeta()) e.verdict = Verdict::chaotic;
-    if (e.high < oscillator.zeta() && representative) e.verdict = Verdict::regular;
+    const MeasuredOscillator& oscillator, const MeasuredExponents& exponents, bool representative) {
+    IdentifiedExponents e{exponents.slope(), Verdict::not_decided};
+    if (e.slope.low > oscillator.zeta()) e.verdict = Verdict::chaotic;
+    if (e.slope.high < oscillator.zeta() && representative) e.verdict = Verdict::regular;
     return e;
 }
 

@@ -12,6 +12,7 @@
 
 #include "core/measurement/identified_impact.hpp"
 #include "core/measurement/measured_record.hpp"
+#include "core/measurement/measured_slope.hpp"
 #include "core/stability/verdict.hpp"
 
 namespace vines {
@@ -63,21 +64,28 @@ public:
     const TransferProduct& longest() const { return longest_; }
     /// The moment of the record at which the clock of all() showed this.
     double moment(double clock) const;
+    /// What the sum of logarithms of qr's first exponent grows by.
+    MeasuredSlope slope() const;
 
 private:
     struct Start {
         double clock, tau;
     };
+    /// At an impact; it stands still over a gap, as the clock does.
+    struct Slow {
+        double clock;
+        SlowState state;
+    };
     TransferProduct all_, longest_;
     std::vector<Start> starts_;
+    std::vector<Slow> slow_;
 };
 
-/// How the sum of logarithms of qr's first exponent grows, and what that says.
+/// What the growth of deviations says.
 struct IdentifiedExponents {
-    double slope;      ///< slope_of() all impacts
-    double low, high;  ///< 90 % interval of it, by bootstrap of blocks of impacts
-    /// Chaotic: low is above the oscillator's own damping zeta; regular: high is below it, of a
-    /// representative record.
+    MeasuredSlope slope;
+    /// Chaotic: slope.low is above the oscillator's own damping zeta; regular: slope.high is below
+    /// it, of a representative record.
     Verdict verdict;
 };
 /// Whether a slope below zeta can be said of the motion, and not of a stretch in which a chaotic
@@ -91,7 +99,6 @@ bool is_representative(const std::vector<IdentifiedImpact>& impacts);
 /// largest jump falls, to less than half in all.
 bool dies_out(const std::vector<IdentifiedImpact>& impacts);
 IdentifiedExponents judge_exponents(
-    const MeasuredOscillator& oscillator, const ExponentHistory& qr, double tau_start,
-    bool representative);
+    const MeasuredOscillator& oscillator, const MeasuredExponents& exponents, bool representative);
 
 }  // namespace vines

@@ -152,9 +152,8 @@ MeasurementResult conclude(const Measurement& m, const IdentificationWatch& watc
     progress.reach(IdentificationStage::exponents);
     Continuity continuity = continuity_of(p, found.impacts, time_gaps(m.record));
     MeasuredExponents exponents(p, oscillator, found.impacts, continuity.stretches, m.estimators);
-    IdentifiedExponents judged = judge_exponents(
-        oscillator, exponents.all().qr_history(), exponents.all().start_tau(),
-        is_representative(found.impacts));
+    IdentifiedExponents judged =
+        judge_exponents(oscillator, exponents, is_representative(found.impacts));
     if (!doubts.empty() || continuity.share > Continuity::most)
         judged.verdict = Verdict::not_decided;
     else if (p.G == 0 || dies_out(found.impacts)) judged.verdict = Verdict::none;

@@ -414,9 +414,9 @@ void settled_motion(Report& report, const Experiment& settled, double of_figure_
                  "lambda1 tau)",
          .paper = "it will approach zero",
          .here = fmt::format(
-             "{:.4f} to {:.4f}, slope {:.4f}; the true motion's {:.4f}", judged.low, judged.high,
-             judged.slope, settled.truth.exponents.qr()[0]),
-         .number = judged.high,
+             "{:.4f} to {:.4f}, slope {:.4f}; the true motion's {:.4f}", judged.slope.low,
+             judged.slope.high, judged.slope.value, settled.truth.exponents.qr()[0]),
+         .number = judged.slope.high,
          .band = {0, infinity},
          .because = "zero is in the interval; in part: as small as Fig. 11's exponent by eq. (1)",
          .partly = Band{of_figure_11, infinity},
@@ -429,9 +429,7 @@ IdentifiedExponents judged_by(const Experiment& e, const Parameters& p) {
     const MeasuredOscillator oscillator = MeasuredOscillator::given(p);
     const MeasuredExponents exponents(
         p, oscillator, e.result.found.impacts, e.result.continuity.stretches, qr_alone);
-    return judge_exponents(
-        oscillator, exponents.all().qr_history(), exponents.all().start_tau(),
-        is_representative(e.result.found.impacts));
+    return judge_exponents(oscillator, exponents, is_representative(e.result.found.impacts));
 }
 IdentifiedExponents by_closed_form(const Experiment& e) {
     Parameters p = e.result.parameters;
@@ -473,9 +471,10 @@ void figure_24(Report& report, const Experiment& e) {
          .here = fmt::format(
              "{:.4f} to {:.4f}, slope {:.4f}; from the direct estimate {:.4f}; with the damping of "
              "(19) to (21) {:.4f}; the true motion's {:.4f}",
-             judged.low, judged.high, judged.slope, e.result.direct->exponents.all().qr()[0],
-             by_closed_form(e).slope, e.truth.exponents.qr()[0]),
-         .number = judged.low,
+             judged.slope.low, judged.slope.high, judged.slope.value,
+             e.result.direct->exponents.all().qr()[0], by_closed_form(e).slope.value,
+             e.truth.exponents.qr()[0]),
+         .number = judged.slope.low,
          .band = {0, infinity},
          .because = "positive",
          .computed_record = true});
@@ -529,8 +528,9 @@ int same_conclusion(
         same += judged.verdict == e.result.judged.verdict;
         table.rows.push_back(
             {fmt::format("{:g}", 1000 * p.b), fmt::format("{:g}, {:g}", R_plus, R_minus),
-             fmt::format("{:.4f}", judged.slope),
-             fmt::format("{:.4f} to {:.4f}", judged.low, judged.high), word_of(judged.verdict)});
+             fmt::format("{:.4f}", judged.slope.value),
+             fmt::format("{:.4f} to {:.4f}", judged.slope.low, judged.slope.high),
+             word_of(judged.verdict)});
     }
     return same;
 }

@@ -295,10 +295,10 @@ TEST_CASE(
             CHECK(
                 e.moment(e.all().end_tau()) ==
                 doctest::Approx(impacts[c.stretches.back().last].tau).epsilon(1e-12));
-            const IdentifiedExponents judged = judge_exponents(
-                oscillator, e.all().qr_history(), e.all().start_tau(), is_representative(impacts));
+            const IdentifiedExponents judged =
+                judge_exponents(oscillator, e, is_representative(impacts));
             CHECK(judged.verdict == (b == 0.009 ? Verdict::regular : Verdict::chaotic));
-            CHECK(judged.slope == doctest::Approx(lambda1).epsilon(b == 0.009 ? 0.05 : 0.2));
+            CHECK(judged.slope.value == doctest::Approx(lambda1).epsilon(b == 0.009 ? 0.05 : 0.2));
             // A product over a gap does not exist: these are of the longest stretch.
             const KnownStretch longest =
                 *std::max_element(c.stretches.begin(), c.stretches.end(), [&](auto& l, auto& r) {
@@ -308,6 +308,40 @@ TEST_CASE(
             CHECK(e.longest().start_tau() == impacts[longest.first].tau);
             CHECK(e.longest().impacts() == static_cast<long>(longest.last - longest.first + 1));
         }
+    }
+}
+
+TEST_CASE("nine in ten of the slope's 90 % intervals hold the exponent of the long run") {
+    constexpr int windows = 200;
+    struct Case {
+        double seconds, least, most, width;
+    };
+    for (const Case& c : {Case{20, 0.86, 0.94, 0.040}, Case{10, 0.85, 1, 0.06}}) {
+        CAPTURE(c.seconds);
+        const TrueMotion motion = settled_motion(0.015, 0.85, 0.85, windows * c.seconds);
+        const std::vector<IdentifiedImpact> all = listed(motion.impacts);
+        const double lambda1 = motion.exponents.qr()[0];
+        const MeasuredOscillator oscillator = MeasuredOscillator::given(motion.parameters);
+        int held = 0;
+        double width = 0;
+        auto from = all.begin();
+        for (int w = 1; w <= windows; ++w) {
+            const double end = motion.begin + w * c.seconds * motion.omega0;
+            const auto to =
+                std::find_if(from, all.end(), [&](const auto& i) { return i.tau > end; });
+            std::vector<IdentifiedImpact> some(from, to);
+            from = to;
+            complete_impacts(motion.parameters, some, 0);
+            const MeasuredExponents e(
+                motion.parameters, oscillator, some,
+                continuity_of(motion.parameters, some, {}).stretches, qr_alone);
+            const MeasuredSlope s = e.slope();
+            held += s.low < lambda1 && lambda1 < s.high;
+            width += (s.high - s.low) / windows;
+        }
+        CHECK(held >= c.least * windows);
+        CHECK(held <= c.most * windows);
+        CHECK(width < c.width);
     }
 }
 
@@ -328,10 +362,8 @@ TEST_CASE("a chaotic motion that is in step for a while is not called regular") 
                     motion.parameters, oscillator, some,
                     continuity_of(motion.parameters, some, {}).stretches, qr_alone);
                 CHECK(
-                    judge_exponents(
-                        oscillator, e.all().qr_history(), e.all().start_tau(),
-                        is_representative(some))
-                        .verdict != Verdict::regular);
+                    judge_exponents(oscillator, e, is_representative(some)).verdict !=
+                    Verdict::regular);
             }
     }
 }
