@@ -211,6 +211,10 @@ void add_fit_warnings(
             "{} spike(s) without a jump of the velocity were dropped, the first at {:.6g} s",
             refined.dropped.size(), refined.dropped[0] / omega0));
     add_fitted_warnings(refined.fit, given_unknowns(r.measurement.parameters), omega0, warnings);
+    if (result.parameters.b != r.system.parameters.b)
+        warnings.push_back(fmt::format(
+            "the impacts' momentum fits b = {:.5g} m, which is taken, not b = {:.5g} m ({})",
+            result.parameters.b, r.system.parameters.b, r.system.origin.at("b")));
     if (!b_agrees(result.parameters, found))
         warnings.push_back(fmt::format(
             "the impacts' momentum fits b = {:.4g} m, not b = {:.4g} m ({})", found.b_fitted,
@@ -270,6 +274,7 @@ System identified_system(const IdentifyRequest& r, const MeasurementResult& resu
             used.origin["f"] = used.origin["Omega"] = "fitted to the record";
         }
         used.origin["F"] = used.origin["G"] = "fitted to the record";
+        if (used.parameters.b != r.system.parameters.b) used.origin["b"] = "fitted to the record";
     }
     return used;
 }

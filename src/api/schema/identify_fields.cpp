@@ -78,8 +78,8 @@ Field fixed_row() {
         .type = FieldType::choices,
         .group = "record",
         .description =
-            "what of a record is not fitted but taken as given: f, omega0 and zeta by the other "
-            "fields, a sensor without fault",
+            "what of a record is not fitted but taken as given: f, omega0, zeta, b and R by the "
+            "other fields, a sensor without fault",
         .fallback = Json::array(),
         .choices = all_words<Unknown>()};
 }

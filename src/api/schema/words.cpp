@@ -34,7 +34,10 @@ constexpr Word<Unknown> fitted_unknowns[] = {
     {Unknown::a_offset, "acceleration_offset"},
     {Unknown::a_drift, "acceleration_drift"},
     {Unknown::stiffness, "omega0"},
-    {Unknown::damping, "zeta"}};
+    {Unknown::damping, "zeta"},
+    {Unknown::b, "b"},
+    {Unknown::R_plus, "R_plus"},
+    {Unknown::R_minus, "R_minus"}};
 
 }  // namespace
 

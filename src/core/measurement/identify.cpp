@@ -14,6 +14,8 @@ namespace {
 constexpr double b_scatter = 0.5;
 // The given b may miss the fitted one by this share of it, or by so many standard errors.
 constexpr double b_tolerance = 0.03, b_sigmas = 5;
+// By less it hardly matters: walls are set to a tenth of a millimetre.
+constexpr double least_of_b = 0.003;
 
 /// y' of each flight is offset - b rate: y = x - side b at both of its ends (43).
 struct Flight {
@@ -64,7 +66,7 @@ void fit_b(
     for (const WeightedB& s : said) off.push_back(s.b - b);
     if (!(b > 0)) found.b_fault = BFault::negative;
     else if (!(robust_deviation(off) < b_scatter * b)) found.b_fault = BFault::scattered;
-    else found.b_fitted = b, found.b_error = error_of_median(off);
+    else found.b_fitted = b;
 }
 
 /// `sides`: of the impacts. Over a gap nothing is known of a flight.
@@ -108,6 +110,25 @@ Identification identify_impacts(
     found.minus = restitution_of(found.impacts, -1);
     fit_b(p, m, flights, found);
     return found;
+}
+
+Identification identify_impacts(const Parameters& p, const FoundImpacts& f) {
+    Identification found = identify_impacts(p, f.fit.impacts, f.side, f.gaps, f.pulse.length());
+    if (!f.with_mass) return found;
+    const auto take = [&](Unknown u, double& value, double& error) {
+        if (!f.fit.fixed[u]) value = f.fit.values[u], error = f.fit.errors[u];
+    };
+    if (found.b_fault == BFault::none) take(Unknown::b, found.b_fitted, found.b_error);
+    take(Unknown::R_plus, found.plus.R, found.plus.error);
+    take(Unknown::R_minus, found.minus.R, found.minus.error);
+    return found;
+}
+
+double b_of(const Parameters& p, const FoundImpacts& f) {
+    const double b = f.fit.values[Unknown::b], off = std::abs(b - p.b);
+    const bool contradicts =
+        off > b_sigmas * f.fit.errors[Unknown::b] && off > least_of_b * p.b && b > 0;
+    return f.with_mass && !f.fit.fixed[Unknown::b] && contradicts ? b : p.b;
 }
 
 bool b_agrees(const Parameters& p, const Identification& i) {

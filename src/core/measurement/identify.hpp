@@ -2,7 +2,8 @@
 //
 // The joint fit (unknowns.hpp, joint_fit.hpp) says how the oscillator moves on both sides of each
 // impact that was found (search.hpp). The jumps of x' and the flight of the mass between its
-// contacts, y = x - side b, give y', R and the transfer matrices.
+// contacts, y = x - side b, give y', R and the transfer matrices; R and b of all are the fit's,
+// where the mass took part in it.
 //
 // All in dimensionless time: tau = omega0 t, velocities in m per unit of tau, accelerations in m
 // per unit of tau^2.
@@ -26,8 +27,8 @@ enum class BFault {
 struct Identification {
     std::vector<IdentifiedImpact> impacts;
     Restitution plus, minus;
-    /// The b with which the momentum balance fits best, m, and its standard error; NaN where it
-    /// fits none.
+    /// The b with which the momentum balance fits best, m; NaN where it fits none. Its standard
+    /// error; NaN where the mass took no part in the fit: impacts are not wrong independently.
     double b_fitted = nan, b_error = nan;
     BFault b_fault = BFault::none;
 };
@@ -37,9 +38,14 @@ struct Identification {
 Identification identify_impacts(
     const Parameters& parameters, const std::vector<FittedImpact>& motions,
     const std::vector<int>& sides, const std::vector<TimeGap>& gaps, double pulse);
+/// The same of what was found, with R and b of the fit.
+Identification identify_impacts(const Parameters& parameters, const FoundImpacts& found);
 
-/// Whether the given b is the one that the momentum fits, to 3 % or five standard errors; true
-/// where it fits none.
+/// The given b; the fitted one where the record contradicts, and b is not fixed.
+double b_of(const Parameters& parameters, const FoundImpacts& found);
+
+/// Whether a b is the one that the momentum fits, to 3 % or five standard errors; true where it
+/// fits none.
 bool b_agrees(const Parameters& parameters, const Identification& identification);
 
 /// Why no verdict can rest on a record.

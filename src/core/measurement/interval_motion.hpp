@@ -52,7 +52,7 @@ private:
     FollowedFlow<1> by_stiffness_, by_damping_;
 };
 
-using UnknownRow = Eigen::Matrix<double, 1, unknowns>;
+using UnknownRow = Eigen::Matrix<double, 1, sensed_unknowns>;
 
 /// Sets the derivatives of one of x, x' and x'' by the start and by all unknowns that move the
 /// oscillator; by the others 0.

@@ -6,7 +6,7 @@ namespace vines {
 
 namespace {
 
-constexpr Eigen::Index globals = unknowns;
+constexpr Eigen::Index globals = unknowns, sensed = sensed_unknowns;
 // Of an interval's: moments in tau are far larger than positions in m.
 constexpr double ridge_of_others = 1e-4;
 
@@ -38,9 +38,7 @@ void JointEquations::add(const std::vector<Term>& row, double left, double weigh
 }
 
 void JointEquations::add_prior(std::size_t unknown, double left, double weight) {
-    const auto at = static_cast<Eigen::Index>(unknown);
-    N_(at, at) += weight;
-    g_(at) += weight * left;
+    add({{unknown_at(unknown), 1}}, left, weight);
 }
 
 void JointEquations::gather() {
@@ -51,15 +49,15 @@ void JointEquations::gather() {
             right_(at + j) += own_[i].g(j);
             for (Eigen::Index k = 0; k < 2; ++k)
                 triplets_.emplace_back(at + j, at + k, own_[i].N(j, k));
-            for (Eigen::Index k = 0; k < globals; ++k) {
+            for (Eigen::Index k = 0; k < sensed; ++k) {
                 triplets_.emplace_back(at + j, first + k, own_[i].C(j, k));
                 triplets_.emplace_back(first + k, at + j, own_[i].C(j, k));
             }
         }
     }
-    for (Eigen::Index j = 0; j < globals; ++j) {
+    for (Eigen::Index j = 0; j < sensed; ++j) {
         right_(first + j) += g_(j);
-        for (Eigen::Index k = 0; k < globals; ++k)
+        for (Eigen::Index k = 0; k < sensed; ++k)
             triplets_.emplace_back(first + j, first + k, N_(j, k));
     }
     for (Eigen::Index k = 0; k < size_; ++k)

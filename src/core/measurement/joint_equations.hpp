@@ -13,12 +13,12 @@ namespace vines {
 class JointEquations {
 public:
     using GlobalMatrix = Eigen::Matrix<double, unknowns, unknowns>;
-    using GlobalVector = Eigen::Matrix<double, unknowns, 1>;
 
     /// Of one interval's samples in its start, with their part in the unknowns.
     struct OfInterval {
         Eigen::Matrix2d N = Eigen::Matrix2d::Zero();
-        Eigen::Matrix<double, 2, unknowns> C = Eigen::Matrix<double, 2, unknowns>::Zero();
+        Eigen::Matrix<double, 2, sensed_unknowns> C =
+            Eigen::Matrix<double, 2, sensed_unknowns>::Zero();
         Eigen::Vector2d g = Eigen::Vector2d::Zero();
     };
     struct Term {
@@ -53,6 +53,9 @@ public:
     Eigen::Index unknown_at(std::size_t unknown) const {
         return size_ - static_cast<Eigen::Index>(unknowns - unknown);
     }
+    Eigen::Index unknown_at(Unknown unknown) const {
+        return unknown_at(static_cast<std::size_t>(unknown));
+    }
     std::vector<OfInterval>& own() { return own_; }
 
     /// Once. No step where the matrix has no factorisation.
@@ -64,8 +67,11 @@ private:
     const double ridge_;
     const Eigen::Index intervals_, size_;
     std::vector<OfInterval> own_;
-    GlobalMatrix N_ = GlobalMatrix::Zero();
-    GlobalVector g_ = GlobalVector::Zero();
+    // Of the samples in the unknowns alone.
+    Eigen::Matrix<double, sensed_unknowns, sensed_unknowns> N_ =
+        Eigen::Matrix<double, sensed_unknowns, sensed_unknowns>::Zero();
+    Eigen::Matrix<double, sensed_unknowns, 1> g_ =
+        Eigen::Matrix<double, sensed_unknowns, 1>::Zero();
     std::vector<Eigen::Triplet<double>> triplets_;
     Eigen::VectorXd right_;
 };

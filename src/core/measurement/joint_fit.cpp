@@ -21,6 +21,8 @@ constexpr double continuity_share = 0.05;
 constexpr double largest_step = 100;
 // Steps of Gauss and Newton: one finds the motion for the values as they are, few more the values.
 constexpr int most_steps = 9;
+// From there on half a step: where weights change with the step, whole ones may go to and fro.
+constexpr int first_half_step = 5;
 // Converged is what would move no value by more than this share of its standard error, and few
 // impacts by more than that share of a step between samples.
 constexpr double converged_share = 0.1, converged_move_steps = 0.02, few_moved = 0.01;
@@ -85,8 +87,9 @@ public:
             progress_.look();
             const bool first = starts_at_rest_ && step == 0;
             JointEquations equations = equations_at(first);
-            const JointEquations::Solution s = equations.solve();
+            JointEquations::Solution s = equations.solve();
             if (!s.solved) break;
+            if (step >= first_half_step) s.step *= 0.5;
             fit_.converged = !first && is_small(equations, s);
             if (!first) take_errors(s, equations);
             if (fit_.converged) break;
@@ -111,12 +114,17 @@ private:
             return std::isfinite(m.pulse_error);
         });
         if (r_.x.empty() || (r_.x_ddot.empty() && !any_pulse)) fix({Unknown::x_delay});
+        if (r_.x_ddot.empty() || !any_pulse) fix({Unknown::pulse_lag});
+        if (!in_.sides) fix({Unknown::b});
+        for (const int side : {1, -1})
+            if (!in_.sides || std::count(in_.sides->begin(), in_.sides->end(), side) == 0)
+                fix({restitution_at(side)});
     }
 
     /// A step in no unknown that is fixed, and in the first one none that is not linear in the
     /// motion: there is none yet.
     void forget_fixed(UnknownRow& by_unknowns, bool first) const {
-        for (std::size_t k = 0; k < unknowns; ++k)
+        for (std::size_t k = 0; k < sensed_unknowns; ++k)
             if (stays(k, first)) by_unknowns(static_cast<Eigen::Index>(k)) = 0;
     }
     bool oscillator_moves() const {
@@ -213,15 +221,17 @@ private:
 
     /// x is continuous at each impact, and its pulse tells its moment.
     void add_impacts(const OscillatorFlows& flows, JointEquations& equations) {
+        std::vector<MetImpact> met;
         const double noise = r_.x.empty() ? in_.statistics.x_ddot.noise : in_.statistics.x.noise;
         const double weight = 1 / (continuity_share * continuity_share * noise * noise);
         Eigen::RowVector2d by_start;
         UnknownRow by_unknowns;
         for (std::size_t k = 0; k < moments_.size(); ++k) {
-            if (moments_[k].is_gap) continue;
             const FittedInterval &from = fit_.intervals[k], &to = fit_.intervals[k + 1];
             IntervalMotion motion(flows, fit_.values, fit_.tau_middle, from);
             const MotionRow row = motion.at(to.tau - from.tau, true);
+            if (in_.sides) met.push_back(met_impact(row, to));
+            if (moments_[k].is_gap) continue;
             take_derivatives(row, &OscillatorMotion::x, by_start, by_unknowns);
             forget_fixed(by_unknowns, false);
             std::vector<JointEquations::Term> terms = {
@@ -229,17 +239,54 @@ private:
                 {equations.start_of(k) + 1, by_start(1)},
                 {equations.start_of(k + 1), -1},
                 {equations.moment_of(k), row.value.x_dot - to.x_dot}};
-            for (std::size_t g = 0; g < unknowns; ++g) {
+            for (std::size_t g = 0; g < sensed_unknowns; ++g) {
                 const double by = by_unknowns(static_cast<Eigen::Index>(g));
                 if (by != 0) terms.push_back({equations.unknown_at(g), by});
             }
             equations.add(terms, to.x - row.value.x, weight);
             const ImpactMoment& m = moments_[k];
             const double error = std::min(m.pulse_error, in_.statistics.step);
+            if (!std::isfinite(m.pulse_error)) {
+                equations.add({{equations.moment_of(k), 1}}, 0, 1 / (error * error));
+                continue;
+            }
+            terms = {{equations.moment_of(k), 1}};
+            if (!fixed_[Unknown::pulse_lag])
+                terms.push_back({equations.unknown_at(Unknown::pulse_lag), 1});
             equations.add(
-                {{equations.moment_of(k), 1}},
-                std::isfinite(m.pulse_error) ? m.pulse_tau - to.tau : 0, 1 / (error * error));
+                terms, m.pulse_tau - to.tau - fit_.values[Unknown::pulse_lag], 1 / (error * error));
         }
+        if (in_.sides) add_mass(met, equations);
+    }
+
+    MetImpact met_impact(const MotionRow& row, const FittedInterval& to) const {
+        MetImpact m{
+            .tau = to.tau,
+            .x = to.x,
+            .x_dot_before = row.value.x_dot,
+            .x_dot_after = to.x_dot,
+            .x_ddot_before = row.value.x_ddot,
+            .x_ddot_after = acceleration_at(to),
+            .before_by_start = {},
+            .before_by_unknowns = {}};
+        take_derivatives(row, &OscillatorMotion::x_dot, m.before_by_start, m.before_by_unknowns);
+        forget_fixed(m.before_by_unknowns, false);
+        return m;
+    }
+
+    void add_mass(const std::vector<MetImpact>& met, JointEquations& equations) {
+        const double epsilon = in_.parameters.epsilon;
+        const std::vector<MassResidual> residuals =
+            mass_residuals(epsilon, *in_.sides, met, fit_.values);
+        const MassScatter scatter = scatter_of(residuals);
+        const auto weight_of = [&](double left, double sigma) {
+            return weight(left, sigma, sigma, false);
+        };
+        for (const MassResidual& r : residuals)
+            add_mass_rows(
+                epsilon, *in_.sides, met, fit_.values, fixed_, r,
+                weight_of(r.momentum, scatter.momentum),
+                weight_of(r.restitution, scatter.restitution), equations);
     }
 
     void add_priors(JointEquations& equations, bool first) const {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/measurement/interval_motion.hpp"
+#include "core/measurement/mass_rows.hpp"
 #include "core/measurement/measured_record.hpp"
 #include "core/measurement/progress.hpp"
 #include "core/measurement/record_statistics.hpp"
@@ -67,7 +68,8 @@ struct JointFitInput {
     /// What of the displacement an impact spoils, before and after it.
     double x_spoiled = 0;
     FixedUnknowns fixed{};
-    bool one_step = false;  ///< of a fit from another one: what it would come to, about
+    const Sides* sides = nullptr;  ///< of the impacts: the mass takes part; null: it does not
+    bool one_step = false;         ///< of a fit from another one: what it would come to, about
 };
 
 /// `impacts`: in order, within the record; JointFit::impacts has an entry for each. `values`: where

@@ -39,7 +39,8 @@ struct StatedGrowth {
     std::vector<SlowState> change;  ///< of the slow state in each step
 };
 
-StatedGrowth growth_of(const ExponentHistory& h, double tau_start, const std::vector<SlowState>& states) {
+StatedGrowth growth_of(
+    const ExponentHistory& h, double tau_start, const std::vector<SlowState>& states) {
     const std::size_t stride = h.coarse_stride();
     StatedGrowth g{growth_steps(h, tau_start, stride), {}};
     const std::size_t entries = (h.tau.size() + stride - 1) / stride;
@@ -90,9 +91,10 @@ double variance_of_sum(const std::vector<double>& off, std::size_t fitted) {
         for (std::size_t i = 0; i + lag < off.size(); ++i) covariance += off[i] * off[i + lag];
         if (lag == 0) variance = covariance, least = least_variance * covariance;
         else
-            variance += (1 + elementary::cos(std::numbers::pi * static_cast<double>(lag) /
-                                             static_cast<double>(lags))) *
-                        covariance;
+            variance +=
+                (1 + elementary::cos(
+                         std::numbers::pi * static_cast<double>(lag) / static_cast<double>(lags))) *
+                covariance;
     }
     // What was fitted, and the mean that is removed, take their shares with them.
     return std::max(variance, least) / (1 - 0.75 * dependent) /
@@ -122,9 +124,9 @@ MeasuredSlope measured_slope(
         duration += g.steps.duration[i];
         off.push_back(g.steps.log[i] - slope * g.steps.duration[i]);
     }
-    const double brief = short_tau / duration,
-                 half = (1 + brief * brief * brief) * student *
-                        std::sqrt(variance_of_sum(off, apart)) / duration;
+    const double brief = short_tau / duration, half = (1 + brief * brief * brief) * student *
+                                                      std::sqrt(variance_of_sum(off, apart)) /
+                                                      duration;
     return {slope, slope - half, slope + half};
 }
 

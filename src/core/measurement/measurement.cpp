@@ -46,6 +46,7 @@ std::optional<DirectEstimate> direct_estimate(
     const std::vector<KnownStretch>& stretches) {
     if (m.record.x.empty() || m.record.x_ddot.empty()) return std::nullopt;
     Parameters p = m.parameters;
+    p.b = b_of(p, refined);
     std::vector<double> moments;
     for (const FittedImpact& i : refined.fit.impacts) moments.push_back(i.tau);
     const double pulse = refined.pulse.length();
@@ -141,8 +142,8 @@ MeasurementResult conclude(const Measurement& m, const IdentificationWatch& watc
         if (fit.impacts.size() < 2) throw TooFewImpacts{static_cast<long>(fit.impacts.size())};
         p.Omega = fit.values[Unknown::Omega];
         oscillator = {fit.values[Unknown::stiffness], fit.values[Unknown::damping]};
-        found =
-            identify_impacts(p, fit.impacts, refined->side, refined->gaps, refined->pulse.length());
+        p.b = b_of(p, *refined);
+        found = identify_impacts(p, *refined);
         p.G = G_of(p, fit);
         doubts = doubts_of(p, *refined, found);
     } else {

@@ -51,7 +51,9 @@ struct ForwardRun {
 };
 
 struct MeasurementResult {
-    Parameters parameters;  ///< with R of each wall, and of a record with G
+    /// With R of each wall, and of a record with the fitted Omega and G, and b where it
+    /// contradicts.
+    Parameters parameters;
     Identification found;
     MeasuredOscillator oscillator;
     std::optional<FoundImpacts> refined;  ///< of a record

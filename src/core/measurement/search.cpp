@@ -27,6 +27,10 @@ constexpr double most_spoiled = 0.35;
 constexpr double contradiction = 5, least_of_stiffness = 3e-4, least_of_damping = 0.01;
 // A jump of x' has a sign from so many standard errors on.
 constexpr double side_sigmas = 3;
+// Fewer impacts say nothing of the mass.
+constexpr std::ptrdiff_t fewest_with_mass = 8;
+// Where R and b are far from what they are given as, one run of steps may be too short.
+constexpr int most_runs_with_mass = 3;
 // An impact could hide in a gap of so much tau.
 constexpr double hiding = 0.5;
 
@@ -65,6 +69,8 @@ public:
             const auto refit = [this] { fit_all(); };
             settle(refit, rounds_with_pulses);
             if (free_oscillator(r_, pulse_moments())) settle(refit, rounds_with_pulses);
+            find_sides();
+            if (impacts() >= fewest_with_mass) fit_with_mass();
             finish();
         }
         return std::move(found_);
@@ -184,19 +190,30 @@ private:
         spoiled_.a = pulse_extent(found_.fit, r_, statistics_.step);
         limit_extent();
         found_.pulse = PulseTemplate(found_.fit, r_, bad_.a, statistics_.step, spoiled_.a);
-        std::vector<double> moved;
         for (std::size_t i = 0; i < candidates_.size(); ++i) {
             Candidate& c = candidates_[i];
             if (c.is_gap) continue;
             const PulseMoment m =
                 pulse_moment(found_.pulse, found_.fit, i, r_, bad_.a, statistics_.step);
             c.pulse_tau = m.tau, c.pulse_error = m.error;
-            if (std::isfinite(m.error)) moved.push_back(m.tau - c.tau);
         }
-        // A template may lie a little beside the impacts it was made of: that is no news of them.
-        const double common = median(std::move(moved));
-        for (Candidate& c : candidates_)
-            if (std::isfinite(c.pulse_error)) c.pulse_tau -= common;
+        values_[Unknown::pulse_lag] = 0;
+    }
+
+    void find_sides() {
+        for (std::size_t i = 0; i < candidates_.size(); ++i)
+            sides_.push_back(candidates_[i].is_gap ? 0 : side_of(i));
+    }
+
+    /// Once the impacts are known the mass tells more of their moments, and its R and b.
+    void fit_with_mass() {
+        JointFitInput with_mass = input(r_);
+        with_mass.sides = &sides_;
+        JointFit fit = found_.fit;
+        for (int run = 0; run < most_runs_with_mass && !(run > 0 && fit.converged); ++run)
+            fit = fit_jointly(with_mass, pulse_moments(), fit.values, &fit, progress_);
+        found_.with_mass = fit.converged;
+        if (fit.converged) found_.fit = std::move(fit);
     }
 
     void limit_extent() {
@@ -276,8 +293,8 @@ private:
         std::sort(found_.dropped.begin(), found_.dropped.end());
         // Of given moments no pulses are looked for.
         found_.unseen = o_.moments.empty() ? unseen() : 0;
-        for (std::size_t i = 0; i < candidates_.size(); ++i)
-            if (!candidates_[i].is_gap) found_.side.push_back(side_of(i));
+        found_.side = std::move(sides_);
+        std::erase(found_.side, 0);
         std::erase_if(found_.fit.impacts, [](const FittedImpact& i) { return i.is_gap; });
         found_.extent = spoiled_.a;
     }
@@ -291,6 +308,7 @@ private:
     const SearchedRecord in_;
     FixedUnknowns fixed_;
     UnknownValues values_;
+    Sides sides_;
     SpoiledExtents spoiled_;
     std::vector<Candidate> candidates_;
     struct Rejected {

@@ -9,6 +9,7 @@ namespace vines {
 
 struct FoundImpacts {
     JointFit fit;
+    bool with_mass = false;     ///< the mass took part in the fit: its R and b are fitted
     std::vector<int> side;      ///< of each impact: sign of x - y at the wall
     std::vector<TimeGap> gaps;  ///< of the record, in which an impact could hide
     PulseTemplate pulse;

@@ -23,6 +23,9 @@ UnknownValues given_unknowns(const Parameters& p) {
     v[Unknown::Omega] = p.Omega;
     v[Unknown::stiffness] = 1;
     v[Unknown::damping] = 2 * p.zeta();
+    v[Unknown::b] = p.b;
+    v[Unknown::R_plus] = p.R_plus;
+    v[Unknown::R_minus] = p.R_minus;
     return v;
 }
 

@@ -11,9 +11,9 @@
 //     acceleration  A = x''(tau) + a_offset + a_drift u + pulses of the impacts + noise
 //
 // Residuals: those of all samples that no pulse spoils; at each impact that x is continuous, and
-// its moment by its pulse. Between its impacts the mass flies with one velocity from wall to wall,
-// eq. (43), at each impact x' + epsilon y' is kept (36), and R is that of eq. (4): from these
-// follow y', R and b (identify.hpp), and what they leave says which impacts are none.
+// its moment by its pulse. Once the impacts are known, those of the mass (mass_rows.hpp): between
+// impacts it flies with one velocity from wall to wall, eq. (43), at each impact x' + epsilon y' is
+// kept (36), and R of each wall is one, eq. (4).
 //
 // Priors: what was given of k and c is known to stiffness_prior and damping_prior, the clocks of
 // the two channels agree to delay_prior, and so on. They are wide: what a record says is far
@@ -39,9 +39,20 @@ enum class Unknown {
     x_delay,  ///< of the displacement behind the acceleration, in tau
     Omega,
     stiffness,  ///< k: of the oscillator's own frequency, squared, over the given one's
-    damping     ///< c
+    damping,    ///< c
+    // Of the mass:
+    b,        ///< m
+    R_plus,   ///< of the wall at +b
+    R_minus,  ///< at -b
+    /// By how much the moments that the pulses tell are late, in tau: a template was laid over
+    /// impacts that were only about known.
+    pulse_lag
 };
-inline constexpr std::size_t unknowns = 11;
+inline constexpr std::size_t unknowns = 15;
+/// The first ones, those that a sample depends on.
+inline constexpr std::size_t sensed_unknowns = 11;
+
+inline Unknown restitution_at(int side) { return side > 0 ? Unknown::R_plus : Unknown::R_minus; }
 
 /// A value of each of them, or an error.
 class UnknownValues : public std::array<double, unknowns> {

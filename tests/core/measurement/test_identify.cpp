@@ -250,10 +250,39 @@ TEST_CASE(
     CHECK(std::abs(r.found.plus.R - 0.85) < 0.003);
 }
 
-TEST_CASE("the b that fits the momentum is found though a wrong one is given") {
+TEST_CASE("a wrong b is replaced by the one that the momentum fits, unless it is fixed") {
     Experiment m = regular_record();
     m.parameters.b = 0.011;
-    CHECK(identified(m).found.b_fitted == doctest::Approx(0.009).epsilon(0.02));
+    const MeasurementResult r = identified(m);
+    CHECK(r.found.b_fitted == doctest::Approx(0.009).epsilon(0.01));
+    CHECK(r.parameters.b == r.found.b_fitted);
+    CHECK(r.judged.verdict == Verdict::regular);
+    CHECK(std::abs(r.found.plus.R - 0.85) < 0.003);
+    Measurement fixed = measurement_of(m);
+    fixed.fixed[Unknown::b] = true;
+    const MeasurementResult as_given = conclude(fixed);
+    CHECK(as_given.parameters.b == 0.011);
+    CHECK(as_given.refined->fit.fixed[Unknown::b]);
+    CHECK(as_given.judged.verdict == Verdict::not_decided);
+}
+
+TEST_CASE(
+    "nine in ten records have b and R within two of their standard errors" *
+    doctest::test_suite("statistics")) {
+    constexpr int records = 40;
+    const TrueMotion motion = settled_motion(0.009, 0.85, 0.85, 10);
+    int b = 0, R = 0;
+    double b_errors = 0;
+    for (std::uint64_t seed = 1; seed <= records; ++seed) {
+        const MeasurementResult r = identified(measured(motion, {.seed = seed}));
+        REQUIRE(r.refined->with_mass);
+        b += std::abs(r.found.b_fitted - 0.009) < 2 * r.found.b_error;
+        R += std::abs(r.found.plus.R - 0.85) < 2 * r.found.plus.error;
+        b_errors += r.found.b_error / records;
+    }
+    CHECK(b >= 0.9 * records);
+    CHECK(R >= 0.9 * records);
+    CHECK(b_errors < 0.01 * 0.009);
 }
 
 namespace {
