@@ -265,15 +265,18 @@ std::vector<std::string> all_doubts(const MeasurementResult& result) {
 System identified_system(const IdentifyRequest& r, const MeasurementResult& result) {
     System used = r.system;
     used.parameters = result.parameters;
+    const std::string measured = r.measurement.is_record() ? "record" : "impacts";
     if (!r.measurement.R_given)
         used.origin["R_plus"] = used.origin["R_minus"] = "estimated from the impacts";
+    if (r.forcing_fitted) {
+        if (used.si) used.si->F = result.parameters.G * result.parameters.epsilon;
+        used.origin["F"] = used.origin["G"] = "fitted to the " + measured;
+    }
     if (r.measurement.is_record()) {
-        used.si->F = result.parameters.G * result.parameters.epsilon;
         if (!result.refined->fit.fixed[Unknown::Omega]) {
             used.si->f = result.parameters.Omega * used.si->f0();
             used.origin["f"] = used.origin["Omega"] = "fitted to the record";
         }
-        used.origin["F"] = used.origin["G"] = "fitted to the record";
         if (used.parameters.b != r.system.parameters.b) used.origin["b"] = "fitted to the record";
     }
     return used;

@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "api/fitted_unknowns.hpp"
+#include "api/impact_list.hpp"
 #include "api/record_columns.hpp"
-#include "core/motion/elementary.hpp"
 
 namespace vines::api {
 
@@ -55,10 +54,12 @@ void check_record(
     }
 }
 
-IdentifyRequest read_fields(const Json& given, bool with_record) {
+/// `forcing_fitted`: it need not be given.
+IdentifyRequest read_fields(const Json& given, bool with_record, bool forcing_fitted) {
     IdentifyRequest r;
     const Layered l = layered(identify_fields(), given);
-    r.system = read_system_alone(l, with_record);
+    r.system = read_system_alone(l, forcing_fitted);
+    r.forcing_fitted = forcing_fitted;
     r.notes = r.system.notes;
     if (with_record && !r.system.si)
         refuse(
@@ -135,76 +136,6 @@ void read_record(IdentifyRequest& r, const Json& fields, const Csv& csv) {
                   "an impact lies outside the record"}});
 }
 
-/// The columns that impacts are read from, all of one length.
-std::map<std::string, std::vector<double>> read_impact_columns(const Json& columns) {
-    std::vector<FieldError> errors;
-    std::map<std::string, std::vector<double>> values;
-    if (!columns.is_object())
-        refuse(
-            {{"/impacts", nullptr, nullptr,
-              "impacts is an object of columns, as in the answer of /v1/simulate"}});
-    const std::size_t n =
-        columns.contains("side") && columns["side"].is_array() ? columns["side"].size() : 0;
-    for (const char* name :
-         {"tau", "side", "phase", "x", "x_dot_before", "x_dot_after", "y_dot_before",
-          "y_dot_after"}) {
-        const std::string where = std::string("/impacts/") + name;
-        if (!columns.contains(name) || !columns[name].is_array())
-            errors.push_back({where, nullptr, nullptr, std::string(name) + " is missing"});
-        else if (columns[name].size() != n)
-            errors.push_back(
-                {where, columns[name].size(), nullptr,
-                 std::string(name) + " has another length than side"});
-        else
-            for (std::size_t i = 0; i < n; ++i) {
-                if (columns[name][i].is_number())
-                    values[name].push_back(columns[name][i].get<double>());
-                else
-                    errors.push_back(
-                        {where + "/" + std::to_string(i), columns[name][i], nullptr,
-                         "must be a number"});
-                if (errors.size() >= most_errors) break;
-            }
-    }
-    if (!errors.empty()) refuse(std::move(errors));
-    if (n < 2) refuse({{"/impacts", n, nullptr, "exponents need at least two impacts"}});
-    return values;
-}
-
-/// Columns of impacts with their states, as /v1/simulate gives them.
-void read_impacts(IdentifyRequest& r, const Json& given) {
-    const Parameters& p = r.system.parameters;
-    const auto columns = read_impact_columns(given);
-    const std::vector<double>& tau = columns.at("tau");
-    std::vector<FieldError> errors;
-    const auto flow = Flow::shared_free(p);
-    for (std::size_t i = 0; i < tau.size(); ++i) {
-        const auto v = [&](const char* name) { return columns.at(name)[i]; };
-        if (i > 0 && !(tau[i] > tau[i - 1]))
-            errors.push_back(
-                {"/impacts/tau/" + std::to_string(i), v("tau"), nullptr,
-                 "the impacts must follow each other in time"});
-        if (std::abs(v("side")) != 1)
-            errors.push_back(
-                {"/impacts/side/" + std::to_string(i), v("side"), Json::array({-1, 1}),
-                 "a side is 1 or -1"});
-        const double x_ddot = flow->acceleration(
-            {v("x"), v("x_dot_before"), elementary::sin(v("phase")), elementary::cos(v("phase"))});
-        r.measurement.impacts.push_back(
-            {.tau = v("tau"),
-             .side = static_cast<int>(v("side")),
-             .x = v("x"),
-             .x_dot_before = v("x_dot_before"),
-             .x_dot_after = v("x_dot_after"),
-             .x_ddot_before = x_ddot,
-             .y_dot_before = v("y_dot_before"),
-             .y_dot_after = v("y_dot_after")});
-        if (errors.size() >= most_errors) break;
-    }
-    if (!errors.empty()) refuse(std::move(errors));
-    complete_impacts(p, r.measurement.impacts, 0);
-}
-
 /// The columns of a record in JSON, all of one length.
 std::vector<CsvColumn> read_record_columns(const Json& record) {
     std::vector<CsvColumn> columns;
@@ -243,17 +174,19 @@ IdentifyRequest read_identify_request(const Json& object) {
             {{"/record", nullptr, nullptr,
               "give either record: {time_s, displacement_m, acceleration_m_s2} or impacts, with "
               "their states"}});
-    IdentifyRequest r = read_fields(fields, has_record);
     if (has_impacts) {
-        read_impacts(r, object["impacts"]);
+        const Json& impacts = object["impacts"];
+        IdentifyRequest r = read_fields(fields, false, !says_forcing(impacts));
+        read_impact_list(r, impacts);
         return r;
     }
+    IdentifyRequest r = read_fields(fields, true, true);
     read_record(r, fields, {read_record_columns(object["record"]), {}});
     return r;
 }
 
 IdentifyRequest read_identify_request(const Json& fields, std::string_view csv) {
-    IdentifyRequest r = read_fields(fields, true);
+    IdentifyRequest r = read_fields(fields, true, true);
     read_record(r, fields, parse_csv(csv));
     return r;
 }

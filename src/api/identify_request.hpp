@@ -12,6 +12,7 @@ namespace vines::api {
 struct IdentifyRequest {
     System system;  ///< R only where it is given
     Measurement measurement;
+    bool forcing_fitted = false;     ///< G is what the measurement says
     std::vector<std::string> notes;  ///< what is odd about the record
     std::set<std::string> include;   ///< parts of the answer beside the usual ones
     std::size_t most_points;         ///< of the motion

@@ -223,12 +223,13 @@ TEST_CASE("impacts with their states give the exponents of the simulation that t
             b["exponents"]["qr"]["final"][k].get<double>() ==
             doctest::Approx(a["exponents"]["qr"]["final"][k].get<double>()).epsilon(1e-9));
     Json broken = a["impacts"];
-    broken.erase("phase");
+    broken.erase("x_dot_after");
+    broken.erase("x_velocity_after");
     broken["tau"][3] = 0;
     broken["x"][2] = "a";
     CHECK(pointers(problem_of([&] {
               read_identify_request({{"preset", "fig20"}, {"impacts", broken}});
-          })) == std::set<std::string>{"/impacts/phase", "/impacts/x/2"});
+          })) == std::set<std::string>{"/impacts/x_dot_after", "/impacts/x/2"});
 }
 
 TEST_CASE("what is wrong with a record is named with its line and column") {
@@ -527,6 +528,49 @@ TEST_CASE("a b that the impacts contradict is replaced by theirs, and that is sa
     CHECK(a["verdict"] == "regular");
     for (const char* wall : {"plus", "minus"})
         CHECK(a["restitution"][wall]["R"] == a["fitted"][std::string("R_") + wall]["value"]);
+}
+
+TEST_CASE("a list of impacts needs no more than what a laboratory knows of them") {
+    const Json run = simulated(
+        read_simulate_request({{"preset", "fig20"}, {"include", {"impacts"}}, {"cycles", 200}}),
+        {});
+    const Json& all = run["impacts"];
+    Json few = {
+        {"time_s", all["time_s"]},
+        {"x", all["x"]},
+        {"x_velocity_before", all["x_velocity_before"]},
+        {"x_velocity_after", all["x_velocity_after"]}};
+    const Json whole = identified(read_identify_request({{"preset", "fig20"}, {"impacts", all}}));
+    Json system = run["parameters"]["si"];
+    const Json request = {{"m1", system["m1"]}, {"c1", system["c1"]}, {"k1", system["k1"]},
+                          {"m2", system["m2"]}, {"f", system["f"]},   {"b", run["parameters"]["b"]},
+                          {"impacts", few}};
+    const Json a = identified(read_identify_request(request));
+    CHECK(a["parameters"]["origin"]["F"] == "fitted to the impacts");
+    CHECK(
+        a["parameters"]["si"]["F"].get<double>() ==
+        doctest::Approx(system["F"].get<double>()).epsilon(1e-6));
+    CHECK(a["impacts"]["side"] == all["side"]);
+    for (const char* name : {"R", "y_dot_before"})
+        for (std::size_t i = 2; i < all["x"].size(); i += 17)
+            CHECK(
+                a["impacts"][name][i].get<double>() ==
+                doctest::Approx(whole["impacts"][name][i].get<double>()).epsilon(1e-6));
+    CHECK(a["verdict"] == whole["verdict"]);
+    CHECK(
+        a["exponents"]["qr"]["final"][0].get<double>() ==
+        doctest::Approx(whole["exponents"]["qr"]["final"][0].get<double>()).epsilon(1e-5));
+    // An answer's impacts are a list.
+    Json again = request;
+    again["impacts"] = a["impacts"];
+    CHECK(
+        identified(read_identify_request(again))["exponents"]["qr"]["final"][0].get<double>() ==
+        doctest::Approx(a["exponents"]["qr"]["final"][0].get<double>()).epsilon(1e-9));
+    Json wrong = request;
+    wrong["f"] = 0.97 * system["f"].get<double>();
+    CHECK(
+        identified(read_identify_request(wrong))["warnings"].dump().find("no forcing at this") !=
+        std::string::npos);
 }
 
 TEST_CASE("moments in seconds beside a list of impacts are refused: it has its own in tau") {

@@ -21,10 +21,8 @@ void take_restitution(Parameters& p, const Identification& found) {
     if (std::isfinite(found.minus.R)) p.R_minus = std::clamp(found.minus.R, 0.0, 1.0);
 }
 
-/// G of a forcing amplitude, eq. (3).
 double G_of(const Parameters& p, const JointFit& fit) {
-    return elementary::hypot(fit.values[Unknown::force_sin], fit.values[Unknown::force_cos]) /
-           p.epsilon / elementary::hypot(1.0, p.lambda * p.epsilon * p.Omega);
+    return G_of(p, fit.values[Unknown::force_sin], fit.values[Unknown::force_cos]);
 }
 
 /// The stretches without the passages to impacts whose relative speed is not known.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/motion/elementary.hpp"
 #include "core/motion/special_values.hpp"
 
 namespace vines {
@@ -27,6 +28,11 @@ UnknownValues given_unknowns(const Parameters& p) {
     v[Unknown::R_plus] = p.R_plus;
     v[Unknown::R_minus] = p.R_minus;
     return v;
+}
+
+double G_of(const Parameters& p, double force_sin, double force_cos) {
+    return elementary::hypot(force_sin, force_cos) / p.epsilon /
+           elementary::hypot(1.0, p.lambda * p.epsilon * p.Omega);
 }
 
 UnknownValues priors(const Parameters& p) {

@@ -72,6 +72,8 @@ public:
 
 /// Of sensors without a fault, and the oscillator as it is given.
 UnknownValues given_unknowns(const Parameters& parameters);
+/// G of a forcing f_s sin(Omega tau) + f_c cos(Omega tau), eq. (3).
+double G_of(const Parameters& parameters, double force_sin, double force_cos);
 /// Standard deviations of the priors; infinite where there is none.
 UnknownValues priors(const Parameters& parameters);
 
