@@ -258,7 +258,7 @@ export function start(fields, all, changed) {
   remembered = changed;
   presets = all.filter((p) => experiments.includes(p.name));
   form = new Form($("measure-fields"), fieldsOf(fields), {prefix: "measure-", grouped: groups});
-  for (const name of ["time_column", "displacement_column", "acceleration_column"])
+  for (const name of fields.map((f) => f.name).filter((n) => n.endsWith("_column")))
     form.inputs.get(name).setAttribute("list", "measure-columns");
   list = new ImpactList(
     {

@@ -231,13 +231,19 @@ export function recordOf({names, units: row = [], columns}, fields) {
   const unit = (k, asked, usual) => said(k, asked) ?? usual;
   const t = scaled(columns[time], unit(time, fields.time_unit, "s"));
   const kept = whereAscending(t); // as the plots need it
-  const present = [time, x, a].filter((k) => k >= 0);
+  const base = find(names, fields.base_acceleration_column, "base_acceleration_m_s2", [
+    "base_acceleration",
+  ]);
+  const force = find(names, fields.force_column, "force_n", ["force"]);
+  const present = [time, x, a, base, force].filter((k) => k >= 0);
   const sent = Object.fromEntries(present.map((k) => [names[k], columns[k]]));
   return {
     units: {
       time_unit: said(time, fields.time_unit),
       displacement_unit: x < 0 ? undefined : said(x, fields.displacement_unit),
       acceleration_unit: a < 0 ? undefined : said(a, fields.acceleration_unit),
+      base_acceleration_unit: base < 0 ? undefined : said(base, fields.base_acceleration_unit),
+      force_unit: force < 0 ? undefined : said(force, fields.force_unit),
     },
     t: kept(t),
     x: x < 0 ? null : kept(scaled(columns[x], unit(x, fields.displacement_unit, "m"))),

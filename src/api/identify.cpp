@@ -339,6 +339,9 @@ Json identify_answer(const IdentifyRequest& r, const IdentificationWatch& watch)
     answer["parameters"]["derived"] = describe_derived(used);
     if (result.refined) {
         answer["signal"] = describe_signal(m, result, r.system.si->omega0());
+        answer["signal"]["forcing"] =
+            r.forcing ? describe_measured_forcing(*r.forcing, used, result.refined->fit, warnings)
+                      : Json(nullptr);
         answer["fitted"] = describe_fitted(result.refined->fit, r.system.si->omega0());
     }
     answer["impacts"] = describe_identified(found.impacts);

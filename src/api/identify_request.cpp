@@ -162,6 +162,20 @@ std::vector<CsvColumn> read_record_columns(const Json& record) {
     return columns;
 }
 
+/// A channel of the forcing tells its frequency, if the request does not.
+IdentifyRequest read_request_of_record(const Json& given, const Csv& csv) {
+    const std::optional<MeasuredForcing> forcing = measured_forcing(csv.columns, given);
+    Json fields = given;
+    const bool f_is_given = fields.contains("f") || fields.contains("Omega");
+    if (forcing && !f_is_given) fields["f"] = forcing->f;
+    IdentifyRequest r = read_fields(fields, true, true);
+    r.forcing = forcing;
+    if (forcing && !f_is_given)
+        r.system.origin["f"] = r.system.origin["Omega"] = "measured with the record";
+    read_record(r, fields, csv);
+    return r;
+}
+
 }  // namespace
 
 IdentifyRequest read_identify_request(const Json& object) {
@@ -180,15 +194,11 @@ IdentifyRequest read_identify_request(const Json& object) {
         read_impact_list(r, impacts);
         return r;
     }
-    IdentifyRequest r = read_fields(fields, true, true);
-    read_record(r, fields, {read_record_columns(object["record"]), {}});
-    return r;
+    return read_request_of_record(fields, {read_record_columns(object["record"]), {}});
 }
 
 IdentifyRequest read_identify_request(const Json& fields, std::string_view csv) {
-    IdentifyRequest r = read_fields(fields, true, true);
-    read_record(r, fields, parse_csv(csv));
-    return r;
+    return read_request_of_record(fields, parse_csv(csv));
 }
 
 }  // namespace vines::api

@@ -4,6 +4,7 @@
 #include <set>
 #include <string_view>
 
+#include "api/measured_forcing.hpp"
 #include "api/request.hpp"
 #include "core/measurement/measurement.hpp"
 
@@ -12,10 +13,11 @@ namespace vines::api {
 struct IdentifyRequest {
     System system;  ///< R only where it is given
     Measurement measurement;
-    bool forcing_fitted = false;     ///< G is what the measurement says
-    std::vector<std::string> notes;  ///< what is odd about the record
-    std::set<std::string> include;   ///< parts of the answer beside the usual ones
-    std::size_t most_points;         ///< of the motion
+    std::optional<MeasuredForcing> forcing;  ///< by a channel of the record
+    bool forcing_fitted = false;             ///< G is what the measurement says
+    std::vector<std::string> notes;          ///< what is odd about the record
+    std::set<std::string> include;           ///< parts of the answer beside the usual ones
+    std::size_t most_points;                 ///< of the motion
 
     bool includes(const char* part) const { return include.contains(part); }
 };

@@ -148,16 +148,15 @@ void fit_forcing(IdentifyRequest& r) {
     if (!(forcing.misfit < most_misfit))
         r.notes.push_back(fmt::format(
             "no forcing at this frequency leads from each impact to the next: the states miss it "
-            "by {:.2g} of the oscillator's speed. Is f, a mass, a stiffness or a unit wrong, or are "
+            "by {:.2g} of the oscillator's speed. Is f, a mass, a stiffness or a unit wrong, or "
+            "are "
             "impacts missing?",
             forcing.misfit));
 }
 
 }  // namespace
 
-bool says_forcing(const Json& impacts) {
-    return impacts.is_object() && has(impacts, phase_column);
-}
+bool says_forcing(const Json& impacts) { return impacts.is_object() && has(impacts, phase_column); }
 
 void read_impact_list(IdentifyRequest& r, const Json& given) {
     if (!given.is_object())

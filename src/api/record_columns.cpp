@@ -17,12 +17,21 @@ const Quantity displacement_quantity{
     "displacement_m",
     {"displacement", "x"},
     {{"m", 1, {"m"}}, {"mm", 1e-3, {"mm"}}, {"um", 1e-6, {"um"}}}};
+
+namespace {
+
+// m/s^2, the standard gravity.
+const std::vector<Unit> acceleration_units = {
+    {"m/s2", 1, {"m/s2", "m_s2", "ms-2", "m/s/s"}}, {"g", 9.80665, {"g"}}};
+
+}  // namespace
+
 const Quantity acceleration_quantity{
-    "acceleration",
-    "acceleration_m_s2",
-    {"acceleration", "a"},
-    // m/s^2, the standard gravity.
-    {{"m/s2", 1, {"m/s2", "m_s2", "ms-2", "m/s/s"}}, {"g", 9.80665, {"g"}}}};
+    "acceleration", "acceleration_m_s2", {"acceleration", "a"}, acceleration_units};
+const Quantity base_quantity{
+    "base_acceleration", "base_acceleration_m_s2", {"base_acceleration"}, acceleration_units};
+const Quantity force_quantity{
+    "force", "force_n", {"force"}, {{"N", 1, {"n"}}, {"kN", 1e3, {"kn"}}}};
 
 namespace {
 

@@ -21,7 +21,8 @@ struct Quantity {
     std::vector<std::string> beginnings;  ///< of other columns that are taken for it
     std::vector<Unit> units;              ///< the first one is the default
 };
-extern const Quantity time_quantity, displacement_quantity, acceleration_quantity;
+extern const Quantity time_quantity, displacement_quantity, acceleration_quantity, base_quantity,
+    force_quantity;
 
 struct RecordColumn {
     const CsvColumn* column;  ///< null where there is none

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <numbers>
 #include <set>
+#include <sstream>
 
 #include "api/csv.hpp"
 #include "api/identify.hpp"
@@ -528,6 +530,62 @@ TEST_CASE("a b that the impacts contradict is replaced by theirs, and that is sa
     CHECK(a["verdict"] == "regular");
     for (const char* wall : {"plus", "minus"})
         CHECK(a["restitution"][wall]["R"] == a["fitted"][std::string("R_") + wall]["value"]);
+}
+
+namespace {
+
+/// A record with one more column.
+std::string with_column(
+    const std::string& csv, const std::string& name, const std::function<double(double)>& of_time) {
+    std::string all;
+    std::istringstream lines(csv);
+    for (std::string line; std::getline(lines, line);)
+        all += line + ',' + (all.empty() ? name : std::to_string(of_time(std::stod(line)))) + '\n';
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("a channel of the base or of a force gives the forcing, its frequency and its phase") {
+    const std::string csv = measured("fig20", 12);
+    const Json known = identified(read_identify_request({{"preset", "fig20"}}, csv));
+    CHECK(known["signal"]["forcing"].is_null());
+    const Json si = simulated(
+        read_simulate_request({{"preset", "fig20"}, {"cycles", 1}}), {})["parameters"]["si"];
+    const double F = si["F"], f = si["f"], k1 = si["k1"], c1 = si["c1"],
+                 omega = 2 * std::numbers::pi * f;
+    const Json system = {{"m1", si["m1"]}, {"c1", c1}, {"k1", k1}, {"m2", si["m2"]}, {"b", 0.015}};
+    const auto base = [&](double t) { return -F * omega * omega * std::sin(omega * t) / 9.80665; };
+    const auto force = [&](double t) {
+        return F * (k1 * std::sin(omega * t) + c1 * omega * std::cos(omega * t));
+    };
+    struct Channel {
+        std::string name;
+        std::function<double(double)> of_time;
+    };
+    for (const Channel& c : {Channel{"base_acceleration_g", base}, Channel{"force_N", force}}) {
+        CAPTURE(c.name);
+        // f is not given.
+        const Json a =
+            identified(read_identify_request(system, with_column(csv, c.name, c.of_time)));
+        const Json& forcing = a["signal"]["forcing"];
+        CHECK(forcing["f"].get<double>() == doctest::Approx(f).epsilon(2e-5));
+        CHECK(forcing["F"].get<double>() == doctest::Approx(F).epsilon(1e-3));
+        CHECK(std::abs(forcing["phase"].get<double>()) < 0.02);
+        CHECK(a["impacts"]["side"] == known["impacts"]["side"]);
+        CHECK(a["verdict"] == known["verdict"]);
+        CHECK(a["warnings"].dump().find("channel") == std::string::npos);
+    }
+    const std::string inverted =
+        with_column(csv, "base_acceleration_g", [&](double t) { return -1.2 * base(t); });
+    const std::string said = identified(read_identify_request(system, inverted))["warnings"].dump();
+    CHECK(said.find("is it inverted, or late?") != std::string::npos);
+    CHECK(said.find("is a sensitivity wrong?") != std::string::npos);
+    const std::string noise =
+        with_column(csv, "force_N", [&](double t) { return std::sin(1e6 * t * t); });
+    CHECK(
+        std::string(refused(system, noise).what()).find("force_N is no harmonic") !=
+        std::string::npos);
 }
 
 TEST_CASE("a list of impacts needs no more than what a laboratory knows of them") {

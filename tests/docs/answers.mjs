@@ -148,6 +148,14 @@ async function noteBrokenSweep(keys) {
     noteLine(keys, line, ["b"]);
 }
 
+/** The record with a channel of a force of 8.35 Hz. */
+const withForce = (csv) =>
+  csv
+    .trimEnd()
+    .split("\n")
+    .map((line, k) => `${line},${k ? Math.sin(2 * Math.PI * 8.35 * parseFloat(line)) : "force_N"}`)
+    .join("\n");
+
 function noteIdentification(keys, answer) {
   keys.noteTop("identify", answer);
   keys.note("parameters", answer.parameters, ["origin"]);
@@ -189,15 +197,12 @@ export async function answeredKeys(url) {
   for (const request of sweeps) await noteSweep(keys, url, request);
   await noteBrokenSweep(keys);
   const csv = await measured(url, "fig20", 6);
-  noteIdentification(
-    keys,
-    await json(
-      url,
-      "/v1/identify?preset=fig20&b=0.015&include=motion,direct_exponents",
-      csv,
-      "text/csv",
-    ),
-  );
+  const identify = "/v1/identify?preset=fig20&b=0.015";
+  for (const [path, record] of [
+    [`${identify}&include=motion,direct_exponents`, csv],
+    [identify, withForce(csv)],
+  ])
+    noteIdentification(keys, await json(url, path, record, "text/csv"));
   await noteService(keys, url);
   return keys;
 }
