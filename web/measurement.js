@@ -4,6 +4,7 @@ import {identify, identifyJson, Problem, recordAsCurl, wholeMessage} from "./api
 import {$, element, showBusy} from "./dom.js";
 import {Form} from "./form.js";
 import {ImpactList} from "./impact_list.js";
+import {showFit} from "./measurement_fit.js";
 import {summariseMeasurement} from "./measurement_summary.js";
 import {draw, drawRecord, mark, redraw} from "./measurement_views.js";
 import {parse, recordOf, spikeNear, textOf} from "./record.js";
@@ -116,6 +117,7 @@ function addAt(t, reach) {
 function present(milliseconds) {
   for (const node of document.querySelectorAll(".identified")) node.hidden = false;
   summariseMeasurement(answer, milliseconds);
+  showFit(answer);
   if (!record) return;
   drawFile();
   draw(record, answer);

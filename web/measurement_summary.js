@@ -2,17 +2,9 @@
 import {$} from "./dom.js";
 import {isLeftOut} from "./impact_list.js";
 import {count, verdicts} from "./quantities.js";
-import {cards, digits, listWarnings} from "./summary.js";
+import {cards, digits, listWarnings, withError} from "./summary.js";
 
 const about = (value, n) => (value == null ? "–" : Number(value.toPrecision(n)).toString());
-
-/** Of a value and its error, to two digits of the error. */
-function withError(value, error, n) {
-  if (value == null) return "–";
-  if (!error) return digits(value, n);
-  const places = Math.min(Math.max(1 - Math.floor(Math.log10(error)), 0), 8);
-  return `${value.toFixed(places)} ± ${error.toFixed(places)}`;
-}
 
 const wall = (name, {R, standard_error: error, impacts}) => [
   `R at ${name}`,
@@ -51,7 +43,10 @@ function impactsCard({status, tau}) {
 }
 
 /** The half clearance that the impacts fit, beside the given one, in mm. */
-function clearanceCard({b, standard_error: error}, given) {
+function clearanceCard({b, standard_error: error}, parameters) {
+  if (parameters.origin.b === "fitted to the record")
+    return ["b fitted", `${withError(b * 1000, error * 1000, 2)} mm`, "taken, not the given one"];
+  const given = parameters.b * 1000;
   const remark = `given ${about(given, 5)} mm`;
   if (b == null) return ["b fitted", "–", remark];
   const off = ((b * 1000) / given - 1) * 100;
@@ -83,7 +78,7 @@ export function summariseMeasurement(answer, milliseconds) {
     impactsCard(impacts),
     wall("+b", restitution.plus),
     wall("−b", restitution.minus),
-    clearanceCard(fitted, parameters.b * 1000),
+    clearanceCard(fitted, parameters),
     ...signalCards(signal, milliseconds),
   ]);
   listWarnings($("measure-warnings"), warnings);

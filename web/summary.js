@@ -9,6 +9,13 @@ export function digits(value, n = 4) {
   const small = Math.abs(value) < 1e-3 && value !== 0;
   return minus(small ? value.toExponential(2) : value.toFixed(n));
 }
+/** Of a value and its error, to two digits of the error. */
+export function withError(value, error, n) {
+  if (value == null) return "–";
+  if (!error) return digits(value, n);
+  const places = Math.min(Math.max(1 - Math.floor(Math.log10(error)), 0), 8);
+  return `${value.toFixed(places)} ± ${error.toFixed(places)}`;
+}
 export function percent(value) {
   if (value == null) return "–";
   return `${(value * 100).toFixed(value < 0.1 && value >= 0.0005 ? 1 : 0)} %`;

@@ -57,8 +57,8 @@ Json describe_measured_forcing(
     const double F = m.is_force ? amplitude / used.si->k1 /
                                       elementary::hypot(1.0, p.lambda * p.epsilon * p.Omega)
                                 : amplitude / (omega * omega);
-    const double channel = m.is_force ? elementary::atan2(m.cos, m.sin)
-                                      : elementary::atan2(-m.cos, -m.sin) + p.phi();
+    const double channel =
+        m.is_force ? elementary::atan2(m.cos, m.sin) : elementary::atan2(-m.cos, -m.sin) + p.phi();
     // That of the fit is of the record's middle.
     const double middle = fit.tau_middle / used.si->omega0(),
                  fitted = elementary::atan2(

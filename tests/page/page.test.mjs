@@ -1142,6 +1142,10 @@ test("a record shows itself when it is chosen; identified, its impacts, section,
   assert.match(summary, /R at \+b0\.8[45]\d+ ± 0\.000\d+ \d+ impacts/);
   assert.match(summary, /b fitted\d\.\d+ ± 0\.0\d+ mm given 9 mm, agrees/);
   assert.match(summary, /forcing G(10|9\.99\d*|10\.0\d) mm/);
+  const fitted = await page.textContent("#measure-fitted");
+  assert.match(fitted, /frequency of the forcing8\.349\d* ± 0\.0000\d+ Hz/);
+  assert.match(fitted, /damping ratio ζ0\.006\d*, as given/);
+  assert.match(fitted, /half clearance b\d\.\d+ ± 0\.0\d+ mm/);
   assert.equal((await rows(page)).length, Number(summary.match(/impacts(\d+) 0 left/)[1]));
   const file = await downloaded(page, "#measure-download");
   assert.equal(JSON.parse(file.text).verdict, "regular");
