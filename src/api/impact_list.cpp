@@ -141,17 +141,25 @@ int side_of(const Columns& c, std::size_t i) {
     return c.after[i] > c.before[i] ? -1 : 1;
 }
 
-void fit_forcing(IdentifyRequest& r) {
+/// What the list itself says: of the forcing, and of impacts that it misses.
+void take_motion(IdentifyRequest& r) {
     Parameters& p = r.measurement.parameters;
-    const ListedForcing forcing = take_forcing(p, r.measurement.impacts);
-    p.G = G_of(p, forcing.sin, forcing.cos);
-    if (!(forcing.misfit < most_misfit))
+    std::vector<IdentifiedImpact>& impacts = r.measurement.impacts;
+    const ListedForcing forcing = take_forcing(p, impacts);
+    if (r.forcing_fitted) p.G = G_of(p, forcing.sin, forcing.cos);
+    if (!(forcing.misfit < most_misfit)) {
         r.notes.push_back(fmt::format(
             "no forcing at this frequency leads from each impact to the next: the states miss it "
             "by {:.2g} of the oscillator's speed. Is f, a mass, a stiffness or a unit wrong, or "
-            "are "
-            "impacts missing?",
+            "are impacts missing?",
             forcing.misfit));
+        return;
+    }
+    const long restored = restore_impacts(p, forcing, impacts);
+    if (restored > 0)
+        r.notes.push_back(fmt::format(
+            "{} impact(s) that the list misses are put in: the oscillator's motion shows them",
+            restored));
 }
 
 }  // namespace
@@ -183,8 +191,8 @@ void read_impact_list(IdentifyRequest& r, const Json& given) {
         if (!c.y_after.empty()) impact.y_dot_after = c.y_after[i];
         impacts.push_back(impact);
     }
+    take_motion(r);
     take_flights(p, impacts);
-    if (r.forcing_fitted) fit_forcing(r);
     complete_impacts(p, impacts, 0);
 }
 

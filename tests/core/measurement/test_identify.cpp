@@ -5,6 +5,7 @@
 
 #include "../../laboratory/effects.hpp"
 #include "../../laboratory/score.hpp"
+#include "core/measurement/listed_impacts.hpp"
 #include "core/measurement/measurement.hpp"
 #include "laboratory.hpp"
 
@@ -371,6 +372,32 @@ TEST_CASE("nine in ten of the slope's 90 % intervals hold the exponent of the lo
         CHECK(held >= c.least * windows);
         CHECK(held <= c.most * windows);
         CHECK(width < c.width);
+    }
+}
+
+TEST_CASE("impacts that a list misses are put in where they were, and no others") {
+    for (const double b : {0.015, 0.012, 0.009}) {
+        CAPTURE(b);
+        const TrueMotion motion = settled_motion(b, 0.85, 0.85, 100);
+        const Parameters& p = motion.parameters;
+        const std::vector<IdentifiedImpact> all = listed(motion.impacts);
+        std::vector<IdentifiedImpact> list = without(all, 0.1);
+        const auto dropped = static_cast<double>(all.size() - list.size());
+        const ListedForcing forcing = take_forcing(p, list);
+        CHECK(G_of(p, forcing.sin, forcing.cos) == doctest::Approx(p.G).epsilon(1e-9));
+        CHECK(static_cast<double>(restore_impacts(p, forcing, list)) > 0.95 * dropped);
+        long others = 0;
+        for (const IdentifiedImpact& i : list)
+            others += std::none_of(all.begin(), all.end(), [&](const IdentifiedImpact& a) {
+                return std::abs(a.tau - i.tau) < 1e-5 && a.side == i.side;
+            });
+        CHECK(others == 0);
+        take_flights(p, list);
+        complete_impacts(p, list, 0);
+        const MeasuredExponents e(
+            p, MeasuredOscillator::given(p), list, continuity_of(p, list, {}).stretches, qr_alone);
+        const double lambda1 = motion.exponents.qr()[0];
+        CHECK(std::abs(e.all().qr()[0] - lambda1) < 0.03 * std::abs(lambda1));
     }
 }
 
