@@ -34,7 +34,7 @@ function wav(rate, frames) {
   header.write("data", 36);
   header.writeUInt32LE(4 * frames.length, 40);
   const data = Buffer.alloc(4 * frames.length);
-  frames.flat().forEach((value, k) => data.writeInt16LE(value, 2 * k));
+  for (const [k, value] of frames.flat().entries()) data.writeInt16LE(value, 2 * k);
   return Buffer.concat([header, data]);
 }
 
