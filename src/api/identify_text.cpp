@@ -40,6 +40,8 @@ const char* text_of(Doubt doubt) {
                    "that is wrong, or does a sensor more than an offset, a drift, a delay and a "
                    "scale?";
         case Doubt::b_disagrees: return "the impacts' momentum does not fit the given b";
+        case Doubt::no_forcing:
+            return "no forcing at this frequency leads from each impact of the list to the next";
     }
     return "";
 }

@@ -153,6 +153,7 @@ void take_motion(IdentifyRequest& r) {
             "by {:.2g} of the oscillator's speed. Is f, a mass, a stiffness or a unit wrong, or "
             "are impacts missing?",
             forcing.misfit));
+        r.measurement.doubts.push_back(Doubt::no_forcing);
         return;
     }
     const long restored = restore_impacts(p, forcing, impacts);

@@ -638,9 +638,9 @@ TEST_CASE("a list of impacts needs no more than what a laboratory knows of them"
         doctest::Approx(a["exponents"]["qr"]["final"][0].get<double>()).epsilon(1e-9));
     Json wrong = request;
     wrong["f"] = 0.97 * system["f"].get<double>();
-    CHECK(
-        identified(read_identify_request(wrong))["warnings"].dump().find("no forcing at this") !=
-        std::string::npos);
+    const Json off = identified(read_identify_request(wrong));
+    CHECK(off["warnings"].dump().find("no forcing at this") != std::string::npos);
+    CHECK(off["verdict"] == "not_decided");
 }
 
 TEST_CASE("moments in seconds beside a list of impacts are refused: it has its own in tau") {

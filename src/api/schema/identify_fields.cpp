@@ -19,7 +19,7 @@ Field of_record(Field f) {
     return f;
 }
 
-FieldTable record_rows() {
+FieldTable column_rows() {
     return {
         {.name = "time_column",
          .type = FieldType::choice,
@@ -47,6 +47,11 @@ FieldTable record_rows() {
          .group = "record",
          .description = "name of the column of a force on m1 that drives it, in place of the base",
          .fallback_note = "force_N, or one that begins with force; none is needed"},
+    };
+}
+
+FieldTable unit_rows() {
+    return {
         {.name = "time_unit",
          .type = FieldType::choice,
          .group = "record",
@@ -81,6 +86,11 @@ FieldTable record_rows() {
              "unit of the force, where neither the column's name nor a row of units says one",
          .fallback = "N",
          .choices = {"N", "kN"}},
+    };
+}
+
+FieldTable impact_rows() {
+    return {
         {.name = "threshold",
          .group = "record",
          .unit = "standard deviations of the noise",
@@ -129,7 +139,8 @@ FieldTable make_identify_fields() {
             table.push_back(of_record(f));
     table.push_back(include_row());
     table.push_back(fixed_row());
-    for (Field& f : record_rows()) table.push_back(std::move(f));
+    for (const auto& rows : {column_rows, unit_rows, impact_rows})
+        for (Field& f : rows()) table.push_back(std::move(f));
     return table;
 }
 

@@ -124,11 +124,12 @@ Identification identify_impacts(const Parameters& p, const FoundImpacts& f) {
     return found;
 }
 
-double b_of(const Parameters& p, const FoundImpacts& f) {
+double b_of(const Parameters& p, const FoundImpacts& f, const Identification& said) {
+    const bool fitted = f.with_mass && !f.fit.fixed[Unknown::b] && said.b_fault == BFault::none;
     const double b = f.fit.values[Unknown::b], off = std::abs(b - p.b);
     const bool contradicts =
         off > b_sigmas * f.fit.errors[Unknown::b] && off > least_of_b * p.b && b > 0;
-    return f.with_mass && !f.fit.fixed[Unknown::b] && contradicts ? b : p.b;
+    return fitted && contradicts ? b : p.b;
 }
 
 bool b_agrees(const Parameters& p, const Identification& i) {

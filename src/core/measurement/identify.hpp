@@ -41,8 +41,9 @@ Identification identify_impacts(
 /// The same of what was found, with R and b of the fit.
 Identification identify_impacts(const Parameters& parameters, const FoundImpacts& found);
 
-/// The given b; the fitted one where the record contradicts, and b is not fixed.
-double b_of(const Parameters& parameters, const FoundImpacts& found);
+/// The given b; the fitted one where the record contradicts, and b is not fixed. `said`: by the
+/// impacts with the given one.
+double b_of(const Parameters& parameters, const FoundImpacts& found, const Identification& said);
 
 /// Whether a b is the one that the momentum fits, to 3 % or five standard errors; true where it
 /// fits none.
@@ -52,7 +53,8 @@ bool b_agrees(const Parameters& parameters, const Identification& identification
 enum class Doubt {
     not_settled,  ///< the search for impacts: FoundImpacts::settled
     unexplained,  ///< the fitted motion does not explain the record
-    b_disagrees   ///< the impacts' momentum does not fit the given b
+    b_disagrees,  ///< the impacts' momentum does not fit the given b
+    no_forcing    ///< of a list: none leads from each impact to the next
 };
 /// Empty if nothing speaks against a verdict.
 std::vector<Doubt> doubts_of(

@@ -40,11 +40,11 @@ std::vector<KnownStretch> with_speeds(
 
 /// `stretches`: those of the fit.
 std::optional<DirectEstimate> direct_estimate(
-    const Measurement& m, const MeasuredOscillator& oscillator, const FoundImpacts& refined,
-    const std::vector<KnownStretch>& stretches) {
+    const Measurement& m, double b, const MeasuredOscillator& oscillator,
+    const FoundImpacts& refined, const std::vector<KnownStretch>& stretches) {
     if (m.record.x.empty() || m.record.x_ddot.empty()) return std::nullopt;
     Parameters p = m.parameters;
-    p.b = b_of(p, refined);
+    p.b = b;
     std::vector<double> moments;
     for (const FittedImpact& i : refined.fit.impacts) moments.push_back(i.tau);
     const double pulse = refined.pulse.length();
@@ -132,7 +132,7 @@ MeasurementResult conclude(const Measurement& m, const IdentificationWatch& watc
     MeasuredOscillator oscillator = MeasuredOscillator::given(p);
     std::optional<FoundImpacts> refined;
     Identification found;
-    std::vector<Doubt> doubts;
+    std::vector<Doubt> doubts = m.doubts;
     if (m.is_record()) {
         refined = find_impacts(
             p, m.record, {.sigmas = m.threshold, .moments = m.moments, .fixed = m.fixed}, progress);
@@ -140,8 +140,11 @@ MeasurementResult conclude(const Measurement& m, const IdentificationWatch& watc
         if (fit.impacts.size() < 2) throw TooFewImpacts{static_cast<long>(fit.impacts.size())};
         p.Omega = fit.values[Unknown::Omega];
         oscillator = {fit.values[Unknown::stiffness], fit.values[Unknown::damping]};
-        p.b = b_of(p, *refined);
         found = identify_impacts(p, *refined);
+        if (const double b = b_of(p, *refined, found); b != p.b) {
+            p.b = b;
+            found = identify_impacts(p, *refined);
+        }
         p.G = G_of(p, fit);
         doubts = doubts_of(p, *refined, found);
     } else {
@@ -158,8 +161,8 @@ MeasurementResult conclude(const Measurement& m, const IdentificationWatch& watc
     else if (p.G == 0 || dies_out(found.impacts)) judged.verdict = Verdict::none;
 
     progress.look();
-    auto direct =
-        refined ? direct_estimate(m, oscillator, *refined, continuity.stretches) : std::nullopt;
+    auto direct = refined ? direct_estimate(m, p.b, oscillator, *refined, continuity.stretches)
+                          : std::nullopt;
     auto forward =
         refined ? forward_run(p, oscillator, found, refined->fit, m.record.tau.back(), progress)
                 : std::nullopt;

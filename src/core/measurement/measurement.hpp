@@ -18,6 +18,7 @@ struct Measurement {
     MeasuredRecord record = {};        ///< empty where the impacts are given with their states
     std::vector<double> moments = {};  ///< tau of impacts that are known; empty: find them
     std::vector<IdentifiedImpact> impacts = {};  ///< completed, in place of a record
+    std::vector<Doubt> doubts = {};              ///< about those
     double threshold = 6;      ///< of a spike, in standard deviations of the noise
     FixedUnknowns fixed = {};  ///< what of a record is not fitted
     ExponentOptions estimators = {};
@@ -60,7 +61,7 @@ struct MeasurementResult {
     Continuity continuity;
     MeasuredExponents exponents;
     IdentifiedExponents judged;
-    std::vector<Doubt> doubts;  ///< why the fit of the record bears no verdict
+    std::vector<Doubt> doubts;  ///< why the measurement bears no verdict
     std::optional<DirectEstimate> direct;
     std::optional<ForwardRun> forward;
 
