@@ -5,6 +5,8 @@ import {minus, withError} from "./summary.js";
 /** Key of the answer's `fitted`: what it is, its unit, and by what its SI value is multiplied. */
 const rows = [
   ["f", "frequency of the forcing", "Hz", 1],
+  ["F", "amplitude F of the base", "mm", 1e3],
+  ["phase", "its phase at t = 0", "rad", 1],
   ["displacement_offset", "offset of the displacement", "µm", 1e6],
   ["displacement_drift", "its drift over the record", "µm", 1e6],
   ["displacement_gain", "its scale against the acceleration's", "", 1],

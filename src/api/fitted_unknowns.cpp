@@ -7,6 +7,7 @@
 
 #include "api/column.hpp"
 #include "api/schema/words.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines::api {
 
@@ -33,6 +34,31 @@ ValueWithError in_si(const JointFit& fit, Unknown u, double omega0) {
     }
 }
 
+Json described(const ValueWithError& v, bool fixed) {
+    return {
+        {"value", finite_or_null(v.value)},
+        {"standard_error", fixed ? Json(nullptr) : Json(finite_or_null(v.error))},
+        {"fixed", fixed}};
+}
+
+/// Of the base that moves by F sin(2 pi f t + phase), eq. (3). Its phase at the time 0 of the
+/// record is that in the middle, less what the frequency may be off by until then.
+void add_forcing(Json& j, const JointFit& fit, const Parameters& p) {
+    const double sin = fit.values[Unknown::force_sin], cos = fit.values[Unknown::force_cos],
+                 sin_error = fit.errors[Unknown::force_sin],
+                 cos_error = fit.errors[Unknown::force_cos],
+                 amplitude = elementary::hypot(sin, cos),
+                 along = elementary::hypot(sin * sin_error, cos * cos_error) / amplitude,
+                 across = elementary::hypot(cos * sin_error, sin * cos_error) / amplitude;
+    const double F = G_of(p, sin, cos) * p.epsilon,
+                 phase = elementary::atan2(cos, sin) - p.phi() - p.Omega * fit.tau_middle;
+    j["F"] = described({F, F * along / amplitude}, false);
+    j["phase"] = described(
+        {std::remainder(phase, 2 * std::numbers::pi),
+         elementary::hypot(across / amplitude, fit.tau_middle * fit.errors[Unknown::Omega])},
+        false);
+}
+
 }  // namespace
 
 FixedUnknowns fixed_of(const std::set<std::string>& names) {
@@ -41,16 +67,11 @@ FixedUnknowns fixed_of(const std::set<std::string>& names) {
     return fixed;
 }
 
-Json describe_fitted(const JointFit& fit, double omega0) {
+Json describe_fitted(const JointFit& fit, const Parameters& parameters, double omega0) {
     Json j = Json::object();
-    for (const Word<Unknown>& w : words<Unknown>()) {
-        const ValueWithError v = in_si(fit, w.value, omega0);
-        const bool fixed = fit.fixed[w.value];
-        j[w.word] = {
-            {"value", finite_or_null(v.value)},
-            {"standard_error", fixed ? Json(nullptr) : Json(finite_or_null(v.error))},
-            {"fixed", fixed}};
-    }
+    for (const Word<Unknown>& w : words<Unknown>())
+        j[w.word] = described(in_si(fit, w.value, omega0), fit.fixed[w.value]);
+    add_forcing(j, fit, parameters);
     return j;
 }
 

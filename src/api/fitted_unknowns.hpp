@@ -14,8 +14,9 @@ namespace vines::api {
 /// Of words of Unknown.
 FixedUnknowns fixed_of(const std::set<std::string>& names);
 
-/// {word: {value, standard_error, fixed}}. `omega0`: the given one, rad/s.
-Json describe_fitted(const JointFit& fit, double omega0);
+/// {word: {value, standard_error, fixed}}, and F and phase of the forcing. `parameters`: as they
+/// are used, with the fitted Omega; `omega0`: the given one, rad/s.
+Json describe_fitted(const JointFit& fit, const Parameters& parameters, double omega0);
 
 /// What of it a user should know: a sensor, or a given value, that is wrong.
 void add_fitted_warnings(

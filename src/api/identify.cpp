@@ -342,7 +342,8 @@ Json identify_answer(const IdentifyRequest& r, const IdentificationWatch& watch)
         answer["signal"]["forcing"] =
             r.forcing ? describe_measured_forcing(*r.forcing, used, result.refined->fit, warnings)
                       : Json(nullptr);
-        answer["fitted"] = describe_fitted(result.refined->fit, r.system.si->omega0());
+        answer["fitted"] =
+            describe_fitted(result.refined->fit, result.parameters, r.system.si->omega0());
     }
     answer["impacts"] = describe_identified(found.impacts);
     answer["restitution"] = describe_walls(found);

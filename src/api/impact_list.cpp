@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <optional>
 #include <vector>
 
@@ -58,7 +59,9 @@ public:
                 name, nullptr,
                 std::string(name) + " is in SI: give m1, c1, k1, m2 and f, or a preset, or " +
                     c.name);
-        const double factor = is_si && omega0_ ? std::pow(*omega0_, -c.powers_of_omega0) : 1;
+        double factor = 1;
+        for (int k = 0; is_si && omega0_ && k < std::abs(c.powers_of_omega0); ++k)
+            c.powers_of_omega0 > 0 ? factor /= * omega0_ : factor *= *omega0_;
         return values_of(name, factor, may_be_null);
     }
     std::vector<double> optional_column(const ListColumn& c, bool may_be_null = false) {

@@ -584,6 +584,13 @@ TEST_CASE("a channel of the base or of a force gives the forcing, its frequency 
         CHECK(forcing["f"].get<double>() == doctest::Approx(f).epsilon(2e-5));
         CHECK(forcing["F"].get<double>() == doctest::Approx(F).epsilon(1e-3));
         CHECK(std::abs(forcing["phase"].get<double>()) < 0.02);
+        for (const auto& [key, truth] : {std::pair("F", F), std::pair("phase", 0.0)}) {
+            const Json& fitted = a["fitted"][key];
+            CHECK(
+                std::abs(fitted["value"].get<double>() - truth) <
+                4 * fitted["standard_error"].get<double>());
+            CHECK(fitted["standard_error"].get<double>() < 5e-4);
+        }
         CHECK(a["impacts"]["side"] == known["impacts"]["side"]);
         CHECK(a["verdict"] == known["verdict"]);
         CHECK(a["warnings"].dump().find("channel") == std::string::npos);
