@@ -39,6 +39,12 @@ const char* text_of(Doubt doubt) {
                    "of the sensors (signal.misfit). Are impacts hidden, is something fixed "
                    "that is wrong, or does a sensor more than an offset, a drift, a delay and a "
                    "scale?";
+        case Doubt::pulses_disagree:
+            return "many pulses are not where impacts are found, and as many impacts have none: "
+                   "does "
+                   "the mass stick to a wall in each cycle?";
+        case Doubt::R_scattered:
+            return "R differs from impact to impact: does the mass stick to a wall, or is b wrong?";
         case Doubt::b_disagrees: return "the impacts' momentum does not fit the given b";
         case Doubt::no_forcing:
             return "no forcing at this frequency leads from each impact of the list to the next";

@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
     using namespace vines;
     using namespace vines::test;
     int seeds = 1, first_seed = 1;
-    double seconds = 20, R = 0.85;
+    double seconds = 20, R = 0.85, settling = 0;
     std::vector<double> widths = {0.015, 0.009};
     std::string only;
     CLI::App app("Identifies records of a simulated laboratory and holds them against the truth");
@@ -36,6 +36,9 @@ int main(int argc, char** argv) {
     app.add_option("--seconds", seconds, "that a record lasts");
     app.add_option("--b", widths, "m");
     app.add_option("--R", R, "of both walls");
+    app.add_option(
+        "--settling", settling,
+        "s from the start to the records; without: once it has settled, where it does not stick");
     app.add_option("--only", only, "effects whose names hold this");
     CLI11_PARSE(app, argc, argv);
     fmt::print(
@@ -43,7 +46,8 @@ int main(int argc, char** argv) {
         "| verdict | s |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
     int right = 0, wrong_verdicts = 0, records = 0;
     for (const double b : widths) {
-        const TrueMotion motion = settled_motion(b, R, R, seconds);
+        const TrueMotion motion = settling > 0 ? motion_after(settling, b, R, R, seconds)
+                                               : settled_motion(b, R, R, seconds);
         for (const Effect& effect : laboratory_effects()) {
             if (effect.name.find(only) == std::string::npos) continue;
             for (int k = 0; k < seeds; ++k) {

@@ -19,6 +19,19 @@ std::vector<TimeGap> long_gaps(const Experiment& e) {
     return gaps;
 }
 
+/// Those of a chatter that ends in a stick are one contact: the stick.
+std::vector<char> are_of_sticks(const Experiment& e) {
+    std::vector<char> are(e.impacts.size(), 0);
+    for (const StuckPhase& s : e.sticks) {
+        auto end = std::find_if(e.impacts.begin(), e.impacts.end(), [&](const Impact& i) {
+            return i.tau > s.start.tau;
+        });
+        for (int k = 0; k < s.start.impacts && end != e.impacts.begin(); ++k)
+            are[static_cast<std::size_t>(--end - e.impacts.begin())] = 1;
+    }
+    return are;
+}
+
 bool can_be_seen(const Experiment& e, const std::vector<TimeGap>& gaps, const Impact& i) {
     return std::none_of(gaps.begin(), gaps.end(), [&](const TimeGap& g) {
         const double margin = found_within * e.omega0;
@@ -47,14 +60,20 @@ bool Score::is_right() const {
 Score score_of(const Experiment& e, const MeasurementResult& result) {
     Score s;
     const std::vector<TimeGap> gaps = long_gaps(e);
+    const std::vector<char> of_sticks = are_of_sticks(e);
+    const auto counts = [&](const Impact& i) {
+        return !of_sticks[static_cast<std::size_t>(&i - e.impacts.data())] &&
+               can_be_seen(e, gaps, i);
+    };
     std::vector<Impact> seen;
     for (const Impact& i : e.impacts)
-        if (can_be_seen(e, gaps, i)) seen.push_back(i);
+        if (counts(i)) seen.push_back(i);
     s.impacts = static_cast<long>(seen.size());
     std::vector<char> taken(e.impacts.size(), 0);
     std::vector<double> off;
     for (const IdentifiedImpact& i : result.found.impacts) {
-        if (i.is_left_out()) continue;
+        // Of a chatter that comes to rest the weak ones follow each other too soon to be compared.
+        if (i.is_left_out() || i.is_hidden) continue;
         const auto nearest = std::min_element(
             e.impacts.begin(), e.impacts.end(), [&](const Impact& a, const Impact& b) {
                 return std::abs(a.tau - i.tau) < std::abs(b.tau - i.tau);
@@ -66,7 +85,7 @@ Score score_of(const Experiment& e, const MeasurementResult& result) {
             continue;
         }
         matched = 1;
-        s.found += can_be_seen(e, gaps, *nearest);
+        s.found += counts(*nearest);
         s.flipped += i.side != nearest->side;
         off.push_back(late);
     }

@@ -15,11 +15,21 @@ struct Candidate {
     double event = 0;        ///< the moment of that
     double improvement = 0;  ///< by its kink, in variances
     double pulse_tau = 0, pulse_error = infinity;  ///< as in ImpactMoment
-    bool is_gap = false;                           ///< no impact, but a gap of the record
+    Border border = Border::impact;
+    bool sticks = false;  ///< as in ImpactMoment
+    /// By the run of what is identified (hidden_contacts.hpp), which says the wall: it need not
+    /// show. 0: by no run.
+    int predicted_side = 0;
+
+    bool is_impact() const { return border == Border::impact; }
+    bool is_predicted() const { return predicted_side != 0; }
 };
 
 /// Of |jump|; NaN of none.
 double typical_jump(const std::vector<Candidate>& candidates);
+
+/// Typically, of the jump of x' to the height of its event; 0 where none is seen.
+double jump_to_height(const std::vector<Candidate>& candidates);
 
 void sort_by_time(std::vector<Candidate>& candidates);
 

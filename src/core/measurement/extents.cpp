@@ -30,7 +30,7 @@ public:
     Bins(const JointFit& fit, const MeasuredRecord& r, double step)
         : width_(std::max(step, farthest_after / most_extent_bins)) {
         for (std::size_t i = 0; i < fit.impacts.size(); ++i) {
-            if (fit.impacts[i].is_gap) continue;
+            if (!fit.impacts[i].is_impact()) continue;
             const double tau = fit.impacts[i].tau;
             const double end =
                 i + 1 < fit.impacts.size() ? fit.impacts[i + 1].tau - farthest_before : infinity;
@@ -84,7 +84,7 @@ double kink_extent(
                  reach = static_cast<double>(kink_bins) * bin;
     std::vector<std::vector<double>> left(kink_bins);
     for (const FittedImpact& i : fit.impacts) {
-        if (i.is_gap) continue;
+        if (!i.is_impact()) continue;
         const double tau = i.tau + late;
         for (std::size_t k = first_index(r, tau - reach);
              k < r.tau.size() && r.tau[k] < tau + reach; ++k) {

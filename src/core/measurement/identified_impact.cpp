@@ -36,7 +36,7 @@ ImpactFault fault_of(const IdentifiedImpact& i, double since, double pulse, doub
 void complete_impacts(const Parameters& p, std::vector<IdentifiedImpact>& impacts, double pulse) {
     std::vector<double> jumps, errors;
     for (const IdentifiedImpact& i : impacts)
-        jumps.push_back(std::abs(i.x_dot_after - i.x_dot_before));
+        if (!i.is_hidden) jumps.push_back(std::abs(i.x_dot_after - i.x_dot_before));
     const double typical = median(jumps);
     for (IdentifiedImpact& i : impacts) {
         // Eq. (4)
@@ -44,29 +44,36 @@ void complete_impacts(const Parameters& p, std::vector<IdentifiedImpact>& impact
         i.momentum_error =
             (i.x_dot_after - i.x_dot_before + p.epsilon * (i.y_dot_after - i.y_dot_before)) /
             typical;
-        errors.push_back(i.momentum_error);
+        if (!i.is_hidden) errors.push_back(i.momentum_error);
     }
     const double tolerance = std::min(
         std::max(least_momentum_tolerance, momentum_sigmas * robust_deviation(errors)),
         momentum_tolerance);
     for (std::size_t k = 0; k < impacts.size(); ++k)
         impacts[k].fault = fault_of(
-            impacts[k], k > 0 ? impacts[k].tau - impacts[k - 1].tau : infinity, pulse, tolerance);
+            impacts[k],
+            k > 0 && !impacts[k].is_hidden && !impacts[k - 1].is_hidden
+                ? impacts[k].tau - impacts[k - 1].tau
+                : infinity,
+            pulse, tolerance);
 }
 
 bool flight_fits(
     const Parameters& p, const IdentifiedImpact& from, const IdentifiedImpact& to,
     double typical_speed) {
-    const double way = to.x - to.side * p.b - (from.x - from.side * p.b),
-                 flown = to.y_dot_before * (to.tau - from.tau);
-    return std::abs(to.y_dot_before - from.y_dot_after) < flight_tolerance * typical_speed &&
+    const Release leaves =
+        from.release ? *from.release : Release{from.tau, from.x, from.y_dot_after};
+    const double way = to.x - to.side * p.b - (leaves.x - from.side * p.b),
+                 flown = to.y_dot_before * (to.tau - leaves.tau);
+    return std::abs(to.y_dot_before - leaves.x_dot) < flight_tolerance * typical_speed &&
            std::abs(way - flown) < flight_tolerance * p.b;
 }
 
 Restitution restitution_of(const std::vector<IdentifiedImpact>& impacts, int side) {
     std::vector<double> R, off;
     for (const IdentifiedImpact& i : impacts)
-        if (i.side == side && !i.is_left_out() && !std::isnan(i.R)) R.push_back(i.R);
+        if (i.side == side && !i.is_left_out() && !i.is_hidden && !std::isnan(i.R))
+            R.push_back(i.R);
     const double centre = median(R);
     for (double r : R) off.push_back(r - centre);
     return {centre, error_of_median(off), static_cast<long>(R.size())};

@@ -2,8 +2,10 @@
 // missing in the balance of momentum, and why it is left out.
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "core/measurement/release.hpp"
 #include "core/motion/parameters.hpp"
 #include "core/motion/special_values.hpp"
 
@@ -31,6 +33,9 @@ struct IdentifiedImpact {
     /// Of x' + epsilon y', over the typical (median) jump of x'.
     double momentum_error = nan;
     ImpactFault fault = ImpactFault::none;
+    /// Where the mass, that sticks to the wall from this impact on, leaves it.
+    std::optional<Release> release = {};
+    bool is_hidden = false;  ///< not seen: put in (hidden_contacts.hpp)
 
     bool is_left_out() const { return fault != ImpactFault::none; }
 };

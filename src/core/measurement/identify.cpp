@@ -16,6 +16,13 @@ constexpr double b_scatter = 0.5;
 constexpr double b_tolerance = 0.03, b_sigmas = 5;
 // By less it hardly matters: walls are set to a tenth of a millimetre.
 constexpr double least_of_b = 0.003;
+// Nobody measures one as badly as that: it is something else that is wrong.
+constexpr double most_of_b = 0.5;
+// Of what laboratories do to a record (tests/laboratory) no effect that leaves as many pulses
+// without an impact leaves a tenth of the impacts without a pulse, and none scatters R by more than
+// .005. A motion that sticks in each cycle, taken for one that does not, has half of them without,
+// or R scattered by .1.
+constexpr double most_unseen = 0.15, most_dropped = 0.02, most_R_scatter = 0.07;
 
 /// y' of each flight is offset - b rate: y = x - side b at both of its ends (43).
 struct Flight {
@@ -127,8 +134,8 @@ Identification identify_impacts(const Parameters& p, const FoundImpacts& f) {
 double b_of(const Parameters& p, const FoundImpacts& f, const Identification& said) {
     const bool fitted = f.with_mass && !f.fit.fixed[Unknown::b] && said.b_fault == BFault::none;
     const double b = f.fit.values[Unknown::b], off = std::abs(b - p.b);
-    const bool contradicts =
-        off > b_sigmas * f.fit.errors[Unknown::b] && off > least_of_b * p.b && b > 0;
+    const bool contradicts = off > b_sigmas * f.fit.errors[Unknown::b] && off > least_of_b * p.b &&
+                             off < most_of_b * p.b;
     return fitted && contradicts ? b : p.b;
 }
 
@@ -137,11 +144,34 @@ bool b_agrees(const Parameters& p, const Identification& i) {
            std::abs(i.b_fitted - p.b) <= std::max(b_tolerance * p.b, b_sigmas * i.b_error);
 }
 
+namespace {
+
+/// An impact may show no pulse, and what looks like a pulse may be none; where both are many, the
+/// impacts are not where the pulses are.
+bool pulses_disagree(const FoundImpacts& f) {
+    const auto n = static_cast<double>(f.fit.impacts.size());
+    return static_cast<double>(f.unseen) > most_unseen * n &&
+           static_cast<double>(f.dropped.size()) > most_dropped * n;
+}
+
+double scatter_of_R(const Identification& found) {
+    std::vector<double> off;
+    for (const IdentifiedImpact& i : found.impacts) {
+        const double R = (i.side > 0 ? found.plus : found.minus).R;
+        if (!std::isnan(i.R - R)) off.push_back(i.R - R);
+    }
+    return off.empty() ? 0 : robust_deviation(std::move(off));
+}
+
+}  // namespace
+
 std::vector<Doubt> doubts_of(
     const Parameters& p, const FoundImpacts& refined, const Identification& identification) {
     std::vector<Doubt> doubts;
     if (!refined.settled) doubts.push_back(Doubt::not_settled);
     if (!explains(refined.fit)) doubts.push_back(Doubt::unexplained);
+    if (pulses_disagree(refined)) doubts.push_back(Doubt::pulses_disagree);
+    if (scatter_of_R(identification) > most_R_scatter) doubts.push_back(Doubt::R_scattered);
     if (!b_agrees(p, identification)) doubts.push_back(Doubt::b_disagrees);
     return doubts;
 }

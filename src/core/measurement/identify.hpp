@@ -51,10 +51,12 @@ bool b_agrees(const Parameters& parameters, const Identification& identification
 
 /// Why no verdict can rest on a record.
 enum class Doubt {
-    not_settled,  ///< the search for impacts: FoundImpacts::settled
-    unexplained,  ///< the fitted motion does not explain the record
-    b_disagrees,  ///< the impacts' momentum does not fit the given b
-    no_forcing    ///< of a list: none leads from each impact to the next
+    not_settled,      ///< the search for impacts: FoundImpacts::settled
+    unexplained,      ///< the fitted motion does not explain the record
+    pulses_disagree,  ///< many pulses are no impacts, as many impacts have no pulse
+    R_scattered,      ///< R differs from impact to impact
+    b_disagrees,      ///< the impacts' momentum does not fit the given b
+    no_forcing        ///< of a list: none leads from each impact to the next
 };
 /// Empty if nothing speaks against a verdict.
 std::vector<Doubt> doubts_of(

@@ -26,14 +26,18 @@ OscillatorMotion difference_of(const OscillatorMotion& moved, const OscillatorMo
 
 }  // namespace
 
-OscillatorFlows::OscillatorFlows(const UnknownValues& v, bool moves)
+OscillatorFlows::OscillatorFlows(const UnknownValues& v, bool moves, double mass)
     : oscillator_moves(moves),
       force(elementary::hypot(v[Unknown::force_sin], v[Unknown::force_cos])),
       phase(elementary::atan2(v[Unknown::force_cos], v[Unknown::force_sin])),
       Omega(v[Unknown::Omega]),
-      parts(v[Unknown::stiffness], v[Unknown::damping], 1, Omega),
-      by_stiffness(v[Unknown::stiffness] + difference, v[Unknown::damping], force, Omega),
-      by_damping(v[Unknown::stiffness], v[Unknown::damping] + difference, force, Omega) {}
+      parts(v[Unknown::stiffness] / mass, v[Unknown::damping] / mass, 1 / mass, Omega),
+      by_stiffness(
+          (v[Unknown::stiffness] + difference) / mass, v[Unknown::damping] / mass, force / mass,
+          Omega),
+      by_damping(
+          v[Unknown::stiffness] / mass, (v[Unknown::damping] + difference) / mass, force / mass,
+          Omega) {}
 
 IntervalMotion::IntervalMotion(
     const OscillatorFlows& f, const UnknownValues& v, double tau_middle, const FittedInterval& i)

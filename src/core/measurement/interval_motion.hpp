@@ -13,16 +13,28 @@ namespace vines {
 /// One interval between impacts: its start, after the impact.
 struct FittedInterval {
     double tau, x, x_dot;
+    bool is_stuck = false;  ///< the free mass moves with the oscillator
 };
 
 /// The oscillator with the values as they are, and with k and c each a little larger.
 struct OscillatorFlows {
-    /// `oscillator_moves`: whether derivatives by k and c are asked for.
-    OscillatorFlows(const UnknownValues& values, bool oscillator_moves);
+    /// `oscillator_moves`: whether derivatives by k and c are asked for. `mass`: that is moved,
+    /// over m1.
+    OscillatorFlows(const UnknownValues& values, bool oscillator_moves, double mass = 1);
 
     bool oscillator_moves;
     double force, phase, Omega;  ///< of the forcing: amplitude, m, and phase in tau_m
     Flow parts, by_stiffness, by_damping;
+};
+
+/// Those of the two kinds of interval.
+struct IntervalFlows {
+    IntervalFlows(const UnknownValues& values, bool oscillator_moves, double epsilon)
+        : free(values, oscillator_moves),
+          stuck(values, oscillator_moves, 1 + epsilon) {}
+    const OscillatorFlows& of(const FittedInterval& i) const { return i.is_stuck ? stuck : free; }
+
+    OscillatorFlows free, stuck;
 };
 
 /// A motion and its derivatives by its start and by what moves it.

@@ -34,6 +34,8 @@ constexpr double most_move_steps = 1;
 // A misfit of three quarters of the noise beside the noise: sqrt(1 + .75^2). Records with the
 // assumed signal stay below 1.05.
 constexpr double misfit_limit = 1.25;
+// A moment of release is told by its condition to so much tau: better than any other.
+constexpr double release_error = 1e-4;
 // Samples beside the pulses that a share of a step reaches beyond what is spoiled.
 constexpr double pulse_margin = 0.1;
 
@@ -62,6 +64,7 @@ public:
           spoiled_(in_pulses(r_, impacts, pulse_margin * input.statistics.step)) {
         fit_.tau_middle = 0.5 * (r_.tau.front() + r_.tau.back());
         fit_.length = r_.tau.back() - r_.tau.front();
+        fit_.epsilon = input.parameters.epsilon;
         fit_.values = start;
         // A fit begins before the record, so that a displacement that is late has a start.
         if (before) {
@@ -71,7 +74,7 @@ public:
             scale_a_ = std::max(before->noise_a, in_.statistics.x_ddot.noise);
         } else {
             fit_.intervals.push_back({r_.tau.front() - largest_delay, 0, 0});
-            for (const ImpactMoment& i : impacts) fit_.intervals.push_back({i.tau, 0, 0});
+            for (const ImpactMoment& i : impacts) fit_.intervals.push_back({i.tau, 0, 0, i.sticks});
         }
         // One over the largest step squared.
         const double size = largest_step * quantile_of_moduli(r_.x.empty() ? r_.x_ddot : r_.x, 1);
@@ -144,8 +147,7 @@ private:
 
     /// Visits the samples of a channel that is `late` with the motion there.
     template <class Visit>
-    void each_sample(
-        const OscillatorFlows& flows, double late, bool accelerate, const Visit& visit) {
+    void each_sample(const IntervalFlows& flows, double late, bool accelerate, const Visit& visit) {
         std::size_t i = 0;
         for (std::size_t k = 0; k < r_.tau.size();) {
             const auto here = [&] { return r_.tau[k] - late; };
@@ -153,12 +155,16 @@ private:
                 return i + 1 < fit_.intervals.size() ? fit_.intervals[i + 1].tau : infinity;
             };
             while (here() >= next()) ++i;
-            IntervalMotion motion(flows, fit_.values, fit_.tau_middle, fit_.intervals[i]);
+            IntervalMotion motion = motion_in(flows, fit_.intervals[i]);
             for (; k < r_.tau.size() && here() < next(); ++k) {
                 progress_.tick();
                 visit(k, i, motion.at(std::max(0.0, here() - fit_.intervals[i].tau), accelerate));
             }
         }
+    }
+
+    IntervalMotion motion_in(const IntervalFlows& flows, const FittedInterval& i) const {
+        return {flows.of(i), fit_.values, fit_.tau_middle, i};
     }
 
     double middle_of(std::size_t k) const { return (r_.tau[k] - fit_.tau_middle) / fit_.length; }
@@ -171,7 +177,7 @@ private:
 
     JointEquations equations_at(bool first) {
         JointEquations equations(fit_.intervals.size(), ridge_);
-        const OscillatorFlows flows(fit_.values, oscillator_moves());
+        const IntervalFlows flows(fit_.values, oscillator_moves(), fit_.epsilon);
         Eigen::RowVector2d by_start;
         UnknownRow by_unknowns;
         const auto set = [&](Unknown u, double value) {
@@ -219,38 +225,38 @@ private:
         return equations;
     }
 
-    /// x is continuous at each impact, and its pulse tells its moment.
-    void add_impacts(const OscillatorFlows& flows, JointEquations& equations) {
+    /// x is continuous at each impact, and its pulse tells its moment. At a release x' is
+    /// continuous, too, and nothing accelerates the two masses, which tells its moment.
+    void add_impacts(const IntervalFlows& flows, JointEquations& equations) {
         std::vector<MetImpact> met;
         const double noise = r_.x.empty() ? in_.statistics.x_ddot.noise : in_.statistics.x.noise;
         const double weight = 1 / (continuity_share * continuity_share * noise * noise);
-        Eigen::RowVector2d by_start;
-        UnknownRow by_unknowns;
         for (std::size_t k = 0; k < moments_.size(); ++k) {
             const FittedInterval &from = fit_.intervals[k], &to = fit_.intervals[k + 1];
-            IntervalMotion motion(flows, fit_.values, fit_.tau_middle, from);
-            const MotionRow row = motion.at(to.tau - from.tau, true);
-            if (in_.sides) met.push_back(met_impact(row, to));
-            if (moments_[k].is_gap) continue;
-            take_derivatives(row, &OscillatorMotion::x, by_start, by_unknowns);
-            forget_fixed(by_unknowns, false);
-            std::vector<JointEquations::Term> terms = {
-                {equations.start_of(k), by_start(0)},
-                {equations.start_of(k) + 1, by_start(1)},
-                {equations.start_of(k + 1), -1},
-                {equations.moment_of(k), row.value.x_dot - to.x_dot}};
-            for (std::size_t g = 0; g < sensed_unknowns; ++g) {
-                const double by = by_unknowns(static_cast<Eigen::Index>(g));
-                if (by != 0) terms.push_back({equations.unknown_at(g), by});
-            }
-            equations.add(terms, to.x - row.value.x, weight);
+            const MotionRow row = motion_in(flows, from).at(to.tau - from.tau, true);
             const ImpactMoment& m = moments_[k];
+            if (in_.sides) met.push_back(met_impact(m, row, to));
+            if (m.border == Border::gap) continue;
+            add_meeting(
+                k, row, &OscillatorMotion::x, row.value.x_dot - to.x_dot, true, to.x - row.value.x,
+                weight, equations);
+            if (m.border == Border::release) {
+                add_meeting(
+                    k, row, &OscillatorMotion::x_dot, row.value.x_ddot - acceleration_at(to), true,
+                    to.x_dot - row.value.x_dot, weight, equations);
+                const double jerk = jerk_at(from, row.value, to.tau),
+                             sigma = release_error * std::abs(jerk);
+                add_meeting(
+                    k, row, &OscillatorMotion::x_ddot, jerk, false, -row.value.x_ddot,
+                    1 / (sigma * sigma), equations);
+                continue;
+            }
             const double error = std::min(m.pulse_error, in_.statistics.step);
             if (!std::isfinite(m.pulse_error)) {
                 equations.add({{equations.moment_of(k), 1}}, 0, 1 / (error * error));
                 continue;
             }
-            terms = {{equations.moment_of(k), 1}};
+            std::vector<JointEquations::Term> terms = {{equations.moment_of(k), 1}};
             if (!fixed_[Unknown::pulse_lag])
                 terms.push_back({equations.unknown_at(Unknown::pulse_lag), 1});
             equations.add(
@@ -259,8 +265,33 @@ private:
         if (in_.sides) add_mass(met, equations);
     }
 
-    MetImpact met_impact(const MotionRow& row, const FittedInterval& to) const {
+    /// Of the end of interval k, `row`, one of x, x' and x'' has a condition, which moves so much
+    /// with the moment; `meets`: to be that of the start of the next one.
+    void add_meeting(
+        std::size_t k, const MotionRow& row, double OscillatorMotion::* member, double by_moment,
+        bool meets, double left, double weight, JointEquations& equations) const {
+        Eigen::RowVector2d by_start;
+        UnknownRow by_unknowns;
+        take_derivatives(row, member, by_start, by_unknowns);
+        forget_fixed(by_unknowns, false);
+        std::vector<JointEquations::Term> terms = {
+            {equations.start_of(k), by_start(0)},
+            {equations.start_of(k) + 1, by_start(1)},
+            {equations.moment_of(k), by_moment}};
+        if (meets)
+            terms.push_back(
+                {equations.start_of(k + 1) + (member == &OscillatorMotion::x_dot ? 1 : 0), -1});
+        for (std::size_t g = 0; g < sensed_unknowns; ++g) {
+            const double by = by_unknowns(static_cast<Eigen::Index>(g));
+            if (by != 0) terms.push_back({equations.unknown_at(g), by});
+        }
+        equations.add(terms, left, weight);
+    }
+
+    MetImpact met_impact(
+        const ImpactMoment& moment, const MotionRow& row, const FittedInterval& to) const {
         MetImpact m{
+            .flies = moment.border == Border::impact && !moment.sticks,
             .tau = to.tau,
             .x = to.x,
             .x_dot_before = row.value.x_dot,
@@ -344,12 +375,24 @@ private:
         i.tau = to;
     }
 
+    double mass_of(const FittedInterval& i) const { return i.is_stuck ? 1 + fit_.epsilon : 1; }
+
     double acceleration_at(const FittedInterval& i) const {
         const UnknownValues& v = fit_.values;
         const double angle = v[Unknown::Omega] * (i.tau - fit_.tau_middle);
-        return -v[Unknown::stiffness] * i.x - v[Unknown::damping] * i.x_dot +
-               v[Unknown::force_sin] * elementary::sin(angle) +
-               v[Unknown::force_cos] * elementary::cos(angle);
+        return (-v[Unknown::stiffness] * i.x - v[Unknown::damping] * i.x_dot +
+                v[Unknown::force_sin] * elementary::sin(angle) +
+                v[Unknown::force_cos] * elementary::cos(angle)) /
+               mass_of(i);
+    }
+    /// Of the motion in an interval at a moment.
+    double jerk_at(const FittedInterval& i, const OscillatorMotion& m, double tau) const {
+        const UnknownValues& v = fit_.values;
+        const double angle = v[Unknown::Omega] * (tau - fit_.tau_middle);
+        return (-v[Unknown::stiffness] * m.x_dot - v[Unknown::damping] * m.x_ddot +
+                v[Unknown::Omega] * (v[Unknown::force_sin] * elementary::cos(angle) -
+                                     v[Unknown::force_cos] * elementary::sin(angle))) /
+               mass_of(i);
     }
 
     /// The deviations of what is left, by which the next step weighs it.
@@ -375,7 +418,7 @@ private:
     }
 
     void meet_at_impacts() {
-        const OscillatorFlows flows(fit_.values, oscillator_moves());
+        const IntervalFlows flows(fit_.values, oscillator_moves(), fit_.epsilon);
         // What each interval says by itself, with the values of all.
         std::vector<Eigen::Matrix2d> covariance;
         std::vector<Eigen::Vector2d> own;
@@ -395,14 +438,13 @@ private:
         UnknownRow unused;
         for (std::size_t k = 0; k < moments_.size(); ++k) {
             const FittedInterval &from = fit_.intervals[k], &to = fit_.intervals[k + 1];
-            IntervalMotion motion(flows, fit_.values, fit_.tau_middle, from);
-            const MotionRow row = motion.at(to.tau - from.tau, true);
+            const MotionRow row = motion_in(flows, from).at(to.tau - from.tau, true);
             take_derivatives(row, &OscillatorMotion::x, by_x, unused);
             take_derivatives(row, &OscillatorMotion::x_dot, by_x_dot, unused);
             const Eigen::Vector2d moved(own[k](0) - from.x, own[k](1) - from.x_dot);
             fit_.impacts.push_back(
                 {.tau = to.tau,
-                 .is_gap = moments_[k].is_gap,
+                 .border = moments_[k].border,
                  .x = to.x,
                  .x_dot_before = row.value.x_dot,
                  .x_dot_after = to.x_dot,
@@ -471,7 +513,7 @@ bool explains(const JointFit& fit) {
 }
 
 std::vector<OscillatorMotion> motion_at(const JointFit& fit, const std::vector<double>& moments) {
-    const OscillatorFlows flows(fit.values, false);
+    const IntervalFlows flows(fit.values, false, fit.epsilon);
     std::vector<OscillatorMotion> motions;
     motions.reserve(moments.size());
     std::size_t i = 0;
@@ -480,10 +522,10 @@ std::vector<OscillatorMotion> motion_at(const JointFit& fit, const std::vector<d
             return i + 1 < fit.intervals.size() ? fit.intervals[i + 1].tau : infinity;
         };
         while (moments[k] >= next()) ++i;
-        IntervalMotion motion(flows, fit.values, fit.tau_middle, fit.intervals[i]);
+        const FittedInterval& interval = fit.intervals[i];
+        IntervalMotion motion(flows.of(interval), fit.values, fit.tau_middle, interval);
         for (; k < moments.size() && moments[k] < next(); ++k)
-            motions.push_back(
-                motion.at(std::max(0.0, moments[k] - fit.intervals[i].tau), true).value);
+            motions.push_back(motion.at(std::max(0.0, moments[k] - interval.tau), true).value);
     }
     return motions;
 }

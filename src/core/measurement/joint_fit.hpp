@@ -13,11 +13,18 @@
 
 namespace vines {
 
-/// An impact as the fit is given it; or a gap of the record, over which nothing is known: behind it
-/// the motion starts anew.
+/// What parts two intervals.
+enum class Border {
+    impact,
+    gap,     ///< of the record, over which nothing is known: behind it the motion starts anew
+    release  ///< the mass leaves the wall that it stuck to
+};
+
+/// An impact as the fit is given it, or what else parts two intervals.
 struct ImpactMoment {
     double tau;
-    bool is_gap;
+    Border border;
+    bool sticks;  ///< the mass stays on the wall, up to the next one, a release
     /// By its pulse, and the standard error of that; infinite where no pulse tells it.
     double pulse_tau, pulse_error;
     /// What of the acceleration its pulse spoils: so much before and after tau.
@@ -27,20 +34,22 @@ struct ImpactMoment {
 /// The motion at an impact, from both sides.
 struct FittedImpact {
     double tau;
-    bool is_gap;  ///< no impact, but a gap of the record
+    Border border;
     double x, x_dot_before, x_dot_after, x_ddot_before, x_ddot_after;
     // Of the intervals beside it, each fitted by itself:
     double x_jump, x_jump_error;  ///< by how much x jumps, and its standard error
     double x_dot_jump_error;      ///< standard error of the jump of x'
 
     double jump() const { return x_dot_after - x_dot_before; }
+    bool is_impact() const { return border == Border::impact; }
 };
 
 /// Positions in m, derivatives in tau.
 struct JointFit {
     double tau_middle = 0, length = 1;  ///< of the record
-    UnknownValues values{}, errors{};   ///< standard errors, with the misfit in them
-    FixedUnknowns fixed{};              ///< those that were not fitted
+    double epsilon = 0;
+    UnknownValues values{}, errors{};  ///< standard errors, with the misfit in them
+    FixedUnknowns fixed{};             ///< those that were not fitted
     std::vector<FittedInterval> intervals;
     std::vector<FittedImpact> impacts;  ///< one fewer
     /// What is left of each sample: of the displacement on its own scale, of the acceleration the

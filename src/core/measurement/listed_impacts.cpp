@@ -3,12 +3,11 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
+#include "core/measurement/hidden_contacts.hpp"
 #include "core/measurement/interval_motion.hpp"
 #include "core/measurement/robust.hpp"
 #include "core/motion/elementary.hpp"
-#include "core/motion/record.hpp"
 
 namespace vines {
 
@@ -21,11 +20,8 @@ constexpr double counted_in_full = 1.5, ignored = 6;
 // The motion from one impact to the next holds another one where it misses that by so much of the
 // typical jump of x', and by so many times what it misses elsewhere.
 constexpr double hidden_share = 0.05, hidden_sigmas = 10;
-// So many in a row, and no closer to the next one than that much tau.
-constexpr long most_hidden = 6;
-constexpr double closest = 0.02;
 // A gap of so many typical flights is none of them.
-constexpr double longest_flights = 20;
+constexpr double longest_flights = 40;
 
 /// What the forcing has to explain of x or x' at the end of a flight.
 struct Row {
@@ -96,108 +92,42 @@ ListedForcing take_forcing(const Parameters& p, std::vector<IdentifiedImpact>& i
 
 namespace {
 
-/// The system as the list shows it, from impact to impact.
-class ListedSystem {
-public:
-    ListedSystem(
-        const Parameters& p, const ListedForcing& forcing,
-        const std::vector<IdentifiedImpact>& impacts)
-        : p_(p),
-          values_(given_unknowns(p)),
-          phase_(elementary::atan2(forcing.cos, forcing.sin)) {
-        values_[Unknown::force_sin] = forcing.sin, values_[Unknown::force_cos] = forcing.cos;
-        flows_.emplace(values_, false);
-        p_.G = G_of(p, forcing.sin, forcing.cos);
-        std::vector<IdentifiedImpact> copy = impacts;
-        take_flights(p_, copy);
-        complete_impacts(p_, copy, 0);
-        const double plus = restitution_of(copy, 1).R, minus = restitution_of(copy, -1).R;
-        if (std::isfinite(plus)) p_.R_plus = std::clamp(plus, 0.0, 1.0);
-        if (std::isfinite(minus)) p_.R_minus = std::clamp(minus, 0.0, 1.0);
-        std::vector<double> jumps, speeds, flights;
-        for (std::size_t i = 0; i < impacts.size(); ++i) {
-            jumps.push_back(std::abs(impacts[i].x_dot_after - impacts[i].x_dot_before));
-            speeds.push_back(std::abs(impacts[i].x_dot_before));
-            if (i > 0) flights.push_back(impacts[i].tau - impacts[i - 1].tau);
-        }
-        longest_ = longest_flights * median(std::move(flights));
-        off_ = std::max(
+/// As the impacts of a list show it.
+Parameters listed_system(
+    const Parameters& parameters, const std::vector<IdentifiedImpact>& impacts) {
+    Parameters p = parameters;
+    std::vector<IdentifiedImpact> copy = impacts;
+    take_flights(p, copy);
+    complete_impacts(p, copy, 0);
+    const double plus = restitution_of(copy, 1).R, minus = restitution_of(copy, -1).R;
+    if (std::isfinite(plus)) p.R_plus = std::clamp(plus, 0.0, 1.0);
+    if (std::isfinite(minus)) p.R_minus = std::clamp(minus, 0.0, 1.0);
+    return p;
+}
+
+HidingPlaces hiding_places(
+    const ListedForcing& forcing, const std::vector<IdentifiedImpact>& impacts) {
+    std::vector<double> jumps, speeds, flights;
+    for (std::size_t i = 0; i < impacts.size(); ++i) {
+        jumps.push_back(std::abs(impacts[i].x_dot_after - impacts[i].x_dot_before));
+        speeds.push_back(std::abs(impacts[i].x_dot_before));
+        if (i > 0) flights.push_back(impacts[i].tau - impacts[i - 1].tau);
+    }
+    return {
+        .tolerance = std::max(
             hidden_share * median(std::move(jumps)),
-            hidden_sigmas * forcing.misfit * median(std::move(speeds)));
-    }
-
-    /// Whether the oscillator alone comes from one impact to the next.
-    bool leads_to(const IdentifiedImpact& from, const IdentifiedImpact& to) const {
-        const OscillatorMotion end =
-            IntervalMotion(*flows_, values_, 0, {from.tau, from.x, from.x_dot_after})
-                .at(to.tau - from.tau, false)
-                .value;
-        return std::abs(end.x - to.x) < off_ && std::abs(end.x_dot - to.x_dot_before) < off_;
-    }
-
-    /// What comes between two impacts, by a run from the first; nothing if it does not lead there.
-    /// `before`: the impact before, from which the mass comes.
-    std::vector<IdentifiedImpact> between(
-        const IdentifiedImpact& before, const IdentifiedImpact& from,
-        const IdentifiedImpact& to) const {
-        const double duration = to.tau - from.tau;
-        const double comes = flight(before, from),
-                     leaves =
-                         from.x_dot_after + p_.restitution(from.side) * (from.x_dot_before - comes);
-        if (!std::isfinite(leaves) || duration > longest_) return {};
-        const double start = std::fmod(from.tau + (phase_ - p_.phi()) / p_.Omega, p_.cycle());
-        ImpactRecord impacts;
-        Observer* const observers[] = {&impacts};
-        simulate(
-            p_, {from.x_dot_after, from.x, leaves, from.x - from.side * p_.b},
-            {.tau_end = start + duration - closest,
-             .max_impacts = most_hidden + 1,
-             .tau_start = start},
-            observers);
-        std::vector<IdentifiedImpact> found;
-        for (const Impact& i : impacts.entries)
-            found.push_back(
-                {.tau = i.tau - start + from.tau,
-                 .side = i.side,
-                 .x = i.x,
-                 .x_dot_before = i.x_dot_before,
-                 .x_dot_after = i.x_dot_after,
-                 .x_ddot_before = i.x_ddot_before});
-        if (found.empty() || found.size() > most_hidden || !leads_to(found.back(), to)) return {};
-        return found;
-    }
-
-private:
-    double flight(const IdentifiedImpact& a, const IdentifiedImpact& b) const {
-        return (b.x - b.side * p_.b - (a.x - a.side * p_.b)) / (b.tau - a.tau);
-    }
-
-    Parameters p_;
-    UnknownValues values_;
-    const double phase_;
-    std::optional<OscillatorFlows> flows_;
-    double off_, longest_;
-};
+            hidden_sigmas * forcing.misfit * median(std::move(speeds))),
+        .longest = longest_flights * median(std::move(flights))};
+}
 
 }  // namespace
 
 long restore_impacts(
     const Parameters& p, const ListedForcing& forcing, std::vector<IdentifiedImpact>& impacts) {
-    const ListedSystem system(p, forcing, impacts);
-    std::vector<IdentifiedImpact> all;
-    for (std::size_t i = 0; i < impacts.size(); ++i) {
-        // The flight to the impact before must be known.
-        const std::size_t n = all.size();
-        if (n > 1 && !system.leads_to(all[n - 1], impacts[i]) &&
-            system.leads_to(all[n - 2], all[n - 1]))
-            for (const IdentifiedImpact& hidden :
-                 system.between(all[n - 2], all[n - 1], impacts[i]))
-                all.push_back(hidden);
-        all.push_back(impacts[i]);
-    }
-    const auto restored = static_cast<long>(all.size() - impacts.size());
-    impacts = std::move(all);
-    return restored;
+    UnknownValues values = given_unknowns(p);
+    values[Unknown::force_sin] = forcing.sin, values[Unknown::force_cos] = forcing.cos;
+    const IdentifiedSystem system(listed_system(p, impacts), values, 0);
+    return put_in(hidden_contacts(system, hiding_places(forcing, impacts), impacts), impacts);
 }
 
 }  // namespace vines

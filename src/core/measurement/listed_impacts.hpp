@@ -23,9 +23,8 @@ struct ListedForcing {
 /// where it is NaN, is set to what follows from it, eq. (2). At least two impacts with x and x'.
 ListedForcing take_forcing(const Parameters& parameters, std::vector<IdentifiedImpact>& impacts);
 
-/// Puts in the impacts that a list misses: where the oscillator's motion from one impact does not
-/// lead to the next, the system is run from the one on, with R of each wall as the others have it.
-/// Where that leads to the next, what came between is put in. Returns how many.
+/// Puts in what a list misses (hidden_contacts.hpp), with R of each wall as its impacts have it.
+/// Returns how many impacts.
 long restore_impacts(
     const Parameters& parameters, const ListedForcing& forcing,
     std::vector<IdentifiedImpact>& impacts);

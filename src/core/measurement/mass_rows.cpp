@@ -50,8 +50,8 @@ std::vector<MassResidual> mass_residuals(
     const UnknownValues& v) {
     std::vector<MassResidual> residuals;
     for (std::size_t i = 1; i + 1 < impacts.size(); ++i) {
-        if (sides[i - 1] == 0 || sides[i] == 0 || sides[i + 1] == 0) continue;
         const MetImpact& m = impacts[i];
+        if (!m.flies || sides[i - 1] == 0 || sides[i + 1] == 0) continue;
         const double before = MassFlight(sides, impacts, v[Unknown::b], i - 1).y_dot(),
                      after = MassFlight(sides, impacts, v[Unknown::b], i).y_dot(),
                      jump = m.x_dot_after - m.x_dot_before, approach = m.x_dot_before - before,

@@ -9,11 +9,12 @@
 
 namespace vines {
 
-/// Of each impact of a fit, +1 or -1; 0 for a gap.
+/// Of each border of a fit, +1 or -1, that of the wall which a mass leaves, too; 0 for a gap.
 using Sides = std::vector<int>;
 
 /// An impact between two intervals of a fit: what is before it is the end of the first one.
 struct MetImpact {
+    bool flies;     ///< an impact, and the mass does not stick after it
     double tau, x;  ///< of the second interval's start
     double x_dot_before, x_dot_after, x_ddot_before, x_ddot_after;
     Eigen::RowVector2d before_by_start;  ///< x_dot_before by the first interval's start

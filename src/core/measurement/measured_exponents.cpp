@@ -24,17 +24,29 @@ constexpr double nine_in_ten = 0.9;
 // first quarter to the last.
 constexpr std::size_t fewest_of_decay = 20;
 constexpr double least_fall = 2;
+// So many of a quarter may be.
+constexpr std::size_t false_ones = 1;
 
-/// T over the flight to impact i from the one before it, which the caller knows to fit.
+/// What carries deviations between impacts.
+struct Flows {
+    Flow free, stuck;
+};
+
+/// T over the way to impact i from the one before it, which the caller knows to fit.
 void append(
-    const Parameters& p, const Flow& flow, const IdentifiedImpact& i, double duration,
-    TransferProduct& product) {
+    const Parameters& p, const Flows& flows, const IdentifiedImpact& before,
+    const IdentifiedImpact& i, TransferProduct& product) {
     Impact impact{};
     impact.R = p.restitution(i.side);
     impact.relative_speed_before = i.x_dot_before - i.y_dot_before;
     impact.x_ddot_before = i.x_ddot_before;
-    const Leg flight = leg_of(flow, duration, false);
-    product.append({&flight, 1}, saltation(p, impact), product.end_tau() + duration);
+    const double duration = i.tau - before.tau,
+                 stuck = before.release ? before.release->tau - before.tau : 0;
+    const Leg legs[] = {
+        leg_of(flows.stuck, stuck, true), leg_of(flows.free, duration - stuck, false)};
+    product.append(
+        std::span(legs).subspan(before.release ? 0 : 1), saltation(p, impact),
+        product.end_tau() + duration);
 }
 
 std::vector<SlowState> slow_states(
@@ -58,6 +70,7 @@ Continuity continuity_of(
     Continuity c;
     std::vector<double> flights, speeds;
     for (std::size_t i = 1; i < impacts.size(); ++i) {
+        if (impacts[i].is_hidden || impacts[i - 1].is_hidden) continue;
         flights.push_back(impacts[i].tau - impacts[i - 1].tau);
         speeds.push_back(std::abs(impacts[i].y_dot_before));
     }
@@ -80,9 +93,11 @@ Continuity continuity_of(
         else if (known) c.stretches.push_back({i - 1, i});
         else if (follows) ++c.missing;
     }
-    if (!impacts.empty())
-        c.share = static_cast<double>(c.left_out + c.missing) /
-                  static_cast<double>(static_cast<long>(impacts.size()) + c.missing);
+    const long seen = std::count_if(
+        impacts.begin(), impacts.end(), [](const IdentifiedImpact& i) { return !i.is_hidden; });
+    if (seen > 0)
+        c.share =
+            static_cast<double>(c.left_out + c.missing) / static_cast<double>(seen + c.missing);
     return c;
 }
 
@@ -104,11 +119,14 @@ MeasuredExponents::MeasuredExponents(
     : all_(p.epsilon, of_all_stretches(o)),
       longest_(p.epsilon, of_longest_stretch(o)) {
     // Deviations know nothing of the forcing.
-    const Flow flow(oscillator.stiffness, oscillator.damping, 0, p.Omega);
+    const double mass = 1 + p.epsilon;
+    const Flows flows{
+        {oscillator.stiffness, oscillator.damping, 0, p.Omega},
+        {oscillator.stiffness / mass, oscillator.damping / mass, 0, p.Omega}};
     const auto feed = [&](const KnownStretch& s, TransferProduct& product, const auto& fed) {
         if (product.impacts() == 0) product.start(impacts[s.first].tau);
         for (std::size_t i = s.first + 1; i <= s.last; ++i) {
-            append(p, flow, impacts[i], impacts[i].tau - impacts[i - 1].tau, product);
+            append(p, flows, impacts[i - 1], impacts[i], product);
             fed(i);
         }
     };
@@ -154,10 +172,10 @@ MeasuredSlope MeasuredExponents::slope() const {
 bool is_representative(const std::vector<IdentifiedImpact>& impacts) {
     std::vector<double> jumps[2], off;
     std::size_t known = 0;
-    for (const IdentifiedImpact& i : impacts) known += !i.is_left_out();
+    for (const IdentifiedImpact& i : impacts) known += !i.is_left_out() && !i.is_hidden;
     if (known >= enough_impacts || known < enough_if_alike) return known >= enough_impacts;
     for (std::size_t k = impacts.size() / 2; k < impacts.size(); ++k)
-        if (!impacts[k].is_left_out())
+        if (!impacts[k].is_left_out() && !impacts[k].is_hidden)
             jumps[impacts[k].side > 0].push_back(
                 std::abs(impacts[k].x_dot_after - impacts[k].x_dot_before));
     for (const auto& of_side : jumps)
@@ -168,14 +186,19 @@ bool is_representative(const std::vector<IdentifiedImpact>& impacts) {
 
 bool dies_out(const std::vector<IdentifiedImpact>& impacts) {
     if (impacts.size() < fewest_of_decay) return false;
-    // Of a chatter only the first impact tells how strong it was.
-    std::array<double, 4> largest{};
+    // Of a chatter only the first impact tells how strong it was; and one may be false.
+    std::array<std::vector<double>, 4> jumps;
     const double start = impacts.front().tau, duration = impacts.back().tau - start;
     for (const IdentifiedImpact& i : impacts) {
-        double& of_quarter =
-            largest[static_cast<std::size_t>(std::min(3.0, 4 * (i.tau - start) / duration))];
+        const double quarter = std::min(3.0, 4 * (i.tau - start) / duration);
         if (!i.is_left_out())
-            of_quarter = std::max(of_quarter, std::abs(i.x_dot_after - i.x_dot_before));
+            jumps[static_cast<std::size_t>(quarter)].push_back(
+                std::abs(i.x_dot_after - i.x_dot_before));
+    }
+    std::array<double, 4> largest{};
+    for (std::size_t q = 0; q < largest.size(); ++q) {
+        std::sort(jumps[q].rbegin(), jumps[q].rend());
+        if (!jumps[q].empty()) largest[q] = jumps[q][std::min(false_ones, jumps[q].size() - 1)];
     }
     return std::is_sorted(largest.rbegin(), largest.rend()) && largest[3] > 0 &&
            largest[3] * least_fall < largest[0];

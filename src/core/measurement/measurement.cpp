@@ -4,7 +4,6 @@
 #include <cassert>
 #include <cmath>
 
-#include "core/motion/elementary.hpp"
 #include "core/motion/record.hpp"
 #include "core/motion/special_values.hpp"
 
@@ -38,10 +37,11 @@ std::vector<KnownStretch> with_speeds(
     return known;
 }
 
-/// `stretches`: those of the fit.
+/// `stretches`: those of the fit, with what was hidden.
 std::optional<DirectEstimate> direct_estimate(
     const Measurement& m, double b, const MeasuredOscillator& oscillator,
-    const FoundImpacts& refined, const std::vector<KnownStretch>& stretches) {
+    const FoundImpacts& refined, const std::vector<HiddenContacts>& hidden,
+    const std::vector<KnownStretch>& stretches) {
     if (m.record.x.empty() || m.record.x_ddot.empty()) return std::nullopt;
     Parameters p = m.parameters;
     p.b = b;
@@ -51,6 +51,8 @@ std::optional<DirectEstimate> direct_estimate(
     Identification found = identify_impacts(
         p, direct_motion(m.record, moments, pulse), refined.side, refined.gaps, pulse);
     if (!m.R_given) take_restitution(p, found);
+    put_in(hidden, found.impacts);
+    complete_impacts(p, found.impacts, pulse);
     const MeasuredExponents faultless(
         p, oscillator, found.impacts,
         continuity_of(p, found.impacts, time_gaps(m.record)).stretches, qr_alone);
@@ -60,53 +62,26 @@ std::optional<DirectEstimate> direct_estimate(
         std::move(found), faultless.all().qr(), std::move(known), std::move(exponents)};
 }
 
-/// The identified system in the time of its own oscillator, in which simulate() has it.
-Parameters in_own_time(const Parameters& p, const MeasuredOscillator& oscillator, double faster) {
-    Parameters own = p;
-    own.Omega /= faster;
-    own.lambda *= oscillator.damping / faster / (2 * p.zeta());
-    if (!std::isfinite(own.lambda)) own.lambda = 0;
-    return own;
-}
-
-/// `p`: with R of each wall.
 std::optional<ForwardRun> forward_run(
-    const Parameters& p, const MeasuredOscillator& oscillator, const Identification& found,
-    const JointFit& fit, double tau_end, const IdentificationProgress& progress) {
+    const IdentifiedSystem& system, const Identification& found, double tau_end,
+    const IdentificationProgress& progress) {
     const auto known = std::find_if(
         found.impacts.begin(), found.impacts.end(),
         [](const IdentifiedImpact& i) { return !i.is_left_out() && !std::isnan(i.y_dot_after); });
     if (known == found.impacts.end()) return std::nullopt;
     const IdentifiedImpact& first = *known;
-    const double faster = std::sqrt(oscillator.stiffness);
-    Parameters own = in_own_time(p, oscillator, faster);
-    own.G = G_of(own, fit) / (faster * faster);
-    // simulate() measures the phase of the forcing from that of eq. (3); the record has its own.
-    const double phase = elementary::atan2(
-                     fit.values[Unknown::force_cos], fit.values[Unknown::force_sin]),
-                 start = std::fmod(
-                     faster * (first.tau - fit.tau_middle) + (phase - own.phi()) / own.Omega,
-                     own.cycle());
-    const State state{
-        first.x_dot_after / faster, first.x, first.y_dot_after / faster,
-        first.x - first.side * p.b};
     ImpactRecord impacts;
-    Lyapunov lyapunov(own, 0, infinity, qr_alone);
+    Lyapunov lyapunov(system.own(), 0, infinity, qr_alone);
     Observer* const observers[] = {&impacts, &lyapunov};
-    simulate(
-        own, state,
-        {.tau_end = start + faster * (tau_end - first.tau),
-         .max_impacts = most_forward_impacts,
-         .stop = progress.stop(),
-         .tau_start = start},
+    system.run(
+        first.tau,
+        {first.x_dot_after, first.x, first.y_dot_after, first.x - first.side * system.own().b},
+        {.tau_end = tau_end, .max_impacts = most_forward_impacts, .stop = progress.stop()},
         observers);
     progress.look();
-    for (Impact& i : impacts.entries) {
-        i.tau = (i.tau - start) / faster + first.tau;
-        i.x_dot_after *= faster;
-    }
+    for (Impact& i : impacts.entries) i = system.measured(i, first.tau);
     Exponents lambda = lyapunov.product().qr();
-    for (double& l : lambda) l *= faster;
+    for (double& l : lambda) l *= system.faster();
     return ForwardRun{first.tau, std::move(impacts.entries), lambda};
 }
 
@@ -151,6 +126,14 @@ MeasurementResult conclude(const Measurement& m, const IdentificationWatch& watc
         found = of_impacts(m.impacts);
     }
     if (!m.R_given) take_restitution(p, found);
+    std::optional<IdentifiedSystem> system;
+    std::vector<HiddenContacts> hidden;
+    if (refined) {
+        system.emplace(p, refined->fit.values, refined->fit.tau_middle);
+        hidden = hidden_contacts(*system, refined->hiding, found.impacts);
+        put_in(hidden, found.impacts);
+        complete_impacts(p, found.impacts, refined->pulse.length());
+    }
     progress.reach(IdentificationStage::exponents);
     Continuity continuity = continuity_of(p, found.impacts, time_gaps(m.record));
     MeasuredExponents exponents(p, oscillator, found.impacts, continuity.stretches, m.estimators);
@@ -161,11 +144,11 @@ MeasurementResult conclude(const Measurement& m, const IdentificationWatch& watc
     else if (p.G == 0 || dies_out(found.impacts)) judged.verdict = Verdict::none;
 
     progress.look();
-    auto direct = refined ? direct_estimate(m, p.b, oscillator, *refined, continuity.stretches)
-                          : std::nullopt;
+    auto direct = refined
+                      ? direct_estimate(m, p.b, oscillator, *refined, hidden, continuity.stretches)
+                      : std::nullopt;
     auto forward =
-        refined ? forward_run(p, oscillator, found, refined->fit, m.record.tau.back(), progress)
-                : std::nullopt;
+        system ? forward_run(*system, found, m.record.tau.back(), progress) : std::nullopt;
     return {
         .parameters = p,
         .found = std::move(found),

@@ -25,13 +25,10 @@ public:
         : p_(p),
           candidates_(candidates),
           fit_(fit),
-          typical_(typical_jump(candidates)) {
-        std::vector<double> ratios;
-        for (const Candidate& c : candidates)
-            if (c.height != 0) ratios.push_back(std::abs(c.jump / c.height));
-        if (!ratios.empty()) ratio_ = median(std::move(ratios));
+          typical_(typical_jump(candidates)),
+          ratio_(jump_to_height(candidates)) {
         for (const FittedImpact& i : fit.impacts)
-            if (!i.is_gap)
+            if (i.is_impact())
                 largest_acceleration_ = std::max(
                     {largest_acceleration_, std::abs(i.x_ddot_before), std::abs(i.x_ddot_after)});
     }
@@ -39,7 +36,7 @@ public:
     /// 0: an impact; else how little speaks for it.
     double weakness(std::size_t i) const {
         const Candidate& c = candidates_[i];
-        if (c.is_gap || !is_none(i)) return 0;
+        if (!c.is_impact() || c.is_predicted() || !is_none(i)) return 0;
         return 1 / (std::abs(c.jump) / fit_.impacts[i].x_dot_jump_error + 1e-9);
     }
 
@@ -48,7 +45,7 @@ public:
     /// flies no faster than so many times its typical speed.
     bool follow_too_soon(std::size_t i) const {
         const Candidate &a = candidates_[i], &b = candidates_[i + 1];
-        if (a.is_gap || b.is_gap) return false;
+        if (!a.is_impact() || !b.is_impact() || a.is_predicted() || b.is_predicted()) return false;
         const bool one_wall = a.jump * b.jump > 0;
         // A jump beside one that is none may come out far too large.
         const double jump = std::min(std::abs(a.jump + b.jump), typical_);
@@ -81,8 +78,7 @@ private:
     const Parameters& p_;
     const std::vector<Candidate>& candidates_;
     const JointFit& fit_;
-    const double typical_;
-    double ratio_ = 0;  // typically, of the jump of x' to the height of its event
+    const double typical_, ratio_;
     double largest_acceleration_ = 0;
 };
 

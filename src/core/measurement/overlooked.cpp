@@ -38,7 +38,7 @@ void add_kinks(
     const SearchedRecord& in, const JointFit& fit, double x_spoiled,
     IdentificationProgress& progress, std::vector<Candidate>& found) {
     const UnknownValues& v = fit.values;
-    const Flow flow(v[Unknown::stiffness], v[Unknown::damping], 1, v[Unknown::Omega]);
+    const IntervalFlows flows(v, false, fit.epsilon);
     const double noise = std::max(fit.noise_x, in.statistics.x.noise);
     for (std::size_t i = 0; i < fit.intervals.size(); ++i) {
         progress.look();
@@ -47,8 +47,8 @@ void add_kinks(
                                                         : in.record.tau.back()) -
                           x_spoiled;
         const auto missed = missed_impact(
-            {in.record.tau, fit.x_left, in.bad.x, noise, v[Unknown::x_delay], from, to}, flow,
-            false);
+            {in.record.tau, fit.x_left, in.bad.x, noise, v[Unknown::x_delay], from, to},
+            flows.of(fit.intervals[i]).parts, false);
         if (missed)
             found.push_back({.tau = missed->tau, .jump = missed->jump / v[Unknown::x_gain]});
     }

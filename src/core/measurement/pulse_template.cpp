@@ -40,7 +40,7 @@ std::vector<PulseSample> samples_of(
     std::vector<PulseSample> samples;
     double total = 0;
     for (std::size_t i = 0; i < fit.impacts.size(); ++i) {
-        if (fit.impacts[i].is_gap) continue;
+        if (!fit.impacts[i].is_impact()) continue;
         const double tau = fit.impacts[i].tau, jump = fit.impacts[i].jump();
         // Not where the impacts beside it spoil it.
         const double start = i > 0 ? fit.impacts[i - 1].tau + extent.after : -infinity,
@@ -127,6 +127,74 @@ private:
     Eigen::VectorXd value_;
 };
 
+/// Moments of an impact about a centre: what each leaves of the pulse and of x, in variances.
+class TriedMoments {
+public:
+    /// `other`: the centre of others that these are compared with, by the same samples.
+    TriedMoments(
+        const PulseTemplate& pulse, const JointFit& fit, const FittedImpact& i, double centre,
+        double other, double reach, const MeasuredRecord& r, const std::vector<char>& bad_a,
+        double step)
+        : impact_(i),
+          centre_(centre),
+          reach_(reach),
+          // x tells the moment, too: where its two intervals meet.
+          kink_rate_(i.jump() / i.x_jump_error) {
+        const double jump = i.jump(),
+                     // What single pulses are off by adds to the noise.
+            noise = elementary::hypot(fit.noise_a, jump * pulse.scatter()),
+                     around = 4 * step + 1.5 * pulse.length();
+        const std::size_t first = first_index(r, std::min(centre, other) - around);
+        const double last = std::max(centre, other) + around;
+        for (int k = -moments_tried; k <= moments_tried; ++k) {
+            const double tau = moment_of(k);
+            // x_before - x_after at that moment.
+            const double x_jump = i.x_jump / i.x_jump_error - kink_rate_ * (tau - i.tau);
+            double sum = std::isfinite(x_jump) ? x_jump * x_jump : 0;
+            for (std::size_t s = first; s < r.tau.size() && r.tau[s] < last; ++s) {
+                if (bad_a[s]) continue;
+                const double off = (fit.a_left[s] - jump * pulse.at(r.tau[s] - tau)) / noise;
+                // An odd sample counts no more than a few.
+                sum += std::min(off * off, 25.0);
+            }
+            misfits_[static_cast<std::size_t>(k + moments_tried)] = sum;
+        }
+        least_ = *std::min_element(misfits_.begin(), misfits_.end());
+    }
+
+    double least() const { return least_; }
+
+    PulseMoment moment(double step) const {
+        double weight = 0, first = 0, second = 0;
+        for (int k = -moments_tried; k <= moments_tried; ++k) {
+            const double likelihood = elementary::exp(
+                -0.5 * (misfits_[static_cast<std::size_t>(k + moments_tried)] - least_));
+            const double moved = reach_ * k / moments_tried;
+            weight += likelihood, first += likelihood * moved, second += likelihood * moved * moved;
+        }
+        const double mean = first / weight,
+                     variance = std::max(second / weight - mean * mean, 0.0) +
+                                reach_ * reach_ / (12.0 * moments_tried * moments_tried);
+        // The joint fit knows of x itself: what the pulse alone adds.
+        const double of_x = std::isfinite(kink_rate_) ? kink_rate_ * kink_rate_ : 0;
+        const double added = 1 / variance - of_x;
+        if (!std::isfinite(mean) || !(added > least_information / (step * step)))
+            return {impact_.tau, infinity};
+        const double from = centre_ - impact_.tau,
+                     x_mean = of_x > 0 ? impact_.x_jump / impact_.jump() : 0;
+        return {
+            impact_.tau + ((from + mean) / variance - x_mean * of_x) / added, 1 / std::sqrt(added)};
+    }
+
+private:
+    double moment_of(int k) const { return centre_ + reach_ * k / moments_tried; }
+
+    const FittedImpact& impact_;
+    const double centre_, reach_, kink_rate_;
+    std::array<double, 2 * moments_tried + 1> misfits_{};
+    double least_;
+};
+
 }  // namespace
 
 PulseTemplate::PulseTemplate(
@@ -173,49 +241,15 @@ double PulseTemplate::delay() const {
 }
 
 PulseMoment pulse_moment(
-    const PulseTemplate& pulse, const JointFit& fit, std::size_t impact, const MeasuredRecord& r,
-    const std::vector<char>& bad_a, double step) {
+    const PulseTemplate& pulse, const JointFit& fit, std::size_t impact, double other,
+    const MeasuredRecord& r, const std::vector<char>& bad_a, double step) {
     const FittedImpact& i = fit.impacts[impact];
-    const double jump = i.jump(), reach = reach_steps * step;
-    const PulseMoment none{i.tau, infinity};
-    if (pulse.empty()) return none;
-    // What single pulses are off by adds to the noise.
-    const double noise = elementary::hypot(fit.noise_a, jump * pulse.scatter());
-    const double around = 4 * step + 1.5 * pulse.length();
-    // x tells the moment, too: where its two intervals meet.
-    const double kink_rate = jump / i.x_jump_error;
-    std::array<double, 2 * moments_tried + 1> misfits{};
-    for (int k = -moments_tried; k <= moments_tried; ++k) {
-        const double moved = reach * k / moments_tried, tau = i.tau + moved;
-        // x_before - x_after at the moved moment.
-        const double x_jump = i.x_jump / i.x_jump_error - kink_rate * moved;
-        double sum = std::isfinite(x_jump) ? x_jump * x_jump : 0;
-        for (std::size_t s = first_index(r, i.tau - around);
-             s < r.tau.size() && r.tau[s] < i.tau + around; ++s) {
-            if (bad_a[s]) continue;
-            const double off = (fit.a_left[s] - jump * pulse.at(r.tau[s] - tau)) / noise;
-            // An odd sample counts no more than a few.
-            sum += std::min(off * off, 25.0);
-        }
-        misfits[static_cast<std::size_t>(k + moments_tried)] = sum;
-    }
-    const double least = *std::min_element(misfits.begin(), misfits.end());
-    double weight = 0, first = 0, second = 0;
-    for (int k = -moments_tried; k <= moments_tried; ++k) {
-        const double likelihood =
-            elementary::exp(-0.5 * (misfits[static_cast<std::size_t>(k + moments_tried)] - least));
-        const double moved = reach * k / moments_tried;
-        weight += likelihood, first += likelihood * moved, second += likelihood * moved * moved;
-    }
-    const double mean = first / weight,
-                 variance = std::max(second / weight - mean * mean, 0.0) +
-                            reach * reach / (12.0 * moments_tried * moments_tried);
-    // The joint fit knows of x itself: what the pulse alone adds.
-    const double of_x = std::isfinite(kink_rate) ? kink_rate * kink_rate : 0;
-    const double added = 1 / variance - of_x;
-    if (!std::isfinite(mean) || !(added > least_information / (step * step))) return none;
-    const double x_mean = of_x > 0 ? i.x_jump / jump : 0;
-    return {i.tau + (mean / variance - x_mean * of_x) / added, 1 / std::sqrt(added)};
+    if (pulse.empty()) return {i.tau, infinity};
+    const double reach = reach_steps * step;
+    const TriedMoments about_fit(pulse, fit, i, i.tau, other, reach, r, bad_a, step);
+    if (std::abs(other - i.tau) < reach) return about_fit.moment(step);
+    const TriedMoments about_other(pulse, fit, i, other, i.tau, reach, r, bad_a, step);
+    return (about_other.least() < about_fit.least() ? about_other : about_fit).moment(step);
 }
 
 }  // namespace vines

@@ -31,12 +31,13 @@ private:
 };
 
 /// Where the pulse of an impact lies: the moment that fits best, and its standard error; an
-/// infinite one if there is none to be seen.
+/// infinite one if there is none to be seen. It is looked for about the fitted moment and about
+/// another one.
 struct PulseMoment {
     double tau, error;
 };
 PulseMoment pulse_moment(
-    const PulseTemplate& pulse, const JointFit& fit, std::size_t impact,
+    const PulseTemplate& pulse, const JointFit& fit, std::size_t impact, double other,
     const MeasuredRecord& record, const std::vector<char>& bad_a, double step);
 
 }  // namespace vines

@@ -25,12 +25,23 @@ constexpr double most_spoiled = 0.35;
 // The record contradicts what is given from so many standard errors on,
 // where it matters: k is off by more than that share, c by more than that one.
 constexpr double contradiction = 5, least_of_stiffness = 3e-4, least_of_damping = 0.01;
+// Masses and springs are known to far better than that, and a damping to a factor.
+constexpr double most_of_stiffness = 0.05, most_of_damping = 2.5;
 // A jump of x' has a sign from so many standard errors on.
 constexpr double side_sigmas = 3;
 // Fewer impacts say nothing of the mass.
 constexpr std::ptrdiff_t fewest_with_mass = 8;
 // Where R and b are far from what they are given as, one run of steps may be too short.
 constexpr int most_runs_with_mass = 3;
+// So often what is hidden is looked for, and all fitted anew.
+constexpr int most_hidden_rounds = 3;
+// An impact is there if its jump of x' is what its pulse promises, to that share: one that stands
+// for others jumps by what they do together.
+constexpr double kept_promise = 0.3;
+// What leads to an impact meets the oscillator there, to that share of the typical jump.
+constexpr double hidden_tolerance = 0.05;
+// Nothing is hidden for longer than so many typical flights.
+constexpr double longest_flights = 40;
 // An impact could hide in a gap of so much tau.
 constexpr double hiding = 0.5;
 
@@ -69,8 +80,14 @@ public:
             const auto refit = [this] { fit_all(); };
             settle(refit, rounds_with_pulses);
             if (free_oscillator(r_, pulse_moments())) settle(refit, rounds_with_pulses);
+            if (return_to_given()) settle(refit, rounds_with_pulses);
             find_sides();
             if (impacts() >= fewest_with_mass) fit_with_mass();
+            for (int round = 0; round < most_hidden_rounds && put_in_hidden(); ++round) {
+                settle(refit, 1);
+                find_sides();
+                fit_with_mass();
+            }
             finish();
         }
         return std::move(found_);
@@ -90,7 +107,7 @@ private:
         }
         std::erase_if(candidates_, [this](const Candidate& c) { return is_in_gap(c.tau); });
         for (const TimeGap& g : found_.gaps)
-            candidates_.push_back({.tau = 0.5 * (g.from + g.to), .is_gap = true});
+            candidates_.push_back({.tau = 0.5 * (g.from + g.to), .border = Border::gap});
         sort_by_time(candidates_);
     }
 
@@ -101,14 +118,15 @@ private:
     }
 
     std::ptrdiff_t impacts() const {
-        return std::count_if(
-            candidates_.begin(), candidates_.end(), [](const Candidate& c) { return !c.is_gap; });
+        return std::count_if(candidates_.begin(), candidates_.end(), [](const Candidate& c) {
+            return c.is_impact();
+        });
     }
 
     /// Impacts without an event in the acceleration.
     std::ptrdiff_t unseen() const {
         return std::count_if(candidates_.begin(), candidates_.end(), [](const Candidate& c) {
-            return c.height == 0 && !c.is_gap;
+            return c.height == 0 && c.is_impact() && !c.is_predicted();
         });
     }
 
@@ -134,13 +152,15 @@ private:
         free_oscillator(by_x, event_moments());
         // Where nearly each has its pulse, nothing is to be found.
         settle(refit, 20 * unseen() > impacts() ? 2 : 1);
+        if (return_to_given()) settle(refit, 1);
     }
 
     std::vector<ImpactMoment> event_moments() const {
         const double error = event_steps * statistics_.step;
         std::vector<ImpactMoment> all;
         for (const Candidate& c : candidates_)
-            all.push_back({c.tau, c.is_gap, c.event, c.height != 0 ? error : infinity, 0, 0});
+            all.push_back(
+                {c.tau, c.border, c.sticks, c.event, c.height != 0 ? error : infinity, 0, 0});
         return all;
     }
 
@@ -148,8 +168,8 @@ private:
         std::vector<ImpactMoment> all;
         for (const Candidate& c : candidates_)
             all.push_back(
-                {c.tau, c.is_gap, c.pulse_tau, c.pulse_error, c.is_gap ? 0 : spoiled_.a.before,
-                 c.is_gap ? 0 : spoiled_.a.after});
+                {c.tau, c.border, c.sticks, c.pulse_tau, c.pulse_error,
+                 c.is_impact() ? spoiled_.a.before : 0, c.is_impact() ? spoiled_.a.after : 0});
         return all;
     }
 
@@ -190,19 +210,30 @@ private:
         spoiled_.a = pulse_extent(found_.fit, r_, statistics_.step);
         limit_extent();
         found_.pulse = PulseTemplate(found_.fit, r_, bad_.a, statistics_.step, spoiled_.a);
+        const double late = event_delay();
         for (std::size_t i = 0; i < candidates_.size(); ++i) {
             Candidate& c = candidates_[i];
-            if (c.is_gap) continue;
+            if (!c.is_impact()) continue;
+            const double other = c.height != 0 ? c.event - late : found_.fit.impacts[i].tau;
             const PulseMoment m =
-                pulse_moment(found_.pulse, found_.fit, i, r_, bad_.a, statistics_.step);
+                pulse_moment(found_.pulse, found_.fit, i, other, r_, bad_.a, statistics_.step);
             c.pulse_tau = m.tau, c.pulse_error = m.error;
         }
         values_[Unknown::pulse_lag] = 0;
     }
 
+    /// Of the events behind their impacts.
+    double event_delay() const {
+        std::vector<double> late;
+        for (const Candidate& c : candidates_)
+            if (c.height != 0) late.push_back(c.event - c.tau);
+        return late.empty() ? 0 : median(std::move(late));
+    }
+
     void find_sides() {
+        sides_.clear();
         for (std::size_t i = 0; i < candidates_.size(); ++i)
-            sides_.push_back(candidates_[i].is_gap ? 0 : side_of(i));
+            sides_.push_back(candidates_[i].border == Border::gap ? 0 : side_of(i));
     }
 
     /// Once the impacts are known the mass tells more of their moments, and its R and b.
@@ -212,6 +243,7 @@ private:
         JointFit fit = found_.fit;
         for (int run = 0; run < most_runs_with_mass && !(run > 0 && fit.converged); ++run)
             fit = fit_jointly(with_mass, pulse_moments(), fit.values, &fit, progress_);
+        mass_ = fit.values;
         found_.with_mass = fit.converged;
         if (fit.converged) found_.fit = std::move(fit);
     }
@@ -227,7 +259,9 @@ private:
     /// The oscillator is as it is given unless the record contradicts: says whether it does.
     bool free_oscillator(const MeasuredRecord& record, const std::vector<ImpactMoment>& moments) {
         const bool is_free = !fixed_[Unknown::stiffness] || !fixed_[Unknown::damping];
-        if (is_free || (o_.fixed[Unknown::stiffness] && o_.fixed[Unknown::damping])) return false;
+        if (!may_be_free_ || is_free ||
+            (o_.fixed[Unknown::stiffness] && o_.fixed[Unknown::damping]))
+            return false;
         JointFitInput free = input(record);
         free.fixed = o_.fixed;
         free.one_step = true;
@@ -242,6 +276,24 @@ private:
             return false;
         fixed_ = o_.fixed;
         values_ = trial.values;
+        return true;
+    }
+
+    /// An oscillator that is far from the given one is none: something else is wrong. Says whether
+    /// it was so.
+    bool return_to_given() {
+        const UnknownValues given = given_unknowns(p_);
+        const double k = values_[Unknown::stiffness], c = values_[Unknown::damping];
+        const bool is_plausible = std::abs(k - given[Unknown::stiffness]) < most_of_stiffness &&
+                                  c < most_of_damping * given[Unknown::damping] &&
+                                  c * most_of_damping > given[Unknown::damping];
+        const bool is_free = !fixed_[Unknown::stiffness] || !fixed_[Unknown::damping];
+        if (!is_free || is_plausible) return false;
+        may_be_free_ = false;
+        fixed_[Unknown::stiffness] = fixed_[Unknown::damping] = true;
+        values_[Unknown::stiffness] = given[Unknown::stiffness];
+        values_[Unknown::damping] = given[Unknown::damping];
+        changed_ = true;
         return true;
     }
 
@@ -275,9 +327,122 @@ private:
         return any;
     }
 
+    /// What no pulse shows, but the mass must do: impacts that are too weak, and the time for which
+    /// it sticks. What the fit put there in their place is dropped. Says whether that changes
+    /// anything.
+    bool put_in_hidden() {
+        // Given impacts are all that there are.
+        if (!(mass_[Unknown::b] > 0) || !o_.moments.empty()) return false;
+        std::vector<Candidate> shown;
+        std::vector<IdentifiedImpact> impacts;
+        std::vector<char> doubtful;
+        const double ratio = jump_to_height(candidates_);
+        std::vector<double> errors;
+        for (std::size_t i = 0; i < candidates_.size(); ++i) {
+            if (candidates_[i].is_predicted()) continue;
+            shown.push_back(candidates_[i]);
+            shown.back().sticks = false;
+            const FittedImpact& m = found_.fit.impacts[i];
+            if (!candidates_[i].is_impact()) continue;
+            impacts.push_back(
+                {.tau = m.tau,
+                 .side = sides_[i],
+                 .x = m.x,
+                 .x_dot_before = m.x_dot_before,
+                 .x_dot_after = m.x_dot_after,
+                 .x_ddot_before = m.x_ddot_before});
+            const double promised = ratio * std::abs(candidates_[i].height);
+            doubtful.push_back(
+                !(std::abs(std::abs(m.jump()) - promised) <
+                  kept_promise * promised + 2 * m.x_dot_jump_error));
+            errors.push_back(m.x_dot_jump_error);
+        }
+        const double error = median(errors), typical = typical_jump(candidates_);
+        const IdentifiedSystem system(
+            identified_parameters(), found_.fit.values, found_.fit.tau_middle);
+        found_.hiding = {
+            .tolerance = hidden_tolerance * typical,
+            .longest = longest_flights * (r_.tau.back() - r_.tau.front()) /
+                       static_cast<double>(impacts.size()),
+            .gaps = found_.gaps};
+        const std::vector<HiddenContacts> hidden =
+            hidden_contacts(system, found_.hiding, impacts, doubtful);
+        std::vector<Candidate> all = shown_candidates(shown, hidden);
+        for (const HiddenContacts& h : hidden) add_hidden(h, error, all);
+        sort_by_time(all);
+        for (std::size_t i = 1; i < all.size(); ++i)
+            if (all[i].border == Border::release) all[i - 1].sticks = true;
+        changed_ = is_other(all);
+        if (changed_) candidates_ = std::move(all);
+        return changed_;
+    }
+
+    Parameters identified_parameters() const {
+        const UnknownValues& v = mass_;
+        Parameters p = p_;
+        p.Omega = v[Unknown::Omega];
+        p.b = v[Unknown::b];
+        p.R_plus = std::clamp(v[Unknown::R_plus], 0.0, 1.0);
+        p.R_minus = std::clamp(v[Unknown::R_minus], 0.0, 1.0);
+        return p;
+    }
+
+    /// Without those that the run has not where they are shown.
+    static std::vector<Candidate> shown_candidates(
+        const std::vector<Candidate>& shown, const std::vector<HiddenContacts>& hidden) {
+        std::vector<Candidate> kept;
+        auto next = hidden.begin();
+        std::size_t impact = 0;
+        for (const Candidate& c : shown) {
+            if (!c.is_impact()) {
+                kept.push_back(c);
+                continue;
+            }
+            while (next != hidden.end() && next->to <= impact) ++next;
+            const bool is_between = next != hidden.end() && impact > next->from;
+            if (!is_between || std::any_of(
+                                   next->impacts.begin(), next->impacts.end(),
+                                   [&](const RunImpact& r) { return r.shown == impact; }))
+                kept.push_back(c);
+            ++impact;
+        }
+        return kept;
+    }
+
+    /// Those that are worth an interval of their own. Of the end of a chatter the centre of mass
+    /// knows nothing: it moves as if both stuck together.
+    void add_hidden(const HiddenContacts& h, double error, std::vector<Candidate>& all) const {
+        const auto release = [&](const std::optional<Release>& r, int side) {
+            if (r)
+                all.push_back({.tau = r->tau, .border = Border::release, .predicted_side = side});
+        };
+        release(h.release, h.impacts.empty() ? 1 : h.impacts.front().impact.side);
+        double before = -infinity;
+        for (const RunImpact& r : h.impacts) {
+            const Impact& i = r.impact;
+            const double jump = i.x_dot_after - i.x_dot_before;
+            if (!r.shown && std::abs(jump) > error && i.tau - before > 3 * statistics_.step)
+                all.push_back({.tau = i.tau, .jump = jump, .predicted_side = i.side});
+            before = i.tau;
+            release(r.release, i.side);
+        }
+    }
+
+    bool is_other(const std::vector<Candidate>& all) const {
+        return all.size() != candidates_.size() ||
+               !std::equal(
+                   all.begin(), all.end(), candidates_.begin(),
+                   [this](const Candidate& a, const Candidate& b) {
+                       return a.border == b.border && a.sticks == b.sticks &&
+                              a.predicted_side == b.predicted_side &&
+                              std::abs(a.tau - b.tau) < statistics_.step;
+                   });
+    }
+
     /// The wall pushes x back; its pulse says so where the jump of x' does not.
     int side_of(std::size_t impact) const {
         const Candidate& c = candidates_[impact];
+        if (c.is_predicted()) return c.predicted_side;
         const double error = found_.fit.impacts[impact].x_dot_jump_error;
         const bool by_pulse = c.height != 0 && !(std::abs(c.jump) > side_sigmas * error);
         return (by_pulse ? c.height : c.jump) > 0 ? -1 : 1;
@@ -293,9 +458,13 @@ private:
         std::sort(found_.dropped.begin(), found_.dropped.end());
         // Of given moments no pulses are looked for.
         found_.unseen = o_.moments.empty() ? unseen() : 0;
-        found_.side = std::move(sides_);
-        std::erase(found_.side, 0);
-        std::erase_if(found_.fit.impacts, [](const FittedImpact& i) { return i.is_gap; });
+        std::vector<FittedImpact> impacts;
+        for (std::size_t i = 0; i < candidates_.size(); ++i) {
+            if (!candidates_[i].is_impact() || candidates_[i].is_predicted()) continue;
+            impacts.push_back(found_.fit.impacts[i]);
+            found_.side.push_back(sides_[i]);
+        }
+        found_.fit.impacts = std::move(impacts);
         found_.extent = spoiled_.a;
     }
 
@@ -308,6 +477,7 @@ private:
     const SearchedRecord in_;
     FixedUnknowns fixed_;
     UnknownValues values_;
+    UnknownValues mass_{};  // b and R by the last fit with the mass, converged or not
     Sides sides_;
     SpoiledExtents spoiled_;
     std::vector<Candidate> candidates_;
@@ -317,7 +487,8 @@ private:
     };
     std::vector<Rejected> rejected_;
     int rounds_ = 0;
-    bool changed_ = true;  // the candidates, since the last fit
+    bool may_be_free_ = true;  // the oscillator
+    bool changed_ = true;      // the candidates, since the last fit
     FoundImpacts found_;
 };
 

@@ -2,6 +2,7 @@
 // overlooked and those that are none, until nothing changes.
 #pragma once
 
+#include "core/measurement/hidden_contacts.hpp"
 #include "core/measurement/joint_fit.hpp"
 #include "core/measurement/pulse_template.hpp"
 
@@ -16,7 +17,8 @@ struct FoundImpacts {
     PulseExtent extent{0, 0};
     long unseen = 0;              ///< impacts whose pulse is not seen
     std::vector<double> dropped;  ///< moments of pulses, or given ones, at which x' does not jump
-    bool settled = false;         ///< the last round neither dropped nor added one
+    HidingPlaces hiding = {0, 0};
+    bool settled = false;  ///< the last round neither dropped nor added one
 };
 
 struct SearchOptions {

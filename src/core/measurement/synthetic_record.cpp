@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <stdexcept>
 
 #include "core/motion/elementary.hpp"
 #include "core/motion/random.hpp"
@@ -17,29 +16,50 @@ namespace {
 /// About as large as a pulse: m and m/s^2.
 constexpr double outlier_x = 5e-4, outlier_a = 10;
 
-/// The start at rest as the impact that the first flight begins with.
-Impact at_rest(const Parameters& p) {
-    Impact rest{};
-    rest.sin_theta = elementary::sin(p.phi()), rest.cos_theta = elementary::cos(p.phi());
-    return rest;
-}
-
-/// The oscillator at any moment from the first impact on, from the impact before it.
+/// The oscillator at any moment from the first stretch on.
 class TrueOscillator {
 public:
-    explicit TrueOscillator(const TrueMotion& m) : motion_(m), flow_(Flow::free(m.parameters)) {}
-    Oscillation at(double tau) const {
-        const auto after = std::upper_bound(
-            motion_.impacts.begin() + 1, motion_.impacts.end(), tau,
-            [](double t, const Impact& i) { return t < i.tau; });
-        const Impact& i = *(after - 1);
-        return flow_.after({i.x, i.x_dot_after, i.sin_theta, i.cos_theta}, tau - i.tau);
+    explicit TrueOscillator(const TrueMotion& m)
+        : motion_(m),
+          free_(Flow::free(m.parameters)),
+          stuck_(Flow::stuck(m.parameters)) {}
+    double x(double tau) const {
+        const TrueStretch& s = stretch(tau);
+        return flow(s).after(s.start, tau - s.tau).x;
     }
-    double acceleration(double tau) const { return flow_.acceleration(at(tau)); }
+    double acceleration(double tau) const {
+        const TrueStretch& s = stretch(tau);
+        return flow(s).acceleration(flow(s).after(s.start, tau - s.tau));
+    }
+    double begin() const { return motion_.stretches.front().tau; }
 
 private:
+    const TrueStretch& stretch(double tau) const {
+        const auto after = std::upper_bound(
+            motion_.stretches.begin() + 1, motion_.stretches.end(), tau,
+            [](double t, const TrueStretch& s) { return t < s.tau; });
+        return *(after - 1);
+    }
+    const Flow& flow(const TrueStretch& s) const { return s.is_stuck ? stuck_ : free_; }
+
     const TrueMotion& motion_;
-    const Flow flow_;
+    const Flow free_, stuck_;
+};
+
+/// Of a long flight only its first stretch.
+class TrueStretches : public Observer {
+public:
+    void on_impact(const Impact&) override { begins_ = true; }
+    void on_release(double) override { begins_ = true; }
+    void on_stretch(const Stretch& s) override {
+        const bool is_stuck = s.stuck_side != 0;
+        if (begins_ || all.back().is_stuck != is_stuck) all.push_back({s.tau, s.start, is_stuck});
+        begins_ = false;
+    }
+    std::vector<TrueStretch> all;
+
+private:
+    bool begins_ = true;
 };
 
 /// The motion at the samples, the displacement late, without the pulses.
@@ -51,7 +71,7 @@ MeasuredRecord sampled(const TrueMotion& motion, const Sensors& s) {
     for (std::size_t k = 0; k < samples; ++k) {
         const double tau = motion.begin + static_cast<double>(k) * step;
         r.tau.push_back(tau);
-        r.x.push_back(oscillator.at(std::max(tau - delay, motion.impacts.front().tau)).x);
+        r.x.push_back(oscillator.x(std::max(tau - delay, oscillator.begin())));
         r.x_ddot.push_back(oscillator.acceleration(tau));
     }
     return r;
@@ -111,9 +131,8 @@ void add_pulses(
         for (; k < r.tau.size() && r.tau[k] < tau + shape.end() * motion.omega0; ++k)
             r.x_ddot[k] += jump / motion.omega0 * shape.at((r.tau[k] - tau) / motion.omega0);
     };
-    for (std::size_t i = 1; i < motion.impacts.size(); ++i) {
+    for (const Impact& impact : motion.impacts) {
         if (s.missed_pulses > 0 && uniform(engine, 0, 1) < s.missed_pulses) continue;
-        const Impact& impact = motion.impacts[i];
         const double jump = impact.x_dot_after - impact.x_dot_before;
         const bool twice = s.double_hits > 0 && uniform(engine, 0, 1) < s.double_hits;
         add(impact.tau, twice ? (1 - s.second_hit) * jump : jump);
@@ -209,22 +228,29 @@ TrueMotion true_motion(
     const Parameters& p, double omega0, double settling, double seconds,
     const ExponentOptions& estimators) {
     const double begin = settling * omega0, end = begin + seconds * omega0;
-    ImpactRecord record;
+    ImpactRecord impacts;
     StickRecord sticks;
+    TrueStretches stretches;
     Lyapunov lyapunov(p, begin, end, estimators);
-    Observer* const observers[] = {&lyapunov, &record, &sticks};
+    Observer* const observers[] = {&lyapunov, &impacts, &sticks, &stretches};
     constexpr long all = std::numeric_limits<long>::max();
     simulate(p, default_state(p), {.tau_end = end, .max_impacts = all}, observers);
 
-    std::vector<Impact> impacts = std::move(record.entries);
-    impacts.insert(impacts.begin(), at_rest(p));
+    std::erase_if(impacts.entries, [&](const Impact& i) { return i.tau <= begin; });
+    std::erase_if(sticks.entries, [&](const StuckPhase& s) { return s.tau_end <= begin; });
     const auto first = std::find_if(
-        impacts.begin() + 1, impacts.end(), [&](const Impact& i) { return i.tau > begin; });
-    impacts.erase(impacts.begin(), first - 1);
-    // Stuck, the oscillator moves by another law than between two impacts.
-    if (!sticks.entries.empty() && sticks.entries.back().tau_end > impacts.front().tau)
-        throw std::domain_error("the mass sticks to a wall within the record");
-    return {p, omega0, begin, seconds, std::move(impacts), lyapunov.take()};
+        stretches.all.begin() + 1, stretches.all.end(),
+        [&](const TrueStretch& s) { return s.tau > begin; });
+    stretches.all.erase(stretches.all.begin(), first - 1);
+    return {
+        p,
+        omega0,
+        begin,
+        seconds,
+        std::move(impacts.entries),
+        std::move(sticks.entries),
+        std::move(stretches.all),
+        lyapunov.take()};
 }
 
 MeasuredRecord synthetic_record(const TrueMotion& motion, const Sensors& s) {

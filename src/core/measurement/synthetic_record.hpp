@@ -9,20 +9,27 @@
 
 namespace vines {
 
+/// The oscillator from `tau` on, until the next one begins.
+struct TrueStretch {
+    double tau;
+    Oscillation start;
+    bool is_stuck;  ///< with the mass on a wall: it moves by another law
+};
+
 /// The motion of an oscillator with its absorber over the time of a record.
 struct TrueMotion {
     Parameters parameters;
-    double omega0;   ///< rad/s: the sensors' time is in s
-    double begin;    ///< tau at the record's first sample; 0 is where all was at rest
-    double seconds;  ///< that the record lasts
-    /// From the last one before `begin`, or the start at rest in its place.
-    std::vector<Impact> impacts;
+    double omega0;                ///< rad/s: the sensors' time is in s
+    double begin;                 ///< tau at the record's first sample; 0 is where all was at rest
+    double seconds;               ///< that the record lasts
+    std::vector<Impact> impacts;  ///< within the record
+    std::vector<StuckPhase> sticks;      ///< that end within it
+    std::vector<TrueStretch> stretches;  ///< from the last one on that begins before `begin`
     /// Of the impacts within the record: what a perfect identification would give.
     TransferProduct exponents;
 };
 
-/// From Table 1's start (default_state), measured from `settling` s on for so many seconds. Throws
-/// std::domain_error where the mass sticks to a wall within the record.
+/// From Table 1's start (default_state), measured from `settling` s on for so many seconds.
 TrueMotion true_motion(
     const Parameters& parameters, double omega0, double settling, double seconds,
     const ExponentOptions& estimators = qr_alone);

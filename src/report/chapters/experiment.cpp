@@ -178,7 +178,7 @@ double impacts_per_cycle(const Experiment& e) {
 }
 
 std::string found_of(const Experiment& e) {
-    return fmt::format("{} of {}", e.result.found.impacts.size(), e.truth.impacts.size() - 1);
+    return fmt::format("{} of {}", e.result.found.impacts.size(), e.truth.impacts.size());
 }
 
 /// What follows from the choice of G, and so is no finding.

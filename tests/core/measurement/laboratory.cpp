@@ -18,19 +18,25 @@ void rescale_time(Experiment& e, double faster) {
     for (double& tau : e.record.tau) tau *= faster;
     for (double& a : e.record.x_ddot) a /= faster * faster;
     for (Impact& i : e.impacts) i.tau *= faster;
+    for (StuckPhase& s : e.sticks) s.start.tau *= faster, s.tau_end *= faster;
 }
 
 }  // namespace
 
-TrueMotion settled_motion(double b, double R_plus, double R_minus, double seconds) {
+TrueMotion motion_after(double settling, double b, double R_plus, double R_minus, double seconds) {
     const SiParameters table_4{4.168, 3.02, 11.47e3, 0.032, 0, 0};
     Parameters p;
     p.epsilon = table_4.epsilon(), p.lambda = table_4.lambda(), p.G = 0.01, p.b = b,
     p.R_plus = R_plus, p.R_minus = R_minus;
+    return true_motion(p, table_4.omega0(), settling, seconds);
+}
+
+TrueMotion settled_motion(double b, double R_plus, double R_minus, double seconds) {
     // A chaotic motion sticks now and then: the first stretch that does not.
-    for (double settling = 20; settling < 200; settling += 10) try {
-            return vines::true_motion(p, table_4.omega0(), settling, seconds);
-        } catch (const std::domain_error&) {}
+    for (double settling = 20; settling < 200; settling += 10) {
+        TrueMotion motion = motion_after(settling, b, R_plus, R_minus, seconds);
+        if (motion.sticks.empty()) return motion;
+    }
     throw std::runtime_error("the motion sticks all the time");
 }
 
@@ -39,7 +45,8 @@ Experiment measured(const TrueMotion& motion, const Sensors& sensors, const Misi
         motion.parameters,
         motion.omega0,
         synthetic_record(motion, sensors),
-        {motion.impacts.begin() + 1, motion.impacts.end()},
+        motion.impacts,
+        motion.sticks,
         motion.exponents.qr()[0],
         motion.parameters,
         long_run_verdict(motion.parameters)};

@@ -20,12 +20,15 @@ struct Experiment {
     double omega0;
     MeasuredRecord record;
     std::vector<Impact> impacts;  ///< the true ones
-    double lambda1;               ///< of them: what a perfect identification would give
-    Parameters true_parameters;   ///< in the truth's tau
-    Verdict verdict;              ///< on the motion in the long run: chaotic or regular
+    std::vector<StuckPhase> sticks;
+    double lambda1;              ///< of them: what a perfect identification would give
+    Parameters true_parameters;  ///< in the truth's tau
+    Verdict verdict;             ///< on the motion in the long run: chaotic or regular
 };
 
-/// The motion of Table 4's oscillator with its absorber once it has settled, from 20 s on or later,
+/// The motion of Table 4's oscillator with its absorber from so many seconds on.
+TrueMotion motion_after(double settling, double b, double R_plus, double R_minus, double seconds);
+/// The same once it has settled, from 20 s on or later,
 /// where it does not stick.
 TrueMotion settled_motion(double b, double R_plus, double R_minus, double seconds);
 Experiment measured(

@@ -203,7 +203,7 @@ TEST_CASE(
         CHECK(lambda[0] == doctest::Approx(-0.0076).epsilon(0.02));
 }
 
-TEST_CASE("from rest, a record begins where all was at rest; a motion that sticks is refused") {
+TEST_CASE("from rest, a record begins where all was at rest") {
     Parameters p;
     p.b = 0.009, p.R_plus = p.R_minus = 0.85;
     const MeasuredRecord r =
@@ -212,8 +212,6 @@ TEST_CASE("from rest, a record begins where all was at rest; a motion that stick
     CHECK(r.x.front() == 0);
     CHECK(
         r.x_ddot.front() == doctest::Approx(p.epsilon * p.A() * std::sin(p.phi())).epsilon(1e-12));
-    p.R_plus = 0;
-    CHECK_THROWS_AS(true_motion(p, 50, 0, 4), std::domain_error);
 }
 
 namespace {
