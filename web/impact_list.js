@@ -4,7 +4,8 @@ import {element} from "./dom.js";
 const most = 2000; // rows that a browser scrolls without effort
 
 const walls = {1: "+b", "-1": "−b"};
-export const isLeftOut = (status) => status !== "ok" && status !== "R is not known";
+const taken = ["ok", "R is not known", "hidden"];
+export const isLeftOut = (status) => !taken.includes(status);
 
 /** What is typed in, in s; NaN for what is no number. */
 const moment = (text) => (text.trim() ? Number(text.trim().replace(",", ".")) : NaN);

@@ -35,11 +35,19 @@ function exponentCards({parameters, exponents, slope, verdict, verdict_reason: r
   ];
 }
 
-function impactsCard({status, tau}) {
+function impactsCard({impacts: {status, tau}, sticking}) {
+  const of = (text) => status.filter((v) => v === text).length;
   const left = status.filter(isLeftOut).length;
-  const unknown = status.filter((text) => text === "R is not known").length;
-  const ends = unknown ? `; R of ${unknown} not known, at the ends` : "";
-  return ["impacts", String(tau.length), `${left} left out${ends}`];
+  const unknown = of("R is not known");
+  const hidden = of("hidden");
+  const stuck = sticking.side.length;
+  const notes = [
+    `${left} left out`,
+    hidden && `${hidden} hidden`,
+    stuck && count(stuck, "stuck phase"),
+    unknown && `R of ${unknown} not known, at the ends`,
+  ];
+  return ["impacts", String(tau.length), notes.filter(Boolean).join("; ")];
 }
 
 /** The half clearance that the impacts fit, beside the given one, in mm. */
@@ -72,10 +80,10 @@ function signalCards(signal, milliseconds) {
 }
 
 export function summariseMeasurement(answer, milliseconds) {
-  const {parameters, impacts, restitution, b_fitted: fitted, signal, warnings} = answer;
+  const {parameters, restitution, b_fitted: fitted, signal, warnings} = answer;
   cards($("measure-summary"), [
     ...exponentCards(answer),
-    impactsCard(impacts),
+    impactsCard(answer),
     wall("+b", restitution.plus),
     wall("−b", restitution.minus),
     clearanceCard(fitted, parameters),

@@ -55,13 +55,27 @@ export function mark(record, rows, answer) {
   if (record.a) {
     const step = (record.t.at(-1) - record.t[0]) / (record.t.length - 1);
     const reach = (answer ? answer.signal.pulse_s / 2 : step) + step;
-    plots.a.mark(marks(rows, (row) => record.a[spikeNear(record, row.t, reach)], "cross", 4));
+    plots.a.mark(
+      marks(rows, (row) => record.a[spikeNear(record, row.t, reach)], "cross", 4),
+      stuck(answer),
+    );
   }
   if (record.x)
-    plots.x.mark([
-      ...(answer ? forwardMarks(answer) : []),
-      ...marks(rows, (row) => valueAt(record, record.x, row.t), "ring", 3.5),
-    ]);
+    plots.x.mark(
+      [
+        ...(answer ? forwardMarks(answer) : []),
+        ...marks(rows, (row) => valueAt(record, record.x, row.t), "ring", 3.5),
+      ],
+      stuck(answer),
+    );
+}
+
+/** The intervals in s in which the mass sticks to a wall. */
+function stuck(answer) {
+  if (!answer) return [];
+  const {tau_start: from, tau_end: to} = answer.sticking;
+  const {omega0} = answer.parameters.derived;
+  return from.map((tau, i) => [tau / omega0, to[i] / omega0]);
 }
 
 /** Where the identified system, run from the first known state, meets its walls. */

@@ -192,10 +192,10 @@ export class LinePlot {
     });
   }
 
-  /** Other marks, and the zoom stays. */
-  mark(marks) {
+  /** Other marks and bands, and the zoom stays. */
+  mark(marks, bands = []) {
     if (!this.last) return;
-    this.last.marks = marks;
+    Object.assign(this.last, {marks, bands});
     this.plot?.redraw(false);
   }
 

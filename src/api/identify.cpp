@@ -27,7 +27,9 @@ Json describe_restitution(const Restitution& r) {
         {"impacts", r.impacts}};
 }
 
-Json describe_identified(const std::vector<IdentifiedImpact>& impacts) {
+/// Without the last ones of a chatter that comes to rest.
+Json describe_identified(std::vector<IdentifiedImpact> impacts) {
+    std::erase_if(impacts, [](const IdentifiedImpact& i) { return i.comes_to_rest; });
     auto number = [&](double IdentifiedImpact::* member) {
         return column(impacts, [member](const IdentifiedImpact& i) { return i.*member; });
     };
@@ -44,6 +46,7 @@ Json describe_identified(const std::vector<IdentifiedImpact>& impacts) {
         {"momentum_error", number(&IdentifiedImpact::momentum_error)},
         {"status", column(impacts, [](const auto& i) {
              if (i.is_left_out()) return text_of(i.fault);
+             if (i.is_hidden) return "hidden";
              return std::isnan(i.R) ? "R is not known" : "ok";
          })}};
 }
@@ -229,17 +232,27 @@ void add_fit_warnings(
     if (!advice.empty()) warnings.push_back(advice);
 }
 
-/// What is missing between the impacts.
+/// What is missing between the impacts, or was.
 void add_continuity_warnings(const MeasurementResult& result, Warnings& warnings) {
     const Continuity& c = result.continuity;
+    const auto hidden = std::count_if(
+        result.found.impacts.begin(), result.found.impacts.end(),
+        [](const IdentifiedImpact& i) { return i.is_hidden && !i.comes_to_rest; });
+    const auto sticks = stuck_phases(result.found.impacts).size();
+    if (hidden > 0 || sticks > 0)
+        warnings.push_back(fmt::format(
+            "{} impact(s) and {} stuck phase(s) that {} are put in: a run of the identified system "
+            "leads over them from one impact to the next",
+            hidden, sticks, result.refined ? "no pulse shows" : "the list misses"));
     if (c.left_out > 0)
         warnings.push_back(fmt::format(
             "{} of {} impacts are inconsistent and left out; impacts.status says why", c.left_out,
             result.found.impacts.size()));
     if (c.missing > 0)
         warnings.push_back(fmt::format(
-            "between {} pair(s) of impacts the mass did not fly freely: an impact is missing, both "
-            "stuck together, or the record has a gap",
+            "between {} pair(s) of impacts the mass did not fly freely, nor does a run of the "
+            "identified system lead from one to the other: an impact is missing or false, or the "
+            "record has a gap",
             c.missing));
     if (c.stretches.size() > 1)
         warnings.push_back(fmt::format(
@@ -346,6 +359,7 @@ Json identify_answer(const IdentifyRequest& r, const IdentificationWatch& watch)
             describe_fitted(result.refined->fit, result.parameters, r.system.si->omega0());
     }
     answer["impacts"] = describe_identified(found.impacts);
+    answer["sticking"] = describe_sticks(stuck_phases(found.impacts));
     answer["restitution"] = describe_walls(found);
     answer["b_fitted"] = {
         {"b", finite_or_null(found.b_fitted)}, {"standard_error", finite_or_null(found.b_error)}};
@@ -363,7 +377,7 @@ Json identify_answer(const IdentifyRequest& r, const IdentificationWatch& watch)
         answer["forward"] = describe_forward(result.forward);
     }
     if (r.system.si)
-        for (const char* part : {"impacts", "exponents", "motion", "direct", "forward"})
+        for (const char* part : {"impacts", "sticking", "exponents", "motion", "direct", "forward"})
             if (answer.contains(part)) add_si(answer[part], *r.system.si);
     answer["warnings"] = warnings;
     return answer;

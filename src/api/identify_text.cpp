@@ -43,8 +43,10 @@ const char* text_of(Doubt doubt) {
             return "many pulses are not where impacts are found, and as many impacts have none: "
                    "does "
                    "the mass stick to a wall in each cycle?";
-        case Doubt::R_scattered:
-            return "R differs from impact to impact: does the mass stick to a wall, or is b wrong?";
+        case Doubt::impacts_differ:
+            return "R or the balance of momentum differs from impact to impact: does the mass "
+                   "stick "
+                   "to a wall in each cycle, or is m2 or b wrong?";
         case Doubt::b_disagrees: return "the impacts' momentum does not fit the given b";
         case Doubt::no_forcing:
             return "no forcing at this frequency leads from each impact of the list to the next";

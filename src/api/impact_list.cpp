@@ -159,11 +159,7 @@ void take_motion(IdentifyRequest& r) {
         r.measurement.doubts.push_back(Doubt::no_forcing);
         return;
     }
-    const long restored = restore_impacts(p, forcing, impacts);
-    if (restored > 0)
-        r.notes.push_back(fmt::format(
-            "{} impact(s) that the list misses are put in: the oscillator's motion shows them",
-            restored));
+    restore_impacts(p, forcing, impacts);
 }
 
 }  // namespace

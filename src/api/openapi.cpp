@@ -132,6 +132,7 @@ Json identify_operation() {
                          {"restitution", "of each wall"},
                          {"b_fitted", "that fits the momentum"},
                          {"exponents", "of the sequence"},
+                         {"sticking", "columns, an entry for each stuck phase"},
                          {"slope", "with its 90 % interval"},
                          {"verdict", "chaotic, regular, not_decided or null"},
                          {"verdict_reason", "a sentence"},

@@ -196,6 +196,37 @@ TEST_CASE("what is of a record cannot be included where impacts come without one
           })) == std::set<std::string>{"/include"});
 }
 
+TEST_CASE("a list without the chatter that came to rest says what was hidden, and where it stuck") {
+    const Json run =
+        simulated(read_simulate_request({{"preset", "fig20"}, {"b", 0.015}, {"R", 0.5}}), {});
+    const Json& all = run["impacts"];
+    Json strong = Json::object();
+    for (const char* name : {"tau", "x", "x_dot_before", "x_dot_after"})
+        for (std::size_t i = 0; i < all["tau"].size(); ++i)
+            if (std::abs(
+                    all["x_dot_after"][i].get<double>() - all["x_dot_before"][i].get<double>()) >
+                2e-5)
+                strong[name].push_back(all[name][i]);
+    const Json a =
+        identified(read_identify_request({{"preset", "fig20"}, {"b", 0.015}, {"impacts", strong}}));
+    const Json& sticking = a["sticking"];
+    REQUIRE(sticking["tau_start"].size() > 0);
+    for (std::size_t i = 0; i < sticking["tau_start"].size(); ++i) {
+        CHECK(sticking["tau_end"][i] > sticking["tau_start"][i]);
+        CHECK(sticking["impacts"][i] > 1);
+        double nearest = 1;
+        for (const Json& tau : run["sticking"]["tau_end"])
+            nearest = std::min(
+                nearest, std::abs(tau.get<double>() - sticking["tau_end"][i].get<double>()));
+        CHECK(nearest < 1e-6);
+    }
+    const Json& status = a["impacts"]["status"];
+    CHECK(std::count(status.begin(), status.end(), "hidden") > 0);
+    CHECK(a["impacts"]["tau"].size() < all["tau"].size());
+    CHECK(a["warnings"].dump().find("that the list misses are put in") != std::string::npos);
+    CHECK(a["verdict"] == "chaotic");
+}
+
 TEST_CASE("an edited list of moments is taken as it is") {
     const std::string csv = measured("fig15", 6);
     const Json a = identified(read_identify_request({{"preset", "fig15"}}, csv));

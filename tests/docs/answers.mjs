@@ -163,6 +163,7 @@ function noteIdentification(keys, answer) {
     "signal",
     "fitted",
     "impacts",
+    "sticking",
     "restitution",
     "b_fitted",
     "exponents",

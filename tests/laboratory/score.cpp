@@ -72,8 +72,8 @@ Score score_of(const Experiment& e, const MeasurementResult& result) {
     std::vector<char> taken(e.impacts.size(), 0);
     std::vector<double> off;
     for (const IdentifiedImpact& i : result.found.impacts) {
-        // Of a chatter that comes to rest the weak ones follow each other too soon to be compared.
-        if (i.is_left_out() || i.is_hidden) continue;
+        // Of a chatter that comes to rest the last ones follow each other too soon to be compared.
+        if (i.is_left_out() || i.comes_to_rest) continue;
         const auto nearest = std::min_element(
             e.impacts.begin(), e.impacts.end(), [&](const Impact& a, const Impact& b) {
                 return std::abs(a.tau - i.tau) < std::abs(b.tau - i.tau);

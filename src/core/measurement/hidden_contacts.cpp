@@ -19,8 +19,8 @@ constexpr double beside = 0.5;
 // A run goes on over impacts that are weaker than so many tolerances: they tell it less than it
 // knows.
 constexpr double strong = 6;
-// Impacts that may be seen, but are not, in a row.
-constexpr int most_unseen = 6;
+// Of a chatter that comes to rest the impacts below that many tolerances are told as one.
+constexpr double weakest_told = 0.4;
 // Of a run: a chatter that comes to rest has some fifty.
 constexpr long most_impacts = 400;
 
@@ -71,6 +71,7 @@ public:
                 if (!found) continue;
                 next = found->to;
                 if (hides(*found)) {
+                    find_ends(*found);
                     comes = found->y_dot_before;
                     all.push_back(std::move(*found));
                 }
@@ -82,6 +83,17 @@ public:
     }
 
 private:
+    /// The last impacts of each chatter that comes to rest.
+    void find_ends(HiddenContacts& h) const {
+        bool rests = false;
+        for (std::size_t k = h.impacts.size(); k-- > 0;) {
+            RunImpact& r = h.impacts[k];
+            rests = r.release || (rests && r.impact.side == h.impacts[k + 1].impact.side);
+            rests = rests && !r.shown && strength(r.impact) < weakest_told * places_.tolerance;
+            r.comes_to_rest = rests;
+        }
+    }
+
     /// Whether anything, or what is shown is not there.
     static bool hides(const HiddenContacts& h) {
         return h.release || h.to - h.from != h.impacts.size() + 1 ||
@@ -99,9 +111,9 @@ private:
             return tau > from - beside && tau < (r ? r->tau : from) + beside;
         };
         return near(impacts_[hidden.from].tau, hidden.release) ||
-               std::any_of(
-                   hidden.impacts.begin(), hidden.impacts.end(),
-                   [&](const RunImpact& h) { return near(h.impact.tau, h.release); });
+               std::any_of(hidden.impacts.begin(), hidden.impacts.end(), [&](const RunImpact& h) {
+                   return near(h.impact.tau, h.release);
+               });
     }
 
     double flight_to(std::size_t i) const {
@@ -113,8 +125,8 @@ private:
     struct Velocities {
         double x_dot, y_dot;
     };
-    /// After an impact to which the mass comes so, most trusted first. The motion before it, and the flight, know nothing of
-    /// what may be hidden soon after it; its jump may be wrong by that.
+    /// After an impact to which the mass comes so, most trusted first. The motion before it, and
+    /// the flight, know nothing of what may be hidden soon after it; its jump may be wrong by that.
     std::vector<Velocities> velocities_after(std::size_t i, double comes) const {
         const IdentifiedImpact& m = impacts_[i];
         const Parameters& p = system_.own();
@@ -139,7 +151,8 @@ private:
     /// shown, if the run leads to one.
     std::optional<HiddenContacts> between(std::size_t from, const Velocities& after) const {
         const double tau = impacts_[from].tau, end = end_after(tau),
-                     next = std::min(end, may_be_apart(tau, impacts_[from + 1].tau) + impacts_[from + 1].tau);
+                     next = std::min(
+                         end, may_be_apart(tau, impacts_[from + 1].tau) + impacts_[from + 1].tau);
         // Most lead to the very next one.
         auto near = between(from, after, next);
         if (end <= next || (near && is_strong(near->to))) return near;
@@ -161,10 +174,10 @@ private:
         std::size_t shown = from + 1;
         int unseen = 0;
         for (const RunImpact& of_run : run.impacts) {
-            RunImpact next{
-                system_.measured(of_run.impact, m.tau), measured(of_run.release, m.tau)};
+            RunImpact next{system_.measured(of_run.impact, m.tau), measured(of_run.release, m.tau)};
             const double apart = may_be_apart(m.tau, next.impact.tau);
-            for (; shown < impacts_.size() && impacts_[shown].tau < next.impact.tau - apart; ++shown)
+            for (; shown < impacts_.size() && impacts_[shown].tau < next.impact.tau - apart;
+                 ++shown)
                 // It does not come where it is shown.
                 if (!stands_for(shown, hidden)) return to_weak;
             if (shown == impacts_.size()) return to_weak;
@@ -178,9 +191,8 @@ private:
                 if (is_strong(shown)) return to_weak;
             }
             // One that is surely there has to be met as it is.
-            if (is_there && is_strong(shown) && is_firm(shown)) return to_weak;
-            if (is_there && !is_strong(shown)) next.shown = shown++;
-            else if (strength(next.impact) > places_.tolerance && ++unseen > most_unseen)
+            if (is_there) next.shown = shown++;
+            else if (strength(next.impact) > places_.tolerance && ++unseen > places_.most_seen)
                 return to_weak;
             hidden.impacts.push_back(next);
         }
@@ -262,7 +274,7 @@ long put_in(const std::vector<HiddenContacts>& hidden, std::vector<IdentifiedImp
             all.push_back(r.shown ? impacts[*r.shown] : as_identified(r));
             IdentifiedImpact& last = all.back();
             last.y_dot_before = r.impact.y_dot_before, last.y_dot_after = r.impact.y_dot_after;
-            last.release = r.release;
+            last.release = r.release, last.comes_to_rest = r.comes_to_rest;
         }
         i = next->to - 1;
         impacts[next->to].y_dot_before = next->y_dot_before;

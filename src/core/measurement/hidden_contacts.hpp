@@ -16,8 +16,9 @@ namespace vines {
 /// An impact of a run, in the measurement's tau.
 struct RunImpact {
     Impact impact;
-    std::optional<Release> release = {};     ///< where the mass sticks after it
-    std::optional<std::size_t> shown = {};   ///< the impact that shows it; none: it is hidden
+    std::optional<Release> release = {};    ///< where the mass sticks after it
+    std::optional<std::size_t> shown = {};  ///< the impact that shows it; none: it is hidden
+    bool comes_to_rest = false;             ///< as in IdentifiedImpact
 };
 
 /// What lies between the impacts with these indices, some of it hidden.
@@ -30,8 +31,10 @@ struct HiddenContacts {
 
 struct HidingPlaces {
     /// By what the oscillator may miss an impact to which it leads: x and x'.
-    double tolerance;
-    double longest;                  ///< time that a run may take from one to the next
+    double tolerance = 0;
+    double longest = 0;  ///< time that a run may take from one to the next
+    /// So many in a row may be hidden that would be seen: a list misses some, or a search does.
+    int most_seen = 6;
     std::vector<TimeGap> gaps = {};  ///< over which no run leads
 };
 /// In order. The velocity with which the mass leaves an impact is that of the flight before, eq.
@@ -43,7 +46,6 @@ std::vector<HiddenContacts> hidden_contacts(
 
 /// Puts them in, where none was doubtful, and has all velocities of the mass there from the
 /// run. Returns how many were hidden.
-long put_in(
-    const std::vector<HiddenContacts>& hidden, std::vector<IdentifiedImpact>& impacts);
+long put_in(const std::vector<HiddenContacts>& hidden, std::vector<IdentifiedImpact>& impacts);
 
 }  // namespace vines

@@ -69,6 +69,19 @@ bool flight_fits(
            std::abs(way - flown) < flight_tolerance * p.b;
 }
 
+std::vector<StuckPhase> stuck_phases(const std::vector<IdentifiedImpact>& impacts) {
+    std::vector<StuckPhase> all;
+    int chatter = 0;
+    for (std::size_t k = 0; k < impacts.size(); ++k) {
+        const IdentifiedImpact& i = impacts[k];
+        const bool goes_on = k > 0 && impacts[k - 1].side == i.side && !impacts[k - 1].release &&
+                             (i.is_hidden || impacts[k - 1].is_hidden);
+        chatter = goes_on ? chatter + 1 : 1;
+        if (i.release) all.push_back({{i.tau, i.side, chatter}, i.release->tau});
+    }
+    return all;
+}
+
 Restitution restitution_of(const std::vector<IdentifiedImpact>& impacts, int side) {
     std::vector<double> R, off;
     for (const IdentifiedImpact& i : impacts)

@@ -7,6 +7,7 @@
 
 #include "core/measurement/release.hpp"
 #include "core/motion/parameters.hpp"
+#include "core/motion/record.hpp"
 #include "core/motion/special_values.hpp"
 
 namespace vines {
@@ -36,6 +37,9 @@ struct IdentifiedImpact {
     /// Where the mass, that sticks to the wall from this impact on, leaves it.
     std::optional<Release> release = {};
     bool is_hidden = false;  ///< not seen: put in (hidden_contacts.hpp)
+    /// One of the last of a chatter, each far weaker than any that is seen: the stuck phase stands
+    /// for it.
+    bool comes_to_rest = false;
 
     bool is_left_out() const { return fault != ImpactFault::none; }
 };
@@ -50,6 +54,9 @@ void complete_impacts(
 bool flight_fits(
     const Parameters& parameters, const IdentifiedImpact& from, const IdentifiedImpact& to,
     double typical_speed);
+
+/// In which the mass stays on a wall; `impacts`: of the chatter before it.
+std::vector<StuckPhase> stuck_phases(const std::vector<IdentifiedImpact>& impacts);
 
 struct Restitution {
     double R, error;  ///< median and its standard error; NaN without an impact

@@ -6,8 +6,7 @@
 
 namespace vines {
 
-IdentifiedSystem::IdentifiedSystem(
-    const Parameters& p, const UnknownValues& v, double tau_zero)
+IdentifiedSystem::IdentifiedSystem(const Parameters& p, const UnknownValues& v, double tau_zero)
     : values_(v),
       flows_(v, false),
       own_(p),
@@ -29,8 +28,7 @@ Outcome IdentifiedSystem::run(
     double tau, const State& s, Limits limits, std::span<Observer* const> observers) const {
     limits.tau_start = start_of(tau);
     limits.tau_end = limits.tau_start + faster_ * (limits.tau_end - tau);
-    return simulate(
-        own_, {s.x_dot / faster_, s.x, s.y_dot / faster_, s.y}, limits, observers);
+    return simulate(own_, {s.x_dot / faster_, s.x, s.y_dot / faster_, s.y}, limits, observers);
 }
 
 OscillatorMotion IdentifiedSystem::free_motion(const Release& from, double tau) const {

@@ -19,10 +19,11 @@ constexpr double least_of_b = 0.003;
 // Nobody measures one as badly as that: it is something else that is wrong.
 constexpr double most_of_b = 0.5;
 // Of what laboratories do to a record (tests/laboratory) no effect that leaves as many pulses
-// without an impact leaves a tenth of the impacts without a pulse, and none scatters R by more than
-// .005. A motion that sticks in each cycle, taken for one that does not, has half of them without,
-// or R scattered by .1.
-constexpr double most_unseen = 0.15, most_dropped = 0.02, most_R_scatter = 0.07;
+// without an impact leaves a tenth of the impacts without a pulse, none scatters R by more than
+// .006, the momentum by more than .018 of the typical jump. A motion that sticks in each cycle,
+// taken for one that does not, does one or the other.
+constexpr double most_unseen = 0.15, most_dropped = 0.02, most_R_scatter = 0.035,
+                 most_momentum_scatter = 0.06;
 
 /// y' of each flight is offset - b rate: y = x - side b at both of its ends (43).
 struct Flight {
@@ -154,13 +155,16 @@ bool pulses_disagree(const FoundImpacts& f) {
            static_cast<double>(f.dropped.size()) > most_dropped * n;
 }
 
-double scatter_of_R(const Identification& found) {
-    std::vector<double> off;
+bool impacts_differ(const Identification& found) {
+    std::vector<double> R, momentum;
     for (const IdentifiedImpact& i : found.impacts) {
-        const double R = (i.side > 0 ? found.plus : found.minus).R;
-        if (!std::isnan(i.R - R)) off.push_back(i.R - R);
+        const double of_wall = (i.side > 0 ? found.plus : found.minus).R;
+        if (std::isnan(i.R - of_wall)) continue;
+        R.push_back(i.R - of_wall);
+        momentum.push_back(i.momentum_error);
     }
-    return off.empty() ? 0 : robust_deviation(std::move(off));
+    return !R.empty() && (robust_deviation(std::move(R)) > most_R_scatter ||
+                          robust_deviation(std::move(momentum)) > most_momentum_scatter);
 }
 
 }  // namespace
@@ -171,7 +175,7 @@ std::vector<Doubt> doubts_of(
     if (!refined.settled) doubts.push_back(Doubt::not_settled);
     if (!explains(refined.fit)) doubts.push_back(Doubt::unexplained);
     if (pulses_disagree(refined)) doubts.push_back(Doubt::pulses_disagree);
-    if (scatter_of_R(identification) > most_R_scatter) doubts.push_back(Doubt::R_scattered);
+    if (impacts_differ(identification)) doubts.push_back(Doubt::impacts_differ);
     if (!b_agrees(p, identification)) doubts.push_back(Doubt::b_disagrees);
     return doubts;
 }

@@ -54,7 +54,7 @@ enum class Doubt {
     not_settled,      ///< the search for impacts: FoundImpacts::settled
     unexplained,      ///< the fitted motion does not explain the record
     pulses_disagree,  ///< many pulses are no impacts, as many impacts have no pulse
-    R_scattered,      ///< R differs from impact to impact
+    impacts_differ,   ///< R, or what is missing of the momentum, from impact to impact
     b_disagrees,      ///< the impacts' momentum does not fit the given b
     no_forcing        ///< of a list: none leads from each impact to the next
 };

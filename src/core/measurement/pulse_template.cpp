@@ -247,9 +247,10 @@ PulseMoment pulse_moment(
     if (pulse.empty()) return {i.tau, infinity};
     const double reach = reach_steps * step;
     const TriedMoments about_fit(pulse, fit, i, i.tau, other, reach, r, bad_a, step);
-    if (std::abs(other - i.tau) < reach) return about_fit.moment(step);
+    const PulseMoment by_fit = about_fit.moment(step);
+    if (std::abs(other - i.tau) < reach) return by_fit;
     const TriedMoments about_other(pulse, fit, i, other, i.tau, reach, r, bad_a, step);
-    return (about_other.least() < about_fit.least() ? about_other : about_fit).moment(step);
+    return about_other.least() < about_fit.least() ? about_other.moment(step) : by_fit;
 }
 
 }  // namespace vines

@@ -26,7 +26,7 @@ constexpr double most_spoiled = 0.35;
 // where it matters: k is off by more than that share, c by more than that one.
 constexpr double contradiction = 5, least_of_stiffness = 3e-4, least_of_damping = 0.01;
 // Masses and springs are known to far better than that, and a damping to a factor.
-constexpr double most_of_stiffness = 0.05, most_of_damping = 2.5;
+constexpr double most_of_stiffness = 0.04, most_of_damping = 2.5;
 // A jump of x' has a sign from so many standard errors on.
 constexpr double side_sigmas = 3;
 // Fewer impacts say nothing of the mass.
@@ -274,21 +274,25 @@ private:
         if (!contradicts(Unknown::stiffness, least_of_stiffness) &&
             !contradicts(Unknown::damping, least_of_damping))
             return false;
+        if (!is_plausible(trial.values)) return false;
         fixed_ = o_.fixed;
         values_ = trial.values;
         return true;
     }
 
+    bool is_plausible(const UnknownValues& v) const {
+        const UnknownValues given = given_unknowns(p_);
+        const double c = v[Unknown::damping], given_c = given[Unknown::damping];
+        return std::abs(v[Unknown::stiffness] - given[Unknown::stiffness]) < most_of_stiffness &&
+               c < most_of_damping * given_c && c * most_of_damping > given_c;
+    }
+
     /// An oscillator that is far from the given one is none: something else is wrong. Says whether
     /// it was so.
     bool return_to_given() {
-        const UnknownValues given = given_unknowns(p_);
-        const double k = values_[Unknown::stiffness], c = values_[Unknown::damping];
-        const bool is_plausible = std::abs(k - given[Unknown::stiffness]) < most_of_stiffness &&
-                                  c < most_of_damping * given[Unknown::damping] &&
-                                  c * most_of_damping > given[Unknown::damping];
         const bool is_free = !fixed_[Unknown::stiffness] || !fixed_[Unknown::damping];
-        if (!is_free || is_plausible) return false;
+        if (!is_free || is_plausible(values_)) return false;
+        const UnknownValues given = given_unknowns(p_);
         may_be_free_ = false;
         fixed_[Unknown::stiffness] = fixed_[Unknown::damping] = true;
         values_[Unknown::stiffness] = given[Unknown::stiffness];
@@ -331,8 +335,8 @@ private:
     /// it sticks. What the fit put there in their place is dropped. Says whether that changes
     /// anything.
     bool put_in_hidden() {
-        // Given impacts are all that there are.
-        if (!(mass_[Unknown::b] > 0) || !o_.moments.empty()) return false;
+        if (!(mass_[Unknown::b] > 0)) return false;
+        const bool searched = o_.moments.empty();
         std::vector<Candidate> shown;
         std::vector<IdentifiedImpact> impacts;
         std::vector<char> doubtful;
@@ -353,8 +357,8 @@ private:
                  .x_ddot_before = m.x_ddot_before});
             const double promised = ratio * std::abs(candidates_[i].height);
             doubtful.push_back(
-                !(std::abs(std::abs(m.jump()) - promised) <
-                  kept_promise * promised + 2 * m.x_dot_jump_error));
+                searched && !(std::abs(std::abs(m.jump()) - promised) <
+                              kept_promise * promised + 2 * m.x_dot_jump_error));
             errors.push_back(m.x_dot_jump_error);
         }
         const double error = median(errors), typical = typical_jump(candidates_);
@@ -364,6 +368,7 @@ private:
             .tolerance = hidden_tolerance * typical,
             .longest = longest_flights * (r_.tau.back() - r_.tau.front()) /
                        static_cast<double>(impacts.size()),
+            .most_seen = searched ? HidingPlaces{}.most_seen : 0,
             .gaps = found_.gaps};
         const std::vector<HiddenContacts> hidden =
             hidden_contacts(system, found_.hiding, impacts, doubtful);

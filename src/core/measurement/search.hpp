@@ -17,7 +17,7 @@ struct FoundImpacts {
     PulseExtent extent{0, 0};
     long unseen = 0;              ///< impacts whose pulse is not seen
     std::vector<double> dropped;  ///< moments of pulses, or given ones, at which x' does not jump
-    HidingPlaces hiding = {0, 0};
+    HidingPlaces hiding;
     bool settled = false;  ///< the last round neither dropped nor added one
 };
 

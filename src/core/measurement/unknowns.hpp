@@ -10,10 +10,16 @@
 //     displacement  X = x_gain x(tau - x_delay) + x_offset + x_drift u + noise
 //     acceleration  A = x''(tau) + a_offset + a_drift u + pulses of the impacts + noise
 //
+// An interval in which the mass sticks to a wall has the law of both masses as one, (1 + epsilon)
+// x''
+// + c x' + k x; it ends where nothing accelerates the two, with x and x' continuous.
+//
 // Residuals: those of all samples that no pulse spoils; at each impact that x is continuous, and
 // its moment by its pulse. Once the impacts are known, those of the mass (mass_rows.hpp): between
 // impacts it flies with one velocity from wall to wall, eq. (43), at each impact x' + epsilon y' is
-// kept (36), and R of each wall is one, eq. (4).
+// kept (36), and R of each wall is one, eq. (4). What no sample shows, impacts too weak and stuck
+// phases, follows from a run of what is identified so far (hidden_contacts.hpp); then all is fitted
+// anew.
 //
 // Priors: what was given of k and c is known to stiffness_prior and damping_prior, the clocks of
 // the two channels agree to delay_prior, and so on. They are wide: what a record says is far

@@ -373,6 +373,67 @@ TEST_CASE("nine in ten of the slope's 90 % intervals hold the exponent of the lo
     }
 }
 
+namespace {
+
+/// Whether an interval of one list lies within another's of the same side, to so much tau.
+long matched(
+    const std::vector<StuckPhase>& found, const std::vector<StuckPhase>& truth, double within) {
+    return std::count_if(found.begin(), found.end(), [&](const StuckPhase& f) {
+        return std::any_of(truth.begin(), truth.end(), [&](const StuckPhase& t) {
+            return f.start.side == t.start.side && std::abs(f.tau_end - t.tau_end) < within;
+        });
+    });
+}
+
+}  // namespace
+
+TEST_CASE("a mass that sticks to a wall is followed over the chatter before and to its release") {
+    struct Case {
+        double b, R, settling;
+    };
+    for (const Case& c : {Case{0.015, 0.5, 20}, Case{0.018, 0.5, 60}, Case{0.018, 0.6, 20}}) {
+        CAPTURE(c.b);
+        CAPTURE(c.R);
+        const Experiment e = measured(motion_after(c.settling, c.b, c.R, c.R, 20), {});
+        REQUIRE(e.sticks.size() > 0);
+        const MeasurementResult r = conclude({.parameters = e.parameters, .record = e.record});
+        const std::vector<StuckPhase> sticks = stuck_phases(r.found.impacts);
+        CHECK(sticks.size() == e.sticks.size());
+        CHECK(matched(sticks, e.sticks, 0.02) == static_cast<long>(sticks.size()));
+        CHECK(r.continuity.share < 0.02);
+        CHECK(r.exponents.all().rank() == 2);
+        CHECK(std::abs(r.exponents.all().qr()[0] - e.lambda1) < 0.03 * e.lambda1);
+        CHECK(r.judged.verdict == Verdict::chaotic);
+    }
+}
+
+TEST_CASE("a list of impacts that leaves out a chatter and its stuck phase is completed") {
+    const TrueMotion motion = motion_after(20, 0.015, 0.5, 0.5, 20);
+    std::vector<IdentifiedImpact> list = listed(motion.impacts);
+    std::erase_if(list, [](const IdentifiedImpact& i) {
+        return std::abs(i.x_dot_after - i.x_dot_before) < 2e-5;
+    });
+    const ListedForcing forcing = take_forcing(motion.parameters, list);
+    restore_impacts(motion.parameters, forcing, list);
+    CHECK(stuck_phases(list).size() == motion.sticks.size());
+    take_flights(motion.parameters, list);
+    complete_impacts(motion.parameters, list, 0);
+    const MeasuredExponents exponents(
+        motion.parameters, MeasuredOscillator::given(motion.parameters), list,
+        continuity_of(motion.parameters, list, {}).stretches, qr_alone);
+    CHECK(exponents.all().qr()[0] == doctest::Approx(motion.exponents.qr()[0]).epsilon(0.01));
+}
+
+TEST_CASE("a motion that sticks in each cycle is never said to be what it is not") {
+    for (const double b : {0.017, 0.0175, 0.018}) {
+        CAPTURE(b);
+        const Experiment e = measured(motion_after(20, b, 0.3, 0.3, 10), {});
+        REQUIRE(e.sticks.size() > 10);
+        const MeasurementResult r = conclude({.parameters = e.parameters, .record = e.record});
+        CHECK((r.judged.verdict == Verdict::not_decided || r.judged.verdict == e.verdict));
+    }
+}
+
 TEST_CASE("impacts that a list misses are put in where they were, and no others") {
     for (const double b : {0.015, 0.012, 0.009}) {
         CAPTURE(b);
