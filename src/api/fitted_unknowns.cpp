@@ -52,18 +52,19 @@ void add_forcing(Json& j, const JointFit& fit, const Parameters& p) {
                  across = elementary::hypot(cos * sin_error, sin * cos_error) / amplitude;
     const double F = G_of(p, sin, cos) * p.epsilon,
                  phase = elementary::atan2(cos, sin) - p.phi() - p.Omega * fit.tau_middle;
-    j["F"] = described({F, F * along / amplitude}, false);
-    j["phase"] = described(
+    j[fixed_amplitude] = described({F, F * along / amplitude}, fit.forcing.amplitude.has_value());
+    j[fixed_phase] = described(
         {std::remainder(phase, 2 * std::numbers::pi),
          elementary::hypot(across / amplitude, fit.tau_middle * fit.errors[Unknown::Omega])},
-        false);
+        fit.forcing.phase.has_value());
 }
 
 }  // namespace
 
 FixedUnknowns fixed_of(const std::set<std::string>& names) {
     FixedUnknowns fixed{};
-    for (const std::string& name : names) fixed[value_of<Unknown>(name)] = true;
+    for (const std::string& name : names)
+        if (name != fixed_amplitude && name != fixed_phase) fixed[value_of<Unknown>(name)] = true;
     return fixed;
 }
 

@@ -11,7 +11,9 @@
 
 namespace vines::api {
 
-/// Of words of Unknown.
+/// Words of `fixed` beside those of Unknown.
+inline constexpr const char *fixed_amplitude = "F", *fixed_phase = "phase";
+/// Of words of Unknown; others are passed over.
 FixedUnknowns fixed_of(const std::set<std::string>& names);
 
 /// {word: {value, standard_error, fixed}}, and F and phase of the forcing. `parameters`: as they

@@ -95,6 +95,33 @@ IdentifyRequest read_fields(const Json& given, bool with_record, bool forcing_fi
     return r;
 }
 
+/// F and phase, where they are not to be fitted: as given, or as a channel of the forcing has them.
+void read_known_forcing(IdentifyRequest& r, const Json& given) {
+    const Layered l = layered(identify_fields(), given);
+    const std::set<std::string> fixed = l.words("fixed");
+    const auto refuse_unknown = [](const char* name) {
+        refuse(
+            {{"/fixed", name, nullptr,
+              std::string(name) + " is fixed, but neither given nor told by a channel of the "
+                                  "record"}});
+    };
+    const Parameters& p = r.system.parameters;
+    std::optional<ChannelForcing> channel;
+    if (r.forcing) channel = channel_forcing(*r.forcing, r.system);
+    if (fixed.contains(fixed_amplitude)) {
+        const bool is_given = given.contains("F") || given.contains("G");
+        if (channel && !is_given) r.measurement.forcing.amplitude = channel->amplitude;
+        else if (is_given || l.has("F") || l.has("G"))
+            r.measurement.forcing.amplitude = forcing_of(p);
+        else refuse_unknown(fixed_amplitude);
+    }
+    if (fixed.contains(fixed_phase)) {
+        if (l.has(fixed_phase)) r.measurement.forcing.phase = l.number(fixed_phase) + p.phi();
+        else if (channel) r.measurement.forcing.phase = channel->phase;
+        else refuse_unknown(fixed_phase);
+    }
+}
+
 void read_record(IdentifyRequest& r, const Json& fields, const Csv& csv) {
     const std::vector<CsvColumn>& columns = csv.columns;
     const RecordColumn time = find_column(columns, fields, time_quantity),
@@ -170,6 +197,7 @@ IdentifyRequest read_request_of_record(const Json& given, const Csv& csv) {
     if (forcing && !f_is_given) fields["f"] = forcing->f;
     IdentifyRequest r = read_fields(fields, true, true);
     r.forcing = forcing;
+    read_known_forcing(r, fields);
     if (forcing && !f_is_given)
         r.system.origin["f"] = r.system.origin["Omega"] = "measured with the record";
     read_record(r, fields, csv);

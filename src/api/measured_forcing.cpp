@@ -47,23 +47,30 @@ std::optional<MeasuredForcing> measured_forcing(
         h->cos * channel.factor};
 }
 
+ChannelForcing channel_forcing(const MeasuredForcing& m, const System& system) {
+    const Parameters& p = system.parameters;
+    const double amplitude = elementary::hypot(m.sin, m.cos);
+    if (m.is_force) return {amplitude / system.si->k1, elementary::atan2(m.cos, m.sin)};
+    // Of a base that moves by F sin(omega t) the acceleration is -omega^2 of that, and the forcing
+    // is ahead of it by phi, eq. (3).
+    const double omega = angular(m.f);
+    return {
+        amplitude / (omega * omega) * elementary::hypot(1.0, p.lambda * p.epsilon * p.Omega),
+        elementary::atan2(-m.cos, -m.sin) + p.phi()};
+}
+
 Json describe_measured_forcing(
     const MeasuredForcing& m, const System& used, const JointFit& fit,
     std::vector<std::string>& warnings) {
-    const Parameters& p = used.parameters;
-    const double omega = angular(m.f), amplitude = elementary::hypot(m.sin, m.cos);
-    // Of a base that moves by F sin(omega t) the acceleration is -omega^2 of that, and the forcing
-    // is ahead of it by phi, eq. (3). A force acts as a base does that moves by F/k1 less of that.
-    const double F = m.is_force ? amplitude / used.si->k1 /
-                                      elementary::hypot(1.0, p.lambda * p.epsilon * p.Omega)
-                                : amplitude / (omega * omega);
-    const double channel =
-        m.is_force ? elementary::atan2(m.cos, m.sin) : elementary::atan2(-m.cos, -m.sin) + p.phi();
+    const ChannelForcing channel = channel_forcing(m, used);
+    // Of a base, or of one that would act as the force does.
+    const double F = G_of(used.parameters, channel.amplitude, 0) * used.parameters.epsilon;
     // That of the fit is of the record's middle.
     const double middle = fit.tau_middle / used.si->omega0(),
                  fitted = elementary::atan2(
                      fit.values[Unknown::force_cos], fit.values[Unknown::force_sin]),
-                 phase = std::remainder(channel + omega * middle - fitted, 2 * std::numbers::pi);
+                 phase = std::remainder(
+                     channel.phase + angular(m.f) * middle - fitted, 2 * std::numbers::pi);
     if (std::abs(F / used.si->F - 1) > amplitude_off)
         warnings.push_back(fmt::format(
             "the channel of the {} says F = {:.4g} m, the oscillator's motion {:.4g} m: is a "

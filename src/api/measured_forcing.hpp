@@ -22,6 +22,12 @@ struct MeasuredForcing {
 std::optional<MeasuredForcing> measured_forcing(
     const std::vector<CsvColumn>& columns, const Json& fields);
 
+/// As that channel has it: the forcing's amplitude, m, and its phase at the time 0.
+struct ChannelForcing {
+    double amplitude, phase;
+};
+ChannelForcing channel_forcing(const MeasuredForcing& measured, const System& system);
+
 /// {f, F, phase}, beside what the record says: `phase`, rad, by which the oscillator's motion shows
 /// the forcing later than the channel. With a warning where they differ.
 Json describe_measured_forcing(

@@ -227,6 +227,33 @@ TEST_CASE("a list without the chatter that came to rest says what was hidden, an
     CHECK(a["verdict"] == "chaotic");
 }
 
+TEST_CASE("amplitude and phase of the forcing stay where they are fixed") {
+    const std::string csv = measured("fig20", 8, 20);
+    const Json free = identified(read_identify_request({{"preset", "fig20"}}, csv));
+    const double F = free["fitted"]["F"]["value"], phase = free["fitted"]["phase"]["value"];
+    const auto with = [&](double F_given, double phase_given) {
+        return identified(read_identify_request(
+            {{"preset", "fig20"},
+             {"F", F_given},
+             {"phase", phase_given},
+             {"fixed", {"F", "phase"}}},
+            csv));
+    };
+    const Json known = with(1.00001 * F, phase + 1e-5);
+    CHECK(
+        known["fitted"]["F"]["value"].get<double>() == doctest::Approx(1.00001 * F).epsilon(1e-8));
+    CHECK(
+        known["fitted"]["phase"]["value"].get<double>() ==
+        doctest::Approx(phase + 1e-5).epsilon(1e-7));
+    CHECK(known["fitted"]["phase"]["fixed"] == true);
+    CHECK(known["fitted"]["F"]["standard_error"].is_null());
+    CHECK(known["verdict"] == free["verdict"]);
+    const Json wrong = with(F, phase + 0.2);
+    CHECK(wrong["verdict"] == "not_decided");
+    const Problem p = refused({{"preset", "fig20"}, {"fixed", {"phase"}}}, csv);
+    CHECK(std::string(p.what()).find("phase is fixed, but neither given") != std::string::npos);
+}
+
 TEST_CASE("an edited list of moments is taken as it is") {
     const std::string csv = measured("fig15", 6);
     const Json a = identified(read_identify_request({{"preset", "fig15"}}, csv));
@@ -625,6 +652,15 @@ TEST_CASE("a channel of the base or of a force gives the forcing, its frequency 
         CHECK(a["impacts"]["side"] == known["impacts"]["side"]);
         CHECK(a["verdict"] == known["verdict"]);
         CHECK(a["warnings"].dump().find("channel") == std::string::npos);
+        Json as_measured = system;
+        as_measured["fixed"] = {"F", "phase"};
+        const Json fixed =
+            identified(read_identify_request(as_measured, with_column(csv, c.name, c.of_time)));
+        CHECK(
+            fixed["fitted"]["F"]["value"].get<double>() ==
+            doctest::Approx(fixed["signal"]["forcing"]["F"].get<double>()).epsilon(1e-6));
+        // At the time 0, from which the fitted frequency leads a bit elsewhere than the channel's.
+        CHECK(std::abs(fixed["signal"]["forcing"]["phase"].get<double>()) < 1e-4);
     }
     const std::string inverted =
         with_column(csv, "base_acceleration_g", [&](double t) { return -1.2 * base(t); });

@@ -107,16 +107,34 @@ FieldTable impact_rows() {
     };
 }
 
+std::vector<std::string> fixable() {
+    std::vector<std::string> names = all_words<Unknown>();
+    names.insert(names.begin() + 1, {"F", "phase"});
+    return names;
+}
+
+Field phase_row() {
+    return {
+        .name = "phase",
+        .group = "record",
+        .unit = "rad",
+        .description =
+            "of the base, which moves by F sin(2 pi f t + phase), t as in the record: where it is "
+            "fixed",
+        .fallback_note = "fitted; where it is fixed that of a channel of the forcing",
+        .range = Range{-7, 7}};
+}
+
 Field fixed_row() {
     return {
         .name = "fixed",
         .type = FieldType::choices,
         .group = "record",
         .description =
-            "what of a record is not fitted but taken as given: f, omega0, zeta, b and R by the "
-            "other fields, a sensor without fault",
+            "what of a record is not fitted but taken as given: f, F, phase, omega0, zeta, b and R "
+            "by the other fields, a sensor without fault",
         .fallback = Json::array(),
-        .choices = all_words<Unknown>()};
+        .choices = fixable()};
 }
 
 Field include_row() {
@@ -139,6 +157,7 @@ FieldTable make_identify_fields() {
             table.push_back(of_record(f));
     table.push_back(include_row());
     table.push_back(fixed_row());
+    table.push_back(phase_row());
     for (const auto& rows : {column_rows, unit_rows, impact_rows})
         for (Field& f : rows()) table.push_back(std::move(f));
     return table;

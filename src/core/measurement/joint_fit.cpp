@@ -36,6 +36,9 @@ constexpr double most_move_steps = 1;
 constexpr double misfit_limit = 1.25;
 // A moment of release is told by its condition to so much tau: better than any other.
 constexpr double release_error = 1e-4;
+// What is known of the forcing holds to that share of its amplitude: far better than any record
+// tells it.
+constexpr double known_to = 1e-7;
 // Samples beside the pulses that a share of a step reaches beyond what is spoiled.
 constexpr double pulse_margin = 0.1;
 
@@ -83,6 +86,7 @@ public:
         fit_.a_left.resize(r_.x_ddot.size());
         fix_what_no_sensor_shows();
         fit_.fixed = fixed_;
+        fit_.forcing = input.forcing;
     }
 
     JointFit take() {
@@ -222,6 +226,7 @@ private:
             });
         if (!first) add_impacts(flows, equations);
         add_priors(equations, first);
+        if (!first) add_known_forcing(equations);
         return equations;
     }
 
@@ -326,6 +331,31 @@ private:
             else if (std::isfinite(prior_[k]))
                 equations.add_prior(
                     k, prior_mean_[k] - fit_.values[k], 1 / (prior_[k] * prior_[k]));
+        }
+    }
+
+    /// Rows by which its amplitude and its phase at tau = 0 stay what they are known to be.
+    void add_known_forcing(JointEquations& equations) const {
+        const UnknownValues& v = fit_.values;
+        const double sin = v[Unknown::force_sin], cos = v[Unknown::force_cos],
+                     amplitude = elementary::hypot(sin, cos),
+                     weight = 1 / (known_to * known_to * amplitude * amplitude);
+        if (!(amplitude > 0)) return;
+        const Eigen::Index of_sin = equations.unknown_at(Unknown::force_sin),
+                           of_cos = equations.unknown_at(Unknown::force_cos);
+        if (const auto& known = in_.forcing.amplitude)
+            equations.add(
+                {{of_sin, sin / amplitude}, {of_cos, cos / amplitude}}, *known - amplitude, weight);
+        if (const auto& known = in_.forcing.phase) {
+            // That of the middle moves with the frequency.
+            const double phase = *known + v[Unknown::Omega] * fit_.tau_middle,
+                         along_sin = elementary::cos(phase), along_cos = elementary::sin(phase);
+            std::vector<JointEquations::Term> row = {{of_sin, -along_cos}, {of_cos, along_sin}};
+            if (!fixed_[Unknown::Omega])
+                row.push_back(
+                    {equations.unknown_at(Unknown::Omega),
+                     -fit_.tau_middle * (sin * along_sin + cos * along_cos)});
+            equations.add(row, sin * along_cos - cos * along_sin, weight);
         }
     }
 

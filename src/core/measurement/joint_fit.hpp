@@ -50,6 +50,7 @@ struct JointFit {
     double epsilon = 0;
     UnknownValues values{}, errors{};  ///< standard errors, with the misfit in them
     FixedUnknowns fixed{};             ///< those that were not fitted
+    KnownForcing forcing;              ///< what of it was not
     std::vector<FittedInterval> intervals;
     std::vector<FittedImpact> impacts;  ///< one fewer
     /// What is left of each sample: of the displacement on its own scale, of the acceleration the
@@ -77,6 +78,7 @@ struct JointFitInput {
     /// What of the displacement an impact spoils, before and after it.
     double x_spoiled = 0;
     FixedUnknowns fixed{};
+    KnownForcing forcing = {};
     const Sides* sides = nullptr;  ///< of the impacts: the mass takes part; null: it does not
     bool one_step = false;         ///< of a fit from another one: what it would come to, about
 };

@@ -110,7 +110,9 @@ MeasurementResult conclude(const Measurement& m, const IdentificationWatch& watc
     std::vector<Doubt> doubts = m.doubts;
     if (m.is_record()) {
         refined = find_impacts(
-            p, m.record, {.sigmas = m.threshold, .moments = m.moments, .fixed = m.fixed}, progress);
+            p, m.record,
+            {.sigmas = m.threshold, .moments = m.moments, .fixed = m.fixed, .forcing = m.forcing},
+            progress);
         const JointFit& fit = refined->fit;
         if (fit.impacts.size() < 2) throw TooFewImpacts{static_cast<long>(fit.impacts.size())};
         p.Omega = fit.values[Unknown::Omega];

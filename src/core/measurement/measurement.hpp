@@ -21,6 +21,7 @@ struct Measurement {
     std::vector<Doubt> doubts = {};              ///< about those
     double threshold = 6;      ///< of a spike, in standard deviations of the noise
     FixedUnknowns fixed = {};  ///< what of a record is not fitted
+    KnownForcing forcing = {};
     ExponentOptions estimators = {};
     ExponentOptions direct_estimators = qr_alone;  ///< of the paper's direct estimate
 

@@ -137,7 +137,7 @@ private:
     }
 
     JointFitInput input(const MeasuredRecord& record) const {
-        return {p_, record, statistics_, bad_.x, bad_.a, spoiled_.x, fixed_};
+        return {p_, record, statistics_, bad_.x, bad_.a, spoiled_.x, fixed_, o_.forcing};
     }
 
     /// Fits the displacement alone, with the moments of the events: so much does not depend on what

@@ -25,6 +25,7 @@ struct SearchOptions {
     double sigmas = 6;                 ///< of a spike of the acceleration, over its noise
     std::vector<double> moments = {};  ///< tau of impacts that are known: no others are looked for
     FixedUnknowns fixed = {};
+    KnownForcing forcing = {};
 };
 
 /// Fewer than two impacts where nothing looks like one. Throws IdentificationStopped.

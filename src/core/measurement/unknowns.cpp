@@ -30,6 +30,10 @@ UnknownValues given_unknowns(const Parameters& p) {
     return v;
 }
 
+double forcing_of(const Parameters& p) {
+    return p.G * p.epsilon * elementary::hypot(1.0, p.lambda * p.epsilon * p.Omega);
+}
+
 double G_of(const Parameters& p, double force_sin, double force_cos) {
     return elementary::hypot(force_sin, force_cos) / p.epsilon /
            elementary::hypot(1.0, p.lambda * p.epsilon * p.Omega);

@@ -28,6 +28,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 
 #include "core/motion/parameters.hpp"
 
@@ -76,8 +77,16 @@ public:
     bool operator[](Unknown u) const { return (*this)[static_cast<std::size_t>(u)]; }
 };
 
+/// What is known of the forcing f sin(Omega tau + phase), if anything.
+struct KnownForcing {
+    std::optional<double> amplitude = {};  ///< f, m
+    std::optional<double> phase = {};
+};
+
 /// Of sensors without a fault, and the oscillator as it is given.
 UnknownValues given_unknowns(const Parameters& parameters);
+/// The amplitude f of eq. (2)'s forcing, m.
+double forcing_of(const Parameters& parameters);
 /// G of a forcing f_s sin(Omega tau) + f_c cos(Omega tau), eq. (3).
 double G_of(const Parameters& parameters, double force_sin, double force_cos);
 /// Standard deviations of the priors; infinite where there is none.
