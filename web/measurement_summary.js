@@ -44,7 +44,7 @@ function impactsCard({impacts: {status, tau}, sticking}) {
   const notes = [
     `${left} left out`,
     hidden && `${hidden} hidden`,
-    stuck && count(stuck, "stuck phase"),
+    stuck && `${count(stuck, "stuck phase")}, shaded`,
     unknown && `R of ${unknown} not known, at the ends`,
   ];
   return ["impacts", String(tau.length), notes.filter(Boolean).join("; ")];

@@ -239,6 +239,9 @@ void add_continuity_warnings(const MeasurementResult& result, Warnings& warnings
         result.found.impacts.begin(), result.found.impacts.end(),
         [](const IdentifiedImpact& i) { return i.is_hidden && !i.comes_to_rest; });
     const auto sticks = stuck_phases(result.found.impacts).size();
+    const auto told = std::count_if(
+        result.found.impacts.begin(), result.found.impacts.end(),
+        [](const IdentifiedImpact& i) { return !i.comes_to_rest; });
     if (hidden > 0 || sticks > 0)
         warnings.push_back(fmt::format(
             "{} impact(s) and {} stuck phase(s) that {} are put in: a run of the identified system "
@@ -247,7 +250,7 @@ void add_continuity_warnings(const MeasurementResult& result, Warnings& warnings
     if (c.left_out > 0)
         warnings.push_back(fmt::format(
             "{} of {} impacts are inconsistent and left out; impacts.status says why", c.left_out,
-            result.found.impacts.size()));
+            told));
     if (c.missing > 0)
         warnings.push_back(fmt::format(
             "between {} pair(s) of impacts the mass did not fly freely, nor does a run of the "

@@ -20,10 +20,6 @@ void take_restitution(Parameters& p, const Identification& found) {
     if (std::isfinite(found.minus.R)) p.R_minus = std::clamp(found.minus.R, 0.0, 1.0);
 }
 
-double G_of(const Parameters& p, const JointFit& fit) {
-    return G_of(p, fit.values[Unknown::force_sin], fit.values[Unknown::force_cos]);
-}
-
 /// The stretches without the passages to impacts whose relative speed is not known.
 std::vector<KnownStretch> with_speeds(
     const std::vector<IdentifiedImpact>& impacts, const std::vector<KnownStretch>& stretches) {
@@ -85,6 +81,19 @@ std::optional<ForwardRun> forward_run(
     return ForwardRun{first.tau, std::move(impacts.entries), lambda};
 }
 
+/// What a record's impacts say; `p` gets what is fitted of Omega, b and G.
+Identification identified(const FoundImpacts& refined, Parameters& p) {
+    const UnknownValues& v = refined.fit.values;
+    p.Omega = v[Unknown::Omega];
+    Identification found = identify_impacts(p, refined);
+    if (const double b = b_of(p, refined, found); b != p.b) {
+        p.b = b;
+        found = identify_impacts(p, refined);
+    }
+    p.G = G_of(p, v[Unknown::force_sin], v[Unknown::force_cos]);
+    return found;
+}
+
 /// What is known of the impacts without a record.
 Identification of_impacts(const std::vector<IdentifiedImpact>& impacts) {
     Identification found;
@@ -115,14 +124,8 @@ MeasurementResult conclude(const Measurement& m, const IdentificationWatch& watc
             progress);
         const JointFit& fit = refined->fit;
         if (fit.impacts.size() < 2) throw TooFewImpacts{static_cast<long>(fit.impacts.size())};
-        p.Omega = fit.values[Unknown::Omega];
         oscillator = {fit.values[Unknown::stiffness], fit.values[Unknown::damping]};
-        found = identify_impacts(p, *refined);
-        if (const double b = b_of(p, *refined, found); b != p.b) {
-            p.b = b;
-            found = identify_impacts(p, *refined);
-        }
-        p.G = G_of(p, fit);
+        found = identified(*refined, p);
         doubts = doubts_of(p, *refined, found);
     } else {
         found = of_impacts(m.impacts);

@@ -35,6 +35,7 @@ constexpr std::ptrdiff_t fewest_with_mass = 8;
 constexpr int most_runs_with_mass = 3;
 // So often what is hidden is looked for, and all fitted anew.
 constexpr int most_hidden_rounds = 3;
+constexpr double few_changes = 0.02;
 // An impact is there if its jump of x' is what its pulse promises, to that share: one that stands
 // for others jumps by what they do together.
 constexpr double kept_promise = 0.3;
@@ -377,7 +378,10 @@ private:
         sort_by_time(all);
         for (std::size_t i = 1; i < all.size(); ++i)
             if (all[i].border == Border::release) all[i - 1].sticks = true;
-        changed_ = is_other(all);
+        // The first time any, then what makes a difference to the whole.
+        const double least =
+            hidden_rounds_++ == 0 ? 0 : few_changes * static_cast<double>(candidates_.size());
+        changed_ = static_cast<double>(differences_to(all)) > least;
         if (changed_) candidates_ = std::move(all);
         return changed_;
     }
@@ -433,15 +437,18 @@ private:
         }
     }
 
-    bool is_other(const std::vector<Candidate>& all) const {
-        return all.size() != candidates_.size() ||
-               !std::equal(
-                   all.begin(), all.end(), candidates_.begin(),
-                   [this](const Candidate& a, const Candidate& b) {
-                       return a.border == b.border && a.sticks == b.sticks &&
-                              a.predicted_side == b.predicted_side &&
-                              std::abs(a.tau - b.tau) < statistics_.step;
-                   });
+    /// How many of these are not among the candidates, or of those not among these.
+    std::size_t differences_to(const std::vector<Candidate>& all) const {
+        const auto same = [this](const Candidate& a, const Candidate& b) {
+            return a.border == b.border && a.sticks == b.sticks &&
+                   a.predicted_side == b.predicted_side &&
+                   std::abs(a.tau - b.tau) < statistics_.step;
+        };
+        std::size_t matched = 0, i = 0, k = 0;
+        while (i < all.size() && k < candidates_.size())
+            if (same(all[i], candidates_[k])) ++matched, ++i, ++k;
+            else all[i].tau < candidates_[k].tau ? ++i : ++k;
+        return all.size() + candidates_.size() - 2 * matched;
     }
 
     /// The wall pushes x back; its pulse says so where the jump of x' does not.
@@ -491,7 +498,7 @@ private:
         bool is_shown;  ///< by a pulse, or given
     };
     std::vector<Rejected> rejected_;
-    int rounds_ = 0;
+    int rounds_ = 0, hidden_rounds_ = 0;
     bool may_be_free_ = true;  // the oscillator
     bool changed_ = true;      // the candidates, since the last fit
     FoundImpacts found_;
