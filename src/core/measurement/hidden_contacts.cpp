@@ -22,7 +22,9 @@ constexpr double strong = 6;
 // Of a chatter that comes to rest the impacts below that many tolerances are told as one.
 constexpr double weakest_told = 0.4;
 // Of a run: a chatter that comes to rest has some fifty.
-constexpr long most_impacts = 400;
+constexpr long most_impacts = 120;
+// Where that many runs, and most of them, lead nowhere, the system is not the one that is measured.
+constexpr int many_runs = 100;
 
 /// The contacts of a run, in its own tau.
 class Contacts : public Observer {
@@ -60,14 +62,17 @@ public:
         std::vector<HiddenContacts> all;
         // The run that leads to an impact knows better than the flight what comes to it.
         double comes = nan;
-        for (std::size_t i = 0; i + 1 < impacts_.size();) {
+        int led = 0, failed = 0;
+        for (std::size_t i = 0; i + 1 < impacts_.size() && failed < many_runs + led;) {
             std::size_t next = i + 1;
-            if (std::isnan(comes) && i > 0) comes = flight_to(i);
+            if (std::isnan(comes) && i > 0)
+                comes = flight_velocity(system_.own().b, impacts_[i - 1], impacts_[i]);
             const std::vector<Velocities> ways = velocities_after(i, comes);
             comes = nan;
             for (const Velocities& after : ways) {
                 // The first one that the run leads to by one way is trusted.
                 auto found = between(i, after);
+                found ? ++led : ++failed;
                 if (!found) continue;
                 next = found->to;
                 if (hides(*found)) {
@@ -116,12 +121,6 @@ private:
                });
     }
 
-    double flight_to(std::size_t i) const {
-        const IdentifiedImpact &from = impacts_[i - 1], &to = impacts_[i];
-        const double b = system_.own().b;
-        return (to.x - to.side * b - (from.x - from.side * b)) / (to.tau - from.tau);
-    }
-
     struct Velocities {
         double x_dot, y_dot;
     };
@@ -141,14 +140,15 @@ private:
 
     /// The end of the longest run from a moment.
     double end_after(double tau) const {
-        double end = std::min(tau + places_.longest, impacts_.back().tau + same_moment);
-        for (const TimeGap& g : places_.gaps)
-            if (g.to > tau) end = std::min(end, g.from);
-        return end;
+        const double end = std::min(tau + places_.longest, impacts_.back().tau + same_moment);
+        const auto gap = std::upper_bound(
+            places_.gaps.begin(), places_.gaps.end(), tau,
+            [](double t, const TimeGap& g) { return t < g.to; });
+        return gap == places_.gaps.end() ? end : std::min(end, gap->from);
     }
 
-    /// What comes between an impact, which the mass leaves with y_dot, and the next one that is
-    /// shown, if the run leads to one.
+    /// What comes between an impact, which both masses leave so, and the next one that is shown, if
+    /// the run leads to one; to a strong one, if it can.
     std::optional<HiddenContacts> between(std::size_t from, const Velocities& after) const {
         const double tau = impacts_[from].tau, end = end_after(tau),
                      next = std::min(
@@ -169,8 +169,7 @@ private:
             m.tau, {after.x_dot, m.x, after.y_dot, m.x - m.side * system_.own().b},
             {.tau_end = end, .max_impacts = most_impacts}, observers);
         HiddenContacts hidden{from, from, after.y_dot, nan, measured(run.release, m.tau)};
-        // To a weak one, which may be there for others.
-        std::optional<HiddenContacts> to_weak;
+        std::optional<HiddenContacts> found;
         std::size_t shown = from + 1;
         int unseen = 0;
         for (const RunImpact& of_run : run.impacts) {
@@ -179,24 +178,23 @@ private:
             for (; shown < impacts_.size() && impacts_[shown].tau < next.impact.tau - apart;
                  ++shown)
                 // It does not come where it is shown.
-                if (!stands_for(shown, hidden)) return to_weak;
-            if (shown == impacts_.size()) return to_weak;
+                if (!stands_for(shown, hidden)) return found;
+            if (shown == impacts_.size()) return found;
             const bool is_there = impacts_[shown].tau < next.impact.tau + apart &&
                                   impacts_[shown].side == next.impact.side;
             if (is_there && leads_to(hidden, after.x_dot, impacts_[shown], next.impact)) {
-                if (is_strong(shown) || !to_weak) {
-                    to_weak = hidden;
-                    to_weak->to = shown, to_weak->y_dot_before = next.impact.y_dot_before;
+                if (is_strong(shown) || !found) {
+                    found = hidden;
+                    found->to = shown, found->y_dot_before = next.impact.y_dot_before;
                 }
-                if (is_strong(shown)) return to_weak;
+                if (is_strong(shown)) return found;
             }
-            // One that is surely there has to be met as it is.
             if (is_there) next.shown = shown++;
             else if (strength(next.impact) > places_.tolerance && ++unseen > places_.most_seen)
-                return to_weak;
+                return found;
             hidden.impacts.push_back(next);
         }
-        return to_weak;
+        return found;
     }
 
     bool is_strong(std::size_t i) const {

@@ -35,7 +35,7 @@ struct HidingPlaces {
     double longest = 0;  ///< time that a run may take from one to the next
     /// So many in a row may be hidden that would be seen: a list misses some, or a search does.
     int most_seen = 6;
-    std::vector<TimeGap> gaps = {};  ///< over which no run leads
+    std::vector<TimeGap> gaps = {};  ///< over which no run leads, in order
 };
 /// In order. The velocity with which the mass leaves an impact is that of the flight before, eq.
 /// (43), or of the impact's own jump, eqs. (4), (36). `doubtful`: of each impact, that it may be

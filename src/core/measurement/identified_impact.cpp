@@ -58,6 +58,10 @@ void complete_impacts(const Parameters& p, std::vector<IdentifiedImpact>& impact
             pulse, tolerance);
 }
 
+double flight_velocity(double b, const IdentifiedImpact& from, const IdentifiedImpact& to) {
+    return (to.x - to.side * b - (from.x - from.side * b)) / (to.tau - from.tau);
+}
+
 bool flight_fits(
     const Parameters& p, const IdentifiedImpact& from, const IdentifiedImpact& to,
     double typical_speed) {

@@ -49,6 +49,9 @@ struct IdentifiedImpact {
 void complete_impacts(
     const Parameters& parameters, std::vector<IdentifiedImpact>& impacts, double pulse);
 
+/// Of the mass that flies from one contact to the next, y = x - side b at both, eq. (43).
+double flight_velocity(double b, const IdentifiedImpact& from, const IdentifiedImpact& to);
+
 /// Whether the mass can have flown freely from one impact to the next: with one velocity, from wall
 /// to wall. If not, an impact between them is missing, or they stuck together.
 bool flight_fits(

@@ -1,5 +1,6 @@
 #include "core/measurement/identified_system.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/motion/elementary.hpp"
@@ -14,7 +15,7 @@ IdentifiedSystem::IdentifiedSystem(const Parameters& p, const UnknownValues& v, 
       phase_(elementary::atan2(v[Unknown::force_cos], v[Unknown::force_sin])),
       tau_zero_(tau_zero) {
     own_.Omega /= faster_;
-    own_.lambda = v[Unknown::damping] / (faster_ * p.epsilon);
+    own_.lambda = std::max(0.0, v[Unknown::damping] / (faster_ * p.epsilon));
     own_.G = G_of(own_, v[Unknown::force_sin], v[Unknown::force_cos]) / (faster_ * faster_);
 }
 

@@ -52,8 +52,7 @@ std::vector<Row> rows_of(const Parameters& p, const std::vector<IdentifiedImpact
 void take_flights(const Parameters& p, std::vector<IdentifiedImpact>& impacts) {
     for (std::size_t i = 1; i < impacts.size(); ++i) {
         IdentifiedImpact &from = impacts[i - 1], &to = impacts[i];
-        const double y_dot =
-            (to.x - to.side * p.b - (from.x - from.side * p.b)) / (to.tau - from.tau);
+        const double y_dot = flight_velocity(p.b, from, to);
         if (std::isnan(from.y_dot_after)) from.y_dot_after = y_dot;
         if (std::isnan(to.y_dot_before)) to.y_dot_before = y_dot;
     }

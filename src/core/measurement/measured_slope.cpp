@@ -3,12 +3,12 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include "core/motion/elementary.hpp"
 #include "core/motion/special_values.hpp"
 #include "core/stability/slope.hpp"
+#include "core/stability/standard_error.hpp"
 
 namespace vines {
 
@@ -25,8 +25,6 @@ constexpr double largest_part = 30;
 // exponent in 93 % at b = 15 mm and a width of .035, in 84 % at 13 mm, and in 92 to 95 % at 11,
 // 18 and 20 mm (tests/core/measurement).
 constexpr double dependent = 0.06;
-// The steps of a growth are never as even as that share of their variance.
-constexpr double least_variance = 0.02;
 // Half a 90 % interval in standard errors: Student's, of the 22 degrees of freedom that the window
 // of that length leaves.
 constexpr double student = 1.717;
@@ -81,23 +79,12 @@ SlowState part_of_state(const StatedGrowth& g, std::size_t apart, double slope) 
     return by.allFinite() ? SlowState(by.tail<2>()) : SlowState::Zero();
 }
 
-/// Of the sum of steps that depend on each other, of which so many count as fitted.
-double variance_of_sum(const std::vector<double>& off, std::size_t fitted) {
-    const double n = static_cast<double>(off.size());
+/// Of the sum of steps, of which so many count as fitted.
+double variance_with_fit(const std::vector<double>& off, std::size_t fitted) {
+    const auto n = static_cast<double>(off.size());
     const auto lags = std::max<std::size_t>(1, static_cast<std::size_t>(dependent * n));
-    double variance = 0, least = 0;
-    for (std::size_t lag = 0; lag <= lags; ++lag) {
-        double covariance = 0;
-        for (std::size_t i = 0; i + lag < off.size(); ++i) covariance += off[i] * off[i + lag];
-        if (lag == 0) variance = covariance, least = least_variance * covariance;
-        else
-            variance +=
-                (1 + elementary::cos(
-                         std::numbers::pi * static_cast<double>(lag) / static_cast<double>(lags))) *
-                covariance;
-    }
     // What was fitted, and the mean that is removed, take their shares with them.
-    return std::max(variance, least) / (1 - 0.75 * dependent) /
+    return variance_of_sum(off, lag_weights(lags)) / (1 - 0.75 * dependent) /
            (1 - static_cast<double>(fitted) / n);
 }
 
@@ -125,7 +112,7 @@ MeasuredSlope measured_slope(
         off.push_back(g.steps.log[i] - slope * g.steps.duration[i]);
     }
     const double brief = short_tau / duration, half = (1 + brief * brief * brief) * student *
-                                                      std::sqrt(variance_of_sum(off, apart)) /
+                                                      std::sqrt(variance_with_fit(off, apart)) /
                                                       duration;
     return {slope, slope - half, slope + half};
 }

@@ -26,7 +26,7 @@ constexpr double most_spoiled = 0.35;
 // where it matters: k is off by more than that share, c by more than that one.
 constexpr double contradiction = 5, least_of_stiffness = 3e-4, least_of_damping = 0.01;
 // Masses and springs are known to far better than that, and a damping to a factor.
-constexpr double most_of_stiffness = 0.04, most_of_damping = 2.5;
+constexpr double most_of_stiffness = 0.04, most_of_damping = 2.5, slack_of_damping = 0.005;
 // A jump of x' has a sign from so many standard errors on.
 constexpr double side_sigmas = 3;
 // Fewer impacts say nothing of the mass.
@@ -35,6 +35,7 @@ constexpr std::ptrdiff_t fewest_with_mass = 8;
 constexpr int most_runs_with_mass = 3;
 // So often what is hidden is looked for, and all fitted anew.
 constexpr int most_hidden_rounds = 3;
+// After the first time not for fewer changes, of all impacts.
 constexpr double few_changes = 0.02;
 // An impact is there if its jump of x' is what its pulse promises, to that share: one that stands
 // for others jumps by what they do together.
@@ -285,7 +286,8 @@ private:
         const UnknownValues given = given_unknowns(p_);
         const double c = v[Unknown::damping], given_c = given[Unknown::damping];
         return std::abs(v[Unknown::stiffness] - given[Unknown::stiffness]) < most_of_stiffness &&
-               c < most_of_damping * given_c && c * most_of_damping > given_c;
+               c < most_of_damping * given_c + slack_of_damping &&
+               c > given_c / most_of_damping - slack_of_damping;
     }
 
     /// An oscillator that is far from the given one is none: something else is wrong. Says whether
@@ -374,11 +376,10 @@ private:
         const std::vector<HiddenContacts> hidden =
             hidden_contacts(system, found_.hiding, impacts, doubtful);
         std::vector<Candidate> all = shown_candidates(shown, hidden);
-        for (const HiddenContacts& h : hidden) add_hidden(h, error, all);
+        for (const HiddenContacts& h : hidden) add_hidden(h, impacts[h.from].side, error, all);
         sort_by_time(all);
         for (std::size_t i = 1; i < all.size(); ++i)
             if (all[i].border == Border::release) all[i - 1].sticks = true;
-        // The first time any, then what makes a difference to the whole.
         const double least =
             hidden_rounds_++ == 0 ? 0 : few_changes * static_cast<double>(candidates_.size());
         changed_ = static_cast<double>(differences_to(all)) > least;
@@ -420,12 +421,14 @@ private:
 
     /// Those that are worth an interval of their own. Of the end of a chatter the centre of mass
     /// knows nothing: it moves as if both stuck together.
-    void add_hidden(const HiddenContacts& h, double error, std::vector<Candidate>& all) const {
-        const auto release = [&](const std::optional<Release>& r, int side) {
+    /// `side`: of the impact before.
+    void add_hidden(
+        const HiddenContacts& h, int side, double error, std::vector<Candidate>& all) const {
+        const auto release = [&](const std::optional<Release>& r, int wall) {
             if (r)
-                all.push_back({.tau = r->tau, .border = Border::release, .predicted_side = side});
+                all.push_back({.tau = r->tau, .border = Border::release, .predicted_side = wall});
         };
-        release(h.release, h.impacts.empty() ? 1 : h.impacts.front().impact.side);
+        release(h.release, side);
         double before = -infinity;
         for (const RunImpact& r : h.impacts) {
             const Impact& i = r.impact;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "core/motion/elementary.hpp"
 #include "core/motion/special_values.hpp"
@@ -51,18 +52,34 @@ std::size_t ExponentHistory::coarse_stride() const {
     return stride;
 }
 
+std::vector<double> lag_weights(std::size_t lags) {
+    std::vector<double> weights;
+    for (std::size_t lag = 1; lag <= lags; ++lag)
+        weights.push_back(
+            1 + elementary::cos(
+                    std::numbers::pi * static_cast<double>(lag) / static_cast<double>(lags)));
+    return weights;
+}
+
+double variance_of_sum(std::span<const double> off, std::span<const double> weights) {
+    const auto covariance = [off](std::size_t lag) {
+        double sum = 0;
+        for (std::size_t i = 0; i + lag < off.size(); ++i) sum += off[i] * off[i + lag];
+        return sum;
+    };
+    double variance = covariance(0);
+    const double least = least_variance * variance;
+    for (std::size_t k = 0; k < weights.size(); ++k) variance += weights[k] * covariance(k + 1);
+    // NaN stays.
+    return variance < least ? least : variance;
+}
+
 Exponents standard_error(const ExponentHistory& h, double start) {
     if (h.tau.size() < least_entries || !(h.tau.back() > start)) return {nan, nan, nan, nan};
     const std::size_t stride = h.coarse_stride(), last = (h.tau.size() - 1) / stride * stride;
     const double length = h.tau[last] - start;
-    // Tukey and Hanning's estimate of the spectrum of the growth at frequency zero, times the
-    // length: the variance of the sum.
-    std::array<double, error_lags + 1> weights;
-    double taken = 1;
-    for (int lag = 0; lag <= error_lags; ++lag) {
-        weights[lag] = 0.5 * (1 + elementary::cos(std::numbers::pi * lag / error_lags));
-        if (lag > 0) taken += 2 * weights[lag];
-    }
+    const std::vector<double> weights = lag_weights(error_lags);
+    const double taken = std::accumulate(weights.begin(), weights.end(), 1.0);
     // The mean that is removed takes its share of white growth's variance, and about half of it
     // where growth goes up and down.
     const double left = 1 - 0.5 * taken / error_steps;
@@ -72,16 +89,8 @@ Exponents standard_error(const ExponentHistory& h, double start) {
         std::array<double, error_steps> off;
         for (int i = 0; i < error_steps; ++i)
             off[i] = sums[i + 1] - sums[i] - sums[error_steps] / error_steps;
-        auto covariance = [&](int lag) {
-            double sum = 0;
-            for (int i = 0; i + lag < error_steps; ++i) sum += off[i] * off[i + lag];
-            return sum;
-        };
-        double variance = covariance(0);
-        const double least = least_variance * variance;
-        for (int lag = 1; lag <= error_lags; ++lag) variance += 2 * weights[lag] * covariance(lag);
-        error[k] =
-            std::isfinite(variance) ? std::sqrt(std::max(variance, least) / left) / length : nan;
+        const double variance = variance_of_sum(off, weights);
+        error[k] = std::isfinite(variance) ? std::sqrt(variance / left) / length : nan;
     }
     return error;
 }
