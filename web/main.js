@@ -1,15 +1,20 @@
 // The page: its tabs, and the address, which names the tab and holds its request. So a link shows
 // the same, and Back leads back.
-import {get} from "./api.js";
-import {$} from "./dom.js";
-import * as measurement from "./measurement.js";
-import {showModel} from "./model.js";
-import * as simulation from "./simulation.js";
-import * as sweep from "./sweep.js";
-import * as tabs from "./tabs.js";
+import {get} from "./shared/api.js";
+import {$} from "./shared/dom.js";
+import * as tabs from "./shared/tabs.js";
+import * as simulation from "./simulation/simulation.js";
 
-const panes = {simulation, sweep, measurement};
+// A tab is a module with start(tables, changed, simulate), open(query), query() and redraw(); but
+// for the first one it is loaded when one goes there.
+const modules = {
+  simulation: () => simulation,
+  sweep: () => import("./sweep/sweep.js"),
+  measurement: () => import("./measurement/measurement.js"),
+};
+const panes = {};
 const scrolled = {};
+let tables;
 let current = null;
 
 function address(name, query) {
@@ -25,13 +30,24 @@ function show(name) {
   scrollTo(0, scrolled[name] ?? 0);
 }
 
+/** A tab, once it is there. */
+async function pane(name) {
+  if (!panes[name]) {
+    const module = await modules[name]();
+    if (!panes[name]) module.start(tables, keep(name), simulatePoint);
+    panes[name] = module;
+  }
+  return panes[name];
+}
+
 /** Follows the address. */
-function follow() {
+async function follow() {
   const query = new URLSearchParams(location.search);
-  const name = Object.hasOwn(panes, query.get("tab")) ? query.get("tab") : "simulation";
-  query.delete("tab");
+  const named = query.get("tab");
+  const name = Object.hasOwn(modules, named) ? named : "simulation";
+  if (name === named) query.delete("tab"); // another is said to be unknown
   show(name);
-  return panes[name].open(query);
+  return (await pane(name)).open(query);
 }
 
 function go(name, query) {
@@ -39,9 +55,28 @@ function go(name, query) {
   return follow();
 }
 
-const keep = (name) => () => {
-  if (current === name) history.replaceState(null, "", address(name, panes[name].query()));
-};
+const together = 800; // ms within which edits are one for Back
+let edited = -Infinity;
+let writing = 0;
+
+/**
+ * A tab has another query. edit: Back leads to the one before, unless that is just as new; soon:
+ * more are to come.
+ */
+const keep =
+  (name) =>
+  ({edit = false, soon = false} = {}) => {
+    if (current !== name) return;
+    clearTimeout(writing);
+    const write = (way) => history[way](null, "", address(name, panes[name].query()));
+    const now = performance.now();
+    const apart = edit && now - edited > together;
+    if (edit) edited = now;
+    if (apart) write("pushState");
+    else if (soon)
+      writing = setTimeout(write, 200, "replaceState"); // browsers count them
+    else write("replaceState");
+  };
 
 /** The run of one of a sweep's points, from its first impacts on. */
 function simulatePoint(fields) {
@@ -50,24 +85,18 @@ function simulatePoint(fields) {
 }
 
 async function start() {
-  const [fields, {presets}, version] = await Promise.all([
-    get("v1/parameters"),
-    get("v1/presets"),
-    get("version"),
-  ]);
-  $("version").textContent = `vines ${version.version}`;
-  simulation.start(fields.fields, presets, keep("simulation"));
-  sweep.start(fields, keep("sweep"), simulatePoint);
-  measurement.start(fields.identify_fields, presets, keep("measurement"));
-  showModel().catch(() => {}); // the equations are there without the sketch
+  const [fields, {presets}] = await Promise.all([get("v1/parameters"), get("v1/presets")]);
+  tables = {...fields, presets};
   tabs.listen((name) => {
-    if (name !== current) go(name, panes[name].query() ?? "");
+    if (name !== current) go(name, panes[name]?.query() ?? "");
   });
   addEventListener("popstate", follow);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
-    for (const pane of Object.values(panes)) pane.redraw();
+    for (const module of Object.values(panes)) module.redraw();
   });
   await follow();
+  const {version} = await get("version");
+  $("version").textContent = `vines ${version}`;
 }
 
 start().catch((error) => {

@@ -7,11 +7,14 @@
 namespace vines::http {
 
 struct Asset {
-    std::string_view path;  ///< as requested: "/", "/main.js", ...
+    /// "/", or one in a folder that is named by the content of all of them: what it names never
+    /// changes.
+    std::string_view path;
     std::string_view content;
+    std::string_view gzipped;  ///< the same, compressed
 };
 
-/// Generated at build from web/ by embed.cmake.
+/// Generated at build from web/ by embed.mjs.
 std::span<const Asset> assets();
 
 }  // namespace vines::http

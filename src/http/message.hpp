@@ -30,6 +30,8 @@ struct Response {
     int status = 200;
     std::string content_type = "application/json";
     std::string body = {};
+    std::string_view gzipped = {};  ///< the body compressed, where that is there already
+    bool immutable = false;         ///< whether what its path names never changes
     std::vector<std::pair<std::string, std::string>> headers = {};
     /// In place of a body: writes it and returns at its end, or before that with false, which
     /// breaks the connection off, so that nobody takes a part for the whole.

@@ -1,10 +1,13 @@
 #include "http/page.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string_view>
+#include <utility>
 
+#include "api/problem.hpp"
 #include "http/assets.hpp"
 
 namespace vines::http {
@@ -26,33 +29,55 @@ std::string content_type_of(std::string_view path) {
     return "text/html; charset=utf-8";
 }
 
-std::string content_of(const Asset& asset, const std::string& web_dir) {
-    if (!web_dir.empty()) {
-        const std::string name = asset.path == "/" ? "/index.html" : std::string(asset.path);
-        std::ifstream file(web_dir + name, std::ios::binary);
-        if (file) return {std::istreambuf_iterator<char>(file), {}};
+Response file_response(std::string_view path, std::string body) {
+    return {
+        .content_type = content_type_of(path),
+        .body = std::move(body),
+        .headers = {
+            {"Content-Security-Policy", page_policy},
+            {"X-Content-Type-Options", "nosniff"},
+            {"Referrer-Policy", "no-referrer"}}};
+}
+
+std::vector<Route> embedded_routes() {
+    std::vector<Route> routes;
+    for (const Asset& asset : assets())
+        routes.push_back(
+            {.method = "GET", .path = std::string(asset.path), .answer = [asset](const Request&) {
+                 Response response = file_response(asset.path, std::string(asset.content));
+                 response.gzipped = asset.gzipped;
+                 response.immutable = asset.path != "/";
+                 return response;
+             }});
+    return routes;
+}
+
+/// Of a file as it is whenever it is asked for.
+Route file_route(const std::filesystem::path& file, const std::string& path) {
+    return {.method = "GET", .path = path, .answer = [file, path](const Request&) {
+                std::ifstream in(file, std::ios::binary);
+                if (!in) throw api::Problem(404, "there is no " + path);
+                return file_response(
+                    path == "/" ? "index.html" : path,
+                    std::string(std::istreambuf_iterator<char>(in), {}));
+            }};
+}
+
+std::vector<Route> folder_routes(const std::filesystem::path& folder) {
+    std::vector<Route> routes{file_route(folder / "index.html", "/")};
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+        const std::filesystem::path ending = entry.path().extension();
+        if (ending != ".js" && ending != ".css" && ending != ".svg") continue;
+        const std::string name = entry.path().lexically_relative(folder).generic_string();
+        routes.push_back(file_route(entry.path(), "/" + name));
     }
-    return std::string(asset.content);
+    return routes;
 }
 
 }  // namespace
 
 std::vector<Route> page_routes(const std::string& web_dir) {
-    std::vector<Route> routes;
-    for (const Asset& asset : assets())
-        routes.push_back(
-            {.method = "GET",
-             .path = std::string(asset.path),
-             .answer = [asset, web_dir](const Request&) {
-                 return Response{
-                     .content_type = content_type_of(asset.path),
-                     .body = content_of(asset, web_dir),
-                     .headers = {
-                         {"Content-Security-Policy", page_policy},
-                         {"X-Content-Type-Options", "nosniff"},
-                         {"Referrer-Policy", "no-referrer"}}};
-             }});
-    return routes;
+    return web_dir.empty() ? embedded_routes() : folder_routes(web_dir);
 }
 
 }  // namespace vines::http

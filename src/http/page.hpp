@@ -8,8 +8,8 @@
 
 namespace vines::http {
 
-/// With a folder `web_dir` its files come from there, so that a change shows without a build; those
-/// that it does not have (uPlot's lie elsewhere), and all without a folder, from the program.
+/// Those compiled in; with a folder `web_dir` its scripts, style sheets and drawings as they are
+/// there, so that a change shows without a build.
 std::vector<Route> page_routes(const std::string& web_dir);
 
 }  // namespace vines::http

@@ -52,16 +52,19 @@ void send(const httplib::Request& request, httplib::Response& out, Response resp
     if (request.method == "GET" && response.status == 200) {
         const std::string tag = entity_tag(response.body);
         out.set_header("ETag", tag);
-        out.set_header("Cache-Control", "no-cache");  // ask again, with the tag
+        // Kept for a year, or asked for again, with the tag.
+        out.set_header(
+            "Cache-Control", response.immutable ? "max-age=31536000, immutable" : "no-cache");
         if (request.get_header_value("If-None-Match").find(tag) != std::string::npos) {
             out.status = 304;
             return;
         }
     }
-    if (response.body.size() >= compress_from) {
+    if (response.body.size() >= compress_from || !response.gzipped.empty()) {
         out.set_header("Vary", "Accept-Encoding");
         if (accepts_gzip(request.get_header_value("Accept-Encoding"))) {
-            response.body = gzip(response.body);
+            response.body =
+                response.gzipped.empty() ? gzip(response.body) : std::string(response.gzipped);
             out.set_header("Content-Encoding", "gzip");
         }
     }

@@ -7,9 +7,13 @@ import {join} from "node:path";
 const require = createRequire(new URL("../../web/package.json", import.meta.url));
 const {chromium} = require("playwright-core");
 
-/** Chromium now and then calls a request aborted whose stream a script has read to its end. */
-const readAsStream = (request) =>
-  request.url().endsWith("/v1/sweep") && request.failure().errorText === "net::ERR_ABORTED";
+/**
+ * A page breaks off what a newer input has overtaken. (And Chromium now and then calls a request
+ * aborted whose stream a script has read to its end.)
+ */
+const brokenOff = (request) =>
+  /\/v1\/(simulate|sweep)$/.test(request.url()) &&
+  request.failure().errorText === "net::ERR_ABORTED";
 
 /**
  * Chromium with a profile of its own; what its pages write to the console as errors, and what they
@@ -38,8 +42,7 @@ export async function startBrowser() {
     });
     page.on("pageerror", (error) => complaints.push(String(error)));
     page.on("requestfailed", (request) => {
-      if (!readAsStream(request))
-        complaints.push(`${request.url()}: ${request.failure().errorText}`);
+      if (!brokenOff(request)) complaints.push(`${request.url()}: ${request.failure().errorText}`);
     });
   });
   const stop = async () => {

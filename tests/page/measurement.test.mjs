@@ -1,0 +1,304 @@
+// The tab of measurements in real Chromium.
+import assert from "node:assert/strict";
+import {test} from "node:test";
+import {measured} from "../record.mjs";
+import {drawn, identified, open} from "./browser.mjs";
+import {
+  beyond,
+  browser,
+  colours,
+  downloaded,
+  fits,
+  narrow,
+  pixels,
+  service,
+  visit,
+} from "./support.mjs";
+
+const asFile = (text, name = "record.csv", encoding = "utf8") => ({
+  name,
+  mimeType: "text/csv",
+  buffer: Buffer.from(text, encoding),
+});
+
+/** A page that has identified a record. */
+async function identify(text, query = "", options = {}) {
+  const page = await visit(`?tab=measurement${query}`, options);
+  await page.setInputFiles("#measure-file", asFile(text));
+  await page.click("#measure-run");
+  await identified(page, 1);
+  return page;
+}
+
+const records = {};
+/** Of 6 s: 68 impacts, too few to be called regular; of 12 s they are enough. */
+async function regular(seconds = 6) {
+  records[seconds] ??= await measured(service.url, "fig15", seconds);
+  return records[seconds];
+}
+const measuredCanvases = [
+  "a canvas",
+  "x canvas",
+  "qr canvas",
+  "raw canvas",
+  "R canvas",
+  "steps canvas",
+  "portrait",
+  "section",
+].map((name) => `#plot-measured-${name}`);
+const rows = (page) =>
+  page.$$eval("#measure-impacts tr", (list) =>
+    list.map((row) =>
+      [...row.cells].map((cell) => cell.querySelector("input")?.value ?? cell.textContent),
+    ),
+  );
+
+test("a record shows itself when it is chosen; identified, its impacts, section, exponents and verdict", async () => {
+  const page = await visit("?tab=measurement&preset=fig15");
+  await page.setInputFiles("#measure-file", asFile(await regular(12)));
+  await page.waitForSelector("#plot-measured-a canvas");
+  assert.equal(
+    await pixels(page, "#plot-measured-a canvas", "plus"),
+    0,
+    "no impacts are known yet",
+  );
+  await page.click("#measure-run");
+  await identified(page, 1);
+  for (const canvas of measuredCanvases) assert.ok((await colours(page, canvas)) > 3, canvas);
+  for (const name of ["plus", "minus"])
+    for (const plot of ["a canvas", "x canvas", "section"])
+      assert.ok((await pixels(page, `#plot-measured-${plot}`, name)) > 20, `${plot}: ${name}`);
+  const summary = await page.textContent("#measure-summary");
+  assert.match(summary, /verdictregular the slope's 90 % interval lies below/);
+  assert.match(summary, /impacts\d+ 0 left out/);
+  assert.match(summary, /R at \+b0\.8[45]\d+ ± 0\.000\d+ \d+ impacts/);
+  assert.match(summary, /b fitted\d\.\d+ ± 0\.0\d+ mm given 9 mm, agrees/);
+  assert.match(summary, /forcing G(10|9\.99\d*|10\.0\d) mm/);
+  const fitted = await page.textContent("#measure-fitted");
+  assert.match(fitted, /frequency of the forcing8\.349\d* ± 0\.0000\d+ Hz/);
+  assert.match(fitted, /damping ratio ζ0\.006\d*, as given/);
+  assert.match(fitted, /half clearance b\d\.\d+ ± 0\.0\d+ mm/);
+  assert.equal((await rows(page)).length, Number(summary.match(/impacts(\d+) 0 left/)[1]));
+  const file = await downloaded(page, "#measure-download");
+  assert.equal(JSON.parse(file.text).verdict, "regular");
+  assert.equal(file.name, "record-identified.json");
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("a spreadsheet's file with a preamble, a row of units and decimal commas is the same record", async () => {
+  const g = 9.80665;
+  const [, ...samples] = (await regular()).trim().split("\n");
+  const inUnits = samples.map((line) => {
+    const [t, x, a] = line.split(",").map(Number);
+    return [1e3 * t, 1e3 * x, a / g].join(";").replaceAll(".", ",");
+  });
+  const above = [
+    "\ufeffsep=;",
+    "Gerät;LMS 7;",
+    "",
+    "Time;Displacement;Acceleration 1;",
+    "ms;mm;[g];",
+  ];
+  const text = [...above, ...inUnits.map((line) => `${line};`), ";;"].join("\r\n");
+  const page = await visit("?tab=measurement&preset=fig15");
+  await page.setInputFiles("#measure-file", asFile(text, "record.txt", "utf16le"));
+  await page.waitForSelector("#plot-measured-a canvas");
+  assert.match(await page.textContent("#measure-about"), new RegExp(`, ${samples.length} samples`));
+  await page.click("#measure-run");
+  await identified(page, 1);
+  assert.match(await page.textContent("#measure-summary"), /impacts68 0 left out/);
+  for (const name of ["a canvas", "x canvas"])
+    assert.ok((await pixels(page, `#plot-measured-${name}`, "plus")) > 20, name);
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("the form's link holds its fields, another tab keeps the record, and other units and separators draw the same", async () => {
+  const text = (await regular(12))
+    .replace(/^.*\n/, "Zeit;Weg;a\n")
+    .replace(/(?<=\d),/g, ";")
+    .replaceAll(".", ",");
+  const page = await visit("?tab=measurement&preset=fig15");
+  await page.setInputFiles("#measure-file", asFile(text));
+  await page.click("#measure-group-record > summary");
+  await page.fill("[aria-describedby='measure-error-time_column']", "zeit");
+  await page.fill("[aria-describedby='measure-error-displacement_column']", "Weg");
+  await page.fill("[aria-describedby='measure-error-threshold']", "7");
+  await page.click("#measure-run");
+  await identified(page, 1);
+  assert.match(
+    page.url(),
+    /tab=measurement&preset=fig15&time_column=zeit&displacement_column=Weg&threshold=7$/,
+  );
+  assert.match(await page.textContent("#measure-summary"), /verdictregular/);
+  for (const name of ["a canvas", "x canvas"])
+    assert.ok((await pixels(page, `#plot-measured-${name}`, "plus")) > 20, name);
+  await page.click("#tab-simulation");
+  await drawn(page, 1);
+  await page.goBack();
+  await page.waitForSelector("#plot-measured-a canvas");
+  assert.equal(await page.getAttribute("#measure-results", "data-done"), "1");
+  const again = await open(browser.context, page.url());
+  assert.equal(
+    await again.inputValue("[aria-describedby='measure-error-displacement_column']"),
+    "Weg",
+  );
+  assert.equal(
+    await again.inputValue("#measure-group-system label:has-text('b, m') input"),
+    "0.009",
+  );
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+  await again.close();
+});
+
+/** Adds the impact whose spike is at time t (s) of a record of 6 s: zooms there, and clicks on it. */
+async function addBySpike(page, t) {
+  const listed = (await rows(page)).length;
+  const over = page.locator("#plot-measured-a .over");
+  await page.click("#measure-add-at");
+  await over.scrollIntoViewIfNeeded();
+  const box = await over.boundingBox();
+  const at = (share) => box.x + box.width * share;
+  await page.mouse.move(at(t / 6 - 0.02), box.y + 40);
+  await page.mouse.down();
+  await page.mouse.move(at(t / 6 + 0.02), box.y + 40, {steps: 5});
+  await page.mouse.up();
+  await page.waitForTimeout(200);
+  assert.equal((await rows(page)).length, listed, "the end of a drag adds nothing");
+  const timeAt = async (share) => {
+    await page.mouse.move(at(share), box.y + 60);
+    await page.waitForTimeout(50);
+    return Number(await page.getAttribute("#plot-measured-a .cursor", "data-at"));
+  };
+  const left = await timeAt(0.01);
+  const right = await timeAt(0.99); // a drag ends on whole pixels
+  await page.mouse.click(at(0.01 + (0.98 * (t - left)) / (right - left)), box.y + 60);
+  await page.waitForSelector("#measure-impacts tr.edited");
+}
+
+test("the list is edited by keyboard and by the plot; without one of its impacts the neighbours are inconsistent", async () => {
+  const page = await identify(await regular(), "&preset=fig15");
+  const before = await rows(page);
+  assert.ok(await page.isDisabled("#measure-again"));
+  await page.focus("#measure-impacts tr:nth-child(31) button");
+  await page.keyboard.press("Enter");
+  assert.equal((await rows(page))[30][5], "removed");
+  assert.equal(await page.evaluate(() => document.activeElement.textContent), "Restore");
+  await page.click("#measure-again");
+  await identified(page, 2);
+  const after = await rows(page);
+  assert.equal(after.length, before.length - 1);
+  assert.match(
+    await page.textContent("#measure-warnings"),
+    /\d of \d+ impacts are inconsistent and left out/,
+  );
+  assert.match(after[30][5], /missing/);
+  const crosses = await pixels(page, "#plot-measured-a canvas", "wall");
+  assert.ok(crosses > 10, "left out impacts have marks of their own");
+  await page.check("#measure-doubtful");
+  assert.ok((await rows(page)).length < 10);
+  await page.uncheck("#measure-doubtful");
+  const t = Number(before[30][1]);
+  await addBySpike(page, t);
+  const added = (await rows(page)).find((row) => row[5] === "added");
+  assert.ok(Math.abs(added[1] - t) < 0.002, `${added[1]} beside ${t}`);
+  await page.click("#measure-again");
+  await identified(page, 3);
+  assert.equal(await page.textContent("#measure-warnings"), "");
+  // Move one, by its field, and take all back.
+  const fifth = "#measure-impacts tr:nth-child(5) input";
+  await page.fill(fifth, "1e9");
+  await page.keyboard.press("Enter");
+  assert.equal(await page.getAttribute(fifth, "aria-invalid"), "true");
+  await page.fill(fifth, String(Number(before[4][1]) + 0.001));
+  await page.keyboard.press("Enter");
+  assert.match((await rows(page))[4][5], /moved from/);
+  await page.click("#measure-reset");
+  const times = (list) => list.map((row) => Number(row[1]).toFixed(3));
+  assert.deepEqual(times(await rows(page)), times(before));
+  await page.fill("#measure-add input", "0.5");
+  await page.keyboard.press("Enter");
+  assert.ok((await rows(page)).some((row) => row[5] === "added"));
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("of a record without acceleration the impacts are found, too, by the displacement's kinks", async () => {
+  const page = await identify(await regular(), "&preset=fig15");
+  const times = (await rows(page)).map((row) => Number(row[1])).filter((t) => t < 2.4);
+  const lines = (await regular()).split("\n").slice(0, 5001);
+  const withoutIt = lines.map((line) => line.replace(/,[^,]*$/, ""));
+  await page.setInputFiles("#measure-file", asFile(withoutIt.join("\n")));
+  await page.waitForFunction(() =>
+    document.getElementById("measure-about").textContent.includes("5000 samples"),
+  );
+  await page.click("#measure-run");
+  await identified(page, 2);
+  const found = (await rows(page)).map((row) => Number(row[1])).filter((t) => t < 2.4);
+  assert.equal(found.length, times.length);
+  for (const [k, t] of times.entries()) assert.ok(Math.abs(found[k] - t) < 0.001, `${t}`);
+  assert.match(await page.textContent("#measure-warnings"), /without an acceleration/);
+  assert.equal(await page.isVisible("#figure-measured-a"), false);
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("a list too long for an address is sent as JSON", async () => {
+  const text = await regular(12);
+  const page = await identify(text, "&preset=fig15");
+  let type;
+  page.on("request", (request) => {
+    if (request.url().includes("/v1/identify")) type = request.headers()["content-type"];
+  });
+  // So many columns of nothing, as long a name, fill the address.
+  await page.click("#measure-group-record > summary");
+  const name = "acceleration_m_s2".padEnd(6100, "x");
+  await page.setInputFiles("#measure-file", asFile(text.replace("acceleration_m_s2", name)));
+  await page.fill("[aria-describedby='measure-error-acceleration_column']", name);
+  await page.click("#measure-run");
+  await identified(page, 2);
+  assert.equal(type, "application/json");
+  assert.match(await page.textContent("#measure-summary"), /verdictregular/);
+  await page.close();
+});
+
+test("what is wrong with a file is shown with its line; what is wrong with a field, at the field", async () => {
+  const page = await visit("?tab=measurement&preset=fig15");
+  await page.click("#measure-run");
+  assert.match(await page.textContent("#measure-message"), /choose a file/);
+  const lines = (await regular()).split("\n");
+  lines[6] = "0.003,abc,1";
+  await page.setInputFiles("#measure-file", asFile(lines.join("\n")));
+  await page.click("#measure-run");
+  await page.waitForSelector("#measure-lines:not([hidden])");
+  assert.equal(
+    await page.textContent("#measure-message"),
+    'line 7, column displacement_m: "abc" is no number',
+  );
+  assert.match(await page.textContent("#measure-lines .at-fault"), /^ +7 {2}0\.003,abc,1\n$/);
+  await page.setInputFiles("#measure-file", asFile(await regular()));
+  assert.equal(await page.isVisible("#measure-lines"), false);
+  const b = page.locator("#measure-group-system label:has-text('b, m') input");
+  await b.fill("-1");
+  await page.click("#measure-run");
+  await page.waitForSelector("#measure-error-b:not(:empty)");
+  await b.fill("0.009");
+  await page.selectOption("#measure-preset", "");
+  await page.click("#measure-run");
+  await page.waitForSelector("#measure-error-m1:not(:empty)");
+  await page.selectOption("#measure-preset", "fig15");
+  await page.click("#measure-run");
+  await identified(page, 1);
+  browser.complaints.length = 0; // Chromium notes each 422 in its console
+  await page.close();
+});
+
+test("on a narrow screen no measurement is wider than the screen", async () => {
+  const page = await identify(await regular(), "&preset=fig15", narrow);
+  assert.ok(await fits(page));
+  const parts = "#panel-measurement :is(canvas, select, figure, input, .scroll, .legend)";
+  assert.deepEqual(await beyond(page, parts, ".scroll td"), []);
+  await page.close();
+});

@@ -1,0 +1,794 @@
+// The tab of simulations in real Chromium, as a visitor uses it.
+import assert from "node:assert/strict";
+import {test} from "node:test";
+import {startService} from "../service.mjs";
+import {drawn, open} from "./browser.mjs";
+import {
+  asked,
+  beyond,
+  browser,
+  cells,
+  cellsByName,
+  colours,
+  fits,
+  hash,
+  input,
+  narrow,
+  origin,
+  pixels,
+  platformQuery,
+  service,
+  unfold,
+  visit,
+} from "./support.mjs";
+
+const overTime = ["x", "relative", "largest", "lambda"];
+const planes = ["section", "manifold"];
+const instrument = [
+  ...overTime.map((name) => `#plot-${name} canvas`),
+  ...planes.map((n) => `#plot-${n}`),
+];
+const wide = {viewport: {width: 1440, height: 900}};
+
+/** A visitor who does not want motion: nothing moves but what one moves oneself. */
+async function still(query = "", options = wide) {
+  const page = await browser.context.newPage();
+  await page.emulateMedia({reducedMotion: "reduce"});
+  await page.setViewportSize(options.viewport);
+  await page.goto(`${service.url}/${query}`);
+  await drawn(page, 1);
+  return page;
+}
+
+const shown = (page) => page.$eval("#results", (node) => Number(node.dataset.shown));
+/** Does something and waits until its run is on the screen, the whole of it. */
+async function after(page, act) {
+  const before = await page.$eval("#results", (node) => Number(node.dataset.done));
+  await act();
+  await drawn(page, before + 1);
+}
+
+const sentence = (page) => page.textContent("#sentence");
+const number = (name) => `#slider-${name}`;
+const range = (name) => `.slider:has(#slider-${name}) input[type=range]`;
+
+/** Turns a slider to a value of its unit. */
+const turn = (page, name, value) =>
+  page.$eval(
+    range(name),
+    (node, value) => {
+      node.value = value;
+      for (const type of ["input", "change"]) node.dispatchEvent(new Event(type, {bubbles: true}));
+    },
+    value,
+  );
+const type = async (page, name, text) => {
+  await page.fill(number(name), text);
+  await page.keyboard.press("Enter");
+};
+
+const marked = (page) =>
+  page.$$eval("figure.about", (figures) =>
+    figures.map((f) => [f.id, f.querySelector(".tag").textContent]),
+  );
+
+const view = (page) => new URL(page.url()).searchParams.get("view")?.split(",").map(Number);
+const viewed = (page) => page.waitForFunction(() => location.search.includes("view="));
+
+async function unfoldDetails(page) {
+  await page.click("#details > summary");
+  await page.waitForFunction(() => document.getElementById("details").dataset.done);
+}
+
+// The first screen.
+
+test("the first thing that a visitor sees is the paper's Fig. 3 on one screen: a sentence, the machine, all plots, the regimes", async () => {
+  const page = await visit("", wide);
+  assert.match(
+    await sentence(page),
+    /^b = 22\.0 mm: strongly modulated \(II\), chaotic\. λ₁ = 0\.\d+ ± 0\.\d+; x at \d\d % of that without the absorber\.$/,
+  );
+  assert.deepEqual(await marked(page), [["figure-x", "Fig. 3"]]);
+  for (const canvas of [...instrument, "#machine"])
+    assert.ok((await colours(page, canvas)) > 3, canvas);
+  await page.waitForFunction(() => document.getElementById("strip").dataset.done);
+  const lowest = await page.$eval(".strip", (node) => node.getBoundingClientRect().bottom);
+  assert.ok(lowest <= 900, `the strip ends at ${lowest}`);
+  for (const regime of ["I", "II", "III", "IV"])
+    assert.ok((await pixels(page, "#strip", `regime-${regime}`)) > 100, regime);
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("the content security policy lets no inline script run", async () => {
+  const policy = (await fetch(service.url)).headers.get("content-security-policy");
+  assert.match(policy, /default-src 'none'/);
+  assert.doesNotMatch(policy, /unsafe/);
+});
+
+test("the page's files are compressed, and kept by a browser as long as they are the same", async () => {
+  const index = await fetch(service.url);
+  assert.equal(index.headers.get("cache-control"), "no-cache");
+  const [, path] = /src="([^"]+)"/.exec(await index.text());
+  const script = await fetch(`${service.url}/${path}`);
+  assert.match(script.headers.get("cache-control"), /immutable/);
+  assert.equal(script.headers.get("content-encoding"), "gzip");
+});
+
+test("each of the presets stays in the address and marks what it is about", async () => {
+  const {presets} = await (await fetch(`${service.url}/v1/presets`)).json();
+  assert.equal(presets.length, 37);
+  const page = await still("?preset=table4");
+  await page.click("#more > summary");
+  for (const {name, source} of presets) {
+    await after(page, () => page.selectOption("#preset", name));
+    assert.equal(new URL(page.url()).search, `?preset=${name}`);
+    const tags = await marked(page);
+    assert.ok(tags.length > 0, name);
+    for (const [, tag] of tags) assert.equal(tag, source.split(",")[0]);
+  }
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("a chip starts from a figure; a parameter that is turned then keeps its name, but is its plot no more", async () => {
+  const page = await still();
+  await after(page, () => page.click("text=III symmetric"));
+  assert.equal(await page.inputValue(number("b")), "15.0");
+  assert.match(await sentence(page), /two symmetric \(III\), stable periodic orbit/);
+  assert.deepEqual(
+    (await marked(page)).map(([id]) => id),
+    ["figure-relative", "figure-lambda", "figure-raw_product"],
+  );
+  await after(page, () => turn(page, "b", 18));
+  assert.match(page.url(), /\?preset=fig11&b=0\.018$/);
+  assert.deepEqual(await marked(page), []);
+  assert.match(await page.textContent("#preset-note"), /Fig\. 11, changed/);
+  await page.close();
+});
+
+// Turning.
+
+test("each slider changes the run at once; the address follows, and Back undoes the edit", async () => {
+  const page = await still("?preset=fig9");
+  const before = await sentence(page);
+  const turned = {b: [16, /b = 16\.0 mm/], R: [0.7, /R = 0\.7/], G: [15, /G = 15\.0 mm/]};
+  Object.assign(turned, {Omega: [0.98, /Ω = 0\.98/], zeta: [0.02, /ζ = 0\.02/]});
+  for (const [name, [value, words]] of Object.entries(turned)) {
+    await after(page, () => turn(page, name, value));
+    assert.match(await sentence(page), words);
+    assert.equal(Number(await page.inputValue(number(name))), value);
+    await page.waitForTimeout(850); // edits that follow each other closely are one
+  }
+  const [query] = [new URL(page.url()).searchParams];
+  assert.equal(query.get("R"), "0.7");
+  assert.equal(query.get("damping"), "closed_form", "the damping stays that of the paper");
+  for (let k = 0; k < 5; ++k) await page.goBack();
+  await page.waitForFunction(
+    (text) => document.getElementById("sentence").textContent === text,
+    before,
+  );
+  assert.equal(new URL(page.url()).search, "?preset=fig9");
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("a number is typed with a point or a comma; what is none, or beyond the range, is said and nothing is lost", async () => {
+  const page = await still("?preset=fig11");
+  await after(page, () => type(page, "b", "18,5"));
+  assert.match(await sentence(page), /^b = 18\.5 mm/);
+  await type(page, "b", "1.8.5");
+  assert.match(await page.textContent("#message"), /Clearance: “1\.8\.5” is no number/);
+  assert.match(await sentence(page), /^b = 18\.5 mm/);
+  await type(page, "b", "-1");
+  await page.waitForSelector("#error-b:not(:empty)");
+  assert.match(await page.textContent("#error-b"), /b must lie in/);
+  assert.ok(await page.$eval("#results", (node) => node.classList.contains("stale")));
+  await after(page, () => type(page, "b", "18"));
+  assert.equal(await page.textContent("#message"), "");
+  assert.ok(!(await page.$eval("#results", (node) => node.classList.contains("stale"))));
+  browser.complaints.length = 0; // Chromium notes each 422 in its console
+  await page.close();
+});
+
+test("the newest input wins: one that comes during a long run is not ignored, and the long one is broken off", async () => {
+  const page = await still("?preset=fig11");
+  await unfold(page);
+  await page.fill(input("tau_end"), "");
+  const runs = asked(page, "/v1/simulate");
+  await page.fill(input("cycles"), "400000");
+  await page.fill(input("max_impacts"), "2000000");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector("#results.stale");
+  assert.match(await page.textContent("#message"), /computing/);
+  await page.fill(input("cycles"), "100");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => !document.querySelector("#results.stale"));
+  assert.equal(runs.filter(({max_impacts: most}) => most === 2000000).length, 2);
+  assert.match(await page.textContent("#moment"), /τ = /);
+  assert.ok((await page.getAttribute("#plot-x", "aria-valuemax")) < 700);
+  browser.complaints.length = 0; // the request that was broken off
+  await page.close();
+});
+
+test("a server that does not answer is said, and asked again until it is there", async () => {
+  const own = await startService();
+  const page = await browser.context.newPage();
+  await page.goto(`${own.url}/?preset=fig11`);
+  await drawn(page, 1);
+  const {port} = new URL(own.url);
+  await own.stop();
+  await turn(page, "b", 20);
+  await page.waitForFunction(() =>
+    /does not answer/.test(document.getElementById("message").textContent),
+  );
+  const again = await startService(["--port", port], {}, false);
+  await page.waitForFunction(() =>
+    /b = 20\.0/.test(document.getElementById("sentence").textContent),
+  );
+  assert.equal(await page.textContent("#message"), "");
+  await page.close();
+  await again.stop();
+  browser.complaints.length = 0; // connections that were refused
+});
+
+test("a fault of a field is shown at the field, and mending it draws again", async () => {
+  const page = await still("?b=0.015&tau_end=300");
+  await unfold(page);
+  await page.fill(input("windows"), "18; 20,abc");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector("#error-windows:not(:empty)");
+  await after(page, async () => {
+    await page.fill(input("windows"), "18,100");
+    await page.keyboard.press("Enter");
+  });
+  assert.equal(await page.textContent("#error-windows"), "");
+  browser.complaints.length = 0; // Chromium notes each 422 in its console
+  await page.close();
+});
+
+test("names in the address that the page does not know are said", async () => {
+  const page = await still("?b=0.018&clearence=3&tau_end=400");
+  assert.match(await page.textContent("#message"), /does not know: "clearence"/);
+  assert.match(await sentence(page), /b = 18\.0 mm/);
+  const other = await still("?preset=fig99");
+  assert.match(await other.textContent("#message"), /"preset=fig99"/);
+  await page.close();
+  await other.close();
+});
+
+// Looking.
+
+const middle = async (page, name) => {
+  const box = await page.locator(`#plot-${name} .over`).boundingBox();
+  return [box.x + box.width / 2, box.y + box.height / 2, box];
+};
+
+test("wheel, drag and keys zoom all plots together; an edit keeps the zoom, the address holds it, Escape shows all", async () => {
+  const page = await still("?preset=fig9");
+  const [x, y, box] = await middle(page, "x");
+  await page.mouse.move(x, y);
+  for (let k = 0; k < 6; ++k) await page.mouse.wheel(0, -200);
+  await viewed(page);
+  const [from, to] = view(page);
+  assert.ok(to - from < 300 && from < 854 && to > 854, `${from} to ${to}`);
+  const pictures = await Promise.all(overTime.map((name) => hash(page, `#plot-${name} canvas`)));
+  await after(page, () => turn(page, "b", 21));
+  assert.deepEqual(view(page), [from, to]);
+  const link = await still(new URL(page.url()).search);
+  assert.deepEqual(view(link), [from, to]);
+  await link.close();
+  await page.mouse.move(box.x + box.width * 0.4, y);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width * 0.6, y, {steps: 4});
+  await page.mouse.up();
+  await page.waitForTimeout(400);
+  const [left, right] = view(page);
+  assert.ok(Math.abs((right - left) / (to - from) - 0.2) < 0.02, "a fifth of it");
+  await page.focus("#plot-x");
+  await page.keyboard.press("Escape");
+  await page.waitForFunction(() => !location.search.includes("view="));
+  await page.keyboard.press("+");
+  await viewed(page);
+  const now = await Promise.all(overTime.map((name) => hash(page, `#plot-${name} canvas`)));
+  for (const [k, picture] of now.entries()) assert.notEqual(picture, pictures[k], overTime[k]);
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("a window that ends before the run is what is in view at first; Escape twice shows the whole run", async () => {
+  const page = await still("?preset=fig3");
+  await page.focus("#plot-x");
+  const before = await hash(page, "#plot-lambda canvas");
+  await page.keyboard.press("Escape");
+  await viewed(page);
+  assert.deepEqual(view(page), [0, 5521.3]);
+  await page.keyboard.press("Escape");
+  await page.waitForFunction(() => !location.search.includes("view="));
+  assert.equal(await hash(page, "#plot-lambda canvas"), before);
+  await page.close();
+});
+
+test("one cursor goes through all plots and the machine, and the nearest impact is ringed in each", async () => {
+  const page = await still("?preset=fig11");
+  const [x, y] = await middle(page, "relative");
+  const machine = await hash(page, "#machine");
+  await page.mouse.move(x, y);
+  assert.match(await page.textContent("#moment"), /^τ = 85\d\.\d · \d+ impacts so far · y′ = /);
+  assert.notEqual(await hash(page, "#machine"), machine);
+  const places = await page.$$eval("#instrument .cursor", (nodes) =>
+    nodes.map((node) => Math.round(node.getBoundingClientRect().left)),
+  );
+  assert.equal(places.length, 4);
+  for (const place of places) assert.ok(Math.abs(place - x) <= 1.5, `${place} of ${x}`);
+  for (const name of [...overTime.slice(0, 3), ...planes])
+    assert.ok(await page.isVisible(`#figure-${name} .ring`), name);
+  assert.match(await page.textContent("#value-x"), /^−?\d.*mm$/);
+  await page.focus("#plot-x");
+  const moment = await page.textContent("#moment");
+  await page.keyboard.press("n");
+  const next = await page.textContent("#moment");
+  const impacts = (text) => Number(/(\d+) impacts/.exec(text)[1]);
+  assert.equal(impacts(next), impacts(moment) + 1, "n goes to the next impact");
+  assert.match(await page.getAttribute("#plot-x", "aria-valuetext"), /^τ = .*mm$/);
+  await page.close();
+});
+
+test("a point of the section that is pointed at is lit in the plots over time", async () => {
+  const page = await still("?preset=fig11");
+  const box = await page.locator("#plot-section").boundingBox();
+  const before = await page.textContent("#moment");
+  // The last half of a periodic run is two points; wherever they are, one comes by them.
+  for (let k = 0; k < 40 && (await page.textContent("#moment")) === before; ++k)
+    for (let l = 0; l < 12; ++l)
+      await page.mouse.move(
+        box.x + (box.width * (k + 0.5)) / 40,
+        box.y + (box.height * (l + 0.5)) / 12,
+      );
+  assert.notEqual(await page.textContent("#moment"), before);
+  assert.ok(await page.isVisible("#figure-x .ring"));
+  await page.close();
+});
+
+test("the machine plays, can be stopped and scrubbed; for one who does not want motion it stands still", async () => {
+  const page = await visit("?preset=fig11", wide);
+  const moment = () => page.textContent("#moment");
+  const first = await moment();
+  await page.waitForFunction(
+    (text) => document.getElementById("moment").textContent !== text,
+    first,
+  );
+  await page.click("#play");
+  const paused = await moment();
+  await page.waitForTimeout(300);
+  assert.equal(await moment(), paused);
+  await page.$eval("#scrub", (node) => {
+    node.value = "500";
+    node.dispatchEvent(new Event("input", {bubbles: true}));
+  });
+  assert.match(await moment(), /^τ = 854\./);
+  const quiet = await still("?preset=fig11");
+  const before = await quiet.textContent("#moment");
+  await quiet.waitForTimeout(300);
+  assert.equal(await quiet.textContent("#moment"), before);
+  assert.equal(await quiet.getAttribute("#play", "aria-label"), "Play");
+  await page.close();
+  await quiet.close();
+});
+
+test("the strip of regimes is a slider: a click and the keys set the parameter; it is that which was turned last", async () => {
+  const page = await still("?preset=fig11");
+  await page.waitForFunction(() => document.getElementById("strip").dataset.done);
+  const box = await page.locator("#strip").boundingBox();
+  await after(page, () => page.mouse.click(box.x + box.width * 0.5, box.y + 40));
+  const b = Number(await page.inputValue(number("b")));
+  assert.ok(b > 21 && b < 26, `b = ${b} mm`);
+  assert.match(
+    await page.textContent("#strip-tip"),
+    /^b = 2\d\.\d mm: II, .*chaotic, λ₁ = 0\.\d+ ± /,
+  );
+  await page.focus("#strip");
+  await after(page, () => page.keyboard.press("ArrowRight"));
+  assert.ok(Number(await page.inputValue(number("b"))) > b);
+  await after(page, () => turn(page, "R", 0.7));
+  await page.waitForFunction(() => Number(document.getElementById("strip").dataset.done) > 1);
+  assert.equal(await page.textContent("#strip-parameter"), "R");
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("no two statements contradict each other: a motion that ends on an orbit is not called chaotic", async () => {
+  const page = await still("?preset=fig12");
+  assert.match(await sentence(page), /two asymmetric \(IV\), stable periodic orbit/);
+  assert.doesNotMatch(await sentence(page), /chaotic\./);
+  await unfoldDetails(page);
+  assert.doesNotMatch(await page.textContent("#details"), /as the paper counted/);
+  await page.close();
+});
+
+test("a run without impacts is drawn and says so", async () => {
+  const page = await still("?b=0.5&tau_end=300");
+  assert.match(await sentence(page), /^b = 500 mm: the mass meets no wall\./);
+  assert.match(await page.textContent("#warnings"), /no exponents/);
+  assert.ok((await colours(page, "#plot-x canvas")) > 3);
+  await unfoldDetails(page);
+  assert.match(await page.textContent("#summary"), /regimenone no impacts/);
+  assert.match(await page.textContent("#summary"), /verdict– .*the free mass meets no wall/);
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("walls with different R leave the manifold's branches out and keep the run's points", async () => {
+  const page = await still("?R_plus=0.6&R_minus=0.7&tau_end=600");
+  assert.match(await page.textContent(".slider:has(#slider-R)"), /0\.6 at \+b and 0\.7 at −b/);
+  assert.ok((await colours(page, "#plot-manifold")) > 3);
+  assert.equal(await pixels(page, "#plot-manifold", "c2"), 0);
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+// The details.
+
+const details = [
+  "acceleration",
+  "z",
+  "qr",
+  "eigenvalues",
+  "raw_product",
+  "J",
+  "M",
+  "T",
+  "differences",
+]
+  .map((name) => `#plot-${name} canvas`)
+  .concat(["portrait", "velocities", "stroboscopic"].map((name) => `#plot-${name}`));
+
+test("the details hold all numbers and plots, are asked for when they are unfolded, and follow the run", async () => {
+  const page = await still();
+  const runs = asked(page, "/v1/simulate");
+  await unfoldDetails(page);
+  assert.deepEqual(
+    runs.map(({include}) => include.includes("series")),
+    [true],
+  );
+  for (const canvas of details) assert.ok((await colours(page, canvas)) > 3, canvas);
+  assert.match(
+    await page.textContent("#summary-title"),
+    /Of the window: τ = 1\d\.\d to 1\d\d\d\.\d, \d+ impacts/,
+  );
+  const summary = await page.textContent("#summary");
+  assert.match(summary, /λ₁ \(qr\)0\.\d{4} ± 0\.\d{4}/);
+  // Or three, where an eigenvalue of the last product comes out as zero.
+  assert.match(summary, /positive exponents \(qr\)1 rounding makes raw_product show [34]/);
+  assert.match(summary, /regimeType II strongly modulated response/);
+  assert.match(summary, /verdictchaotic λ₁ = 0\.\d+ lies \d+\.\d standard errors above zero/);
+  assert.equal(await page.isVisible("#figure-multipliers"), false);
+  await after(page, () => page.click("text=III symmetric"));
+  await page.waitForFunction(() => Number(document.getElementById("details").dataset.done) > 1);
+  const periodic = await page.textContent("#summary");
+  assert.match(periodic, /regimeType III two symmetric impacts per cycle/);
+  assert.match(periodic, /period 1 cycle: 2 impacts, symmetric/);
+  assert.match(await page.textContent("#summary-run"), /stuck phases1/);
+  assert.ok((await pixels(page, "#plot-multipliers", "before")) >= 4 * 25, "four multipliers");
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("a plot of the details zooms with the first screen's", async () => {
+  const page = await still("?b=0.015&tau_end=300");
+  await unfoldDetails(page);
+  const before = await hash(page, "#plot-acceleration canvas");
+  await page.focus("#plot-x");
+  await page.keyboard.press("+");
+  await viewed(page);
+  await page.waitForTimeout(200);
+  assert.notEqual(await hash(page, "#plot-acceleration canvas"), before);
+  await page.close();
+});
+
+test("where the energy goes adds up, and the oscillator is compared with itself without absorber", async () => {
+  const page = await still("?preset=fig11");
+  await unfoldDetails(page);
+  const numbers = async (selector) =>
+    (await page.locator(selector).allTextContents()).map((text) => parseFloat(text));
+  const shares = await numbers("#energy .parts b");
+  assert.equal(shares.length, 3);
+  assert.ok(Math.abs(shares.reduce((a, b) => a + b) - 100) < 1.5, shares.join(" + "));
+  const [rms, without] = await numbers("#energy .amount");
+  assert.ok(rms > 0 && rms < without);
+  await page.close();
+});
+
+test("a free decay is drawn: energy from the start, no amplitude without absorber", async () => {
+  const page = await still("?G=0&x0=0.02&tau_end=600");
+  assert.match(await sentence(page), /free decay, no forcing/);
+  await unfoldDetails(page);
+  assert.match(
+    await page.textContent("#summary"),
+    /verdict– without forcing \(G = 0\) the motion dies out/,
+  );
+  const energy = await page.textContent("#energy");
+  assert.match(energy, /200 mm² there at the start; half is left at τ = \d+/);
+  const left = (part) => `${part} is left at τ = ([\\d.]+) \\(without absorber: τ = ([\\d.]+)\\)`;
+  const decay = new RegExp(`${left("half")}; ${left("a tenth")}`);
+  const times = decay.exec(energy).slice(1).map(Number);
+  assert.ok(times[0] < times[1] && times[2] < times[3], "the absorber shortens the decay");
+  for (const canvas of [...instrument, ...details])
+    assert.ok((await colours(page, canvas)) > 2, canvas);
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("windows are listed with their exponents and verdicts, and the link holds them", async () => {
+  const page = await still("?b=0.022&damping=closed_form&tau_end=1709");
+  await unfold(page);
+  await after(page, async () => {
+    await page.fill(input("windows"), "18.13, 800; 800,1700;");
+    await page.keyboard.press("Enter");
+  });
+  assert.match(page.url(), /windows=18\.13%2C800%3B800%2C1700/);
+  await unfoldDetails(page);
+  const first = await cells(page, "#windows tbody tr");
+  assert.equal(first.length, 2);
+  assert.deepEqual(first[1].slice(0, 2), ["800", "1700"]);
+  assert.match(first[1][3], /^0\.\d{4} ± 0\.\d{4}$/);
+  assert.match(first[1][6], /^−(0\.\d{4}|∞)$/); // a stick may fall in the window
+  assert.match(first[1][7], /chaotic|not decided/);
+  const again = await still(new URL(page.url()).search);
+  await unfoldDetails(again);
+  assert.deepEqual(await cells(again, "#windows tbody tr"), first);
+  assert.equal(await again.inputValue(input("windows")), "18.13, 800; 800, 1700");
+  await page.close();
+  await again.close();
+});
+
+// What the form says of its fields.
+
+test("each field says where its value comes from, and an empty one shows it", async () => {
+  const page = await still();
+  await unfold(page);
+  assert.equal(await origin(page, "b"), "fig3");
+  assert.equal(await origin(page, "tau_end"), "fig3");
+  assert.equal(await origin(page, "epsilon"), "default");
+  assert.equal(await page.getAttribute(input("epsilon"), "placeholder"), "0.00840557");
+  assert.equal(await page.getAttribute(input("R"), "placeholder"), "0.6");
+  await page.fill(input("b"), "0.03");
+  assert.equal(await origin(page, "b"), "", "typed, and no longer the preset's");
+  await after(page, () => page.keyboard.press("Enter"));
+  assert.equal(await origin(page, "b"), "");
+  assert.equal(await page.inputValue("#preset"), "fig3", "the walls are not the system");
+  await unfoldDetails(page);
+  const rows = await cellsByName(page, "#parameters-tables tr");
+  assert.deepEqual(rows.b, ["b", "0.03 m (30 mm)", "given"]);
+  assert.deepEqual(rows.epsilon, ["ε", "0.00840557", "default"]);
+  assert.deepEqual(rows.damping, ["", "closed form", "preset fig3"]);
+  assert.equal(rows.zeta[0], "ζ");
+  await page.close();
+});
+
+test("an emptied field of a preset is not filled again by a link", async () => {
+  const page = await still("?preset=fig3&tau_end=600&window=100,500");
+  assert.match(page.url(), /preset=fig3/);
+  await unfold(page);
+  await after(page, async () => {
+    await page.fill(input("window"), "");
+    await page.keyboard.press("Enter");
+  });
+  assert.doesNotMatch(page.url(), /preset|window/);
+  assert.equal(await page.inputValue("#preset"), "");
+  assert.deepEqual(await marked(page), []);
+  await page.close();
+});
+
+test("a mass typed over a preset takes the place of its system, its damping and its window, and what is missing is said at its field", async () => {
+  const page = await still();
+  await unfold(page);
+  await page.fill(input("m1"), "12");
+  assert.equal(await page.inputValue(input("damping")), "equation_of_motion");
+  assert.equal(await page.inputValue(input("window")), "");
+  assert.match(
+    await page.textContent("#preset-note"),
+    /your own, in place of Fig\. 3; damping is equation_of_motion; window is empty/,
+  );
+  assert.equal(await page.inputValue(input("b")), "0.022", "the rest stays");
+  await page.keyboard.press("Enter");
+  for (const name of ["c1", "k1", "m2", "F", "f"])
+    await page.waitForSelector(`#error-${name}:not(:empty)`);
+  assert.match(await page.textContent("#error-k1"), /k1 \(or f0\) is missing/);
+  browser.complaints.length = 0; // Chromium notes each 422 in its console
+  await page.close();
+});
+
+test("a damping that was chosen stays when masses are typed over the preset; so does a window of one's own", async () => {
+  const page = await still();
+  await unfold(page);
+  await page.selectOption(input("damping"), "equation_of_motion");
+  await page.selectOption(input("damping"), "closed_form");
+  await page.fill(input("window"), "20, 1000");
+  await page.fill(input("epsilon"), "0.01");
+  assert.equal(await page.inputValue(input("damping")), "closed_form");
+  assert.equal(await page.inputValue(input("window")), "20, 1000");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => location.search.includes("epsilon"));
+  assert.match(
+    page.url(),
+    /\?b=0\.022&damping=closed_form&epsilon=0\.01&tau_end=5521\.3&window=20%2C1000/,
+  );
+  await page.close();
+});
+
+test("a reduced field over a preset in SI, and a system over one of Table 1 by a link, mean what the service takes them for", async () => {
+  for (const query of [
+    "preset=fig20&epsilon=0.02",
+    "preset=fig20&Omega=1.01",
+    "preset=fig3&lambda=2",
+    "preset=fig3&b=0.03",
+    "preset=fig20&tau_end=500",
+  ]) {
+    const page = await still(`?${query}`);
+    await unfold(page);
+    assert.equal(new URL(page.url()).search, `?${query}`);
+    const answer = await fetch(`${service.url}/v1/simulate?${query}&include=impacts`);
+    const {parameters} = await answer.json();
+    assert.equal(await page.inputValue(input("damping")), parameters.damping, query);
+    const shownIn = async (name) =>
+      (await page.inputValue(input(name))) || (await page.getAttribute(input(name), "placeholder"));
+    const window = (await shownIn("window")).split(", ").map(Number);
+    assert.deepEqual(window.map(Math.round), parameters.window.map(Math.round), query);
+    await page.close();
+  }
+});
+
+test("of two fields that say the same the one that follows is greyed out and shows its value; reduced fields give way to SI", async () => {
+  const page = await still(`?${platformQuery}&tau_end=300`);
+  await unfold(page);
+  const following = [
+    ["k1", "92853.2", "from f0, m1"],
+    ["c1", "12.6669", "from damping_ratio, m1, f0"],
+    ["m2", "0.12", "from mass_ratio, m1"],
+    ["cycles", "47.7465", "from tau_end"],
+    ["epsilon", "0.01", "from mass_ratio, m1"],
+  ];
+  for (const [name, value, from] of following) {
+    assert.ok(await page.isDisabled(input(name)), name);
+    assert.equal(await page.getAttribute(input(name), "placeholder"), value);
+    assert.equal(await origin(page, name), from);
+  }
+  await page.fill(input("f0"), "");
+  assert.ok(await page.isEnabled(input("k1")));
+  await page.fill(input("k1"), "92853.2");
+  assert.ok(await page.isDisabled(input("f0")));
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => location.search.includes("k1=92853.2"));
+  await page.waitForFunction(
+    (field) => document.querySelector(field).placeholder === "14",
+    input("f0"),
+  );
+  browser.complaints.length = 0; // of a system without k1 and f0
+  await page.close();
+});
+
+test("a system in SI has sliders of its own and is shown in seconds, mm/s, m/s² and J; the switch to tau asks nothing and is remembered, not in the link", async () => {
+  const page = await still(`?${platformQuery}&tau_end=900&windows=100,400`);
+  for (const name of ["F", "f", "c1"]) assert.ok(await page.isVisible(number(name)), name);
+  await unfoldDetails(page);
+  const runs = asked(page, "/v1/simulate");
+  const heads = () => page.textContent("#windows thead");
+  const amounts = () => page.textContent("#energy .parts");
+  assert.match(await page.textContent("#moment"), /^t = .*mm\/s$/);
+  assert.match(
+    await page.textContent("#summary-run"),
+    /impact speed\d+ mm\/s median; at most \d+; impulse 0\.\d+ N s/,
+  );
+  assert.match(await page.textContent("#summary-run"), /peak acceleration\d+ m\/s²/);
+  assert.match(await heads(), /^from \(s\)to \(s\)/);
+  assert.match(await amounts(), /\d+ J/);
+  const seconds = await hash(page, "#plot-velocities");
+  const address = page.url();
+  await page.click("#units >> text=τ");
+  assert.match(await page.textContent("#moment"), /^τ = /);
+  assert.match(await heads(), /^τ from/);
+  assert.match(await amounts(), /mm²/);
+  assert.notEqual(await hash(page, "#plot-velocities"), seconds);
+  assert.equal(runs.length, 0);
+  assert.equal(page.url(), address);
+  const again = await open(browser.context, address);
+  assert.match(await again.textContent("#moment"), /^τ = /);
+  await again.click("#units >> text=mm/s");
+  const reduced = await visit("?b=0.02&tau_end=300");
+  assert.match(await reduced.textContent("#moment"), /^τ = /, "without SI there are no seconds");
+  assert.equal(await reduced.isVisible("#units"), false);
+  assert.deepEqual(browser.complaints, []);
+  for (const p of [page, again, reduced]) await p.close();
+});
+
+test("the slider of a frequency in SI sets f in Hz and keeps the preset; that of the damping makes a system of one's own", async () => {
+  const page = await still("?preset=fig20");
+  await after(page, () => type(page, "f", "8.4"));
+  assert.match(page.url(), /\?preset=fig20&f=8\.4$/);
+  await after(page, () => type(page, "c1", "2"));
+  assert.match(page.url(), /m1=4\.168&k1=11470&c1=2&m2=0\.032&F=/);
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("the system is sketched in the page's colours and its equation written out", async () => {
+  for (const colorScheme of ["light", "dark"]) {
+    const page = await visit("?tau_end=100", {colorScheme, ...wide});
+    await unfoldDetails(page);
+    await page.waitForSelector("#model-sketch svg");
+    const colourOf = (selector) => page.$eval(selector, (node) => getComputedStyle(node).color);
+    assert.equal(await colourOf("#model-sketch svg"), await colourOf("body"), colorScheme);
+    assert.match(
+      (await page.textContent("#figure-model")).replace(/[\s\u2009]+/g, " "),
+      /m1x″ \+ c1x′ \+ k1x = k1F sin 2πft \+ 2πf c1F cos 2πft y″ = 0 while \|x − y\| < b/,
+    );
+    await page.close();
+  }
+});
+
+// Small screens.
+
+for (const width of [390, 360])
+  test(`on a screen of ${width} px there is one plot at a time, what one turns is in a sheet, and nothing is wider than the screen`, async () => {
+    const page = await still("", {viewport: {width, height: 780}});
+    assert.ok(await fits(page));
+    const visible = async () =>
+      page.$$eval("#instrument figure", (list) =>
+        list.filter((f) => f.offsetHeight).map((f) => f.id),
+      );
+    assert.deepEqual(await visible(), ["figure-x"]);
+    const top = await page.$eval("#figure-x", (node) => node.getBoundingClientRect().top);
+    assert.ok(top < 500, `the plot begins at ${top}`);
+    for (const name of [...overTime.slice(1), ...planes]) {
+      await page.click(`#switch [data-plot=${name}]`);
+      assert.deepEqual(await visible(), [`figure-${name}`]);
+      const canvas = planes.includes(name) ? `#plot-${name}` : `#plot-${name} canvas`;
+      await page.waitForTimeout(100);
+      assert.ok((await colours(page, canvas)) > 3, name);
+    }
+    assert.ok(await page.isVisible(number("b")));
+    assert.ok(!(await page.isVisible(number("R"))));
+    await page.click("#sheet");
+    assert.ok(await page.isVisible(number("R")));
+    await page.click("#sheet");
+    await unfoldDetails(page);
+    assert.ok(await fits(page));
+    const parts = "#panel-simulation :is(canvas, svg, figure, td), header *";
+    assert.deepEqual(await beyond(page, parts, ".scroll"), []);
+    await page.close();
+  });
+
+test("fingers: one moves what is in view, two zoom", async () => {
+  const page = await still("?preset=fig9", {viewport: {width: 390, height: 780}});
+  const [x, y] = await middle(page, "x");
+  const touches = await browser.context.newCDPSession(page);
+  const put = (type, ...places) =>
+    touches.send("Input.dispatchTouchEvent", {
+      type,
+      touchPoints: places.map((px, id) => ({x: px, y, id})),
+    });
+  await put("touchStart", x - 20, x + 20);
+  for (let k = 1; k <= 8; ++k) await put("touchMove", x - 20 - 10 * k, x + 20 + 10 * k);
+  await put("touchEnd");
+  await viewed(page);
+  await page.waitForTimeout(300);
+  const [from, to] = view(page);
+  assert.ok(to - from < 700, `${from} to ${to}`);
+  await put("touchStart", x);
+  for (let k = 1; k <= 8; ++k) await put("touchMove", x - 10 * k);
+  await put("touchEnd");
+  await page.waitForTimeout(400);
+  const [left, right] = view(page);
+  assert.ok(left > from && Math.abs(right - left - (to - from)) < 1, `${left} to ${right}`);
+  await page.close();
+});
+
+test("a narrow plot in a closed part is drawn when it gets a width", async () => {
+  const page = await still("?preset=fig11", narrow);
+  assert.equal(await shown(page), 1);
+  await page.setViewportSize({width: 1440, height: 900});
+  await page.waitForTimeout(300);
+  for (const canvas of instrument) assert.ok((await colours(page, canvas)) > 3, canvas);
+  await page.close();
+});

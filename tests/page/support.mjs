@@ -1,0 +1,121 @@
+// What the page's tests share: a service and a real Chromium, and ways to look at what is drawn.
+import {readFile} from "node:fs/promises";
+import {after, before} from "node:test";
+import {startService} from "../service.mjs";
+import {open, startBrowser} from "./browser.mjs";
+
+export let service;
+export let browser;
+before(async () => {
+  service = await startService();
+  browser = await startBrowser();
+});
+after(async () => {
+  await browser.stop();
+  await service.stop();
+});
+
+/** A page of the service, once its first answer is drawn. */
+export const visit = (address = "", options = {}) =>
+  open(browser.context, `${service.url}/${address}`, options);
+export const narrow = {viewport: {width: 390, height: 800}};
+
+/** What of a selection reaches beyond the right edge of the screen, but for `except`. */
+export const beyond = (page, selector, except = null) =>
+  page.$$eval(
+    selector,
+    (nodes, except) => {
+      const reaches = (node) => {
+        const {width, right} = node.getBoundingClientRect();
+        return width && right > innerWidth;
+      };
+      const excepted = (node) => except && node.closest(except);
+      return nodes
+        .filter((node) => reaches(node) && !excepted(node))
+        .map((node) => node.id || node.closest("figure")?.id || node.textContent);
+    },
+    except,
+  );
+export const fits = (page) =>
+  page.evaluate(() => document.documentElement.scrollWidth <= innerWidth);
+
+/** The texts of a table's cells. */
+export const cells = (page, rows) =>
+  page.$$eval(rows, (list) => list.map((row) => [...row.cells].map((cell) => cell.textContent)));
+
+/** The same by the text of the first in each row. */
+export const cellsByName = async (page, rows) =>
+  Object.fromEntries((await cells(page, rows)).map(([name, ...others]) => [name, others]));
+
+/** The file that a click on a link saves. */
+export async function downloaded(page, link) {
+  const [download] = await Promise.all([page.waitForEvent("download"), page.click(link)]);
+  return {name: download.suggestedFilename(), text: await readFile(await download.path(), "utf8")};
+}
+
+/**
+ * Of a canvas: how many colours it shows (an empty one has one), how many pixels have exactly the
+ * one that the style sheet names so, and a hash of all. It is counted in the page, where the pixels
+ * are, and of a copy, because Chromium complains of canvases that are read.
+ */
+const survey = (page, selector, name = "text") =>
+  page.evaluate(
+    ([selector, name]) => {
+      const read = (width, height, draw) => {
+        const copy = new OffscreenCanvas(width, height);
+        const context = copy.getContext("2d", {willReadFrequently: true});
+        draw(context);
+        return new Uint32Array(context.getImageData(0, 0, width, height).data.buffer);
+      };
+      const style = getComputedStyle(document.documentElement);
+      const [wanted] = read(1, 1, (c) => {
+        c.fillStyle = style.getPropertyValue(`--${name}`).trim();
+        c.fillRect(0, 0, 1, 1);
+      });
+      const canvas = document.querySelector(selector);
+      const seen = new Set();
+      let pixels = 0;
+      let hash = 0;
+      for (const pixel of read(canvas.width, canvas.height, (c) => c.drawImage(canvas, 0, 0))) {
+        seen.add(pixel);
+        pixels += pixel === wanted;
+        hash = Math.imul(hash ^ pixel, 0x01000193);
+      }
+      return {colours: seen.size, pixels, hash};
+    },
+    [selector, name],
+  );
+
+export const colours = async (page, selector) => (await survey(page, selector)).colours;
+export const pixels = async (page, selector, name) => (await survey(page, selector, name)).pixels;
+export const hash = async (page, selector) => (await survey(page, selector)).hash;
+
+export const platform = {
+  m1: "12",
+  f0: "14",
+  damping_ratio: ".006",
+  mass_ratio: ".01",
+  F: ".0004",
+  f: "14",
+  b: ".03",
+  R: ".4",
+};
+export const platformQuery = String(new URLSearchParams(platform));
+
+/** Counts the requests of a page to a route. */
+export function asked(page, route) {
+  const requests = [];
+  page.on("request", (request) => {
+    if (request.url().endsWith(route)) requests.push(request.postDataJSON());
+  });
+  return requests;
+}
+
+export const input = (name) => `#fields [aria-describedby='error-${name}']`;
+export const origin = (page, name) => page.textContent(`#fields .field-${name} .origin`);
+
+/** Opens the form's groups. */
+export async function unfold(page) {
+  await page.click("#more > summary");
+  for (const part of await page.$$("#fields details:not([open]) > summary")) await part.click();
+}

@@ -1,0 +1,50 @@
+// The exponents of an estimator as lines of a plot.
+import {short} from "./numbers.js";
+
+const names = ["lambda1", "lambda2", "lambda3", "lambda4"];
+// Told apart by more than their colour.
+const styles = [
+  {colour: "c1", width: 2},
+  {colour: "c2", width: 1.3},
+  {colour: "c3", width: 1.3, dash: [7, 3]},
+  {colour: "c4", width: 1.3, dash: [2, 3]},
+];
+
+const absent = (status) => (status === "minus_infinity" ? "−∞" : "");
+
+/**
+ * {series, columns} of a history: the four exponents and, where it has one, its rounding floor. An
+ * exponent that is minus infinity has no line, but a word.
+ */
+export function exponentSeries(history, status = []) {
+  const series = styles.map((style, k) => ({
+    ...style,
+    label: `λ${"₁₂₃₄"[k]}`,
+    text: (v) => (v === null ? absent(status[k]) : short(v)),
+  }));
+  const columns = names.map((name) => history?.[name]);
+  if (history?.rounding_floor) {
+    series.push({label: "rounding floor", colour: "soft", dash: [5, 4]});
+    columns.push(history.rounding_floor);
+  }
+  return {series, columns};
+}
+
+/**
+ * They differ by little once they have settled: the range that shows that, and what led there
+ * leaves it.
+ */
+export function exponentRange(histories) {
+  const values = [0];
+  for (const history of histories) {
+    if (!history) continue;
+    const from = Math.floor(history.tau.length / 4);
+    for (const name of names)
+      for (const v of history[name].slice(from)) if (v !== null) values.push(v);
+  }
+  values.sort((a, b) => a - b);
+  const low = values[Math.floor(values.length * 0.01)];
+  const high = values[Math.ceil(values.length * 0.99) - 1];
+  const margin = (high - low || 0.1) * 0.15;
+  return [low - margin, high + margin];
+}

@@ -1,0 +1,85 @@
+// One computation at a time, of the newest request: the others are broken off or never begin.
+
+const patience = 120; // ms after which what is shown is marked as that of another request
+const again = 2; // s after which a server that does not answer is asked again
+
+const sleep = (seconds, signal) =>
+  new Promise((resolve, reject) => {
+    const timer = setTimeout(resolve, seconds * 1000);
+    const stop = () => {
+      clearTimeout(timer);
+      reject(signal.reason);
+    };
+    signal.addEventListener("abort", stop, {once: true});
+  });
+
+export class Job {
+  /**
+   * ask(request, signal): the answer, as a promise; show(answer, request, ms); fail(error, request);
+   * busy(is): it computes for longer than a moment, or no longer; unreachable(seconds): there is no
+   * server, it is asked again after so long.
+   */
+  constructor(parts) {
+    Object.assign(this, parts);
+    this.running = null;
+    this.next = null;
+  }
+
+  /**
+   * hasty: one of many that come while a slider is dragged. It lets the one before it come to its
+   * end, so that something is seen on the way.
+   */
+  start(request, {hasty = false} = {}) {
+    const same = JSON.stringify(request) === this.running?.text;
+    if (same && !this.next) return;
+    this.next = {request};
+    if (this.running && !(hasty && this.running.answers)) this.running.abort.abort();
+    else if (!this.running) this.run();
+  }
+
+  cancel() {
+    this.next = null;
+    this.running?.abort.abort();
+  }
+
+  async run() {
+    while (this.next) {
+      const {request} = this.next;
+      this.next = null;
+      await this.one(request);
+    }
+  }
+
+  async one(request) {
+    const abort = new AbortController();
+    this.running = {abort, answers: true, text: JSON.stringify(request)};
+    const late = setTimeout(() => this.busy(true), patience);
+    const began = performance.now();
+    let cancelled = false;
+    try {
+      const answer = await this.answer(request, abort.signal);
+      if (!abort.signal.aborted) this.show(answer, request, performance.now() - began);
+    } catch (error) {
+      if (!abort.signal.aborted) this.fail(error, request);
+      else cancelled = !this.next;
+    } finally {
+      clearTimeout(late);
+      this.running = null;
+      if (!this.next) this.busy(false, cancelled);
+    }
+  }
+
+  /** As long as there is no server it is asked again. */
+  async answer(request, signal) {
+    for (;;) {
+      try {
+        return await this.ask(request, signal);
+      } catch (error) {
+        if (signal.aborted || !(error instanceof TypeError)) throw error; // fetch's, for no answer
+        this.running.answers = false;
+        this.unreachable(again);
+        await sleep(again, signal);
+      }
+    }
+  }
+}

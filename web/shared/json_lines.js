@@ -1,0 +1,24 @@
+// A stream of JSON lines.
+
+/**
+ * The lines of a stream of JSON lines as {text, value}; a line may lie across chunks, and a
+ * character, too.
+ */
+export async function* jsonLines(stream) {
+  const reader = stream.getReader();
+  const decoder = new TextDecoder();
+  let rest = "";
+  let ended = false;
+  try {
+    while (!ended) {
+      const {done, value} = await reader.read();
+      const more = done ? decoder.decode() : decoder.decode(value, {stream: true});
+      const texts = `${rest}${more}`.split("\n");
+      rest = texts.pop();
+      for (const text of texts) if (text) yield {text, value: JSON.parse(text)};
+      ended = done; // what has no end of line then is half a line
+    }
+  } finally {
+    if (!ended) reader.cancel().catch(() => {});
+  }
+}

@@ -1,0 +1,25 @@
+// Where an axis has its labels.
+
+/** Round steps: 1, 2 or 5 times a power of ten, about `count` of them. */
+export function ticks(min, max, count) {
+  const raw = (max - min) / count;
+  const power = 10 ** Math.floor(Math.log10(raw));
+  const step = power * [1, 2, 5, 10].find((m) => m * power >= raw);
+  const list = [];
+  for (let k = Math.ceil(min / step); k * step <= max; ++k) list.push(k * step);
+  return list;
+}
+
+/**
+ * Those of a logarithmic axis: powers of ten (not all, if there are many), and 2 and 5 between them
+ * if there are few.
+ */
+export function logTicks(min, max) {
+  const from = Math.floor(Math.log10(min));
+  const to = Math.ceil(Math.log10(max));
+  const step = Math.ceil((to - from) / 8);
+  const factors = to - from < 4 ? [1, 2, 5] : [1];
+  const list = [];
+  for (let k = from; k <= to; k += step) for (const m of factors) list.push(m * 10 ** k);
+  return list.filter((v) => v >= min && v <= max);
+}

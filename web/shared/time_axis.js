@@ -1,0 +1,81 @@
+// What plots over the same time share: how far it reaches, the part that is in view, and one cursor.
+
+const closest = 1e-9; // of the whole: as far as one can zoom in
+
+export class TimeAxis {
+  constructor() {
+    this.whole = [0, 1];
+    this.view = [0, 1];
+    this.home = [0, 1];
+    this.cursor = null;
+    this.viewers = new Set();
+    this.pointers = new Set();
+  }
+
+  /** f(): called when another part is in view. */
+  onView(f) {
+    this.viewers.add(f);
+  }
+
+  /** f(by): called when the cursor is elsewhere; by: "pointer", "key", "play", ... */
+  onCursor(f) {
+    this.pointers.add(f);
+  }
+
+  get zoomed() {
+    return this.view[0] > this.whole[0] || this.view[1] < this.whole[1];
+  }
+
+  /** Whether something else is in view than at first. */
+  get away() {
+    return this.view[0] !== this.home[0] || this.view[1] !== this.home[1];
+  }
+
+  /**
+   * Another run, from..to, of which `home` is in view at first; a zoom stays, as far as it lies in
+   * it, unless it is fresh. Tells nobody.
+   */
+  span(from, to, home = [from, to], fresh = false) {
+    const stays = !fresh && this.away && this.view[0] < to;
+    this.whole = [from, to];
+    this.home = home;
+    this.view = stays ? [Math.max(this.view[0], from), Math.min(this.view[1], to)] : home;
+    if (this.cursor !== null) this.cursor = Math.min(Math.max(this.cursor, from), to);
+  }
+
+  zoom(from, to) {
+    const [first, last] = this.whole;
+    const least = closest * (last - first);
+    const width = Math.min(Math.max(to - from, least), last - first);
+    const start = Math.min(Math.max(from, first), last - width);
+    if (start === this.view[0] && start + width === this.view[1]) return;
+    this.view = [start, start + width];
+    for (const f of this.viewers) f();
+  }
+
+  /** About a moment that stays where it is; factor: above 1 to see less. */
+  zoomAt(t, factor) {
+    const [from, to] = this.view;
+    this.zoom(t - (t - from) / factor, t + (to - t) / factor);
+  }
+
+  /** By a share of what is in view. */
+  pan(share) {
+    const [from, to] = this.view;
+    const step = share * (to - from);
+    const [first, last] = this.whole;
+    const kept = Math.min(Math.max(step, first - from), last - to);
+    this.zoom(from + kept, to + kept);
+  }
+
+  /** What was in view at first, and then the whole. */
+  reset() {
+    this.zoom(...(this.away ? this.home : this.whole));
+  }
+
+  point(t, by) {
+    const [first, last] = this.whole;
+    this.cursor = t === null ? null : Math.min(Math.max(t, first), last);
+    for (const f of this.pointers) f(by);
+  }
+}

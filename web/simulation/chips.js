@@ -1,0 +1,45 @@
+// What one can start from: figures and tables of the paper, a handful of them as chips, all in a
+// menu.
+import {$, element} from "../shared/dom.js";
+
+const groups = {
+  Regimes: {
+    fig10: "I sparse",
+    fig3: "II modulated",
+    fig11: "III symmetric",
+    fig12: "IV asymmetric",
+    fig13: "V three impacts",
+    fig14: "VI dense",
+  },
+  Exponents: {fig5: "Fig. 5", fig9: "Fig. 9", table2_1: "Table 2", "table3_b0.031": "Table 3"},
+  Experiment: {fig15: "9 mm", fig20: "15 mm"},
+};
+
+/** choose(name): called with the name of a preset, or "" for parameters of one's own. */
+export function start(presets, choose) {
+  const sourceOf = Object.fromEntries(presets.map((p) => [p.name, `${p.source}: ${p.title}`]));
+  const chip = ([name, text]) => {
+    const button = element("button", {type: "button", className: "chip", textContent: text});
+    Object.assign(button, {title: sourceOf[name], onclick: () => choose(name)});
+    button.dataset.preset = name;
+    return button;
+  };
+  const group = ([title, chips]) => {
+    const names = Object.entries(chips).map(chip);
+    const row = element("div", {role: "group", ariaLabel: title}, ...names);
+    return element("div", {className: "chips"}, element("small", {textContent: title}), row);
+  };
+  $("chips").replaceChildren(...Object.entries(groups).map(group));
+  $("preset").append(
+    new Option("parameters of your own", ""),
+    ...presets.map((p) => new Option(sourceOf[p.name], p.name)),
+  );
+  $("preset").addEventListener("change", () => choose($("preset").value));
+}
+
+/** Marks the preset that the form stands for. */
+export function mark(name) {
+  $("preset").value = name;
+  for (const button of document.querySelectorAll("#chips [data-preset]"))
+    button.setAttribute("aria-pressed", String(button.dataset.preset === name));
+}

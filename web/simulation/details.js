@@ -1,0 +1,63 @@
+// Everything else that is known of a run: it is asked for once one unfolds it, and follows the run
+// from then on.
+import {simulate} from "../shared/api.js";
+import {$} from "../shared/dom.js";
+import {Job} from "../shared/job.js";
+import {drawDetails, makePlots} from "./details_plots.js";
+import {accountEnergy, summarise, tabulate} from "./details_summary.js";
+import {marksOf} from "./marks.js";
+import {showModel} from "./model.js";
+import {listParameters} from "./parameters.js";
+
+const include = ["series", "impacts", "exponents", "eigenvalues", "section", "energy", "regime"];
+
+export class Details {
+  /** axis: of time; run(): {asked, answer, units} of what is shown; fields: of /v1/parameters. */
+  constructor(axis, run, fields) {
+    this.run = run;
+    this.axis = axis;
+    this.fieldOf = Object.fromEntries(fields.map((f) => [f.name, f]));
+    this.plots = null;
+    this.job = new Job({
+      ask: (asked, signal) => simulate({...asked, include}, signal),
+      show: (answer, asked) => this.show(answer, asked),
+      fail: (error) => this.say(error.message),
+      busy: (is) => {
+        if (is) this.say("computing …");
+      },
+      unreachable: () => {},
+    });
+    $("details").addEventListener("toggle", () => this.follow());
+  }
+
+  say(text) {
+    $("details-message").textContent = text;
+  }
+
+  /** Another run is shown, or the same in other units. */
+  follow() {
+    const run = this.run();
+    if (!$("details").open || !run) return;
+    if (this.shown?.asked === run.asked) this.show(this.shown.answer, run.asked);
+    else this.job.start(run.asked);
+  }
+
+  show(answer, asked) {
+    const {units, asked: newest} = this.run();
+    if (asked !== newest) return;
+    this.shown = {answer, asked};
+    this.say("");
+    this.plots ??= makePlots(this.axis);
+    summarise(answer, units);
+    listParameters(answer.parameters, this.fieldOf);
+    tabulate(answer.windows, units);
+    accountEnergy(answer.energy, units);
+    drawDetails(this.plots, answer, marksOf(answer, units), units);
+    $("details").dataset.done = String(Number($("details").dataset.done ?? 0) + 1);
+    if (!$("model-sketch").hasChildNodes()) showModel().catch(() => {}); // the equations do without it
+  }
+
+  redraw() {
+    for (const plot of Object.values(this.plots ?? {})) plot.redraw();
+  }
+}

@@ -1,0 +1,148 @@
+// The request of the form: which preset it stands on, what of it differs, and how an address says
+// it.
+import {textOf} from "../shared/form.js";
+import {holding, isOfMotion, isOfSystem, queryText} from "../shared/presets.js";
+
+/** What a text of a query stands for: a list of lists, a list, or a text. */
+function queryValue(text) {
+  if (text.includes(";")) {
+    const parts = text.split(";").filter((part) => part.trim());
+    return parts.map(queryValue);
+  }
+  return text.includes(",") ? text.split(",") : text;
+}
+
+export class Request {
+  /** form: the Form; fields: of /v1/parameters; presets: of /v1/presets. */
+  constructor(form, fields, presets) {
+    Object.assign(this, {form, presets, name: "", dampingChosen: false});
+    this.fieldOf = Object.fromEntries(fields.map((f) => [f.name, f]));
+  }
+
+  get preset() {
+    return this.presets.find((p) => p.name === this.name);
+  }
+
+  /** The preset of a name, or none; the form shows its values. */
+  choose(name) {
+    this.name = this.presets.some((p) => p.name === name) ? name : "";
+    this.dampingChosen = false;
+    if (this.preset) this.form.set(this.preset.parameters);
+    this.greyOut();
+  }
+
+  leave() {
+    this.name = "";
+    this.greyOut();
+  }
+
+  /** Over a preset in SI a reduced field can be changed; a system of one's own is one or the other. */
+  greyOut() {
+    this.form.disable(this.preset ? [] : this.form.unmixable());
+  }
+
+  /** What of the preset holds beside a request's fields. */
+  held(request) {
+    return holding(this.preset?.parameters ?? {}, request, this.fieldOf);
+  }
+
+  /** The fields that are not the preset's. */
+  differing(request) {
+    const base = this.held(request);
+    const differs = ([name, value]) =>
+      !(name in base) || queryText(value) !== queryText(base[name]);
+    return Object.fromEntries(Object.entries(request).filter(differs));
+  }
+
+  /** Whether the motion is no more the preset's. */
+  get edited() {
+    const changed = this.differing(this.form.values());
+    return Object.keys(changed).some((name) => isOfMotion(this.fieldOf[name]));
+  }
+
+  /**
+   * A preset's name stands for its fields, so it does not fit a request that has emptied one of
+   * them. A default is not in the request.
+   */
+  emptied(request) {
+    return Object.entries(this.held(request)).some(
+      ([name, value]) => !(name in request) && value !== this.fieldOf[name].default,
+    );
+  }
+
+  /**
+   * What to send: the preset's name in place of those values that are its own, so that one that
+   * differs changes alone.
+   */
+  asked() {
+    const request = this.form.values();
+    if (this.preset && this.emptied(request)) this.leave();
+    return this.preset ? {preset: this.name, ...this.differing(request)} : request;
+  }
+
+  /** Fills the form with a query; returns the names that are no fields. */
+  read(query) {
+    const rest = new URLSearchParams(query);
+    const named = rest.get("preset");
+    this.choose(named ?? (rest.size ? "" : "fig3"));
+    rest.delete("preset");
+    const known = [...rest].filter(([name]) => name in this.fieldOf);
+    const unknown = [...rest.keys()].filter((name) => !(name in this.fieldOf));
+    const fields = Object.fromEntries(known.map(([name, text]) => [name, queryValue(text)]));
+    this.dampingChosen = "damping" in fields;
+    this.form.set({...this.held(fields), ...fields});
+    this.greyOut();
+    return named && !this.name ? [`preset=${named}`, ...unknown] : unknown;
+  }
+
+  /**
+   * The damping of the paper's numbers and its windows go with its system: they make way for a
+   * system of one's own, unless they were chosen. Returns what went, in words.
+   */
+  makeWay(base) {
+    const {form} = this;
+    const gone = [];
+    const input = (name) => form.inputs.get(name);
+    const standard = this.fieldOf.damping.default;
+    if (!this.dampingChosen && input("damping").value !== standard) {
+      form.replace("damping", standard);
+      gone.push(`damping is ${standard}`);
+    }
+    for (const name of ["window", "windows"]) {
+      const ofPreset = name in base && input(name).value === textOf(base[name]);
+      if (!ofPreset) continue;
+      form.replace(name, "");
+      gone.push(`${name} is empty`);
+    }
+    return gone;
+  }
+
+  /**
+   * Something was typed over a preset. Reduced fields over one in SI change it where it is: both
+   * cannot be mixed. Returns what became of it, in words.
+   */
+  typedOver(name) {
+    const chosen = this.preset;
+    const base = chosen?.parameters;
+    if (!base) {
+      this.greyOut();
+      return "";
+    }
+    if (name in base && !this.form.filled(name)) {
+      this.leave();
+      return "";
+    }
+    if (!isOfSystem(name) || !this.form.filled(name)) return "";
+    if ("m1" in base && this.fieldOf[name].group === "reduced") {
+      this.makeWay(base);
+      return "";
+    }
+    const gone = this.makeWay(base);
+    this.leave();
+    return [`A system of your own, in place of ${chosen.source}`, ...gone].join("; ");
+  }
+}
+
+/** A request as the address has it. */
+export const toQuery = (asked) =>
+  String(new URLSearchParams(Object.entries(asked).map(([name, v]) => [name, queryText(v)])));

@@ -1,0 +1,57 @@
+// What a run came to, in one sentence.
+import {element} from "../shared/dom.js";
+import {count, percent, withError} from "../shared/numbers.js";
+import {regimes} from "../shared/quantities.js";
+import {rangeOf, valueAt, written} from "./sliders.js";
+
+/** A slider's value in words: b = 22.0 mm. */
+export function valueText(slider, parameters) {
+  const {symbol, unit, factor = 1} = slider;
+  const value = valueAt(slider, parameters) * factor;
+  const short = written(value, rangeOf(slider, parameters));
+  const exact = Math.abs(Number(short) - value) <= 1e-6 * Math.abs(value);
+  const text = exact ? short : String(Number(value.toPrecision(4)));
+  return `${symbol} = ${text}${unit ? ` ${unit}` : ""}`;
+}
+
+/** How the motion goes, and whether it is chaotic; of what both tell, only what they agree on. */
+function motionText({regime, exponents}, units) {
+  const {type, periodic, capture, period_cycles: cycles} = regime;
+  if (type === "none")
+    return regime.description === "no impacts" ? "the mass meets no wall" : regime.description;
+  const name = `${regimes[type] ?? regime.description} (${type})`;
+  if (periodic) {
+    const period = cycles > 1 ? ` of ${count(cycles, "cycle")}` : "";
+    const late = capture?.chaotic_before && capture.tau !== null;
+    const before = late ? `, after a chaotic transient up to ${units.at(capture.tau)}` : "";
+    return `${name}, ${regime.stable ? "" : "un"}stable periodic orbit${period}${before}`;
+  }
+  const verdict = {chaotic: ", chaotic", regular: ", regular", not_decided: ""}[exponents.verdict];
+  return `${name}${verdict ?? ""}`;
+}
+
+function lambdaText({qr, verdict}, regime) {
+  if (!qr || regime.type === "none" || qr.final[0] == null) return "";
+  const value = `λ₁ = ${withError(qr.final[0], qr.standard_error[0], 3)}`;
+  const open = verdict === "not_decided" && !regime.periodic;
+  return open ? `${value}, too close to zero to decide` : value;
+}
+
+const amplitudeText = ({rms_ratio: ratio}) =>
+  ratio == null ? "" : `x at ${percent(ratio)} of that without the absorber`;
+
+/** The parts of the sentence: {subject, motion, rest}. */
+export function sentence(answer, slider, units) {
+  const {exponents, regime, energy, parameters} = answer;
+  const rest = [lambdaText(exponents, regime), amplitudeText(energy)].filter(Boolean).join("; ");
+  return {
+    subject: `${valueText(slider, parameters)}:`,
+    motion: motionText(answer, units),
+    rest: rest && `${rest}.`,
+  };
+}
+
+export function showSentence(node, {subject, motion, rest}) {
+  const end = rest ? "." : "";
+  node.replaceChildren(subject, " ", element("b", {textContent: motion + end}), " ", rest);
+}

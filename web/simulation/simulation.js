@@ -1,0 +1,281 @@
+// The tab of one simulation: what one turns goes to the service as one request, and what it answers
+// is shown at once. The address is the request, and what is in view.
+import {asCurl, Problem, simulate, wholeMessage} from "../shared/api.js";
+import {listWarnings} from "../shared/cards.js";
+import {$} from "../shared/dom.js";
+import {Form} from "../shared/form.js";
+import {Job} from "../shared/job.js";
+import {Motion} from "../shared/motion.js";
+import {count} from "../shared/numbers.js";
+import {copy} from "../shared/take_away.js";
+import {TimeAxis} from "../shared/time_axis.js";
+import {onUnits, unitsOf, unitsSwitch} from "../shared/units.js";
+import {describe} from "./captions.js";
+import * as chips from "./chips.js";
+import {Details} from "./details.js";
+import {Instrument} from "./instrument.js";
+import {Machine} from "./machine.js";
+import {marksOf} from "./marks.js";
+import {mark} from "./matches.js";
+import * as phone from "./phone.js";
+import {Player} from "./player.js";
+import {Request, toQuery} from "./request.js";
+import {sentence, showSentence} from "./sentence.js";
+import {Sliders, sliderOf} from "./sliders.js";
+import {Strip} from "./strip.js";
+
+// What every turn of a slider asks for, and what follows once it rests.
+const first = {include: ["impacts", "exponents", "regime", "energy"], exponents: ["qr"]};
+const second = {include: ["exponents", "eigenvalues", "manifold"], exponents: ["raw_product"]};
+
+const rest = 100; // ms without an edit before what follows is asked for
+
+const axis = new TimeAxis();
+const machine = new Machine($("machine"));
+let request;
+let sliders;
+let instrument;
+let player;
+let strip;
+let details;
+let last = null; // {asked, answer, motion, units}
+let touched = "b";
+let shown = null;
+let wantedView = null;
+let remembered = () => {};
+let resting = 0;
+
+function say(text, fault = false) {
+  $("message").textContent = text;
+  $("message").classList.toggle("fault", fault);
+}
+
+// What is computed.
+
+const job = new Job({
+  ask: (asked, signal) => simulate({...asked, ...first}, signal),
+  show: present,
+  fail: refuse,
+  busy(is, cancelled) {
+    if (is) $("results").classList.add("stale");
+    $("results").setAttribute("aria-busy", String(is));
+    $("cancel").hidden = !is;
+    if (is && !$("message").classList.contains("fault")) say("computing …");
+    else if (cancelled) say("cancelled: what is shown is the run before");
+    if (cancelled) $("results").classList.add("stale");
+  },
+  unreachable(seconds) {
+    say(`the server does not answer; asking again every ${seconds} s`, true);
+  },
+});
+
+const more = new Job({
+  ask: (asked, signal) => simulate({...asked, ...second}, signal),
+  show(answer, asked) {
+    if (asked !== last.asked) return;
+    instrument.showMore(answer);
+    $("figure-largest").classList.remove("behind");
+    $("figure-manifold").classList.remove("behind");
+    details.follow();
+    countUp("done");
+  },
+  fail() {}, // the first one has said it
+  busy() {},
+  unreachable() {},
+});
+
+/** A run is on the screen: `shown` its first part, `done` all of it. */
+function countUp(name) {
+  $("results").dataset[name] = String(Number($("results").dataset[name] ?? 0) + 1);
+}
+
+function refuse(error) {
+  const left = error instanceof Problem ? request.form.showErrors(error.errors, false) : [];
+  if (error instanceof Problem && left.length < error.errors.length) $("more").open = true;
+  say(wholeMessage(error, left), true);
+  $("results").classList.add("stale");
+}
+
+/** What is first in view: the window, where there is one that ends before the run. */
+function homeOf({parameters, status}) {
+  const to = parameters.window?.[1];
+  return to && to < 0.9 * status.tau ? [0, to] : [0, status.tau];
+}
+
+function present(answer, asked) {
+  const fresh = last === null || asked.fresh;
+  const units = unitsOf(answer.parameters);
+  const motion = new Motion(answer);
+  last = {asked, answer, motion, units, fresh};
+  say(unknownText(asked));
+  $("results").classList.remove("stale");
+  request.form.showErrors([]);
+  if ($("more").open) request.form.showOrigins(answer.parameters);
+  listWarnings($("warnings"), answer.warnings);
+  $("remarks").hidden = !answer.warnings.length;
+  $("remarks-count").textContent = count(answer.warnings.length, "remark");
+  axis.span(0, answer.status.tau, homeOf(answer), fresh);
+  if (wantedView) axis.view = wantedView;
+  wantedView = null;
+  draw(fresh);
+  countUp("shown");
+  clearTimeout(resting);
+  resting = setTimeout(() => more.start(asked), rest);
+}
+
+/** The last answer, in the units that are chosen. */
+function draw(fresh = false) {
+  const {answer, asked, motion} = last;
+  const units = unitsOf(answer.parameters);
+  last.units = units;
+  $("units").hidden = !answer.parameters.si;
+  const slider = sliderOf(touched, answer.parameters);
+  sliders.show(answer.parameters, fresh, slider);
+  showSentence($("sentence"), sentence(answer, slider, units));
+  machine.show(motion, answer.energy.peak);
+  for (const name of ["largest", "manifold"]) $(`figure-${name}`).classList.add("behind");
+  instrument.show(answer, motion, units, marksOf(answer, units));
+  player.show(motion, units);
+  describe(answer, units);
+  mark(request.edited ? null : request.preset);
+  strip.show(asked, answer.parameters, slider);
+}
+
+// What is asked.
+
+/** How the newest request is sent. hasty: while a slider is dragged; fresh: not by turning one. */
+function run({hasty = false, fresh = false, unknown = []} = {}) {
+  const asked = request.asked();
+  Object.defineProperties(asked, {fresh: {value: fresh}, unknown: {value: unknown}});
+  chips.mark(request.name);
+  if (hasty) player.hold();
+  remember(toQuery(asked), hasty);
+  job.start(asked, {hasty});
+}
+
+const unknownText = ({unknown}) =>
+  unknown.length
+    ? `the address names what this page does not know: ${unknown.map((u) => `"${u}"`).join(", ")}`
+    : "";
+
+/** Back undoes an edit. */
+function remember(query, soon) {
+  if (query === shown) {
+    if (!soon) remembered(); // an edit has come to its end
+    return;
+  }
+  const edit = shown !== null;
+  shown = query;
+  remembered({edit, soon});
+}
+
+/** A slider or the strip's marker was turned. */
+function turn(fields, slider, {hasty}) {
+  touched = slider.name;
+  const {form} = request;
+  if (slider.name === "zeta") request.dampingChosen = true;
+  for (const [name, value] of Object.entries(fields))
+    form.replace(name, value === null ? "" : String(value));
+  const names = Object.keys(fields).filter((name) => fields[name] !== null);
+  for (const name of names) note(request.typedOver(name));
+  form.greyOut();
+  run({hasty});
+}
+
+/** What a preset says of itself holds as long as it is not changed. */
+function note(text) {
+  const {preset, edited} = request;
+  const changed = preset && edited ? `${preset.source}, changed` : (preset?.note ?? "");
+  $("preset-note").textContent = text || changed;
+}
+
+function choosePreset(name) {
+  touched = "b";
+  request.choose(name);
+  note("");
+  run({fresh: true});
+}
+
+/** The query of the run that is asked for, and what of it is in view; null before the first. */
+export function query() {
+  if (shown === null) return null;
+  const view = wantedView ?? (axis.away ? axis.view : null);
+  return [shown, ...(view ? [`view=${viewText(view)}`] : [])].filter(Boolean).join("&");
+}
+
+/** As many digits as a ten-thousandth of what is in view. */
+function viewText([from, to]) {
+  const places = Math.max(0, 4 - Math.floor(Math.log10(to - from)));
+  return [from, to].map((t) => Number(t.toFixed(Math.min(places, 15)))).join(",");
+}
+
+/** Shows what a query asks for; without one the paper's Fig. 3. */
+export function open(given) {
+  const rest = new URLSearchParams(given);
+  const view = rest.get("view")?.split(",").map(Number);
+  rest.delete("view");
+  if (String(rest) === shown) return;
+  wantedView = view?.length === 2 && view[0] < view[1] ? view : null;
+  const unknown = request.read(rest);
+  touched = "b";
+  note("");
+  shown = toQuery(request.asked());
+  run({fresh: true, unknown});
+  remembered(); // as the page itself writes it
+}
+
+export function redraw() {
+  instrument.redraw();
+  details.redraw();
+  strip.draw();
+  if (axis.cursor !== null) machine.draw(axis.cursor);
+}
+
+const command = () => asCurl("v1/simulate", request.asked());
+
+/** tables: of /v1/parameters, and presets; changed({edit}): there is another query. */
+export function start({fields, presets: list}, changed) {
+  remembered = changed;
+  const form = new Form($("fields"), fields);
+  request = new Request(form, fields, list);
+  instrument = new Instrument(axis);
+  player = new Player(axis, (tau) => machine.draw(tau));
+  sliders = new Sliders($("sliders"), {
+    change: turn,
+    refuse: (text, {label}) => say(`${label}: “${text}” is no number`, true),
+  });
+  strip = new Strip(turn);
+  details = new Details(axis, () => last, fields);
+  chips.start(list, choosePreset);
+  phone.start();
+  listen(form);
+  if (!matchMedia("(prefers-reduced-motion: reduce)").matches) player.play();
+}
+
+function listen(form) {
+  for (const [name, input] of form.inputs) {
+    input.addEventListener("input", () => note(request.typedOver(name)));
+    input.addEventListener("change", () => {
+      if (name === "damping") request.dampingChosen = true;
+      run();
+    });
+  }
+  axis.onView(() => remembered({soon: true}));
+  $("more").addEventListener("toggle", () => {
+    if (last && $("more").open) form.showOrigins(last.answer.parameters);
+  });
+  unitsSwitch($("units"));
+  onUnits(() => {
+    if (!last) return;
+    const {more: kept} = instrument;
+    draw();
+    if (kept) instrument.showMore(kept);
+    details.follow();
+  });
+  $("form").addEventListener("submit", (event) => {
+    event.preventDefault();
+    if (!$("form").querySelector(".slider [aria-invalid]")) run();
+  });
+  $("cancel").addEventListener("click", () => job.cancel());
+  $("copy").addEventListener("click", () => copy(command(), say));
+}

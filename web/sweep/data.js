@@ -1,0 +1,169 @@
+// The points of a sweep, where they lie, and the lines they came in.
+import {defaultSet} from "../shared/form.js";
+import {coordinates} from "../shared/quantities.js";
+
+const ascending = (values) => values.map((_, i) => i).sort((a, b) => values[a] - values[b]);
+
+/**
+ * The borders between ascending values and around them: the middles, of the logarithms where the
+ * axis is logarithmic.
+ */
+function borders(values, log) {
+  const to = log ? Math.log : (v) => v;
+  const from = log ? Math.exp : (v) => v;
+  const at = values.map(to);
+  const n = at.length;
+  const alone = log ? 0.05 : Math.abs(at[0]) * 0.05 || 0.5; // around the only value
+  const first = n > 1 ? at[0] - (at[1] - at[0]) / 2 : at[0] - alone;
+  const last = n > 1 ? at[n - 1] + (at[n - 1] - at[n - 2]) / 2 : at[0] + alone;
+  return [first, ...at.slice(1).map((v, i) => (v + at[i]) / 2), last].map(from);
+}
+
+/** An axis in ascending order: position k shows entry order[k] of the request's axis. */
+function arrange({parameter, values}, scale) {
+  const order = ascending(values);
+  const sorted = order.map((i) => values[i]);
+  const log = scale === "log";
+  return {parameter, log, order, given: values, values: sorted, borders: borders(sorted, log)};
+}
+
+/**
+ * A line of a reduction, and each motion in it, as a point whose largest |x| is the peak: `where`
+ * along the axis that is folded.
+ */
+function unfold({worst, best, starts, ...line}, parameter) {
+  const peak = ({x_peak, x_free_peak, ...rest}) => ({
+    ...rest,
+    x_max: x_peak,
+    x_free: x_free_peak ?? null,
+    where: rest[parameter],
+  });
+  const motions = best ? {worst: peak(worst), best: peak(best), starts: starts.map(peak)} : {};
+  return {...peak(line), ...motions};
+}
+
+const enough = 500; // lines that are kept as texts before they go into a Blob
+
+export class SweepData {
+  /** halfPeriod(fields): half a forcing period of a point's fields. */
+  constructor(request, halfPeriod) {
+    this.request = request;
+    this.halfPeriod = halfPeriod;
+    this.section = request.section ?? "none";
+    this.defaultSet = request.starts === defaultSet;
+    this.starts = this.defaultSet ? 1 : Math.max(1, request.starts?.length ?? 0);
+    // The parameter of the axis that is folded.
+    this.reduced = /^(?:max|min) over (.+)$/.exec(request.reduce ?? "")?.[1] ?? null;
+    this.axes = null; // those that are left
+    this.parameters = null;
+    this.warnings = new Set();
+    this.points = [];
+    this.received = 0;
+    this.faults = new Map();
+    this.early = 0;
+    this.blobs = [];
+    this.texts = [];
+  }
+
+  get total() {
+    return this.points.length;
+  }
+
+  get complete() {
+    return this.axes !== null && this.received === this.total;
+  }
+
+  take(line, text) {
+    if (line.type === "start") {
+      for (const warning of line.warnings) this.warnings.add(warning);
+      if (this.axes) return; // of a stream that brings the rest
+      this.begin(line);
+    } else if (line.type === "point") {
+      if (this.points[line.index]) return;
+      this.points[line.index] = this.trim(line);
+      ++this.received;
+    } else {
+      if (line.type === "warning") this.warnings.add(line.message);
+      return; // progress and the end are not part of the result
+    }
+    this.texts.push(text, "\n");
+    if (this.texts.length > 2 * enough)
+      this.blobs = [...this.blobs, new Blob(this.texts.splice(0))];
+  }
+
+  /** The axes, and places for the points. */
+  begin({axes, parameters, points}) {
+    const arranged = axes.map((axis, i) => arrange(axis, this.request.axes[i].scale));
+    this.axes = arranged.filter((axis) => axis.parameter !== this.reduced);
+    this.parameters = parameters;
+    this.points = new Array(points).fill(null);
+  }
+
+  /**
+   * A point with the coordinates of its section as columns of floats; over two axes there is no
+   * place for them.
+   */
+  trim(point) {
+    if (point.error) this.faults.set(point.error, (this.faults.get(point.error) ?? 0) + 1);
+    if (point.reason && point.reason !== "complete") ++this.early;
+    if (this.reduced) return unfold(point, this.reduced);
+    if (!point.section) return point;
+    const {section, ...rest} = point;
+    if (this.axes.length > 1) return rest;
+    const half = this.halfPeriod(this.fields(point.index));
+    rest.section = {};
+    for (const [name, {columns, value, seconds}] of Object.entries(coordinates[this.section])) {
+      const [first, second] = columns(section);
+      rest.section[name] = Float32Array.from(first, (v, i) => value(v, half, second?.[i]));
+      if (seconds && section[seconds.column])
+        rest.section[`${name}_SI`] = Float32Array.from(section[seconds.column], (v) => v * 1000);
+    }
+    return rest;
+  }
+
+  missing() {
+    return this.points.flatMap((point, i) => (point ? [] : [i]));
+  }
+
+  /**
+   * The index of the point at positions k, l, m of the (ascending) axes. The first axis counts
+   * fastest, then the starts, then the others.
+   */
+  index(k = 0, l = 0, start = 0, m = 0) {
+    const [first, second, third] = this.axes;
+    const size = (axis) => axis?.values.length ?? 1;
+    const entry = (axis, i) => (axis ? axis.order[i] : 0);
+    const before = entry(third, m) * size(second) + entry(second, l);
+    return (before * this.starts + start) * size(first) + entry(first, k);
+  }
+
+  at(k, l, start, m) {
+    return this.points[this.index(k, l, start, m)];
+  }
+
+  /** The fields of /v1/simulate of a point. */
+  fields(index) {
+    const point = this.points[index];
+    const fields = {...this.request.base, ...(this.defaultSet ? point?.state : {})};
+    let rest = index;
+    const take = (n) => {
+      const i = rest % n;
+      rest = Math.floor(rest / n);
+      return i;
+    };
+    const place = (axis) => {
+      if (axis) fields[axis.parameter] = axis.given[take(axis.given.length)];
+    };
+    place(this.axes[0]);
+    const start = this.defaultSet ? {} : this.request.starts?.[take(this.starts)];
+    place(this.axes[1]);
+    place(this.axes[2]);
+    if (this.reduced && point?.where != null) fields[this.reduced] = point.where;
+    return {...fields, ...start};
+  }
+
+  /** What has come, as lines of JSON. */
+  file() {
+    return new Blob([...this.blobs, ...this.texts], {type: "application/x-ndjson"});
+  }
+}

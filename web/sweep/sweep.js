@@ -1,0 +1,390 @@
+// The tab of a sweep: form in, a stream of points out, drawn as they come. Its query is the request
+// and what the menus show.
+import {asCurl, Problem, wholeMessage} from "../shared/api.js";
+import {listWarnings} from "../shared/cards.js";
+import {$, element} from "../shared/dom.js";
+import {coordinates, menuOf, otherMotion, regimes, symbolOf} from "../shared/quantities.js";
+import {copy, save} from "../shared/take_away.js";
+import {onUnits, unitsSwitch} from "../shared/units.js";
+import {SweepData} from "./data.js";
+import {SweepPlots, startKeys} from "./diagrams.js";
+import {HeatMap} from "./heatmap.js";
+import {showPeaks} from "./peaks.js";
+import {follow} from "./stream.js";
+import {examples, halfPeriod, SweepForm} from "./sweep_form.js";
+
+const cyclesOfPoint = 272; // of the simulation of a point: the paper's tau of 1709
+
+let form;
+let plots;
+let map;
+let data = null;
+let running = null;
+let shown = null;
+let changed = () => {};
+
+function say(text, fault = false) {
+  $("sweep-message").textContent = text;
+  $("sweep-message").classList.toggle("fault", fault);
+}
+
+// The menus, by their name in the query. Their first entry needs no mention there.
+const menus = {coordinate: "sweep-coordinate", beside: "sweep-quantity", map: "sweep-mapped"};
+const choice = () => ({
+  coordinate: $("sweep-coordinate").value,
+  quantity: $("sweep-quantity").value,
+  map: $("sweep-mapped").value,
+  start: Number($("sweep-start").value) || 0,
+  best: $("sweep-start").value === "best",
+  slice: Number($("sweep-slice").value),
+});
+
+function fillMenu(id, entries, wanted) {
+  $(id).replaceChildren(...entries.map(([value, text]) => new Option(text, value)));
+  if (entries.some(([value]) => value === wanted)) $(id).value = wanted;
+}
+
+/** What a menu is to show: what the query asked for, once, else what it shows. */
+function wish(id) {
+  const {wanted} = $(id).dataset;
+  $(id).dataset.wanted = "";
+  return wanted || $(id).value;
+}
+
+/** The query of the sweep that is shown, or null before the first. */
+export function query() {
+  if (shown === null) return null;
+  const menu = Object.entries(menus)
+    .filter(([, id]) => $(id).selectedIndex > 0)
+    .map(([name, id]) => `${name}=${$(id).value}`);
+  return [shown, ...menu].join("&");
+}
+
+const grouped = (n) => String(n).replace(/\B(?=(\d{3})+$)/g, " ");
+
+function showSize() {
+  const {counts, starts, points, cycles} = form.size();
+  const factors = [...counts, ...(starts > 1 ? [`${starts} starts`] : [])];
+  const product = factors.length > 1 ? `${factors.join(" × ")} = ` : "";
+  const size = `${product}${grouped(points)} points, ${grouped(cycles)} cycles`;
+  $("sweep-size").textContent = Number.isFinite(points) ? size : "";
+}
+
+function time(seconds) {
+  if (seconds < 1) return "less than a second";
+  if (seconds < 90) return `${seconds.toFixed(0)} s`;
+  if (seconds < 5400) return `${(seconds / 60).toFixed(0)} min`;
+  return `${(seconds / 3600).toFixed(1)} h`;
+}
+
+function progress({per_second: rate, seconds_left: left}) {
+  if (left == null) return showCount();
+  const remaining = data.complete ? "" : ` · ${time(left)} left`;
+  showCount(` · ${rate.toFixed(rate < 10 ? 1 : 0)} per second${remaining}`);
+}
+
+function showCount(more = "") {
+  $("sweep-bar").max = data.total || 1;
+  $("sweep-bar").value = data.received;
+  $("sweep-rate").textContent = `${grouped(data.received)} of ${grouped(data.total)} points${more}`;
+}
+
+// At most ten drawings a second, and no more than a fifth of the time.
+let waiting = 0;
+let cost = 0;
+function drawSoon() {
+  waiting ||= setTimeout(draw, Math.max(100, 4 * cost));
+}
+
+function draw() {
+  clearTimeout(waiting);
+  waiting = 0;
+  if (!data?.axes) return;
+  const began = performance.now();
+  (data.axes.length > 1 ? map : plots).refresh();
+  showPeaks(data, unitsOfParameter);
+  showMotions();
+  countRegimes();
+  // uPlot paints after this function.
+  setTimeout(() => {
+    cost = performance.now() - began;
+  });
+}
+
+/** The keys of the worst and the best motion, or of one from another start, where there are any. */
+function showMotions() {
+  const {defaultSet} = data;
+  const several = defaultSet || (data.starts === 1 && data.points.some(otherMotion));
+  $("sweep-motions").hidden = data.axes.length !== 1 || !several;
+  $("sweep-worst").hidden = !defaultSet;
+  $("sweep-other").textContent = defaultSet
+    ? "the best, where they end apart"
+    : "from another start, where it was tried and ends elsewhere";
+}
+
+function countRegimes() {
+  const counts = {};
+  for (const p of data.points) if (p?.regime) counts[p.regime] = (counts[p.regime] ?? 0) + 1;
+  for (const regime of Object.keys(regimes)) {
+    const node = $(`sweep-regime-${regime}`);
+    const item = node.closest("li");
+    node.textContent = counts[regime] ?? "";
+    item.classList.toggle("absent", !counts[regime]);
+    item.hidden = regime === "none" && !counts.none;
+  }
+}
+
+/** Which of the starts a map shows; of the default set, the worst or the best. */
+const ofDefaultSet = [
+  ["0", "worst"],
+  ["best", "best"],
+];
+function offerStarts(n) {
+  const {defaultSet} = data;
+  const numbered = Array.from({length: Math.max(n, 1)}, (_, s) => [String(s), String(s + 1)]);
+  fillMenu("sweep-start", defaultSet ? ofDefaultSet : numbered, $("sweep-start").value);
+  $("sweep-start-of").hidden = n < 2 && !defaultSet;
+  $("sweep-start-word").textContent = defaultSet ? "of the start that is" : "from start";
+}
+
+/** Which value of the third axis a map shows. */
+function offerSlices() {
+  const third = data.axes[2];
+  const text = (v) => String(Number(v.toPrecision(6)));
+  const slices = third ? third.values.map((v, m) => [String(m), text(v)]) : [["0", ""]];
+  fillMenu("sweep-slice", slices, $("sweep-slice").value);
+  $("sweep-slice-of").hidden = !third;
+  $("sweep-slice-word").textContent = third ? `where ${symbolOf(third.parameter)} =` : "";
+}
+
+/** The plots of a sweep that has just begun, still empty. */
+function present(fresh) {
+  data = fresh;
+  shown = String(SweepForm.toQuery(data.request));
+  const {section, defaultSet, reduced} = data;
+  const starts = defaultSet ? [] : (data.request.starts ?? []);
+  $("sweep-stack").hidden = data.axes.length !== 1;
+  $("sweep-map").hidden = data.axes.length < 2;
+  $("figure-sweep-section").hidden = section === "none";
+  $("figure-sweep-lambda").hidden = reduced !== null;
+  $("sweep-units").hidden = !data.parameters.si;
+  form.base.showOrigins(data.parameters);
+  $("sweep-where").textContent = section === "impact" ? "at impact:" : "once a cycle:";
+  const titles = Object.entries(coordinates[section] ?? {}).map(([name, {title}]) => [name, title]);
+  fillMenu("sweep-coordinate", titles, wish("sweep-coordinate"));
+  for (const id of ["sweep-quantity", "sweep-mapped"]) fillMenu(id, menuOf(data), wish(id));
+  offerStarts(starts.length);
+  offerSlices();
+  $("sweep-starts").hidden = starts.length < 2;
+  listWarnings($("sweep-warnings"), [...data.warnings]);
+  $("sweep-verdicts").hidden = starts.length > 1; // the colours are those of the starts, then
+  $("sweep-starts").replaceChildren(...startKeys(starts).map((key) => element("li", {}, key)));
+  $("sweep-keys").hidden = false;
+  $("sweep-download").hidden = false;
+  plots.show(data, choice());
+  map.show(data, choice());
+  showFreeKey();
+  changed();
+}
+
+function showFreeKey() {
+  $("sweep-free").hidden = $("sweep-quantity").value !== "x_max";
+}
+
+function busy(is) {
+  $("sweep-run").disabled = is;
+  $("sweep-cancel").hidden = !is;
+  $("sweep-resume").hidden = is || !data?.axes || data.complete;
+  $("sweep-bar").hidden = !is && (!data || data.complete);
+}
+
+/** What is worth saying of a complete sweep. */
+function remarks() {
+  const list = [...data.faults].map(([fault, n]) => `${grouped(n)} points failed: ${fault}`);
+  if (data.early) list.push(`${grouped(data.early)} points ended early, at max_impacts`);
+  return list.join("; ");
+}
+
+/** The points that `into` still lacks. */
+async function receive(into) {
+  running?.abort();
+  const mine = new AbortController();
+  running = mine;
+  busy(true);
+  const heard = (line) => {
+    if (running !== mine) return;
+    if (line.type === "start") begin(into);
+    else if (line.type === "progress") progress(line);
+    else drawSoon();
+  };
+  const broken = (error, seconds) => {
+    if (running === mine) say(`${error.message}; asking again in ${seconds} s`, true);
+  };
+  try {
+    await follow(into.request, into, mine.signal, {heard, broken});
+    if (running === mine) {
+      say(remarks());
+      listWarnings($("sweep-warnings"), [...into.warnings]);
+      finish();
+    }
+  } catch (error) {
+    if (running !== mine) return;
+    if (data) showCount();
+    const left = error instanceof Problem ? form.showErrors(error.errors) : [];
+    if (mine.signal.aborted) say("cancelled");
+    else say(wholeMessage(error, left), true);
+  } finally {
+    if (running === mine) {
+      running = null;
+      busy(false);
+      draw();
+    }
+  }
+}
+
+function begin(into) {
+  if (data !== into) present(into);
+  say("");
+  showCount();
+}
+
+function finish() {
+  $("sweep-results").dataset.done = String(Number($("sweep-results").dataset.done ?? 0) + 1);
+}
+
+/** Where the plots lie below the form, one who asks for them is led there. */
+function lead() {
+  const panel = $("sweep-form");
+  const results = $("sweep-results");
+  if (results.offsetLeft < panel.offsetLeft + panel.offsetWidth) results.scrollIntoView();
+}
+
+function run() {
+  form.showErrors([]);
+  return receive(new SweepData(form.request(), halfPeriod));
+}
+
+const sorted = (text) => {
+  const q = new URLSearchParams(text);
+  q.sort();
+  return String(q);
+};
+const exampleOf = (query) => examples.findIndex(([, q]) => sorted(q) === sorted(query));
+const markExample = () => {
+  $("sweep-example").value = String(exampleOf(SweepForm.toQuery(form.request())));
+};
+
+/** Shows what a query asks for; without one the first example. */
+export async function open(given) {
+  const rest = new URLSearchParams(given);
+  for (const [name, id] of Object.entries(menus)) {
+    const wanted = rest.get(name);
+    $(id).dataset.wanted = wanted ?? "";
+    if (wanted && [...$(id).options].some((o) => o.value === wanted)) $(id).value = wanted;
+    rest.delete(name);
+  }
+  if (String(rest) === shown) return;
+  const first = new URLSearchParams(examples[0][1]);
+  const wanted = rest.size ? rest : first;
+  form.setQuery(wanted, exampleOf(wanted) >= 0);
+  markExample();
+  showSize();
+  await run();
+}
+
+export function redraw() {
+  plots.recreate();
+  map.recreate();
+}
+
+function download() {
+  const names = data.request.axes.map((a) => a.parameter).join("-");
+  save(data.file(), `sweep-${names}.ndjson`);
+}
+
+const command = () => asCurl("v1/sweep", form.request(), "-sN");
+
+function legend() {
+  const item = ([regime, what]) => {
+    const className = `key regime regime-${regime}`;
+    const textContent = regime === "none" ? what : `${regime} ${what}`;
+    const number = element("small", {id: `sweep-regime-${regime}`});
+    const title = `Type ${regime}`;
+    return element("li", {title}, element("span", {className, textContent}), number);
+  };
+  $("sweep-regimes").replaceChildren(...Object.entries(regimes).map(item));
+}
+
+/** The unit of a parameter, as in " (m)". */
+function unitsOfParameter(parameter) {
+  const unit = form.parameters.get(parameter)?.unit;
+  return unit && unit !== "dimensionless" ? ` (${unit})` : "";
+}
+
+/**
+ * tables: the answer of /v1/parameters; tell: called when there is another query; simulate(fields):
+ * shows the run of a point.
+ */
+export function start(tables, tell, simulate) {
+  changed = tell;
+  form = new SweepForm($("sweep-fields"), tables, () => {
+    showSize();
+    markExample();
+  });
+  const openPoint = (index) => simulate({...data.fields(index), cycles: cyclesOfPoint});
+  const panels = {
+    section: $("plot-sweep-section"),
+    lambda: $("plot-sweep-lambda"),
+    other: $("plot-sweep-other"),
+  };
+  plots = new SweepPlots($("sweep-stack"), panels, unitsOfParameter, openPoint);
+  map = new HeatMap($("sweep-map"), $("plot-sweep-map"), unitsOfParameter, openPoint);
+  legend();
+  $("sweep-keys").hidden = true;
+  $("sweep-example").append(
+    new Option("own sweep", "-1"),
+    ...examples.map(([title], i) => new Option(title, String(i))),
+  );
+  unitsSwitch($("sweep-units"));
+  onUnits(() => {
+    if (data?.axes) plots.recreate();
+  });
+  listen();
+}
+
+/** Runs the example that the menu shows. */
+function runExample() {
+  const example = examples[$("sweep-example").value];
+  if (!example) return;
+  const [, given, wishes = {}] = example;
+  for (const [name, wanted] of Object.entries(wishes)) $(menus[name]).dataset.wanted = wanted;
+  form.setQuery(new URLSearchParams(given), true);
+  showSize();
+  run();
+  lead();
+}
+
+function chooseFromMenu() {
+  if (!data) return;
+  (data.axes.length > 1 ? map : plots).choose(choice());
+  showFreeKey();
+  changed();
+}
+
+function listen() {
+  for (const id of [...Object.values(menus), "sweep-start", "sweep-slice"])
+    $(id).addEventListener("change", chooseFromMenu);
+  $("sweep-example").addEventListener("change", runExample);
+  $("sweep-form").addEventListener("submit", (event) => {
+    event.preventDefault();
+    run();
+    lead();
+  });
+  $("sweep-cancel").addEventListener("click", () => running?.abort());
+  $("sweep-resume").addEventListener("click", () => receive(data));
+  $("sweep-download").addEventListener("click", (event) => {
+    event.preventDefault();
+    download();
+  });
+  $("sweep-copy").addEventListener("click", () => copy(command(), say));
+}
