@@ -19,8 +19,10 @@ const usual = {
 };
 const views = query === undefined ? usual : {"": query};
 const screens = [
-  {name: "wide", viewport: {width: 1400, height: 1250}},
-  {name: "narrow", viewport: {width: 390, height: 844}},
+  {name: "wide", viewport: {width: 1440, height: 900}},
+  {name: "tablet", viewport: {width: 1024, height: 768}},
+  {name: "phone", viewport: {width: 390, height: 844}},
+  {name: "small", viewport: {width: 360, height: 640}},
 ];
 const service = await startService();
 const browser = await startBrowser();

@@ -322,7 +322,7 @@ test("one cursor goes through all plots and the machine, and the nearest impact 
   assert.equal(places.length, 4);
   for (const place of places) assert.ok(Math.abs(place - x) <= 1.5, `${place} of ${x}`);
   for (const name of [...overTime.slice(0, 3), ...planes])
-    assert.ok(await page.isVisible(`#figure-${name} .ring`), name);
+    assert.ok(await page.isVisible(`#figure-${name} .lit`), name);
   assert.match(await page.textContent("#value-x"), /^−?\d.*mm$/);
   await page.focus("#plot-x");
   const moment = await page.textContent("#moment");
@@ -346,7 +346,7 @@ test("a point of the section that is pointed at is lit in the plots over time", 
         box.y + (box.height * (l + 0.5)) / 12,
       );
   assert.notEqual(await page.textContent("#moment"), before);
-  assert.ok(await page.isVisible("#figure-x .ring"));
+  assert.ok(await page.isVisible("#figure-x .lit"));
   await page.close();
 });
 

@@ -21,7 +21,7 @@ export class LinePlot {
     this.canvas = element("canvas");
     this.over = element("div", {className: "over"});
     this.cursor = element("div", {className: "cursor", hidden: true});
-    this.ring = element("div", {className: "ring", hidden: true});
+    this.ring = element("div", {className: "lit", hidden: true});
     this.over.append(this.cursor, this.ring);
     container.append(this.legend, this.canvas, this.over);
     axis.onView(() => this.soon());

@@ -10,7 +10,7 @@ const reach = 14; // px within which a point is meant
 export class ScatterPlot {
   constructor(canvas) {
     this.canvas = canvas;
-    this.ring = element("div", {className: "ring", hidden: true});
+    this.ring = element("div", {className: "lit", hidden: true});
     canvas.parentNode.append(this.ring);
     this.size = new Size(canvas, () => {
       this.offset = [canvas.offsetLeft, canvas.offsetTop];

@@ -114,6 +114,7 @@ export function symbols(c, frame, group, clipped = false) {
   const r = Math.max(size * Math.min(room, 1), 0.75);
   const many = to - from > (shape === "dot" ? 100 : 2000); // a path of many discs takes long to fill
   const kind = many ? "square" : shape;
+  const half = many ? 0.85 * r : r;
   const drawn = new Drawn(frame.box);
   const around = clipped ? 0 : r;
   c.save();
@@ -130,7 +131,7 @@ export function symbols(c, frame, group, clipped = false) {
     const py = Math.min(Math.max(frame.py(y[i]), top - 2 * around), bottom + 2 * around);
     const edge = Math.min(Math.max(py, top), bottom);
     const place = clipped ? py : edge;
-    if ((!clipped || py === edge) && drawn.add(px, edge)) symbol(c, kind, px, place, r);
+    if ((!clipped || py === edge) && drawn.add(px, edge)) symbol(c, kind, px, place, half);
   }
   if (kind === "dot") c.fill();
   else if (!many) c.stroke();

@@ -37,7 +37,7 @@ export function coarseToFine(n) {
 }
 const order = coarseToFine(points);
 
-const box = {left: 34, right: 12, top: 4, band: 13, bottom: 17};
+const box = {left: 34, right: 14, top: 8, band: 13, bottom: 17};
 
 export class Strip {
   /** turn(fields, slider, {hasty}): sets a value, as a slider does. */
