@@ -1,6 +1,8 @@
 // The tab of simulations in real Chromium, as a visitor uses it.
 import assert from "node:assert/strict";
+import {execFile} from "node:child_process";
 import {test} from "node:test";
+import {promisify} from "node:util";
 import {startService} from "../service.mjs";
 import {drawn, open} from "./browser.mjs";
 import {
@@ -10,6 +12,7 @@ import {
   cells,
   cellsByName,
   colours,
+  downloaded,
   fits,
   hash,
   input,
@@ -540,6 +543,79 @@ test("windows are listed with their exponents and verdicts, and the link holds t
   assert.equal(await again.inputValue(input("windows")), "18.13, 800; 800, 1700");
   await page.close();
   await again.close();
+});
+
+test("a run is pinned, drawn beside the ones that follow, swapped with them and let go", async () => {
+  const page = await still("?preset=fig9");
+  await page.click("#pin");
+  assert.match(await page.textContent("#pinned-run"), /pinned: b = 22\.0 mm, R = 0\.60/);
+  await after(page, () => turn(page, "b", 15));
+  for (const canvas of [
+    "#plot-x canvas",
+    "#plot-relative canvas",
+    "#plot-lambda canvas",
+    "#plot-section",
+  ])
+    assert.ok((await pixels(page, canvas, "pinned")) > 20, canvas);
+  assert.match(await page.textContent("#plot-lambda .legend"), /λ₁ pinned/);
+  await after(page, () => page.click("#swap"));
+  assert.match(await sentence(page), /^b = 22\.0 mm/);
+  assert.match(await page.textContent("#pinned-run"), /pinned: b = 15\.0 mm/);
+  await page.click("#unpin");
+  assert.equal(await pixels(page, "#plot-x canvas", "pinned"), 0);
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+// Taking away.
+
+test("each plot has its numbers as a table and as CSV, and its picture as SVG and PNG, with its parameters", async () => {
+  const page = await still("?preset=fig9&view=100,140");
+  await page.click("#figure-relative .menu");
+  assert.match(await page.textContent("#data h2"), /Relative motion y − x/);
+  assert.match(await page.textContent("#data"), /b = 22\.0 mm, R = 0\.60, G = 20\.0 mm/);
+  const rows = await cells(page, "#data tbody tr");
+  assert.equal(rows[0][0], "100");
+  const file = async (form) => downloaded(page, `#data >> text=${form}`);
+  const csv = (await file("CSV")).text.trim().split("\n");
+  assert.equal(csv[0], "τ,y − x (mm)");
+  for (const line of csv.slice(1)) {
+    const [tau, gap] = line.split(",").map(Number);
+    assert.ok(tau >= 100 && tau <= 140 && Math.abs(gap) <= 22.000001, line);
+  }
+  const svg = (await file("SVG")).text;
+  assert.match(svg, /^<svg xmlns=.*Relative motion y − x.*b = 22\.0 mm, R = 0\.60/);
+  const wellFormed = await page.evaluate(
+    (text) => !new DOMParser().parseFromString(text, "image/svg+xml").querySelector("parsererror"),
+    svg,
+  );
+  assert.ok(wellFormed);
+  assert.match((await file("PNG")).text, /^.PNG/);
+  await page.keyboard.press("Escape");
+  assert.equal(await page.isVisible("#data"), false);
+  await unfoldDetails(page);
+  assert.equal(await page.locator("#details .menu").count(), 13);
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("a run is copied as a link, for curl, for Python and as JSON, and each gives the same run", async () => {
+  await browser.context.grantPermissions(["clipboard-read", "clipboard-write"]);
+  const page = await still("?preset=fig9&b=0.021");
+  const copied = async (form) => {
+    await page.click(`#copies >> text=${form}`);
+    await page.waitForFunction(() => document.getElementById("message").textContent === "copied");
+    return page.evaluate(() => navigator.clipboard.readText());
+  };
+  assert.equal(await copied("link"), page.url());
+  assert.deepEqual(JSON.parse(await copied("JSON")), {preset: "fig9", b: 0.021});
+  const run = (command, ...flags) => promisify(execFile)(command, flags, {maxBuffer: 2 ** 26});
+  const regime = /strongly modulated \((I+)\)/.exec(await sentence(page))[1];
+  const {stdout: python} = await run("python3", "-c", await copied("Python"));
+  assert.match(python, new RegExp(`^\\[0\\.\\d+, .*\\] ${regime}\n$`));
+  const {stdout: curl} = await run("sh", "-c", await copied("curl"));
+  assert.equal(JSON.parse(curl).parameters.b, 0.021);
+  await page.close();
 });
 
 // What the form says of its fields.

@@ -37,7 +37,8 @@ export class LinePlot {
   /**
    * series: [{label, colour, dash, width, dots, text}], dots: their size, and no line unless there
    * is a width; text(value): its legend in words; data: columns, or trace(from, to, columns): {data,
-   * dense} of what is in view, dense: the extremes of each pixel; span: [from, to] of the whole axis, if this plot is to say so; range: of y;
+   * dense} of what is in view, dense: the extremes of each pixel, and samples(from, to): the same as
+   * numbers to take away; unit: of them; span: [from, to] of the whole axis, if this plot is to say so; range: of y;
    * log: of y; levels: of y, each in the colour levelColour or as {y, colour}; lines: moments;
    * bands: intervals, calm: those of the other shade; marks: [{x, y, colour, shape, size, width}]
    * over the lines, x ascending; layers: [{from, to, colour}], of y, below them; x: {label,
@@ -93,8 +94,8 @@ export class LinePlot {
     return data ? {data} : trace(...this.axis.view, Math.max(width - 60, 10));
   }
 
-  frameOf(width, height, data) {
-    const {x, label, log, range, bare} = this.last;
+  frameOf(width, height, data, bare = this.last.bare) {
+    const {x, label, log, range} = this.last;
     const y = range ?? rangeOf(data.slice(1), {log}) ?? [0, 1];
     return new Frame(width, height, {...x, range: this.axis.view, bare}, {range: y, log, label});
   }
@@ -120,6 +121,35 @@ export class LinePlot {
       if (dots) symbols(c, frame, group, true);
     });
     for (const group of marks) symbols(c, frame, group);
+  }
+
+  /** All of it, with labels and the names of the lines, for a picture of its own. */
+  paintAll(c, width, height) {
+    const {data, dense} = this.dataFor(width);
+    const frame = this.frameOf(width, height, data, false);
+    this.paint(c, frame, data, dense);
+    const {series} = this.last;
+    if (series.length < 2) return;
+    c.textAlign = "left";
+    c.textBaseline = "top";
+    series.forEach(({label, colour: name}, k) => {
+      c.fillStyle = colour(name);
+      c.fillText(label, frame.box.left + 8 + 90 * k, frame.box.top + 4);
+    });
+  }
+
+  /** {names, columns}: the numbers of what is in view. */
+  numbers() {
+    const {series, x, data, samples, unit = ""} = this.last;
+    const [from, to] = this.axis.view;
+    const [time, ...columns] = data ?? samples(from, to);
+    const [first, end] = [firstFrom(time, from), firstFrom(time, to)];
+    const last = time[end] === to ? end + 1 : end;
+    const part = (column) => Array.from(column.slice(first, last));
+    return {
+      names: [x.label, ...series.map(({label}) => `${label}${unit && ` (${unit})`}`)],
+      columns: [part(time).map((t) => t * x.factor), ...columns.map(part)],
+    };
   }
 
   rule(c, frame) {

@@ -59,6 +59,21 @@ export class ScatterPlot {
     c.restore();
   }
 
+  /** All of it, for a picture of its own. */
+  paintAll(c, width, height) {
+    const {frame} = this;
+    this.paint(c, width, height);
+    this.frame = frame;
+  }
+
+  /** {names, columns}: the numbers of its points, by group. */
+  numbers() {
+    const {groups, xLabel, yLabel} = this.last;
+    const all = (key) => groups.flatMap((group) => group[key]);
+    const names = groups.flatMap(({x, label, colour: name}) => x.map(() => label ?? name));
+    return {names: [xLabel, yLabel, "group"], columns: [all("x"), all("y"), names]};
+  }
+
   /** Rings a point; none without one. */
   light(x, y) {
     this.lit = [x, y];

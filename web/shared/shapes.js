@@ -18,7 +18,7 @@ function inView(x, [min, max]) {
   return [Math.max(firstFrom(x, min) - 1, 0), Math.min(firstFrom(x, max) + 1, x.length)];
 }
 
-/** A line through points with ascending x; null breaks it. dense: there are many in a pixel. */
+/** A line through points with ascending x; null and NaN break it. dense: there are many in a pixel. */
 export function line(c, frame, x, y, {colour: name, width = 1, dash = []}, dense = false) {
   const [from, to] = inView(x, frame.x.range);
   c.strokeStyle = c.fillStyle = colour(name);
@@ -28,7 +28,7 @@ export function line(c, frame, x, y, {colour: name, width = 1, dash = []}, dense
   c.beginPath();
   let broken = true;
   for (let i = from; i < to; ++i) {
-    if (y[i] == null) broken = true;
+    if (y[i] == null || Number.isNaN(y[i])) broken = true;
     else {
       const [px, py] = [frame.px(x[i]), frame.py(y[i])];
       if (broken) c.moveTo(px, py);
@@ -57,7 +57,7 @@ function envelope(c, frame, x, y, from, to, width) {
     before = {low, high};
   };
   for (let i = from; i < to; ++i) {
-    if (y[i] == null) continue;
+    if (y[i] == null || Number.isNaN(y[i])) continue;
     const at = Math.floor(frame.px(x[i]));
     const py = frame.py(y[i]);
     if (at !== column) {

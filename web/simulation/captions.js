@@ -32,11 +32,24 @@ function summaries({energy, impacts, regime, exponents, parameters, status}, uni
   };
 }
 
+let told = {line: "", texts: {}};
+
+/** What a plot that is taken away says of itself. */
+export function aboutFigure(name) {
+  const caption = $(`figure-${name}`).querySelector("figcaption");
+  const own = [...caption.childNodes].filter((node) => !node.classList?.length);
+  const words = own.map((node) => node.textContent.trim()).filter(Boolean);
+  const [title] = words;
+  const summary = told.texts[name] ?? words.join(" ");
+  return {title, summary, caption: told.line, name: `vines-${name}`};
+}
+
 /** Writes both to the figures. */
 export function describe(answer, units) {
   const line = parameterLine(answer.parameters);
+  told = {line, texts: summaries(answer, units)};
   for (const node of document.querySelectorAll("#instrument .params")) node.textContent = line;
-  for (const [name, text] of Object.entries(summaries(answer, units))) {
+  for (const [name, text] of Object.entries(told.texts)) {
     const node = $(`plot-${name}`);
     node.setAttribute("aria-label", `${text} ${line}`);
     if (node.getAttribute("role") !== "slider") continue;

@@ -2,7 +2,9 @@
 // from then on.
 import {simulate} from "../shared/api.js";
 import {$} from "../shared/dom.js";
+import {addMenu} from "../shared/figure_menu.js";
 import {Job} from "../shared/job.js";
+import {aboutFigure} from "./captions.js";
 import {drawDetails, makePlots} from "./details_plots.js";
 import {accountEnergy, summarise, tabulate} from "./details_summary.js";
 import {marksOf} from "./marks.js";
@@ -47,7 +49,7 @@ export class Details {
     if (asked !== newest) return;
     this.shown = {answer, asked};
     this.say("");
-    this.plots ??= makePlots(this.axis);
+    this.plots ??= this.makePlots();
     summarise(answer, units);
     listParameters(answer.parameters, this.fieldOf);
     tabulate(answer.windows, units);
@@ -55,6 +57,13 @@ export class Details {
     drawDetails(this.plots, answer, marksOf(answer, units), units);
     $("details").dataset.done = String(Number($("details").dataset.done ?? 0) + 1);
     if (!$("model-sketch").hasChildNodes()) showModel().catch(() => {}); // the equations do without it
+  }
+
+  makePlots() {
+    const plots = makePlots(this.axis);
+    for (const [name, plot] of Object.entries(plots))
+      addMenu($(`figure-${name}`), plot, () => aboutFigure(name));
+    return plots;
   }
 
   redraw() {

@@ -5,11 +5,13 @@ import {$} from "../shared/dom.js";
 import {exponentRange, exponentSeries} from "../shared/exponents.js";
 import {followKeys} from "../shared/gestures.js";
 import {LinePlot} from "../shared/line_plot.js";
+import {lastUpTo} from "../shared/motion.js";
 import {short} from "../shared/numbers.js";
 import {ScatterPlot} from "../shared/scatter_plot.js";
 import {logRange, mm, over, overRun, positive, scaled} from "./columns.js";
 import {drawManifold} from "./manifold.js";
 
+const mostSamples = 100000; // of the motion, as numbers
 const alone = matchMedia("(max-width: 700px)"); // one plot at a time is on the screen
 const wallColours = {1: "plus", [-1]: "minus"};
 
@@ -48,6 +50,7 @@ export class Instrument {
     this.manifold = new ScatterPlot($("plot-manifold"));
     this.answer = null;
     this.more = null;
+    this.pinned = null; // {answer, motion} of a run to compare with
     axis.onCursor((by) => this.light(by));
     axis.onView(() => this.light());
     for (const name of Object.keys(this.lines))
@@ -73,6 +76,12 @@ export class Instrument {
     this.light();
   }
 
+  /** Each with its name. */
+  plots() {
+    const {lines, section, manifold} = this;
+    return Object.entries({...lines, section, manifold});
+  }
+
   redraw() {
     for (const plot of Object.values(this.lines)) plot.redraw();
     this.section.redraw();
@@ -81,19 +90,41 @@ export class Instrument {
 
   /** x over the whole run, which a zoom does not change. */
   ranges() {
-    const {x} = this.motion.trace(0, this.motion.end, 500);
-    this.rangeOfX = around(scaled(x, 1000));
+    const runs = [this.motion, ...(this.pinned ? [this.pinned.motion] : [])];
+    const most = runs.map((motion) => around(scaled(motion.trace(0, motion.end, 500).x, 1000))[1]);
+    this.rangeOfX = [-Math.max(...most), Math.max(...most)];
+  }
+
+  /** A run to compare with, or none. */
+  pin(run) {
+    this.pinned = run;
+    this.traced = null;
+    if (!this.answer) return;
+    this.ranges();
+    this.drawMotion();
+    this.drawExponents();
+    this.drawSection();
+    this.light();
   }
 
   /** The motion in view, of which two plots draw a part each. */
   trace(from, to, columns) {
     const key = [from, to, columns].join();
     if (this.traced?.key !== key || this.traced.motion !== this.motion) {
-      const {x, gap, ...rest} = this.motion.trace(from, to, columns);
-      const inMm = {x: scaled(x, 1000), gap: scaled(gap, 1000)};
-      this.traced = {key, motion: this.motion, ...rest, ...inMm};
+      const of = (motion) => {
+        const {x, gap, ...rest} = motion.trace(from, to, columns);
+        return {...rest, x: scaled(x, 1000), gap: scaled(gap, 1000)};
+      };
+      const other = this.pinned && of(this.pinned.motion);
+      this.traced = {key, motion: this.motion, ...of(this.motion), other};
     }
     return this.traced;
+  }
+
+  /** A line, and before it that of the pinned run. */
+  withPinned(line) {
+    const pinned = {label: `${line.label}, pinned`, colour: "pinned"};
+    return this.pinned ? [pinned, line] : [line];
   }
 
   drawMotion() {
@@ -101,21 +132,31 @@ export class Instrument {
     const b = parameters.b * 1000;
     const part = (name) => (from, to, columns) => {
       const lines = this.trace(from, to, columns);
-      return {data: [lines.tau, lines[name]], dense: lines.dense};
+      const pinned = lines.other ? [lines.other[name]] : [];
+      return {data: [lines.tau, ...pinned, lines[name]], dense: lines.dense};
     };
-    const common = {...this.marks, bare: !alone.matches};
+    const common = {...this.marks, bare: !alone.matches, unit: "mm"};
+    const samples = (name) => (from, to) => {
+      const {motion} = this;
+      const columns = Math.min(Math.ceil((8 * (to - from)) / motion.cycle) + 200, mostSamples);
+      const runs = [...(this.pinned ? [this.pinned.motion] : []), motion];
+      const lines = runs.map((run) => run.trace(from, to, columns));
+      return [lines[0].tau, ...lines.map((line) => scaled(line[name], 1000))];
+    };
     this.lines.x.draw({
       ...common,
-      series: [{label: "x", colour: "motion"}],
+      series: this.withPinned({label: "x", colour: "motion"}),
       trace: part("x"),
+      samples: samples("x"),
       range: this.rangeOfX,
       label: "x (mm)",
       marks: byWall(impacts, (i) => impacts.x[i] * 1000),
     });
     this.lines.relative.draw({
       ...common,
-      series: [{label: "y − x", colour: "motion"}],
+      series: this.withPinned({label: "y − x", colour: "motion"}),
       trace: part("gap"),
+      samples: samples("gap"),
       range: [-1.14 * b, 1.14 * b],
       label: "y − x (mm)",
       levels: [-b, b],
@@ -141,22 +182,26 @@ export class Instrument {
   }
 
   drawExponents() {
-    const {exponents} = this.answer;
-    const {history, status} = exponents.qr ?? {};
+    const {history, status} = this.answer.exponents.qr ?? {};
     const {series, columns} = exponentSeries(history, status);
+    const tau = history?.tau ?? [];
+    const lines = history ? columns : columns.map(() => []);
     const raw = this.more?.exponents.raw_product?.history;
-    const [tau, ...lines] = history?.tau.length
-      ? [history.tau, ...columns]
-      : [[], ...columns.map(() => [])];
     if (raw && raw.tau.length === tau.length) {
       series.push({label: "λ₁ raw product", colour: "soft", width: 1.2, dash: [5, 4]});
       lines.push(raw.lambda1);
     }
+    const data = overRun(tau, lines, this.motion.end);
+    const pinned = this.pinned?.answer.exponents.qr?.history;
+    if (pinned?.tau.length) {
+      series.push({label: "λ₁ pinned", colour: "pinned", width: 1.6});
+      data.push(data[0].map((t) => pinned.lambda1[lastUpTo(pinned.tau, t)] ?? null));
+    }
     this.lines.lambda.draw({
       ...this.marks,
       series,
-      data: overRun(tau, lines, this.motion.end),
-      range: exponentRange([history]),
+      data,
+      range: exponentRange([history, pinned]),
       label: "λ",
       levels: [0],
       levelColour: "line",
@@ -175,8 +220,23 @@ export class Instrument {
       const style = late ? {alpha: 0.75, size: 3} : {alpha: 0.3, size: 2.4};
       return {...style, colour: wallColours[side], x: x.filter(keep), y: y.filter(keep)};
     };
+    const other = this.pinned?.answer.impacts;
+    const pinned = other && {
+      x: mm(other.x),
+      y: over(other.x_dot_after, velocity),
+      colour: "pinned",
+      label: "pinned",
+      size: 3,
+      alpha: 1,
+    };
     this.section.draw({
-      groups: [part(1, false), part(-1, false), part(1, true), part(-1, true)],
+      groups: [
+        ...(pinned ? [pinned] : []),
+        part(1, false),
+        part(-1, false),
+        part(1, true),
+        part(-1, true),
+      ],
       xLabel: "x (mm)",
       yLabel: `x′ after (${velocity.unit})`,
       pick: {x, y, use: (i) => this.axis.point(impacts.tau[i], "pick")},

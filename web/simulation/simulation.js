@@ -1,8 +1,10 @@
 // The tab of one simulation: what one turns goes to the service as one request, and what it answers
 // is shown at once. The address is the request, and what is in view.
-import {asCurl, Problem, simulate, wholeMessage} from "../shared/api.js";
+import {Problem, simulate, wholeMessage} from "../shared/api.js";
 import {listWarnings} from "../shared/cards.js";
-import {$} from "../shared/dom.js";
+import {formsOf} from "../shared/copies.js";
+import {$, element} from "../shared/dom.js";
+import {addMenu} from "../shared/figure_menu.js";
 import {Form} from "../shared/form.js";
 import {Job} from "../shared/job.js";
 import {Motion} from "../shared/motion.js";
@@ -10,7 +12,7 @@ import {count} from "../shared/numbers.js";
 import {copy} from "../shared/take_away.js";
 import {TimeAxis} from "../shared/time_axis.js";
 import {onUnits, unitsOf, unitsSwitch} from "../shared/units.js";
-import {describe} from "./captions.js";
+import {aboutFigure, describe} from "./captions.js";
 import * as chips from "./chips.js";
 import {Details} from "./details.js";
 import {Instrument} from "./instrument.js";
@@ -18,6 +20,7 @@ import {Machine} from "./machine.js";
 import {marksOf} from "./marks.js";
 import {mark} from "./matches.js";
 import * as phone from "./phone.js";
+import * as pin from "./pin.js";
 import {Player} from "./player.js";
 import {Request, toQuery} from "./request.js";
 import {sentence, showSentence} from "./sentence.js";
@@ -231,14 +234,14 @@ export function redraw() {
   if (axis.cursor !== null) machine.draw(axis.cursor);
 }
 
-const command = () => asCurl("v1/simulate", request.asked());
-
 /** tables: of /v1/parameters, and presets; changed({edit}): there is another query. */
 export function start({fields, presets: list}, changed) {
   remembered = changed;
   const form = new Form($("fields"), fields);
   request = new Request(form, fields, list);
   instrument = new Instrument(axis);
+  for (const [name, plot] of instrument.plots())
+    addMenu($(`figure-${name}`), plot, () => aboutFigure(name));
   player = new Player(axis, (tau) => machine.draw(tau));
   sliders = new Sliders($("sliders"), {
     change: turn,
@@ -247,6 +250,14 @@ export function start({fields, presets: list}, changed) {
   strip = new Strip(turn);
   details = new Details(axis, () => last, fields);
   chips.start(list, choosePreset);
+  pin.start(
+    () => last,
+    (run) => instrument.pin(run),
+    (asked) => {
+      request.read(toQuery(asked));
+      run();
+    },
+  );
   phone.start();
   listen(form);
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) player.play();
@@ -277,5 +288,11 @@ function listen(form) {
     if (!$("form").querySelector(".slider [aria-invalid]")) run();
   });
   $("cancel").addEventListener("click", () => job.cancel());
-  $("copy").addEventListener("click", () => copy(command(), say));
+  const forms = formsOf("v1/simulate", () => request.asked());
+  for (const [name, text] of Object.entries(forms)) {
+    const button = element("button", {type: "button", className: "small", textContent: name});
+    button.title = `copy this run as ${name}`;
+    button.addEventListener("click", () => copy(text(), say));
+    $("copies").append(button);
+  }
 }

@@ -1,0 +1,29 @@
+// A request in the forms one pastes elsewhere.
+import {asCurl} from "./api.js";
+
+const whole = (path) => new URL(path, location.href.split("?")[0]).href;
+
+/** A request as a Python program that needs nothing but Python. */
+export function asPython(path, fields) {
+  const body = JSON.stringify(fields);
+  return [
+    "import json, urllib.request",
+    "",
+    `request = json.loads(${JSON.stringify(body)})`,
+    `url = ${JSON.stringify(whole(path))}`,
+    "body = json.dumps(request).encode()",
+    'head = {"Content-Type": "application/json"}',
+    "with urllib.request.urlopen(urllib.request.Request(url, body, head)) as answer:",
+    "    result = json.load(answer)",
+    'print(result["exponents"]["qr"]["final"], result["regime"]["type"])',
+    "",
+  ].join("\n");
+}
+
+/** forms by name: each a function that makes the text. request(): the fields of a route. */
+export const formsOf = (path, request) => ({
+  link: () => location.href,
+  curl: () => asCurl(path, request()),
+  Python: () => asPython(path, {...request(), include: ["impacts", "exponents", "regime"]}),
+  JSON: () => JSON.stringify(request(), null, 2),
+});
