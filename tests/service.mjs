@@ -23,7 +23,12 @@ export async function startService(flags = [], environment = {}, freePort = true
     });
     ended.then((code) => reject(new Error(`${program} ended with ${code}: ${text}`)));
   });
+  // A test that fails before it stops the service keeps nobody waiting, and leaves none behind.
+  child.unref();
+  child.stdout.unref();
+  process.once("exit", () => child.kill("SIGKILL"));
   const stop = () => {
+    child.ref();
     child.kill("SIGTERM");
     return ended;
   };
