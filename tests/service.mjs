@@ -4,6 +4,12 @@ import {spawn} from "node:child_process";
 export const program =
   process.env.VINES ?? new URL("../build/release/vines", import.meta.url).pathname;
 
+// A test that fails before it stops its service keeps nobody waiting, and leaves none behind.
+const started = new Set();
+process.once("exit", () => {
+  for (const child of started) child.kill("SIGKILL");
+});
+
 /**
  * Starts `vines serve` on a free port; resolves to {url, pid, stop}, where stop resolves to the
  * exit code.
@@ -14,6 +20,7 @@ export async function startService(flags = [], environment = {}, freePort = true
     env: {...process.env, ...environment},
   });
   const ended = new Promise((resolve) => child.on("exit", resolve));
+  ended.then(() => started.delete(child));
   const url = await new Promise((resolve, reject) => {
     let text = "";
     child.stdout.on("data", (data) => {
@@ -23,10 +30,9 @@ export async function startService(flags = [], environment = {}, freePort = true
     });
     ended.then((code) => reject(new Error(`${program} ended with ${code}: ${text}`)));
   });
-  // A test that fails before it stops the service keeps nobody waiting, and leaves none behind.
   child.unref();
   child.stdout.unref();
-  process.once("exit", () => child.kill("SIGKILL"));
+  started.add(child);
   const stop = () => {
     child.ref();
     child.kill("SIGTERM");

@@ -17,9 +17,13 @@ const scrolled = {};
 let tables;
 let current = null;
 
+// In a frame of another page: plots only.
+const embedded = new URLSearchParams(location.search).has("embed");
+document.body.classList.toggle("embedded", embedded);
+
 function address(name, query) {
-  if (name === "simulation") return `?${query}`;
-  return query ? `?tab=${name}&${query}` : `?tab=${name}`;
+  const parts = [embedded ? "embed=1" : "", name === "simulation" ? "" : `tab=${name}`, query];
+  return `?${parts.filter(Boolean).join("&")}`;
 }
 
 function show(name) {
@@ -43,6 +47,7 @@ async function pane(name) {
 /** Follows the address. */
 async function follow() {
   const query = new URLSearchParams(location.search);
+  query.delete("embed");
   const named = query.get("tab");
   const name = Object.hasOwn(modules, named) ? named : "simulation";
   if (name === named) query.delete("tab"); // another is said to be unknown

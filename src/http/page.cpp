@@ -14,11 +14,15 @@ namespace vines::http {
 
 namespace {
 
-// Everything from this server, nothing inline: the page's scripts and styles are files.
-const char* const page_policy =
-    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src "
-    "'self'; base-uri 'none'; form-action 'none'; "
-    "frame-ancestors 'none'";
+/// Everything from this server, nothing inline: the page's scripts and styles are files.
+std::string policy_of(const std::vector<std::string>& embed_origins) {
+    std::string policy =
+        "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
+        "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors";
+    if (embed_origins.empty()) policy += " 'none'";
+    for (const std::string& origin : embed_origins) policy += " " + origin;
+    return policy;
+}
 
 /// By the file name's ending.
 std::string content_type_of(std::string_view path) {
@@ -29,22 +33,24 @@ std::string content_type_of(std::string_view path) {
     return "text/html; charset=utf-8";
 }
 
-Response file_response(std::string_view path, std::string body) {
+Response file_response(std::string_view path, std::string body, const std::string& policy) {
     return {
         .content_type = content_type_of(path),
         .body = std::move(body),
         .headers = {
-            {"Content-Security-Policy", page_policy},
+            {"Content-Security-Policy", policy},
             {"X-Content-Type-Options", "nosniff"},
             {"Referrer-Policy", "no-referrer"}}};
 }
 
-std::vector<Route> embedded_routes() {
+std::vector<Route> embedded_routes(const std::string& policy) {
     std::vector<Route> routes;
     for (const Asset& asset : assets())
         routes.push_back(
-            {.method = "GET", .path = std::string(asset.path), .answer = [asset](const Request&) {
-                 Response response = file_response(asset.path, std::string(asset.content));
+            {.method = "GET",
+             .path = std::string(asset.path),
+             .answer = [asset, policy](const Request&) {
+                 Response response = file_response(asset.path, std::string(asset.content), policy);
                  response.gzipped = asset.gzipped;
                  response.immutable = asset.path != "/";
                  return response;
@@ -53,31 +59,52 @@ std::vector<Route> embedded_routes() {
 }
 
 /// Of a file as it is whenever it is asked for.
-Route file_route(const std::filesystem::path& file, const std::string& path) {
-    return {.method = "GET", .path = path, .answer = [file, path](const Request&) {
+Route file_route(
+    const std::filesystem::path& file, const std::string& path, const std::string& policy) {
+    return {.method = "GET", .path = path, .answer = [=](const Request&) {
                 std::ifstream in(file, std::ios::binary);
                 if (!in) throw api::Problem(404, "there is no " + path);
                 return file_response(
                     path == "/" ? "index.html" : path,
-                    std::string(std::istreambuf_iterator<char>(in), {}));
+                    std::string(std::istreambuf_iterator<char>(in), {}), policy);
             }};
 }
 
-std::vector<Route> folder_routes(const std::filesystem::path& folder) {
-    std::vector<Route> routes{file_route(folder / "index.html", "/")};
+/// Whether the page asks for a file of its folder: of the packages beside it, for uPlot's alone.
+bool is_of_page(const std::filesystem::path& name) {
+    const std::filesystem::path ending = name.extension();
+    if (ending != ".js" && ending != ".css" && ending != ".svg") return false;
+    const std::string path = name.generic_string();
+    return path.rfind("node_modules/", 0) != 0 || path.rfind("node_modules/uplot/dist/", 0) == 0;
+}
+
+std::vector<Route> folder_routes(const std::filesystem::path& folder, const std::string& policy) {
+    std::vector<Route> routes{file_route(folder / "index.html", "/", policy)};
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-        const std::filesystem::path ending = entry.path().extension();
-        if (ending != ".js" && ending != ".css" && ending != ".svg") continue;
-        const std::string name = entry.path().lexically_relative(folder).generic_string();
-        routes.push_back(file_route(entry.path(), "/" + name));
+        const std::filesystem::path name = entry.path().lexically_relative(folder);
+        if (is_of_page(name))
+            routes.push_back(file_route(entry.path(), "/" + name.generic_string(), policy));
     }
     return routes;
 }
 
 }  // namespace
 
-std::vector<Route> page_routes(const std::string& web_dir) {
-    return web_dir.empty() ? embedded_routes() : folder_routes(web_dir);
+bool is_origin(const std::string& text) {
+    const std::size_t scheme =
+        text.rfind("https://", 0) == 0 ? 8 : (text.rfind("http://", 0) == 0 ? 7 : 0);
+    const std::string host = text.substr(scheme);
+    const auto allowed = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               c == '.' || c == '-' || c == ':' || c == '[' || c == ']';
+    };
+    return scheme > 0 && !host.empty() && std::all_of(host.begin(), host.end(), allowed);
+}
+
+std::vector<Route> page_routes(const PageOptions& options) {
+    const std::string policy = policy_of(options.embed_origins);
+    return options.web_dir.empty() ? embedded_routes(policy)
+                                   : folder_routes(options.web_dir, policy);
 }
 
 }  // namespace vines::http

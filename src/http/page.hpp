@@ -8,8 +8,17 @@
 
 namespace vines::http {
 
-/// Those compiled in; with a folder `web_dir` its scripts, style sheets and drawings as they are
-/// there, so that a change shows without a build.
-std::vector<Route> page_routes(const std::string& web_dir);
+struct PageOptions {
+    /// Its scripts, style sheets and drawings as they are in this folder, so that a change shows
+    /// without a build; empty: those compiled in.
+    std::string web_dir = {};
+    /// Of pages that may show it in a frame: "https://example.org:8443", each.
+    std::vector<std::string> embed_origins = {};
+};
+
+/// Whether a text is an origin: a scheme, http or https, a host and perhaps a port, no more.
+bool is_origin(const std::string& text);
+
+std::vector<Route> page_routes(const PageOptions& options);
 
 }  // namespace vines::http

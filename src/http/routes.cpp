@@ -159,7 +159,7 @@ std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate) {
     routes.push_back(route("GET", "/version", [](const Request&) {
         return json_response({{"name", "vines"}, {"version", api::version()}});
     }));
-    for (Route& file : page_routes(options.web_dir)) routes.push_back(std::move(file));
+    for (Route& file : page_routes(options.page)) routes.push_back(std::move(file));
     return routes;
 }
 

@@ -6,6 +6,7 @@
 
 #include "api/simulate.hpp"
 #include "http/compute_gate.hpp"
+#include "http/page.hpp"
 #include "http/route.hpp"
 
 namespace vines::http {
@@ -17,8 +18,7 @@ struct RouteOptions {
     std::size_t answer_limit = 128 << 20;  ///< bytes of an answer's JSON
     /// More listed impacts than this leave as a stream, with columns that are made meanwhile.
     std::size_t most_kept_impacts = api::most_kept_impacts;
-    /// Serve the page from this folder instead of the program; empty: do not.
-    std::string web_dir = {};
+    PageOptions page = {};
 };
 
 /// All routes. `gate` outlives them.

@@ -85,6 +85,22 @@ void add_size_flags(CLI::App& c, ServeOptions& o) {
         ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 40));
 }
 
+void add_page_flags(CLI::App& c, PageOptions& o) {
+    const auto origin = [](const std::string& text) {
+        return is_origin(text) ? "" : text + " is no origin such as https://example.org:8443";
+    };
+    c.add_option(
+         "--embed-origin", o.embed_origins,
+         "origin of a page that may show this one in a frame (may come several times)")
+        ->envname("VINES_EMBED_ORIGIN")
+        ->check(origin);
+    c.add_option(
+         "--web-dir", o.web_dir,
+         "serve the page from this folder instead of the program (while developing it)")
+        ->envname("VINES_WEB_DIR")
+        ->check(CLI::ExistingDirectory);
+}
+
 /// Ends the process once it is asked to: sweeps end at once, other requests are taken until the
 /// drain is over, and those in work are finished.
 [[noreturn]] void end_when_asked(double drain, ComputeGate& gate, Server& server) {
@@ -137,12 +153,7 @@ Command add_serve(CLI::App& app) {
     add_server_flags(*command, options->server);
     add_compute_flags(*command, *options);
     add_size_flags(*command, *options);
-    command
-        ->add_option(
-            "--web-dir", options->routes.web_dir,
-            "serve the page from this folder instead of the program (while developing it)")
-        ->envname("VINES_WEB_DIR")
-        ->check(CLI::ExistingDirectory);
+    add_page_flags(*command, options->routes.page);
     return {command, [options] { return serve(*options); }};
 }
 

@@ -1,6 +1,7 @@
 // The tab of simulations in real Chromium, as a visitor uses it.
 import assert from "node:assert/strict";
 import {execFile} from "node:child_process";
+import {createServer} from "node:http";
 import {test} from "node:test";
 import {promisify} from "node:util";
 import {startService} from "../service.mjs";
@@ -435,6 +436,7 @@ test("walls with different R leave the manifold's branches out and keep the run'
 const details = [
   "acceleration",
   "z",
+  "divergence",
   "qr",
   "eigenvalues",
   "raw_product",
@@ -594,7 +596,7 @@ test("each plot has its numbers as a table and as CSV, and its picture as SVG an
   await page.keyboard.press("Escape");
   assert.equal(await page.isVisible("#data"), false);
   await unfoldDetails(page);
-  assert.equal(await page.locator("#details .menu").count(), 13);
+  assert.equal(await page.locator("#details .menu").count(), 14);
   assert.deepEqual(browser.complaints, []);
   await page.close();
 });
@@ -615,6 +617,47 @@ test("a run is copied as a link, for curl, for Python and as JSON, and each give
   assert.match(python, new RegExp(`^\\[0\\.\\d+, .*\\] ${regime}\n$`));
   const {stdout: curl} = await run("sh", "-c", await copied("curl"));
   assert.equal(JSON.parse(curl).parameters.b, 0.021);
+  await page.close();
+});
+
+/** A page of another origin that shows an address, as of address(), in a frame. */
+async function frameOf(address) {
+  const host = createServer((_, response) => {
+    response.setHeader("Content-Type", "text/html");
+    response.end(`<!doctype html><iframe src="${address()}" width="1200" height="700"></iframe>`);
+  });
+  await new Promise((resolve) => host.listen(0, "127.0.0.1", resolve));
+  return {host, origin: `http://127.0.0.1:${host.address().port}`};
+}
+
+test("a page of an allowed origin shows the plots in a frame; one of another origin shows nothing", async () => {
+  let address = "";
+  const [allowed, other] = [await frameOf(() => address), await frameOf(() => address)];
+  const own = await startService(["--embed-origin", allowed.origin]);
+  address = `${own.url}/?embed=1&preset=fig11`;
+  const page = await browser.context.newPage();
+  await page.goto(allowed.origin);
+  const frame = page.frames()[1];
+  await frame.waitForFunction(() => document.getElementById("results")?.dataset.done);
+  assert.ok(await frame.isVisible("#plot-x canvas"));
+  for (const hidden of ["#form", "header", "footer", "#details"])
+    assert.equal(await frame.isVisible(hidden), false, hidden);
+  await page.goto(other.origin);
+  await page.waitForTimeout(500);
+  assert.equal(await page.frames()[1].$("#plot-x"), null);
+  await page.close();
+  for (const {host} of [allowed, other]) host.close();
+  await own.stop();
+  browser.complaints.length = 0; // the frame that was refused
+});
+
+test("printed, the page is its results, without what one turns", async () => {
+  const page = await still("?preset=fig9");
+  await page.emulateMedia({media: "print"});
+  for (const hidden of ["#form", ".tabs", ".player", "footer"])
+    assert.equal(await page.isVisible(hidden), false, hidden);
+  for (const shownOnPaper of ["#sentence", "#figure-x .params", ...instrument])
+    assert.ok(await page.isVisible(shownOnPaper), shownOnPaper);
   await page.close();
 });
 

@@ -12,10 +12,13 @@ class Step {
     this.sin = sin;
   }
 
-  /** Applies the map to state (x, x', sin, cos), in place. */
+  /** Applies the map to state (x, x', sin, cos), in place: thousands of times for a plot. */
   apply(state) {
     const r = this.rows;
-    const [x, v, s, c] = state;
+    const x = state[0];
+    const v = state[1];
+    const s = state[2];
+    const c = state[3];
     state[0] = r[0] * x + r[1] * v + r[2] * s + r[3] * c;
     state[1] = r[4] * x + r[5] * v + r[6] * s + r[7] * c;
     state[2] = s * this.cos + c * this.sin;

@@ -21,7 +21,7 @@ export class Details {
     this.fieldOf = Object.fromEntries(fields.map((f) => [f.name, f]));
     this.plots = null;
     this.job = new Job({
-      ask: (asked, signal) => simulate({...asked, include}, signal),
+      ask: (asked, signal) => simulate({perturbation: {size: 1e-9}, ...asked, include}, signal),
       show: (answer, asked) => this.show(answer, asked),
       fail: (error) => this.say(error.message),
       busy: (is) => {

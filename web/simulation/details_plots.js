@@ -3,12 +3,13 @@
 import {$} from "../shared/dom.js";
 import {exponentRange, exponentSeries} from "../shared/exponents.js";
 import {LinePlot} from "../shared/line_plot.js";
+import {digits} from "../shared/numbers.js";
 import {ScatterPlot} from "../shared/scatter_plot.js";
 import {logRange, mm, over, overRun, positive} from "./columns.js";
 
 const estimators = ["qr", "eigenvalues", "raw_product"];
 const matrices = ["J", "M", "T"];
-const overTime = ["acceleration", "z", "differences", ...matrices, ...estimators];
+const overTime = ["acceleration", "z", "differences", "divergence", ...matrices, ...estimators];
 const planes = ["portrait", "velocities", "stroboscopic", "multipliers"];
 
 function drawMotion(plots, {series, regime, status}, marks, units) {
@@ -142,6 +143,35 @@ function drawMultipliers(plots, {periodic, contacts, multipliers}) {
   });
 }
 
+/** How a run that starts a little off departs, beside what the linear theory says. */
+function drawDivergence(plots, {tau, distance, predicted, slope}, marks) {
+  const log = distance.map(Math.log);
+  const mean = (values) => values.reduce((a, v) => a + v, 0) / values.length;
+  const within = tau.map((t) => slope && t >= slope.tau_start && t <= slope.tau_end);
+  const part = (values) => values.filter((_, i) => within[i] && Number.isFinite(log[i]));
+  const [middle, height] = [mean(part(tau)), mean(part(log))];
+  const beyond = 10 * distance.reduce((a, v) => Math.max(a, v), 0); // of no use any more
+  const fitted = tau.map((t, i) =>
+    within[i] ? Math.exp(height + slope.lambda1 * (t - middle)) : null,
+  );
+  plots.divergence.draw({
+    ...marks,
+    series: [
+      {label: "distance", colour: "c1", width: 1.4},
+      {label: "linear theory", colour: "soft", dash: [5, 4]},
+      ...(slope ? [{label: `slope ${digits(slope.lambda1)}`, colour: "before", width: 2.5}] : []),
+    ],
+    data: [
+      tau,
+      distance.map(positive),
+      predicted.distance.map((v) => (v < beyond ? positive(v) : null)),
+      ...(slope ? [fitted] : []),
+    ],
+    log: true,
+    label: "distance (m)",
+  });
+}
+
 /** The plots, over the time of an axis. */
 export function makePlots(axis) {
   const line = (name) => [name, new LinePlot($(`plot-${name}`), {axis})];
@@ -160,4 +190,5 @@ export function drawDetails(plots, answer, marks, units) {
   drawStroboscopic(plots, section.stroboscopic, units);
   drawDifferences(plots, section.impact, parameters.Omega, end, marks);
   drawMultipliers(plots, regime);
+  drawDivergence(plots, answer.perturbation, marks);
 }

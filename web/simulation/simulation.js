@@ -82,7 +82,7 @@ const more = new Job({
     details.follow();
     countUp("done");
   },
-  fail() {}, // the first one has said it
+  fail: (error) => say(`T, the raw product and the manifold are missing: ${error.message}`, true),
   busy() {},
   unreachable() {},
 });

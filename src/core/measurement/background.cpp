@@ -61,6 +61,9 @@ private:
     std::vector<double> values_;
 };
 
+/// Of going once through a neighbourhood, for IdentificationProgress::tick.
+std::size_t work_of(const Neighbourhood& near) { return 1 + (near.to - near.from) / 64; }
+
 /// What stands out from the median of its neighbourhood: the first guess.
 std::vector<double> without_median(
     const MeasuredRecord& r, double reach, IdentificationProgress& progress) {
@@ -68,13 +71,16 @@ std::vector<double> without_median(
     OrderedValues values;
     Neighbourhood near;
     for (std::size_t k = 0; k < r.tau.size(); ++k) {
-        progress.tick();
         const Neighbourhood before = near;
         near.move_to(k, r.tau, reach);
-        for (std::size_t j = before.from; j < std::min(before.to, near.from); ++j)
+        for (std::size_t j = before.from; j < std::min(before.to, near.from); ++j) {
+            progress.tick(work_of(near));
             values.remove(r.x_ddot[j]);
-        for (std::size_t j = std::max(before.to, near.from); j < near.to; ++j)
+        }
+        for (std::size_t j = std::max(before.to, near.from); j < near.to; ++j) {
+            progress.tick(work_of(near));
             values.add(r.x_ddot[j]);
+        }
         residual[k] = r.x_ddot[k] - values.median();
     }
     return residual;
@@ -121,8 +127,8 @@ public:
         Neighbourhood near;
         std::size_t changed = 0;
         for (std::size_t k = 0; k < r_.tau.size(); ++k) {
-            progress_.tick();
             near.move_to(k, r_.tau, reach_);
+            progress_.tick(work_of(near));
             changed = std::max(changed, near.from);
             while (changed < near.to && !before.empty() && masked_[changed] == before[changed])
                 ++changed;

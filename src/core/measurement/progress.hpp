@@ -1,6 +1,7 @@
 // How far an identification has come, and whether it is to end.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <utility>
 
@@ -35,17 +36,21 @@ public:
     void look() const {
         if (watch_.stop && watch_.stop()) throw at_;
     }
-    /// For the inner loops: looks at every so many calls.
-    void tick() {
-        if (++ticks_ % ticks_per_look == 0) look();
+    /// For the inner loops: looks now and then. work: how much there is until the next call, in
+    /// units of some hundred operations.
+    void tick(std::size_t work = 1) {
+        ticks_ += work;
+        if (ticks_ < ticks_per_look) return;
+        ticks_ = 0;
+        look();
     }
     const std::function<bool()>& stop() const { return watch_.stop; }
 
 private:
-    static constexpr long ticks_per_look = 256;
+    static constexpr std::size_t ticks_per_look = 256;
     const IdentificationWatch watch_;
     IdentificationStopped at_ = {IdentificationStage::spikes, 0};
-    long ticks_ = 0;
+    std::size_t ticks_ = 0;
 };
 
 }  // namespace vines
