@@ -52,6 +52,29 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("lines come coarse to fine, so that the whole is seen early") {
+    for (const char* axis : {"G", "Omega"})
+        for (const char* more : {"}", R"(,"carry_state":"up"})"}) {
+            CAPTURE(axis);
+            CAPTURE(more);
+            const SweepRequest r = sweep_request(
+                R"({"axes":[{"parameter":")" + std::string(axis) +
+                R"(","from":0.99,"to":1.01,"count":4},{"parameter":"R","from":0.5,"to":0.9,"count":64}],
+                "cycles":2,"transient_cycles":0)" +
+                more);
+            std::vector<std::size_t> levels;
+            api::Pace pace;
+            run_sweep(r, 1, pace, [&](std::size_t line, const std::string&) {
+                levels.push_back(r.plan.grid.level(r.plan.grid.place_of(line)));
+            });
+            CHECK(levels.size() == r.plan.grid.lines());
+            // Lanes side by side end one before the other.
+            const std::size_t early = levels.size() / 16;
+            for (std::size_t i = 0; i < early; ++i) CHECK(levels[i] <= 1);
+            CHECK(levels.back() == 3);
+        }
+}
+
 TEST_CASE("a point tells its place, exponents, regime, amplitude, energy and section") {
     const auto lines = run(sweep_request(std::string(plane) + "}"));
     const Json& line = lines.at(6);  // the second b at the second R

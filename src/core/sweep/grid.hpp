@@ -29,6 +29,9 @@ struct Grid {
     std::size_t lines() const { return points() / (reduced ? row() : 1); }
     /// Of a line; with a reduction it is at 0 on the reduced axis.
     Place place_of(std::size_t line) const;
+    /// How fine the grid is that a place belongs to first: 0 is a coarse one over all axes, and
+    /// each further level halves its steps.
+    std::size_t level(const Place& place) const;
 };
 
 }  // namespace vines

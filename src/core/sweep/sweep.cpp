@@ -1,6 +1,7 @@
 #include "core/sweep/sweep.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "core/sweep/parallel.hpp"
 #include "core/sweep/points.hpp"
@@ -30,10 +31,9 @@ public:
 
     void run() {
         if (plan_.by_rows()) return run_rows();
-        const std::size_t first = plan_.grid.steps[0], others = plan_.lines.size() / first;
-        const bool across = first_axis_changes_flow();
-        run_points(plan_.lines.size(), threads_, plan_.options, pace_, [&](std::size_t i) {
-            return single(plan_.lines[across ? i % others * first + i / others : i]);
+        const std::vector<std::size_t> lines = coarse_to_fine();
+        run_points(lines.size(), threads_, plan_.options, pace_, [&](std::size_t i) {
+            return single(lines[i]);
         });
     }
 
@@ -46,10 +46,26 @@ private:
         return point;
     }
 
-    /// Points of one flow fly side by side: where it is another one at each step of the first axis,
-    /// lines are begun along the other axes.
+    /// The wanted lines, so that the whole is seen early. Points of one flow fly side by side:
+    /// where it is another one at each step of the first axis, lines are begun along the other
+    /// axes.
+    std::vector<std::size_t> coarse_to_fine() const {
+        const bool across = first_axis_changes_flow();
+        std::vector<std::array<std::size_t, 3>> keys;
+        keys.reserve(plan_.lines.size());
+        for (const std::size_t line : plan_.lines) {
+            const Place place = plan_.grid.place_of(line);
+            keys.push_back({plan_.grid.level(place), across ? place.at[0] : 0, line});
+        }
+        std::sort(keys.begin(), keys.end());
+        std::vector<std::size_t> lines;
+        lines.reserve(keys.size());
+        for (const auto& key : keys) lines.push_back(key[2]);
+        return lines;
+    }
+
     bool first_axis_changes_flow() const {
-        if (plan_.lines.size() != plan_.grid.lines() || plan_.grid.steps[0] < 2) return false;
+        if (plan_.grid.steps[0] < 2) return false;
         Place place = plan_.grid.place_of(0);
         const auto one = plan_.system_at(place);
         place.at[0] = 1;
@@ -119,10 +135,15 @@ private:
         const std::size_t chain = plan_.chain();
         for (std::size_t i = 0; i < plan_.lines.size(); ++i) {
             const std::size_t line = plan_.lines[i];
-            if (i == 0 || line / chain != plan_.lines[i - 1] / chain)
+            if (i == 0 || line / chain != plan_.lines[i - 1] / chain) {
                 rows.push_back({plan_.grid.place_of(line), {}, {}});
+                rows.back().place.at[plan_.grid.inner()] = 0;
+            }
             rows.back().wanted.push_back(line);
         }
+        std::stable_sort(rows.begin(), rows.end(), [this](const Row& one, const Row& other) {
+            return plan_.grid.level(one.place) < plan_.grid.level(other.place);
+        });
         return rows;
     }
 

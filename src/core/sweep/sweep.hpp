@@ -53,9 +53,9 @@ struct StartTrial {
     std::size_t tried = 0, elsewhere = 0;
 };
 
-/// Computes the wanted lines on so many threads and hands them out in the order in which they come.
-/// What a line holds depends on the plan and its number alone. Ends early, without those that are
-/// left, once the pace says stop.
+/// Computes the wanted lines on so many threads, coarse to fine over the axes, and hands them out
+/// in the order in which they come. What a line holds depends on the plan and its number alone.
+/// Ends early, without those that are left, once the pace says stop.
 StartTrial run_sweep(const SweepPlan& plan, int threads, Pace& pace, SweepSink& sink);
 
 }  // namespace vines

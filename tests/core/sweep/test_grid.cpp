@@ -54,3 +54,20 @@ TEST_CASE("where the only axis is reduced each start has a line") {
     CHECK(grid.lines() == 3);
     for (std::size_t line = 0; line < 3; ++line) CHECK(grid.place_of(line).start == line);
 }
+
+TEST_CASE("each level of a grid halves the steps of the one before, from 8 to 16 an axis on") {
+    const Grid grid{.steps = {65, 20}};
+    std::vector<std::size_t> seen(4, 0);
+    for (std::size_t line = 0; line < grid.lines(); ++line) {
+        const Place place = grid.place_of(line);
+        const std::size_t level = grid.level(place);
+        REQUIRE(level < seen.size());
+        ++seen[level];
+        const std::size_t first = 8 >> level, second = 2 >> std::min<std::size_t>(level, 1);
+        CHECK(place.at[0] % first == 0);
+        CHECK(place.at[1] % second == 0);
+    }
+    CHECK(seen[0] == 9 * 10);
+    CHECK(seen[0] + seen[1] == 17 * 20);
+    CHECK(seen[0] + seen[1] + seen[2] == 33 * 20);
+}
