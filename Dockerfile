@@ -7,7 +7,7 @@ RUN apt-get update \
     && rm -rf /var/lib/apt/lists/*
 WORKDIR /vines
 
-# uPlot as the checkout already has it, if it is there in the right version (so the build works without npm's registry);
+# The packages as the checkout already has them, if they are there in the right versions (so the build works without npm's registry);
 # else by the lock file.
 COPY web web
 RUN cd web && { npm ls --omit=dev >/dev/null 2>&1 || npm ci --omit=dev --no-audit --no-fund; }

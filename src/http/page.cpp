@@ -70,12 +70,12 @@ Route file_route(
             }};
 }
 
-/// Whether the page asks for a file of its folder: of the packages beside it, for uPlot's alone.
+/// Whether the page asks for a file of its folder: for none of the packages beside it.
 bool is_of_page(const std::filesystem::path& name) {
     const std::filesystem::path ending = name.extension();
     if (ending != ".js" && ending != ".css" && ending != ".svg") return false;
     const std::string path = name.generic_string();
-    return path.rfind("node_modules/", 0) != 0 || path.rfind("node_modules/uplot/dist/", 0) == 0;
+    return path.rfind("node_modules/", 0) != 0;
 }
 
 std::vector<Route> folder_routes(const std::filesystem::path& folder, const std::string& policy) {

@@ -7,6 +7,7 @@ import {
   asked,
   beyond,
   browser,
+  cells,
   cellsByName,
   colours,
   downloaded,
@@ -28,13 +29,13 @@ const stacked = ["section", "lambda", "other"].map((name) => `#plot-sweep-${name
 
 /** The place on the screen of the point at share t of a plot's width. */
 async function hoverAt(page, plot, x, y = 0.5) {
-  const box = await page.locator(`${plot} .u-over`).boundingBox();
-  await page.locator(`${plot} .u-over`).hover({position: {x: box.width * x, y: box.height * y}});
+  const box = await page.locator(`${plot} .over`).boundingBox();
+  await page.locator(`${plot} .over`).hover({position: {x: box.width * x, y: box.height * y}});
 }
 
 /** Clicks there. */
 async function clickAt(page, plot, x, y) {
-  const over = page.locator(`${plot} .u-over`);
+  const over = page.locator(`${plot} .over`);
   await over.scrollIntoViewIfNeeded();
   // A click at once may still hit what was there before.
   await page.evaluate(
@@ -96,7 +97,7 @@ test("a sweep fills its diagrams, counts what has come, and a link shows the sam
   await hoverAt(page, "#plot-sweep-lambda", 0.3);
   assert.match(
     await tip(page),
-    /b0\.01\d+ mregimeIII, two symmetric.*z2.*λ₁−0\.\d+ ± .*regular.*Click: simulate it$/,
+    /^b1\d\.\d+ mmregimeIII, two symmetric.*z2.*λ₁−0\.\d+ ± .*regular.*Click: simulate it$/,
   );
   await page.selectOption("#sweep-coordinate", "y_dot_after");
   await page.selectOption("#sweep-quantity", "share_impacts");
@@ -116,8 +117,8 @@ test("a sweep fills its diagrams, counts what has come, and a link shows the sam
 
 test("zooming into one diagram of a sweep zooms the others", async () => {
   const page = await visit(`?${small}`);
-  await page.locator("#plot-sweep-lambda .u-over").scrollIntoViewIfNeeded();
-  const box = await page.locator("#plot-sweep-lambda .u-over").boundingBox();
+  await page.locator("#plot-sweep-lambda .over").scrollIntoViewIfNeeded();
+  const box = await page.locator("#plot-sweep-lambda .over").boundingBox();
   await page.mouse.move(box.x + box.width * 0.4, box.y + 40);
   await page.mouse.down();
   await page.mouse.move(box.x + box.width * 0.6, box.y + 40, {steps: 5});
@@ -126,8 +127,8 @@ test("zooming into one diagram of a sweep zooms the others", async () => {
   assert.match(page.url(), /tab=sweep/, "the end of a drag is no click");
   for (const name of ["section", "other"]) {
     await hoverAt(page, `#plot-sweep-${name}`, 0.02);
-    const b = Number((await tip(page)).match(/^b(0\.\d+)/)[1]);
-    assert.ok(b > 0.016 && b < 0.02, `b at the left edge of ${name}: ${b}`);
+    const b = Number((await tip(page)).match(/^b(\d+\.?\d*) mm/)[1]);
+    assert.ok(b > 16 && b < 20, `b at the left edge of ${name}: ${b}`);
   }
   await page.close();
 });
@@ -150,7 +151,7 @@ test("the keyboard goes from point to point and simulates one", async () => {
   const page = await visit(`?${small}&carry_state=up`);
   await page.focus("#sweep-stack");
   for (const key of ["Home", "ArrowRight", "ArrowRight"]) await page.keyboard.press(key);
-  assert.match(await tip(page), /^b0\.0062/);
+  assert.match(await tip(page), /^b6\.2/);
   await page.keyboard.press("Enter");
   await drawn(page, 1);
   assert.match(page.url(), /\?b=0\.0062/);
@@ -259,7 +260,7 @@ test("two axes make a map, in colours or of regimes; a click on a cell simulates
     assert.ok((await pixels(page, "#plot-sweep-map canvas", `regime-${regime}`)) > 1000, regime);
   assert.match(page.url(), /map=regime/);
   await hoverAt(page, "#plot-sweep-map", 0.3, 0.06);
-  assert.match(await tip(page), /^b0\.013\d+ mR0\.8regimeIII/);
+  assert.match(await tip(page), /^b13\.\d+ mmR0\.8regimeIII/);
   await clickAt(page, "#plot-sweep-map", 0.3, 0.06);
   await drawn(page, 1);
   assert.match(page.url(), /\?b=0\.013\d+&R=0\.8&damping=closed_form&cycles=272$/);
@@ -275,7 +276,7 @@ test("several starts over a logarithmic axis have symbols of their own", async (
   for (const name of ["c1", "before"])
     assert.ok((await pixels(page, "#plot-sweep-lambda canvas", name)) > 20, name);
   await hoverAt(page, "#plot-sweep-section", 0.5);
-  assert.match(await tip(page), /^b0\.01[01]\d* mstart 1regime.*start 2regime/);
+  assert.match(await tip(page), /^b1[01]\.?\d* mmstart 1regime.*start 2regime/);
   assert.deepEqual(browser.complaints, []);
   await page.close();
 });
@@ -381,7 +382,7 @@ test("a reduction folds an axis: over the other one there is the peak and where 
   for (const [name, least] of Object.entries(ofThreePoints))
     assert.ok((await pixels(page, "#plot-sweep-other canvas", name)) > least, name);
   await hoverAt(page, "#plot-sweep-other", 0.5);
-  assert.match(await tip(page), /^b0\.03 m.*largest \|x\|2\d\.\d+ mm at f = 1[34]\.\d+ Hz/);
+  assert.match(await tip(page), /^b30 mm.*largest \|x\|2\d\.\d+ mm at f = 1[34]\.\d+ Hz/);
   await page.selectOption(field("sweep-axis2-error-parameter"), "none");
   await page.fill(`#sweep-base-group-system .field-b input`, "0.03");
   await page.click("#sweep-run");
@@ -435,7 +436,7 @@ test("masses typed over an example, or swept, reset its damping, unless it was c
   await page.selectOption(field("sweep-axis1-error-parameter"), "lambda");
   assert.equal(await page.inputValue(damping), "equation_of_motion");
   assert.match(await page.textContent("#sweep-note"), /damping is equation_of_motion/);
-  await page.selectOption("#sweep-example", "1");
+  await page.selectOption("#sweep-example", {label: "Map over b and R"});
   assert.equal(await page.inputValue(damping), "closed_form");
   assert.equal(await page.textContent("#sweep-note"), "");
   await page.click("#sweep-cancel");
@@ -497,4 +498,155 @@ test("a platform by hand: typed over Fig. 3 it is simulated in seconds; its swee
   assert.equal(middle[2], "no impacts");
   assert.deepEqual(browser.complaints, []);
   await page.close();
+});
+
+/** Drags over shares of a plot. */
+async function drag(page, plot, [x0, y0], [x1, y1]) {
+  const over = page.locator(`${plot} .over`);
+  await over.scrollIntoViewIfNeeded();
+  const box = await over.boundingBox();
+  await page.mouse.move(box.x + box.width * x0, box.y + box.height * y0);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width * x1, box.y + box.height * y1, {steps: 4});
+  await page.mouse.up();
+}
+
+const refined = (page) =>
+  page.waitForFunction(() => document.getElementById("sweep-refined").textContent === "");
+const beganToRefine = (page) =>
+  page.waitForFunction(() => document.getElementById("sweep-refined").textContent !== "");
+
+/** What the menu of a plot says of it. */
+async function summaryOf(page, figure) {
+  await page.click(`${figure} button.menu`);
+  const text = await page.textContent("#data");
+  await page.click("#data button:text-is('Close')");
+  return text;
+}
+
+const mediumMap =
+  "tab=sweep&axis1=b,0.005,0.035,24&axis2=R,0.4,0.8,16&cycles=200&transient_cycles=60&damping=closed_form";
+
+test("a map is computed finer where one zooms in, its colours stay, and a link shows the same", async () => {
+  const page = await visit(`?${mediumMap}`);
+  const before = await summaryOf(page, "#figure-sweep-map");
+  const requests = asked(page, "/v1/sweep");
+  await drag(page, "#plot-sweep-map", [0.1, 0.2], [0.5, 0.6]);
+  await beganToRefine(page);
+  await refined(page);
+  assert.equal(requests.length, 1);
+  const [b, R] = requests[0].axes;
+  assert.ok(b.from > 0.0075 && b.to < 0.0205 && b.count === 24, JSON.stringify(b));
+  assert.ok(R.from > 0.54 && R.to < 0.73 && R.count === 16, JSON.stringify(R));
+  await hoverAt(page, "#plot-sweep-map", 0.5, 0.5);
+  const told = Number((await tip(page)).match(/^b([\d.]+) mm/)[1]);
+  const steps = (told - 5) / (30 / 23);
+  assert.ok(Math.abs(steps - Math.round(steps)) > 1e-3, `${told} mm is none of the first points`);
+  const colours = (text) => text.match(/colours from [−\d.]+ to [\d.]+/)[0];
+  assert.equal(colours(await summaryOf(page, "#figure-sweep-map")), colours(before));
+  await page.keyboard.press("Escape");
+  const shown = page.url();
+  assert.match(shown, /view=0\.00\d+,0\.0\d+,0\.5\d*,0\.7\d*/);
+  const again = await open(browser.context, shown);
+  await beganToRefine(again);
+  await refined(again);
+  assert.equal(again.url(), shown);
+  await page.locator("#plot-sweep-map .over").dblclick();
+  await page.waitForFunction(() => !location.search.includes("view="));
+  assert.equal(requests.length, 1, "the whole is there already");
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+  await again.close();
+});
+
+test("diagrams are computed finer where one zooms in, unless their points hang together", async () => {
+  for (const [carry, more] of [
+    ["", 1],
+    ["&carry_state=up", 0],
+  ]) {
+    const page = await visit(`?${small}${carry}`);
+    const requests = asked(page, "/v1/sweep");
+    await drag(page, "#plot-sweep-lambda", [0.3, 0.5], [0.5, 0.5]);
+    await page.waitForTimeout(500);
+    await refined(page);
+    assert.equal(requests.length, more);
+    const text = await summaryOf(page, "#figure-sweep-lambda");
+    assert.equal(/at \d+ of 48 points/.test(text), more === 1, text);
+    await page.close();
+  }
+});
+
+test("a map is seen as a whole before a tenth of its points are there", async () => {
+  const page = await browser.context.newPage();
+  await page.goto(
+    `${service.url}/?tab=sweep&axis1=b,0.005,0.035,64&axis2=R,0.4,0.8,64&cycles=6000&map=regime`,
+  );
+  await page.waitForFunction(() => document.getElementById("sweep-bar").value > 100);
+  await page.waitForTimeout(200);
+  const {bare, received} = await page.evaluate(() => {
+    const canvas = document.querySelector("#plot-sweep-map canvas");
+    const over = document.querySelector("#plot-sweep-map .over");
+    const c = canvas.getContext("2d");
+    const [ground] = new Uint32Array(c.getImageData(1, 1, 1, 1).data.buffer);
+    const {offsetLeft: x, offsetTop: y, offsetWidth: w, offsetHeight: h} = over;
+    let bare = 0;
+    for (let i = 1; i < 20; ++i)
+      for (let j = 1; j < 20; ++j) {
+        const at = [x + (i / 20) * w, y + (j / 20) * h].map((v) => v * devicePixelRatio);
+        const [pixel] = new Uint32Array(c.getImageData(...at, 1, 1).data.buffer);
+        bare += pixel === ground;
+      }
+    return {bare, received: document.getElementById("sweep-bar").value};
+  });
+  assert.ok(received < 0.1 * 64 * 64, `${received} points were there`);
+  assert.equal(bare, 0);
+  await page.click("#sweep-cancel");
+  browser.complaints.length = 0; // Chromium warns of canvases that are read
+  await page.close();
+});
+
+test("the frequency response is an example: the largest |x| with the absorber, and dashed without", async () => {
+  const page = await visit("?tab=sweep");
+  await page.selectOption("#sweep-example", {
+    label: "Frequency response, with and without the absorber",
+  });
+  await swept(page, 2);
+  assert.equal(await page.inputValue("#sweep-quantity"), "x_max");
+  assert.ok(await page.isVisible("#sweep-free"));
+  for (const name of ["text", "wall"])
+    assert.ok((await pixels(page, "#plot-sweep-other canvas", name)) > 100, name);
+  await page.click("#figure-sweep-other button.menu");
+  const [head] = await cells(page, "#data thead tr");
+  assert.deepEqual(head, ["Ω", "largest |x|", "without the absorber", "regime"]);
+  const rows = await cells(page, "#data tbody tr");
+  const peak = Math.max(...rows.map((row) => Number(row[2])));
+  assert.ok(peak > 7 && peak < 14, `${peak} mm without`);
+  await page.close();
+});
+
+test("the plots of a sweep are taken away as pictures and numbers", async () => {
+  const page = await visit(`?${small}`);
+  for (const [name, part] of [
+    ["section", "<image "],
+    ["lambda", "<path "],
+    ["other", ">III</text>"],
+  ]) {
+    await page.click(`#figure-sweep-${name} button.menu`);
+    const svg = await downloaded(page, "#data button:text-is('SVG')");
+    assert.ok(svg.text.includes(part), `${name}: ${svg.text.slice(0, 2000)}`);
+    assert.match(svg.text, /damping = closed_form/);
+    const csv = await downloaded(page, "#data button:text-is('CSV')");
+    assert.match(csv.text, /^b \(mm\),/);
+    await page.click("#data button:text-is('Close')");
+  }
+  const map = await visit(`?${smallMap}`);
+  await map.click("#figure-sweep-map button.menu");
+  assert.match((await downloaded(map, "#data button:text-is('SVG')")).text, /<image .*λ₁<\/text>/);
+  assert.equal(
+    (await downloaded(map, "#data button:text-is('CSV')")).text.trim().split("\n").length,
+    49,
+  );
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+  await map.close();
 });

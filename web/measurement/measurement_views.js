@@ -1,14 +1,15 @@
 // The plots of a measurement: the record with its impacts, and what was identified from them.
+import {Axis} from "../shared/axis.js";
 import {$} from "../shared/dom.js";
 import {exponentSeries} from "../shared/exponents.js";
 import {LinePlot} from "../shared/line_plot.js";
 import {ScatterPlot} from "../shared/scatter_plot.js";
-import {TimeAxis} from "../shared/time_axis.js";
+import {firstFrom} from "../shared/search.js";
 import {isLeftOut} from "./impact_list.js";
-import {sampleAt, spikeNear} from "./record.js";
+import {spikeNear} from "./record.js";
 
-const axis = new TimeAxis();
-const line = (name) => [name, new LinePlot($(`plot-measured-${name}`), {axis})];
+const axis = new Axis();
+const line = (name) => [name, new LinePlot($(`plot-measured-${name}`), axis)];
 const scatter = (name) => [name, new ScatterPlot($(`plot-measured-${name}`))];
 const plots = Object.fromEntries([
   ...["a", "x", "qr", "raw", "R", "steps"].map(line),
@@ -18,7 +19,7 @@ const mm = (metres) => metres.map((v) => v * 1000);
 const seconds = "t (s)";
 
 export function redraw() {
-  for (const plot of Object.values(plots)) plot.redraw();
+  for (const plot of Object.values(plots)) plot.refresh();
 }
 
 // How an impact is marked: by its wall, or because it is left out or edited.
@@ -44,7 +45,7 @@ function marks(rows, y, shape, size) {
 
 /** The value of a column between its samples. */
 function valueAt({t}, column, moment) {
-  const i = Math.min(Math.max(sampleAt(t, moment), 1), t.length - 1);
+  const i = Math.min(Math.max(firstFrom(t, moment), 1), t.length - 1);
   const share = (moment - t[i - 1]) / (t[i] - t[i - 1]);
   return column[i - 1] + (column[i] - column[i - 1]) * Math.min(Math.max(share, 0), 1);
 }

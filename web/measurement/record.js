@@ -1,4 +1,5 @@
 // A record, read as the service reads it, to be drawn. What is at fault in it the service says.
+import {firstFrom} from "../shared/search.js";
 
 const atOnce = 50000; // lines between two looks at the clock of the page
 
@@ -252,25 +253,13 @@ export function recordOf({names, units: row = [], columns}, fields) {
   };
 }
 
-/** The index of the first sample at t or later. */
-export function sampleAt(t, moment) {
-  let low = 0;
-  let high = t.length;
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (t[middle] < moment) low = middle + 1;
-    else high = middle;
-  }
-  return low;
-}
-
 /**
  * The sample within reach of a moment where the acceleration lies farthest from what is around it:
  * where the eye sees the spike.
  */
 export function spikeNear({t, a}, moment, reach) {
-  const from = sampleAt(t, moment - reach);
-  const to = Math.max(sampleAt(t, moment + reach), from + 1);
+  const from = firstFrom(t, moment - reach);
+  const to = Math.max(firstFrom(t, moment + reach), from + 1);
   if (!a || from >= t.length) return null;
   const around = a.slice(Math.max(0, from - 8), Math.min(t.length, to + 8)).sort();
   const centre = around[around.length >> 1];

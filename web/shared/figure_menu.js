@@ -91,6 +91,9 @@ function show(plot, about) {
   $("data").showModal();
 }
 
+const nameOf = (figure) =>
+  figure.ariaLabel ?? figure.querySelector("figcaption b, figcaption").textContent;
+
 /** Adds the menu to a plot's caption. about(): {title, caption, summary, name}. */
 export function addMenu(figure, plot, about) {
   const button = element("button", {
@@ -98,7 +101,7 @@ export function addMenu(figure, plot, about) {
     className: "menu",
     textContent: "⋯",
     title: "its numbers, CSV, SVG, PNG",
-    ariaLabel: `${figure.querySelector("figcaption b, figcaption").textContent}: data and pictures`,
+    ariaLabel: `${nameOf(figure)}: data and pictures`,
     onclick: () => show(plot, about()),
   });
   figure.querySelector("figcaption").append(button);

@@ -23,7 +23,8 @@ function inverseOf({range: [min, max], log}, from, to) {
 /** {at, text} of the labels, at most so many. */
 function labelsOf({range, log, factor = 1, labels}, most) {
   const [min, max] = range.map((v) => v * factor);
-  const list = labels?.(min, max) ?? (log ? logTicks(min, max) : ticks(min, max, most));
+  const powers = log ? logTicks(min, max) : []; // few within a power of ten
+  const list = labels?.(min, max) ?? (powers.length > 2 ? powers : ticks(min, max, most));
   return list.map((v) => ({
     at: (v.at ?? v) / factor,
     text: v.text ?? short(Number(v.toPrecision(12))),
@@ -34,13 +35,14 @@ export class Frame {
   /**
    * A plot of so many pixels. x, y: {range, log, label, factor, bare, labels}: what is in view,
    * whether it is logarithmic, the axis' name, what its numbers are multiplied by, whether they are
-   * left out, and labels(min, max) in place of round ones, as numbers or {at, text}.
+   * left out, and labels(min, max) in place of round ones, as numbers or {at, text}; beside:
+   * px at its right.
    */
-  constructor(width, height, x, y) {
+  constructor(width, height, x, y, beside = 10) {
     this.x = x;
     this.y = y;
     const bottom = height - (x.bare ? 5 : 18) - (x.label && !x.bare ? 14 : 0);
-    this.box = {left: 50, top: 5, right: width - 10, bottom: Math.max(bottom, 15)};
+    this.box = {left: 50, top: 5, right: width - beside, bottom: Math.max(bottom, 15)};
     const {left, top, right, bottom: low} = this.box;
     this.px = scaleOf(x, left, right);
     this.py = scaleOf(y, low, top);

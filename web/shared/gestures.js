@@ -1,103 +1,155 @@
-// Pointing at and zooming into a plot over a TimeAxis: with a mouse, with fingers, by keys.
+// Pointing at and zooming into a plot over an Axis, or over one for x and one for y: with a mouse,
+// with fingers, by keys.
 import {element} from "./dom.js";
 
 const patience = 250; // ms in which a second click makes a double-click
 const jitter = 4; // px that a click may move
+const slim = 20; // px: a drag that is no wider zooms along the other axis alone
 
-/** The moment under a place of the plot. */
-function momentAt(over, axis, clientX) {
+/** The value of x and of y under a place of the plot, in pixels of the screen. */
+function valuesAt(over, axis, across, {clientX, clientY}) {
   const box = over.getBoundingClientRect();
-  const [from, to] = axis.view;
-  return from + ((clientX - box.left) / (box.width || 1)) * (to - from);
+  const at = ({view: [from, to]}, share) => from + share * (to - from);
+  const y = across && at(across, (box.bottom - clientY) / (box.height || 1));
+  return {x: at(axis, (clientX - box.left) / (box.width || 1)), y};
 }
 
-/** click(t, reach): where one clicks; reach: a few pixels in units of the axis. */
-export function listen(over, axis, click) {
-  followMouse(over, axis, click);
-  followWheel(over, axis);
-  followFingers(over, axis, click);
+/**
+ * click(x, reach, {left, top, touch}): where one clicks; reach: a few pixels in units of the axis;
+ * left, top: px in the plot.
+ */
+export function listen(over, axis, click, across = null) {
+  const at = (event) => valuesAt(over, axis, across, event);
+  const plot = {over, axis, across, at};
+  followMouse(plot, click);
+  followWheel(plot);
+  followFingers(plot);
+  over.addEventListener("dblclick", () => {
+    axis.reset();
+    across?.reset();
+  });
 }
+
+/** The cursor to where the pointer is. */
+function pointAt({axis, across, at}, event, by) {
+  const {x, y} = at(event);
+  across?.point(y, by);
+  axis.point(x, by);
+}
+
+const ordered = (a, b) => (a < b ? [a, b] : [b, a]);
 
 /** A drag zooms; its end is no click, nor is half of a double-click, which shows the whole. */
-function followMouse(over, axis, click) {
+function followMouse(plot, click) {
+  const {over, axis, across, at} = plot;
   const selection = element("div", {className: "selection", hidden: true});
   over.append(selection);
   let from = null;
   let waiting = 0;
   const isMouse = (event) => event.pointerType === "mouse";
-  const place = (event) => event.clientX - over.getBoundingClientRect().left;
+  const place = ({clientX, clientY}) => {
+    const {left, top} = over.getBoundingClientRect();
+    return {left: clientX - left, top: clientY - top};
+  };
+  const width = (event) => Math.abs(event.clientX - from.clientX);
+  const height = (event) => Math.abs(event.clientY - from.clientY);
+  const along = (event) => !across || width(event) >= Math.min(slim, height(event));
+  const upwards = (event) => across && height(event) >= Math.min(slim, width(event));
   const select = (event) => {
-    const [a, b] = [from, place(event)].sort((one, other) => one - other);
-    selection.hidden = b - a < jitter;
-    Object.assign(selection.style, {left: `${a}px`, width: `${b - a}px`});
+    const [a, b] = [place(from), place(event)];
+    const [left, right] = along(event) ? ordered(a.left, b.left) : [0, over.clientWidth];
+    const [top, bottom] = upwards(event) ? ordered(a.top, b.top) : [0, over.clientHeight];
+    selection.hidden = Math.max(width(event), across ? height(event) : 0) < jitter;
+    const box = {left, top, width: right - left, height: bottom - top};
+    for (const [name, value] of Object.entries(box)) selection.style[name] = `${value}px`;
   };
   over.addEventListener("pointerdown", (event) => {
-    from = place(event);
+    from = event;
     if (isMouse(event) && event.button === 0) over.setPointerCapture(event.pointerId);
   });
   over.addEventListener("pointermove", (event) => {
     if (!isMouse(event)) return;
-    if (event.buttons && from !== null) select(event);
-    else axis.point(momentAt(over, axis, event.clientX), "pointer");
+    if (event.buttons && from) select(event);
+    else pointAt(plot, event, "pointer");
   });
   over.addEventListener("pointerup", (event) => {
     if (selection.hidden) return;
     selection.hidden = true;
-    const left = over.getBoundingClientRect().left;
-    const ends = [from, place(event)].sort((one, other) => one - other);
-    axis.zoom(...ends.map((at) => momentAt(over, axis, left + at)));
+    const [a, b] = [at(from), at(event)];
+    if (along(event)) axis.zoom(...ordered(a.x, b.x));
+    if (upwards(event)) across.zoom(...ordered(a.y, b.y));
   });
   over.addEventListener("click", (event) => {
     clearTimeout(waiting);
-    const moved = from !== null && Math.abs(place(event) - from) > jitter;
+    const moved = from && Math.max(width(event), across ? height(event) : 0) > jitter;
     if (event.detail > 1 || moved) return;
-    const t = momentAt(over, axis, event.clientX);
-    const reach = momentAt(over, axis, event.clientX + 6) - t;
-    axis.point(t, "click");
-    waiting = setTimeout(() => click(t, reach), patience);
+    const {x} = at(event);
+    const reach = at({clientX: event.clientX + 6, clientY: event.clientY}).x - x;
+    pointAt(plot, event, "click");
+    const touch = Boolean(from) && !isMouse(from);
+    waiting = setTimeout(() => click(x, reach, {...place(event), touch}), patience);
   });
-  over.addEventListener("dblclick", () => axis.reset());
 }
 
 /** The wheel zooms; one that would zoom out of the whole scrolls the page. Sideways it pans. */
-function followWheel(over, axis) {
+function followWheel({over, axis, across, at}) {
   const zoom = (event) => {
     const sideways = Math.abs(event.deltaX) > Math.abs(event.deltaY) || event.shiftKey;
     const outside = event.deltaY > 0 && !sideways;
-    if ((outside || sideways) && !axis.zoomed) return;
+    if ((outside || sideways) && !axis.zoomed && !across?.zoomed) return;
     event.preventDefault();
     const lines = event.deltaMode ? 16 : 1;
-    if (sideways) axis.pan(((event.deltaX || event.deltaY) * lines) / over.clientWidth);
-    else axis.zoomAt(momentAt(over, axis, event.clientX), Math.exp(-0.0022 * lines * event.deltaY));
+    if (sideways) {
+      axis.pan(((event.deltaX || event.deltaY) * lines) / over.clientWidth);
+      return;
+    }
+    const {x, y} = at(event);
+    const factor = Math.exp(-0.0022 * lines * event.deltaY);
+    axis.zoomAt(x, factor);
+    across?.zoomAt(y, factor);
   };
   over.addEventListener("wheel", zoom, {passive: false});
 }
 
 /** One finger moves what is in view, or the cursor where all is; two zoom. */
-function followFingers(over, axis) {
+function followFingers(plot) {
+  const {over, axis, across, at} = plot;
   const fingers = new Map();
   const span = () => {
     const [a, b] = [...fingers.values()];
-    return {middle: (a + b) / 2, width: Math.max(Math.abs(a - b), 8)};
+    const [width, height] = [a.clientX - b.clientX, a.clientY - b.clientY];
+    const middle = {clientX: (a.clientX + b.clientX) / 2, clientY: (a.clientY + b.clientY) / 2};
+    return {...middle, width: Math.max(across ? Math.hypot(width, height) : Math.abs(width), 8)};
+  };
+  const pan = (by, to) => {
+    axis.pan((by.clientX - to.clientX) / over.clientWidth);
+    across?.pan((to.clientY - by.clientY) / over.clientHeight);
   };
   const ends = (event) => fingers.delete(event.pointerId);
-  over.style.touchAction = "pan-y";
+  // What is not zoomed leaves a stroke upwards to the page.
+  const leave = () => {
+    over.style.touchAction = across?.zoomed ? "none" : "pan-y";
+  };
+  leave();
+  across?.onView(leave);
   over.addEventListener("pointerdown", (event) => {
     if (event.pointerType === "mouse") return;
-    fingers.set(event.pointerId, event.clientX);
+    fingers.set(event.pointerId, event);
     over.setPointerCapture(event.pointerId);
   });
   over.addEventListener("pointermove", (event) => {
     const before = fingers.get(event.pointerId);
     if (before === undefined) return;
     const old = fingers.size === 2 ? span() : null;
-    fingers.set(event.pointerId, event.clientX);
+    fingers.set(event.pointerId, event);
     if (old) {
       const now = span();
-      axis.pan((old.middle - now.middle) / over.clientWidth);
-      axis.zoomAt(momentAt(over, axis, now.middle), now.width / old.width);
-    } else if (axis.zoomed) axis.pan((before - event.clientX) / over.clientWidth);
-    else axis.point(momentAt(over, axis, event.clientX), "pointer");
+      pan(old, now);
+      const {x, y} = at(now);
+      axis.zoomAt(x, now.width / old.width);
+      across?.zoomAt(y, now.width / old.width);
+    } else if (axis.zoomed || across?.zoomed) pan(before, event);
+    else pointAt(plot, event, "pointer");
   });
   over.addEventListener("pointerup", ends);
   over.addEventListener("pointercancel", ends);

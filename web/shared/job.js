@@ -1,7 +1,8 @@
 // One computation at a time, of the newest request: the others are broken off or never begin.
+import {Problem} from "./api.js";
 
 const patience = 120; // ms after which what is shown is marked as that of another request
-const again = 2; // s after which a server that does not answer is asked again
+const again = 2; // s after which a server that does not answer, or is busy, is asked again
 
 const sleep = (seconds, signal) =>
   new Promise((resolve, reject) => {
@@ -13,11 +14,17 @@ const sleep = (seconds, signal) =>
     signal.addEventListener("abort", stop, {once: true});
   });
 
+/** Whether the same request may be answered later: there was no answer, or none for now, or half. */
+const passes = (error) => !(error instanceof Problem) || error.status === 503;
+
+const reasonOf = (error) =>
+  error instanceof TypeError ? "the server does not answer" : error.message; // fetch's own
+
 export class Job {
   /**
    * ask(request, signal): the answer, as a promise; show(answer, request, ms); fail(error, request);
-   * busy(is): it computes for longer than a moment, or no longer; unreachable(seconds): there is no
-   * server, it is asked again after so long.
+   * busy(is, cancelled): it computes for longer than a moment, or no longer; later(text): there is
+   * no answer for now, as the text says. A request that is there already is not begun again.
    */
   constructor(parts) {
     Object.assign(this, parts);
@@ -69,15 +76,15 @@ export class Job {
     }
   }
 
-  /** As long as there is no server it is asked again. */
+  /** As long as there is no answer it is asked again. */
   async answer(request, signal) {
     for (;;) {
       try {
         return await this.ask(request, signal);
       } catch (error) {
-        if (signal.aborted || !(error instanceof TypeError)) throw error; // fetch's, for no answer
+        if (signal.aborted || !passes(error)) throw error;
         this.running.answers = false;
-        this.unreachable(again);
+        this.later(`${reasonOf(error)}; asking again every ${again} s`);
         await sleep(again, signal);
       }
     }

@@ -2,20 +2,9 @@
 // operations, so that a plot, however far one zooms, and the machine at any moment need no further
 // answer of the service.
 import {Flow} from "./flow.js";
+import {lastUpTo} from "./search.js";
 
 const samplesPerCycle = 16; // at least, so that no beat shows that is not there
-
-/** The last index i with values[i] <= value; -1 before the first. */
-export function lastUpTo(values, value) {
-  let low = 0;
-  let high = values.length;
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (values[middle] <= value) low = middle + 1;
-    else high = middle;
-  }
-  return low - 1;
-}
 
 export class Motion {
   /** Of an answer of /v1/simulate with its impacts. */

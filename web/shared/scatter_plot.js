@@ -14,7 +14,7 @@ export class ScatterPlot {
     canvas.parentNode.append(this.ring);
     this.size = new Size(canvas, () => {
       this.offset = [canvas.offsetLeft, canvas.offsetTop];
-      this.redraw();
+      this.refresh();
     });
     this.offset = [canvas.offsetLeft, canvas.offsetTop];
     canvas.addEventListener("pointermove", (event) => this.hover(event));
@@ -140,7 +140,7 @@ export class ScatterPlot {
     c.fillText(label, frame.box.right - 4, frame.py(y) - 2);
   }
 
-  redraw() {
+  refresh() {
     if (this.last) this.draw(this.last);
   }
 }

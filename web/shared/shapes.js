@@ -1,17 +1,6 @@
 // What plots draw: lines of many points, symbols of many places.
 import {colour} from "./colours.js";
-
-/** The first index of ascending values that is not below a value. */
-export function firstFrom(values, value) {
-  let low = 0;
-  let high = values.length;
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (values[middle] < value) low = middle + 1;
-    else high = middle;
-  }
-  return low;
-}
+import {firstFrom} from "./search.js";
 
 /** The part of ascending values that is in view, and one more on either side. */
 function inView(x, [min, max]) {

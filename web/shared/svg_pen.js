@@ -77,8 +77,13 @@ export class SvgPen {
     this.path += `M${fixed(x)} ${fixed(y)}`;
   }
 
+  /** From where the path is; the first one begins it. */
   lineTo(x, y) {
-    this.path += `L${fixed(x)} ${fixed(y)}`;
+    this.path += `${this.path ? "L" : "M"}${fixed(x)} ${fixed(y)}`;
+  }
+
+  closePath() {
+    this.path += "z";
   }
 
   /** A whole circle. */
@@ -122,6 +127,13 @@ export class SvgPen {
   fillRect(x, y, width, height) {
     const place = {x: fixed(x), y: fixed(y), width: fixed(width), height: fixed(height)};
     this.add("rect", {...place, fill: this.fillStyle});
+  }
+
+  /** image: a canvas. */
+  drawImage(image, x, y, width, height) {
+    const place = {x: fixed(x), y: fixed(y), width: fixed(width), height: fixed(height)};
+    const style = {preserveAspectRatio: "none", "image-rendering": "pixelated"};
+    this.add("image", {...place, ...style, href: image.toDataURL()});
   }
 
   fillText(text, x, y) {

@@ -11,7 +11,7 @@ export const scaled = (values, factor) => values.map((v) => v * factor);
 /** What a logarithmic axis can show. */
 export const positive = (v) => (v > 0 ? v : null);
 
-/** Columns over tau without repeats of tau, which uPlot does not take. */
+/** Columns over tau without repeats of tau, as a line over it needs them. */
 export function ascending(tau, columns) {
   let last = -Infinity;
   const keep = tau.map((t) => {

@@ -27,7 +27,7 @@ export class Details {
       busy: (is) => {
         if (is) this.say("computing …");
       },
-      unreachable: () => {},
+      later: (text) => this.say(text),
     });
     $("details").addEventListener("toggle", () => this.follow());
   }
@@ -67,6 +67,6 @@ export class Details {
   }
 
   redraw() {
-    for (const plot of Object.values(this.plots ?? {})) plot.redraw();
+    for (const plot of Object.values(this.plots ?? {})) plot.refresh();
   }
 }

@@ -174,7 +174,7 @@ function drawDivergence(plots, {tau, distance, predicted, slope}, marks) {
 
 /** The plots, over the time of an axis. */
 export function makePlots(axis) {
-  const line = (name) => [name, new LinePlot($(`plot-${name}`), {axis})];
+  const line = (name) => [name, new LinePlot($(`plot-${name}`), axis)];
   const scatter = (name) => [name, new ScatterPlot($(`plot-${name}`))];
   return Object.fromEntries([...overTime.map(line), ...planes.map(scatter)]);
 }

@@ -5,9 +5,9 @@ import {$} from "../shared/dom.js";
 import {exponentRange, exponentSeries} from "../shared/exponents.js";
 import {followKeys} from "../shared/gestures.js";
 import {LinePlot} from "../shared/line_plot.js";
-import {lastUpTo} from "../shared/motion.js";
 import {short} from "../shared/numbers.js";
 import {ScatterPlot} from "../shared/scatter_plot.js";
+import {lastUpTo} from "../shared/search.js";
 import {logRange, mm, over, overRun, positive, scaled} from "./columns.js";
 import {drawManifold} from "./manifold.js";
 
@@ -39,7 +39,7 @@ function byWall({tau, side}, value) {
 export class Instrument {
   constructor(axis) {
     this.axis = axis;
-    const line = (name) => new LinePlot($(`plot-${name}`), {axis});
+    const line = (name) => new LinePlot($(`plot-${name}`), axis);
     this.lines = {
       x: line("x"),
       relative: line("relative"),
@@ -83,9 +83,9 @@ export class Instrument {
   }
 
   redraw() {
-    for (const plot of Object.values(this.lines)) plot.redraw();
-    this.section.redraw();
-    this.manifold.redraw();
+    for (const plot of Object.values(this.lines)) plot.refresh();
+    this.section.refresh();
+    this.manifold.refresh();
   }
 
   /** x over the whole run, which a zoom does not change. */

@@ -1,6 +1,7 @@
 // The tab of one simulation: what one turns goes to the service as one request, and what it answers
 // is shown at once. The address is the request, and what is in view.
 import {Problem, simulate, wholeMessage} from "../shared/api.js";
+import {Axis} from "../shared/axis.js";
 import {listWarnings} from "../shared/cards.js";
 import {formsOf} from "../shared/copies.js";
 import {$, element} from "../shared/dom.js";
@@ -10,7 +11,6 @@ import {Job} from "../shared/job.js";
 import {Motion} from "../shared/motion.js";
 import {count} from "../shared/numbers.js";
 import {copy} from "../shared/take_away.js";
-import {TimeAxis} from "../shared/time_axis.js";
 import {onUnits, unitsOf, unitsSwitch} from "../shared/units.js";
 import {aboutFigure, describe} from "./captions.js";
 import * as chips from "./chips.js";
@@ -33,7 +33,7 @@ const second = {include: ["exponents", "eigenvalues", "manifold"], exponents: ["
 
 const rest = 100; // ms without an edit before what follows is asked for
 
-const axis = new TimeAxis();
+const axis = new Axis();
 const machine = new Machine($("machine"));
 let request;
 let sliders;
@@ -67,9 +67,7 @@ const job = new Job({
     else if (cancelled) say("cancelled: what is shown is the run before");
     if (cancelled) $("results").classList.add("stale");
   },
-  unreachable(seconds) {
-    say(`the server does not answer; asking again every ${seconds} s`, true);
-  },
+  later: (text) => say(text, true),
 });
 
 const more = new Job({
@@ -84,7 +82,7 @@ const more = new Job({
   },
   fail: (error) => say(`T, the raw product and the manifold are missing: ${error.message}`, true),
   busy() {},
-  unreachable() {},
+  later() {},
 });
 
 /** A run is on the screen: `shown` its first part, `done` all of it. */

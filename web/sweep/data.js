@@ -4,27 +4,33 @@ import {coordinates} from "../shared/quantities.js";
 
 const ascending = (values) => values.map((_, i) => i).sort((a, b) => values[a] - values[b]);
 
+const same = (v) => v;
+
 /**
  * The borders between ascending values and around them: the middles, of the logarithms where the
  * axis is logarithmic.
  */
-function borders(values, log) {
-  const to = log ? Math.log : (v) => v;
-  const from = log ? Math.exp : (v) => v;
-  const at = values.map(to);
+function borders(at, log) {
   const n = at.length;
   const alone = log ? 0.05 : Math.abs(at[0]) * 0.05 || 0.5; // around the only value
   const first = n > 1 ? at[0] - (at[1] - at[0]) / 2 : at[0] - alone;
   const last = n > 1 ? at[n - 1] + (at[n - 1] - at[n - 2]) / 2 : at[0] + alone;
-  return [first, ...at.slice(1).map((v, i) => (v + at[i]) / 2), last].map(from);
+  return [first, ...at.slice(1).map((v, i) => (v + at[i]) / 2), last];
 }
 
-/** An axis in ascending order: position k shows entry order[k] of the request's axis. */
+/**
+ * An axis in ascending order: position k shows entry order[k] of the request's axis. at: its places,
+ * logarithms where it is logarithmic, and the borders between and around them; to(value): a place;
+ * from(place): a value.
+ */
 function arrange({parameter, values}, scale) {
   const order = ascending(values);
   const sorted = order.map((i) => values[i]);
   const log = scale === "log";
-  return {parameter, log, order, given: values, values: sorted, borders: borders(sorted, log)};
+  const [to, from] = log ? [Math.log, Math.exp] : [same, same];
+  const at = sorted.map(to);
+  const edges = borders(at, log);
+  return {parameter, log, order, given: values, values: sorted, at, borders: edges, to, from};
 }
 
 /**
@@ -44,6 +50,7 @@ function unfold({worst, best, starts, ...line}, parameter) {
 
 const enough = 500; // lines that are kept as texts before they go into a Blob
 
+/** The points of a sweep; as JSON it is its request. */
 export class SweepData {
   /** halfPeriod(fields): half a forcing period of a point's fields. */
   constructor(request, halfPeriod) {
@@ -63,6 +70,10 @@ export class SweepData {
     this.early = 0;
     this.blobs = [];
     this.texts = [];
+  }
+
+  toJSON() {
+    return this.request;
   }
 
   get total() {

@@ -34,16 +34,16 @@ const row = (tag, texts) =>
   element("tr", {}, ...texts.map((textContent) => element(tag, {textContent})));
 
 /** A motion in words. */
-const cellsOf = (m) => [
+const cellsOf = (m, numberOf) => [
   names[m.start] ?? m.start,
   m.x_max == null ? "–" : (m.x_max * 1000).toFixed(1),
-  m.where == null ? "–" : String(Number(m.where.toPrecision(6))),
+  m.where == null ? "–" : numberOf(m.where),
   m.regime ? regimeText(m.regime) : "–",
   verdicts[m.verdict] ?? "–",
 ];
 
-/** Shows the peaks, where a sweep has them. units(parameter): as in " (m)". */
-export function showPeaks(data, units) {
+/** Shows the peaks, where a sweep has them. naming: of its axes. */
+export function showPeaks(data, naming) {
   const parameter = data.reduced ?? data.axes[0]?.parameter;
   const bare = data.reduced && !data.axes.length;
   const overOne = data.defaultSet && data.axes.length === 1 && !data.reduced;
@@ -52,12 +52,21 @@ export function showPeaks(data, units) {
   const least = data.request.reduce?.startsWith("min");
   $("sweep-peaks-title").textContent =
     `${least ? "Smallest" : "Largest"} |x| over ${symbolOf(parameter)}, from each start`;
-  const place = `at ${symbolOf(parameter)}${units(parameter)}`;
+  const place = `at ${naming.label(parameter)}`;
   const head = row("th", ["start", "largest |x| (mm)", place, "regime", "verdict"]);
   const motions = bare ? ofStarts(data) : alongAxis(data);
   motions.sort((a, b) => (b.x_max ?? -1) - (a.x_max ?? -1));
   $("sweep-peaks").replaceChildren(
     element("thead", {}, head),
-    element("tbody", {}, ...motions.map((m) => row("td", cellsOf(m)))),
+    element(
+      "tbody",
+      {},
+      ...motions.map((m) =>
+        row(
+          "td",
+          cellsOf(m, (v) => naming.number(parameter, v)),
+        ),
+      ),
+    ),
   );
 }

@@ -3,24 +3,33 @@
 import {asCurl, Problem, wholeMessage} from "../shared/api.js";
 import {listWarnings} from "../shared/cards.js";
 import {$, element} from "../shared/dom.js";
+import {addMenu} from "../shared/figure_menu.js";
+import {textOf} from "../shared/form.js";
+import {Job} from "../shared/job.js";
 import {coordinates, menuOf, otherMotion, regimes, symbolOf} from "../shared/quantities.js";
 import {copy, save} from "../shared/take_away.js";
 import {onUnits, unitsSwitch} from "../shared/units.js";
+import {Naming} from "./axes.js";
 import {SweepData} from "./data.js";
-import {SweepPlots, startKeys} from "./diagrams.js";
-import {HeatMap} from "./heatmap.js";
+import {startKey} from "./diagram.js";
+import {SweepPlots} from "./diagrams.js";
+import {Layers} from "./layers.js";
+import {SweepMap} from "./map.js";
 import {showPeaks} from "./peaks.js";
-import {follow} from "./stream.js";
+import {Refiner} from "./refine.js";
+import {receive} from "./stream.js";
 import {examples, halfPeriod, SweepForm} from "./sweep_form.js";
 
 const cyclesOfPoint = 272; // of the simulation of a point: the paper's tau of 1709
 
 let form;
+let naming;
 let plots;
 let map;
+let refiner;
 let data = null;
-let running = null;
 let shown = null;
+let wantedView = null;
 let changed = () => {};
 
 function say(text, fault = false) {
@@ -57,7 +66,24 @@ export function query() {
   const menu = Object.entries(menus)
     .filter(([, id]) => $(id).selectedIndex > 0)
     .map(([name, id]) => `${name}=${$(id).value}`);
-  return [shown, ...menu].join("&");
+  const zoomed = data?.axes?.length && axesOf(data).some((axis) => axis.zoomed);
+  const view = wantedView ?? (zoomed ? viewOf(data) : null);
+  return [shown, ...menu, ...(view ? [`view=${view.join(",")}`] : [])].join("&");
+}
+
+/** Those of the plots that show a sweep. */
+const axesOf = ({axes}) => (axes.length > 1 ? [map.axis, map.across] : [plots.axis]);
+
+/** The ends of what is in view, as values. */
+const viewOf = (of) =>
+  axesOf(of).flatMap(({view}, i) => view.map((at) => Number(of.axes[i].from(at).toPrecision(5))));
+
+/** Zooms to such ends. */
+function zoomTo(view) {
+  axesOf(data).forEach((axis, i) => {
+    const [from, to] = view.slice(2 * i, 2 * i + 2).map(data.axes[i].to);
+    if (from < to) axis.zoom(from, to);
+  });
 }
 
 const grouped = (n) => String(n).replace(/\B(?=(\d{3})+$)/g, " ");
@@ -101,14 +127,16 @@ function draw() {
   waiting = 0;
   if (!data?.axes) return;
   const began = performance.now();
-  (data.axes.length > 1 ? map : plots).refresh();
-  showPeaks(data, unitsOfParameter);
+  drawPlots();
+  showPeaks(data, naming);
   showMotions();
   countRegimes();
-  // uPlot paints after this function.
-  setTimeout(() => {
-    cost = performance.now() - began;
-  });
+  cost = performance.now() - began;
+}
+
+function drawPlots() {
+  if (data.axes.length > 1) map.soon();
+  else plots.refresh();
 }
 
 /** The keys of the worst and the best motion, or of one from another start, where there are any. */
@@ -159,6 +187,7 @@ function offerSlices() {
 
 /** The plots of a sweep that has just begun, still empty. */
 function present(fresh) {
+  const edit = shown !== null;
   data = fresh;
   shown = String(SweepForm.toQuery(data.request));
   const {section, defaultSet, reduced} = data;
@@ -178,13 +207,18 @@ function present(fresh) {
   $("sweep-starts").hidden = starts.length < 2;
   listWarnings($("sweep-warnings"), [...data.warnings]);
   $("sweep-verdicts").hidden = starts.length > 1; // the colours are those of the starts, then
-  $("sweep-starts").replaceChildren(...startKeys(starts).map((key) => element("li", {}, key)));
+  const keys = starts.map((state, s) => element("span", startKey(state, s)));
+  $("sweep-starts").replaceChildren(...keys.map((key) => element("li", {}, key)));
   $("sweep-keys").hidden = false;
   $("sweep-download").hidden = false;
-  plots.show(data, choice());
-  map.show(data, choice());
+  const layers = new Layers(data);
+  if (data.axes.length === 1) plots.show(layers, choice());
+  if (data.axes.length > 1) map.show(layers, choice());
+  refiner.follow(layers);
+  if (wantedView) zoomTo(wantedView);
+  wantedView = null;
   showFreeKey();
-  changed();
+  changed({edit});
 }
 
 function showFreeKey() {
@@ -205,50 +239,50 @@ function remarks() {
   return list.join("; ");
 }
 
-/** The points that `into` still lacks. */
-async function receive(into) {
-  running?.abort();
-  const mine = new AbortController();
-  running = mine;
-  busy(true);
-  const heard = (line) => {
-    if (running !== mine) return;
-    if (line.type === "start") begin(into);
-    else if (line.type === "progress") progress(line);
-    else drawSoon();
-  };
-  const broken = (error, seconds) => {
-    if (running === mine) say(`${error.message}; asking again in ${seconds} s`, true);
-  };
-  try {
-    await follow(into.request, into, mine.signal, {heard, broken});
-    if (running === mine) {
-      say(remarks());
-      listWarnings($("sweep-warnings"), [...into.warnings]);
-      finish();
-    }
-  } catch (error) {
-    if (running !== mine) return;
-    if (data) showCount();
+const job = new Job({
+  ask: (into, signal) =>
+    receive(into, signal, (line) => {
+      if (!signal.aborted) hear(into, line);
+    }),
+  show: finish,
+  fail(error) {
     const left = error instanceof Problem ? form.showErrors(error.errors) : [];
-    if (mine.signal.aborted) say("cancelled");
-    else say(wholeMessage(error, left), true);
-  } finally {
-    if (running === mine) {
-      running = null;
-      busy(false);
+    say(wholeMessage(error, left), true);
+    if (data) showCount();
+    draw();
+  },
+  busy(is, cancelled) {
+    busy(is);
+    if (cancelled) {
+      say("cancelled");
+      showCount();
       draw();
     }
-  }
+  },
+  later: (text) => say(text, true),
+});
+
+/** The points that `into` still lacks. */
+function complete(into) {
+  refiner.stop();
+  busy(true);
+  job.start(into);
 }
 
-function begin(into) {
-  if (data !== into) present(into);
-  say("");
-  showCount();
+function hear(into, line) {
+  if (line.type === "start") {
+    if (data !== into) present(into);
+    say("");
+    showCount();
+  } else if (line.type === "progress") progress(line);
+  else drawSoon();
 }
 
 function finish() {
+  say(remarks());
+  listWarnings($("sweep-warnings"), [...data.warnings]);
+  draw();
+  refine();
   $("sweep-results").dataset.done = String(Number($("sweep-results").dataset.done ?? 0) + 1);
 }
 
@@ -261,8 +295,10 @@ function lead() {
 
 function run() {
   form.showErrors([]);
-  return receive(new SweepData(form.request(), halfPeriod));
+  complete(new SweepData(form.request(), halfPeriod));
 }
+
+const refine = () => refiner.look(choice().slice);
 
 const sorted = (text) => {
   const q = new URLSearchParams(text);
@@ -283,18 +319,21 @@ export async function open(given) {
     if (wanted && [...$(id).options].some((o) => o.value === wanted)) $(id).value = wanted;
     rest.delete(name);
   }
+  const view = rest.get("view")?.split(",").map(Number);
+  rest.delete("view");
   if (String(rest) === shown) return;
+  wantedView = view?.every(Number.isFinite) ? view : null;
   const first = new URLSearchParams(examples[0][1]);
   const wanted = rest.size ? rest : first;
   form.setQuery(wanted, exampleOf(wanted) >= 0);
   markExample();
   showSize();
-  await run();
+  run();
 }
 
 export function redraw() {
-  plots.recreate();
-  map.recreate();
+  plots.refresh();
+  map.refresh();
 }
 
 function download() {
@@ -315,10 +354,30 @@ function legend() {
   $("sweep-regimes").replaceChildren(...Object.entries(regimes).map(item));
 }
 
-/** The unit of a parameter, as in " (m)". */
-function unitsOfParameter(parameter) {
-  const unit = form.parameters.get(parameter)?.unit;
-  return unit && unit !== "dimensionless" ? ` (${unit})` : "";
+/** The unit of a parameter, "" where it has none. */
+function unitOf(parameter) {
+  const {unit} = form.parameters.get(parameter) ?? {};
+  return unit && unit !== "dimensionless" ? unit : "";
+}
+
+/** What a picture of a plot says below its title: what all points share. */
+function captionOf() {
+  const {base, axes, ...run} = data.request;
+  const told = Object.entries({...base, ...run}).map(([name, v]) => {
+    const value = typeof v === "number" ? naming.value(name, v) : textOf(v);
+    return `${symbolOf(name)} = ${value}`;
+  });
+  return told.join(", ");
+}
+
+function addMenus() {
+  const {section, lambda, other} = plots.panels;
+  for (const [name, plot] of Object.entries({section, lambda, other, map}))
+    addMenu($(`figure-sweep-${name}`), plot, () => ({
+      ...plot.about(),
+      caption: captionOf(),
+      name: `sweep-${name}`,
+    }));
 }
 
 /**
@@ -331,14 +390,24 @@ export function start(tables, tell, simulate) {
     showSize();
     markExample();
   });
-  const openPoint = (index) => simulate({...data.fields(index), cycles: cyclesOfPoint});
+  const openPoint = ({data: of, index}) => simulate({...of.fields(index), cycles: cyclesOfPoint});
+  naming = new Naming(unitOf);
   const panels = {
     section: $("plot-sweep-section"),
     lambda: $("plot-sweep-lambda"),
     other: $("plot-sweep-other"),
   };
-  plots = new SweepPlots($("sweep-stack"), panels, unitsOfParameter, openPoint);
-  map = new HeatMap($("sweep-map"), $("plot-sweep-map"), unitsOfParameter, openPoint);
+  plots = new SweepPlots($("sweep-stack"), panels, naming, openPoint);
+  map = new SweepMap($("sweep-map"), $("plot-sweep-map"), naming, openPoint);
+  refiner = new Refiner({
+    axes: axesOf,
+    drawn: drawSoon,
+    say: (text) => {
+      $("sweep-refined").textContent = text;
+    },
+  });
+  for (const axis of [plots.axis, map.axis, map.across]) axis.onView(viewed);
+  addMenus();
   legend();
   $("sweep-keys").hidden = true;
   $("sweep-example").append(
@@ -347,9 +416,14 @@ export function start(tables, tell, simulate) {
   );
   unitsSwitch($("sweep-units"));
   onUnits(() => {
-    if (data?.axes) plots.recreate();
+    if (data?.axes) plots.refresh();
   });
   listen();
+}
+
+function viewed() {
+  changed({soon: true});
+  refine();
 }
 
 /** Runs the example that the menu shows. */
@@ -367,6 +441,7 @@ function runExample() {
 function chooseFromMenu() {
   if (!data) return;
   (data.axes.length > 1 ? map : plots).choose(choice());
+  refine();
   showFreeKey();
   changed();
 }
@@ -380,8 +455,8 @@ function listen() {
     run();
     lead();
   });
-  $("sweep-cancel").addEventListener("click", () => running?.abort());
-  $("sweep-resume").addEventListener("click", () => receive(data));
+  $("sweep-cancel").addEventListener("click", () => job.cancel());
+  $("sweep-resume").addEventListener("click", () => complete(data));
   $("sweep-download").addEventListener("click", (event) => {
     event.preventDefault();
     download();

@@ -15,6 +15,11 @@ export const examples = [
     "axis1=b,0.003,0.04,400&cycles=1000&section=impact&damping=closed_form",
   ],
   [
+    "Frequency response, with and without the absorber",
+    "axis1=Omega,0.94,1.06,241&cycles=300&b=0.015&damping=closed_form",
+    {beside: "x_max"},
+  ],
+  [
     "Map over b and R",
     "axis1=b,0.003,0.04,120&axis2=R,0.3,0.9,80&cycles=200&transient_cycles=100&damping=closed_form",
   ],

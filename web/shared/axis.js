@@ -1,8 +1,8 @@
-// What plots over the same time share: how far it reaches, the part that is in view, and one cursor.
+// What plots over the same axis share: how far it reaches, the part that is in view, and one cursor.
 
 const closest = 1e-9; // of the whole: as far as one can zoom in
 
-export class TimeAxis {
+export class Axis {
   constructor() {
     this.whole = [0, 1];
     this.view = [0, 1];

@@ -1,0 +1,98 @@
+// The colours of a map's values, and the bar that tells them.
+import {colour} from "../shared/colours.js";
+import {font} from "../shared/frame.js";
+import {short} from "../shared/numbers.js";
+import {ticks} from "../shared/ticks.js";
+
+const hex = (text) => [1, 3, 5].map((i) => parseInt(text.slice(i, i + 2), 16));
+
+/** Red, green and blue, 0 to 255, of a colour of the style sheet. */
+export const rgb = (name) => hex(colour(name));
+
+/** The colour at share t in [0, 1] between stops. */
+function between(list, t) {
+  const at = Math.min(Math.max(t, 0), 1) * (list.length - 1);
+  const i = Math.min(Math.floor(at), list.length - 2);
+  const part = at - i;
+  return list[i].map((v, k) => Math.round(v + (list[i + 1][k] - v) * part));
+}
+
+/** The next round number away from 0. */
+function rounded(v) {
+  if (v === 0) return 0;
+  const power = 10 ** Math.floor(Math.log10(Math.abs(v)));
+  const steps = [1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10];
+  const step = steps.find((s) => s * power >= Math.abs(v) * (1 - 1e-9));
+  return Number((Math.sign(v) * step * power).toPrecision(3));
+}
+
+const spare = 0.02; // of the values at either end may lie beyond the scale
+
+/**
+ * The ends of the colours of some values, round ones: a few values may lie beyond, so that one that
+ * is far off leaves the others their colours.
+ */
+export function endsOf({diverging, from0}, values) {
+  const sorted = Float64Array.from(values).sort();
+  const n = sorted.length;
+  if (!n) return [0, 1];
+  const [low, high] = [spare, 1 - spare].map((q) => sorted[Math.round(q * (n - 1))]);
+  if (diverging) {
+    const least = rounded(Math.min(low, 0)) || -rounded(Math.abs(high)) || -1;
+    return [least, rounded(Math.max(high, 0)) || -least];
+  }
+  if (from0) return [0, rounded(high) || 1];
+  const step = rounded((high - low) / 10 || Math.abs(low) / 10 || 0.1);
+  const ends = [Math.floor(low / step + 1e-9) * step, Math.ceil(high / step - 1e-9) * step];
+  return ends[0] < ends[1] ? ends : [ends[0], ends[0] + step];
+}
+
+/**
+ * {at(value): its colour as bytes, share(value): its place in [0, 1] or beyond, ends, stops}. A
+ * diverging one has 0 in its middle, and its sides have scales of their own.
+ */
+export function scaleOf(quantity, [low, high]) {
+  const stops = colour(quantity.diverging ? "diverging" : "sequential")
+    .split(/\s+/)
+    .map(hex);
+  const share = quantity.diverging
+    ? (v) => (v < 0 ? 0.5 - (0.5 * v) / low : 0.5 + (0.5 * v) / high)
+    : (v) => (v - low) / (high - low);
+  return {stops, share, ends: [low, high], at: (v) => between(stops, share(v))};
+}
+
+export const barWidth = 86; // px beside the map
+
+/** The bar, its numbers and title. beyond: [whether values lie below it, above it]. */
+export function drawBar(c, {box, height}, {stops, share, ends: [low, high]}, title, beyond) {
+  const left = box.right + 12;
+  const width = 12;
+  const rows = Math.min(Math.round(height), 256);
+  const row = height / rows;
+  for (let y = 0; y < rows; ++y) {
+    c.fillStyle = `rgb(${between(stops, 1 - (y + 0.5) / rows)})`;
+    c.fillRect(left, box.top + y * row, width, row + 0.5);
+  }
+  c.font = font;
+  const most = Math.max(2, height / 45);
+  const inside = low < 0 && high > 0 ? [low, 0, high] : null;
+  const marks = [...new Set([low, ...(inside ?? ticks(low, high, most)), high])];
+  c.textAlign = "left";
+  c.textBaseline = "middle";
+  c.fillStyle = colour("soft");
+  let last = Infinity;
+  for (const mark of marks.sort((a, b) => a - b)) {
+    const y = box.bottom - share(mark) * height;
+    if (last - y < 12) continue;
+    last = y;
+    const sign = (mark === low && beyond[0] && "≤ ") || (mark === high && beyond[1] && "≥ ") || "";
+    const within = Math.min(Math.max(y, box.top + 5), box.bottom - 5);
+    c.fillText(`${sign}${short(Number(mark.toPrecision(6)))}`, left + width + 5, within);
+  }
+  c.save();
+  c.translate(left + barWidth - 20, (box.top + box.bottom) / 2);
+  c.rotate(-Math.PI / 2);
+  c.textAlign = "center";
+  c.fillText(title, 0, 0);
+  c.restore();
+}

@@ -1,0 +1,345 @@
+// A sweep over two axes, or a slice of one over three: a quantity as colours, with their scale beside
+// it. Points that are still to come have the colour of a coarser neighbour.
+import {Axis} from "../shared/axis.js";
+import {Frame} from "../shared/frame.js";
+import {short} from "../shared/numbers.js";
+import {Panel} from "../shared/panel.js";
+import {bestMotion, describe, quantityOf, regimeColour} from "../shared/quantities.js";
+import {lastUpTo} from "../shared/search.js";
+import {Tip} from "../shared/tip.js";
+import {afresh} from "./axes.js";
+import {barWidth, drawBar, endsOf, rgb, scaleOf} from "./colour_scale.js";
+
+/** Moves of the keyboard over the cells. */
+const moves = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
+
+const firstPass = 1 / 40; // of the points: by them the colours are chosen, and stay
+
+/** A colour as a pixel. */
+const opaque = ([r, g, b]) => ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0;
+
+export class SweepMap extends Panel {
+  /** naming: of axes; open({data, index}): a cell was chosen. */
+  constructor(root, container, naming, open) {
+    super(container, new Axis(), new Axis());
+    Object.assign(this, {root, naming, open, layers: null, current: null, ends: new Map()});
+    this.tip = new Tip(root);
+    this.over.addEventListener("pointermove", (event) => {
+      const {cursor} = this.axis;
+      if (event.pointerType === "mouse" && !event.buttons && cursor !== null)
+        this.tell(cursor, this.across.cursor);
+    });
+    root.addEventListener("pointerleave", () => this.leave());
+    root.addEventListener("keydown", (event) => this.key(event));
+    root.addEventListener("focusout", (event) => {
+      if (!root.contains(event.relatedTarget)) this.leave();
+    });
+  }
+
+  /**
+   * Another sweep, as Layers; choice: {map: the quantity, start, best: the best motion in place of
+   * the worst, slice: along the third axis}.
+   */
+  show(layers, choice) {
+    Object.assign(this, {layers, choice});
+    this.ends.clear();
+    this.leave();
+    const [first, second] = this.data.axes;
+    this.axis.span(first.borders[0], first.borders.at(-1), undefined, true);
+    this.across.span(second.borders[0], second.borders.at(-1), undefined, true);
+    this.refresh();
+  }
+
+  choose(choice) {
+    this.choice = choice;
+    this.refresh();
+    if (this.current) this.tell(...this.current);
+  }
+
+  get data() {
+    return this.layers?.base;
+  }
+
+  quantity() {
+    return quantityOf(this.choice.map, this.data);
+  }
+
+  /** The point at positions of a layer, null before it has come, and its index. */
+  pointAt({data, slice}, k, l) {
+    const {start, slice: chosen} = this.choice;
+    const index = data.index(k, l, start, slice === null ? chosen : 0);
+    return {p: data.points[index], data, index};
+  }
+
+  /** The value of a point that is drawn; null where it has none. */
+  valueOf(p) {
+    if (p.error) return null;
+    const {of} = this.quantity();
+    return of(this.choice.best ? bestMotion(p) : p) ?? null;
+  }
+
+  /** All values of the base that are there. */
+  values() {
+    const layer = {data: this.data, slice: null};
+    const [first, second] = this.data.axes;
+    const list = [];
+    for (let l = 0; l < second.at.length; ++l)
+      for (let k = 0; k < first.at.length; ++k) {
+        const {p} = this.pointAt(layer, k, l);
+        const v = p ? this.valueOf(p) : null;
+        if (v !== null) list.push(v);
+      }
+    return list;
+  }
+
+  /**
+   * The scale of the colours, null for categories. It is chosen once the whole has been seen
+   * coarsely, for each quantity, and holds for all slices and starts.
+   */
+  scale() {
+    const quantity = this.quantity();
+    if (quantity.categories) return null;
+    const {map} = this.choice;
+    const ends = this.ends.get(map) ?? endsOf(quantity, this.values());
+    const {received, total, complete} = this.data;
+    if (complete || received > Math.max(firstPass * total, 50)) this.ends.set(map, ends);
+    return scaleOf(quantity, ends);
+  }
+
+  prepare(width, height) {
+    if (!(this.data?.axes?.length > 1)) return null;
+    const scale = this.scale();
+    const [first, second] = this.data.axes;
+    const x = this.naming.frameAxis(first, this.axis.view);
+    const y = this.naming.frameAxis(second, this.across.view);
+    return {scale, frame: new Frame(width, height, x, y, scale ? barWidth : 12)};
+  }
+
+  paint(c, {frame, scale}) {
+    frame.draw(c);
+    const {left, top} = frame.box;
+    this.beyond = [false, false];
+    c.imageSmoothingEnabled = false;
+    c.drawImage(this.image(frame, this.colours(scale)), left, top, frame.width, frame.height);
+    if (scale) drawBar(c, frame, scale, this.quantity().label, this.beyond);
+  }
+
+  /** The pixel of a point. */
+  colours(scale) {
+    const nothing = opaque(rgb("nothing"));
+    const {categories = []} = this.quantity();
+    const named = new Map(categories.map((name) => [name, opaque(rgb(regimeColour(name)))]));
+    return (p) => {
+      const v = this.valueOf(p);
+      if (v === null) return nothing;
+      if (!scale) return named.get(v) ?? nothing;
+      const share = scale.share(v);
+      if (share < 0) this.beyond[0] = true;
+      if (share > 1) this.beyond[1] = true;
+      return opaque(scale.at(v));
+    };
+  }
+
+  /** All layers in the pixels of the screen. */
+  image(frame, colourOf) {
+    const width = Math.round(frame.width * devicePixelRatio);
+    const height = Math.round(frame.height * devicePixelRatio);
+    const image = new ImageData(width, height);
+    const pixels = new Uint32Array(image.data.buffer);
+    for (const layer of this.layers.over(this.choice.slice)) {
+      const [first, second] = layer.data.axes;
+      const columns = positions(first, this.axis.view, width);
+      const rows = positions(second, this.across.view, height).reverse();
+      const cells = this.cells(layer, colourOf);
+      const n = first.at.length;
+      for (let j = 0; j < height; ++j) {
+        if (rows[j] < 0) continue;
+        for (let i = 0; i < width; ++i) {
+          const pixel = columns[i] < 0 ? 0 : cells[rows[j] * n + columns[i]];
+          if (pixel) pixels[j * width + i] = pixel;
+        }
+      }
+    }
+    const canvas = Object.assign(document.createElement("canvas"), {width, height});
+    canvas.getContext("2d").putImageData(image, 0, 0);
+    return canvas;
+  }
+
+  /** A pixel for each cell of a layer, 0 where there is nothing. */
+  cells(layer, colourOf) {
+    const [first, second] = layer.data.axes;
+    const [n, m] = [first.at.length, second.at.length];
+    const cells = new Uint32Array(n * m);
+    for (let l = 0; l < m; ++l)
+      for (let k = 0; k < n; ++k) {
+        const {p} = this.pointAt(layer, k, l);
+        if (p) cells[l * n + k] = colourOf(p);
+      }
+    if (!layer.data.complete) fill(cells, first.order, second.order);
+    return cells;
+  }
+
+  cursorText() {
+    return "";
+  }
+
+  /** The finest point at a place: {p, data, index, k, l}, p null where it is still to come. */
+  nearest(at, height) {
+    let found = null;
+    for (const layer of this.layers.over(this.choice.slice)) {
+      const [first, second] = layer.data.axes;
+      const [k, l] = [positionAt(first, at), positionAt(second, height)];
+      if (k < 0 || l < 0) continue;
+      const there = this.pointAt(layer, k, l);
+      if (there.p || !found) found = {...there, k, l};
+    }
+    return found;
+  }
+
+  click(at, _, {touch}) {
+    const height = this.across.cursor;
+    if (touch) this.tell(at, height, true);
+    else this.choosePoint(at, height);
+  }
+
+  choosePoint(at, height) {
+    const there = this.nearest(at, height);
+    if (there) this.open(there);
+  }
+
+  leave() {
+    this.current = null;
+    this.tip.hide();
+    if (this.axis.cursor !== null) this.axis.point(null);
+    this.light();
+  }
+
+  tell(at, height, act = false) {
+    const there = this.nearest(at, height);
+    if (!there || !this.frame) return;
+    this.current = [at, height, act];
+    const {p, data, k, l} = there;
+    const {naming} = this;
+    const [x, y] = [data.axes[0].values[k], data.axes[1].values[l]];
+    this.light(x, y);
+    const rows = [
+      naming.place(data.axes[0], x),
+      naming.place(data.axes[1], y),
+      ...(p ? describe(p, naming.where(data)) : [["", "still to come"]]),
+    ];
+    const box = this.root.getBoundingClientRect();
+    const over = this.over.getBoundingClientRect();
+    const left = over.left - box.left + this.frame.px(x) - this.frame.box.left;
+    const top = over.top - box.top + this.frame.py(y) - this.frame.box.top;
+    const open = {label: "Simulate this point", run: () => this.open(there)};
+    this.tip.show(left, top, rows, `Click: simulate it${afresh(data)}`, act ? open : null);
+  }
+
+  key(event) {
+    if (!this.data?.axes || event.target !== this.root) return;
+    const move = moves[event.key];
+    const zoom = {"+": 1.5, "=": 1.5, "-": 1 / 1.5}[event.key];
+    if (move) this.moveBy(move);
+    else if (zoom) this.zoomAbout(zoom);
+    else if (event.key === "0") for (const axis of [this.axis, this.across]) axis.reset();
+    else if (event.key === "Enter" && this.current) this.choosePoint(...this.current);
+    else if (event.key === "Escape") this.leave();
+    else return;
+    event.preventDefault();
+  }
+
+  /** Tells of the cell so many beside the one that is told of. */
+  moveBy([right, up]) {
+    const middle = ({view: [from, to]}) => (from + to) / 2;
+    const [at, height] = this.current ?? [middle(this.axis), middle(this.across)];
+    const {data, k, l} = this.nearest(at, height);
+    const beside = (axis, i) => axis.at[Math.max(0, Math.min(axis.at.length - 1, i))];
+    const [x, y] = this.current
+      ? [beside(data.axes[0], k + right), beside(data.axes[1], l + up)]
+      : [data.axes[0].at[k], data.axes[1].at[l]];
+    this.across.point(y, "key");
+    this.axis.point(x, "key");
+    this.tell(x, y, true);
+  }
+
+  zoomAbout(factor) {
+    for (const [axis, at] of [
+      [this.axis, this.current?.[0]],
+      [this.across, this.current?.[1]],
+    ])
+      axis.zoomAt(at ?? (axis.view[0] + axis.view[1]) / 2, factor);
+  }
+
+  /** {names, columns}: the numbers of what is in view, of the finest layer there. */
+  numbers() {
+    const {naming, data} = this;
+    const [first, second] = data.axes;
+    const rows = [];
+    for (const layer of this.layers.over(this.choice.slice)) {
+      const [x, y] = layer.data.axes;
+      for (let l = 0; l < y.at.length; ++l)
+        for (let k = 0; k < x.at.length; ++k) {
+          const {p} = this.pointAt(layer, k, l);
+          if (!p || !within(this.axis, x.at[k]) || !within(this.across, y.at[l])) continue;
+          const place = [
+            naming.number(x.parameter, x.values[k]),
+            naming.number(y.parameter, y.values[l]),
+          ];
+          rows.push([...place.map(Number), this.valueOf(p), p.regime ?? "–"]);
+        }
+    }
+    const names = [naming.label(first.parameter), naming.label(second.parameter)];
+    return {
+      names: [...names, this.quantity().title, "regime"],
+      columns: [0, 1, 2, 3].map((i) => rows.map((row) => row[i])),
+    };
+  }
+
+  about() {
+    const {title} = this.quantity();
+    const scale = this.scale();
+    const [first, second] = this.data.axes.map(({parameter}) => this.naming.label(parameter));
+    const colours = scale ? `, colours from ${scale.ends.map(short).join(" to ")}` : "";
+    return {
+      title: `Map of ${title}`,
+      summary: `${title} over ${first} and ${second}${colours}`,
+    };
+  }
+}
+
+const within = ({view: [from, to]}, at) => at >= from && at <= to;
+
+/** The position on an axis whose cell holds a place; -1 beyond them. */
+function positionAt({borders}, at) {
+  if (at < borders[0] || at > borders.at(-1)) return -1;
+  return Math.min(lastUpTo(borders, at), borders.length - 2);
+}
+
+/** That of each pixel of a view. */
+function positions(axis, [from, to], pixels) {
+  const step = (to - from) / pixels;
+  return Int32Array.from({length: pixels}, (_, i) => positionAt(axis, from + (i + 0.5) * step));
+}
+
+/**
+ * Gives the cells that are still to come the colour of the point before them on a coarser grid; the
+ * service computes them in this order. order: the place of each position in its axis as it was asked
+ * for.
+ */
+function fill(cells, columns, rows) {
+  const n = columns.length;
+  const [column, row] = [inverse(columns), inverse(rows)];
+  const known = cells.slice();
+  for (let l = 0; l < rows.length; ++l)
+    for (let k = 0; k < n; ++k)
+      for (let mask = -2; !cells[l * n + k] && mask > -256; mask *= 2)
+        cells[l * n + k] = known[row[rows[l] & mask] * n + column[columns[k] & mask]];
+}
+
+function inverse(order) {
+  const list = new Int32Array(order.length);
+  order.forEach((given, k) => {
+    list[given] = k;
+  });
+  return list;
+}
