@@ -5,8 +5,9 @@ import {$} from "./shared/dom.js";
 import * as tabs from "./shared/tabs.js";
 import * as simulation from "./simulation/simulation.js";
 
-// A tab is a module with start(tables, changed, simulate), open(query), query() and redraw(); but
-// for the first one it is loaded when one goes there.
+// A tab is a module with start(tables, changed, others), open(query), query() and redraw(); but for
+// the first one it is loaded when one goes there. others: {simulate(fields), measure(answer)}, what
+// one tab asks of another.
 const modules = {
   simulation: () => simulation,
   sweep: () => import("./sweep/sweep.js"),
@@ -38,7 +39,8 @@ function show(name) {
 async function pane(name) {
   if (!panes[name]) {
     const module = await modules[name]();
-    if (!panes[name]) module.start(tables, keep(name), simulatePoint);
+    if (!panes[name])
+      module.start(tables, keep(name), {simulate: simulatePoint, measure: measureRun});
     panes[name] = module;
   }
   return panes[name];
@@ -87,6 +89,12 @@ const keep =
 function simulatePoint(fields) {
   scrolled.simulation = 0;
   return go("simulation", new URLSearchParams(Object.entries(fields)));
+}
+
+/** A run as a record to be identified. answer: of /v1/simulate, with its impacts. */
+async function measureRun(answer) {
+  await go("measurement", panes.measurement?.query() ?? "");
+  return panes.measurement.measure(answer);
 }
 
 async function start() {

@@ -144,10 +144,7 @@ test("the form's link holds its fields, another tab keeps the record, and other 
     await again.inputValue("[aria-describedby='measure-error-displacement_column']"),
     "Weg",
   );
-  assert.equal(
-    await again.inputValue("#measure-group-system label:has-text('b, m') input"),
-    "0.009",
-  );
+  assert.equal(await again.inputValue("#measure-group-system label:has-text('b, mm') input"), "9");
   assert.deepEqual(browser.complaints, []);
   await page.close();
   await again.close();
@@ -280,11 +277,11 @@ test("what is wrong with a file is shown with its line; what is wrong with a fie
   assert.match(await page.textContent("#measure-lines .at-fault"), /^ +7 {2}0\.003,abc,1\n$/);
   await page.setInputFiles("#measure-file", asFile(await regular()));
   assert.equal(await page.isVisible("#measure-lines"), false);
-  const b = page.locator("#measure-group-system label:has-text('b, m') input");
+  const b = page.locator("#measure-group-system label:has-text('b, mm') input");
   await b.fill("-1");
   await page.click("#measure-run");
   await page.waitForSelector("#measure-error-b:not(:empty)");
-  await b.fill("0.009");
+  await b.fill("9");
   await page.selectOption("#measure-preset", "");
   await page.click("#measure-run");
   await page.waitForSelector("#measure-error-m1:not(:empty)");
@@ -300,5 +297,116 @@ test("on a narrow screen no measurement is wider than the screen", async () => {
   assert.ok(await fits(page));
   const parts = "#panel-measurement :is(canvas, select, figure, input, .scroll, .legend)";
   assert.deepEqual(await beyond(page, parts, ".scroll td"), []);
+  await page.close();
+});
+
+test("a record that is chosen is identified at once, its figures of the paper are named, and each plot is taken away", async () => {
+  const page = await visit("?tab=measurement&preset=fig15");
+  await page.setInputFiles("#measure-file", asFile(await regular()));
+  await identified(page, 1);
+  const tags = await page.$$eval("#panel-measurement .tag", (list) =>
+    list.map((node) => node.textContent.replace("as ", "")),
+  );
+  assert.deepEqual(
+    tags,
+    [15, 16, 17, 18, 19, 19].map((n) => `Fig. ${n}`),
+  );
+  for (const name of ["a", "x", "qr", "R"]) {
+    const figure = page.locator("figure", {has: page.locator(`#plot-measured-${name}`)});
+    await figure.locator("button.menu").click();
+    assert.match(await page.textContent("#data"), /68 impacts, not decided/);
+    const csv = await downloaded(page, "#data button:text-is('CSV')");
+    assert.equal(csv.name, `measured-${name}.csv`);
+    assert.ok(csv.text.split("\n").length > 60, name);
+    await page.click("#data button:text-is('Close')");
+  }
+  await page.focus("#plot-measured-x");
+  for (const key of ["Home", "n", "n"]) await page.keyboard.press(key);
+  const [first, second] = (await rows(page)).map((row) => Number(row[1]));
+  const now = Number(await page.getAttribute("#plot-measured-x", "aria-valuenow"));
+  assert.ok(now > first - 1e-4 && now < second + 1e-4, `${now} is no impact`);
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("a file whose columns have other names asks which they are, and is identified once that is told", async () => {
+  const text = (await regular()).replace(/^.*\n/, "clock,wire,piezo\n");
+  const page = await visit("?tab=measurement&preset=fig15");
+  await page.setInputFiles("#measure-file", asFile(text));
+  await page.waitForSelector("#measure-picker:visible");
+  assert.match(await page.textContent("#measure-message"), /choose which column is the time/);
+  await page.selectOption("#measure-pick-displacement", "wire");
+  await page.selectOption("#measure-pick-acceleration", "piezo");
+  await page.selectOption("#measure-pick-time", "clock");
+  await identified(page, 1);
+  assert.match(await page.textContent("#measure-summary"), /impacts68 0 left out/);
+  assert.match(page.url(), /time_column=clock/);
+  browser.complaints.length = 0; // Chromium notes the 422 of columns that are still to be told
+  await page.close();
+});
+
+test("a file that is no text is refused with what to do", async () => {
+  const page = await visit("?tab=measurement");
+  const requests = [];
+  page.on("request", (request) => requests.push(request.url()));
+  const bytes = Buffer.from(Array.from({length: 4000}, (_, i) => (i * 37) % 251));
+  const file = {name: "record.wav", mimeType: "audio/wav", buffer: bytes};
+  await page.setInputFiles("#measure-file", file);
+  await page.waitForFunction(() =>
+    document.getElementById("measure-message").textContent.includes("no text"),
+  );
+  assert.match(
+    await page.textContent("#measure-message"),
+    /record\.wav cannot be read: it is no text; scripts\/to-csv/,
+  );
+  assert.deepEqual(requests, []);
+  await page.close();
+});
+
+/** A card's number, and whether the truth lies within four of its errors. */
+function agrees(summary, name, truth) {
+  const [, value, error] = summary.match(new RegExp(`${name}([\\d.]+) ± ([\\d.]+)`)).map(Number);
+  assert.ok(Math.abs(value - truth) < 4 * error, `${name}: ${value} ± ${error}, not ${truth}`);
+}
+
+test("a simulated run is sent to Measurement, which finds its restitution and clearance", async () => {
+  const page = await visit("?preset=fig3&R=0.65");
+  await page.click("#measure-this");
+  await identified(page, 1);
+  assert.equal(await page.inputValue("#measure-preset"), "");
+  const summary = await page.textContent("#measure-summary");
+  assert.match(summary, /verdictchaotic/);
+  for (const wall of ["R at \\+b", "R at −b"]) agrees(summary, wall, 0.65);
+  agrees(summary, "b fitted", 22);
+  assert.match(page.url(), /tab=measurement&b=0\.022&m1=1&k1=1/);
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("without a record at hand a simulated one is a click away", async () => {
+  const page = await visit("?tab=measurement");
+  await page.click("#measure-samples button:has-text('periodic')");
+  await identified(page, 1);
+  assert.equal(await page.inputValue("#measure-preset"), "fig15");
+  const summary = await page.textContent("#measure-summary");
+  assert.match(summary, /verdictregular/);
+  for (const wall of ["R at \\+b", "R at −b"]) agrees(summary, wall, 0.85);
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("a long identification says how long it takes already, and can be cancelled", async () => {
+  const page = await visit("?tab=measurement&preset=fig15");
+  await page.route("**/v1/identify?*", () => {}); // no answer for now
+  await page.setInputFiles("#measure-file", asFile(await regular()));
+  await page.waitForFunction(() =>
+    /identifying \d+ samples … [12] s/.test(document.getElementById("measure-message").textContent),
+  );
+  await page.click("#measure-cancel");
+  await page.waitForFunction(
+    () => document.getElementById("measure-message").textContent === "cancelled",
+  );
+  assert.equal(await page.isVisible("#measure-cancel"), false);
+  browser.complaints.length = 0; // Chromium notes the request that was broken off
   await page.close();
 });

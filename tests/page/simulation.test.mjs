@@ -671,7 +671,7 @@ test("each field says where its value comes from, and an empty one shows it", as
   assert.equal(await origin(page, "epsilon"), "default");
   assert.equal(await page.getAttribute(input("epsilon"), "placeholder"), "0.00840557");
   assert.equal(await page.getAttribute(input("R"), "placeholder"), "0.6");
-  await page.fill(input("b"), "0.03");
+  await page.fill(input("b"), "30");
   assert.equal(await origin(page, "b"), "", "typed, and no longer the preset's");
   await after(page, () => page.keyboard.press("Enter"));
   assert.equal(await origin(page, "b"), "");
@@ -709,7 +709,7 @@ test("a mass typed over a preset takes the place of its system, its damping and 
     await page.textContent("#preset-note"),
     /your own, in place of Fig\. 3; damping is equation_of_motion; window is empty/,
   );
-  assert.equal(await page.inputValue(input("b")), "0.022", "the rest stays");
+  assert.equal(await page.inputValue(input("b")), "22", "the rest stays");
   await page.keyboard.press("Enter");
   for (const name of ["c1", "k1", "m2", "F", "f"])
     await page.waitForSelector(`#error-${name}:not(:empty)`);
@@ -909,5 +909,21 @@ test("a narrow plot in a closed part is drawn when it gets a width", async () =>
   await page.setViewportSize({width: 1440, height: 900});
   await page.waitForTimeout(300);
   for (const canvas of instrument) assert.ok((await colours(page, canvas)) > 3, canvas);
+  await page.close();
+});
+
+test("a length that the form shows in mm keeps all of its digits; its faults are told in m", async () => {
+  const page = await still("?b=0.013043478260869565&tau_end=200");
+  await unfold(page);
+  assert.equal(await page.inputValue(input("b")), "13.0434782608696");
+  await page.fill(input("R"), "0,61");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => location.search.includes("R=0.61"));
+  assert.match(page.url(), /b=0\.013043478260869565&/);
+  await page.fill(input("b"), "-1");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector("#error-b:not(:empty)");
+  assert.match(await page.textContent("#error-b"), /must lie in .* m$/);
+  browser.complaints.length = 0; // Chromium notes the 422 in its console
   await page.close();
 });

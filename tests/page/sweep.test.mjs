@@ -384,7 +384,7 @@ test("a reduction folds an axis: over the other one there is the peak and where 
   await hoverAt(page, "#plot-sweep-other", 0.5);
   assert.match(await tip(page), /^b30 mm.*largest \|x\|2\d\.\d+ mm at f = 1[34]\.\d+ Hz/);
   await page.selectOption(field("sweep-axis2-error-parameter"), "none");
-  await page.fill(`#sweep-base-group-system .field-b input`, "0.03");
+  await page.fill(`#sweep-base-group-system .field-b input`, "30");
   await page.click("#sweep-run");
   await swept(page, 3);
   assert.equal(await page.isVisible("#sweep-stack"), false);
@@ -474,7 +474,8 @@ test("on a narrow screen the worst and the best of a default set, and their peak
 test("a platform by hand: typed over Fig. 3 it is simulated in seconds; its sweep tells the peaks from the wall and from the middle", async () => {
   const page = await visit("", {viewport: {width: 1400, height: 1000}});
   await unfold(page);
-  for (const [name, value] of Object.entries(platform)) await page.fill(input(name), value);
+  const inMm = {...platform, F: "0,4", b: "30"};
+  for (const [name, value] of Object.entries(inMm)) await page.fill(input(name), value);
   await page.keyboard.press("Enter");
   await page.waitForFunction(() => document.getElementById("slider-f"));
   assert.equal(await page.inputValue(input("damping")), "equation_of_motion");

@@ -1,14 +1,32 @@
 // The tab of a measurement: a file and its fields in, one request, what was identified out; the
 // list of impacts can be edited and sent again.
-import {identify, identifyJson, Problem, recordAsCurl, wholeMessage} from "../shared/api.js";
-import {$, element, showBusy} from "../shared/dom.js";
+import {
+  identify,
+  identifyJson,
+  Problem,
+  recordAsCurl,
+  simulate,
+  wholeMessage,
+} from "../shared/api.js";
+import {$, element} from "../shared/dom.js";
 import {Form} from "../shared/form.js";
+import {Job} from "../shared/job.js";
+import {Motion} from "../shared/motion.js";
 import {copy, save} from "../shared/take_away.js";
 import {showFit} from "./fit.js";
 import {ImpactList} from "./impact_list.js";
 import {summariseMeasurement} from "./measurement_summary.js";
-import {draw, drawRecord, mark, redraw} from "./measurement_views.js";
+import {
+  draw,
+  drawRecord,
+  mark,
+  nameFigures,
+  redraw,
+  start as startViews,
+} from "./measurement_views.js";
+import * as picker from "./picker.js";
 import {parse, recordOf, spikeNear, textOf} from "./record.js";
+import {oscillatorOf, recordOfRun} from "./sample.js";
 
 const groups = {
   system: ["System", true],
@@ -16,8 +34,10 @@ const groups = {
   record: ["Columns and units", false],
 };
 const experiments = ["fig15", "fig20"]; // those of Table 4
+const sampleNames = {fig15: "b = 9 mm, periodic", fig20: "b = 15 mm, chaotic"};
 const estimated = new Set(["R", "F", "cycles"]); // the presets' values are of the simulation
 const longestQuery = 6000; // servers and proxies take 8 kB of address
+const sampleCycles = 330; // some 40 s
 
 let form;
 let list;
@@ -28,7 +48,8 @@ let reading = Promise.resolve(null);
 let record = null;
 let answer = null;
 let sent = null;
-let running = null;
+let began = 0;
+let ticking = 0;
 let shown = null;
 let remembered = () => {};
 
@@ -117,6 +138,7 @@ function addAt(t, reach) {
 function present(milliseconds) {
   for (const node of document.querySelectorAll(".identified")) node.hidden = false;
   summariseMeasurement(answer, milliseconds);
+  nameFigures(preset()?.name);
   showFit(answer);
   if (!record) return;
   drawFile();
@@ -143,33 +165,51 @@ function quoteLine(detail) {
 
 // What is done.
 
+/** A file is there: it is drawn, and, if it can be, identified. */
 async function take(chosen) {
   if (!chosen) return;
-  running?.abort();
+  job.cancel();
   file = chosen;
+  text = "";
   answer = record = sent = null;
   for (const node of document.querySelectorAll(".identified")) node.hidden = true;
   const megabytes = (chosen.size / 1e6).toFixed(chosen.size < 1e5 ? 3 : 1);
   $("measure-about").textContent = `${chosen.name}, ${megabytes} MB`;
-  $("measure-run").disabled = false;
+  $("measure-picker").hidden = true;
   quoteLine("");
   say("reading …");
-  reading = textOf(chosen).then((all) => {
-    if (file === chosen) text = all;
-    return parse(all);
-  });
+  reading = read(chosen);
   try {
     const parsed = await reading;
     if (file !== chosen) return;
-    const options = parsed.names.map((value) => element("option", {value}));
-    $("measure-columns").replaceChildren(...options);
-    record = recordOf(parsed, form.values());
+    $("measure-columns").replaceChildren(
+      ...parsed.names.map((value) => element("option", {value})),
+    );
     $("measure-about").textContent += `, ${parsed.columns[0]?.length ?? 0} samples`;
-    drawFile();
-    if (!running) say("");
+    showColumns(parsed);
+    if (record || !parsed.names.length) run();
+    else say("choose which column is the time, and which the displacement or acceleration", true);
   } catch (error) {
-    say(`the file cannot be read: ${error.message}`, true);
+    if (file !== chosen) return;
+    file = null;
+    drawFile();
+    say(`${chosen.name} cannot be read: ${error.message}`, true);
   }
+}
+
+async function read(chosen) {
+  const all = await textOf(chosen);
+  if (file === chosen) text = all;
+  return parse(all, (share) => {
+    if (file === chosen) say(`reading … ${(100 * share).toFixed(0)} %`);
+  });
+}
+
+/** What the fields make of the file's columns, before anything is known of it. */
+function showColumns(parsed) {
+  picker.show(parsed, form.values());
+  record = recordOf(parsed, form.values());
+  drawFile();
 }
 
 /** What is sent: the file as it is, or, where the address would be too long, all as JSON. */
@@ -183,42 +223,79 @@ async function request(fields, signal) {
   return identifyJson({...fields, ...units, record: lists}, signal);
 }
 
-async function run(more = {}) {
-  if (!file) {
-    say("choose a file first", true);
-    $("measure-file").focus();
-    return;
-  }
-  running?.abort();
-  const mine = new AbortController();
-  running = mine;
-  const fields = {...form.values(), ...more};
-  form.showErrors([]);
-  quoteLine("");
-  showBusy("measure-", true);
-  say("identifying …");
-  const began = performance.now();
-  try {
-    const got = await request(fields, mine.signal);
-    const milliseconds = performance.now() - began;
-    const parsed = await reading;
-    if (running !== mine) return;
+const job = new Job({
+  ask: async ({fields}, signal) => {
+    const got = await request(fields, signal);
+    return {got, parsed: await reading};
+  },
+  show({got, parsed}, {fields}, milliseconds) {
     [answer, sent, record] = [got, fields, recordOf(parsed, fields)];
     remember();
     say("");
     present(milliseconds);
     $("measure-results").dataset.done = String(Number($("measure-results").dataset.done ?? 0) + 1);
-  } catch (error) {
-    if (running !== mine) return;
-    if (mine.signal.aborted) return say("cancelled");
+  },
+  fail(error) {
     const left = error instanceof Problem ? form.showErrors(error.errors) : [];
     say(wholeMessage(error, left), true);
     quoteLine(error.message);
-  } finally {
-    if (running === mine) {
-      running = null;
-      showBusy("measure-", false);
-    }
+  },
+  busy(is, cancelled) {
+    $("measure-cancel").hidden = !is;
+    $("measure-results").classList.toggle("stale", is);
+    $("measure-results").setAttribute("aria-busy", String(is));
+    clearInterval(ticking);
+    if (is) ticking = setInterval(tick, 1000);
+    if (cancelled) say("cancelled");
+  },
+  later: (text) => say(text, true),
+});
+
+/** How long it takes already. */
+function tick() {
+  if ($("measure-message").classList.contains("fault")) return;
+  const samples = record?.t.length;
+  const of = samples ? ` ${samples} samples` : "";
+  say(`identifying${of} … ${((performance.now() - began) / 1000).toFixed(0)} s`);
+}
+
+function run(more = {}) {
+  if (!file) {
+    say("choose a file first", true);
+    $("measure-file").focus();
+    return;
+  }
+  form.showErrors([]);
+  quoteLine("");
+  say("identifying …");
+  began = performance.now();
+  const {name, size, lastModified} = file;
+  job.start({fields: {...form.values(), ...more}, file: [name, size, lastModified]});
+}
+
+/** A record of a run that was simulated: {parameters, impacts, sticking, status}. */
+export async function measure(run) {
+  const {parameters} = run;
+  $("measure-preset").value = "";
+  form.set(oscillatorOf(parameters));
+  remember();
+  const text = recordOfRun(run, new Motion(run));
+  await take(new File([text], `run-b${parameters.b * 1000}mm.csv`, {type: "text/csv"}));
+}
+
+/** The same of one of the experiments. */
+async function takeSample(name) {
+  choosePreset(name);
+  remember();
+  say("simulating …");
+  const parameters = presets.find((p) => p.name === name).parameters;
+  const fields = {...parameters, cycles: sampleCycles, include: ["impacts", "regime"]};
+  try {
+    const run = await simulate(fields);
+    const text = recordOfRun(run, new Motion(run));
+    await take(new File([text], `sample-${name}.csv`, {type: "text/csv"}));
+  } catch (error) {
+    say(error.message, true);
   }
 }
 
@@ -258,6 +335,7 @@ function listenToFiles() {
 /** tables: of /v1/parameters, and presets; changed: called when there is another query. */
 export function start({identify_fields: fields, presets: all}, changed) {
   remembered = changed;
+  startViews(() => ({name: file?.name ?? "", answer}));
   presets = all.filter((p) => experiments.includes(p.name));
   form = new Form($("measure-fields"), fieldsOf(fields), {prefix: "measure-", grouped: groups});
   for (const name of fields.map((f) => f.name).filter((n) => n.endsWith("_column")))
@@ -287,17 +365,25 @@ function listen() {
   $("measure-fields").addEventListener("change", async () => {
     remember();
     const parsed = await reading.catch(() => null);
-    if (parsed && !answer) {
-      record = recordOf(parsed, form.values());
-      drawFile();
-    }
+    if (parsed && !answer) showColumns(parsed);
   });
+  picker.start((field, name) => {
+    form.replace(field, name);
+    remember();
+    run();
+  });
+  for (const preset of presets) {
+    const button = element("button", {type: "button", className: "small"});
+    button.textContent = sampleNames[preset.name];
+    button.addEventListener("click", () => takeSample(preset.name));
+    $("measure-samples").append(" ", button);
+  }
   $("measure-form").addEventListener("submit", (event) => {
     event.preventDefault();
     run();
     lead();
   });
-  $("measure-cancel").addEventListener("click", () => running?.abort());
+  $("measure-cancel").addEventListener("click", () => job.cancel());
   $("measure-again").addEventListener("click", () => {
     run({impact_times_s: list.times().map((t) => Number(t.toFixed(7)))});
   });

@@ -1,8 +1,10 @@
 // The plots of a measurement: the record with its impacts, and what was identified from them.
 import {Axis} from "../shared/axis.js";
-import {$} from "../shared/dom.js";
+import {$, element} from "../shared/dom.js";
 import {exponentSeries} from "../shared/exponents.js";
+import {addMenu} from "../shared/figure_menu.js";
 import {LinePlot} from "../shared/line_plot.js";
+import {operable} from "../shared/operable.js";
 import {ScatterPlot} from "../shared/scatter_plot.js";
 import {firstFrom} from "../shared/search.js";
 import {isLeftOut} from "./impact_list.js";
@@ -17,6 +19,53 @@ const plots = Object.fromEntries([
 ]);
 const mm = (metres) => metres.map((v) => v * 1000);
 const seconds = "t (s)";
+
+/** What a plot shows, and the figures of the paper that show it of their record, by preset. */
+const figures = {
+  a: {title: "Acceleration of the oscillator, with its impacts", fig15: 15, fig20: 20},
+  x: {title: "Displacement of the oscillator, with its impacts", fig15: 16, fig20: 21},
+  portrait: {title: "Phase portrait at impacts", fig15: 17, fig20: 22},
+  section: {title: "Section after impact, by wall", fig15: 18, fig20: 23},
+  qr: {title: "Transient Lyapunov exponents, qr", fig15: 19, fig20: 24},
+  raw: {title: "Transient Lyapunov exponents, raw_product", fig15: 19, fig20: 24},
+  R: {title: "Restitution coefficient of each impact"},
+  steps: {title: "Time from impact to impact, in half forcing periods"},
+};
+const figureOf = (name) => $(`plot-measured-${name}`).closest("figure");
+
+/** told(): {name, answer} of the record that is shown. */
+export function start(told) {
+  for (const [name, plot] of Object.entries(plots)) {
+    const {title} = figures[name];
+    operable(plot, title, () => told().answer?.impacts.time_s ?? []);
+    addMenu(figureOf(name), plot, () => ({
+      title,
+      summary: summaryOf(told()),
+      caption: told().name,
+      name: `measured-${name}`,
+    }));
+  }
+}
+
+function summaryOf({answer}) {
+  if (!answer) return "A record of which nothing is identified yet.";
+  const {impacts, verdict, slope} = answer;
+  const lambda = slope.lambda1 == null ? "" : `, slope of λ₁τ ${slope.lambda1.toFixed(4)}`;
+  return `${impacts.tau.length} impacts, ${verdict.replace("_", " ")}${lambda}`;
+}
+
+/** Tags the plots of an experiment of the paper with its figures. */
+export function nameFigures(preset) {
+  for (const [name, numbers] of Object.entries(figures)) {
+    const caption = figureOf(name).querySelector("figcaption");
+    caption.querySelector(".tag")?.remove();
+    if (!numbers[preset]) continue;
+    const title = "what this figure of the paper shows of its own record";
+    caption.append(
+      element("span", {className: "tag", textContent: `as Fig. ${numbers[preset]}`, title}),
+    );
+  }
+}
 
 export function redraw() {
   for (const plot of Object.values(plots)) plot.refresh();

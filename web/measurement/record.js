@@ -9,7 +9,16 @@ const pause = () =>
     setTimeout(resolve);
   });
 
-/** The text of a file, whatever its encoding; its lines end by LF. */
+/** Whether a text is none: it holds characters that no text has. */
+function isBinary(text) {
+  for (let i = 0; i < Math.min(text.length, 100000); ++i) {
+    const code = text.charCodeAt(i);
+    if (code < 9 || (code > 13 && code < 27)) return true;
+  }
+  return false;
+}
+
+/** The text of a file, whatever its encoding; its lines end by LF. Throws if it is none. */
 export async function textOf(file) {
   const bytes = new Uint8Array(await file.arrayBuffer());
   const begins = (first, second) => bytes[0] === first && bytes[1] === second;
@@ -23,6 +32,8 @@ export async function textOf(file) {
   } catch {
     text = new TextDecoder("windows-1252").decode(bytes);
   }
+  if (isBinary(text))
+    throw new Error("it is no text; scripts/to-csv makes CSV of .wav, .mat, .tdms and .uff files");
   return text.includes("\r") ? text.replace(/\r\n?/g, "\n") : text;
 }
 
@@ -91,9 +102,9 @@ function headingOf({last, before, comment}, count, separator) {
 
 /**
  * The columns of a CSV text: {names, units, columns}, columns of numbers; lines that the service
- * would refuse are left out.
+ * would refuse are left out. heard(share): how much of it is read.
  */
-export async function parse(text) {
+export async function parse(text, heard = () => {}) {
   const above = {last: "", before: "", comment: ""};
   let said;
   let separator;
@@ -106,7 +117,10 @@ export async function parse(text) {
     const to = at < 0 ? text.length : at;
     const cells = text.slice(from, to);
     from = to + 1;
-    if (line % atOnce === 0) await pause();
+    if (line % atOnce === 0) {
+      heard(from / text.length);
+      await pause();
+    }
     if (!cells.trim()) continue;
     if (isComment(cells)) {
       if (!heading) above.comment = cells.replace(/^\s*(#|%|\/\/)/, "");
@@ -219,23 +233,34 @@ function whereAscending(t) {
 
 const scaled = (column, unit) => (units[unit] === 1 ? column : column.map((v) => v * units[unit]));
 
+/** The columns that the fields and the names mean, by what is measured: their positions, or -1. */
+export function columnsOf(names, fields) {
+  const of = (field, name, ...beginnings) => find(names, fields[field], name, beginnings);
+  return {
+    time: of("time_column", "time_s", "time", "t"),
+    displacement: of("displacement_column", "displacement_m", "displacement", "x"),
+    acceleration: of("acceleration_column", "acceleration_m_s2", "acceleration", "a"),
+    base_acceleration: of(
+      "base_acceleration_column",
+      "base_acceleration_m_s2",
+      "base_acceleration",
+    ),
+    force: of("force_column", "force_n", "force"),
+  };
+}
+
 /**
  * What the fields make of the columns: {t (s), x (mm), a (m/s^2)}, null for one that is not there;
  * sent: those columns by name, in the record's units; units: these as fields.
  */
 export function recordOf({names, units: row = [], columns}, fields) {
-  const time = find(names, fields.time_column, "time_s", ["time", "t"]);
-  const x = find(names, fields.displacement_column, "displacement_m", ["displacement", "x"]);
-  const a = find(names, fields.acceleration_column, "acceleration_m_s2", ["acceleration", "a"]);
+  const columnOf = columnsOf(names, fields);
+  const {time, displacement: x, acceleration: a, base_acceleration: base, force} = columnOf;
   if (time < 0 || !columns[time].length || (x < 0 && a < 0)) return null;
   const said = (k, asked) => unitIn(names[k]) ?? spellings[spelling(row[k] ?? "")] ?? asked;
   const unit = (k, asked, usual) => said(k, asked) ?? usual;
   const t = scaled(columns[time], unit(time, fields.time_unit, "s"));
   const kept = whereAscending(t); // as the plots need it
-  const base = find(names, fields.base_acceleration_column, "base_acceleration_m_s2", [
-    "base_acceleration",
-  ]);
-  const force = find(names, fields.force_column, "force_n", ["force"]);
   const present = [time, x, a, base, force].filter((k) => k >= 0);
   const sent = Object.fromEntries(present.map((k) => [names[k], columns[k]]));
   return {

@@ -7,10 +7,3 @@ export const element = (tag, properties = {}, ...children) => {
   node.append(...children);
   return node;
 };
-
-/** A tab of this prefix while it computes: what it shows is of the request before. */
-export function showBusy(prefix, is) {
-  $(`${prefix}run`).disabled = is;
-  $(`${prefix}cancel`).hidden = !is;
-  $(`${prefix}results`).classList.toggle("stale", is);
-}

@@ -53,6 +53,11 @@ export class Flow {
     this.steps = []; // over cell, 2 cell, 4 cell, ...
   }
 
+  /** x'' in a state. */
+  force([x, v, sin]) {
+    return this.forcing * sin - this.stiffness * x - this.damping * v;
+  }
+
   /** A state a time 0 <= s <= cell later. */
   near(state, s) {
     const {stiffness, damping, forcing, Omega} = this;

@@ -1,7 +1,10 @@
 // The form, built from the field table of /v1/parameters. An empty input stands for the default
 // that its placeholder shows.
 import {element} from "./dom.js";
+import {toNumber} from "./numbers.js";
 import {originText, resolved} from "./origins.js";
+import {symbolOf} from "./quantities.js";
+import {unitShown} from "./units.js";
 
 // The groups of /v1/simulate: title, whether they are open at first, and what to know of them.
 export const groups = {
@@ -32,8 +35,7 @@ export function textOf(value) {
 }
 
 /** A text as JSON wants it; what cannot be a number is sent as text, for the service to refuse. */
-const number = (text) =>
-  text.trim() !== "" && Number.isFinite(Number(text)) ? Number(text) : text.trim();
+const number = (text) => toNumber(text) ?? text.trim();
 const parts = (text) => text.split(";").filter((part) => part.trim());
 const interval = (text) => text.split(",").map(number);
 const intervals = (text) => parts(text).map(interval);
@@ -65,16 +67,19 @@ function rounded(value) {
 
 const readers = {interval, intervals, states, text: (text) => text.trim()};
 
-/** What an empty input stands for, before an answer tells. */
-const standardOf = (field) =>
-  (field.default_note ?? "").split(":")[0] ||
-  textOf(field.default ?? "") ||
-  hints[field.type] ||
-  "";
+const factorOf = ({unit, type}) => (type === "number" ? unitShown(unit).factor : 1);
+
+/** A number times a factor, without the digits of rounding. */
+const times = (value, factor) => (factor === 1 ? value : Number((value * factor).toPrecision(15)));
 
 /** The unit behind a field's name. */
-const unitOf = ({unit}) =>
-  unit && unit !== "dimensionless" ? `, ${unit.replace("per unit of tau", "per τ")}` : "";
+function unitOf(field) {
+  const {unit} = unitShown(field.unit);
+  return unit && `, ${unit}`;
+}
+
+/** A field's name as one reads it. */
+const labelOf = ({name}) => symbolOf(name).replaceAll("_", " ");
 
 function menuInput(field) {
   const options = field.choices.map((c) => element("option", {value: c, textContent: c}));
@@ -92,8 +97,7 @@ function checksInput(field) {
 }
 
 function textInput(field) {
-  const inputMode = readers[field.type] ? "text" : "decimal";
-  return element("input", {type: "text", inputMode, placeholder: standardOf(field)});
+  return element("input", {type: "text", inputMode: readers[field.type] ? "text" : "decimal"});
 }
 
 const inputs = {choice: menuInput, choices: checksInput};
@@ -111,6 +115,8 @@ export class Form {
     this.rows = new Map();
     this.parts = new Map();
     this.origins = new Map();
+    this.factors = new Map(fields.map((field) => [field.name, factorOf(field)]));
+    this.exact = new Map(); // of numbers that are shown in other units: {text, value}
     this.replaced = [];
     for (const [group, [title, open, note = ""]] of Object.entries(grouped)) {
       const grid = element("div", {className: "grid"});
@@ -130,21 +136,53 @@ export class Form {
     const error = element("p", {className: "error", id: `${this.prefix}error-${field.name}`});
     const unit = element("span", {className: "unit", textContent: unitOf(field)});
     const origin = element("span", {className: "origin"});
-    const named = element("span", {}, field.name, unit);
+    const named = element("span", {}, labelOf(field), unit);
     const name = element("span", {className: "name"}, named, origin);
     const input = (inputs[field.type] ?? textInput)(field);
     input.setAttribute("aria-describedby", error.id);
     input.addEventListener("input", () => this.forgetOrigin(field.name));
     const range = field.minimum === undefined ? "" : ` [${field.minimum} to ${field.maximum}]`;
-    const title = field.description + range;
+    const title = `${field.name}: ${field.description}${range}`;
     const label = element(field.type === "choices" ? "div" : "label", {title}, name, input);
     const width = wide.has(field.type) && !field.narrow ? " wide" : "";
+    if (input.type === "text") input.placeholder = this.standardOf(field);
     const row = element("div", {className: `field field-${field.name}${width}`}, label, error);
     this.inputs.set(field.name, input);
     this.origins.set(field.name, origin);
     this.errors.set(field.name, error);
     this.rows.set(field.name, row);
     return row;
+  }
+
+  /** What an empty input stands for, before an answer tells. */
+  standardOf(field) {
+    const note = (field.default_note ?? "").split(":")[0];
+    return note || textOf(this.shown(field.name, field.default ?? "")) || hints[field.type] || "";
+  }
+
+  /** A value as it is shown; what is no number stays as it is. */
+  shown(name, value) {
+    const factor = this.factors.get(name);
+    const isNumber = value !== "" && Number.isFinite(Number(value));
+    return factor === 1 || !isNumber ? value : times(Number(value), factor);
+  }
+
+  /** A value is written to an input; the last digits that it does not show are kept. */
+  write(name, value) {
+    const text = textOf(this.shown(name, value));
+    this.inputs.get(name).value = text;
+    this.exact.set(name, {text, value});
+  }
+
+  /** What an input of text holds, typed for JSON. */
+  read({name, type}) {
+    const {value: text} = this.inputs.get(name);
+    if (readers[type]) return readers[type](text);
+    const factor = this.factors.get(name);
+    const exact = this.exact.get(name);
+    if (factor !== 1 && exact?.text === text) return number(String(exact.value));
+    const value = number(text);
+    return typeof value === "number" ? times(value, 1 / factor) : value;
   }
 
   /** The fields that differ from their defaults, typed for JSON. */
@@ -159,7 +197,7 @@ export class Form {
         const chosen = [...input.querySelectorAll("input:checked")].map((box) => box.value);
         if (chosen.length !== field.default.length) values[field.name] = chosen;
       } else if (input.value.trim() !== "") {
-        values[field.name] = (readers[field.type] ?? number)(input.value);
+        values[field.name] = this.read(field);
       }
     }
     return values;
@@ -175,7 +213,7 @@ export class Form {
         for (const box of input.querySelectorAll("input"))
           box.checked = (value ?? field.default).includes(box.value);
       } else {
-        input.value = value === undefined ? "" : textOf(value);
+        this.write(field.name, value ?? "");
       }
       if (value !== undefined) this.parts.get(field.group).open = true;
     }
@@ -197,7 +235,8 @@ export class Form {
       origin.textContent = originText(origins[field.name]);
       origin.title = origins[field.name] ?? "";
       if (input.type === "text")
-        input.placeholder = value == null ? standardOf(field) : textOf(rounded(value));
+        input.placeholder =
+          value == null ? this.standardOf(field) : textOf(rounded(this.shown(field.name, value)));
     }
   }
 
@@ -213,8 +252,8 @@ export class Form {
   }
 
   /** Another value than the last answer's. */
-  replace(name, text) {
-    this.inputs.get(name).value = text;
+  replace(name, value) {
+    this.write(name, value);
     this.forgetOrigin(name);
   }
 

@@ -38,7 +38,7 @@ export class Job {
    */
   start(request, {hasty = false} = {}) {
     const same = JSON.stringify(request) === this.running?.text;
-    if (same && !this.next) return;
+    if (same && !this.next && !this.running.abort.signal.aborted) return;
     this.next = {request};
     if (this.running && !(hasty && this.running.answers)) this.running.abort.abort();
     else if (!this.running) this.run();

@@ -67,11 +67,12 @@ export class Motion {
     return {state, y: state[0] - piece.side * this.b, y_dot: state[1]};
   }
 
-  /** {x, x_dot, y, y_dot, side} at a moment of the run, m and m per unit of tau. */
+  /** {x, x_dot, x_ddot, y, y_dot, side} at a moment of the run, m per unit of tau, or of its square. */
   at(tau) {
     const piece = this.pieces[Math.max(lastUpTo(this.starts, tau), 0)];
     const {state, y, y_dot} = this.stateOf(piece, tau);
-    return {x: state[0], x_dot: state[1], y, y_dot, side: piece.side};
+    const flow = piece.side ? this.stuck : this.free;
+    return {x: state[0], x_dot: state[1], x_ddot: flow.force(state), y, y_dot, side: piece.side};
   }
 
   /** The index of the last impact up to a moment, -1 before the first. */

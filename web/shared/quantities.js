@@ -198,6 +198,7 @@ const symbols = {
   y_dot0: "y′(0)",
   R_plus: "R₊",
   R_minus: "R₋",
+  tau_end: "τ end",
 };
 export const symbolOf = (parameter) => symbols[parameter] ?? parameter;
 

@@ -96,3 +96,11 @@ export function unitsOf({si, derived}) {
     energy: quantity(m1 * omega0 ** 2, "J"),
   };
 }
+
+/**
+ * A unit of the service as the page has it, and by what values are multiplied: lengths are in mm.
+ */
+export function unitShown(unit = "") {
+  const plain = unit === "dimensionless" ? "" : unit.replace("per unit of tau", "per τ");
+  return /^m($|[ /])/.test(plain) ? {unit: `m${plain}`, factor: 1000} : {unit: plain, factor: 1};
+}

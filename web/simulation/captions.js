@@ -52,8 +52,5 @@ export function describe(answer, units) {
   for (const [name, text] of Object.entries(told.texts)) {
     const node = $(`plot-${name}`);
     node.setAttribute("aria-label", `${text} ${line}`);
-    if (node.getAttribute("role") !== "slider") continue;
-    node.setAttribute("aria-valuemin", 0);
-    node.setAttribute("aria-valuemax", answer.status.tau);
   }
 }

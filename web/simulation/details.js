@@ -4,6 +4,7 @@ import {simulate} from "../shared/api.js";
 import {$} from "../shared/dom.js";
 import {addMenu} from "../shared/figure_menu.js";
 import {Job} from "../shared/job.js";
+import {operable} from "../shared/operable.js";
 import {aboutFigure} from "./captions.js";
 import {drawDetails, makePlots} from "./details_plots.js";
 import {accountEnergy, summarise, tabulate} from "./details_summary.js";
@@ -61,8 +62,10 @@ export class Details {
 
   makePlots() {
     const plots = makePlots(this.axis);
-    for (const [name, plot] of Object.entries(plots))
+    for (const [name, plot] of Object.entries(plots)) {
       addMenu($(`figure-${name}`), plot, () => aboutFigure(name));
+      operable(plot, aboutFigure(name).title, () => this.run().answer.impacts.tau);
+    }
     return plots;
   }
 

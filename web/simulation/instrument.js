@@ -3,9 +3,9 @@
 // through all of them, and the impact nearest to it is ringed in each.
 import {$} from "../shared/dom.js";
 import {exponentRange, exponentSeries} from "../shared/exponents.js";
-import {followKeys} from "../shared/gestures.js";
 import {LinePlot} from "../shared/line_plot.js";
 import {short} from "../shared/numbers.js";
+import {operable} from "../shared/operable.js";
 import {ScatterPlot} from "../shared/scatter_plot.js";
 import {lastUpTo} from "../shared/search.js";
 import {logRange, mm, over, overRun, positive, scaled} from "./columns.js";
@@ -51,10 +51,10 @@ export class Instrument {
     this.answer = null;
     this.more = null;
     this.pinned = null; // {answer, motion} of a run to compare with
+    for (const [name, plot] of this.plots())
+      operable(plot, name, () => this.answer?.impacts.tau ?? []);
     axis.onCursor((by) => this.light(by));
     axis.onView(() => this.light());
-    for (const name of Object.keys(this.lines))
-      followKeys($(`plot-${name}`), axis, () => this.answer?.impacts.tau ?? []);
   }
 
   /** Of a run: its motion, impacts and exponents. marks: bands and lines over time. */
@@ -279,9 +279,8 @@ export class Instrument {
     for (const [name, text] of Object.entries(values)) $(`value-${name}`).textContent = text;
     if (playing) return; // a reader of the page is not told sixty times a second
     for (const name of Object.keys(this.lines)) {
-      const node = $(`plot-${name}`);
-      node.setAttribute("aria-valuenow", cursor);
-      node.setAttribute("aria-valuetext", `${this.units.at(cursor)} ${values[name] ?? ""}`);
+      const text = `${this.units.at(cursor)} ${values[name] ?? ""}`;
+      $(`plot-${name}`).setAttribute("aria-valuetext", text);
     }
   }
 }

@@ -175,8 +175,7 @@ function turn(fields, slider, {hasty}) {
   touched = slider.name;
   const {form} = request;
   if (slider.name === "zeta") request.dampingChosen = true;
-  for (const [name, value] of Object.entries(fields))
-    form.replace(name, value === null ? "" : String(value));
+  for (const [name, value] of Object.entries(fields)) form.replace(name, value ?? "");
   const names = Object.keys(fields).filter((name) => fields[name] !== null);
   for (const name of names) note(request.typedOver(name));
   form.greyOut();
@@ -232,8 +231,11 @@ export function redraw() {
   if (axis.cursor !== null) machine.draw(axis.cursor);
 }
 
-/** tables: of /v1/parameters, and presets; changed({edit}): there is another query. */
-export function start({fields, presets: list}, changed) {
+/**
+ * tables: of /v1/parameters, and presets; changed({edit}): there is another query; measure(answer):
+ * identifies the run.
+ */
+export function start({fields, presets: list}, changed, {measure}) {
   remembered = changed;
   const form = new Form($("fields"), fields);
   request = new Request(form, fields, list);
@@ -257,11 +259,11 @@ export function start({fields, presets: list}, changed) {
     },
   );
   phone.start();
-  listen(form);
+  listen(form, measure);
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) player.play();
 }
 
-function listen(form) {
+function listen(form, measure) {
   for (const [name, input] of form.inputs) {
     input.addEventListener("input", () => note(request.typedOver(name)));
     input.addEventListener("change", () => {
@@ -286,6 +288,7 @@ function listen(form) {
     if (!$("form").querySelector(".slider [aria-invalid]")) run();
   });
   $("cancel").addEventListener("click", () => job.cancel());
+  $("measure-this").addEventListener("click", () => last && measure(last.answer));
   const forms = formsOf("v1/simulate", () => request.asked());
   for (const [name, text] of Object.entries(forms)) {
     const button = element("button", {type: "button", className: "small", textContent: name});

@@ -1,13 +1,11 @@
 // How the axes of a sweep, and the places on them, are named. Lengths are in mm.
 import {symbolOf} from "../shared/quantities.js";
+import {unitShown} from "../shared/units.js";
 
-/** A unit of the service as it is shown, and by what its values are multiplied. */
-const shownIn = (unit) => (unit === "m" ? {unit: "mm", factor: 1000} : {unit, factor: 1});
-
-/** unitOf(parameter): its unit, "" where it has none. */
+/** unitOf(parameter): the service's unit of it. */
 export class Naming {
   constructor(unitOf) {
-    this.of = (parameter) => ({symbol: symbolOf(parameter), ...shownIn(unitOf(parameter))});
+    this.of = (parameter) => ({symbol: symbolOf(parameter), ...unitShown(unitOf(parameter))});
   }
 
   /** As in "b (mm)". */

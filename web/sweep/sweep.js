@@ -354,12 +354,6 @@ function legend() {
   $("sweep-regimes").replaceChildren(...Object.entries(regimes).map(item));
 }
 
-/** The unit of a parameter, "" where it has none. */
-function unitOf(parameter) {
-  const {unit} = form.parameters.get(parameter) ?? {};
-  return unit && unit !== "dimensionless" ? unit : "";
-}
-
 /** What a picture of a plot says below its title: what all points share. */
 function captionOf() {
   const {base, axes, ...run} = data.request;
@@ -384,14 +378,14 @@ function addMenus() {
  * tables: the answer of /v1/parameters; tell: called when there is another query; simulate(fields):
  * shows the run of a point.
  */
-export function start(tables, tell, simulate) {
+export function start(tables, tell, {simulate}) {
   changed = tell;
   form = new SweepForm($("sweep-fields"), tables, () => {
     showSize();
     markExample();
   });
   const openPoint = ({data: of, index}) => simulate({...of.fields(index), cycles: cyclesOfPoint});
-  naming = new Naming(unitOf);
+  naming = new Naming((parameter) => form.parameters.get(parameter)?.unit);
   const panels = {
     section: $("plot-sweep-section"),
     lambda: $("plot-sweep-lambda"),

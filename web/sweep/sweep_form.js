@@ -3,6 +3,7 @@
 import {$, element} from "../shared/dom.js";
 import {defaultSet, Form, groups} from "../shared/form.js";
 import {isOfSystem} from "../shared/presets.js";
+import {unitShown} from "../shared/units.js";
 
 const none = "none";
 const axisNames = ["axis1", "axis2", "axis3"];
@@ -70,8 +71,10 @@ function runFields(fields, base) {
   ];
 }
 
-const noteOf = ({description, unit}) =>
-  unit && unit !== "dimensionless" ? `${description}, in ${unit}` : description;
+function noteOf({description, unit: own}) {
+  const {unit} = unitShown(own);
+  return unit ? `${description}, in ${unit}` : description;
+}
 
 const textOfState = (state) =>
   Object.entries(state)
@@ -184,8 +187,12 @@ export class SweepForm {
       const field = this.parameters.get(this.parameter(i));
       for (const name of ["from", "to", "count", "scale"]) axis.rows.get(name).hidden = !field;
       this.notes[i].textContent = field ? noteOf(field) : "";
-      axis.inputs.get("from").placeholder = field ? `from ${field.minimum}` : "";
-      axis.inputs.get("to").placeholder = field ? `to ${field.maximum}` : "";
+      this.scale(i, this.parameter(i));
+      for (const [name, end] of [
+        ["from", field?.minimum],
+        ["to", field?.maximum],
+      ])
+        axis.inputs.get(name).placeholder = field ? `${name} ${axis.shown(name, end)}` : "";
     }
     const swept = this.axes.map((_, i) => this.parameter(i));
     this.base.disable([...swept, ...this.base.unmixable(swept)]);
@@ -214,6 +221,12 @@ export class SweepForm {
     this.run.disable(off);
   }
 
+  /** The ends of an axis are typed in the unit of its parameter. */
+  scale(i, parameter) {
+    const {factor} = unitShown(this.parameters.get(parameter)?.unit);
+    for (const name of ["from", "to"]) this.axes[i].factors.set(name, factor);
+  }
+
   request() {
     const {max_impacts, ...run} = this.run.values();
     const limit = max_impacts === undefined ? {} : {max_impacts};
@@ -223,8 +236,11 @@ export class SweepForm {
 
   set({base = {}, axes = [], ...run}) {
     this.base.set(base);
-    this.axes[0].set(axes[0] ?? {parameter: "b"});
-    for (const i of [1, 2]) this.axes[i].set(axes[i] ?? {});
+    const given = [axes[0] ?? {parameter: "b"}, axes[1] ?? {}, axes[2] ?? {}];
+    for (const [i, axis] of given.entries()) {
+      this.scale(i, axis.parameter);
+      this.axes[i].set(axis);
+    }
     this.adapt();
     this.run.set({...run, max_impacts: base.max_impacts});
     this.adapt();

@@ -1,0 +1,55 @@
+// The record of a run as two sensors see it: a displacement, and an acceleration in which each impact
+// is a half sine, both with a little noise. Its noise is the same each time.
+import {lastUpTo} from "../shared/search.js";
+
+const perCycle = 245; // samples: some 2 kHz at the paper's 8.35 Hz
+const longest = 200000; // samples
+const settling = 20; // cycles that are left out: a laboratory starts its recorder later
+const pulse = 1 / 150; // of a cycle
+
+// A linear congruential generator (Numerical Recipes), in [-1, 1).
+function noiseFrom(seed) {
+  let state = seed;
+  return () => {
+    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
+    return state / 2 ** 31 - 1;
+  };
+}
+
+/** The seconds of a run's tau: of a system without any, omega0 is 1 rad/s. */
+const omega0Of = ({derived}) => derived.omega0 ?? 1;
+
+/** The oscillator of a run as fields of /v1/identify. */
+export function oscillatorOf({si, b, epsilon, Omega, derived}) {
+  const own = si ?? {m1: 1, k1: 1, m2: epsilon, f: Omega / (2 * Math.PI)};
+  const {m1, k1, m2, f} = own;
+  const c1 = 2 * derived.zeta * Math.sqrt(k1 * m1); // that of the motion, whatever it is named
+  return {m1, k1, c1, m2, f, b};
+}
+
+/** The samples of a run as CSV: time_s, displacement_m, acceleration_m_s2. */
+export function recordOfRun(answer, motion) {
+  const {parameters, impacts} = answer;
+  const omega0 = omega0Of(parameters);
+  const {cycle} = motion;
+  const from = motion.end > 3 * settling * cycle ? settling * cycle : 0;
+  const count = Math.min(Math.floor(((motion.end - from) / cycle) * perCycle), longest);
+  const width = pulse * cycle;
+  const noise = noiseFrom(1);
+  const [ofX, ofA] = [1.3e-4 * parameters.b, 1.2e-3 * parameters.b * omega0 ** 2];
+  const lines = ["time_s,displacement_m,acceleration_m_s2"];
+  for (let n = 0; n < count; ++n) {
+    const tau = from + (n * cycle) / perCycle;
+    const {x, x_ddot: free} = motion.at(tau);
+    let a = free;
+    for (let i = lastUpTo(impacts.tau, tau + width / 2); i >= 0; --i) {
+      const phase = (tau - impacts.tau[i]) / width + 0.5;
+      if (phase >= 1) break;
+      const jump = impacts.x_dot_after[i] - impacts.x_dot_before[i];
+      a += ((jump * Math.PI) / 2 / width) * Math.sin(Math.PI * phase);
+    }
+    const row = [(tau - from) / omega0, x + ofX * noise(), a * omega0 ** 2 + ofA * noise()];
+    lines.push(`${row[0].toFixed(7)},${row[1].toExponential(7)},${row[2].toExponential(4)}`);
+  }
+  return `${lines.join("\n")}\n`;
+}
