@@ -10,3 +10,9 @@ export function colour(name) {
   }
   return known.get(name);
 }
+
+/** Red, green and blue, 0 to 255, of #rrggbb. */
+export const hex = (text) => [1, 3, 5].map((i) => parseInt(text.slice(i, i + 2), 16));
+
+/** The same of a colour of the style sheet. */
+export const rgb = (name) => hex(colour(name));

@@ -22,7 +22,8 @@ const reasonOf = (error) =>
 
 export class Job {
   /**
-   * ask(request, signal): the answer, as a promise; show(answer, request, ms); fail(error, request);
+   * ask(request, signal): the answer, as a promise; show(answer, request, ms), which may take
+   * its time; fail(error, request);
    * busy(is, cancelled): it computes for longer than a moment, or no longer; later(text): there is
    * no answer for now, as the text says. A request that is there already is not begun again.
    */
@@ -65,7 +66,7 @@ export class Job {
     let cancelled = false;
     try {
       const answer = await this.answer(request, abort.signal);
-      if (!abort.signal.aborted) this.show(answer, request, performance.now() - began);
+      if (!abort.signal.aborted) await this.show(answer, request, performance.now() - began);
     } catch (error) {
       if (!abort.signal.aborted) this.fail(error, request);
       else cancelled = !this.next;

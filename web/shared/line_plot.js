@@ -7,6 +7,8 @@ import {Panel} from "./panel.js";
 import {firstFrom} from "./search.js";
 import {line, shade, symbols} from "./shapes.js";
 
+const columnsOf = (width) => Math.max(width - 60, 10);
+
 const naming = (x = "τ") => (typeof x === "string" ? {label: x, factor: 1} : x);
 
 export class LinePlot extends Panel {
@@ -55,9 +57,14 @@ export class LinePlot extends Panel {
     return {data, dense, frame: new Frame(width, height, ofX, {range: y, log, label})};
   }
 
+  /** Of a line whose extremes are drawn, pixel by pixel. */
+  get columns() {
+    return columnsOf(this.size.width);
+  }
+
   dataFor(width) {
     const {data, trace} = this.last;
-    return data ? {data} : trace(...this.axis.view, Math.max(width - 60, 10));
+    return data ? {data} : trace(...this.axis.view, columnsOf(width));
   }
 
   /** c: a canvas' context, or what draws in its place. */

@@ -1,10 +1,12 @@
 // Points in a plane, and curves, on a canvas. What lies under the pointer is told, and one point
 // can be ringed without a new drawing.
 import {colour} from "./colours.js";
+import {countPoints, density} from "./density.js";
 import {element} from "./dom.js";
 import {blank, Frame, font, rangeOf, Size} from "./frame.js";
 import {symbol} from "./shapes.js";
 
+const many = 5000; // points from which on their density is drawn
 const reach = 14; // px within which a point is meant
 
 export class ScatterPlot {
@@ -105,9 +107,15 @@ export class ScatterPlot {
     if (found >= 0) pick.use(found);
   }
 
-  dots(c, {x, y, colour: name, size: asked = 2.4, alpha = 0.75, shape}, {px, py}) {
-    const size = x.length > 20000 ? 1 : asked;
+  dots(c, {x, y, colour: name, size = 2.4, alpha = 0.75, shape}, frame) {
+    const {px, py, box} = frame;
     c.globalAlpha = alpha;
+    if (x.length > many) {
+      const image = density(countPoints(x, y, frame), name);
+      c.drawImage(image, box.left, box.top, frame.width, frame.height);
+      c.globalAlpha = 1;
+      return;
+    }
     c.fillStyle = c.strokeStyle = colour(name);
     if (shape) {
       c.lineWidth = 1.2;

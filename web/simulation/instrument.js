@@ -7,7 +7,7 @@ import {LinePlot} from "../shared/line_plot.js";
 import {short} from "../shared/numbers.js";
 import {operable} from "../shared/operable.js";
 import {ScatterPlot} from "../shared/scatter_plot.js";
-import {lastUpTo} from "../shared/search.js";
+import {firstFrom, lastUpTo} from "../shared/search.js";
 import {logRange, mm, over, overRun, positive, scaled} from "./columns.js";
 import {drawManifold} from "./manifold.js";
 
@@ -58,13 +58,20 @@ export class Instrument {
   }
 
   /** Of a run: its motion, impacts and exponents. marks: bands and lines over time. */
-  show(answer, motion, units, marks) {
+  set(answer, motion, units, marks) {
     Object.assign(this, {answer, motion, units, marks, more: null});
-    this.ranges();
-    this.drawMotion();
-    this.drawExponents();
-    this.drawSection();
-    this.light();
+  }
+
+  /** What shows it, step by step. */
+  drawing() {
+    return [
+      () => this.ranges(),
+      () => this.drawDisplacement(),
+      () => this.drawRelative(),
+      () => this.drawExponents(),
+      () => this.drawSection(),
+      () => this.light(),
+    ];
   }
 
   /** What a second answer of the same run brings: eigenvalues, the raw product, the manifold. */
@@ -90,21 +97,16 @@ export class Instrument {
 
   /** x over the whole run, which a zoom does not change. */
   ranges() {
-    const runs = [this.motion, ...(this.pinned ? [this.pinned.motion] : [])];
-    const most = runs.map((motion) => around(scaled(motion.trace(0, motion.end, 500).x, 1000))[1]);
-    this.rangeOfX = [-Math.max(...most), Math.max(...most)];
+    const {x, other} = this.trace(0, this.motion.end, this.lines.x.columns);
+    const most = Math.max(around(x)[1], other ? around(other.x)[1] : 0);
+    this.rangeOfX = [-most, most];
   }
 
   /** A run to compare with, or none. */
   pin(run) {
     this.pinned = run;
     this.traced = null;
-    if (!this.answer) return;
-    this.ranges();
-    this.drawMotion();
-    this.drawExponents();
-    this.drawSection();
-    this.light();
+    if (this.answer) for (const step of this.drawing()) step();
   }
 
   /** The motion in view, of which two plots draw a part each. */
@@ -127,36 +129,40 @@ export class Instrument {
     return this.pinned ? [pinned, line] : [line];
   }
 
-  drawMotion() {
-    const {impacts, parameters} = this.answer;
-    const b = parameters.b * 1000;
-    const part = (name) => (from, to, columns) => {
+  /** A part of the motion, x or gap, as both plots over time draw it. */
+  partOf(name) {
+    const trace = (from, to, columns) => {
       const lines = this.trace(from, to, columns);
       const pinned = lines.other ? [lines.other[name]] : [];
       return {data: [lines.tau, ...pinned, lines[name]], dense: lines.dense};
     };
-    const common = {...this.marks, bare: !alone.matches, unit: "mm"};
-    const samples = (name) => (from, to) => {
+    const samples = (from, to) => {
       const {motion} = this;
       const columns = Math.min(Math.ceil((8 * (to - from)) / motion.cycle) + 200, mostSamples);
       const runs = [...(this.pinned ? [this.pinned.motion] : []), motion];
       const lines = runs.map((run) => run.trace(from, to, columns));
       return [lines[0].tau, ...lines.map((line) => scaled(line[name], 1000))];
     };
+    return {...this.marks, bare: !alone.matches, unit: "mm", trace, samples};
+  }
+
+  drawDisplacement() {
+    const {impacts} = this.answer;
     this.lines.x.draw({
-      ...common,
+      ...this.partOf("x"),
       series: this.withPinned({label: "x", colour: "motion"}),
-      trace: part("x"),
-      samples: samples("x"),
       range: this.rangeOfX,
       label: "x (mm)",
       marks: byWall(impacts, (i) => impacts.x[i] * 1000),
     });
+  }
+
+  drawRelative() {
+    const {impacts, parameters} = this.answer;
+    const b = parameters.b * 1000;
     this.lines.relative.draw({
-      ...common,
+      ...this.partOf("gap"),
       series: this.withPinned({label: "y − x", colour: "motion"}),
-      trace: part("gap"),
-      samples: samples("gap"),
       range: [-1.14 * b, 1.14 * b],
       label: "y − x (mm)",
       levels: [-b, b],
@@ -255,13 +261,18 @@ export class Instrument {
     this.section.light(this.sectionPoints.x[i], this.sectionPoints.y[i]);
     this.tell(i, by === "play");
     if (!this.more) return;
-    const {T, tau: moments} = this.more.eigenvalues;
-    const k = moments.indexOf(tau);
-    this.lines.largest.light(tau, T[k]?.[0]);
+    this.lines.largest.light(tau, this.modulusAt(tau));
     const {points} = this.more.manifold;
-    const half = points.tau.findIndex((end) => end >= this.axis.cursor);
+    const half = firstFrom(points.tau, this.axis.cursor);
     const {velocity} = this.units;
     this.manifold.light(velocity.of(points.V[half]), points.C[half] * 1000);
+  }
+
+  /** The largest modulus of T at an impact, where it is known. */
+  modulusAt(tau) {
+    const {tau: moments, T} = this.more?.eigenvalues ?? {tau: []};
+    const k = firstFrom(moments, tau);
+    return k < moments.length && moments[k] === tau ? T[k][0] : null;
   }
 
   /** The values at the cursor, beside the title of each plot. */
@@ -269,12 +280,11 @@ export class Instrument {
     const {cursor} = this.axis;
     const {x, y} = this.motion.at(cursor);
     const inMm = (v) => `${short(Number((v * 1000).toPrecision(4)))} mm`;
-    const modulus =
-      this.more?.eigenvalues.T[this.more.eigenvalues.tau.indexOf(this.answer.impacts.tau[i])];
+    const modulus = this.modulusAt(this.answer.impacts.tau[i]);
     const values = {
       x: inMm(x),
       relative: inMm(y - x),
-      largest: modulus ? short(modulus[0]) : "",
+      largest: modulus == null ? "" : short(modulus),
     };
     for (const [name, text] of Object.entries(values)) $(`value-${name}`).textContent = text;
     if (playing) return; // a reader of the page is not told sixty times a second

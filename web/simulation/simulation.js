@@ -31,6 +31,7 @@ import {Strip} from "./strip.js";
 const first = {include: ["impacts", "exponents", "regime", "energy"], exponents: ["qr"]};
 const second = {include: ["exponents", "eigenvalues", "manifold"], exponents: ["raw_product"]};
 
+const large = 20000; // impacts
 const rest = 100; // ms without an edit before what follows is asked for
 
 const axis = new Axis();
@@ -103,11 +104,19 @@ function homeOf({parameters, status}) {
   return to && to < 0.9 * status.tau ? [0, to] : [0, status.tau];
 }
 
-function present(answer, asked) {
+const nextTask = () =>
+  new Promise((resolve) => {
+    setTimeout(resolve);
+  });
+
+/** A run with many impacts is drawn in several tasks, between which the page hears of other things. */
+async function present(answer, asked) {
+  const pause = answer.impacts.tau.length > large ? nextTask : null;
+  if (pause) await pause();
   const fresh = last === null || asked.fresh;
   const units = unitsOf(answer.parameters);
   const motion = new Motion(answer);
-  last = {asked, answer, motion, units, fresh};
+  last = {asked, answer, motion, units};
   say(unknownText(asked));
   $("results").classList.remove("stale");
   request.form.showErrors([]);
@@ -118,28 +127,35 @@ function present(answer, asked) {
   axis.span(0, answer.status.tau, homeOf(answer), fresh);
   if (wantedView) axis.view = wantedView;
   wantedView = null;
-  draw(fresh);
+  for (const step of drawing(fresh)) {
+    if (pause) await pause();
+    if (last.answer !== answer) return;
+    step();
+  }
   countUp("shown");
   clearTimeout(resting);
   resting = setTimeout(() => more.start(asked), rest);
 }
 
-/** The last answer, in the units that are chosen. */
-function draw(fresh = false) {
-  const {answer, asked, motion} = last;
-  const units = unitsOf(answer.parameters);
-  last.units = units;
-  $("units").hidden = !answer.parameters.si;
+/** What shows the last answer, in the units that are chosen, step by step. */
+function drawing(fresh = false) {
+  const {answer, asked, motion, units} = last;
   const slider = sliderOf(touched, answer.parameters);
-  sliders.show(answer.parameters, fresh, slider);
-  showSentence($("sentence"), sentence(answer, slider, units));
-  machine.show(motion, answer.energy.peak);
-  for (const name of ["largest", "manifold"]) $(`figure-${name}`).classList.add("behind");
-  instrument.show(answer, motion, units, marksOf(answer, units));
-  player.show(motion, units);
-  describe(answer, units);
-  mark(request.edited ? null : request.preset);
-  strip.show(asked, answer.parameters, slider);
+  const tell = () => {
+    $("units").hidden = !answer.parameters.si;
+    sliders.show(answer.parameters, fresh, slider);
+    showSentence($("sentence"), sentence(answer, slider, units));
+    machine.show(motion, answer.energy.peak);
+    for (const name of ["largest", "manifold"]) $(`figure-${name}`).classList.add("behind");
+    instrument.set(answer, motion, units, marksOf(answer, units));
+  };
+  const end = () => {
+    player.show(motion, units);
+    describe(answer, units);
+    mark(request.edited ? null : request.preset);
+    strip.show(asked, answer.parameters, slider);
+  };
+  return [tell, ...instrument.drawing(), end];
 }
 
 // What is asked.
@@ -279,7 +295,8 @@ function listen(form, measure) {
   onUnits(() => {
     if (!last) return;
     const {more: kept} = instrument;
-    draw();
+    last.units = unitsOf(last.answer.parameters);
+    for (const step of drawing()) step();
     if (kept) instrument.showMore(kept);
     details.follow();
   });

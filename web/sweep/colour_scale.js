@@ -1,13 +1,8 @@
 // The colours of a map's values, and the bar that tells them.
-import {colour} from "../shared/colours.js";
+import {colour, hex} from "../shared/colours.js";
 import {font} from "../shared/frame.js";
 import {short} from "../shared/numbers.js";
 import {ticks} from "../shared/ticks.js";
-
-const hex = (text) => [1, 3, 5].map((i) => parseInt(text.slice(i, i + 2), 16));
-
-/** Red, green and blue, 0 to 255, of a colour of the style sheet. */
-export const rgb = (name) => hex(colour(name));
 
 /** The colour at share t in [0, 1] between stops. */
 function between(list, t) {

@@ -1,5 +1,6 @@
 // The diagrams over the axis of a sweep, one class each: what they draw, and of what values.
 import {colour} from "../shared/colours.js";
+import {count, density} from "../shared/density.js";
 import {Frame} from "../shared/frame.js";
 import {short} from "../shared/numbers.js";
 import {Panel} from "../shared/panel.js";
@@ -13,7 +14,6 @@ import {
   verdicts,
 } from "../shared/quantities.js";
 import {quarters} from "./axes.js";
-import {count, density} from "./density.js";
 
 const startColours = ["c1", "before", "c2", "c4", "c3"];
 export const startColour = (s) => startColours[s % startColours.length];

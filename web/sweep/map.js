@@ -1,6 +1,7 @@
 // A sweep over two axes, or a slice of one over three: a quantity as colours, with their scale beside
 // it. Points that are still to come have the colour of a coarser neighbour.
 import {Axis} from "../shared/axis.js";
+import {rgb} from "../shared/colours.js";
 import {Frame} from "../shared/frame.js";
 import {short} from "../shared/numbers.js";
 import {Panel} from "../shared/panel.js";
@@ -8,7 +9,7 @@ import {bestMotion, describe, quantityOf, regimeColour} from "../shared/quantiti
 import {lastUpTo} from "../shared/search.js";
 import {Tip} from "../shared/tip.js";
 import {afresh} from "./axes.js";
-import {barWidth, drawBar, endsOf, rgb, scaleOf} from "./colour_scale.js";
+import {barWidth, drawBar, endsOf, scaleOf} from "./colour_scale.js";
 
 /** Moves of the keyboard over the cells. */
 const moves = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
