@@ -410,3 +410,28 @@ test("a long identification says how long it takes already, and can be cancelled
   browser.complaints.length = 0; // Chromium notes the request that was broken off
   await page.close();
 });
+
+test("an impact that is pointed at in one plot of a measurement is ringed in the others", async () => {
+  const page = await identify(await regular(), "&preset=fig15");
+  await page.locator("#plot-measured-section").scrollIntoViewIfNeeded();
+  await page.evaluate(() => {
+    const canvas = document.getElementById("plot-measured-section");
+    const {left, top, width, height} = canvas.getBoundingClientRect();
+    // Over the whole plane, until a point is near.
+    for (let i = 1; i < 40; ++i)
+      for (let j = 1; j < 40; ++j) {
+        const at = {clientX: left + (i / 40) * width, clientY: top + (j / 40) * height};
+        canvas.dispatchEvent(new PointerEvent("pointermove", at));
+      }
+  });
+  for (const name of ["portrait", "section"])
+    assert.ok(await page.isVisible(`figure:has(#plot-measured-${name}) .lit:not([hidden])`), name);
+  assert.ok(await page.isVisible("#plot-measured-x .lit"));
+  const t = Number(await page.getAttribute("#plot-measured-x", "aria-valuenow"));
+  const times = (await rows(page)).map((row) => Number(row[1]));
+  assert.ok(
+    times.some((v) => Math.abs(v - t) < 1e-4),
+    `${t} is no impact`,
+  );
+  await page.close();
+});

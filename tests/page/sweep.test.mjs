@@ -651,3 +651,36 @@ test("the plots of a sweep are taken away as pictures and numbers", async () => 
   await page.close();
   await map.close();
 });
+
+test("a sweep that is not the form's looks stale; swept anew over the same axis it keeps the zoom, a link without one shows all", async () => {
+  const page = await visit(`?${small}`);
+  const isStale = () => page.$eval("#sweep-results", (node) => node.classList.contains("stale"));
+  await drag(page, "#plot-sweep-lambda", [0.3, 0.5], [0.5, 0.5]);
+  await page.waitForFunction(() => location.search.includes("view="));
+  const view = new URL(page.url()).searchParams.get("view");
+  assert.equal(await isStale(), false);
+  await page.fill(`#sweep-base-group-system .field-R input`, "0.62");
+  assert.ok(await isStale());
+  await page.click("#sweep-run");
+  await swept(page, 2);
+  assert.equal(await isStale(), false);
+  assert.equal(new URL(page.url()).searchParams.get("view"), view);
+  await page.goBack();
+  await page.waitForFunction(() => !location.search.includes("R=0.62"));
+  await page.evaluate((query) => {
+    history.replaceState(null, "", query);
+    dispatchEvent(new PopStateEvent("popstate"));
+  }, `?${small}&R=0.5`);
+  await page.waitForFunction(() => location.search.includes("R=0.5"));
+  await page.waitForFunction(() => !location.search.includes("view="));
+  assert.deepEqual(browser.complaints, []);
+  await page.close();
+});
+
+test("on a phone the first plot of a sweep begins on the second screen at the latest", async () => {
+  const page = await visit(`?${small}`, {viewport: {width: 360, height: 740}});
+  const top = await page.$eval("#plot-sweep-section", (node) => node.getBoundingClientRect().top);
+  const at = top + (await page.evaluate(() => scrollY));
+  assert.ok(at < 2 * 740, `${at} px down`);
+  await page.close();
+});

@@ -357,6 +357,13 @@ export function start({identify_fields: fields, presets: all}, changed) {
   listenToFiles();
 }
 
+/** What is shown is of other fields than the form's. */
+function compare() {
+  const {impact_times_s: _, ...fields} = sent ?? {};
+  const isOld = sent !== null && asQuery(form.values()) !== asQuery(fields);
+  $("measure-results").classList.toggle("stale", isOld);
+}
+
 function listen() {
   $("measure-preset").addEventListener("change", () => {
     choosePreset($("measure-preset").value);
@@ -364,6 +371,7 @@ function listen() {
   });
   $("measure-fields").addEventListener("change", async () => {
     remember();
+    compare();
     const parsed = await reading.catch(() => null);
     if (parsed && !answer) showColumns(parsed);
   });

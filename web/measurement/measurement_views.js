@@ -6,7 +6,7 @@ import {addMenu} from "../shared/figure_menu.js";
 import {LinePlot} from "../shared/line_plot.js";
 import {operable} from "../shared/operable.js";
 import {ScatterPlot} from "../shared/scatter_plot.js";
-import {firstFrom} from "../shared/search.js";
+import {firstFrom, lastUpTo} from "../shared/search.js";
 import {isLeftOut} from "./impact_list.js";
 import {spikeNear} from "./record.js";
 
@@ -35,6 +35,7 @@ const figureOf = (name) => $(`plot-measured-${name}`).closest("figure");
 
 /** told(): {name, answer} of the record that is shown. */
 export function start(told) {
+  axis.onCursor(() => light(told().answer));
   for (const [name, plot] of Object.entries(plots)) {
     const {title} = figures[name];
     operable(plot, title, () => told().answer?.impacts.time_s ?? []);
@@ -65,6 +66,18 @@ export function nameFigures(preset) {
       element("span", {className: "tag", textContent: `as Fig. ${numbers[preset]}`, title}),
     );
   }
+}
+
+/** Rings the impact nearest to the cursor. */
+function light(answer) {
+  if (!answer || axis.cursor === null) return;
+  const {time_s: t, x, x_dot_after: xDot} = answer.impacts;
+  const before = lastUpTo(t, axis.cursor);
+  const i =
+    t[before + 1] - axis.cursor < axis.cursor - t[before] ? before + 1 : Math.max(before, 0);
+  for (const name of ["portrait", "section"]) plots[name].light(x[i] * 1000, xDot[i] * 1000);
+  plots.x.light(t[i], x[i] * 1000);
+  plots.R.light(t[i], answer.impacts.R[i]);
 }
 
 export function redraw() {
@@ -286,15 +299,19 @@ function drawSections({impacts}) {
   };
   const all = () => true;
   const side = (sign) => (i) => impacts.side[i] === sign;
+  const pick = (i) => axis.point(impacts.time_s[i], "pick");
+  const after = points(impacts.x_dot_after, all);
   plots.portrait.draw({
+    pick: {...after, use: pick},
     groups: [
       {...points(impacts.x_dot_before, all), colour: "before", shape: "ring", size: 3.4},
-      {...points(impacts.x_dot_after, all), colour: "after", shape: "cross", size: 2.8},
+      {...after, colour: "after", shape: "cross", size: 2.8},
     ],
     xLabel,
     yLabel: "x′ (mm)",
   });
   plots.section.draw({
+    pick: {...after, use: pick},
     groups: [
       {...points(impacts.x_dot_after, side(1)), colour: "plus", size: 3.6, alpha: 1},
       {...points(impacts.x_dot_after, side(-1)), colour: "minus", size: 3.6, alpha: 1},

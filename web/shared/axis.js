@@ -36,7 +36,7 @@ export class Axis {
    * it, unless it is fresh. Tells nobody.
    */
   span(from, to, home = [from, to], fresh = false) {
-    const stays = !fresh && this.away && this.view[0] < to;
+    const stays = !fresh && this.away && this.view[0] < to && this.view[1] > from;
     this.whole = [from, to];
     this.home = home;
     this.view = stays ? [Math.max(this.view[0], from), Math.min(this.view[1], to)] : home;

@@ -102,6 +102,9 @@ function textInput(field) {
 
 const inputs = {choice: menuInput, choices: checksInput};
 
+/** On a small screen the groups are closed at first: what is looked at lies below them. */
+const folded = matchMedia("(max-width: 700px)").matches;
+
 export class Form {
   /**
    * prefix: of the ids, where a page has several forms; grouped: the groups to show, as in
@@ -125,7 +128,7 @@ export class Form {
       const id = `${prefix}group-${group}`;
       const summary = element("summary", {textContent: title});
       const remark = element("p", {className: "note", textContent: note});
-      const details = element("details", {open, id}, summary, remark, grid);
+      const details = element("details", {open: open && !folded, id}, summary, remark, grid);
       this.parts.set(group, details);
       container.append(details);
     }
@@ -215,7 +218,7 @@ export class Form {
       } else {
         this.write(field.name, value ?? "");
       }
-      if (value !== undefined) this.parts.get(field.group).open = true;
+      if (value !== undefined && !folded) this.parts.get(field.group).open = true;
     }
     for (const {name} of this.fields) this.forgetOrigin(name);
     this.greyOut();

@@ -6,7 +6,7 @@ import {addMenu} from "../shared/figure_menu.js";
 import {Job} from "../shared/job.js";
 import {operable} from "../shared/operable.js";
 import {aboutFigure} from "./captions.js";
-import {drawDetails, makePlots} from "./details_plots.js";
+import {drawDetails, makePlots, placesOf} from "./details_plots.js";
 import {accountEnergy, summarise, tabulate} from "./details_summary.js";
 import {marksOf} from "./marks.js";
 import {showModel} from "./model.js";
@@ -31,6 +31,7 @@ export class Details {
       later: (text) => this.say(text),
     });
     $("details").addEventListener("toggle", () => this.follow());
+    axis.onCursor(() => this.light());
   }
 
   say(text) {
@@ -55,9 +56,20 @@ export class Details {
     listParameters(answer.parameters, this.fieldOf);
     tabulate(answer.windows, units);
     accountEnergy(answer.energy, units);
-    drawDetails(this.plots, answer, marksOf(answer, units), units);
+    const point = (tau) => this.axis.point(tau, "pick");
+    drawDetails(this.plots, answer, marksOf(answer, units), units, point);
+    this.places = placesOf(answer.impacts, units);
+    this.light();
     $("details").dataset.done = String(Number($("details").dataset.done ?? 0) + 1);
     if (!$("model-sketch").hasChildNodes()) showModel().catch(() => {}); // the equations do without it
+  }
+
+  /** Rings the impact nearest to the cursor. */
+  light() {
+    const run = this.run();
+    if (!$("details").open || this.shown?.asked !== run?.asked) return;
+    const i = run.motion.impactNear(this.axis.cursor);
+    for (const [name, {x, y}] of Object.entries(this.places)) this.plots[name].light(x[i], y[i]);
   }
 
   makePlots() {

@@ -79,7 +79,17 @@ function halves(x, y, velocity, colour) {
 }
 
 /** The states at the impacts, before and after them. */
-function drawImpacts(plots, impacts, {velocity}) {
+/** The places of impacts in the planes of the details, by plot. */
+export const placesOf = (impacts, {velocity}) => ({
+  portrait: {x: mm(impacts.x), y: over(impacts.x_dot_after, velocity)},
+  velocities: {x: over(impacts.x_dot_after, velocity), y: over(impacts.y_dot_after, velocity)},
+});
+
+/** point(tau): the cursor goes there. */
+function drawImpacts(plots, impacts, units, point) {
+  const {velocity} = units;
+  const places = placesOf(impacts, units);
+  const pick = (name) => ({...places[name], use: (i) => point(impacts.tau[i])});
   const before = {colour: "before"};
   const after = {colour: "after"};
   const name = (symbol) => `${symbol} (${velocity.unit})`;
@@ -91,6 +101,7 @@ function drawImpacts(plots, impacts, {velocity}) {
     ],
     xLabel: "x (mm)",
     yLabel: name("x′"),
+    pick: pick("portrait"),
   });
   plots.velocities.draw({
     groups: [
@@ -99,15 +110,17 @@ function drawImpacts(plots, impacts, {velocity}) {
     ],
     xLabel: name("x′"),
     yLabel: name("y′"),
+    pick: pick("velocities"),
   });
 }
 
-function drawStroboscopic(plots, {x, x_dot: xDot}, {velocity}) {
+function drawStroboscopic(plots, {tau, x, x_dot: xDot}, {velocity}, point) {
   plots.stroboscopic.draw({
     groups: halves(x, xDot, velocity, "c1"),
     xLabel: "x (mm)",
     yLabel: `x′ (${velocity.unit})`,
     empty: "no whole cycle in the window",
+    pick: {x: mm(x), y: over(xDot, velocity), use: (i) => point(tau[i])},
   });
 }
 
@@ -179,15 +192,15 @@ export function makePlots(axis) {
   return Object.fromEntries([...overTime.map(line), ...planes.map(scatter)]);
 }
 
-/** marks: what lies over all plots over time; units: as of unitsOf. */
-export function drawDetails(plots, answer, marks, units) {
+/** marks: what lies over all plots over time; units: as of unitsOf; point(tau): moves the cursor. */
+export function drawDetails(plots, answer, marks, units, point) {
   const {exponents, regime, status, eigenvalues, section, parameters} = answer;
   const end = status.tau;
   drawMotion(plots, answer, marks, units);
   drawExponents(plots, exponents, end, marks);
   drawMatrices(plots, eigenvalues, end, marks);
-  drawImpacts(plots, answer.impacts, units);
-  drawStroboscopic(plots, section.stroboscopic, units);
+  drawImpacts(plots, answer.impacts, units, point);
+  drawStroboscopic(plots, section.stroboscopic, units, point);
   drawDifferences(plots, section.impact, parameters.Omega, end, marks);
   drawMultipliers(plots, regime);
   drawDivergence(plots, answer.perturbation, marks);

@@ -5,7 +5,7 @@ import {coordinates, describe, quantityOf, startNames} from "../shared/quantitie
 import {firstFrom} from "../shared/search.js";
 import {Tip} from "../shared/tip.js";
 import {inSeconds} from "../shared/units.js";
-import {afresh} from "./axes.js";
+import {afresh, sameAxis, span} from "./axes.js";
 import {LambdaDiagram, OtherDiagram, SectionDiagram} from "./diagram.js";
 
 /** Moves of the keyboard along an axis. */
@@ -42,12 +42,15 @@ export class SweepPlots {
     });
   }
 
-  /** Another sweep, as Layers; choice: {coordinate: of the section, quantity: of the third plot}. */
+  /**
+   * Another sweep, as Layers; choice: {coordinate: of the section, quantity: of the third plot}. A
+   * zoom stays where the axis is that of the one before.
+   */
   show(layers, choice) {
+    const fresh = !sameAxis(layers.base.axes[0], this.data?.axes[0]);
     Object.assign(this, {layers, choice});
     this.leave();
-    const {borders} = this.data.axes[0];
-    this.axis.span(borders[0], borders.at(-1), undefined, true);
+    span(this.axis, this.data.axes[0], fresh);
     this.refresh();
   }
 

@@ -8,7 +8,7 @@ import {Panel} from "../shared/panel.js";
 import {bestMotion, describe, quantityOf, regimeColour} from "../shared/quantities.js";
 import {lastUpTo} from "../shared/search.js";
 import {Tip} from "../shared/tip.js";
-import {afresh} from "./axes.js";
+import {afresh, sameAxis, span} from "./axes.js";
 import {barWidth, drawBar, endsOf, scaleOf} from "./colour_scale.js";
 
 /** Moves of the keyboard over the cells. */
@@ -42,12 +42,13 @@ export class SweepMap extends Panel {
    * the worst, slice: along the third axis}.
    */
   show(layers, choice) {
+    const {axes} = layers.base;
+    const fresh = axes.slice(0, 2).some((axis, i) => !sameAxis(axis, this.data?.axes[i]));
     Object.assign(this, {layers, choice});
     this.ends.clear();
     this.leave();
-    const [first, second] = this.data.axes;
-    this.axis.span(first.borders[0], first.borders.at(-1), undefined, true);
-    this.across.span(second.borders[0], second.borders.at(-1), undefined, true);
+    span(this.axis, axes[0], fresh);
+    span(this.across, axes[1], fresh);
     this.refresh();
   }
 

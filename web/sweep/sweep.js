@@ -67,8 +67,8 @@ export function query() {
     .filter(([, id]) => $(id).selectedIndex > 0)
     .map(([name, id]) => `${name}=${$(id).value}`);
   const zoomed = data?.axes?.length && axesOf(data).some((axis) => axis.zoomed);
-  const view = wantedView ?? (zoomed ? viewOf(data) : null);
-  return [shown, ...menu, ...(view ? [`view=${view.join(",")}`] : [])].join("&");
+  const view = wantedView ?? (zoomed ? viewOf(data) : []);
+  return [shown, ...menu, ...(view.length ? [`view=${view.join(",")}`] : [])].join("&");
 }
 
 /** Those of the plots that show a sweep. */
@@ -78,9 +78,10 @@ const axesOf = ({axes}) => (axes.length > 1 ? [map.axis, map.across] : [plots.ax
 const viewOf = (of) =>
   axesOf(of).flatMap(({view}, i) => view.map((at) => Number(of.axes[i].from(at).toPrecision(5))));
 
-/** Zooms to such ends. */
+/** Zooms to such ends; without any the whole is shown. */
 function zoomTo(view) {
   axesOf(data).forEach((axis, i) => {
+    if (!view.length && axis.away) axis.reset();
     const [from, to] = view.slice(2 * i, 2 * i + 2).map(data.axes[i].to);
     if (from < to) axis.zoom(from, to);
   });
@@ -218,11 +219,18 @@ function present(fresh) {
   if (wantedView) zoomTo(wantedView);
   wantedView = null;
   showFreeKey();
+  compare();
   changed({edit});
 }
 
 function showFreeKey() {
   $("sweep-free").hidden = $("sweep-quantity").value !== "x_max";
+}
+
+/** What is shown is of another request than the form's. */
+function compare() {
+  const own = String(SweepForm.toQuery(form.request()));
+  $("sweep-results").classList.toggle("stale", shown !== null && own !== shown);
 }
 
 function busy(is) {
@@ -279,6 +287,7 @@ function hear(into, line) {
 }
 
 function finish() {
+  namePlots();
   say(remarks());
   listWarnings($("sweep-warnings"), [...data.warnings]);
   draw();
@@ -322,7 +331,7 @@ export async function open(given) {
   const view = rest.get("view")?.split(",").map(Number);
   rest.delete("view");
   if (String(rest) === shown) return;
-  wantedView = view?.every(Number.isFinite) ? view : null;
+  wantedView = view?.every(Number.isFinite) ? view : [];
   const first = new URLSearchParams(examples[0][1]);
   const wanted = rest.size ? rest : first;
   form.setQuery(wanted, exampleOf(wanted) >= 0);
@@ -364,9 +373,19 @@ function captionOf() {
   return told.join(", ");
 }
 
+const allPlots = () => Object.entries({...plots.panels, map});
+
+function namePlots() {
+  for (const [, plot] of allPlots()) {
+    if (!plot.frame || !plot.size.width) continue;
+    const {title, summary} = plot.about();
+    plot.container.setAttribute("role", "img");
+    plot.container.setAttribute("aria-label", `${title}: ${summary}`);
+  }
+}
+
 function addMenus() {
-  const {section, lambda, other} = plots.panels;
-  for (const [name, plot] of Object.entries({section, lambda, other, map}))
+  for (const [name, plot] of allPlots())
     addMenu($(`figure-sweep-${name}`), plot, () => ({
       ...plot.about(),
       caption: captionOf(),
@@ -383,6 +402,7 @@ export function start(tables, tell, {simulate}) {
   form = new SweepForm($("sweep-fields"), tables, () => {
     showSize();
     markExample();
+    compare();
   });
   const openPoint = ({data: of, index}) => simulate({...of.fields(index), cycles: cyclesOfPoint});
   naming = new Naming((parameter) => form.parameters.get(parameter)?.unit);
