@@ -2,16 +2,12 @@
 import {element} from "../shared/dom.js";
 import {count, percent, withError} from "../shared/numbers.js";
 import {regimes} from "../shared/quantities.js";
-import {rangeOf, valueAt, written} from "./sliders.js";
+import {textAt} from "./sliders.js";
 
 /** A slider's value in words: b = 22.0 mm. */
 export function valueText(slider, parameters) {
-  const {symbol, unit, factor = 1} = slider;
-  const value = valueAt(slider, parameters) * factor;
-  const short = written(value, rangeOf(slider, parameters));
-  const exact = Math.abs(Number(short) - value) <= 1e-6 * Math.abs(value);
-  const text = exact ? short : String(Number(value.toPrecision(4)));
-  return `${symbol} = ${text}${unit ? ` ${unit}` : ""}`;
+  const {symbol, unit} = slider;
+  return `${symbol} = ${textAt(slider, parameters)}${unit ? ` ${unit}` : ""}`;
 }
 
 /** How the motion goes, and whether it is chaotic; of what both tell, only what they agree on. */

@@ -86,13 +86,26 @@ const slidersOf = (parameters) => (parameters.si ? si : reduced);
 /** The slider of a name for a system. */
 export const sliderOf = (name, parameters) =>
   slidersOf(parameters).find((slider) => slider.name === name) ?? clearance;
-export const valueAt = ({name, of}, parameters) => (of ? of(parameters) : parameters[name]);
-const fieldsOf = ({name, fields}, value, parameters) =>
-  fields ? fields(value, parameters) : {[name]: value};
+/** Its value in a system, in the slider's unit. */
+export const valueAt = ({name, of, factor = 1}, parameters) =>
+  factor * (of ? of(parameters) : parameters[name]);
+/** The fields that it sets for a value in its unit. */
+export function fieldsOf({name, fields, factor = 1}, value, parameters) {
+  const inField = Number((value / factor).toPrecision(12));
+  return fields ? fields(inField, parameters) : {[name]: inField};
+}
+
+/** A value in its unit: as its number shows it, or in more digits where that is not all of it. */
+export function textAt(slider, parameters, range = rangeOf(slider, parameters)) {
+  const value = valueAt(slider, parameters);
+  const short = written(value, range);
+  const exact = Math.abs(Number(short) - value) <= 1e-6 * Math.abs(value);
+  return exact ? short : String(Number(value.toPrecision(4)));
+}
 
 /** [least, most] in the slider's unit; it holds the value. */
 export function rangeOf(slider, parameters) {
-  const value = valueAt(slider, parameters) * (slider.factor ?? 1);
+  const value = valueAt(slider, parameters);
   const [least, most] = slider.rangeOf?.(parameters) ?? slider.range;
   if (value >= least && value <= most) return [least, most];
   if (slider.name === "R") return [0, 1];
@@ -151,8 +164,7 @@ export class Sliders {
   }
 
   set(slider, row, fresh) {
-    const {factor = 1} = slider;
-    const value = valueAt(slider, this.parameters) * factor;
+    const value = valueAt(slider, this.parameters);
     const inside = row.span && value >= row.span[0] && value <= row.span[1];
     if (fresh || !inside) row.span = rangeOf(slider, this.parameters);
     const [min, max] = row.span;
@@ -160,20 +172,13 @@ export class Sliders {
     if (document.activeElement !== row.range || fresh) row.range.value = value;
     row.range.setAttribute("aria-valuetext", `${written(value, row.span)} ${slider.unit ?? ""}`);
     row.number.removeAttribute("aria-invalid");
-    if (document.activeElement !== row.number || fresh) row.number.value = this.text(slider, row);
+    if (document.activeElement !== row.number || fresh)
+      row.number.value = textAt(slider, this.parameters, row.span);
     if (slider === restitution) {
       const {R_plus: plus, R_minus: minus} = this.parameters;
       row.note.textContent =
         plus === minus ? slider.about : `mean of ${plus} at +b and ${minus} at −b`;
     }
-  }
-
-  /** The value, in no more digits than it has. */
-  text(slider, {span}) {
-    const value = valueAt(slider, this.parameters) * (slider.factor ?? 1);
-    const short = written(value, span);
-    const whole = String(Number(value.toPrecision(4)));
-    return Math.abs(Number(short) - value) > 1e-6 * Math.abs(value) ? whole : short;
   }
 
   turned(slider, value, hasty) {
@@ -195,7 +200,6 @@ export class Sliders {
 
   /** value: in the slider's unit. */
   apply(slider, value, hasty) {
-    const inField = Number((value / (slider.factor ?? 1)).toPrecision(12));
-    this.change(fieldsOf(slider, inField, this.parameters), slider, {hasty});
+    this.change(fieldsOf(slider, value, this.parameters), slider, {hasty});
   }
 }

@@ -8,7 +8,7 @@ import {jsonLines} from "../shared/json_lines.js";
 import {digits, short, withError} from "../shared/numbers.js";
 import {regimeText, verdictColour, verdicts} from "../shared/quantities.js";
 import {ticks} from "../shared/ticks.js";
-import {rangeOf, valueAt, written} from "./sliders.js";
+import {fieldsOf, rangeOf, valueAt, written} from "./sliders.js";
 
 const cycles = 300; // measured at each point, after
 const transient = 150; // cycles
@@ -77,7 +77,7 @@ export class Strip {
   }
 
   covers(slider, parameters) {
-    const value = valueAt(slider, parameters) * (slider.factor ?? 1);
+    const value = valueAt(slider, parameters);
     return value >= this.range[0] && value <= this.range[1];
   }
 
@@ -92,13 +92,9 @@ export class Strip {
     const abort = new AbortController();
     this.abort = abort;
     const {slider, parameters} = this;
-    const inField = (i) => {
-      const value = this.at(i) / (slider.factor ?? 1);
-      const fields = slider.fields?.(value, parameters);
-      return fields ? fields[parameter] : value;
-    };
+    const inField = (i) => fieldsOf(slider, this.at(i), parameters)[parameter];
     // What is shown is a system; what its neighbours' faults are is said of each of them alone.
-    const here = this.nearest(valueAt(slider, parameters) * (slider.factor ?? 1));
+    const here = this.nearest(valueAt(slider, parameters));
     const sequence = [here, ...order.filter((i) => i !== here)];
     const axes = [{parameter, values: sequence.map(inField)}];
     try {
@@ -235,7 +231,7 @@ export class Strip {
   /** The marker at the value; its neighbour in words. */
   place() {
     const {slider, parameters, marker} = this;
-    const value = valueAt(slider, parameters) * (slider.factor ?? 1);
+    const value = valueAt(slider, parameters);
     marker.style.transform = `translateX(${this.scale().px(value)}px)`;
     const {canvas} = this;
     canvas.setAttribute("aria-valuemin", this.range[0]);
@@ -276,15 +272,12 @@ export class Strip {
       : where;
   }
 
-  set(value, hasty) {
+  set(wanted, hasty) {
     const {slider, parameters} = this;
     const [from, to] = this.range;
-    const inside = Math.min(Math.max(value, Math.max(from, this.at(0))), to);
-    const inField = Number(
-      (Number(written(inside, this.range)) / (slider.factor ?? 1)).toPrecision(12),
-    );
-    const fields = slider.fields ? slider.fields(inField, parameters) : {[slider.name]: inField};
-    this.turn(fields, slider, {hasty});
+    const inside = Math.min(Math.max(wanted, Math.max(from, this.at(0))), to);
+    const value = Number(written(inside, this.range));
+    this.turn(fieldsOf(slider, value, parameters), slider, {hasty});
   }
 
   listen() {
@@ -309,7 +302,7 @@ export class Strip {
   press(event) {
     const [from, to] = this.range;
     const step = ((event.shiftKey ? 10 : 1) * (to - from)) / (points - 1);
-    const now = valueAt(this.slider, this.parameters) * (this.slider.factor ?? 1);
+    const now = valueAt(this.slider, this.parameters);
     const moves = {
       ArrowLeft: now - step,
       ArrowDown: now - step,
