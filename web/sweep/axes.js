@@ -14,14 +14,19 @@ export class Naming {
     return unit ? `${symbol} (${unit})` : symbol;
   }
 
-  /** A value of a parameter as it is shown, without its unit. */
+  /** A value of a parameter in the unit that is shown. */
   number(parameter, value) {
-    return String(Number((value * this.of(parameter).factor).toPrecision(6)));
+    return Number((value * this.of(parameter).factor).toPrecision(12));
+  }
+
+  /** The same as a text, with six digits. */
+  text(parameter, value) {
+    return String(Number(this.number(parameter, value).toPrecision(6)));
   }
 
   value(parameter, value) {
     const {unit} = this.of(parameter);
-    return `${this.number(parameter, value)}${unit && ` ${unit}`}`;
+    return `${this.text(parameter, value)}${unit && ` ${unit}`}`;
   }
 
   /** A place on an axis in words: [term, value]. */

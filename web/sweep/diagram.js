@@ -216,13 +216,18 @@ class Diagram extends Panel {
     const {plots} = this;
     const {parameter} = plots.data.axes[0];
     const [from, to] = this.axis.view;
-    const {factor} = plots.naming.of(parameter);
     const rows = plots
       .starts()
       .flatMap((s) =>
         plots.places[s]
           .filter(({at, p}) => at >= from && at <= to && !p.error)
-          .flatMap((place) => this.rows(place).map((row) => [place.value * factor, s + 1, ...row])),
+          .flatMap((place) =>
+            this.rows(place).map((row) => [
+              plots.naming.number(parameter, place.value),
+              s + 1,
+              ...row,
+            ]),
+          ),
       );
     const names = [plots.naming.label(parameter), "start", ...this.names()];
     const kept = names.map((_, i) => i).filter((i) => i !== 1 || plots.several);

@@ -55,6 +55,11 @@ export class SweepMap extends Panel {
   choose(choice) {
     this.choice = choice;
     this.refresh();
+  }
+
+  /** What is in view, and what is told of it. */
+  refresh() {
+    super.refresh();
     if (this.current) this.tell(...this.current);
   }
 
@@ -287,7 +292,7 @@ export class SweepMap extends Panel {
             naming.number(x.parameter, x.values[k]),
             naming.number(y.parameter, y.values[l]),
           ];
-          rows.push([...place.map(Number), this.valueOf(p), p.regime ?? "–"]);
+          rows.push([...place, this.valueOf(p), p.regime ?? "–"]);
         }
     }
     const names = [naming.label(first.parameter), naming.label(second.parameter)];

@@ -64,7 +64,7 @@ export function showPeaks(data, naming) {
       ...motions.map((m) =>
         row(
           "td",
-          cellsOf(m, (v) => naming.number(parameter, v)),
+          cellsOf(m, (v) => naming.text(parameter, v)),
         ),
       ),
     ),

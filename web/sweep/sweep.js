@@ -136,7 +136,7 @@ function draw() {
 }
 
 function drawPlots() {
-  if (data.axes.length > 1) map.soon();
+  if (data.axes.length > 1) map.refresh();
   else plots.refresh();
 }
 
