@@ -435,3 +435,21 @@ test("an impact that is pointed at in one plot of a measurement is ringed in the
   );
   await page.close();
 });
+
+test("the newest of two samples is identified, and an oscillator leaves the columns that were picked", async () => {
+  const page = await visit("?tab=measurement");
+  await page.click("#measure-samples button:has-text('periodic')");
+  await page.click("#measure-samples button:has-text('chaotic')");
+  await identified(page, 1);
+  assert.match(await page.textContent("#measure-about"), /sample-fig20/);
+  assert.match(await page.textContent("#measure-summary"), /verdictchaotic/);
+  await page.selectOption("#measure-pick-displacement", "displacement_m");
+  await identified(page, 2);
+  await page.selectOption("#measure-preset", "fig15");
+  assert.match(page.url(), /displacement_column=displacement_m/);
+  assert.ok(
+    await page.$eval("#measure-results", (node) => node.classList.contains("stale")),
+    "what is shown is of the other oscillator",
+  );
+  await page.close();
+});

@@ -272,7 +272,7 @@ test("several starts over a logarithmic axis have symbols of their own", async (
   const starts = "axis1=b,0.003,0.04,20,log&starts=x0=0;y_dot0=0.02&cycles=40";
   const page = await visit(`?tab=sweep&${starts}&section=stroboscopic&coordinate=gap`);
   assert.equal(await page.inputValue("#sweep-coordinate"), "gap");
-  assert.match(await page.textContent("#sweep-starts"), /1: x\(0\) = 02: y′\(0\) = 0\.02/);
+  assert.match(await page.textContent("#sweep-starts"), /1: x\(0\) = 0 mm2: y′\(0\) = 20 mm per τ/);
   for (const name of ["c1", "before"])
     assert.ok((await pixels(page, "#plot-sweep-lambda canvas", name)) > 20, name);
   await hoverAt(page, "#plot-sweep-section", 0.5);
@@ -618,7 +618,7 @@ test("the frequency response is an example: the largest |x| with the absorber, a
     assert.ok((await pixels(page, "#plot-sweep-other canvas", name)) > 100, name);
   await page.click("#figure-sweep-other button.menu");
   const [head] = await cells(page, "#data thead tr");
-  assert.deepEqual(head, ["Ω", "largest |x|", "without the absorber", "regime"]);
+  assert.deepEqual(head, ["Ω", "largest |x| (mm)", "without the absorber", "regime"]);
   const rows = await cells(page, "#data tbody tr");
   const peak = Math.max(...rows.map((row) => Number(row[2])));
   assert.ok(peak > 7 && peak < 14, `${peak} mm without`);
@@ -682,5 +682,86 @@ test("on a phone the first plot of a sweep begins on the second screen at the la
   const top = await page.$eval("#plot-sweep-section", (node) => node.getBoundingClientRect().top);
   const at = top + (await page.evaluate(() => scrollY));
   assert.ok(at < 2 * 740, `${at} px down`);
+  await page.close();
+});
+
+test("a refinement that is cut off goes on where it was", async () => {
+  const page = await visit(
+    `?${mediumMap.replace("cycles=200", "cycles=4000").replace("24&", "10&").replace("16&", "8&")}`,
+  );
+  const requests = asked(page, "/v1/sweep");
+  await drag(page, "#plot-sweep-map", [0.1, 0.2], [0.6, 0.7]);
+  await beganToRefine(page);
+  await page.selectOption("#sweep-mapped", "z");
+  await refined(page);
+  assert.equal(requests.length, 1, "it ran on");
+  await page.click("#figure-sweep-map button.menu");
+  const csv = await downloaded(page, "#data button:text-is('CSV')");
+  assert.ok(csv.text.trim().split("\n").length > 80, "all of it is there");
+  await page.close();
+});
+
+test("a finger's tap tells of a point, and its button simulates it", async () => {
+  const page = await visit(`?${smallMap}`);
+  const over = page.locator("#plot-sweep-map .over");
+  await over.scrollIntoViewIfNeeded();
+  await over.evaluate((node) => {
+    const {left, top, width, height} = node.getBoundingClientRect();
+    const at = {clientX: left + width / 2, clientY: top + height / 2, bubbles: true};
+    const finger = {...at, pointerType: "touch", pointerId: 7, detail: 1};
+    node.setPointerCapture = () => {}; // of a finger that is none
+    for (const type of ["pointerdown", "pointerup", "pointerout", "click"])
+      node.dispatchEvent(new PointerEvent(type, finger));
+    node.closest(".stacked").dispatchEvent(new PointerEvent("pointerleave", finger));
+  });
+  await page.waitForSelector("#sweep-map .tip button");
+  await page.$eval("#sweep-map", (node) =>
+    node.dispatchEvent(new PointerEvent("pointerleave", {pointerType: "touch"})),
+  );
+  await page.click("#sweep-map .tip button");
+  await drawn(page, 1);
+  assert.match(page.url(), /\?b=0\.0/);
+  await page.close();
+});
+
+test("Back between two sweeps leads forward again, and its menus are those of their entry", async () => {
+  const page = await visit(`?${small}&beside=x_max`);
+  await page.fill(`#sweep-base-group-system .field-R input`, "0.5");
+  await page.click("#sweep-run");
+  await swept(page, 2);
+  await page.goBack();
+  await swept(page, 3);
+  assert.doesNotMatch(page.url(), /R=0\.5/);
+  await page.goForward();
+  await swept(page, 4);
+  assert.match(page.url(), /R=0\.5/);
+  await page.selectOption("#sweep-quantity", "z");
+  await clickAt(page, "#plot-sweep-other", 0.5, 0.2);
+  await drawn(page, 1);
+  await page.goBack();
+  await page.waitForSelector("#sweep-stack:visible");
+  assert.equal(await page.inputValue("#sweep-quantity"), "z");
+  await page.close();
+});
+
+test("a reduction that leaves no axis is opened by its link", async () => {
+  const page = await visit(`?${platformSweep}&reduce=max+over+f`);
+  const requests = asked(page, "/v1/sweep");
+  assert.ok((await peaks(page)).middle, "the table of its starts");
+  assert.equal(await page.textContent("#sweep-message"), "");
+  assert.equal(requests.length, 0, "it is not asked for again");
+  await page.close();
+});
+
+test("an axis of another parameter takes its ends anew, in the unit that is shown", async () => {
+  const page = await visit("?tab=sweep&axis1=Omega,0.94,1.06,8&cycles=30");
+  const requests = asked(page, "/v1/sweep");
+  await page.selectOption(field("sweep-axis1-error-parameter"), "b");
+  await page.fill(field("sweep-axis1-error-from"), "0.94");
+  await page.fill(field("sweep-axis1-error-to"), "15");
+  await page.click("#sweep-run");
+  await swept(page, 2);
+  const [{from, to}] = requests.at(-1).axes;
+  assert.deepEqual([from, to], [0.00094, 0.015]);
   await page.close();
 });

@@ -49,6 +49,7 @@ let record = null;
 let answer = null;
 let sent = null;
 let began = 0;
+let turn = 0; // counts the records that were asked for: the newest one counts
 let ticking = 0;
 let shown = null;
 let remembered = () => {};
@@ -96,9 +97,12 @@ function remember() {
   remembered();
 }
 
+/** Another oscillator; which column of the record is which stays. */
 function choosePreset(name) {
   $("measure-preset").value = experiments.includes(name) ? name : "";
-  form.set(base());
+  const ofRecord = new Set(form.fields.filter((f) => f.group === "record").map((f) => f.name));
+  const kept = Object.entries(form.values()).filter(([field]) => ofRecord.has(field));
+  form.set({...base(), ...Object.fromEntries(kept)});
 }
 
 export async function open(given) {
@@ -168,7 +172,10 @@ function quoteLine(detail) {
 /** A file is there: it is drawn, and, if it can be, identified. */
 async function take(chosen) {
   if (!chosen) return;
+  ++turn;
   job.cancel();
+  const input = $("measure-file");
+  if (input.files[0] !== chosen) input.value = ""; // so that the same file can be chosen again
   file = chosen;
   text = "";
   answer = record = sent = null;
@@ -230,6 +237,7 @@ const job = new Job({
   },
   show({got, parsed}, {fields}, milliseconds) {
     [answer, sent, record] = [got, fields, recordOf(parsed, fields)];
+    picker.show(parsed, fields);
     remember();
     say("");
     present(milliseconds);
@@ -242,7 +250,8 @@ const job = new Job({
   },
   busy(is, cancelled) {
     $("measure-cancel").hidden = !is;
-    $("measure-results").classList.toggle("stale", is);
+    if (is) $("measure-results").classList.add("stale");
+    else compare();
     $("measure-results").setAttribute("aria-busy", String(is));
     clearInterval(ticking);
     if (is) ticking = setInterval(tick, 1000);
@@ -285,6 +294,8 @@ export async function measure(run) {
 
 /** The same of one of the experiments. */
 async function takeSample(name) {
+  const mine = ++turn;
+  job.cancel();
   choosePreset(name);
   remember();
   say("simulating …");
@@ -292,10 +303,11 @@ async function takeSample(name) {
   const fields = {...parameters, cycles: sampleCycles, include: ["impacts", "regime"]};
   try {
     const run = await simulate(fields);
+    if (turn !== mine) return;
     const text = recordOfRun(run, new Motion(run));
     await take(new File([text], `sample-${name}.csv`, {type: "text/csv"}));
   } catch (error) {
-    say(error.message, true);
+    if (turn === mine) say(error.message, true);
   }
 }
 
@@ -368,6 +380,7 @@ function listen() {
   $("measure-preset").addEventListener("change", () => {
     choosePreset($("measure-preset").value);
     remember();
+    compare();
   });
   $("measure-fields").addEventListener("change", async () => {
     remember();
@@ -375,10 +388,14 @@ function listen() {
     const parsed = await reading.catch(() => null);
     if (parsed && !answer) showColumns(parsed);
   });
-  picker.start((field, name) => {
+  picker.start(async (field, name) => {
     form.replace(field, name);
     remember();
-    run();
+    const parsed = await reading.catch(() => null);
+    if (!parsed) return;
+    answer = sent = null;
+    showColumns(parsed);
+    if (record) run();
   });
   for (const preset of presets) {
     const button = element("button", {type: "button", className: "small"});

@@ -12,30 +12,39 @@ export class Problem extends Error {
   }
 }
 
+/** That there is no answer for now: the same request may be answered later. */
+export class Passing extends Error {}
+
 /** An error's message, and of the faults those details that it does not say already. */
 export const wholeMessage = (error, faults) =>
   [error.message, ...faults.map((e) => e.detail).filter((d) => d !== error.message)].join("; ");
 
 async function read(response) {
-  const noJson = () => ({title: `the server answered ${response.status} without JSON`});
-  const body = await response.json().catch(noJson);
-  if (!response.ok) throw new Problem({status: response.status, ...body});
+  const noJson = {title: `the server answered ${response.status} without JSON`};
+  const body = await response.json().catch(() => null);
+  if (!response.ok) throw new Problem({status: response.status, ...(body ?? noJson)});
+  if (body === null) throw new Passing("the answer broke off");
   return body;
 }
 
 export const get = async (path) => read(await fetch(path));
 
-function post(path, fields, signal) {
-  const headers = {"Content-Type": "application/json"};
-  return fetch(path, {method: "POST", headers, body: JSON.stringify(fields), signal});
+async function send(path, type, body, signal) {
+  try {
+    return await fetch(path, {method: "POST", headers: {"Content-Type": type}, body, signal});
+  } catch {
+    throw new Passing("the server does not answer"); // or it was broken off: who did so knows
+  }
 }
+
+const post = (path, fields, signal) =>
+  send(path, "application/json", JSON.stringify(fields), signal);
 
 export const simulate = async (fields, signal) => read(await post("v1/simulate", fields, signal));
 
 /** query: the fields; record: a file of CSV, sent as it is. */
 export async function identify(query, record, signal) {
-  const headers = {"Content-Type": "text/csv"};
-  return read(await fetch(`v1/identify?${query}`, {method: "POST", headers, body: record, signal}));
+  return read(await send(`v1/identify?${query}`, "text/csv", record, signal));
 }
 
 /** The same with all in JSON. */

@@ -48,8 +48,10 @@ export class Axis {
     const least = closest * (last - first);
     const width = Math.min(Math.max(to - from, least), last - first);
     const start = Math.min(Math.max(from, first), last - width);
-    if (start === this.view[0] && start + width === this.view[1]) return;
-    this.view = [start, start + width];
+    const part = width < (1 - 1e-12) * (last - first);
+    const view = part ? [start, start + width] : [first, last];
+    if (view[0] === this.view[0] && view[1] === this.view[1]) return;
+    this.view = view;
     for (const f of this.viewers) f();
   }
 

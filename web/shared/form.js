@@ -144,7 +144,8 @@ export class Form {
     const input = (inputs[field.type] ?? textInput)(field);
     input.setAttribute("aria-describedby", error.id);
     input.addEventListener("input", () => this.forgetOrigin(field.name));
-    const range = field.minimum === undefined ? "" : ` [${field.minimum} to ${field.maximum}]`;
+    const ends = [field.minimum, field.maximum].map((v) => this.shown(field.name, v));
+    const range = field.minimum === undefined ? "" : ` [${ends.join(" to ")}]`;
     const title = `${field.name}: ${field.description}${range}`;
     const label = element(field.type === "choices" ? "div" : "label", {title}, name, input);
     const width = wide.has(field.type) && !field.narrow ? " wide" : "";

@@ -1,7 +1,7 @@
 // The axes of a plot: where its values lie in pixels, and what is written along them. It draws with
 // whatever has the methods of a canvas' context.
 import {colour} from "./colours.js";
-import {short} from "./numbers.js";
+import {minus, short} from "./numbers.js";
 import {logTicks, ticks} from "./ticks.js";
 
 export const font = "11px system-ui, sans-serif";
@@ -20,15 +20,21 @@ function inverseOf({range: [min, max], log}, from, to) {
   return (place) => min * (max / min) ** share(place);
 }
 
+/** A label, in as many digits as tell it from the next. */
+function numberAt(v, step) {
+  const near = step > 0 && Math.abs(v) > 2e4 * step;
+  const places = Math.min(Math.max(-Math.floor(Math.log10(step)), 0), 15);
+  return near ? minus(v.toFixed(places)) : short(Number(v.toPrecision(12)));
+}
+
 /** {at, text} of the labels, at most so many. */
 function labelsOf({range, log, factor = 1, labels}, most) {
   const [min, max] = range.map((v) => v * factor);
   const powers = log ? logTicks(min, max) : []; // few within a power of ten
   const list = labels?.(min, max) ?? (powers.length > 2 ? powers : ticks(min, max, most));
-  return list.map((v) => ({
-    at: (v.at ?? v) / factor,
-    text: v.text ?? short(Number(v.toPrecision(12))),
-  }));
+  const round = !labels && powers.length <= 2 && list.length > 1;
+  const step = round ? list[1] - list[0] : 0;
+  return list.map((v) => ({at: (v.at ?? v) / factor, text: v.text ?? numberAt(v, step)}));
 }
 
 export class Frame {

@@ -15,8 +15,8 @@ function valuesAt(over, axis, across, {clientX, clientY}) {
 }
 
 /**
- * click(x, reach, {left, top, touch}): where one clicks; reach: a few pixels in units of the axis;
- * left, top: px in the plot.
+ * click(x, reach, {left, top, y, touch}): where one clicks; reach: a few pixels in units of the axis;
+ * left, top: px in the plot; y: of the axis across.
  */
 export function listen(over, axis, click, across = null) {
   const at = (event) => valuesAt(over, axis, across, event);
@@ -83,11 +83,11 @@ function followMouse(plot, click) {
     clearTimeout(waiting);
     const moved = from && Math.max(width(event), across ? height(event) : 0) > jitter;
     if (event.detail > 1 || moved) return;
-    const {x} = at(event);
+    const {x, y} = at(event);
     const reach = at({clientX: event.clientX + 6, clientY: event.clientY}).x - x;
     pointAt(plot, event, "click");
     const touch = Boolean(from) && !isMouse(from);
-    waiting = setTimeout(() => click(x, reach, {...place(event), touch}), patience);
+    waiting = setTimeout(() => click(x, reach, {...place(event), y, touch}), patience);
   });
 }
 

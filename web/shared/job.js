@@ -1,5 +1,5 @@
 // One computation at a time, of the newest request: the others are broken off or never begin.
-import {Problem} from "./api.js";
+import {Passing} from "./api.js";
 
 const patience = 120; // ms after which what is shown is marked as that of another request
 const again = 2; // s after which a server that does not answer, or is busy, is asked again
@@ -14,11 +14,8 @@ const sleep = (seconds, signal) =>
     signal.addEventListener("abort", stop, {once: true});
   });
 
-/** Whether the same request may be answered later: there was no answer, or none for now, or half. */
-const passes = (error) => !(error instanceof Problem) || error.status === 503;
-
-const reasonOf = (error) =>
-  error instanceof TypeError ? "the server does not answer" : error.message; // fetch's own
+/** Whether the same request may be answered later: there was no answer, or half of one. */
+const passes = (error) => error instanceof Passing || error.status === 503;
 
 export class Job {
   /**
@@ -85,7 +82,7 @@ export class Job {
       } catch (error) {
         if (signal.aborted || !passes(error)) throw error;
         this.running.answers = false;
-        this.later(`${reasonOf(error)}; asking again every ${again} s`);
+        this.later(`${error.message}; asking again every ${again} s`);
         await sleep(again, signal);
       }
     }

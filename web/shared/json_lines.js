@@ -1,4 +1,5 @@
 // A stream of JSON lines.
+import {Passing} from "./api.js";
 
 /**
  * The lines of a stream of JSON lines as {text, value}; a line may lie across chunks, and a
@@ -11,7 +12,9 @@ export async function* jsonLines(stream) {
   let ended = false;
   try {
     while (!ended) {
-      const {done, value} = await reader.read();
+      const {done, value} = await reader.read().catch(() => {
+        throw new Passing("the answer broke off");
+      });
       const more = done ? decoder.decode() : decoder.decode(value, {stream: true});
       const texts = `${rest}${more}`.split("\n");
       rest = texts.pop();

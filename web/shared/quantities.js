@@ -76,8 +76,10 @@ const reducedTo = ["x_max", "where", "z"];
 /** A quantity of a sweep's points; `where` is that of the axis that a reduction folds. */
 export function quantityOf(name, data) {
   if (name !== "where") return quantities[name];
-  const label = `${symbolOf(data.reduced)} of the peak`;
-  return {label, title: label, of: (p) => p.where ?? null};
+  const {symbol, unit, factor} = data.folded;
+  const title = `${symbol} of the peak`;
+  const of = ({where}) => (where == null ? null : where * factor);
+  return {label: unit ? `${title} (${unit})` : title, title, of};
 }
 
 /** What the menus of a sweep offer: [name, title] each. */

@@ -52,8 +52,9 @@ const enough = 500; // lines that are kept as texts before they go into a Blob
 
 /** The points of a sweep; as JSON it is its request. */
 export class SweepData {
-  /** halfPeriod(fields): half a forcing period of a point's fields. */
-  constructor(request, halfPeriod) {
+  /** halfPeriod(fields): half a forcing period of a point's fields; keep: the lines, for a file. */
+  constructor(request, halfPeriod, {keep = true} = {}) {
+    this.keep = keep;
     this.request = request;
     this.halfPeriod = halfPeriod;
     this.section = request.section ?? "none";
@@ -97,6 +98,7 @@ export class SweepData {
       if (line.type === "warning") this.warnings.add(line.message);
       return; // progress and the end are not part of the result
     }
+    if (!this.keep) return;
     this.texts.push(text, "\n");
     if (this.texts.length > 2 * enough)
       this.blobs = [...this.blobs, new Blob(this.texts.splice(0))];
@@ -152,9 +154,10 @@ export class SweepData {
     return this.points[this.index(k, l, start, m)];
   }
 
-  /** The fields of /v1/simulate of a point. */
-  fields(index) {
-    const point = this.points[index];
+  /** The fields of /v1/simulate of a point; best: of its best motion, where it has several. */
+  fields(index, best = false) {
+    const all = this.points[index];
+    const point = (best && all?.best) || all;
     const fields = {...this.request.base, ...(this.defaultSet ? point?.state : {})};
     let rest = index;
     const take = (n) => {

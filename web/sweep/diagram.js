@@ -9,7 +9,6 @@ import {
   quantities,
   regimeColour,
   regimes,
-  symbolOf,
   verdictColour,
   verdicts,
 } from "../shared/quantities.js";
@@ -342,17 +341,21 @@ export class LambdaDiagram extends Diagram {
   }
 
   rows({p}) {
-    const {lambda: [first, second] = [], standard_error: [error] = []} = p;
+    const [first, second] = p.lambda ?? [];
+    const [error] = p.standard_error ?? [];
     return [[first ?? null, error ?? null, second ?? null, verdicts[p.verdict] ?? "–"]];
   }
 
   about() {
     const points = this.plots.places[0].map(({p}) => p).filter((p) => p.lambda);
     const chaotic = points.filter((p) => p.verdict === "chaotic").length;
-    const [low, high] = extent(points.map((p) => p.lambda[0] ?? NaN));
+    const values = points.map((p) => p.lambda[0]).filter((v) => v != null);
+    const ends = values.length
+      ? `λ₁ from ${short(Math.min(...values))} to ${short(Math.max(...values))}; `
+      : "";
     return {
       title: "Largest exponent λ₁",
-      summary: `λ₁ from ${short(low)} to ${short(high)}; chaotic at ${chaotic} of ${points.length} points`,
+      summary: `${ends}chaotic at ${chaotic} of ${points.length} points`,
     };
   }
 }
@@ -402,8 +405,8 @@ export class OtherDiagram extends Diagram {
   }
 
   names() {
-    const {title, free} = this.plots.quantity();
-    return [title, ...(free ? ["without the absorber"] : []), "regime"];
+    const {label, free} = this.plots.quantity();
+    return [label, ...(free ? ["without the absorber"] : []), "regime"];
   }
 
   rows({p}) {
@@ -422,9 +425,9 @@ export class OtherDiagram extends Diagram {
 }
 
 /** The keys of the starts: their symbol and state. */
-export const startKey = (state, s) => ({
+export const startKey = (state, s, naming) => ({
   className: `key start start${s % startColours.length}`,
   textContent: `${s + 1}: ${Object.entries(state)
-    .map(([name, v]) => `${symbolOf(name)} = ${v}`)
+    .map(([name, v]) => naming.place({parameter: name}, v).join(" = "))
     .join(", ")}`,
 });

@@ -35,7 +35,9 @@ export class SweepPlots {
       panel.over.addEventListener("pointermove", (event) => {
         if (event.pointerType === "mouse" && !event.buttons) this.hover(panel);
       });
-    root.addEventListener("pointerleave", () => this.leave());
+    root.addEventListener("pointerleave", (event) => {
+      if (event.pointerType === "mouse") this.leave();
+    });
     root.addEventListener("keydown", (event) => this.key(event));
     root.addEventListener("focusout", (event) => {
       if (!root.contains(event.relatedTarget)) this.leave();
@@ -64,7 +66,7 @@ export class SweepPlots {
     if (this.data?.axes?.length !== 1) return;
     this.places = this.starts().map((s) => this.layers.places(s));
     for (const panel of Object.values(this.panels)) panel.refresh();
-    if (this.current) this.tell(this.current);
+    if (this.current && !this.current.act) this.tell(this.current); // a button stays under the finger
   }
 
   get data() {

@@ -30,7 +30,9 @@ export class SweepMap extends Panel {
       if (event.pointerType === "mouse" && !event.buttons && cursor !== null)
         this.tell(cursor, this.across.cursor);
     });
-    root.addEventListener("pointerleave", () => this.leave());
+    root.addEventListener("pointerleave", (event) => {
+      if (event.pointerType === "mouse") this.leave();
+    });
     root.addEventListener("keydown", (event) => this.key(event));
     root.addEventListener("focusout", (event) => {
       if (!root.contains(event.relatedTarget)) this.leave();
@@ -60,7 +62,7 @@ export class SweepMap extends Panel {
   /** What is in view, and what is told of it. */
   refresh() {
     super.refresh();
-    if (this.current) this.tell(...this.current);
+    if (this.current && !this.current[2]) this.tell(...this.current); // a button stays where it is
   }
 
   get data() {
@@ -75,14 +77,17 @@ export class SweepMap extends Panel {
   pointAt({data, slice}, k, l) {
     const {start, slice: chosen} = this.choice;
     const index = data.index(k, l, start, slice === null ? chosen : 0);
-    return {p: data.points[index], data, index};
+    return {p: data.points[index], data, index, best: this.choice.best};
+  }
+
+  /** The motion of a point that is shown: of several starts the worst or the best. */
+  motion(p) {
+    return this.choice.best ? bestMotion(p) : p;
   }
 
   /** The value of a point that is drawn; null where it has none. */
   valueOf(p) {
-    if (p.error) return null;
-    const {of} = this.quantity();
-    return of(this.choice.best ? bestMotion(p) : p) ?? null;
+    return p.error ? null : (this.quantity().of(this.motion(p)) ?? null);
   }
 
   /** All values of the base that are there. */
@@ -107,9 +112,11 @@ export class SweepMap extends Panel {
     const quantity = this.quantity();
     if (quantity.categories) return null;
     const {map} = this.choice;
-    const ends = this.ends.get(map) ?? endsOf(quantity, this.values());
+    const values = this.ends.has(map) ? [] : this.values();
+    const ends = this.ends.get(map) ?? endsOf(quantity, values);
     const {received, total, complete} = this.data;
-    if (complete || received > Math.max(firstPass * total, 50)) this.ends.set(map, ends);
+    const seen = complete || received > Math.max(firstPass * total, 50);
+    if (seen && values.length) this.ends.set(map, ends);
     return scaleOf(quantity, ends);
   }
 
@@ -182,7 +189,8 @@ export class SweepMap extends Panel {
         const {p} = this.pointAt(layer, k, l);
         if (p) cells[l * n + k] = colourOf(p);
       }
-    if (!layer.data.complete) fill(cells, first.order, second.order);
+    // Below a finer layer lies a coarser one.
+    if (!layer.data.complete && layer.data === this.data) fill(cells, first.order, second.order);
     return cells;
   }
 
@@ -203,10 +211,9 @@ export class SweepMap extends Panel {
     return found;
   }
 
-  click(at, _, {touch}) {
-    const height = this.across.cursor;
-    if (touch) this.tell(at, height, true);
-    else this.choosePoint(at, height);
+  click(at, _, {y, touch}) {
+    if (touch) this.tell(at, y, true);
+    else this.choosePoint(at, y);
   }
 
   choosePoint(at, height) {
@@ -255,15 +262,20 @@ export class SweepMap extends Panel {
     event.preventDefault();
   }
 
-  /** Tells of the cell so many beside the one that is told of. */
+  /** Tells of the cell beside the one that is told of, which is brought into view. */
   moveBy([right, up]) {
     const middle = ({view: [from, to]}) => (from + to) / 2;
     const [at, height] = this.current ?? [middle(this.axis), middle(this.across)];
     const {data, k, l} = this.nearest(at, height);
-    const beside = (axis, i) => axis.at[Math.max(0, Math.min(axis.at.length - 1, i))];
-    const [x, y] = this.current
-      ? [beside(data.axes[0], k + right), beside(data.axes[1], l + up)]
-      : [data.axes[0].at[k], data.axes[1].at[l]];
+    const ways = this.current ? [right, up] : [0, 0];
+    const [x, y] = [k, l].map((i, d) => beside(data.axes[d], i, ways[d], this.data.axes[d]));
+    for (const [axis, place] of [
+      [this.axis, x],
+      [this.across, y],
+    ]) {
+      const [from, to] = axis.view;
+      if (place < from || place > to) axis.pan((place - (from + to) / 2) / (to - from));
+    }
     this.across.point(y, "key");
     this.axis.point(x, "key");
     this.tell(x, y, true);
@@ -292,14 +304,27 @@ export class SweepMap extends Panel {
             naming.number(x.parameter, x.values[k]),
             naming.number(y.parameter, y.values[l]),
           ];
-          rows.push([...place, this.valueOf(p), p.regime ?? "–"]);
+          rows.push([...place, this.valueOf(p), this.motion(p).regime ?? "–"]);
         }
     }
     const names = [naming.label(first.parameter), naming.label(second.parameter)];
     return {
-      names: [...names, this.quantity().title, "regime"],
+      names: [...names, this.quantity().label || "regime", "regime"],
       columns: [0, 1, 2, 3].map((i) => rows.map((row) => row[i])),
     };
+  }
+
+  /** Which slice and start is shown, where there are several. */
+  shown() {
+    const {slice, start, best} = this.choice;
+    const {axes, defaultSet, starts} = this.data;
+    const third = axes[2];
+    const of = [
+      third && this.naming.place(third, third.values[slice]).join(" = "),
+      defaultSet && `of the start that is ${best ? "best" : "worst"}`,
+      !defaultSet && starts > 1 && `start ${start + 1}`,
+    ].filter(Boolean);
+    return of.length ? `, ${of.join(", ")}` : "";
   }
 
   about() {
@@ -307,11 +332,22 @@ export class SweepMap extends Panel {
     const scale = this.scale();
     const [first, second] = this.data.axes.map(({parameter}) => this.naming.label(parameter));
     const colours = scale ? `, colours from ${scale.ends.map(short).join(" to ")}` : "";
+    const of = this.shown();
     return {
-      title: `Map of ${title}`,
-      summary: `${title} over ${first} and ${second}${colours}`,
+      title: `Map of ${title}${of}`,
+      summary: `${title} over ${first} and ${second}${of}${colours}`,
     };
   }
+}
+
+/** The place of the cell beside one, of a coarser layer where its own has no more. */
+function beside(axis, i, way, whole) {
+  const next = axis.at[i + way];
+  if (next !== undefined) return next;
+  const border = way > 0 ? axis.borders.at(-1) : axis.borders[0];
+  const outside = border + way * 1e-9 * (whole.borders.at(-1) - whole.borders[0]);
+  const k = positionAt(whole, outside);
+  return k < 0 ? axis.at[i] : whole.at[k];
 }
 
 const within = ({view: [from, to]}, at) => at >= from && at <= to;
@@ -328,19 +364,26 @@ function positions(axis, [from, to], pixels) {
   return Int32Array.from({length: pixels}, (_, i) => positionAt(axis, from + (i + 0.5) * step));
 }
 
+/** The steps of the coarsest grid along an axis of so many values, in which the service begins. */
+const coarsest = (n) => 2 ** Math.floor(Math.log2(Math.max(Math.floor(n / 8), 1)));
+
 /**
  * Gives the cells that are still to come the colour of the point before them on a coarser grid; the
- * service computes them in this order. order: the place of each position in its axis as it was asked
- * for.
+ * service computes them in this order. columns, rows: the place of each position in its axis as it
+ * was asked for.
  */
 function fill(cells, columns, rows) {
   const n = columns.length;
   const [column, row] = [inverse(columns), inverse(rows)];
+  const [widest, highest] = [coarsest(n), coarsest(rows.length)];
   const known = cells.slice();
   for (let l = 0; l < rows.length; ++l)
     for (let k = 0; k < n; ++k)
-      for (let mask = -2; !cells[l * n + k] && mask > -256; mask *= 2)
-        cells[l * n + k] = known[row[rows[l] & mask] * n + column[columns[k] & mask]];
+      for (let step = 2; !cells[l * n + k] && step <= Math.max(widest, highest); step *= 2) {
+        const [across, up] = [Math.min(step, widest), Math.min(step, highest)];
+        const from = row[rows[l] - (rows[l] % up)] * n + column[columns[k] - (columns[k] % across)];
+        cells[l * n + k] = known[from];
+      }
 }
 
 function inverse(order) {

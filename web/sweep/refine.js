@@ -15,10 +15,11 @@ const suffices = (axis, [from, to], count) => {
   return covers && inside >= 0.6 * count;
 };
 
-/** An axis of a request, over what is in view: the middles of so many cells. */
-function axisOf({parameter, scale}, {from}, [low, high], count) {
+/** An axis of a request, over what is in view: the middles of so many cells, within the whole. */
+function axisOf({parameter, scale}, {from, at}, [low, high], count) {
   const half = (high - low) / count / 2;
-  const ends = [low + half, high - half].map((at) => Number(from(at).toPrecision(12)));
+  const inside = (place) => Math.min(Math.max(place, at[0]), at.at(-1));
+  const ends = [low + half, high - half].map((v) => Number(from(inside(v)).toPrecision(12)));
   return {parameter, from: ends[0], to: ends[1], count, ...(scale ? {scale} : {})};
 }
 
@@ -61,10 +62,15 @@ export class Refiner {
     const shown = base.axes.slice(0, views.length);
     const counts = countsOf(shown, base.starts);
     const third = base.axes[2] ? slice : null;
-    const enough = ({data}) =>
+    const covers = ({data}) =>
       shown.every((_, i) => suffices(data.axes[i], views[i].view, counts[i]));
-    if (!views.some(({zoomed}) => zoomed) || this.layers.over(slice).some(enough)) {
+    const there = this.layers.over(slice).findLast(covers)?.data;
+    if (!views.some(({zoomed}) => zoomed) || there?.complete) {
       this.stop();
+      return;
+    }
+    if (there) {
+      this.job.start(there); // what of it is missing, unless it runs already
       return;
     }
     const finer = new Map(
@@ -78,7 +84,7 @@ export class Refiner {
       finer.set(parameter, () => ({parameter, values: [values[third]]}));
     }
     const axes = base.request.axes.map((given) => finer.get(given.parameter)?.(given) ?? given);
-    const data = new SweepData({...base.request, axes}, base.halfPeriod);
+    const data = new SweepData({...base.request, axes}, base.halfPeriod, {keep: false});
     data.slice = third;
     this.job.start(data);
   }

@@ -1,6 +1,9 @@
 // A sweep's points as they come.
-import {sweep} from "../shared/api.js";
+import {Passing, sweep} from "../shared/api.js";
 import {jsonLines} from "../shared/json_lines.js";
+
+/** Whether a server says that another one will do: it stops. */
+const isPassing = (detail) => detail.includes("ask again");
 
 /**
  * The points that data (SweepData) still lacks, into it; throws if the stream ends before all are
@@ -9,9 +12,9 @@ import {jsonLines} from "../shared/json_lines.js";
 export async function receive(data, signal, heard) {
   const missing = data.received ? {indices: data.missing()} : {};
   for await (const {text, value} of jsonLines(await sweep({...data.request, ...missing}, signal))) {
-    if (value.type === "error") throw new Error(value.detail);
+    if (value.type === "error") throw new (isPassing(value.detail) ? Passing : Error)(value.detail);
     data.take(value, text);
     heard(value);
   }
-  if (!data.complete) throw new Error("the answer ended before its end");
+  if (!data.complete) throw new Passing("the answer ended before its end");
 }

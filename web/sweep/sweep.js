@@ -30,6 +30,7 @@ let refiner;
 let data = null;
 let shown = null;
 let wantedView = null;
+let opened = false; // what is asked for comes from the address
 let changed = () => {};
 
 function say(text, fault = false) {
@@ -72,11 +73,17 @@ export function query() {
 }
 
 /** Those of the plots that show a sweep. */
-const axesOf = ({axes}) => (axes.length > 1 ? [map.axis, map.across] : [plots.axis]);
+const axesOf = ({axes}) => [[], [plots.axis]][axes.length] ?? [map.axis, map.across];
 
 /** The ends of what is in view, as values. */
 const viewOf = (of) =>
-  axesOf(of).flatMap(({view}, i) => view.map((at) => Number(of.axes[i].from(at).toPrecision(5))));
+  axesOf(of).flatMap(({view}, i) => {
+    const ends = view.map(of.axes[i].from);
+    const step = Math.abs(ends[1] - ends[0]) / 1e4; // as many digits as that takes
+    return ends.map((v) => Number(v.toPrecision(digitsFor(v, step))));
+  });
+const digitsFor = (v, step) =>
+  Math.min(Math.max(Math.ceil(Math.log10(Math.abs(v) / step)) + 1, 2), 15);
 
 /** Zooms to such ends; without any the whole is shown. */
 function zoomTo(view) {
@@ -129,6 +136,7 @@ function draw() {
   if (!data?.axes) return;
   const began = performance.now();
   drawPlots();
+  namePlots();
   showPeaks(data, naming);
   showMotions();
   countRegimes();
@@ -179,7 +187,7 @@ function offerStarts(n) {
 /** Which value of the third axis a map shows. */
 function offerSlices() {
   const third = data.axes[2];
-  const text = (v) => String(Number(v.toPrecision(6)));
+  const text = (v) => naming.value(third.parameter, v);
   const slices = third ? third.values.map((v, m) => [String(m), text(v)]) : [["0", ""]];
   fillMenu("sweep-slice", slices, $("sweep-slice").value);
   $("sweep-slice-of").hidden = !third;
@@ -188,8 +196,10 @@ function offerSlices() {
 
 /** The plots of a sweep that has just begun, still empty. */
 function present(fresh) {
-  const edit = shown !== null;
+  const edit = shown !== null && !opened;
+  opened = false;
   data = fresh;
+  data.folded = data.reduced && naming.of(data.reduced);
   shown = String(SweepForm.toQuery(data.request));
   const {section, defaultSet, reduced} = data;
   const starts = defaultSet ? [] : (data.request.starts ?? []);
@@ -208,7 +218,7 @@ function present(fresh) {
   $("sweep-starts").hidden = starts.length < 2;
   listWarnings($("sweep-warnings"), [...data.warnings]);
   $("sweep-verdicts").hidden = starts.length > 1; // the colours are those of the starts, then
-  const keys = starts.map((state, s) => element("span", startKey(state, s)));
+  const keys = starts.map((state, s) => element("span", startKey(state, s, naming)));
   $("sweep-starts").replaceChildren(...keys.map((key) => element("li", {}, key)));
   $("sweep-keys").hidden = false;
   $("sweep-download").hidden = false;
@@ -263,7 +273,7 @@ const job = new Job({
     busy(is);
     if (cancelled) {
       say("cancelled");
-      showCount();
+      if (data) showCount();
       draw();
     }
   },
@@ -287,7 +297,6 @@ function hear(into, line) {
 }
 
 function finish() {
-  namePlots();
   say(remarks());
   listWarnings($("sweep-warnings"), [...data.warnings]);
   draw();
@@ -304,6 +313,7 @@ function lead() {
 
 function run() {
   form.showErrors([]);
+  compare();
   complete(new SweepData(form.request(), halfPeriod));
 }
 
@@ -319,19 +329,31 @@ const markExample = () => {
   $("sweep-example").value = String(exampleOf(SweepForm.toQuery(form.request())));
 };
 
+/** The sweep that is there, as another entry of the history had it. */
+function showAgain(view) {
+  for (const id of Object.values(menus)) {
+    const {wanted} = $(id).dataset;
+    $(id).value = wanted;
+    if (!wanted || $(id).selectedIndex < 0) $(id).selectedIndex = 0;
+    $(id).dataset.wanted = "";
+  }
+  zoomTo(view);
+  chooseFromMenu();
+}
+
 /** Shows what a query asks for; without one the first example. */
-export async function open(given) {
+export function open(given) {
   const rest = new URLSearchParams(given);
   for (const [name, id] of Object.entries(menus)) {
-    const wanted = rest.get(name);
-    $(id).dataset.wanted = wanted ?? "";
-    if (wanted && [...$(id).options].some((o) => o.value === wanted)) $(id).value = wanted;
+    $(id).dataset.wanted = rest.get(name) ?? "";
     rest.delete(name);
   }
-  const view = rest.get("view")?.split(",").map(Number);
+  const view = rest.get("view")?.split(",").map(Number) ?? [];
   rest.delete("view");
-  if (String(rest) === shown) return;
-  wantedView = view?.every(Number.isFinite) ? view : [];
+  const wantedNow = view.every(Number.isFinite) ? view : [];
+  if (String(rest) === shown) return showAgain(wantedNow);
+  wantedView = wantedNow;
+  opened = true;
   const first = new URLSearchParams(examples[0][1]);
   const wanted = rest.size ? rest : first;
   form.setQuery(wanted, exampleOf(wanted) >= 0);
@@ -376,8 +398,9 @@ function captionOf() {
 const allPlots = () => Object.entries({...plots.panels, map});
 
 function namePlots() {
-  for (const [, plot] of allPlots()) {
-    if (!plot.frame || !plot.size.width) continue;
+  const {axes} = data;
+  const shownPlots = [[], Object.values(plots.panels)][axes.length] ?? [map];
+  for (const plot of shownPlots) {
     const {title, summary} = plot.about();
     plot.container.setAttribute("role", "img");
     plot.container.setAttribute("aria-label", `${title}: ${summary}`);
@@ -404,7 +427,8 @@ export function start(tables, tell, {simulate}) {
     markExample();
     compare();
   });
-  const openPoint = ({data: of, index}) => simulate({...of.fields(index), cycles: cyclesOfPoint});
+  const openPoint = ({data: of, index, best}) =>
+    simulate({...of.fields(index, best), cycles: cyclesOfPoint});
   naming = new Naming((parameter) => form.parameters.get(parameter)?.unit);
   const panels = {
     section: $("plot-sweep-section"),
@@ -430,7 +454,9 @@ export function start(tables, tell, {simulate}) {
   );
   unitsSwitch($("sweep-units"));
   onUnits(() => {
-    if (data?.axes) plots.refresh();
+    if (!data?.axes) return;
+    plots.refresh();
+    namePlots();
   });
   listen();
 }
@@ -455,6 +481,7 @@ function runExample() {
 function chooseFromMenu() {
   if (!data) return;
   (data.axes.length > 1 ? map : plots).choose(choice());
+  namePlots();
   refine();
   showFreeKey();
   changed();

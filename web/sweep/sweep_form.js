@@ -172,7 +172,7 @@ export class SweepForm {
    * would be most of the answer.
    */
   chooseParameter(i) {
-    for (const name of ["from", "to"]) this.axes[i].inputs.get(name).value = "";
+    for (const name of ["from", "to"]) this.axes[i].replace(name, "");
     if (i > 0 && this.parameter(i) !== none) this.run.inputs.get("section").value = none;
     if (isOfSystem(this.parameter(i))) this.makeWay();
     this.adapt();
