@@ -12,7 +12,7 @@ const {chromium} = require("playwright-core");
  * aborted whose stream a script has read to its end.)
  */
 const brokenOff = (request) =>
-  /\/v1\/(simulate|sweep)$/.test(request.url()) &&
+  /\/v1\/(simulate|sweep|identify)\b/.test(request.url()) &&
   request.failure().errorText === "net::ERR_ABORTED";
 
 /**

@@ -333,7 +333,7 @@ test("a file whose columns have other names asks which they are, and is identifi
   const text = (await regular()).replace(/^.*\n/, "clock,wire,piezo\n");
   const page = await visit("?tab=measurement&preset=fig15");
   await page.setInputFiles("#measure-file", asFile(text));
-  await page.waitForSelector("#measure-picker:visible");
+  await page.waitForSelector("#measure-pick-time:enabled");
   assert.match(await page.textContent("#measure-message"), /choose which column is the time/);
   await page.selectOption("#measure-pick-displacement", "wire");
   await page.selectOption("#measure-pick-acceleration", "piezo");

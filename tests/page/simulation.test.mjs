@@ -560,10 +560,17 @@ test("a run is pinned, drawn beside the ones that follow, swapped with them and 
   ])
     assert.ok((await pixels(page, canvas, "pinned")) > 20, canvas);
   assert.match(await page.textContent("#plot-lambda .legend"), /λ₁ pinned/);
+  assert.match(page.url(), /b=0\.015&pinned=preset%3Dfig9$/);
+  const again = await still(new URL(page.url()).search);
+  await again.waitForFunction(() => document.getElementById("pinned-run").textContent);
+  assert.match(await again.textContent("#pinned-run"), /pinned: b = 22\.0 mm, R = 0\.60/);
+  assert.ok((await pixels(again, "#plot-x canvas", "pinned")) > 20, "a link shows the same");
+  await again.close();
   await after(page, () => page.click("#swap"));
   assert.match(await sentence(page), /^b = 22\.0 mm/);
   assert.match(await page.textContent("#pinned-run"), /pinned: b = 15\.0 mm/);
   await page.click("#unpin");
+  assert.doesNotMatch(page.url(), /pinned/);
   assert.equal(await pixels(page, "#plot-x canvas", "pinned"), 0);
   assert.deepEqual(browser.complaints, []);
   await page.close();

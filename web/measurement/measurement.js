@@ -182,7 +182,6 @@ async function take(chosen) {
   for (const node of document.querySelectorAll(".identified")) node.hidden = true;
   const megabytes = (chosen.size / 1e6).toFixed(chosen.size < 1e5 ? 3 : 1);
   $("measure-about").textContent = `${chosen.name}, ${megabytes} MB`;
-  $("measure-picker").hidden = true;
   quoteLine("");
   say("reading …");
   reading = read(chosen);

@@ -206,7 +206,7 @@ const isUnit = (cell) => {
  * The unit that a column's name says, in brackets or behind a blank or underscore; undefined where
  * it says none.
  */
-export function unitIn(name) {
+function unitIn(name) {
   if (Object.hasOwn(spellings, spelling(name))) return spellings[spelling(name)];
   const brackets = /[([]([^)\]]*)/.exec(name);
   if (brackets) return spellings[spelling(brackets[1])];

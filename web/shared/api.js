@@ -27,15 +27,19 @@ async function read(response) {
   return body;
 }
 
-export const get = async (path) => read(await fetch(path));
-
-async function send(path, type, body, signal) {
+/** The response to a request; if it was broken off, who did so knows. */
+async function reach(path, options) {
   try {
-    return await fetch(path, {method: "POST", headers: {"Content-Type": type}, body, signal});
+    return await fetch(path, options);
   } catch {
-    throw new Passing("the server does not answer"); // or it was broken off: who did so knows
+    throw new Passing("the server does not answer");
   }
 }
+
+export const get = async (path) => read(await reach(path));
+
+const send = (path, type, body, signal) =>
+  reach(path, {method: "POST", headers: {"Content-Type": type}, body, signal});
 
 const post = (path, fields, signal) =>
   send(path, "application/json", JSON.stringify(fields), signal);

@@ -4,7 +4,7 @@ import {asCurl} from "./api.js";
 const whole = (path) => new URL(path, location.href.split("?")[0]).href;
 
 /** A request as a Python program that needs nothing but Python. */
-export function asPython(path, fields) {
+function asPython(path, fields) {
   const body = JSON.stringify(fields);
   return [
     "import json, urllib.request",

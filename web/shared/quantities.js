@@ -69,8 +69,8 @@ export const quantities = {
 };
 for (const [name, quantity] of Object.entries(quantities)) quantity.of ??= (p) => p[name] ?? null;
 
-export const besideLambda = ["z", "x_rms_ratio", "share_impacts", "x_max", "synchronised"];
-export const overTwoAxes = Object.keys(quantities);
+const besideLambda = ["z", "x_rms_ratio", "share_impacts", "x_max", "synchronised"];
+const overTwoAxes = Object.keys(quantities);
 const reducedTo = ["x_max", "where", "z"];
 
 /** A quantity of a sweep's points; `where` is that of the axis that a reduction folds. */

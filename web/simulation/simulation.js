@@ -216,7 +216,12 @@ function choosePreset(name) {
 export function query() {
   if (shown === null) return null;
   const view = wantedView ?? (axis.away ? axis.view : null);
-  return [shown, ...(view ? [`view=${viewText(view)}`] : [])].filter(Boolean).join("&");
+  const pinned = pin.query();
+  const more = [
+    view && `view=${viewText(view)}`,
+    pinned !== null && `pinned=${encodeURIComponent(pinned)}`,
+  ];
+  return [shown, ...more].filter(Boolean).join("&");
 }
 
 /** As many digits as a ten-thousandth of what is in view. */
@@ -229,7 +234,9 @@ function viewText([from, to]) {
 export function open(given) {
   const rest = new URLSearchParams(given);
   const view = rest.get("view")?.split(",").map(Number);
-  rest.delete("view");
+  const pinned = rest.get("pinned");
+  for (const name of ["view", "pinned"]) rest.delete(name);
+  pin.restore(pinned, first).catch((error) => say(`the pinned run: ${error.message}`, true));
   if (String(rest) === shown) return;
   wantedView = view?.length === 2 && view[0] < view[1] ? view : null;
   const unknown = request.read(rest);
@@ -267,10 +274,11 @@ export function start({fields, presets: list}, changed, {measure}) {
   details = new Details(axis, () => last, fields);
   chips.start(list, choosePreset);
   pin.start(
-    () => last,
-    (run) => instrument.pin(run),
-    (asked) => {
-      request.read(toQuery(asked));
+    () => last && {...last, query: toQuery(last.asked)},
+    (other) => instrument.pin(other),
+    (query) => {
+      if (query === undefined) return changed();
+      request.read(query);
       run();
     },
   );

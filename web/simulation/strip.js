@@ -29,7 +29,7 @@ const ofRun = [
 ];
 
 /** 0, n - 1, the middle, the quarters, ...: n = 2^k + 1 places, coarse to fine. */
-export function coarseToFine(n) {
+function coarseToFine(n) {
   const order = [0, n - 1];
   for (let step = n - 1; step > 1; step /= 2)
     for (let i = step / 2; i < n; i += step) order.push(i);

@@ -15,7 +15,7 @@ import {
 import {quarters} from "./axes.js";
 
 const startColours = ["c1", "before", "c2", "c4", "c3"];
-export const startColour = (s) => startColours[s % startColours.length];
+const startColour = (s) => startColours[s % startColours.length];
 
 /** Corners of the symbols of the starts but for the first, a disc, in units of its radius. */
 const corners = [

@@ -6,13 +6,13 @@ import {receive} from "./stream.js";
 const pause = 350; // ms of rest before it begins
 const mostPoints = 20000;
 
-/** Whether the points of a layer are as dense in view as those asked for. */
-const suffices = (axis, [from, to], count) => {
-  const {at, borders} = axis;
+/** Whether the points on an axis are as dense in view as those asked for, as far as the whole has any. */
+const suffices = ({at, borders}, whole, [from, to], count) => {
   const inside = at.filter((place) => place >= from && place <= to).length;
-  const covers =
-    borders[0] <= from + 1e-9 * (to - from) && borders.at(-1) >= to - 1e-9 * (to - from);
-  return covers && inside >= 0.6 * count;
+  const least = 1e-9 * (to - from);
+  const begins = borders[0] <= Math.max(from, whole.at[0]) + least;
+  const ends = borders.at(-1) >= Math.min(to, whole.at.at(-1)) - least;
+  return begins && ends && inside >= 0.6 * count;
 };
 
 /** An axis of a request, over what is in view: the middles of so many cells, within the whole. */
@@ -63,7 +63,7 @@ export class Refiner {
     const counts = countsOf(shown, base.starts);
     const third = base.axes[2] ? slice : null;
     const covers = ({data}) =>
-      shown.every((_, i) => suffices(data.axes[i], views[i].view, counts[i]));
+      shown.every((whole, i) => suffices(data.axes[i], whole, views[i].view, counts[i]));
     const there = this.layers.over(slice).findLast(covers)?.data;
     if (!views.some(({zoomed}) => zoomed) || there?.complete) {
       this.stop();
