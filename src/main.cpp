@@ -1,6 +1,7 @@
 // The program `vines`: which subcommands there are, and which of them runs.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include "api/simulate.hpp"
@@ -9,6 +10,16 @@
 #include "program/command.hpp"
 #include "program/tell.hpp"
 #include "report/command.hpp"
+
+namespace {
+
+/// The command that a wrong flag was given to.
+std::string name_of_asked(const CLI::App& app) {
+    const auto asked = app.get_subcommands();
+    return "vines" + (asked.empty() ? "" : " " + asked[0]->get_name());
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
     CLI::App app(
@@ -23,7 +34,14 @@ int main(int argc, char** argv) {
         vines::cli::add_simulate(app), vines::cli::add_identify(app),
         vines::cli::add_sweep(app),    vines::cli::add_merge(app),
         vines::cli::add_openapi(app),  vines::report::add_reproduce(app)};
-    CLI11_PARSE(app, argc, argv);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& asked) {  // --help, --version
+        return app.exit(asked);
+    } catch (const CLI::ParseError& e) {
+        vines::tell(std::string(e.what()) + "; see " + name_of_asked(app) + " --help");
+        return 2;
+    }
     try {
         return std::find_if(
                    commands.begin(), commands.end(),

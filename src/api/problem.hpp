@@ -1,5 +1,4 @@
-// What is wrong with a request, as application/problem+json (RFC 9457), and the parsing of
-// untrusted JSON.
+// What is wrong with a request, as application/problem+json (RFC 9457).
 #pragma once
 
 #include <stdexcept>
@@ -18,16 +17,16 @@ public:
 
     int status;
     std::vector<FieldError> errors;
-    std::string body() const;  ///< the problem document; never throws, whatever bytes are in it
+    /// The problem document; never throws, whatever bytes are in it. request_id: by which the log
+    /// names the request, where it has such a name.
+    std::string body(const std::string& request_id = {}) const;
 };
+
+/// So much of a text that it can be told in a message.
+std::string shortened(const std::string& text);
 
 /// "Unprocessable Content" for 422, and so on.
 std::string_view reason_phrase(int status);
-
-/// An object from JSON text. Problem 400 for anything that is no JSON object, with the place; for
-/// nesting deeper than 16 (deeper ones make the library overflow the stack) and for names that come
-/// twice (of which it would keep the last).
-Json parse_object(std::string_view text);
 
 /// Adds the errors of a nested object to all, at their place in the request.
 void add_errors(

@@ -13,7 +13,8 @@ namespace vines::api {
 struct Stop {
     std::function<bool()> asked = {};
     std::string reason = "deadline";
-    std::string message = "ended by the server's time limit for one request, before tau_end";
+    std::string message =
+        "ended before tau_end by the server's time limit for one request, or because it stops";
     /// Asked while the run is analysed: once true, what takes long is cut short.
     std::function<bool()> analysis_late = {};
     /// Asked while the answer is made up: once true, the parts that are left are null.

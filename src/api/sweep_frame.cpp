@@ -89,8 +89,9 @@ std::string done_line(std::size_t points) {
     return json_line({{"type", "done"}, {"points", points}});
 }
 
-std::string error_line(const std::string& detail, std::size_t points) {
-    return json_line({{"type", "error"}, {"detail", detail}, {"points", points}});
+std::string error_line(int status, const std::string& detail, std::size_t points) {
+    return json_line(
+        {{"type", "error"}, {"status", status}, {"detail", detail}, {"points", points}});
 }
 
 }  // namespace vines::api

@@ -30,7 +30,8 @@ std::string warning_line(const std::string& message);
 
 /// {type: done, points}: so many lines of points, and they are all.
 std::string done_line(std::size_t points);
-/// {type: error, detail, points}: some are missing.
-std::string error_line(const std::string& detail, std::size_t points);
+/// {type: error, status, detail, points}: some are missing; status: 503 where the same request, for
+/// those, will be answered, 500 where the server failed.
+std::string error_line(int status, const std::string& detail, std::size_t points);
 
 }  // namespace vines::api

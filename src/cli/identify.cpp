@@ -1,5 +1,6 @@
 // `vines identify`: a measurement as CSV or JSON.
 #include "api/identify.hpp"
+#include "api/parse_object.hpp"
 
 #include <memory>
 #include <optional>

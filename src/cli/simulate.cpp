@@ -1,5 +1,6 @@
 // `vines simulate`: one run, without the service's deadline and limits.
 #include "api/simulate.hpp"
+#include "api/parse_object.hpp"
 
 #include <memory>
 #include <utility>

@@ -1,5 +1,6 @@
 // `vines sweep`: a sweep or a shard of one into a file, which a later run can complete.
 #include "api/sweep.hpp"
+#include "api/parse_object.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -20,6 +21,7 @@
 #include "cli/stop_signals.hpp"
 #include "cli/sweep_file.hpp"
 #include "program/tell.hpp"
+#include "program/within.hpp"
 
 namespace vines::cli {
 
@@ -122,10 +124,10 @@ Command add_sweep(CLI::App& app) {
         "JOB_COMPLETION_INDEX and --shards");
     command->add_option("--shards", options->shards, "N for --shard auto")
         ->envname("VINES_SHARDS")
-        ->check(CLI::Range(1, 1000000));
+        ->check(within(1, 1000000));
     command->add_option("--threads", options->threads, "threads; 0: one for each core")
         ->envname("VINES_COMPUTE_THREADS")
-        ->check(CLI::Range(0, 1024))
+        ->check(within(0, 1024))
         ->capture_default_str();
     return with_exit_codes(command, [options] { return sweep(*options); });
 }

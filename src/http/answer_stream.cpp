@@ -3,6 +3,7 @@
 #include <chrono>
 #include <exception>
 #include <memory>
+#include <thread>
 #include <utility>
 
 #include "http/log.hpp"
@@ -14,9 +15,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// How soon a client that left is noticed while a run is made.
-constexpr auto presence_look = std::chrono::milliseconds(50);
-
 /// A place for each run, none while its lists are sent. Gives way to what waits for an answer to
 /// begin. One that has begun is finished also while the server is about to stop.
 class AnswerPace : public Pace {
@@ -24,7 +22,10 @@ public:
     AnswerPace(ComputeGate& gate, Writer& out) : gate_(gate), out_(out) {}
     void begin() override {
         place_ = gate_.enter_patiently({});
-        if (!place_) place_ = gate_.enter();
+        while (!place_ && out_.present() && !gate_.ends_all()) {
+            place_ = gate_.enter();
+            if (!place_) std::this_thread::sleep_for(presence_look);  // the queue is full
+        }
     }
     void end() override { place_.reset(); }
     bool stop_or_yield() override {
@@ -47,8 +48,11 @@ private:
     bool present_ = true;
 };
 
+// What is kept of a run while its lists are made and sent: measured at 5 to 7 MB.
+constexpr std::size_t held_by_answer = 8 << 20;
+
 /// False where it was broken off.
-bool write(api::SimulateAnswer answer, ComputeGate& gate, Writer& out) {
+bool write(api::SimulateAnswer answer, const std::string& id, ComputeGate& gate, Writer& out) {
     give_memory_back();  // that of the run
     AnswerPace pace(gate, out);
     try {
@@ -58,24 +62,26 @@ bool write(api::SimulateAnswer answer, ComputeGate& gate, Writer& out) {
         return true;
     } catch (const api::BrokenOff&) {
     } catch (...) {
-        log_failure("/v1/simulate", std::current_exception());
+        log_failure("/v1/simulate", id, std::current_exception());
     }
     return false;
 }
 
 }  // namespace
 
-Response stream_answer(api::SimulateAnswer answer, ComputeGate& gate) {
+Response stream_answer(
+    api::SimulateAnswer answer, const std::string& request_id, ComputeGate& gate) {
     // Shared, because a response can be copied.
     auto kept = std::make_shared<api::SimulateAnswer>(std::move(answer));
     return {
         .headers = {{"Cache-Control", "no-store"}},
         .stream =
-            [kept, &gate](Writer& out) {
-                const bool whole = write(std::move(*kept), gate, out);
+            [kept, request_id, &gate](Writer& out) {
+                const bool whole = write(std::move(*kept), request_id, gate, out);
                 give_memory_back();
                 return whole;
             },
+        .held = held_by_answer,
         .compressible = true};
 }
 

@@ -2,6 +2,8 @@
 // its client leaves.
 #pragma once
 
+#include <string>
+
 #include "api/simulate.hpp"
 #include "http/compute_gate.hpp"
 #include "http/message.hpp"
@@ -9,6 +11,7 @@
 namespace vines::http {
 
 /// The gate outlives the response.
-Response stream_answer(api::SimulateAnswer answer, ComputeGate& gate);
+Response stream_answer(
+    api::SimulateAnswer answer, const std::string& request_id, ComputeGate& gate);
 
 }  // namespace vines::http

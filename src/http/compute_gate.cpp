@@ -1,49 +1,75 @@
 #include "http/compute_gate.hpp"
 
+#include <chrono>
+
 namespace vines::http {
 
-// Nobody polls: whatever lets somebody pass is changed under the mutex and told to all. There are
-// two kinds of waiting, so telling one of them might wake the wrong one.
+namespace {
 
-ComputeGate::Place ComputeGate::enter() {
-    std::unique_lock lock(mutex_);
-    if (free_ == 0 || urgent_ > 0) {
-        if (urgent_ >= limits_.waiting) return nullptr;
-        ++urgent_;
-        changed_.wait(lock, [this] { return free_ > 0; });
-        --urgent_;
+// How soon one that has given up its wait makes room in the queue.
+constexpr auto queue_look = std::chrono::milliseconds(50);
+
+}  // namespace
+
+/// Each place that is free goes to the one whose turn it is, who alone is woken.
+void ComputeGate::hand_out() {
+    while (free_ > 0 && !(urgent_.empty() && patient_.empty())) {
+        Queue& queue = urgent_.empty() ? patient_ : urgent_;
+        Waiting& next = *queue.front();
+        queue.pop_front();
+        --free_;
+        next.enters = true;
+        next.changed.notify_one();
     }
-    --free_;
-    // Patient work that was told of both places before this one was taken went back to sleep.
-    if (free_ > 0 && urgent_ == 0) changed_.notify_all();
-    return Place(this);
+    wanted_ = !urgent_.empty();
+    wanted_patiently_ = !patient_.empty();
+}
+
+/// Of one whose wait is over: whether it has a place.
+bool ComputeGate::drop_out(Queue& queue, Waiting& waiting) {
+    if (waiting.enters) return true;
+    queue.remove(&waiting);
+    hand_out();
+    return false;
+}
+
+ComputeGate::Place ComputeGate::enter(const std::function<bool()>& gives_up) {
+    std::unique_lock lock(mutex_);
+    if (free_ == 0 && static_cast<int>(urgent_.size()) >= limits_.waiting) return nullptr;
+    Waiting waiting;
+    urgent_.push_back(&waiting);
+    hand_out();
+    bool given_up = false;
+    while (!waiting.enters && !given_up) {
+        waiting.changed.wait_for(lock, queue_look, [&waiting] { return waiting.enters; });
+        if (waiting.enters || !gives_up) continue;
+        lock.unlock();
+        given_up = gives_up();
+        lock.lock();
+    }
+    return Place(drop_out(urgent_, waiting) ? this : nullptr);
 }
 
 ComputeGate::Place ComputeGate::enter_patiently(const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
-    const long ticket = next_ticket_++;
-    tickets_.insert(ticket);
-    patient_ = static_cast<int>(tickets_.size());
+    Waiting waiting;
+    patient_.push_back(&waiting);
+    hand_out();
     // The wait registers with the token before it looks, so that a stop at any time ends it. The
     // one who stops must not hold the mutex, and has no way to.
-    const bool passes = changed_.wait(lock, stop, [this, ticket] {
-        return closed_to_sweeps_ || (free_ > 0 && urgent_ == 0 && ticket == *tickets_.begin());
-    });
-    tickets_.erase(ticket);
-    patient_ = static_cast<int>(tickets_.size());
-    const bool enters = passes && !closed_to_sweeps_;
-    if (enters) --free_;
-    // The next one was told of its place when it was not yet its turn.
-    if (free_ > 0 && !tickets_.empty()) changed_.notify_all();
-    return Place(enters ? this : nullptr);
+    waiting.changed.wait(
+        lock, stop, [this, &waiting] { return waiting.enters || closed_to_sweeps_; });
+    if (!drop_out(patient_, waiting)) return nullptr;
+    if (!closed_to_sweeps_) return Place(this);
+    ++free_;
+    hand_out();
+    return nullptr;
 }
 
 void ComputeGate::leave() {
-    {
-        const std::lock_guard lock(mutex_);
-        ++free_;
-    }
-    changed_.notify_all();
+    const std::lock_guard lock(mutex_);
+    ++free_;
+    hand_out();
 }
 
 ComputeGate::Room ComputeGate::enter_sweep() {
@@ -59,11 +85,9 @@ void ComputeGate::leave_sweep() {
 }
 
 void ComputeGate::close_to_sweeps() {
-    {
-        const std::lock_guard lock(mutex_);
-        closed_to_sweeps_ = true;
-    }
-    changed_.notify_all();
+    const std::lock_guard lock(mutex_);
+    closed_to_sweeps_ = true;
+    for (Waiting* waiting : patient_) waiting->changed.notify_one();
 }
 
 }  // namespace vines::http

@@ -8,9 +8,10 @@
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
+#include <functional>
+#include <list>
 #include <memory>
 #include <mutex>
-#include <set>
 #include <stop_token>
 #include <thread>
 
@@ -38,15 +39,16 @@ public:
 
     /// A place to compute in, or none (null). It is given back when it goes.
     using Place = std::unique_ptr<ComputeGate, Leave>;
-    /// For urgent work: waits for a place; none where the queue is full.
-    Place enter();
+    /// For urgent work: waits for a place, first come, first served; none where the queue is full,
+    /// or once it is given up, which is asked now and then.
+    Place enter(const std::function<bool()>& gives_up = {});
     /// For patient work: waits for a place behind all urgent work, and behind the patient work that
     /// came before; none once it is stopped or the gate is closed to sweeps.
     Place enter_patiently(const std::stop_token& stop);
     /// Whether patient work should give its place back and enter again.
-    bool wanted() const { return urgent_ > 0; }
+    bool wanted() const { return wanted_; }
     /// Whether other patient work waits for one.
-    bool wanted_patiently() const { return patient_ > 0; }
+    bool wanted_patiently() const { return wanted_patiently_; }
 
     /// Room for one sweep, or none (null) where there are as many as may be, or the gate is closed
     /// to them.
@@ -58,22 +60,29 @@ public:
     void close_to_sweeps();
     bool closed_to_sweeps() const { return closed_to_sweeps_; }
 
+    /// From now on all work ends at its next look, with what it has.
+    void end_all() { ends_all_ = true; }
+    bool ends_all() const { return ends_all_; }
+
 private:
+    struct Waiting {
+        std::condition_variable_any changed = {};
+        bool enters = false;  ///< its place is taken already
+    };
+    using Queue = std::list<Waiting*>;
+
     void leave();
     void leave_sweep();
+    void hand_out();
+    bool drop_out(Queue& queue, Waiting& waiting);
 
     const ComputeLimits limits_;
     std::mutex mutex_;
-    // One of: a place is free, the last urgent one that waited has got its place, the gate
-    // is closed to sweeps.
-    std::condition_variable_any changed_;
-    int free_, sweeps_ = 0;
-    long next_ticket_ = 0;
-    std::set<long> tickets_;  ///< of the patient work that waits
+    int free_, sweeps_ = 0;  // where a place is free, nobody waits
+    Queue urgent_, patient_;
     // Changed under the mutex; read without it by work that only takes a look.
-    std::atomic<int> urgent_ = 0;   ///< waiting
-    std::atomic<int> patient_ = 0;  ///< waiting
-    std::atomic<bool> closed_to_sweeps_ = false;
+    std::atomic<bool> wanted_ = false, wanted_patiently_ = false;
+    std::atomic<bool> closed_to_sweeps_ = false, ends_all_ = false;
 };
 
 }  // namespace vines::http

@@ -11,38 +11,24 @@
 #include <stdexcept>
 #include <vector>
 
+#include "http/header_text.hpp"
+
 namespace vines::http {
 
 namespace {
 
-/// Takes what stands before the separator, without blanks around it, from the front of a text.
-std::string_view next(std::string_view& text, char separator) {
-    std::string_view part = text.substr(0, text.find(separator));
-    text.remove_prefix(std::min(text.size(), part.size() + 1));
-    constexpr std::string_view blanks = " \t";
-    part.remove_prefix(std::min(part.size(), part.find_first_not_of(blanks)));
-    return part.substr(0, part.find_last_not_of(blanks) + 1);
-}
-
-std::string lower_case(std::string_view text) {
-    std::string lower(text);
-    for (char& c : lower)
-        if (c >= 'A' && c <= 'Z') c += 'a' - 'A';
-    return lower;
-}
-
-/// An element of Accept-Encoding: "gzip;q=0.5". RFC 9110, 12.4.2: a weight of 0 refuses, any other
-/// accepts. One that is no number is taken for 0: what is not compressed anyone can read.
+/// An element of Accept-Encoding: "gzip;q=0.5". RFC 9110, 12.4.2: a weight of 0 refuses. One that
+/// is no number is taken for 0: what is not compressed anyone can read.
 struct Coding {
     std::string name;
-    bool accepted = true;
+    double weight = 1;
 };
 Coding coding_of(std::string_view element) {
-    Coding coding{lower_case(next(element, ';'))};
+    Coding coding{lower_case(next_part(element, ';'))};
     while (!element.empty()) {
-        const std::string parameter = lower_case(next(element, ';'));
+        const std::string parameter = lower_case(next_part(element, ';'));
         if (parameter.rfind("q=", 0) == 0)
-            coding.accepted = std::strtod(parameter.c_str() + 2, nullptr) > 0;
+            coding.weight = std::strtod(parameter.c_str() + 2, nullptr);
     }
     return coding;
 }
@@ -102,14 +88,17 @@ std::string Gzip::add(std::string_view text, bool last) {
 std::string gzip(const std::string& text) { return Gzip().add(text, true); }
 
 bool accepts_gzip(std::string_view accept_encoding) {
-    std::optional<bool> by_name, by_star;
+    std::optional<double> by_name, by_star;
+    double identity = 0;  // unless it is named, it is as good as nothing else
     while (!accept_encoding.empty()) {
-        const std::string_view element = next(accept_encoding, ',');
+        const std::string_view element = next_part(accept_encoding, ',');
         const Coding coding = coding_of(element);
-        if (coding.name == "gzip" || coding.name == "x-gzip") by_name = coding.accepted;
-        if (coding.name == "*") by_star = coding.accepted;
+        if (coding.name == "gzip" || coding.name == "x-gzip") by_name = coding.weight;
+        if (coding.name == "*") by_star = coding.weight;
+        if (coding.name == "identity") identity = coding.weight;
     }
-    return by_name.value_or(by_star.value_or(false));
+    const double weight = by_name.value_or(by_star.value_or(0));
+    return weight > 0 && weight >= identity;
 }
 
 std::string entity_tag(const std::string& body) {

@@ -25,7 +25,7 @@ private:
 };
 
 /// Whether a request with this header Accept-Encoding takes gzip (RFC 9110, 12.5.3): by its name,
-/// or by "*" where its name is not there. Empty: no.
+/// or by "*" where its name is not there, and would not rather have the body as it is. Empty: no.
 bool accepts_gzip(std::string_view accept_encoding);
 
 /// The header ETag of a body, by a hash after FNV-1a, of 64 bits at a time: tells its versions

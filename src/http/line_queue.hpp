@@ -18,7 +18,7 @@ public:
             text_ += '\n';
             ++count_;
         }
-        changed_.notify_one();
+        changed_.notify_all();
     }
     /// No line follows.
     void finish() {
@@ -26,7 +26,7 @@ public:
             const std::lock_guard lock(mutex_);
             finished_ = true;
         }
-        changed_.notify_one();
+        changed_.notify_all();
     }
 
     struct Taken {
@@ -38,10 +38,26 @@ public:
     Taken take(std::chrono::milliseconds at_most) {
         std::unique_lock lock(mutex_);
         changed_.wait_for(lock, at_most, [this] { return !text_.empty() || finished_; });
-        return {std::exchange(text_, {}), count_, finished_};
+        Taken taken{std::exchange(text_, {}), count_, finished_};
+        lock.unlock();
+        changed_.notify_all();
+        return taken;
+    }
+
+    /// Whether the lines come faster than they are taken: who computes more should wait.
+    bool is_full() {
+        const std::lock_guard lock(mutex_);
+        return text_.size() > most_;
+    }
+    /// Until that is over, for so long at most.
+    void wait_for_room(std::chrono::milliseconds at_most) {
+        std::unique_lock lock(mutex_);
+        changed_.wait_for(lock, at_most, [this] { return text_.size() <= most_; });
     }
 
 private:
+    static constexpr std::size_t most_ = 1 << 20;  // bytes
+
     std::mutex mutex_;
     std::condition_variable changed_;
     std::string text_;

@@ -1,12 +1,15 @@
 #include "http/log.hpp"
 
 #include <fmt/chrono.h>
-#include <spdlog/sinks/stdout_sinks.h>
+#include <poll.h>
+#include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <ctime>
 #include <memory>
+#include <mutex>
 #include <nlohmann/json.hpp>
 
 namespace vines::http {
@@ -15,42 +18,110 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Whatever bytes a path has in it.
-std::string text_of(const Json& line) {
-    return line.dump(-1, ' ', false, Json::error_handler_t::replace);
+// With a path of so many bytes, all of which may have to be escaped, a line fits into half a page.
+constexpr std::size_t longest_path = 200, longest_method = 20;
+
+LogFormat format = LogFormat::json;
+
+/// In the order in which a reader wants them. Whatever bytes a path has in it.
+std::string line_of(const char* level, Json fields) {
+    const std::string time = fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr)));
+    const auto text = [](const Json& value) {
+        return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    };
+    if (format == LogFormat::json) {
+        Json line = {{"time", time}, {"level", level}};
+        line.update(fields);
+        return text(line) + "\n";
+    }
+    std::string line = fmt::format("{} {:7}", time, level);
+    for (const auto& [name, value] : fields.items())
+        line += fmt::format(" {}={}", name, text(value));
+    return line + "\n";
 }
+
+double rounded(double ms) { return std::round(ms * 1000) / 1000; }
+
+const char* level_of(int status) {
+    if (status < 400) return "info";
+    return status < 500 || status == 503 ? "warning" : "error";
+}
+
+/// Throws nothing: a line that cannot be written is no reason to fail.
+void log(const char* level, Json fields) {
+    try {
+        spdlog::info(line_of(level, std::move(fields)));
+    } catch (...) {}
+}
+
+/// Standard error, as far as somebody reads it: a full pipe would hold every thread that writes to
+/// it. What finds no room is dropped, and counted in a line once there is some.
+class Unhindered : public spdlog::sinks::base_sink<std::mutex> {
+protected:
+    void sink_it_(const spdlog::details::log_msg& message) override {
+        if (!has_room()) {
+            ++dropped_;
+            return;
+        }
+        if (dropped_ > 0)
+            write(line_of("warning", {{"what", "lines were dropped"}, {"lines", dropped_}}));
+        dropped_ = 0;
+        write({message.payload.data(), message.payload.size()});
+    }
+    void flush_() override {}
+
+private:
+    /// For two lines: a pipe is writable as long as there is room for a page, and lines are
+    /// shorter.
+    static bool has_room() {
+        pollfd state{STDERR_FILENO, POLLOUT, 0};
+        return ::poll(&state, 1, 0) > 0 && (state.revents & POLLOUT);
+    }
+    static void write(std::string_view text) {
+        static_cast<void>(!::write(STDERR_FILENO, text.data(), text.size()));
+    }
+
+    std::size_t dropped_ = 0;
+};
 
 }  // namespace
 
-void start_log() {
-    auto log = std::make_shared<spdlog::logger>(
-        "vines", std::make_shared<spdlog::sinks::stderr_sink_mt>());
-    log->set_pattern("%v");  // the lines are JSON already
-    log->flush_on(spdlog::level::info);
+void start_log(LogFormat chosen) {
+    format = chosen;
+    auto log = std::make_shared<spdlog::logger>("vines", std::make_shared<Unhindered>());
     spdlog::set_default_logger(log);
 }
 
-void end_log() { spdlog::shutdown(); }
-
 void log_served(const Served& served) {
-    spdlog::info(text_of(
-        {{"time", fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr)))},
-         {"level", "info"},
-         {"method", served.method},
-         {"path", served.path},
-         {"status", served.status},
-         {"ms", std::round(served.ms * 1000) / 1000},
-         {"bytes", served.bytes}}));
+    const bool probe = served.path == "/livez" || served.path == "/readyz" ||
+                       served.path == "/healthz" || served.path == "/metrics";
+    if (probe && served.status == 200) return;
+    Json line = {
+        {"method", served.method.substr(0, longest_method)},
+        {"path", served.path.substr(0, longest_path)},
+        {"status", served.status},
+        {"ms", rounded(served.ms)},
+        {"bytes", served.bytes},
+        {"client", served.client},
+        {"request_id", served.id}};
+    for (const auto& [name, ms] : served.timing) line[name + "_ms"] = rounded(ms);
+    if (served.left) line["client_left"] = true;
+    log(level_of(served.status), std::move(line));
 }
 
-void log_failure(const std::string& path, const std::exception_ptr& thrown) {
+void log_failure(
+    const std::string& path, const std::string& request_id, const std::exception_ptr& thrown) {
+    std::string what = "no std::exception";
     try {
         std::rethrow_exception(thrown);
     } catch (const std::exception& e) {
-        spdlog::error(text_of({{"level", "error"}, {"path", path}, {"what", e.what()}}));
-    } catch (...) {
-        spdlog::error(text_of({{"level", "error"}, {"path", path}, {"what", "no std::exception"}}));
-    }
+        what = e.what();
+    } catch (...) {}
+    log("error", {{"path", path.substr(0, longest_path)},
+                  {"request_id", request_id},
+                  {"what", what.substr(0, longest_path)}});
 }
+
+void log_event(const std::string& what) { log("info", {{"what", what}}); }
 
 }  // namespace vines::http

@@ -4,24 +4,33 @@
 #include <exception>
 #include <string>
 
+#include "http/stopwatch.hpp"
+
 namespace vines::http {
 
+enum class LogFormat { json, text };
+
 /// Makes the lines below go to stderr, each at once.
-void start_log();
-/// Writes what is left; nothing may be logged any more.
-void end_log();
+void start_log(LogFormat format);
 
 /// One request, and its answer.
 struct Served {
-    std::string method, path;
+    std::string id, client, method, path;
     int status;
-    double ms;          ///< from its head to its answer's end
-    std::size_t bytes;  ///< of the answer's body; 0 where it was streamed
+    double ms;          ///< from its last byte to its answer's
+    Timing timing;      ///< of its computation
+    std::size_t bytes;  ///< sent
+    bool left;          ///< the client, before all was sent
 };
+/// A line, of the level that the status stands for; none of a probe that went well.
 void log_served(const Served& served);
 
 /// Why a request failed. Throws nothing, whatever was thrown: an exception here would end the
 /// process.
-void log_failure(const std::string& path, const std::exception_ptr& thrown);
+void log_failure(
+    const std::string& path, const std::string& request_id, const std::exception_ptr& thrown);
+
+/// What the service does by itself.
+void log_event(const std::string& what);
 
 }  // namespace vines::http

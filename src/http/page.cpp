@@ -7,8 +7,8 @@
 #include <string_view>
 #include <utility>
 
-#include "api/problem.hpp"
 #include "http/assets.hpp"
+#include "http/problem_response.hpp"
 
 namespace vines::http {
 
@@ -37,10 +37,7 @@ Response file_response(std::string_view path, std::string body, const std::strin
     return {
         .content_type = content_type_of(path),
         .body = std::move(body),
-        .headers = {
-            {"Content-Security-Policy", policy},
-            {"X-Content-Type-Options", "nosniff"},
-            {"Referrer-Policy", "no-referrer"}}};
+        .headers = {{"Content-Security-Policy", policy}, {"Referrer-Policy", "no-referrer"}}};
 }
 
 std::vector<Route> embedded_routes(const std::string& policy) {
@@ -58,12 +55,21 @@ std::vector<Route> embedded_routes(const std::string& policy) {
     return routes;
 }
 
+/// Neither a link nor anything but a file.
+bool is_plain(const std::filesystem::path& file) {
+    std::error_code ignored;
+    return std::filesystem::symlink_status(file, ignored).type() ==
+           std::filesystem::file_type::regular;
+}
+
 /// Of a file as it is whenever it is asked for.
 Route file_route(
     const std::filesystem::path& file, const std::string& path, const std::string& policy) {
     return {.method = "GET", .path = path, .answer = [=](const Request&) {
-                std::ifstream in(file, std::ios::binary);
-                if (!in) throw api::Problem(404, "there is no " + path);
+                // A link could lead out of the folder, and a pipe would be waited for.
+                std::ifstream in;
+                if (is_plain(file)) in.open(file, std::ios::binary);
+                if (!in.is_open()) return problem_response(404, "there is no " + path);
                 return file_response(
                     path == "/" ? "index.html" : path,
                     std::string(std::istreambuf_iterator<char>(in), {}), policy);
@@ -82,7 +88,7 @@ std::vector<Route> folder_routes(const std::filesystem::path& folder, const std:
     std::vector<Route> routes{file_route(folder / "index.html", "/", policy)};
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
         const std::filesystem::path name = entry.path().lexically_relative(folder);
-        if (is_of_page(name))
+        if (is_of_page(name) && is_plain(entry.path()))
             routes.push_back(file_route(entry.path(), "/" + name.generic_string(), policy));
     }
     return routes;

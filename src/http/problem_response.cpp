@@ -6,7 +6,8 @@ Response problem_response(const api::Problem& problem) {
     Response response{
         .status = problem.status,
         .content_type = "application/problem+json",
-        .body = problem.body()};
+        .body = problem.body(),
+        .problem = problem};
     if (problem.status == 503) response.headers.emplace_back("Retry-After", "1");
     return response;
 }

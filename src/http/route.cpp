@@ -5,14 +5,14 @@
 namespace vines::http {
 
 const Route* find_route(
-    const std::vector<Route>& routes, const std::string& method, const std::string& path) {
+    const std::vector<Route>& routes, std::string_view method, std::string_view path) {
     for (const Route& r : routes)
         if (r.path == path && (r.method == method || (r.method == "GET" && method == "HEAD")))
             return &r;
     return nullptr;
 }
 
-std::string methods_at(const std::vector<Route>& routes, const std::string& path) {
+std::string methods_at(const std::vector<Route>& routes, std::string_view path) {
     std::vector<std::string> methods;
     for (const Route& r : routes) {
         if (r.path != path) continue;

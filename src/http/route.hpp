@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "http/message.hpp"
@@ -14,13 +15,15 @@ struct Route {
     std::string path;
     std::function<Response(const Request&)> answer;
     std::size_t body_limit = 0;  ///< bytes, where it is larger than the server's own
+    /// Small and without any computing: answered however busy the server is.
+    bool light = false;
 };
 
 /// The route that takes this method at this path; null where none does.
 const Route* find_route(
-    const std::vector<Route>& routes, const std::string& method, const std::string& path);
+    const std::vector<Route>& routes, std::string_view method, std::string_view path);
 
 /// The methods that a path takes, as the header Allow lists them; empty where there is nothing.
-std::string methods_at(const std::vector<Route>& routes, const std::string& path);
+std::string methods_at(const std::vector<Route>& routes, std::string_view path);
 
 }  // namespace vines::http

@@ -3,14 +3,19 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <functional>
+#include <memory>
 
 #include "api/identify.hpp"
 #include "api/json_text.hpp"
 #include "api/openapi.hpp"
+#include "api/parse_object.hpp"
 #include "api/presets.hpp"
 #include "api/schema/parameters.hpp"
 #include "api/simulate.hpp"
 #include "http/answer_stream.hpp"
+#include "http/encoding.hpp"
+#include "http/end_of_work.hpp"
 #include "http/memory.hpp"
 #include "http/page.hpp"
 #include "http/problem_response.hpp"
@@ -41,46 +46,20 @@ Response limited_response(Json answer, std::size_t limit) {
     return {.body = std::move(text)};
 }
 
+/// The same with the time of each part of the work, whose last one, the solution, is just over.
+Response timed_response(Json answer, std::size_t limit, Stopwatch& watch) {
+    watch.lap("solve");
+    Response response = limited_response(std::move(answer), limit);
+    watch.lap("encode");
+    response.timing = watch.take();
+    return response;
+}
+
 /// A place to compute in, or Problem 503.
-ComputeGate::Place place_in(ComputeGate& gate) {
-    if (ComputeGate::Place place = gate.enter()) return place;
+ComputeGate::Place place_in(ComputeGate& gate, const Request& request) {
+    if (ComputeGate::Place place = gate.enter(request.left)) return place;
     throw Problem(
         503, "as many requests as the server takes are waiting already; try again in a second");
-}
-
-// A run that its deadline ends is analysed and made up into an answer in this share of it more, the
-// first half of that for the analysis.
-constexpr double time_to_write = 0.2;
-
-/// Ends what takes longer than so many seconds from now on.
-api::Stop stop_after(double seconds) {
-    using Clock = std::chrono::steady_clock;
-    const auto now = Clock::now();
-    const std::chrono::duration<double> time(seconds);
-    api::Stop stop;
-    stop.asked = [deadline = now + time] { return Clock::now() > deadline; };
-    stop.analysis_late = [deadline = now + (1 + time_to_write / 2) * time] {
-        return Clock::now() > deadline;
-    };
-    stop.late = [deadline = now + (1 + time_to_write) * time] { return Clock::now() > deadline; };
-    return stop;
-}
-
-Response simulate(const Json& object, const RouteOptions& options, ComputeGate& gate) {
-    api::SimulateRequest request = api::read_simulate_request(object);
-    const ComputeGate::Place place = place_in(gate);
-    api::SimulateAnswer answer = api::simulate_in_parts(
-        std::move(request), stop_after(options.deadline), options.answer_limit,
-        options.most_kept_impacts);
-    if (answer.run) return stream_answer(std::move(answer), gate);
-    return limited_response(std::move(answer.json), options.answer_limit);
-}
-
-Response manifold(const Json& object, const RouteOptions& options, ComputeGate& gate) {
-    const api::ManifoldRequest request = api::read_manifold_request(object);
-    const ComputeGate::Place place = place_in(gate);
-    return limited_response(
-        api::manifold_answer(request, stop_after(options.deadline)), options.answer_limit);
 }
 
 Json body_of(const Request& r) {
@@ -89,17 +68,72 @@ Json body_of(const Request& r) {
     return api::parse_object(r.body);
 }
 
+/// The fields of a GET or a POST.
+Json fields_of(const Request& r, const api::FieldTable& table) {
+    return r.method == "POST" ? body_of(r) : api::from_query(table, r.query);
+}
+
+/// The same requests to the same version have the same answer.
+std::string tag_of(const Request& r, const Json& fields) {
+    return entity_tag(r.path + " " + api::version() + " " + fields.dump());
+}
+
+Response simulate(const Request& r, const RouteOptions& options, ComputeGate& gate) {
+    Stopwatch watch;
+    const ComputeGate::Place place = place_in(gate, r);
+    watch.lap("queue");
+    const Json fields = fields_of(r, api::simulate_fields());
+    const std::string tag = tag_of(r, fields);
+    api::SimulateRequest request = api::read_simulate_request(fields);
+    if (r.knows(tag)) return {.status = 304, .tag = tag};
+    watch.lap("parse");
+    const api::Stop stop = end_of_work(options.deadline, r, gate);
+    api::SimulateAnswer answer = api::simulate_in_parts(
+        std::move(request), stop, options.answer_limit, options.most_kept_impacts);
+    if (answer.run) {
+        watch.lap("solve");
+        Response response = stream_answer(std::move(answer), r.id, gate);
+        response.timing = watch.take();
+        return response;
+    }
+    Response response = timed_response(std::move(answer.json), options.answer_limit, watch);
+    if (!stop.asked()) response.tag = tag;  // another time it may get further
+    return response;
+}
+
+Response manifold(const Request& r, const RouteOptions& options, ComputeGate& gate) {
+    Stopwatch watch;
+    const ComputeGate::Place place = place_in(gate, r);
+    watch.lap("queue");
+    const api::ManifoldRequest request =
+        api::read_manifold_request(fields_of(r, api::manifold_fields()));
+    watch.lap("parse");
+    return timed_response(
+        api::manifold_answer(request, end_of_work(options.deadline, r, gate)), options.answer_limit,
+        watch);
+}
+
+Response sweep(const Request& r, const RouteOptions& options, ComputeGate& gate) {
+    const ComputeGate::Place place = place_in(gate, r);  // to read the request
+    return stream_sweep(
+        api::read_sweep_request(body_of(r), options.sweep_points), options.sweep_deadline, r.id,
+        gate);
+}
+
 /// A CSV file with the fields in the query, or JSON with all in the body.
 Response identify(const Request& r, const RouteOptions& options, ComputeGate& gate) {
+    Stopwatch watch;
+    const ComputeGate::Place place = place_in(gate, r);
+    watch.lap("queue");
+    const api::Stop stop = end_of_work(options.deadline, r, gate);
     const bool csv =
         r.content_type.rfind("text/csv", 0) == 0 || r.content_type.rfind("text/plain", 0) == 0;
     const api::IdentifyRequest request =
         csv ? api::read_identify_request(api::from_query(api::identify_fields(), r.query), r.body)
             : api::read_identify_request(body_of(r));
-    const ComputeGate::Place place = place_in(gate);
-    return limited_response(
-        api::identify_answer(request, {.stop = stop_after(options.deadline).asked}),
-        options.answer_limit);
+    watch.lap("parse");
+    return timed_response(
+        api::identify_answer(request, {.stop = stop.asked}), options.answer_limit, watch);
 }
 
 /// A route whose answer may throw a Problem.
@@ -116,28 +150,29 @@ Route route(std::string method, std::string path, std::function<Response(const R
         }};
 }
 
+/// One that is answered however busy the server is.
+Route light(std::string method, std::string path, std::function<Response(const Request&)> answer) {
+    Route made = route(std::move(method), std::move(path), std::move(answer));
+    made.light = true;
+    return made;
+}
+
 }  // namespace
 
 std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate) {
     std::vector<Route> routes;
-    routes.push_back(route("GET", "/v1/simulate", [options, &gate](const Request& r) {
-        return simulate(api::from_query(api::simulate_fields(), r.query), options, gate);
-    }));
-    routes.push_back(route("POST", "/v1/simulate", [options, &gate](const Request& r) {
-        return simulate(body_of(r), options, gate);
-    }));
-    routes.push_back(route("GET", "/v1/manifold", [options, &gate](const Request& r) {
-        return manifold(api::from_query(api::manifold_fields(), r.query), options, gate);
-    }));
-    routes.push_back(route("POST", "/v1/manifold", [options, &gate](const Request& r) {
-        return manifold(body_of(r), options, gate);
-    }));
-    routes.push_back(route("POST", "/v1/sweep", [options, &gate](const Request& r) {
-        return stream_sweep(api::read_sweep_request(body_of(r), options.sweep_points), gate);
-    }));
-    routes.push_back(route("POST", "/v1/identify", [options, &gate](const Request& r) {
-        return identify(r, options, gate);
-    }));
+    using Computation = Response (*)(const Request&, const RouteOptions&, ComputeGate&);
+    const auto compute = [&](const char* method, const char* path, Computation answer) {
+        routes.push_back(route(method, path, [answer, options, &gate](const Request& r) {
+            return answer(r, options, gate);
+        }));
+    };
+    for (const char* method : {"GET", "POST"}) {
+        compute(method, "/v1/simulate", simulate);
+        compute(method, "/v1/manifold", manifold);
+    }
+    compute("POST", "/v1/sweep", sweep);
+    compute("POST", "/v1/identify", identify);
     routes.back().body_limit = options.record_limit;
     routes.push_back(route("GET", "/v1/presets", [](const Request&) {
         return json_response(api::describe_presets());
@@ -151,12 +186,12 @@ std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate) {
     // about to stop.
     for (const char* path : {"/healthz", "/livez"})
         routes.push_back(
-            route("GET", path, [](const Request&) { return json_response({{"status", "ok"}}); }));
-    routes.push_back(route("GET", "/readyz", [&gate](const Request&) {
+            light("GET", path, [](const Request&) { return json_response({{"status", "ok"}}); }));
+    routes.push_back(light("GET", "/readyz", [&gate](const Request&) {
         if (gate.closed_to_sweeps()) throw Problem(503, "the server is stopping");
         return json_response({{"status", "ok"}});
     }));
-    routes.push_back(route("GET", "/version", [](const Request&) {
+    routes.push_back(light("GET", "/version", [](const Request&) {
         return json_response({{"name", "vines"}, {"version", api::version()}});
     }));
     for (Route& file : page_routes(options.page)) routes.push_back(std::move(file));

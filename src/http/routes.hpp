@@ -13,6 +13,7 @@ namespace vines::http {
 
 struct RouteOptions {
     double deadline = 30;                  ///< seconds of computing for one request
+    double sweep_deadline = 3600;          ///< seconds of one sweep's stream
     std::size_t sweep_points = 100000;     ///< of one sweep, at most
     std::size_t record_limit = 64 << 20;   ///< bytes of a measurement sent to /v1/identify
     std::size_t answer_limit = 128 << 20;  ///< bytes of an answer's JSON

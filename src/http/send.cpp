@@ -1,5 +1,7 @@
 #include "http/send.hpp"
 
+#include <fmt/format.h>
+
 #include <memory>
 
 #include "http/encoding.hpp"
@@ -46,56 +48,75 @@ bool write_gzipped(const Response& response, Writer& out) {
     return response.stream(writer) && writer.end();
 }
 
+void send_stream(const Head& head, httplib::Response& out, Response response) {
+    const bool zip = response.compressible && accepts_gzip(head.header("accept-encoding"));
+    if (response.compressible) out.set_header("Vary", "Accept-Encoding");
+    if (zip) out.set_header("Content-Encoding", "gzip");
+    set_head(out, response);
+    const std::string type = response.content_type;
+    auto provide = [response = std::move(response), zip](std::size_t, httplib::DataSink& sink) {
+        SinkWriter writer(sink);
+        const bool whole = zip ? write_gzipped(response, writer) : response.stream(writer);
+        if (whole) sink.done();
+        return whole;
+    };
+    if (head.takes_chunks) out.set_chunked_content_provider(type, std::move(provide));
+    else out.set_content_provider(type, std::move(provide));
+}
+
+std::string server_timing(const Timing& timing) {
+    std::string text;
+    for (const auto& [name, ms] : timing)
+        text += fmt::format("{}{};dur={:.3f}", text.empty() ? "" : ", ", name, ms);
+    return text;
+}
+
+/// Whether the client has what the tag names.
+bool is_known(const Head& head, const std::string& tag) {
+    return head.header("if-none-match").find(tag) != std::string_view::npos;
+}
+
 }  // namespace
 
-void send(const httplib::Request& request, httplib::Response& out, Response response, bool close) {
-    if (request.method == "GET" && response.status == 200) {
-        const std::string tag = entity_tag(response.body);
+void send(
+    const Head& head, const std::string& request_id, httplib::Response& out, Response response) {
+    out.set_header("X-Request-ID", request_id);
+    if (response.problem) response.body = response.problem->body(request_id);
+    if (!response.timing.empty()) out.set_header("Server-Timing", server_timing(response.timing));
+    // As what a browser would take the bytes for otherwise, they could be a script.
+    out.set_header("X-Content-Type-Options", "nosniff");
+    if (response.stream) return send_stream(head, out, std::move(response));
+    const bool known = response.status == 304;
+    const bool reads = head.method == "GET" || head.method == "HEAD";
+    // Else the library would promise parts of answers.
+    if (head.method == "HEAD") out.set_header("Accept-Ranges", "none");
+    if (reads && (response.status == 200 || known)) {
+        const std::string tag = response.tag.empty() ? entity_tag(response.body) : response.tag;
         out.set_header("ETag", tag);
         // Kept for a year, or asked for again, with the tag.
         out.set_header(
             "Cache-Control", response.immutable ? "max-age=31536000, immutable" : "no-cache");
-        if (request.get_header_value("If-None-Match").find(tag) != std::string::npos) {
+        if (known || is_known(head, tag)) {
             out.status = 304;
             return;
         }
     }
     if (response.body.size() >= compress_from || !response.gzipped.empty()) {
         out.set_header("Vary", "Accept-Encoding");
-        if (accepts_gzip(request.get_header_value("Accept-Encoding"))) {
+        if (accepts_gzip(head.header("accept-encoding"))) {
             response.body =
                 response.gzipped.empty() ? gzip(response.body) : std::string(response.gzipped);
             out.set_header("Content-Encoding", "gzip");
         }
     }
     set_head(out, response);
-    if (close) out.set_header("Connection", "close");
     // Through a content provider, which keeps the library from compressing by itself: brotli at its
     // slowest, 2 s for 1.7 MB.
     auto body = std::make_shared<const std::string>(std::move(response.body));
     out.set_content_provider(
         body->size(), response.content_type,
-        [body, close](std::size_t offset, std::size_t, httplib::DataSink& sink) {
-            const bool sent = sink.write(body->data() + offset, body->size() - offset);
-            return sent && !close;
-        });
-}
-
-void send_stream(const httplib::Request& request, httplib::Response& out, Response response) {
-    const bool zip =
-        response.compressible && accepts_gzip(request.get_header_value("Accept-Encoding"));
-    if (response.compressible) out.set_header("Vary", "Accept-Encoding");
-    if (zip) out.set_header("Content-Encoding", "gzip");
-    // What comes in chunks the library would compress, too, once it has seen this.
-    const_cast<httplib::Request&>(request).headers.erase("Accept-Encoding");
-    set_head(out, response);
-    const std::string type = response.content_type;
-    out.set_chunked_content_provider(
-        type, [response = std::move(response), zip](std::size_t, httplib::DataSink& sink) {
-            SinkWriter writer(sink);
-            const bool whole = zip ? write_gzipped(response, writer) : response.stream(writer);
-            if (whole) sink.done();
-            return whole;
+        [body](std::size_t offset, std::size_t, httplib::DataSink& sink) {
+            return sink.write(body->data() + offset, body->size() - offset);
         });
 }
 

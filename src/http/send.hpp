@@ -3,18 +3,17 @@
 
 #include <httplib.h>
 
+#include <string>
+
+#include "http/head.hpp"
 #include "http/message.hpp"
 
 namespace vines::http {
 
 /// With its ETag (304 where the client has it) and compressed where that is worth it and the client
-/// takes it. With `close` the connection ends after the answer: a body that nobody read must not be
-/// taken for the next request.
+/// takes it, and with the request's id. One with `stream` in place of a body has neither a length
+/// nor an ETag.
 void send(
-    const httplib::Request& request, httplib::Response& out, Response response, bool close = false);
-
-/// A response with `stream` in place of a body: without a length or an ETag, and compressed where
-/// it may be and the client takes it.
-void send_stream(const httplib::Request& request, httplib::Response& out, Response response);
+    const Head& head, const std::string& request_id, httplib::Response& out, Response response);
 
 }  // namespace vines::http

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <stdexcept>
 #include <thread>
 
 #include "api/simulate.hpp"
@@ -16,6 +17,8 @@
 #include "http/routes.hpp"
 #include "http/server.hpp"
 #include "program/end_signals.hpp"
+#include "program/tell.hpp"
+#include "program/within.hpp"
 
 namespace vines::http {
 
@@ -26,6 +29,7 @@ struct ServeOptions {
     RouteOptions routes;
     ComputeLimits compute;
     double drain = 0;  ///< s
+    std::string log = "json";
 };
 
 /// A flag beats the environment, which beats the default.
@@ -38,51 +42,74 @@ CLI::Option* add_flag(
 void add_server_flags(CLI::App& c, ServerOptions& o) {
     add_flag(c, "--host", "VINES_HOST", o.host, "address to listen on");
     add_flag(c, "--port", "VINES_PORT", o.port, "port to listen on, 0 for any free one")
-        ->check(CLI::Range(0, 65535));
-    add_flag(c, "--threads", "VINES_THREADS", o.threads, "connections served at once")
-        ->check(CLI::Range(1, 4096));
+        ->check(within(0, 65535));
+    add_flag(c, "--threads", "VINES_THREADS", o.threads, "requests in work at once")
+        ->check(within(1, 4096));
+    add_flag(
+        c, "--connections", "VINES_CONNECTIONS", o.connections,
+        "connections open at once; beyond that the one that has been idle longest is closed")
+        ->check(within(1, 1000000));
+    c.add_option(
+         "--allow-host", o.allowed_hosts,
+         "name with a dot that requests may be meant for, beside this machine's own; *: "
+         "any (may come several times)")
+        ->envname("VINES_ALLOW_HOST");
 }
 
 void add_compute_flags(CLI::App& c, ServeOptions& o) {
     add_flag(
         c, "--compute-threads", "VINES_COMPUTE_THREADS", o.compute.running, "computations at once")
-        ->check(CLI::Range(1, 1024));
+        ->check(within(1, 1024));
     add_flag(
         c, "--compute-queue", "VINES_COMPUTE_QUEUE", o.compute.waiting,
         "computations that wait; beyond that: 503")
-        ->check(CLI::Range(0, 100000));
+        ->check(within(0, 100000));
     add_flag(
         c, "--sweeps", "VINES_SWEEPS", o.compute.sweeps,
         "sweeps at once, which share the computing that is left; beyond that: 503")
-        ->check(CLI::Range(0, 1000));
+        ->check(within(0, 1000));
     add_flag(
         c, "--sweep-points", "VINES_SWEEP_POINTS", o.routes.sweep_points, "points of one sweep")
-        ->check(CLI::Range(1, 10000000));
+        ->check(within(1, 10000000));
     add_flag(
         c, "--drain", "VINES_DRAIN", o.drain,
         "seconds from SIGTERM on during which /readyz says 503 and requests are still taken, so "
         "that a proxy notices")
-        ->check(CLI::Range(0.0, 3600.0));
+        ->check(within(0.0, 3600.0));
+    add_flag(
+        c, "--sweep-deadline", "VINES_SWEEP_DEADLINE", o.routes.sweep_deadline,
+        "seconds of one sweep; then its stream ends, and the points that are missing can be asked "
+        "for")
+        ->check(within(0.001, 31536000.0));
     add_flag(
         c, "--deadline", "VINES_DEADLINE", o.routes.deadline,
         "seconds of computing for one request; then it ends with what it has")
-        ->check(CLI::Range(0.001, 86400.0));
+        ->check(within(0.001, 86400.0));
 }
 
 void add_size_flags(CLI::App& c, ServeOptions& o) {
     add_flag(
         c, "--payload-limit", "VINES_PAYLOAD_LIMIT", o.server.payload_limit,
         "bytes of a request's body")
-        ->check(CLI::Range(1, 1 << 30));
+        ->check(within(1, 1 << 30));
+    add_flag(
+        c, "--memory-limit", "VINES_MEMORY_LIMIT", o.server.memory_limit,
+        "bytes of requests and answers held at once; beyond that: 503")
+        ->check(within(std::size_t{1}, std::size_t{1} << 50));
     add_flag(
         c, "--record-limit", "VINES_RECORD_LIMIT", o.routes.record_limit,
         "bytes of a measurement sent to /v1/identify")
-        ->check(CLI::Range(1, 1 << 30));
+        ->check(within(1, 1 << 30));
     add_flag(
         c, "--answer-limit", "VINES_ANSWER_LIMIT", o.routes.answer_limit,
         "bytes of an answer's JSON; one that would be larger is thinned, or refused where that "
         "cannot be")
-        ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 40));
+        ->check(within(std::size_t{1}, std::size_t{1} << 40));
+}
+
+void add_log_flags(CLI::App& c, std::string& format) {
+    add_flag(c, "--log-format", "VINES_LOG_FORMAT", format, "of the lines on stderr: json or text")
+        ->check(CLI::IsMember({"json", "text"}));
 }
 
 void add_page_flags(CLI::App& c, PageOptions& o) {
@@ -101,17 +128,28 @@ void add_page_flags(CLI::App& c, PageOptions& o) {
         ->check(CLI::ExistingDirectory);
 }
 
-/// Ends the process once it is asked to: sweeps end at once, other requests are taken until the
-/// drain is over, and those in work are finished.
-[[noreturn]] void end_when_asked(double drain, ComputeGate& gate, Server& server) {
+/// What is in work when the drain is over has so long to come to its end; then it ends with what it
+/// has, for which there is so long.
+constexpr auto work_time = std::chrono::seconds(10);
+constexpr auto last_time = std::chrono::seconds(5);
+
+/// Whatever the other threads do: none of them has anything that is not yet written.
+[[noreturn]] void end(int code) { std::_Exit(code); }
+
+/// Stops the service once it is asked to: sweeps end at once, other requests are taken until the
+/// drain is over, and those in work are finished. Asked a second time it ends at once.
+[[noreturn]] void stop_when_asked(double drain, ComputeGate& gate, Server& server) {
     wait_for_end_signal();
+    std::thread([] { end(128 + wait_for_end_signal()); }).detach();
+    log_event("stopping");
     gate.close_to_sweeps();
+    server.close_connections();
     std::this_thread::sleep_for(std::chrono::duration<double>(drain));
     server.stop();
-    // run() would return only after every idle connection's keep-alive timeout; no answer is in
-    // work any more.
-    end_log();
-    std::_Exit(0);
+    std::this_thread::sleep_for(work_time);
+    gate.end_all();
+    std::this_thread::sleep_for(last_time);
+    end(0);
 }
 
 #ifdef __GLIBC__
@@ -131,18 +169,27 @@ int serve(const ServeOptions& options) {
     keep_memory_small(options.compute.running);
 #endif
     block_end_signals();
-    start_log();
+    start_log(options.log == "text" ? LogFormat::text : LogFormat::json);
     ComputeGate gate(options.compute);
     Server server(options.server, make_routes(options.routes, gate));
-    const int port = server.bind();
+    int port = 0;
+    try {
+        port = server.bind();
+    } catch (const std::runtime_error& e) {
+        tell(fmt::format("{}; use --port, or --port 0 for any free one", e.what()));
+        end(2);
+    }
     const std::string greeting = fmt::format(
-        "vines {} listens on http://{}:{}\n", api::version(), options.server.host, port);
+        "vines {} listens on http://{}:{}\n", api::version(), in_url(options.server.host), port);
     std::fputs(greeting.c_str(), stdout);
     std::fflush(stdout);
+    log_event(fmt::format(
+        "vines {} listens on {}:{}", api::version(), in_url(options.server.host), port));
 
-    std::thread([&] { end_when_asked(options.drain, gate, server); }).detach();
+    std::thread([&] { stop_when_asked(options.drain, gate, server); }).detach();
     server.run();
-    for (;;) pause();  // stop() was called: the other thread ends the process
+    log_event("stopped");
+    end(0);
 }
 
 }  // namespace
@@ -153,6 +200,7 @@ Command add_serve(CLI::App& app) {
     add_server_flags(*command, options->server);
     add_compute_flags(*command, *options);
     add_size_flags(*command, *options);
+    add_log_flags(*command, options->log);
     add_page_flags(*command, options->routes.page);
     return {command, [options] { return serve(*options); }};
 }

@@ -4,18 +4,22 @@
 #include <httplib.h>
 #include <sys/socket.h>
 
-#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
-#include <thread>
+#include <string>
+#include <utility>
 
+#include "http/connections.hpp"
 #include "http/log.hpp"
 #include "http/problem_response.hpp"
 #include "http/refusal.hpp"
+#include "http/request_id.hpp"
 #include "http/send.hpp"
+#include "http/socket_stream.hpp"
 
 namespace vines::http {
 
@@ -26,168 +30,158 @@ using Handled = httplib::Server::HandlerResponse;
 
 constexpr int backlog = 512;  // httplib's own is 5: of 400 clients at once some would be refused
 
-/// httplib keeps its listening socket to itself and its subclasses.
-class ListeningServer : public httplib::Server {
+// Is always sent: there are no more than threads.
+constexpr std::size_t small_answer = 1 << 20;
+
+/// What httplib is here for: it makes the listening socket, and writes answers.
+class Engine : public httplib::Server {
 public:
+    int listening() { return svr_sock_; }
     void widen_backlog() { ::listen(svr_sock_, backlog); }
-};
+    bool answer(httplib::Stream& stream) { return process(*this, stream); }
 
-/// The query of a request's target. (The library's own splits a pair at its last "=", and would
-/// read b=1=2 as b = 2.)
-std::string_view query_of(std::string_view target) {
-    const std::size_t mark = target.find('?');
-    if (mark == std::string_view::npos) return {};
-    const std::string_view query = target.substr(mark + 1);
-    return query.substr(0, query.find('#'));
-}
-
-Request to_request(const httplib::Request& in, std::string body) {
-    return {
-        .method = in.method,
-        .path = in.path,
-        .query = api::parse_query(query_of(in.target)),
-        .content_type = in.get_header_value("Content-Type"),
-        .body = std::move(body)};
-}
-
-/// A path as the regular expression that the library takes.
-std::string pattern_of(const std::string& path) {
-    std::string pattern;
-    for (char c : path) {
-        if (std::strchr(".+*?^$()[]{}|\\", c)) pattern += '\\';
-        pattern += c;
+private:
+    /// Its later versions want the addresses, too.
+    template <class Self>
+    static bool process(Self& self, httplib::Stream& stream) {
+        bool closed = false;
+        if constexpr (requires { self.process_request(stream, false, closed, nullptr); })
+            return self.process_request(stream, false, closed, nullptr);
+        else return self.process_request(stream, "", 0, "", 0, false, closed, nullptr);
     }
-    return pattern;
-}
-
-/// Answers that the library makes itself (a malformed request line, headers too long) have no body
-/// of ours yet.
-Handled explain(const httplib::Request& in, httplib::Response& out) {
-    if (!out.has_header("Content-Type"))
-        send(in, out, problem_response(out.status, "the request could not be read"));
-    return Handled::Handled;
-}
-
-void fail(const httplib::Request& in, httplib::Response& out, const std::exception_ptr& thrown) {
-    log_failure(in.path, thrown);
-    send(
-        in, out, problem_response(500, "the server failed at this request; its log says why"),
-        true);
-}
+};
 
 }  // namespace
 
 struct Server::Implementation {
     ServerOptions options;
     std::vector<Route> routes;
-    ListeningServer http;
-    std::atomic<int> in_work = 0;
+    Engine http;
+    std::optional<Connections> connections;
+    std::atomic<bool> closing = false;
 
-    /// The request that this I/O thread works on. The library has no place for it in its own
-    /// structs, but takes a request from its head to its log line on one thread, one after the
-    /// other.
+    /// What a thread answers. The library calls back while it does, and has no place for it in its
+    /// own structs.
     struct InWork {
-        bool counted = false;
-        Clock::time_point since;
+        Connection* connection = nullptr;
+        Exchange exchange;
+        const SocketStream* stream = nullptr;
+        std::string id = {};
+        int status = 0;
+        Timing timing = {};
+        bool keeps = false;  ///< the connection, for another request
     };
     static InWork& current() {
         thread_local InWork work;
         return work;
     }
 
-    std::size_t limit_of(const httplib::Request& in) const {
-        const Route* route = find_route(routes, in.method, in.path);
-        return std::max(options.payload_limit, route ? route->body_limit : 0);
-    }
-
-    Handled before_routing(const httplib::Request& in, httplib::Response& out) {
-        current() = {true, Clock::now()};
-        ++in_work;
-        if (std::optional<Response> refused = refusal(in, routes, limit_of(in))) {
-            const bool close = !in.ranges.empty() || in.has_header("Content-Length") ||
-                               in.has_header("Transfer-Encoding");
-            // The library would cut this answer up, too.
-            const_cast<httplib::Request&>(in).ranges.clear();
-            send(in, out, std::move(*refused), close);
-            return Handled::Handled;
-        }
-        if (in.method == "POST") return Handled::Unhandled;  // the body comes next
-        answer(in, out, "");
-        return Handled::Handled;
-    }
-
-    void answer(const httplib::Request& in, httplib::Response& out, std::string body) {
-        Response response =
-            find_route(routes, in.method, in.path)->answer(to_request(in, std::move(body)));
-        if (response.stream) send_stream(in, out, std::move(response));
-        else send(in, out, std::move(response));
-    }
-
-    /// Reads the body as it is: read by the library, one of the type that curl -d sends would be
-    /// parsed as a form and be refused above 8 kB.
-    void post(
-        const httplib::Request& in, httplib::Response& out, const httplib::ContentReader& read) {
-        std::string body;
-        const std::size_t limit = limit_of(in);
-        bool too_long = false;
-        const bool complete = read([&](const char* data, std::size_t size) {
-            // What is too large is read to its end, so that the client gets to read the answer.
-            too_long = too_long || body.size() + size > limit;
-            if (!too_long) body.append(data, size);
-            return true;
-        });
-        if (out.status == 413 || too_long) return send(in, out, body_too_large(limit), true);
-        if (!complete)
-            return send(
-                in, out, problem_response(400, "the body ended before its Content-Length"), true);
-        answer(in, out, std::move(body));
-    }
-
-    void log(const httplib::Request& in, const httplib::Response& out) {
+    /// To the exchange that this thread has.
+    void respond(const httplib::Request& in, httplib::Response& out) {
         InWork& work = current();
-        const std::chrono::duration<double, std::milli> taken =
-            work.counted ? Clock::now() - work.since : Clock::duration(0);
+        work.keeps = work.exchange.head.keep_alive && !work.exchange.refused;
+        Response response = response_to(work);
+        const std::size_t size = response.body.size() + response.held;
+        if (size > small_answer && connections->memory().is_full())
+            response = problem_response(503, "the server holds as much as it may for its clients");
+        work.connection->hold(size);
+        // Of a stream that comes in no chunks the end is that of its connection.
+        if (response.stream && !work.exchange.head.takes_chunks) work.keeps = false;
+        work.timing = response.timing;
+        send(work.exchange.head, work.id, out, std::move(response));
+        work.status = out.status;
+        // A client must hear that its connection ends, and the library says so to who asks for it.
+        if (closing) work.keeps = false;
+        if (!work.keeps) const_cast<httplib::Request&>(in).set_header("Connection", "close");
+    }
+
+    /// An interim answer before the answer, which HTTP/1.0 does not know.
+    static bool may_ask(const InWork& work) {
+        return work.exchange.head.takes_chunks && !work.stream->has_begun();
+    }
+
+    Response response_to(InWork& work) const {
+        Exchange& exchange = work.exchange;
+        if (exchange.refused) return std::move(*exchange.refused);
+        const Head& head = exchange.head;
+        const Route& route = *find_route(routes, head.method, head.path());
+        try {
+            return route.answer(
+                {.method = head.method,
+                 .path = std::string(head.path()),
+                 .query = api::parse_query(head.query()),
+                 .content_type = std::string(head.header("content-type")),
+                 .body = std::move(exchange.body),
+                 .known_tags = std::string(head.header("if-none-match")),
+                 .id = work.id,
+                 .left = [&work] { return work.connection->has_left(may_ask(work)); }});
+        } catch (...) {
+            log_failure(std::string(head.path()), work.id, std::current_exception());
+            return problem_response(500, "the server failed at this request; its log says why");
+        }
+    }
+
+    /// False where the answer was broken off.
+    bool write(SocketStream& stream) {
+        try {
+            return http.answer(stream);
+        } catch (...) {  // by an answer that is made while it is sent
+            log_failure(
+                std::string(current().exchange.head.path()), current().id,
+                std::current_exception());
+            return false;
+        }
+    }
+
+    /// True: another request may follow on the connection.
+    bool answer(Connection& connection, Exchange exchange, Patience patience) {
+        // All that the library is told of the request: its answer to a HEAD has no body.
+        const char* method = exchange.head.method == "HEAD" ? "HEAD" : "GET";
+        SocketStream stream(
+            connection, fmt::format("{} / HTTP/1.1\r\n\r\n", method), std::move(patience));
+        InWork& work = current();
+        std::string id = request_id(exchange.head);
+        work = {&connection, std::move(exchange), &stream, std::move(id)};
+        const bool sent = write(stream) && stream.finish();
+        const bool keeps = sent && work.keeps;
+        if (!sent) connection.break_off();
+        const std::chrono::duration<double, std::milli> taken = Clock::now() - work.exchange.since;
         log_served(
-            {.method = in.method,
-             .path = in.path,
-             .status = out.status,
+            {.id = work.id,
+             .client = connection.client(),
+             .method = work.exchange.head.method,
+             .path = std::string(work.exchange.head.path()),
+             .status = work.status,
              .ms = taken.count(),
-             .bytes = out.content_length_});
-        if (work.counted) --in_work;
-        work.counted = false;
+             .timing = work.timing,
+             .bytes = stream.written(),
+             .left = !sent});
+        work = {};
+        return keeps;
     }
 
-    void set_connections() {
-        http.new_task_queue = [threads = options.threads] {
-            return new httplib::ThreadPool(threads);
-        };
-        // Not the library's SO_REUSEPORT: with that a second server on the same port starts without
-        // a word and takes half of the requests.
-        http.set_socket_options([](auto socket) {
-            const int yes = 1;
-            ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-        });
-        http.set_tcp_nodelay(true);
-        http.set_keep_alive_max_count(1000);
-        http.set_keep_alive_timeout(5);  // s, as the others
-        http.set_read_timeout(10);
-        http.set_write_timeout(30);
-        std::size_t largest = options.payload_limit;
-        for (const Route& route : routes) largest = std::max(largest, route.body_limit);
-        http.set_payload_max_length(largest);
+    std::optional<Response> refusal_of(const Head& head) const {
+        std::optional<Response> refused =
+            access_refusal(head, {.listens_on = options.host, .hosts = options.allowed_hosts});
+        return refused ? refused : refusal(head, routes, options.payload_limit);
     }
 
-    void set_handlers() {
-        http.set_pre_routing_handler(
-            [this](const auto& in, auto& out) { return before_routing(in, out); });
-        for (const Route& route : routes)
-            if (route.method == "POST")
-                http.Post(
-                    pattern_of(route.path),
-                    [this](const auto& in, auto& out, const auto& read) { post(in, out, read); });
-        http.set_exception_handler(fail);
-        http.set_error_handler(httplib::Server::HandlerWithResponse(explain));
-        http.set_logger([this](const auto& in, const auto& out) { log(in, out); });
+    Answering answering() {
+        return {
+            .admission = [this](const Head& head) { return refusal_of(head); },
+            .is_light =
+                [this](const Head& head) {
+                    return find_route(routes, head.method, head.path())->light;
+                },
+            .answer =
+                [this](Connection& connection, Exchange exchange, Patience patience) {
+                    return answer(connection, std::move(exchange), std::move(patience));
+                },
+            .overloaded =
+                [] {
+                    return problem_response(
+                        503, "as many requests as the server takes are in work already");
+                }};
     }
 };
 
@@ -195,35 +189,53 @@ Server::Server(const ServerOptions& options, std::vector<Route> routes)
     : implementation_(std::make_unique<Implementation>()) {
     implementation_->options = options;
     implementation_->routes = std::move(routes);
-    implementation_->set_connections();
-    implementation_->set_handlers();
+    Engine& http = implementation_->http;
+    http.set_keep_alive_timeout(idle_time.count());  // as it tells its clients
+    http.set_keep_alive_max_count(1000000);
+    http.set_pre_routing_handler([this](const auto& in, auto& out) {
+        implementation_->respond(in, out);
+        return Handled::Handled;
+    });
+    // Not the library's SO_REUSEPORT: with that a second server on the same port starts without
+    // a word and takes half of the requests.
+    http.set_socket_options([](auto socket) {
+        const int yes = 1;
+        ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    });
 }
 
 Server::~Server() = default;
 
 int Server::bind() {
     const ServerOptions& options = implementation_->options;
-    ListeningServer& http = implementation_->http;
+    Engine& http = implementation_->http;
     errno = 0;
     int port = options.port;
     const bool bound = port == 0 ? (port = http.bind_to_any_port(options.host)) > 0
                                  : http.bind_to_port(options.host, port);
     if (!bound)
         throw std::runtime_error(fmt::format(
-            "cannot listen on {}:{}{}{}", options.host, options.port, errno ? ": " : "",
+            "cannot listen on {}:{}{}{}", in_url(options.host), options.port, errno ? ": " : "",
             errno ? std::strerror(errno) : ""));
     http.widen_backlog();
+    implementation_->connections.emplace(
+        http.listening(),
+        ConnectionLimits{
+            .connections = options.connections,
+            .workers = options.threads,
+            .waiting = static_cast<std::size_t>(options.threads),
+            .held_bytes = options.memory_limit},
+        implementation_->answering());
     return port;
 }
 
-void Server::run() { implementation_->http.listen_after_bind(); }
+void Server::run() { implementation_->connections->run(); }
+
+void Server::close_connections() { implementation_->closing = true; }
 
 void Server::stop() {
-    // The library cuts answers off in the middle when it stops, so let those in work finish first.
-    const auto latest = Clock::now() + std::chrono::seconds(10);
-    while (implementation_->in_work > 0 && Clock::now() < latest)
-        std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    implementation_->http.stop();
+    close_connections();
+    implementation_->connections->stop();
 }
 
 }  // namespace vines::http

@@ -5,15 +5,19 @@
 #include <string>
 #include <vector>
 
+#include "http/access.hpp"
 #include "http/route.hpp"
 
 namespace vines::http {
 
 struct ServerOptions {
     std::string host = "127.0.0.1";
-    int port = 8080;                      ///< 0: any free one
-    int threads = 64;                     ///< I/O threads: a slow client holds one
-    std::size_t payload_limit = 1 << 20;  ///< bytes of a request's body
+    int port = 8080;                       ///< 0: any free one
+    int threads = 128;                     ///< that answer: a client that reads slowly holds one
+    std::size_t connections = 4096;        ///< open at once, idle ones too
+    std::size_t payload_limit = 1 << 20;   ///< bytes of a request's body
+    std::size_t memory_limit = 512 << 20;  ///< bytes of requests and answers held at once
+    std::vector<std::string> allowed_hosts = {};  ///< as in AccessOptions
 };
 
 class Server {
@@ -23,9 +27,11 @@ public:
 
     /// Binds and returns the port. Throws std::runtime_error with the reason where that fails.
     int bind();
-    /// Serves until stop() is called. Call bind() first.
+    /// Serves until stop() is called and what is in work then is answered. Call bind() first.
     void run();
-    /// Waits for the answers in work (10 s at most), then makes run() return. From any thread.
+    /// From now on each answer is the last one of its connection. From any thread.
+    void close_connections();
+    /// Takes nothing new, and makes run() return once all is answered. From any thread, once.
     void stop();
 
 private:

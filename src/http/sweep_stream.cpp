@@ -1,5 +1,7 @@
 #include "http/sweep_stream.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <exception>
@@ -16,32 +18,41 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// How soon a client that left is noticed, and how often one that stays hears how far it is.
-constexpr auto look = std::chrono::milliseconds(50);
+// How often a client hears how far its sweep is.
 constexpr auto report = std::chrono::milliseconds(200);
 
 // So long a sweep keeps a place that another one waits for.
 constexpr auto turn = std::chrono::milliseconds(20);
 
-/// A sweep's threads behind the gate, giving way to urgent work.
+/// A sweep's threads behind the gate, giving way to urgent work, and waiting for a client that
+/// reads slower than they compute.
 class GatePace : public api::Pace {
 public:
-    explicit GatePace(ComputeGate& gate) : gate_(gate) {}
+    GatePace(ComputeGate& gate, LineQueue& lines, double deadline)
+        : gate_(gate),
+          lines_(lines),
+          ends_(
+              Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                 std::chrono::duration<double>(deadline))) {}
     void begin() override {
         place() = gate_.enter_patiently(stop_.get_token());
         entered() = Clock::now();
     }
     void end() override { place().reset(); }
     bool stop_or_yield() override {
-        const bool is_long = gate_.wanted_patiently() && Clock::now() - entered() > turn;
-        if (place() && (gate_.wanted() || is_long)) {
+        const Clock::time_point now = Clock::now();
+        const bool is_long = gate_.wanted_patiently() && now - entered() > turn;
+        const bool is_full = lines_.is_full();
+        if (place() && (gate_.wanted() || is_long || is_full)) {
             end();
+            while (lines_.is_full() && !stops(Clock::now())) lines_.wait_for_room(presence_look);
             begin();
         }
-        return stop_.stop_requested() || gate_.closed_to_sweeps() || !place();
+        return stops(now) || !place();
     }
     /// From any thread.
     void stop() { stop_.request_stop(); }
+    bool is_late() const { return Clock::now() > ends_; }
 
 private:
     /// That of the points which the calling thread computes. One for each thread, not for each
@@ -55,19 +66,26 @@ private:
         thread_local Clock::time_point moment;
         return moment;
     }
+    bool stops(Clock::time_point now) const {
+        return stop_.stop_requested() || gate_.closed_to_sweeps() || now > ends_;
+    }
+
     ComputeGate& gate_;
+    LineQueue& lines_;
+    const Clock::time_point ends_;
     std::stop_source stop_;
 };
 
 /// How a sweep ended whose client is still there.
-std::string ending(std::size_t done, std::size_t of, const std::string& warning, bool failed) {
-    if (done < of) {
-        const std::string detail =
-            failed ? "the server failed at a point; its log says why"
-                   : "the server is stopping; ask again for the indices that are missing";
-        return api::error_line(detail, done);
-    }
-    return (warning.empty() ? "" : api::warning_line(warning)) + api::done_line(done);
+std::string ending(std::size_t done, std::size_t of, const std::string& warning, bool late) {
+    if (done == of)
+        return (warning.empty() ? "" : api::warning_line(warning)) + api::done_line(done);
+    return api::error_line(
+        503,
+        fmt::format(
+            "the server {}; ask again for the indices that are missing",
+            late ? "computes no longer for one sweep" : "is stopping"),
+        done);
 }
 
 /// Writes the lines as they come, and the progress between them; returns how many they were. Stops
@@ -80,7 +98,7 @@ std::size_t write_lines(
     auto reported = started;
     LineQueue::Taken taken;
     do {
-        taken = lines.take(look);
+        taken = lines.take(presence_look);
         const auto now = Clock::now();
         if (now - reported >= report || taken.finished) {
             const std::chrono::duration<double> seconds = now - started;
@@ -98,13 +116,12 @@ std::size_t write_lines(
     return taken.count;
 }
 
-void stream(const api::SweepRequest& request, ComputeGate& gate, Writer& out) {
-    GatePace pace(gate);
-    LineQueue lines;
+/// The points, on threads of their own: the calling one sends them. What a thread throws comes out
+/// of here. Returns how many lines were sent.
+std::size_t stream_points(
+    const api::SweepRequest& request, ComputeGate& gate, GatePace& pace, LineQueue& lines,
+    Writer& out, bool& present, std::string& warning) {
     std::exception_ptr failure;
-    std::string warning;
-    if (!out.write(api::start_line(request))) return;
-
     std::thread computing([&] {
         try {
             warning = api::run_sweep(
@@ -115,16 +132,42 @@ void stream(const api::SweepRequest& request, ComputeGate& gate, Writer& out) {
         }
         lines.finish();
     });
-    bool present = true;
-    const std::size_t done = write_lines(lines, request, pace, out, present);
+    std::size_t done = 0;
+    try {
+        done = write_lines(lines, request, pace, out, present);
+    } catch (...) {
+        pace.stop();
+        computing.join();
+        throw;
+    }
     computing.join();
-    if (failure) log_failure("/v1/sweep", failure);
-    if (present) out.write(ending(done, request.plan.lines.size(), warning, failure != nullptr));
+    if (failure) std::rethrow_exception(failure);
+    return done;
+}
+
+bool stream(
+    const api::SweepRequest& request, double deadline, const std::string& id, ComputeGate& gate,
+    Writer& out) {
+    LineQueue lines;
+    GatePace pace(gate, lines, deadline);
+    std::string warning;
+    if (!out.write(api::start_line(request))) return false;
+    bool present = true;
+    try {
+        const std::size_t done = stream_points(request, gate, pace, lines, out, present, warning);
+        return present &&
+               out.write(ending(done, request.plan.lines.size(), warning, pace.is_late()));
+    } catch (...) {
+        log_failure("/v1/sweep", id, std::current_exception());
+        const char* const detail = "the server failed at this sweep; its log says why";
+        return present && out.write(api::error_line(500, detail, lines.take({}).count));
+    }
 }
 
 }  // namespace
 
-Response stream_sweep(api::SweepRequest request, ComputeGate& gate) {
+Response stream_sweep(
+    api::SweepRequest request, double deadline, const std::string& request_id, ComputeGate& gate) {
     // Shared, because a response can be copied: the room is given back when the last copy is gone,
     // whether or not it was ever sent.
     const std::shared_ptr<ComputeGate> room = gate.enter_sweep();
@@ -134,9 +177,8 @@ Response stream_sweep(api::SweepRequest request, ComputeGate& gate) {
     return {
         .content_type = "application/x-ndjson",
         .headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}},
-        .stream = [request = std::move(request), &gate, room](Writer& out) {
-            stream(request, gate, out);
-            return true;
+        .stream = [request = std::move(request), deadline, request_id, &gate, room](Writer& out) {
+            return stream(request, deadline, request_id, gate, out);
         }};
 }
 

@@ -1,13 +1,17 @@
 // A sweep as a stream of NDJSON lines, computed behind a gate and stopped when its client leaves.
 #pragma once
 
+#include <string>
+
 #include "api/sweep.hpp"
 #include "http/compute_gate.hpp"
 #include "http/message.hpp"
 
 namespace vines::http {
 
-/// Answers a sweep; 503 where the gate has no room for one more. The gate outlives the response.
-Response stream_sweep(api::SweepRequest request, ComputeGate& gate);
+/// Answers a sweep, which ends after so many seconds with the points that it has; 503 where the
+/// gate has no room for one more. The gate outlives the response.
+Response stream_sweep(
+    api::SweepRequest request, double deadline, const std::string& request_id, ComputeGate& gate);
 
 }  // namespace vines::http

@@ -1,4 +1,4 @@
-// SIGTERM and SIGINT, which ask the program to end, are waited for by a thread instead of
+// SIGTERM, SIGINT and SIGHUP, which ask the program to end, are waited for by a thread instead of
 // interrupting one: that thread may take locks and write logs.
 #pragma once
 
@@ -9,6 +9,10 @@ namespace vines {
 inline sigset_t end_signals() {
     sigset_t signals;
     sigemptyset(&signals);
+    // Of a terminal that goes away, unless the program is to outlive it (nohup).
+    struct sigaction hangup{};
+    sigaction(SIGHUP, nullptr, &hangup);
+    if (hangup.sa_handler != SIG_IGN) sigaddset(&signals, SIGHUP);
     sigaddset(&signals, SIGTERM);
     sigaddset(&signals, SIGINT);
     return signals;

@@ -11,6 +11,7 @@
 
 #include "api/identify.hpp"
 #include "api/json_text.hpp"
+#include "api/parse_object.hpp"
 #include "api/schema/tables.hpp"
 #include "api/simulate.hpp"
 #include "api/sweep.hpp"

@@ -150,12 +150,12 @@ function flagsOf(help) {
   const found = [...help.matchAll(/^ {2}((?:-\w,)?--[\w-]+)(?: (.*))?$/gm)];
   return found.map(([, names, rest = ""]) => {
     const [kind] = rest.split(/ {2,}/);
-    const range = kind.match(/in \[(\S+) - ([^\]]+)\]/);
+    const range = kind.match(/:\[(\S+) - ([^\]]+)\]/);
     return {
       names,
       environment: kind.match(/\(Env:(\w+)\)/)?.[1] ?? "",
       range: range ? range.slice(1).map(Number) : [],
-      standard: kind.replace(/ in \[[^\]]*\]/, "").match(/=(\S+)/)?.[1] ?? "",
+      standard: kind.replace(/:\[[^\]]*\]/, "").match(/=(\S+)/)?.[1] ?? "",
     };
   });
 }

@@ -30,8 +30,9 @@ const ordered = (text) => {
 const asText = (body) => (typeof body === "string" ? body : JSON.stringify(body));
 
 async function answerOf(url, {path, body, type}) {
-  const headers = {"Content-Type": type ?? "application/json"};
-  const options = body === undefined ? {} : {method: "POST", body: asText(body), headers};
+  // A fault tells the request's name, which the service would make up.
+  const headers = {"Content-Type": type ?? "application/json", "X-Request-ID": "same"};
+  const options = body === undefined ? {headers} : {method: "POST", body: asText(body), headers};
   const response = await fetch(url + path, options);
   const text = await response.text();
   const kind = response.headers.get("content-type");

@@ -517,10 +517,25 @@ test("a flag beats the environment, which beats the default; bad ones are refuse
   assert.notEqual(new URL(fromEnvironment.url).port, "8080");
   await fromEnvironment.stop();
   const [code, text] = await run(["serve", "--port", port]); // taken
-  assert.equal(code, 1);
-  assert.match(text, new RegExp(`cannot listen on 127.0.0.1:${port}`));
-  assert.notEqual((await run(["serve", "--port", "99999"]))[0], 0);
-  assert.notEqual((await run(["serve"], {VINES_PORT: "x"}))[0], 0);
+  assert.equal(code, 2);
+  assert.match(
+    text,
+    new RegExp(`^vines: cannot listen on 127.0.0.1:${port}: .*; use --port, .*\n$`),
+  );
+  const bad = [
+    [["serve", "--port", "99999"], {}, /--port.*99999/],
+    [["serve", "--deadline", "nan"], {}, /--deadline.*nan/],
+    [["serve", "--threads", "0"], {}, /--threads.*0/],
+    [["serve", "--nothing"], {}, /--nothing.*vines serve --help/],
+    [["serve"], {VINES_PORT: "x"}, /--port.*x/],
+    [["nothing"], {}, /subcommand.*vines --help/],
+  ];
+  for (const [args, environment, message] of bad) {
+    const [code, text] = await run(args, environment);
+    assert.equal(code, 2, text);
+    assert.match(text, message);
+    assert.match(text, /^vines: [^\n]*\n$/, "one line");
+  }
   assert.equal((await run(["--version"]))[0], 0);
   assert.match((await run(["serve", "--help"]))[1], /VINES_PORT/);
 });

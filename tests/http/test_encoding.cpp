@@ -23,7 +23,8 @@ TEST_CASE("a tag tells a body from others of its length, and from longer ones") 
 TEST_CASE("gzip is taken by whoever names it, with any weight but 0, or takes all") {
     for (const char* header :
          {"gzip", "GZIP", "x-gzip", "br, gzip", "gzip;q=0.5", "gzip ; q=0.001", "gzip;Q=1.000",
-          "br;q=1.0, gzip;q=0.8, *;q=0.1", "*", "*;q=0.5", "deflate,\tgzip ,br"}) {
+          "br;q=1.0, gzip;q=0.8, *;q=0.1", "*", "*;q=0.5", "identity;q=0.5, gzip",
+          "deflate,\tgzip ,br"}) {
         CAPTURE(header);
         CHECK(accepts_gzip(header));
     }
@@ -32,7 +33,7 @@ TEST_CASE("gzip is taken by whoever names it, with any weight but 0, or takes al
 TEST_CASE("gzip is not sent to whoever does not name it, or gives it the weight 0") {
     for (const char* header :
          {"", "identity", "br, deflate", "gzip;q=0", "gzip;q=0.0", "gzip; q=0.000", "br, gzip;q=0",
-          "gzip;q=0, *", "*;q=0", "gzip;q=much", "gzipped", "not-gzip"}) {
+          "gzip;q=0, *", "*;q=0", "gzip;q=much", "identity, gzip;q=0.5", "gzipped", "not-gzip"}) {
         CAPTURE(header);
         CHECK_FALSE(accepts_gzip(header));
     }

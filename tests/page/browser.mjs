@@ -72,6 +72,12 @@ const done = (id) => (page, n) =>
     ([id, n]) => Number(document.getElementById(id).dataset.done ?? 0) >= n,
     [id, n],
   );
+/** Resolves when the page has drawn what it heard of until now. */
+export const painted = (page) =>
+  page.evaluate(
+    () => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))),
+  );
+
 export const drawn = done("results");
 export const identified = done("measure-results");
 export const swept = done("sweep-results");

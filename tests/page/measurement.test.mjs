@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 import {measured} from "../record.mjs";
-import {drawn, identified, open} from "./browser.mjs";
+import {drawn, identified, open, painted} from "./browser.mjs";
 import {
   beyond,
   browser,
@@ -162,11 +162,11 @@ async function addBySpike(page, t) {
   await page.mouse.down();
   await page.mouse.move(at(t / 6 + 0.02), box.y + 40, {steps: 5});
   await page.mouse.up();
-  await page.waitForTimeout(200);
+  await painted(page);
   assert.equal((await rows(page)).length, listed, "the end of a drag adds nothing");
   const timeAt = async (share) => {
     await page.mouse.move(at(share), box.y + 60);
-    await page.waitForTimeout(50);
+    await painted(page);
     return Number(await page.getAttribute("#plot-measured-a .cursor", "data-at"));
   };
   const left = await timeAt(0.01);

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 import {startService} from "../service.mjs";
-import {drawn, open, swept} from "./browser.mjs";
+import {drawn, open, painted, swept} from "./browser.mjs";
 import {
   asked,
   beyond,
@@ -38,9 +38,7 @@ async function clickAt(page, plot, x, y) {
   const over = page.locator(`${plot} .over`);
   await over.scrollIntoViewIfNeeded();
   // A click at once may still hit what was there before.
-  await page.evaluate(
-    () => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))),
-  );
+  await painted(page);
   const box = await over.boundingBox();
   await page.mouse.click(box.x + box.width * x, box.y + box.height * y);
 }
@@ -255,7 +253,7 @@ test("two axes make a map, in colours or of regimes; a click on a cell simulates
   const page = await visit(`?tab=sweep&${axes}&${run}`);
   assert.ok((await colours(page, "#plot-sweep-map canvas")) > 40);
   await page.selectOption("#sweep-mapped", "regime");
-  await page.waitForTimeout(100);
+  await painted(page);
   for (const regime of ["III", "II"])
     assert.ok((await pixels(page, "#plot-sweep-map canvas", `regime-${regime}`)) > 1000, regime);
   assert.match(page.url(), /map=regime/);
@@ -403,11 +401,11 @@ test("a third axis has a map for each of its values, of the worst or the best st
   assert.equal(await page.textContent("#sweep-slice-word"), "where R =");
   const first = await hash(page, "#plot-sweep-map canvas");
   await page.selectOption("#sweep-start", "best");
-  await page.waitForTimeout(100);
+  await painted(page);
   assert.notEqual(await hash(page, "#plot-sweep-map canvas"), first);
   await page.selectOption("#sweep-start", "0");
   await page.selectOption("#sweep-slice", "1");
-  await page.waitForTimeout(100);
+  await painted(page);
   assert.notEqual(await hash(page, "#plot-sweep-map canvas"), first);
   await clickAt(page, "#plot-sweep-map", 0.5, 0.5);
   await drawn(page, 1);
@@ -455,10 +453,10 @@ test("the section of a sweep in SI has its velocities in mm/s, or per unit of ta
   const seconds = await hash(page, "#plot-sweep-section canvas");
   const requests = asked(page, "/v1/sweep");
   await page.click("#sweep-units >> text=τ");
-  await page.waitForTimeout(100);
+  await painted(page);
   assert.notEqual(await hash(page, "#plot-sweep-section canvas"), seconds);
   await page.click("#sweep-units >> text=mm/s");
-  await page.waitForTimeout(100);
+  await painted(page);
   assert.equal(await hash(page, "#plot-sweep-section canvas"), seconds);
   assert.equal(requests.length, 0);
   await page.close();
@@ -513,7 +511,7 @@ async function drag(page, plot, [x0, y0], [x1, y1]) {
 }
 
 const refined = (page) =>
-  page.waitForFunction(() => document.getElementById("sweep-refined").textContent === "");
+  page.waitForFunction(() => document.getElementById("sweep-results").dataset.refined === "1");
 const beganToRefine = (page) =>
   page.waitForFunction(() => document.getElementById("sweep-refined").textContent !== "");
 
@@ -533,7 +531,6 @@ test("a map is computed finer where one zooms in, its colours stay, and a link s
   const before = await summaryOf(page, "#figure-sweep-map");
   const requests = asked(page, "/v1/sweep");
   await drag(page, "#plot-sweep-map", [0.1, 0.2], [0.5, 0.6]);
-  await beganToRefine(page);
   await refined(page);
   assert.equal(requests.length, 1);
   const [b, R] = requests[0].axes;
@@ -549,7 +546,6 @@ test("a map is computed finer where one zooms in, its colours stay, and a link s
   const shown = page.url();
   assert.match(shown, /view=0\.00\d+,0\.0\d+,0\.5\d*,0\.7\d*/);
   const again = await open(browser.context, shown);
-  await beganToRefine(again);
   await refined(again);
   assert.equal(again.url(), shown);
   await page.locator("#plot-sweep-map .over").dblclick();
@@ -568,8 +564,8 @@ test("diagrams are computed finer where one zooms in, unless their points hang t
     const page = await visit(`?${small}${carry}`);
     const requests = asked(page, "/v1/sweep");
     await drag(page, "#plot-sweep-lambda", [0.3, 0.5], [0.5, 0.5]);
-    await page.waitForTimeout(500);
-    await refined(page);
+    if (more) await refined(page);
+    else await page.waitForTimeout(500); // longer than the page rests before it begins
     assert.equal(requests.length, more);
     const text = await summaryOf(page, "#figure-sweep-lambda");
     assert.equal(/at \d+ of 48 points/.test(text), more === 1, text);
@@ -763,5 +759,18 @@ test("an axis of another parameter takes its ends anew, in the unit that is show
   await swept(page, 2);
   const [{from, to}] = requests.at(-1).axes;
   assert.deepEqual([from, to], [0.00094, 0.015]);
+  await page.close();
+});
+
+test("Enter during a sweep begins the newest one in its place", async () => {
+  const page = await browser.context.newPage();
+  await page.goto(`${service.url}/?${long}`);
+  await page.waitForFunction(() => document.getElementById("sweep-bar").value > 2);
+  const cycles = page.locator(field("sweep-error-cycles"));
+  await cycles.fill("40");
+  await cycles.press("Enter");
+  await swept(page, 1);
+  assert.match(await page.textContent("#sweep-rate"), /^300 of 300 points/);
+  assert.match(page.url(), /cycles=40\b/);
   await page.close();
 });

@@ -8,7 +8,7 @@ import {
   simulate,
   wholeMessage,
 } from "../shared/api.js";
-import {$, element} from "../shared/dom.js";
+import {$, countUp, element} from "../shared/dom.js";
 import {Form} from "../shared/form.js";
 import {Job} from "../shared/job.js";
 import {Motion} from "../shared/motion.js";
@@ -240,7 +240,7 @@ const job = new Job({
     remember();
     say("");
     present(milliseconds);
-    $("measure-results").dataset.done = String(Number($("measure-results").dataset.done ?? 0) + 1);
+    countUp($("measure-results"));
   },
   fail(error) {
     const left = error instanceof Problem ? form.showErrors(error.errors) : [];

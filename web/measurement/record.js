@@ -1,13 +1,10 @@
 // A record, read as the service reads it, to be drawn. What is at fault in it the service says.
+import {nextTask} from "../shared/dom.js";
 import {firstFrom} from "../shared/search.js";
 
 const atOnce = 50000; // lines between two looks at the clock of the page
 
 const trimmed = (cell) => cell.trim();
-const pause = () =>
-  new Promise((resolve) => {
-    setTimeout(resolve);
-  });
 
 /** Whether a text is none: it holds characters that no text has. */
 function isBinary(text) {
@@ -119,7 +116,7 @@ export async function parse(text, heard = () => {}) {
     from = to + 1;
     if (line % atOnce === 0) {
       heard(from / text.length);
-      await pause();
+      await nextTask();
     }
     if (!cells.trim()) continue;
     if (isComment(cells)) {

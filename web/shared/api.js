@@ -62,7 +62,8 @@ export async function sweep(request, signal) {
 }
 
 const quoted = (text) => `'${text.replaceAll("'", "'\\''")}'`;
-const whole = (path) => new URL(path, location.href.split("?")[0]);
+/** The address of a route, for use elsewhere. */
+export const whole = (path) => new URL(path, location.href.split("?")[0]).href;
 
 /** A request for a terminal. */
 export const asCurl = (path, fields, flags = "-s") =>

@@ -61,6 +61,18 @@ export class Axis {
     this.zoom(t - (t - from) / factor, t + (to - t) / factor);
   }
 
+  /** About the cursor, or the middle of what is in view. */
+  zoomAbout(factor) {
+    const [from, to] = this.view;
+    this.zoomAt(this.cursor ?? (from + to) / 2, factor);
+  }
+
+  /** Brings a place into view, in the middle unless it is there already. */
+  reveal(at) {
+    const [from, to] = this.view;
+    if (at < from || at > to) this.pan((at - (from + to) / 2) / (to - from));
+  }
+
   /** By a share of what is in view. */
   pan(share) {
     const [from, to] = this.view;

@@ -1,7 +1,5 @@
 // A request in the forms one pastes elsewhere.
-import {asCurl} from "./api.js";
-
-const whole = (path) => new URL(path, location.href.split("?")[0]).href;
+import {asCurl, whole} from "./api.js";
 
 /** A request as a Python program that needs nothing but Python. */
 function asPython(path, fields) {

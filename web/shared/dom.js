@@ -2,6 +2,17 @@
 
 export const $ = (id) => document.getElementById(id);
 
+/** Counts on a node what was done, for those who wait for it. */
+export const countUp = (node, what = "done") => {
+  node.dataset[what] = Number(node.dataset[what] ?? 0) + 1;
+};
+
+/** Lets the page hear of other things before what is next. */
+export const nextTask = () =>
+  new Promise((resolve) => {
+    setTimeout(resolve);
+  });
+
 export const element = (tag, properties = {}, ...children) => {
   const node = Object.assign(document.createElement(tag), properties);
   node.append(...children);

@@ -1,7 +1,7 @@
 // Everything else that is known of a run: it is asked for once one unfolds it, and follows the run
 // from then on.
 import {simulate} from "../shared/api.js";
-import {$} from "../shared/dom.js";
+import {$, countUp} from "../shared/dom.js";
 import {addMenu} from "../shared/figure_menu.js";
 import {Job} from "../shared/job.js";
 import {operable} from "../shared/operable.js";
@@ -60,7 +60,7 @@ export class Details {
     drawDetails(this.plots, answer, marksOf(answer, units), units, point);
     this.places = placesOf(answer.impacts, units);
     this.light();
-    $("details").dataset.done = String(Number($("details").dataset.done ?? 0) + 1);
+    countUp($("details"));
     if (!$("model-sketch").hasChildNodes()) showModel().catch(() => {}); // the equations do without it
   }
 

@@ -4,7 +4,7 @@ import {Problem, simulate, wholeMessage} from "../shared/api.js";
 import {Axis} from "../shared/axis.js";
 import {listWarnings} from "../shared/cards.js";
 import {formsOf} from "../shared/copies.js";
-import {$, element} from "../shared/dom.js";
+import {$, countUp, element, nextTask} from "../shared/dom.js";
 import {addMenu} from "../shared/figure_menu.js";
 import {Form} from "../shared/form.js";
 import {Job} from "../shared/job.js";
@@ -79,17 +79,12 @@ const more = new Job({
     $("figure-largest").classList.remove("behind");
     $("figure-manifold").classList.remove("behind");
     details.follow();
-    countUp("done");
+    countUp($("results"));
   },
   fail: (error) => say(`T, the raw product and the manifold are missing: ${error.message}`, true),
   busy() {},
   later() {},
 });
-
-/** A run is on the screen: `shown` its first part, `done` all of it. */
-function countUp(name) {
-  $("results").dataset[name] = String(Number($("results").dataset[name] ?? 0) + 1);
-}
 
 function refuse(error) {
   const left = error instanceof Problem ? request.form.showErrors(error.errors, false) : [];
@@ -103,11 +98,6 @@ function homeOf({parameters, status}) {
   const to = parameters.window?.[1];
   return to && to < 0.9 * status.tau ? [0, to] : [0, status.tau];
 }
-
-const nextTask = () =>
-  new Promise((resolve) => {
-    setTimeout(resolve);
-  });
 
 /** A run with many impacts is drawn in several tasks, between which the page hears of other things. */
 async function present(answer, asked) {
@@ -132,7 +122,7 @@ async function present(answer, asked) {
     if (last.answer !== answer) return;
     step();
   }
-  countUp("shown");
+  countUp($("results"), "shown");
   clearTimeout(resting);
   resting = setTimeout(() => more.start(asked), rest);
 }

@@ -2,7 +2,7 @@
 // it, filled coarse to fine by a sweep in the background. Its marker is the slider.
 import {Problem, sweep} from "../shared/api.js";
 import {colour} from "../shared/colours.js";
-import {$, element} from "../shared/dom.js";
+import {$, countUp, element} from "../shared/dom.js";
 import {blank, Size} from "../shared/frame.js";
 import {jsonLines} from "../shared/json_lines.js";
 import {digits, short, withError} from "../shared/numbers.js";
@@ -108,7 +108,7 @@ export class Strip {
         this.found[sequence[value.index]] = value;
         this.soon();
       }
-      this.canvas.dataset.done = String(Number(this.canvas.dataset.done ?? 0) + 1);
+      countUp(this.canvas);
     } catch (error) {
       if (abort.signal.aborted) return;
       this.found = [];

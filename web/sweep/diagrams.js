@@ -3,10 +3,10 @@
 import {Axis} from "../shared/axis.js";
 import {coordinates, describe, quantityOf, startNames} from "../shared/quantities.js";
 import {firstFrom} from "../shared/search.js";
-import {Tip} from "../shared/tip.js";
 import {inSeconds} from "../shared/units.js";
 import {afresh, sameAxis, span} from "./axes.js";
 import {LambdaDiagram, OtherDiagram, SectionDiagram} from "./diagram.js";
+import {Telling} from "./telling.js";
 
 /** Moves of the keyboard along an axis. */
 const steps = {
@@ -23,25 +23,17 @@ export class SweepPlots {
    * containers: {section, lambda, other}; naming: of axes; open({data, index}): a point was chosen.
    */
   constructor(root, containers, naming, open) {
-    Object.assign(this, {root, naming, open, layers: null, current: null});
+    Object.assign(this, {naming, open, layers: null, current: null});
     this.axis = new Axis();
-    this.tip = new Tip(root);
+    this.axes = [this.axis];
+    this.telling = new Telling(root, this);
     this.panels = {
       section: new SectionDiagram(containers.section, this),
       lambda: new LambdaDiagram(containers.lambda, this),
       other: new OtherDiagram(containers.other, this),
     };
     for (const panel of Object.values(this.panels))
-      panel.over.addEventListener("pointermove", (event) => {
-        if (event.pointerType === "mouse" && !event.buttons) this.hover(panel);
-      });
-    root.addEventListener("pointerleave", (event) => {
-      if (event.pointerType === "mouse") this.leave();
-    });
-    root.addEventListener("keydown", (event) => this.key(event));
-    root.addEventListener("focusout", (event) => {
-      if (!root.contains(event.relatedTarget)) this.leave();
-    });
+      this.telling.follow(panel, () => this.tell({panel, at: this.axis.cursor}));
   }
 
   /**
@@ -56,7 +48,8 @@ export class SweepPlots {
     this.refresh();
   }
 
-  choose(choice) {
+  /** The same sweep by another choice. */
+  showAs(choice) {
     this.choice = choice;
     this.refresh();
   }
@@ -65,6 +58,7 @@ export class SweepPlots {
   refresh() {
     if (this.data?.axes?.length !== 1) return;
     this.places = this.starts().map((s) => this.layers.places(s));
+    this.at = this.places.map((list) => list.map((place) => place.at));
     for (const panel of Object.values(this.panels)) panel.refresh();
     if (this.current && !this.current.act) this.tell(this.current); // a button stays under the finger
   }
@@ -110,19 +104,22 @@ export class SweepPlots {
   /** The position of the point of the first start that lies next to a place of the axis. */
   positionAt(at) {
     const [list] = this.places;
-    const i = firstFrom(
-      list.map((place) => place.at),
-      at,
-    );
+    const i = firstFrom(this.at[0], at);
     const before = i > 0 && (i === list.length || at - list[i - 1].at < list[i].at - at);
     return before ? i - 1 : i;
+  }
+
+  /** The point of a start at a place of the axis, undefined where it is still to come. */
+  pointAt(at, start) {
+    const place = this.places[start][firstFrom(this.at[start], at)];
+    return place?.at === at ? place : undefined;
   }
 
   /** Of the points of all starts at a position the one that a panel draws next to a height. */
   nearest(panel, i, top) {
     const place = this.places[0][i];
     const there = this.starts()
-      .map((s) => this.places[s].find((other) => other.at === place.at))
+      .map((s) => this.pointAt(place.at, s))
       .filter(Boolean);
     const away = ({p}) => {
       const v = p.error ? null : panel.drawn(p);
@@ -137,21 +134,16 @@ export class SweepPlots {
     else this.open(this.nearest(panel, this.positionAt(at), top));
   }
 
-  hover(panel) {
-    if (this.places?.[0].length && this.axis.cursor !== null)
-      this.tell({panel, at: this.axis.cursor});
-  }
-
   leave() {
     this.current = null;
-    this.tip.hide();
-    if (this.axis.cursor !== null) this.axis.point(null);
+    this.telling.hide();
     for (const panel of Object.values(this.panels)) panel.light();
   }
 
   /** The tooltip of the point next to a place; act: with a button that opens it. */
   tell(current) {
     const {panel, at, act = false} = current;
+    if (!this.places) return;
     const place = this.places[0][this.positionAt(at)];
     if (!place || !panel.frame) return;
     this.current = current;
@@ -164,41 +156,33 @@ export class SweepPlots {
     }
     const {start} = data.defaultSet ? p : {};
     const from = start ? `, from its start: ${startNames[start]}` : afresh(data);
-    const box = this.root.getBoundingClientRect();
-    const over = panel.over.getBoundingClientRect();
-    const left = over.left - box.left + panel.frame.px(value) - panel.frame.box.left;
-    const top = over.top - box.top + over.height / 2;
-    const open = {label: "Simulate this point", run: () => this.open(place)};
-    this.tip.show(left, top, rows, `Click: simulate it${from}`, act ? open : null);
+    const open = act ? () => this.open(place) : null;
+    this.telling.show(panel, value, null, rows, `simulate it${from}`, open);
   }
 
   /** The rows of a start; of several starts not more than five each. */
   describeStart({at}, start) {
-    const place = this.places[start].find((other) => other.at === at);
+    const place = this.pointAt(at, start);
     const rows = place ? describe(place.p, this.naming.where(this.data)) : [["", "still to come"]];
     return this.several ? rows.slice(0, 5) : rows;
   }
 
-  key(event) {
-    if (event.target !== this.root || !this.places?.[0].length) return;
-    const [list] = this.places;
+  choose() {
+    if (this.current) this.open(this.places[0][this.positionAt(this.current.at)]);
+  }
+
+  move(key) {
+    if (!(key in steps)) return false;
+    const list = this.places?.[0] ?? [];
     const i = this.current ? this.positionAt(this.current.at) : -1;
-    const within = (k) => Math.max(0, Math.min(list.length - 1, k));
-    const [from, to] = this.axis.view;
-    const zoom = {"+": 1.5, "=": 1.5, "-": 1 / 1.5}[event.key];
-    if (event.key in steps) this.moveTo(list[within(i + steps[event.key])].at);
-    else if (event.key === "Enter" && i >= 0) this.open(list[i]);
-    else if (event.key === "Escape") this.leave();
-    else if (event.key === "0") this.axis.reset();
-    else if (zoom) this.axis.zoomAt(this.axis.cursor ?? (from + to) / 2, zoom);
-    else return;
-    event.preventDefault();
+    const next = Math.max(0, Math.min(list.length - 1, i + steps[key]));
+    if (list.length) this.moveTo(list[next].at);
+    return true;
   }
 
   /** Tells of the point at a place, which is brought into view. */
   moveTo(at) {
-    const [from, to] = this.axis.view;
-    if (at < from || at > to) this.axis.pan((at - (from + to) / 2) / (to - from));
+    this.axis.reveal(at);
     this.axis.point(at, "key");
     this.tell({panel: Object.values(this.panels).find(({size}) => size.width), at, act: true});
   }

@@ -7,9 +7,9 @@ import {short} from "../shared/numbers.js";
 import {Panel} from "../shared/panel.js";
 import {bestMotion, describe, quantityOf, regimeColour} from "../shared/quantities.js";
 import {lastUpTo} from "../shared/search.js";
-import {Tip} from "../shared/tip.js";
 import {afresh, sameAxis, span} from "./axes.js";
 import {barWidth, drawBar, endsOf, scaleOf} from "./colour_scale.js";
+import {Telling} from "./telling.js";
 
 /** Moves of the keyboard over the cells. */
 const moves = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
@@ -23,20 +23,10 @@ export class SweepMap extends Panel {
   /** naming: of axes; open({data, index}): a cell was chosen. */
   constructor(root, container, naming, open) {
     super(container, new Axis(), new Axis());
-    Object.assign(this, {root, naming, open, layers: null, current: null, ends: new Map()});
-    this.tip = new Tip(root);
-    this.over.addEventListener("pointermove", (event) => {
-      const {cursor} = this.axis;
-      if (event.pointerType === "mouse" && !event.buttons && cursor !== null)
-        this.tell(cursor, this.across.cursor);
-    });
-    root.addEventListener("pointerleave", (event) => {
-      if (event.pointerType === "mouse") this.leave();
-    });
-    root.addEventListener("keydown", (event) => this.key(event));
-    root.addEventListener("focusout", (event) => {
-      if (!root.contains(event.relatedTarget)) this.leave();
-    });
+    Object.assign(this, {naming, open, layers: null, current: null, ends: new Map()});
+    this.axes = [this.axis, this.across];
+    this.telling = new Telling(root, this);
+    this.telling.follow(this, () => this.tell(this.axis.cursor, this.across.cursor));
   }
 
   /**
@@ -54,7 +44,8 @@ export class SweepMap extends Panel {
     this.refresh();
   }
 
-  choose(choice) {
+  /** The same sweep by another choice. */
+  showAs(choice) {
     this.choice = choice;
     this.refresh();
   }
@@ -223,8 +214,7 @@ export class SweepMap extends Panel {
 
   leave() {
     this.current = null;
-    this.tip.hide();
-    if (this.axis.cursor !== null) this.axis.point(null);
+    this.telling.hide();
     this.light();
   }
 
@@ -241,25 +231,18 @@ export class SweepMap extends Panel {
       naming.place(data.axes[1], y),
       ...(p ? describe(p, naming.where(data)) : [["", "still to come"]]),
     ];
-    const box = this.root.getBoundingClientRect();
-    const over = this.over.getBoundingClientRect();
-    const left = over.left - box.left + this.frame.px(x) - this.frame.box.left;
-    const top = over.top - box.top + this.frame.py(y) - this.frame.box.top;
-    const open = {label: "Simulate this point", run: () => this.open(there)};
-    this.tip.show(left, top, rows, `Click: simulate it${afresh(data)}`, act ? open : null);
+    const open = act ? () => this.open(there) : null;
+    this.telling.show(this, x, y, rows, `simulate it${afresh(data)}`, open);
   }
 
-  key(event) {
-    if (!this.data?.axes || event.target !== this.root) return;
-    const move = moves[event.key];
-    const zoom = {"+": 1.5, "=": 1.5, "-": 1 / 1.5}[event.key];
-    if (move) this.moveBy(move);
-    else if (zoom) this.zoomAbout(zoom);
-    else if (event.key === "0") for (const axis of [this.axis, this.across]) axis.reset();
-    else if (event.key === "Enter" && this.current) this.choosePoint(...this.current);
-    else if (event.key === "Escape") this.leave();
-    else return;
-    event.preventDefault();
+  choose() {
+    if (this.current) this.choosePoint(...this.current);
+  }
+
+  move(key) {
+    const way = moves[key];
+    if (way && this.data?.axes) this.moveBy(way);
+    return Boolean(way);
   }
 
   /** Tells of the cell beside the one that is told of, which is brought into view. */
@@ -269,24 +252,11 @@ export class SweepMap extends Panel {
     const {data, k, l} = this.nearest(at, height);
     const ways = this.current ? [right, up] : [0, 0];
     const [x, y] = [k, l].map((i, d) => beside(data.axes[d], i, ways[d], this.data.axes[d]));
-    for (const [axis, place] of [
-      [this.axis, x],
-      [this.across, y],
-    ]) {
-      const [from, to] = axis.view;
-      if (place < from || place > to) axis.pan((place - (from + to) / 2) / (to - from));
-    }
+    this.axis.reveal(x);
+    this.across.reveal(y);
     this.across.point(y, "key");
     this.axis.point(x, "key");
     this.tell(x, y, true);
-  }
-
-  zoomAbout(factor) {
-    for (const [axis, at] of [
-      [this.axis, this.current?.[0]],
-      [this.across, this.current?.[1]],
-    ])
-      axis.zoomAt(at ?? (axis.view[0] + axis.view[1]) / 2, factor);
   }
 
   /** {names, columns}: the numbers of what is in view, of the finest layer there. */

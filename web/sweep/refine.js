@@ -24,12 +24,18 @@ function axisOf({parameter, scale}, {from, at}, [low, high], count) {
 }
 
 export class Refiner {
-  /** axes(data): the Axis of each axis that is drawn; drawn(): more points are there; say(text). */
-  constructor({axes, drawn, say}) {
+  /**
+   * axes(data): the Axis of each axis that is drawn; drawn(): more points are there; settled(): all
+   * that were asked for are; say(text).
+   */
+  constructor({axes, drawn, settled, say}) {
     Object.assign(this, {axes, drawn, say, layers: null, waiting: 0});
     this.job = new Job({
       ask: (data, signal) => this.ask(data, signal),
-      show: () => this.say(""),
+      show: () => {
+        this.say("");
+        settled();
+      },
       fail: (error) => this.say(`not refined: ${error.message}`),
       busy() {},
       later: (text) => this.say(text),

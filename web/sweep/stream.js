@@ -2,9 +2,6 @@
 import {Passing, sweep} from "../shared/api.js";
 import {jsonLines} from "../shared/json_lines.js";
 
-/** Whether a server says that another one will do: it stops. */
-const isPassing = (detail) => detail.includes("ask again");
-
 /**
  * The points that data (SweepData) still lacks, into it; throws if the stream ends before all are
  * there. heard(line): each line.
@@ -12,7 +9,7 @@ const isPassing = (detail) => detail.includes("ask again");
 export async function receive(data, signal, heard) {
   const missing = data.received ? {indices: data.missing()} : {};
   for await (const {text, value} of jsonLines(await sweep({...data.request, ...missing}, signal))) {
-    if (value.type === "error") throw new (isPassing(value.detail) ? Passing : Error)(value.detail);
+    if (value.type === "error") throw new (value.status === 503 ? Passing : Error)(value.detail);
     data.take(value, text);
     heard(value);
   }

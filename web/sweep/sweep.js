@@ -2,7 +2,7 @@
 // and what the menus show.
 import {asCurl, Problem, wholeMessage} from "../shared/api.js";
 import {listWarnings} from "../shared/cards.js";
-import {$, element} from "../shared/dom.js";
+import {$, countUp, element} from "../shared/dom.js";
 import {addMenu} from "../shared/figure_menu.js";
 import {textOf} from "../shared/form.js";
 import {Job} from "../shared/job.js";
@@ -136,11 +136,16 @@ function draw() {
   if (!data?.axes) return;
   const began = performance.now();
   drawPlots();
-  namePlots();
   showPeaks(data, naming);
   showMotions();
   countRegimes();
   cost = performance.now() - began;
+}
+
+/** No more points come for now. */
+function settle() {
+  draw();
+  if (data?.axes) namePlots();
 }
 
 function drawPlots() {
@@ -244,7 +249,6 @@ function compare() {
 }
 
 function busy(is) {
-  $("sweep-run").disabled = is;
   $("sweep-cancel").hidden = !is;
   $("sweep-resume").hidden = is || !data?.axes || data.complete;
   $("sweep-bar").hidden = !is && (!data || data.complete);
@@ -267,14 +271,14 @@ const job = new Job({
     const left = error instanceof Problem ? form.showErrors(error.errors) : [];
     say(wholeMessage(error, left), true);
     if (data) showCount();
-    draw();
+    settle();
   },
   busy(is, cancelled) {
     busy(is);
     if (cancelled) {
       say("cancelled");
       if (data) showCount();
-      draw();
+      settle();
     }
   },
   later: (text) => say(text, true),
@@ -299,9 +303,9 @@ function hear(into, line) {
 function finish() {
   say(remarks());
   listWarnings($("sweep-warnings"), [...data.warnings]);
-  draw();
+  settle();
   refine();
-  $("sweep-results").dataset.done = String(Number($("sweep-results").dataset.done ?? 0) + 1);
+  countUp($("sweep-results"));
 }
 
 /** Where the plots lie below the form, one who asks for them is led there. */
@@ -440,6 +444,10 @@ export function start(tables, tell, {simulate}) {
   refiner = new Refiner({
     axes: axesOf,
     drawn: drawSoon,
+    settled: () => {
+      settle();
+      countUp($("sweep-results"), "refined");
+    },
     say: (text) => {
       $("sweep-refined").textContent = text;
     },
@@ -480,7 +488,7 @@ function runExample() {
 
 function chooseFromMenu() {
   if (!data) return;
-  (data.axes.length > 1 ? map : plots).choose(choice());
+  (data.axes.length > 1 ? map : plots).showAs(choice());
   namePlots();
   refine();
   showFreeKey();

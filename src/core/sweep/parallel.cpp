@@ -4,6 +4,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -24,7 +25,10 @@ void parallel(std::size_t count, int threads, const std::function<void(std::size
     };
     std::vector<std::thread> others;
     const std::size_t wanted = std::min(count, static_cast<std::size_t>(std::max(threads, 1)));
-    for (std::size_t t = 1; t < wanted; ++t) others.emplace_back(work);
+    try {
+        for (std::size_t t = 1; t < wanted; ++t) others.emplace_back(work);
+    } catch (const std::system_error&) {  // the system has no more: those that are there do it
+    }
     work();
     for (std::thread& t : others) t.join();
     if (failure) std::rethrow_exception(failure);

@@ -1,0 +1,120 @@
+#include "api/parse_object.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include "api/problem.hpp"
+
+namespace vines::api {
+
+namespace {
+
+constexpr std::size_t deepest = 16;
+// Of one object: several times as many as any request has.
+constexpr std::size_t most_names = 1000;
+
+[[noreturn]] void invalid(const std::string& what) {
+    throw Problem(400, "the body is not valid JSON: " + what);
+}
+
+/// Takes what the library's parser finds, and puts it together. (Its own way to do so with a check
+/// of each name looks through an array again for each element, and through an object for each
+/// name.)
+class Builder {
+public:
+    bool null() { return add(nullptr); }
+    bool boolean(bool value) { return add(value); }
+    bool number_integer(Json::number_integer_t value) { return add(value); }
+    bool number_unsigned(Json::number_unsigned_t value) { return add(value); }
+    bool number_float(Json::number_float_t value, const std::string&) { return add(value); }
+    bool string(std::string& value) { return add(std::move(value)); }
+    bool binary(Json::binary_t&) { return false; }  // of formats other than JSON
+    bool start_object(std::size_t) { return open(Json::object()); }
+    bool end_object() { return close(); }
+    bool start_array(std::size_t) { return open(Json::array()); }
+    bool end_array() { return close(); }
+
+    bool key(std::string& name) {
+        std::unordered_set<std::string>& names = open_.back().names;
+        if (names.size() >= most_names)
+            throw Problem(
+                400, fmt::format("an object of the JSON text has more than {} names", most_names));
+        if (!names.insert(name).second)
+            throw Problem(
+                400, "the name \"" + shortened(name) + "\" comes twice in the same JSON object");
+        name_ = std::move(name);
+        return true;
+    }
+
+    template <class Exception>
+    bool parse_error(std::size_t, const std::string&, const Exception& e) {
+        // The library's text is "[json.exception....] parse error at line 1, column 5: ..."; its
+        // tag is of no use to anyone, and it may hold all of a text.
+        const std::string what = e.what();
+        invalid(shortened(what.substr(what.find("] ") + 2)));
+    }
+
+    Json take() { return std::move(whole_); }
+
+private:
+    struct Open {
+        Json* value;
+        std::unordered_set<std::string> names = {};
+    };
+
+    bool add(Json value) {
+        place(std::move(value));
+        return true;
+    }
+
+    bool open(Json value) {
+        if (open_.size() >= deepest)
+            throw Problem(
+                400, fmt::format("the JSON text is nested deeper than {} levels", deepest));
+        open_.push_back({&place(std::move(value))});
+        return true;
+    }
+
+    bool close() {
+        open_.pop_back();
+        return true;
+    }
+
+    /// Where it is kept: it stays there as long as it is open, because what holds it does not grow
+    /// meanwhile.
+    Json& place(Json value) {
+        if (open_.empty()) return whole_ = std::move(value);
+        Json& holder = *open_.back().value;
+        if (holder.is_array()) return holder.emplace_back(std::move(value));
+        // Without a search for the name: it is new.
+        auto& members = static_cast<Json::object_t::Container&>(holder.get_ref<Json::object_t&>());
+        return members.emplace_back(std::move(name_), std::move(value)).second;
+    }
+
+    Json whole_;
+    std::vector<Open> open_;  // objects and arrays, the outermost first
+    std::string name_;
+};
+
+}  // namespace
+
+Json parse_object(std::string_view text) {
+    // The library would take it for the end of the text.
+    if (text.find('\0') != std::string_view::npos) invalid("it holds a NUL byte");
+    if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
+        throw Problem(
+            400, "the body is empty; send a JSON object of parameters, {} for the defaults");
+    Builder builder;
+    Json::sax_parse(text, &builder);
+    Json object = builder.take();
+    if (!object.is_object())
+        throw Problem(
+            400, "the body must be a JSON object, not " + std::string(object.type_name()));
+    return object;
+}
+
+}  // namespace vines::api

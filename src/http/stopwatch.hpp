@@ -1,0 +1,31 @@
+// Where the time of a request goes.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace vines::http {
+
+/// Names of parts of the work, and how long each took, in ms.
+using Timing = std::vector<std::pair<std::string, double>>;
+
+class Stopwatch {
+public:
+    /// The part that is over, from the end of the one before.
+    void lap(const char* name) {
+        const auto now = Clock::now();
+        laps_.emplace_back(
+            name,
+            std::chrono::duration<double, std::milli>(now - std::exchange(last_, now)).count());
+    }
+    Timing take() { return std::move(laps_); }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point last_ = Clock::now();
+    Timing laps_;
+};
+
+}  // namespace vines::http

@@ -1,0 +1,825 @@
+// What clients that are slow, careless or hostile do to the others: nothing. Over raw sockets.
+// LONG=1: as long, and as many, as an operator would try once.
+import assert from "node:assert/strict";
+import {execFileSync, spawn} from "node:child_process";
+import {chmod, copyFile, mkdtemp, rm, symlink, writeFile} from "node:fs/promises";
+import {tmpdir} from "node:os";
+import {join} from "node:path";
+import {after, before, test} from "node:test";
+import {program, startService} from "../service.mjs";
+import {connect, exchange, memory, sleep, statuses, until} from "./raw.mjs";
+
+const long = Boolean(process.env.LONG);
+// A program with sanitizers is some times slower, and keeps memory for a while to watch it.
+const slower = process.env.SANITIZED ? 6 : 1;
+const watched = process.env.SANITIZED ? 300 : 0; // MB
+
+let service;
+before(async () => {
+  service = await startService();
+});
+after(() => service.stop());
+
+const get = (path, more = "") => `GET ${path} HTTP/1.1\r\nHost: localhost\r\n${more}\r\n`;
+const post = (body, more = "") =>
+  `POST /v1/simulate HTTP/1.1\r\nHost: localhost\r\nContent-Length: ${body.length}\r\n${more}\r\n${body}`;
+const small = '{"tau_end": 20, "include": ["impacts"]}';
+// Of the longest runs there are: a second or two each.
+const longest = JSON.stringify({
+  b: 0.03,
+  tau_end: 1e7,
+  max_impacts: 2000000,
+  include: ["regime", "exponents"],
+});
+
+/** The time to an answer of /livez, ms. */
+async function health(url = service.url) {
+  const began = performance.now();
+  assert.equal((await fetch(`${url}/livez`)).status, 200);
+  return performance.now() - began;
+}
+
+test("requests that are sent without waiting for the answers are answered one after the other", async () => {
+  const paths = Array.from({length: 50}, (_, i) =>
+    i % 3 ? "/version" : `/v1/simulate?tau_end=${i + 1}`,
+  );
+  const last = get("/healthz", "Connection: close\r\n");
+  const text = await exchange(service.url, paths.map((path) => get(path)).join("") + last);
+  assert.deepEqual(statuses(text), Array(51).fill(200));
+  const ends = [...text.matchAll(/"tau_end":(\d+)/g)].map((found) => Number(found[1]));
+  assert.deepEqual(
+    [...new Set(ends)],
+    [1, 4, 7, 10, 13, 16, 19, 22, 25, 28, 31, 34, 37, 40, 43, 46, 49],
+  );
+});
+
+test("many small requests on few connections, and then large ones, are all answered", async () => {
+  const burst = async (path, n) => {
+    const {socket, text, ended} = await connect(service.url);
+    for (let i = 0; i < n; ++i) socket.write(get(path));
+    socket.write(get(path, "Connection: close\r\n"));
+    await ended;
+    assert.deepEqual(statuses(text()), Array(n + 1).fill(200), path);
+  };
+  await Promise.all(Array.from({length: 16}, () => burst("/livez", 200)));
+  await Promise.all(Array.from({length: 16}, () => burst("/v1/presets", 5)));
+});
+
+test("a request may come byte by byte, and another one behind it in the same packet", async () => {
+  const {socket, text, ended} = await connect(service.url);
+  for (const byte of post(small)) {
+    socket.write(byte);
+    await sleep(0);
+  }
+  socket.write(post(small) + get("/healthz", "Connection: close\r\n"));
+  await ended;
+  assert.deepEqual(statuses(text()), [200, 200, 200]);
+});
+
+test("a client that closes its own side still gets its answer", async () => {
+  const {socket, text, ended} = await connect(service.url, {allowHalfOpen: true});
+  socket.end(post('{"tau_end": 50000, "include": ["impacts"]}'));
+  await ended;
+  assert.deepEqual(statuses(text()), [200]);
+  assert.match(text(), /\}\n?$/);
+  const none = await connect(service.url, {allowHalfOpen: true});
+  none.socket.end("GET / HTTP/1.1\r\nHo");
+  assert.equal(await none.ended, "");
+});
+
+test("a head is taken only in the form that all readers agree on", async () => {
+  const cases = [
+    ["GET / HTTP/1.1\r\n\r\n", 400],
+    ["GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n", 400],
+    ["GET / HTTP/1.1\nHost: localhost\n\n", 400],
+    ["GET / HTTP/1.1\r\nHost: localhost\r\nX: a\nContent-Length: 3\r\n\r\n", 400],
+    ["GET / HTTP/1.1\r\nHost : localhost\r\n\r\n", 400],
+    ["GET / HTTP/1.1\r\nHost: localhost\r\n folded: 1\r\n\r\n", 400],
+    ["GET / HTTP/1.1\r\nHost: localhost\r\nno colon\r\n\r\n", 400],
+    ["GET / HTTP/1.1\r\nHost: localhost\r\nX: \0\r\n\r\n", 400],
+    ["GET  / HTTP/1.1\r\nHost: localhost\r\n\r\n", 400],
+    ["GET /\tx HTTP/1.1\r\nHost: localhost\r\n\r\n", 400],
+    ["GET x HTTP/1.1\r\nHost: localhost\r\n\r\n", 400],
+    ["GET / HTTP/2.0\r\nHost: localhost\r\n\r\n", 505],
+    ["GET / HTTP/1.10\r\nHost: localhost\r\n\r\n", 400],
+    ["garbage\r\n\r\n", 400],
+    [`GET /${"a".repeat(8300)} HTTP/1.1\r\nHost: localhost\r\n\r\n`, 414],
+    [get("/", `X: ${"a".repeat(17000)}\r\n`), 431],
+    [get("/", "X: a\r\n".repeat(200)), 431],
+    [get("/", "Range: items=1\r\n"), 416],
+    [get("/", "Expect: a miracle\r\n"), 417],
+    ["BREW / HTTP/1.1\r\nHost: localhost\r\n\r\n", 405],
+    [`${get("/", "Content-Length: 3\r\n")}abc`, 400],
+    [post(small, "Content-Length: 3\r\n"), 400],
+    [post(small).replace(/Length: \d+/, "Length: +3"), 400],
+    [post(small).replace(/Length: \d+/, "Length: 3, 3"), 400],
+    [post(small).replace(/Length: \d+/, "Length: 99999999999999999999"), 400],
+    [post(small, "Transfer-Encoding: chunked\r\n"), 400],
+    [post(small).replace(/Content-Length: \d+/, "Transfer-Encoding: chunked"), 411],
+    [post(small).replace(/Content-Length: \d+/, "Transfer-Encoding : chunked"), 400],
+    ["\r\n\r\nGET / HTTP/1.1\r\nHost: localhost\r\n\r\n", 400],
+  ];
+  for (const [bytes, status] of cases) {
+    const text = await exchange(service.url, bytes);
+    assert.deepEqual(statuses(text), [status], JSON.stringify(bytes.slice(0, 80)));
+    assert.match(text, /^Connection: close\r$/im);
+    assert.match(text, /^X-Content-Type-Options: nosniff\r$/im);
+    assert.equal(JSON.parse(text.slice(text.indexOf("\r\n\r\n"))).status, status);
+  }
+});
+
+/** Requests with a body that must never be read as the next request. */
+const inner = "GET /v1/presets HTTP/1.1\r\nHost: localhost\r\n\r\n";
+const shapes = {
+  "a GET with a body": (pad) =>
+    get("/healthz", `Content-Length: ${pad + inner.length}\r\n`) + "x".repeat(pad) + inner,
+  "a HEAD with a body": (pad) =>
+    get("/healthz", `Content-Length: ${pad + inner.length}\r\n`).replace("GET", "HEAD") +
+    "x".repeat(pad) +
+    inner,
+  "a long target": (pad) => get(`/${"a".repeat(4096 + pad)}`) + inner,
+  "a range": (pad) =>
+    get("/healthz", `Range: items=1\r\nContent-Length: ${pad + inner.length}\r\n`) +
+    "x".repeat(pad) +
+    inner,
+  "an unknown method": (pad) =>
+    get("/healthz", `Content-Length: ${pad + inner.length}\r\n`).replace("GET", "BREW") +
+    "x".repeat(pad) +
+    inner,
+  "chunks behind a blank": (pad) => {
+    const more = `Transfer-Encoding : chunked\r\nX: ${"x".repeat(pad)}\r\n`;
+    const head = get("/v1/simulate", more).replace("GET", "POST");
+    return `${head}0\r\n\r\n${inner}`;
+  },
+};
+
+test("what follows a refused request is not taken for the next one, at any offset", async () => {
+  const step = long ? 1 : 8;
+  for (const [name, bytes] of Object.entries(shapes))
+    for (let pad = 4096 - 40 - 80; pad <= 4096 + 40; pad += step) {
+      const text = await exchange(service.url, bytes(pad));
+      assert.ok(statuses(text)[0] >= 400, `${name}, ${pad}: ${text.slice(0, 60)}`);
+      assert.equal(statuses(text).length, 1, `${name}, ${pad}`);
+    }
+});
+
+/** Starts the shipped proxy before so many services; resolves to {url, stop}. */
+async function startProxy(replicas) {
+  const port = 20000 + Math.floor(Math.random() * 20000);
+  const environment = {VINES_BIND: `127.0.0.1:${port}`};
+  replicas.forEach(({url}, i) => {
+    environment[`VINES_${i + 1}`] = new URL(url).host;
+  });
+  const config = new URL("../../deploy/haproxy.cfg", import.meta.url).pathname;
+  const env = {...process.env, ...environment};
+  const child = spawn("haproxy", ["-db", "-f", config], {env, stdio: "ignore"});
+  process.once("exit", () => child.kill("SIGKILL"));
+  const url = `http://127.0.0.1:${port}`;
+  await until(async () => (await fetch(`${url}/readyz`).catch(() => null))?.status === 200, 10000);
+  return {url, stop: () => child.kill("SIGKILL")};
+}
+
+test("nor is it through the proxy, where another client would get the answer", async (t) => {
+  const replicas = await Promise.all([startService(), startService(), startService()]);
+  const proxy = await startProxy(replicas);
+  t.after(() => {
+    proxy.stop();
+    for (const replica of replicas) replica.stop();
+  });
+  const step = long ? 1 : 20;
+  const health = async () => (await fetch(`${proxy.url}/healthz`)).text();
+  for (const [name, bytes] of Object.entries(shapes))
+    for (let pad = 4096 - 40 - 80; pad <= 4096 + 40; pad += step) {
+      const hostile = exchange(proxy.url, bytes(pad), 300);
+      const [text, ...others] = await Promise.all([hostile, health(), health(), health()]);
+      // Behind a target there is nothing but the same client's next request.
+      if (name !== "a long target") assert.doesNotMatch(text, /"fig3"/, `${name}, ${pad}`);
+      for (const other of others) assert.deepEqual(JSON.parse(other), {status: "ok"});
+    }
+});
+
+test("a body is asked for only where it would be taken", async () => {
+  const expect = (length, path = "/v1/simulate") =>
+    `POST ${path} HTTP/1.1\r\nHost: localhost\r\nExpect: 100-continue\r\nContent-Length: ${length}\r\n\r\n`;
+  assert.match(await exchange(service.url, expect(1 << 21)), /^HTTP\/1\.1 413 /);
+  assert.match(await exchange(service.url, expect(10, "/nothing")), /^HTTP\/1\.1 404 /);
+  const {socket, text} = await connect(service.url);
+  socket.write(expect(small.length));
+  await until(() => text() === "HTTP/1.1 100 Continue\r\n\r\n");
+  socket.write(small);
+  await until(() => statuses(text()).length === 1);
+  assert.deepEqual(statuses(text()), [200]);
+  socket.destroy();
+});
+
+test("a target in absolute form and HTTP/1.0 are understood", async () => {
+  const absolute =
+    "GET http://localhost:1/version HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n";
+  assert.deepEqual(statuses(await exchange(service.url, absolute)), [200]);
+  const old = await exchange(service.url, "GET /version HTTP/1.0\r\n\r\n");
+  assert.deepEqual(statuses(old), [200]);
+  const sweep = '{"axes": [{"parameter": "b", "values": [0.02, 0.03]}], "cycles": 10}';
+  const streamed = await exchange(
+    service.url,
+    `POST /v1/sweep HTTP/1.0\r\nContent-Length: ${sweep.length}\r\n\r\n${sweep}`,
+  );
+  assert.doesNotMatch(streamed, /chunked/i);
+  const kept = `POST /v1/sweep HTTP/1.0\r\nConnection: keep-alive\r\nContent-Length: ${sweep.length}\r\n\r\n`;
+  assert.match(await exchange(service.url, kept + sweep), /^Connection: close\r$/im);
+  const twice = get("/version", "Connection: keep-alive\r\nConnection: close\r\n");
+  assert.match(await exchange(service.url, `\r\n${twice}`), /^Connection: close\r$/im);
+  const lines = streamed
+    .slice(streamed.indexOf("\r\n\r\n") + 4)
+    .trim()
+    .split("\n")
+    .map(JSON.parse);
+  assert.equal(lines.at(-1).type, "done");
+});
+
+test("requests that are meant for another host, or come from a page of another site, are refused", async (t) => {
+  const to = (host, more = "") =>
+    `GET /version HTTP/1.1\r\nHost: ${host}\r\nConnection: close\r\n${more}\r\n`;
+  const status = async (bytes, url = service.url) => statuses(await exchange(url, bytes))[0];
+  for (const host of [
+    "localhost",
+    "LocalHost:80",
+    "127.0.0.1:8080",
+    "a.localhost",
+    "vines",
+    "[::1]:9",
+    "localhost.",
+  ])
+    assert.equal(await status(to(host)), 200, host);
+  for (const host of [
+    "evil.example",
+    "localhost.evil.example",
+    "192.0.2.1",
+    "127.0.0.1.evil.example",
+    "[::2]",
+  ])
+    assert.equal(await status(to(host)), 421, host);
+  const from = (headers) => post(small, `${headers}Connection: close\r\n`);
+  assert.equal(await status(from("Origin: http://localhost\r\n")), 200);
+  assert.equal(await status(from("Sec-Fetch-Site: same-origin\r\n")), 200);
+  for (const headers of [
+    "Origin: https://evil.example\r\nContent-Type: text/plain\r\n",
+    "Origin: null\r\nContent-Type: text/plain\r\n",
+    "Sec-Fetch-Site: cross-site\r\n",
+    "Sec-Fetch-Site: same-site\r\n",
+  ])
+    assert.equal(await status(from(headers)), 403, headers);
+  const cross = "Sec-Fetch-Site: cross-site\r\n";
+  assert.equal(await status(to("localhost", `${cross}Sec-Fetch-Mode: no-cors\r\n`)), 403);
+  assert.equal(await status(to("localhost", `${cross}Sec-Fetch-Mode: navigate\r\n`)), 200);
+  const open = await startService(["--host", "0.0.0.0", "--allow-host", "vines.example.org"]);
+  t.after(() => open.stop());
+  const local = open.url.replace("0.0.0.0", "127.0.0.1");
+  for (const [host, expected] of [
+    ["192.0.2.1:8080", 200],
+    ["VINES.example.org", 200],
+    ["other.example.org", 421],
+  ])
+    assert.equal(await status(to(host), local), expected, host);
+});
+
+test("an IPv6 address is written in brackets", async (t) => {
+  const six = await startService(["--host", "::1"]).catch(() => null);
+  if (!six) return t.skip("this machine has no IPv6");
+  t.after(() => six.stop());
+  assert.match(six.url, /^http:\/\/\[::1\]:\d+$/);
+  assert.equal((await fetch(`${six.url}/version`)).status, 200);
+});
+
+test("clients that send half of a head or half of a body, or nothing, keep nobody waiting", async (t) => {
+  const one = await startService(["--threads", "4"]);
+  t.after(() => one.stop());
+  const halves = [
+    "",
+    "GET /version HT",
+    "GET /version HTTP/1.1\r\nHost: x\r\nX-",
+    post(small).slice(0, -3),
+  ];
+  const kept = await Promise.all(
+    Array.from({length: long ? 2000 : 600}, async (_, i) => {
+      const connection = await connect(one.url);
+      connection.socket.write(halves[i % halves.length] || "");
+      return connection;
+    }),
+  );
+  const times = [];
+  for (let i = 0; i < 20; ++i) times.push(await health(one.url));
+  times.sort((a, b) => a - b);
+  assert.ok(times[10] < 20 * slower, `median of /livez: ${times[10].toFixed(1)} ms`);
+  const answer = await fetch(`${one.url}/v1/simulate`, {method: "POST", body: small});
+  assert.equal(answer.status, 200);
+  await answer.text();
+  // They are told, or closed on, in time.
+  if (long) await Promise.all(kept.map(({ended}) => ended));
+  for (const {socket} of kept) socket.destroy();
+});
+
+test("beyond the number of connections that may be open the idle ones make room", async (t) => {
+  const one = await startService(["--connections", "50"]);
+  t.after(() => one.stop());
+  const idle = await Promise.all(Array.from({length: 200}, () => connect(one.url)));
+  for (let i = 0; i < 5; ++i) await health(one.url);
+  const answer = await fetch(`${one.url}/v1/simulate`, {method: "POST", body: small});
+  assert.equal(answer.status, 200);
+  await answer.text();
+  for (const {socket} of idle) socket.destroy();
+});
+
+test("a flood of connections closes its own, not those who come and go", async (t) => {
+  const one = await startService(["--connections", "100"]);
+  t.after(() => one.stop());
+  const flood = await Promise.all(
+    Array.from({length: 150}, async () => {
+      const connection = await connect(one.url);
+      connection.socket.write("G");
+      return connection;
+    }),
+  );
+  await sleep(100);
+  for (let i = 0; i < 20; ++i) {
+    const text = await exchange(one.url, get("/livez", "Connection: close\r\n"));
+    assert.deepEqual(statuses(text), [200], `call ${i}`);
+  }
+  for (const {socket} of flood) socket.destroy();
+  const single = await startService(["--connections", "1"]);
+  t.after(() => single.stop());
+  for (let i = 0; i < 5; ++i)
+    assert.deepEqual(statuses(await exchange(single.url, get("/livez"), 300)), [200]);
+});
+
+test("clients that do not read hold no thread that others wait for", async (t) => {
+  const one = await startService(["--threads", "4"]);
+  t.after(() => one.stop());
+  const held = await Promise.all(
+    Array.from({length: 12}, async () => {
+      const connection = await connect(one.url);
+      connection.socket.pause();
+      connection.socket.write(get("/v1/openapi.json").repeat(200));
+      return connection;
+    }),
+  );
+  await sleep(1000);
+  await until(async () => (await fetch(`${one.url}/v1/presets`)).status === 200, 12000);
+  for (const {socket} of held) socket.destroy();
+});
+
+test("the wait for the next request begins with the end of an answer", {skip: !long}, async () => {
+  const {socket, text} = await connect(service.url);
+  const body = '{"axes":[{"parameter":"b","values":[0.02,0.03]}],"cycles":2000000}';
+  const length = `Content-Length: ${body.length}`;
+  socket.write(`POST /v1/sweep HTTP/1.1\r\nHost: localhost\r\n${length}\r\n\r\n${body}GET /ver`);
+  await until(() => /"type":"done"/.test(text()), 120000);
+  await sleep(500);
+  socket.write("sion HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  await until(() => statuses(text()).length === 2);
+  assert.deepEqual(statuses(text()), [200, 200]);
+  socket.destroy();
+});
+
+test("a head without an end costs no memory", async () => {
+  const before = await memory(service.pid);
+  const piece = "a".repeat(1 << 20);
+  for (const begin of ["GET / HTTP/1.1\r\nX: ", "GET /", ""]) {
+    const {socket, text} = await connect(service.url);
+    socket.write(begin);
+    for (let i = 0; i < 64 && !socket.destroyed; ++i) {
+      if (!socket.write(piece))
+        await Promise.race([new Promise((r) => socket.once("drain", r)), sleep(100)]);
+    }
+    await until(() => statuses(text()).length === 1 || socket.destroyed);
+    socket.destroy();
+  }
+  const {socket} = await connect(service.url);
+  socket.write("GET / HTTP/1.1\r\n");
+  for (let i = 0; i < 2000 && !socket.destroyed; ++i) socket.write("a: b\r\n".repeat(1000));
+  await sleep(100);
+  socket.destroy();
+  assert.ok((await memory(service.pid)) - before < 64 + watched);
+});
+
+test("health is answered while every thread is held by clients that do not read", async (t) => {
+  const one = await startService(["--threads", "4"]);
+  t.after(() => one.stop());
+  const large = '{"damping": "closed_form", "tau_end": 30000, "max_points": 60000}';
+  const held = await Promise.all(
+    Array.from({length: 8}, async () => {
+      const connection = await connect(one.url);
+      connection.socket.pause();
+      connection.socket.write(post(large));
+      return connection;
+    }),
+  );
+  await sleep(1500);
+  for (let i = 0; i < 5; ++i) assert.ok((await health(one.url)) < 200 * slower);
+  for (const {socket} of held) socket.destroy();
+  const again = async () => {
+    const answer = await fetch(`${one.url}/v1/simulate`, {method: "POST", body: small});
+    await answer.text();
+    return answer.status === 200;
+  };
+  await until(again, 10000);
+});
+
+test("a run ends when its client leaves, whether it runs or waits", async (t) => {
+  const one = await startService(["--compute-threads", "1"]);
+  t.after(() => one.stop());
+  const gone = await Promise.all(
+    Array.from({length: 6}, async () => {
+      const connection = await connect(one.url);
+      connection.socket.write(post(longest));
+      return connection;
+    }),
+  );
+  await sleep(300);
+  for (const {socket} of gone) socket.destroy();
+  const began = performance.now();
+  const answer = await fetch(`${one.url}/v1/simulate`, {method: "POST", body: small});
+  assert.equal(answer.status, 200);
+  await answer.text();
+  assert.ok(performance.now() - began < 1000 * slower, "they would have taken some ten seconds");
+});
+
+test("under three times the load that it takes each answer is 200 or 503 with Retry-After, and health is quick", async (t) => {
+  const one = await startService(["--compute-threads", "1", "--compute-queue", "8"]);
+  t.after(() => one.stop());
+  const body = '{"damping": "closed_form", "tau_end": 60000, "include": ["regime"]}';
+  const until = performance.now() + (long ? 60000 : 4000);
+  const counts = {};
+  const client = async () => {
+    while (performance.now() < until) {
+      const answer = await fetch(`${one.url}/v1/simulate`, {method: "POST", body});
+      await answer.text();
+      counts[answer.status] = (counts[answer.status] ?? 0) + 1;
+      if (answer.status === 503) {
+        assert.equal(answer.headers.get("retry-after"), "1");
+        await sleep(100);
+      }
+    }
+  };
+  const times = [];
+  const watch = async () => {
+    while (performance.now() < until) {
+      times.push(await health(one.url));
+      await sleep(10);
+    }
+  };
+  await Promise.all([...Array.from({length: 64}, client), watch()]);
+  assert.deepEqual(Object.keys(counts), ["200", "503"]); // in the order of numbers
+  times.sort((a, b) => a - b);
+  // Of the few of a short run the slowest are the machine's.
+  const slowest = times[Math.floor(times.length * (long ? 0.99 : 0.95))];
+  t.diagnostic(
+    `200: ${counts[200]}, 503: ${counts[503]}, /livez ${slowest.toFixed(1)} ms of ${times.length}`,
+  );
+  assert.ok(slowest < 50 * slower, `/livez: ${slowest.toFixed(1)} ms`);
+  await sleep(1000);
+  assert.equal((await fetch(`${one.url}/v1/simulate`, {method: "POST", body: small})).status, 200);
+});
+
+test("those that wait for a place to compute get it in the order in which they came", async (t) => {
+  const one = await startService(["--compute-threads", "1", "--compute-queue", "30"]);
+  t.after(() => one.stop());
+  const body = '{"damping": "closed_form", "tau_end": 200000, "include": ["regime"]}';
+  const order = [];
+  const all = [];
+  for (let i = 0; i < 16; ++i) {
+    all.push(
+      fetch(`${one.url}/v1/simulate`, {method: "POST", body}).then(async (answer) => {
+        assert.equal(answer.status, 200);
+        await answer.text();
+        order.push(i);
+      }),
+    );
+    await sleep(8);
+  }
+  await Promise.all(all);
+  const late = order.map((i, place) => Math.abs(i - place));
+  assert.ok(Math.max(...late) <= 2, `came to their end as ${order}`);
+});
+
+test("a stop under load loses no request; its answers are the last ones of their connections", async () => {
+  const one = await startService();
+  const body = '{"tau_end": 2000, "include": ["regime"]}';
+  let stopping = false;
+  const lost = [];
+  let served = 0;
+  const client = async () => {
+    for (;;) {
+      const {socket, text, ended} = await connect(one.url).catch(() => ({}));
+      if (!socket) return; // nobody listens any more
+      for (let n = 1; ; ++n) {
+        if (!socket.writable || /^Connection: close\r$/im.test(text())) break;
+        socket.write(post(body));
+        await Promise.race([
+          until(() => statuses(text()).length === n, 20000).catch(() => {}),
+          ended,
+        ]);
+        if (statuses(text()).length < n) {
+          lost.push(text().slice(-200));
+          break;
+        }
+        ++served;
+      }
+      await Promise.race([ended, sleep(1000)]);
+      socket.destroy();
+      if (stopping) return;
+    }
+  };
+  const clients = Array.from({length: 16}, client);
+  await sleep(500);
+  stopping = true;
+  assert.equal(await one.stop(), 0);
+  await Promise.all(clients);
+  assert.ok(served > 50);
+  assert.deepEqual(lost, []);
+});
+
+test("a second signal ends the service at once", async () => {
+  const one = await startService(["--drain", "30"]);
+  await health(one.url);
+  const ended = one.stop();
+  await sleep(200);
+  await health(one.url);
+  process.kill(one.pid, "SIGTERM");
+  assert.equal(await Promise.race([ended, sleep(2000)]), 128 + 15);
+});
+
+test("what is in work at a stop and would take too long ends with what it has", {
+  skip: !long,
+}, async () => {
+  const one = await startService(["--compute-threads", "1", "--compute-queue", "30"]);
+  const answers = Array.from({length: 20}, async () => {
+    const answer = await fetch(`${one.url}/v1/simulate`, {method: "POST", body: longest});
+    return (await answer.json()).status.reason;
+  });
+  await sleep(500);
+  const began = performance.now();
+  const ended = one.stop();
+  const reasons = await Promise.all(answers);
+  assert.ok(reasons.includes("deadline") && reasons.some((r) => r !== "deadline"), reasons);
+  assert.equal(await ended, 0);
+  assert.ok(performance.now() - began < 15000);
+});
+
+const listed = (count, make) => Array.from({length: count}, (_, i) => make(i)).join(",");
+const simulateAt = (url, body) => fetch(`${url}/v1/simulate`, {method: "POST", body});
+
+test("a body is read in a time that grows as it does, and its faults are told in a few lines", async () => {
+  const sweep = (starts) => `{"axes":[{"parameter":"b","values":[0.02]}],"starts":[${starts}]}`;
+  const bodies = [
+    ["/v1/simulate", `{"q":[${listed(200000, () => "{}")}]}`],
+    ["/v1/simulate", `{"q":[${listed(50000, () => '{"a":{"b":{}}}')}]}`],
+    ["/v1/simulate", `{${listed(90000, (i) => `"k${i}":1`)}}`],
+    ["/v1/simulate", `{"q":[${listed(90, () => `{${listed(900, (i) => `"k${i}":1`)}}`)}]}`],
+    ["/v1/simulate", `{"include":[${listed(80000, (i) => `"x${i}"`)}]}`],
+    ["/v1/simulate", `{"preset":"${"q".repeat(900000)}"}`],
+    ["/v1/simulate", `{"${"q".repeat(900000)}":1}`],
+    ["/v1/simulate", `{"${"q".repeat(400000)}":1,"${"q".repeat(400000)}":1}`],
+    ["/v1/simulate", `{"b":"${"q".repeat(900000)}`],
+    ["/v1/sweep", sweep(listed(10000, () => '{"x0":"bad"}'))],
+    ["/v1/sweep", sweep(listed(10000, (i) => `{"q${i}":1}`))],
+    ["/v1/sweep", `{"axes":[{"parameter":"b","values":[${listed(100000, () => '"x"')}]}]}`],
+  ];
+  for (const [path, body] of bodies) {
+    const began = performance.now();
+    const answer = await fetch(service.url + path, {method: "POST", body});
+    const text = await answer.text();
+    const what = `${path} ${body.slice(0, 40)}`;
+    assert.ok(answer.status === 400 || answer.status === 422, what);
+    assert.ok(performance.now() - began < 1500 * slower, what);
+    assert.ok(text.length < 20000, `${what}: an answer of ${text.length} bytes`);
+    for (const {value} of JSON.parse(text).errors ?? [])
+      assert.ok(String(value).length < 250, what);
+  }
+  const query = `${service.url}/v1/simulate?${"q".repeat(5000)}=1`;
+  const {detail, errors} = await (await fetch(query)).json();
+  assert.ok(detail.length < 300 && errors[0].pointer.length < 250);
+});
+
+test("what clients have sent and do not read is bounded over all of them", async (t) => {
+  const one = await startService(["--memory-limit", "40000000", "--connections", "500"]);
+  t.after(() => one.stop());
+  const before = await memory(one.pid);
+  const record = Buffer.alloc(15000000, "1,2\n");
+  const head = `POST /v1/identify HTTP/1.1\r\nHost: localhost\r\nContent-Type: text/csv\r\nContent-Length: ${record.length + 1}\r\n\r\n`;
+  const halves = await Promise.all(
+    Array.from({length: 12}, async () => {
+      const connection = await connect(one.url);
+      connection.socket.write(head);
+      connection.socket.write(record);
+      return connection;
+    }),
+  );
+  const slow = [];
+  const refused = () => halves.filter(({text}) => statuses(text())[0] === 503).length;
+  await until(() => refused() >= 8, 10000);
+  assert.ok((await memory(one.pid)) - before < 120 + watched);
+  assert.ok((await health(one.url)) < 100 * slower);
+  for (const {socket} of halves) socket.destroy();
+  // A large body counts no longer once it is answered, whatever came behind it.
+  for (let i = 0; i < 6; ++i) {
+    const connection = await connect(one.url);
+    connection.socket.write(head);
+    connection.socket.write(Buffer.concat([record, Buffer.from("xG")]));
+    await until(() => statuses(connection.text()).length === 1, 10000);
+    assert.equal(statuses(connection.text())[0], 422);
+    slow.push(connection);
+  }
+  assert.ok((await memory(one.pid)) - before < 120 + watched);
+  for (const {socket} of slow.splice(0)) socket.destroy();
+  // Answers of 30 MB: two are held, and the others refused.
+  const large =
+    '{"damping": "closed_form", "tau_end": 8000, "max_points": 300000, "samples_per_cycle": 200}';
+  for (let i = 0; i < 6; ++i) {
+    const connection = await connect(one.url);
+    connection.socket.write(post(large));
+    await until(() => connection.text().length > 0, 10000);
+    connection.socket.pause();
+    slow.push(connection);
+  }
+  const first = slow.map(({text}) => Number(/^HTTP\/1\.1 (\d+)/.exec(text())[1]));
+  assert.deepEqual(first, [200, 200, 503, 503, 503, 503]);
+  assert.equal((await simulateAt(one.url, small)).status, 200, "a small answer");
+  for (const {socket} of slow) socket.destroy();
+  await until(async () => (await simulateAt(one.url, large)).status === 200);
+});
+
+test("a sweep waits for a client that does not read, and then goes on", async (t) => {
+  const one = await startService();
+  t.after(() => one.stop());
+  const body = JSON.stringify({
+    axes: [{parameter: "b", from: 0.005, to: 0.03, count: 3000}],
+    section: "impact",
+    cycles: 400,
+    base: {damping: "closed_form"},
+  });
+  const whole = await (await fetch(`${one.url}/v1/sweep`, {method: "POST", body})).text();
+  const {socket, text, ended} = await connect(one.url);
+  socket.pause();
+  socket.write(
+    `POST /v1/sweep HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\nContent-Length: ${body.length}\r\n\r\n${body}`,
+  );
+  await sleep(200);
+  const before = await memory(one.pid);
+  await sleep(1500);
+  assert.ok((await memory(one.pid)) - before < 10 + watched, "its lines are not kept");
+  assert.equal((await simulateAt(one.url, small)).status, 200);
+  socket.resume();
+  await ended;
+  const points = (lines) => lines.match(/^\{"type":"point".*$/gm).length;
+  assert.ok(whole.length > 2e7);
+  assert.equal(points(text().replace(/\r\n[0-9a-f]+\r\n/g, "")), points(whole));
+  assert.match(text(), /"type":"done"/);
+});
+
+test("a sweep that takes too long ends with what it has, and the rest can be asked for", async (t) => {
+  const one = await startService(["--sweep-deadline", String(0.5 * slower)]);
+  t.after(() => one.stop());
+  const body = {axes: [{parameter: "b", from: 0.02, to: 0.04, count: 200}], cycles: 20000};
+  const answer = await fetch(`${one.url}/v1/sweep`, {method: "POST", body: JSON.stringify(body)});
+  const lines = (await answer.text()).trim().split("\n").map(JSON.parse);
+  const last = lines.at(-1);
+  assert.equal(last.type, "error");
+  assert.equal(last.status, 503);
+  assert.match(last.detail, /ask again for the indices that are missing/);
+  assert.ok(last.points > 0 && last.points < 200);
+});
+
+test("what a client has already is not computed again", async (t) => {
+  const one = await startService(["--compute-threads", "1"]);
+  t.after(() => one.stop());
+  const url = `${one.url}/v1/simulate?b=0.03&tau_end=3000000&max_impacts=2000000&include=regime`;
+  const first = await fetch(url);
+  await first.text();
+  const tag = first.headers.get("etag");
+  const began = performance.now();
+  const again = await fetch(url, {headers: {"If-None-Match": tag}});
+  assert.equal(again.status, 304);
+  assert.equal(again.headers.get("etag"), tag);
+  assert.ok(performance.now() - began < 50 * slower, "at once");
+  const other = await fetch(`${url}&G=0.021`, {headers: {"If-None-Match": tag}});
+  assert.equal(other.status, 200);
+  await other.text();
+});
+
+test("a log that nobody reads holds nobody up, and tells what it dropped", async () => {
+  const child = spawn(program, ["serve", "--port", "0"], {stdio: ["ignore", "pipe", "pipe"]});
+  const url = await new Promise((resolve) =>
+    child.stdout.once("data", (data) => resolve(/http:\S+/.exec(data)[0])),
+  );
+  const path = `/v1/simulate?${"b".repeat(300)}`;
+  for (let i = 0; i < 40; ++i)
+    await Promise.all(
+      Array.from({length: 50}, () => fetch(url + path).then((answer) => answer.text())),
+    );
+  let log = "";
+  child.stderr.on("data", (data) => {
+    log += data;
+  });
+  await sleep(300);
+  await (await fetch(`${url}/version`)).text();
+  await until(() => /"lines":\d+/.test(log));
+  child.kill("SIGTERM");
+  await new Promise((resolve) => child.on("exit", resolve));
+  const lines = log.trim().split("\n").map(JSON.parse);
+  const {lines: dropped} = lines.find(({what}) => what === "lines were dropped");
+  assert.equal(lines.filter(({path}) => path).length + dropped, 2001);
+});
+
+const isRoot = process.getuid() === 0;
+test("where the system has few threads the service does with those that there are", {
+  skip: !isRoot,
+}, async () => {
+  // As another user, whom the limit binds.
+  const folder = await mkdtemp(join(tmpdir(), "vines-limit-"));
+  await chmod(folder, 0o755);
+  const copy = join(folder, "vines");
+  await copyFile(program, copy);
+  const command = `ulimit -u 12; exec "${copy}" serve --port 0 --compute-threads 8`;
+  const as = ["--reuid=65533", "--regid=65533", "--clear-groups", "bash", "-c", command];
+  const child = spawn("setpriv", as, {stdio: ["ignore", "pipe", "ignore"], cwd: "/"});
+  const url = await new Promise((resolve) =>
+    child.stdout.once("data", (data) => resolve(/http:\S+/.exec(data)[0])),
+  );
+  const body = JSON.stringify({
+    axes: [{parameter: "b", from: 0.02, to: 0.03, count: 200}],
+    cycles: 500,
+  });
+  const ends = await Promise.all(
+    Array.from({length: 4}, async () => {
+      const answer = await fetch(`${url}/v1/sweep`, {method: "POST", body});
+      return JSON.parse((await answer.text()).trim().split("\n").at(-1)).type;
+    }),
+  );
+  assert.ok(ends.includes("done") && ends.every((type) => type === "done" || type === "error"));
+  assert.equal((await simulateAt(url, small)).status, 200);
+  child.kill("SIGTERM");
+  assert.equal(await new Promise((resolve) => child.on("exit", resolve)), 0);
+  await rm(folder, {recursive: true});
+});
+
+test("a page's folder gives no more than its own files", async (t) => {
+  const folder = await mkdtemp(join(tmpdir(), "vines-web-"));
+  await writeFile(join(folder, "index.html"), "<title>here</title>");
+  await writeFile(join(folder, "own.js"), "1;");
+  await symlink("/etc/hostname", join(folder, "link.js"));
+  execFileSync("mkfifo", [join(folder, "pipe.js")]);
+  const one = await startService(["--web-dir", folder]);
+  t.after(() => one.stop());
+  const status = async (path) => (await fetch(one.url + path)).status;
+  assert.equal(await status("/own.js"), 200);
+  assert.equal(await status("/link.js"), 404);
+  assert.equal(await status("/pipe.js"), 404);
+  await rm(join(folder, "own.js"));
+  await symlink("/etc/hostname", join(folder, "own.js"));
+  assert.equal(await status("/own.js"), 404);
+});
+
+test("a request has a name, in its answer, its faults and the log, and says where its time went", async (t) => {
+  const child = spawn(program, ["serve", "--port", "0", "--log-format", "json"]);
+  t.after(() => child.kill("SIGKILL"));
+  let log = "";
+  child.stderr.on("data", (data) => {
+    log += data;
+  });
+  const url = await new Promise((resolve) =>
+    child.stdout.once("data", (data) => resolve(/http:\S+/.exec(data)[0])),
+  );
+  const named = async (headers, body = small) => {
+    const answer = await fetch(`${url}/v1/simulate`, {method: "POST", body, headers});
+    return {answer, id: answer.headers.get("x-request-id"), json: await answer.json()};
+  };
+  assert.equal((await named({"X-Request-ID": "run-17.b"})).id, "run-17.b");
+  const trace = "4bf92f3577b34da6a3ce929d0e0e4736";
+  assert.equal((await named({traceparent: `00-${trace}-00f067aa0ba902b7-01`})).id, trace);
+  for (const bad of ["", "a b", '"', "x".repeat(65)])
+    assert.match((await named({"X-Request-ID": bad})).id, /^[0-9a-f]{16}$/);
+  const {answer} = await named({});
+  const timing = answer.headers.get("server-timing");
+  assert.match(timing, /^queue;dur=[\d.]+, parse;dur=[\d.]+, solve;dur=[\d.]+, encode;dur=[\d.]+$/);
+  const wrong = await named({"X-Request-ID": "mine"}, '{"b": -1}');
+  assert.equal(wrong.json.request_id, "mine");
+  await health(url);
+  await until(() => /"request_id":"mine"/.test(log));
+  child.kill("SIGTERM");
+  await new Promise((resolve) => child.on("exit", resolve));
+  const lines = log.trim().split("\n").map(JSON.parse);
+  assert.match(lines[0].what, /^vines \S+ listens on 127\.0\.0\.1:\d+$/);
+  assert.deepEqual(
+    lines.slice(-2).map(({what}) => what),
+    ["stopping", "stopped"],
+  );
+  assert.ok(!lines.some(({path}) => path === "/livez"), "a probe that went well is not told");
+  const line = lines.find(({request_id}) => request_id === "run-17.b");
+  assert.deepEqual(
+    [line.level, line.method, line.path, line.status, line.client],
+    ["info", "POST", "/v1/simulate", 200, "127.0.0.1"],
+  );
+  for (const part of ["ms", "queue_ms", "parse_ms", "solve_ms", "encode_ms", "bytes"])
+    assert.ok(line[part] >= 0, part);
+  assert.equal(lines.find(({request_id}) => request_id === "mine").level, "warning");
+});

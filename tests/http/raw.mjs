@@ -1,0 +1,56 @@
+// Bytes as they are, to a service and back.
+import net from "node:net";
+
+/** A connection that is open: {socket, text(): what has come, ended: a promise of its end}. */
+export async function connect(url, options = {}) {
+  const {hostname, port} = new URL(url);
+  const host = hostname.replace(/^\[|\]$/g, "");
+  const socket = net.connect({port: Number(port), host, ...options});
+  let text = "";
+  socket.on("data", (data) => {
+    text += data.toString("latin1");
+  });
+  socket.on("error", () => {});
+  const ended = new Promise((resolve) => {
+    socket.on("close", () => resolve(text));
+    socket.on("end", () => resolve(text));
+  });
+  await new Promise((resolve, reject) => {
+    socket.once("connect", resolve);
+    socket.once("error", reject);
+  });
+  return {socket, text: () => text, ended};
+}
+
+export const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+
+/** Waits until condition() holds; fails after so many ms. */
+export async function until(condition, ms = 5000) {
+  const began = performance.now();
+  while (!(await condition())) {
+    if (performance.now() - began > ms) throw new Error(`not within ${ms} ms: ${condition}`);
+    await sleep(5);
+  }
+}
+
+/** The answers in a text, by their status lines; interim ones (1xx) are left out. */
+export const statuses = (text) =>
+  [...text.matchAll(/^HTTP\/1\.1 ([2-5]\d\d) /gm)].map((found) => Number(found[1]));
+
+/** Sends bytes and returns what comes until the server closes, or ms are over. */
+export async function exchange(url, bytes, ms = 4000) {
+  const connection = await connect(url);
+  connection.socket.write(bytes);
+  const late = setTimeout(() => connection.socket.destroy(), ms);
+  const text = await connection.ended;
+  clearTimeout(late);
+  connection.socket.destroy();
+  return text;
+}
+
+/** The memory that a process holds, in MB. */
+export async function memory(pid) {
+  const {readFile} = await import("node:fs/promises");
+  const status = await readFile(`/proc/${pid}/status`, "utf8");
+  return Number(/VmRSS:\s+(\d+)/.exec(status)[1]) / 1024;
+}
