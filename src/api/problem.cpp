@@ -1,7 +1,5 @@
 #include "api/problem.hpp"
 
-#include <algorithm>
-
 namespace vines::api {
 
 namespace {

@@ -65,7 +65,9 @@ Connection::~Connection() { ::close(socket_); }
 
 Connection::Progress Connection::advance() {
     try {
-        return read_on();
+        const Progress progress = read_on();
+        if (progress == Progress::complete) complete_since_ = Clock::now();
+        return progress;
     } catch (const std::bad_alloc&) {  // of this one's bytes: the others go on
         bytes_ = {};
         return Progress::ended;
@@ -96,11 +98,9 @@ Connection::Progress Connection::read_request() {
     try {
         if (!head_ && !bytes_.empty() && reader_.read(bytes_)) begin_body();
     } catch (const api::Problem& problem) {
-        refused_ = problem_response(problem);
-        head_ = reader_.take();
+        refuse(problem_response(problem));
     }
-    if (!refused_ && has_no_room())
-        refused_ = problem_response(503, "the server holds as much as it may for its clients");
+    if (!refused_ && has_no_room()) refused_ = memory_refusal();
     if (refused_) return Progress::complete;
     const bool whole = head_ && bytes_.size() >= head_->content_length;
     return whole ? Progress::complete : Progress::waits;
@@ -125,7 +125,9 @@ void Connection::begin_waiting() {
 void Connection::begin_body() {
     head_ = reader_.take();
     bytes_.erase(0, reader_.size());
-    refused_ = admission_(*head_);
+    Admitted admitted = admission_(*head_);
+    route_ = admitted.route;
+    refused_ = std::move(admitted.refused);
     if (refused_ || bytes_.size() >= head_->content_length) return;
     expect_more();
     if (head_->expects_continue) send_continue(socket_);
@@ -137,14 +139,21 @@ void Connection::expect_more() {
     deadline_ = Clock::now() + body_time;
 }
 
+void Connection::refuse(Response refusal) {
+    refused_ = std::move(refusal);
+    if (!head_) head_ = reader_.take();
+    complete_since_ = Clock::now();
+}
+
 Exchange Connection::take() {
     Exchange exchange;
-    exchange.since = Clock::now();
+    exchange.since = complete_since_;
     if (refused_) {
         exchange.refused = std::exchange(refused_, {});
         bytes_.clear();
     }
     exchange.head = std::move(*std::exchange(head_, {}));
+    exchange.route = route_;
     const std::size_t length = exchange.refused ? 0 : exchange.head.content_length;
     // The large buffer goes with the body.
     std::string rest = bytes_.substr(length);

@@ -9,6 +9,7 @@
 #include "http/head.hpp"
 #include "http/held_memory.hpp"
 #include "http/message.hpp"
+#include "http/route.hpp"
 
 namespace vines::http {
 
@@ -17,13 +18,18 @@ namespace vines::http {
 struct Exchange {
     Head head;
     std::string body;
+    const Route* route = nullptr;  ///< of one that is not refused
     std::optional<Response> refused = {};
     std::chrono::steady_clock::time_point since = {};  ///< it was complete
 };
 
-/// What is wrong with a request by its head alone, before its body is read; nothing: the body may
-/// be as long as the head says.
-using Admission = std::function<std::optional<Response>(const Head&)>;
+/// What is said of a request by its head alone, before its body is read: what is wrong with it, or
+/// the route that takes it, and a body as long as the head says.
+struct Admitted {
+    const Route* route = nullptr;
+    std::optional<Response> refused = {};
+};
+using Admission = std::function<Admitted(const Head&)>;
 
 // From one request to the next.
 inline constexpr std::chrono::seconds idle_time(60);
@@ -47,11 +53,12 @@ public:
     };
     /// Reads what is there, some of it at most, and waits for nothing.
     Progress advance();
-    /// Of the complete request.
-    const Head& head() const { return *head_; }
-    bool is_refused() const { return refused_.has_value(); }
+    /// Whether the complete request is answered however busy the server is.
+    bool is_light() const { return refused_ || route_->light; }
     /// The complete request; its bytes are forgotten.
     Exchange take();
+    /// Makes what has come of a request one that is refused, which can be taken.
+    void refuse(Response refusal);
 
     /// When it is given up unless something comes to its end before: a head, a body, or the
     /// client's last bytes.
@@ -101,6 +108,8 @@ private:
     std::string bytes_;  // received, and not yet taken
     HeadReader reader_;
     std::optional<Head> head_;  // complete; what follows is its body
+    const Route* route_ = nullptr;
+    Clock::time_point complete_since_;
     std::size_t expected_ = 0;  // bytes of it, before the deadline
     std::optional<Response> refused_;
     bool half_closed_ = false;  // the client sends no more

@@ -192,8 +192,7 @@ void Connections::read(Connection& connection) {
             case Connection::Progress::ended: release(connection.socket()); return;
             case Connection::Progress::complete: break;
         }
-        const bool light = connection.is_refused() || answering_.is_light(connection.head());
-        if (!light) return hand_over(release(connection.socket()));
+        if (!connection.is_light()) return hand_over(release(connection.socket()));
         if (n >= most_in_turn) return again_.push_back(connection.socket());
         answer_here(connection, connection.take());
         if (connection.is_ending()) return;
@@ -204,9 +203,8 @@ void Connections::hand_over(Owned connection) {
     ++in_work_;
     if (workers_.add(connection)) return;
     --in_work_;
-    Exchange exchange = connection->take();
-    exchange.refused = answering_.overloaded();
-    answer_here(*connection, std::move(exchange));
+    connection->refuse(answering_.overloaded());
+    answer_here(*connection, connection->take());
     keep(std::move(connection));
 }
 
@@ -250,8 +248,8 @@ void Connections::give_up(Connection& connection) {
         release(connection.socket());
         return;
     }
-    const std::string late = "the request did not come to its end in time";
-    answer_here(connection, {.head = {}, .body = {}, .refused = problem_response(408, late)});
+    connection.refuse(problem_response(408, "the request did not come to its end in time"));
+    answer_here(connection, connection.take());
 }
 
 bool Connections::is_done() const { return closing_ && number_ == 0 && in_work_ == 0; }

@@ -18,9 +18,6 @@ namespace vines::http {
 /// Who answers. All of it is called from several threads.
 struct Answering {
     Admission admission;
-    /// Whether a request is answered at once, by the thread that keeps the connections, however
-    /// busy the workers are: its answer is small and computes nothing.
-    std::function<bool(const Head&)> is_light;
     /// Sends the answer. False: the connection cannot be used any more.
     std::function<bool(Connection&, Exchange, Patience)> answer;
     /// What is answered where no worker is free and as many requests wait as may.

@@ -112,4 +112,8 @@ std::string entity_tag(const std::string& body) {
     return fmt::format("W/\"{:016x}\"", hash);
 }
 
+bool names_tag(std::string_view if_none_match, std::string_view tag) {
+    return if_none_match == "*" || if_none_match.find(tag) != std::string_view::npos;
+}
+
 }  // namespace vines::http

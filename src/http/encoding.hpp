@@ -32,4 +32,7 @@ bool accepts_gzip(std::string_view accept_encoding);
 /// apart, guards against nothing.
 std::string entity_tag(const std::string& body);
 
+/// Whether a request with this header If-None-Match (RFC 9110, 13.1.2) has what the tag names.
+bool names_tag(std::string_view if_none_match, std::string_view tag);
+
 }  // namespace vines::http

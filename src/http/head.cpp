@@ -57,6 +57,16 @@ std::size_t length_of(std::string_view text) {
     return length;
 }
 
+/// Whether a word stands in the comma-separated lists of a header, in lower case.
+bool lists(const Head& head, std::string_view header, std::string_view word) {
+    for (const auto& [name, value] : head.headers) {
+        if (name != header) continue;
+        for (std::string_view rest = value; !rest.empty();)
+            if (lower_case(next_part(rest, ',')) == word) return true;
+    }
+    return false;
+}
+
 }  // namespace
 
 std::string_view Head::path() const {
@@ -164,29 +174,14 @@ void HeadReader::finish() {
     }
     if (head_.has("content-length"))
         head_.content_length = length_of(head_.header("content-length"));
-    std::vector<std::string> connection;
-    for (const auto& [name, value] : head_.headers) {
-        if (name != "connection") continue;
-        for (std::string& word : list_of(value)) connection.push_back(std::move(word));
-    }
-    const auto says = [&connection](const char* word) {
-        return std::find(connection.begin(), connection.end(), word) != connection.end();
-    };
     head_.takes_chunks = !is_old;
-    head_.keep_alive = !says("close") && (!is_old || says("keep-alive"));
+    const bool ends = lists(head_, "connection", "close");
+    head_.keep_alive = !ends && (!is_old || lists(head_, "connection", "keep-alive"));
     if (head_.has("expect") && !is_old) {
         if (lower_case(head_.header("expect")) != "100-continue")
             throw Problem(417, "this service can meet no expectation but 100-continue");
         head_.expects_continue = true;
     }
-}
-
-std::vector<std::string> list_of(std::string_view value) {
-    std::vector<std::string> list;
-    while (!value.empty()) {
-        list.push_back(lower_case(next_part(value, ',')));
-    }
-    return list;
 }
 
 }  // namespace vines::http

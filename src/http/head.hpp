@@ -32,10 +32,9 @@ struct Head {
 class HeadReader {
 public:
     /// bytes: all of this request's so far. True once the head is complete. Throws Problem (400,
-    /// 411, 414, 417, 431, 501, 505) as soon as it can be no request that the service takes; its
+    /// 411, 414, 417, 431, 505) as soon as it can be no request that the service takes; its
     /// connection has to end then, because nobody knows where the next request begins.
     bool read(std::string_view bytes);
-    const Head& head() const { return head_; }
     Head take() { return std::move(head_); }
     std::size_t size() const { return read_; }  ///< of the complete head
 
@@ -55,8 +54,5 @@ private:
     std::size_t searched_ = 0;  // for the end of the next one
     bool complete_ = false;
 };
-
-/// The names and addresses in a list of a header's values, by commas, in lower case.
-std::vector<std::string> list_of(std::string_view value);
 
 }  // namespace vines::http

@@ -1,6 +1,7 @@
 // Lines on their way from the threads that compute them to the one that sends them.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -16,6 +17,7 @@ public:
             const std::lock_guard lock(mutex_);
             text_ += line;
             text_ += '\n';
+            size_ = text_.size();
             ++count_;
         }
         changed_.notify_all();
@@ -39,20 +41,18 @@ public:
         std::unique_lock lock(mutex_);
         changed_.wait_for(lock, at_most, [this] { return !text_.empty() || finished_; });
         Taken taken{std::exchange(text_, {}), count_, finished_};
+        size_ = 0;
         lock.unlock();
         changed_.notify_all();
         return taken;
     }
 
     /// Whether the lines come faster than they are taken: who computes more should wait.
-    bool is_full() {
-        const std::lock_guard lock(mutex_);
-        return text_.size() > most_;
-    }
+    bool is_full() const { return size_ > most_; }
     /// Until that is over, for so long at most.
     void wait_for_room(std::chrono::milliseconds at_most) {
         std::unique_lock lock(mutex_);
-        changed_.wait_for(lock, at_most, [this] { return text_.size() <= most_; });
+        changed_.wait_for(lock, at_most, [this] { return !is_full(); });
     }
 
 private:
@@ -61,6 +61,7 @@ private:
     std::mutex mutex_;
     std::condition_variable changed_;
     std::string text_;
+    std::atomic<std::size_t> size_ = 0;  // of the text; read without the mutex by who only looks
     std::size_t count_ = 0;
     bool finished_ = false;
 };

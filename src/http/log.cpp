@@ -12,14 +12,13 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 
+#include "api/problem.hpp"
+
 namespace vines::http {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// With a path of so many bytes, all of which may have to be escaped, a line fits into half a page.
-constexpr std::size_t longest_path = 200, longest_method = 20;
 
 LogFormat format = LogFormat::json;
 
@@ -71,8 +70,8 @@ protected:
     void flush_() override {}
 
 private:
-    /// For two lines: a pipe is writable as long as there is room for a page, and lines are
-    /// shorter.
+    /// For two lines: a pipe is writable as long as there is room for a page, and lines are shorter
+    /// than half of one, as long as what they echo is.
     static bool has_room() {
         pollfd state{STDERR_FILENO, POLLOUT, 0};
         return ::poll(&state, 1, 0) > 0 && (state.revents & POLLOUT);
@@ -97,8 +96,8 @@ void log_served(const Served& served) {
                        served.path == "/healthz" || served.path == "/metrics";
     if (probe && served.status == 200) return;
     Json line = {
-        {"method", served.method.substr(0, longest_method)},
-        {"path", served.path.substr(0, longest_path)},
+        {"method", api::shortened(served.method)},
+        {"path", api::shortened(served.path)},
         {"status", served.status},
         {"ms", rounded(served.ms)},
         {"bytes", served.bytes},
@@ -117,9 +116,9 @@ void log_failure(
     } catch (const std::exception& e) {
         what = e.what();
     } catch (...) {}
-    log("error", {{"path", path.substr(0, longest_path)},
+    log("error", {{"path", api::shortened(path)},
                   {"request_id", request_id},
-                  {"what", what.substr(0, longest_path)}});
+                  {"what", api::shortened(what)}});
 }
 
 void log_event(const std::string& what) { log("info", {{"what", what}}); }

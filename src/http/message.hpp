@@ -27,9 +27,6 @@ struct Request {
     std::string id = {};          ///< by which the log names it
     /// Whether the client has left and nobody waits for the answer.
     std::function<bool()> left = [] { return false; };
-
-    /// Whether the client has the answer that a tag names.
-    bool knows(const std::string& tag) const { return known_tags.find(tag) != std::string::npos; }
 };
 
 /// The connection of an answer that is sent bit by bit.

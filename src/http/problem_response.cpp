@@ -4,16 +4,17 @@ namespace vines::http {
 
 Response problem_response(const api::Problem& problem) {
     Response response{
-        .status = problem.status,
-        .content_type = "application/problem+json",
-        .body = problem.body(),
-        .problem = problem};
+        .status = problem.status, .content_type = "application/problem+json", .problem = problem};
     if (problem.status == 503) response.headers.emplace_back("Retry-After", "1");
     return response;
 }
 
 Response problem_response(int status, const std::string& detail) {
     return problem_response(api::Problem(status, detail));
+}
+
+Response memory_refusal() {
+    return problem_response(503, "the server holds as much as it may for its clients");
 }
 
 }  // namespace vines::http

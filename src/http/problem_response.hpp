@@ -6,8 +6,11 @@
 
 namespace vines::http {
 
-/// 503 has a Retry-After with it.
+/// 503 has a Retry-After with it. Its body is made up when it is sent, with the request's id.
 Response problem_response(const api::Problem& problem);
 Response problem_response(int status, const std::string& detail);
+
+/// 503: nothing large is taken on for now.
+Response memory_refusal();
 
 }  // namespace vines::http

@@ -28,12 +28,12 @@ std::optional<Response> body_refusal(const Head& head, std::size_t limit) {
 }  // namespace
 
 std::optional<Response> refusal(
-    const Head& head, const std::vector<Route>& routes, std::size_t body_limit) {
+    const Head& head, const Route* route, const std::vector<Route>& routes,
+    std::size_t body_limit) {
     // 200 overlapping ranges of one answer would be 200 answers.
     if (head.has("range"))
         return problem_response(
             416, "this service does not send parts of an answer; leave out the Range header");
-    const Route* route = find_route(routes, head.method, head.path());
     if (!route) {
         const std::string path = api::shortened(std::string(head.path()));
         const std::string methods = methods_at(routes, head.path());

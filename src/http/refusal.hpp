@@ -9,9 +9,9 @@
 
 namespace vines::http {
 
-/// The problem with a request, or nothing. body_limit: bytes, of routes that have none of their
-/// own.
+/// The problem with a request, or nothing. route: that takes it, null where none does; body_limit:
+/// bytes, of routes that have none of their own.
 std::optional<Response> refusal(
-    const Head& head, const std::vector<Route>& routes, std::size_t body_limit);
+    const Head& head, const Route* route, const std::vector<Route>& routes, std::size_t body_limit);
 
 }  // namespace vines::http

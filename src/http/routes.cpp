@@ -55,11 +55,14 @@ Response timed_response(Json answer, std::size_t limit, Stopwatch& watch) {
     return response;
 }
 
-/// A place to compute in, or Problem 503.
-ComputeGate::Place place_in(ComputeGate& gate, const Request& request) {
-    if (ComputeGate::Place place = gate.enter(request.left)) return place;
-    throw Problem(
-        503, "as many requests as the server takes are waiting already; try again in a second");
+/// A place to compute in, once it is free, or Problem 503.
+ComputeGate::Place place_in(ComputeGate& gate, const Request& request, Stopwatch& watch) {
+    ComputeGate::Place place = gate.enter(request.left);
+    if (!place)
+        throw Problem(
+            503, "as many requests as the server takes are waiting already; try again in a second");
+    watch.lap("queue");
+    return place;
 }
 
 Json body_of(const Request& r) {
@@ -73,19 +76,21 @@ Json fields_of(const Request& r, const api::FieldTable& table) {
     return r.method == "POST" ? body_of(r) : api::from_query(table, r.query);
 }
 
-/// The same requests to the same version have the same answer.
-std::string tag_of(const Request& r, const Json& fields) {
-    return entity_tag(r.path + " " + api::version() + " " + fields.dump());
+/// The same requests to the same version, with the same limit of its answers, have the same answer.
+/// Only what is read can be known already: a POST has no tag.
+std::string tag_of(const Request& r, const Json& fields, std::size_t answer_limit) {
+    if (r.method == "POST") return {};
+    return entity_tag(
+        fmt::format("{} {} {} {}", r.path, api::version(), answer_limit, fields.dump()));
 }
 
 Response simulate(const Request& r, const RouteOptions& options, ComputeGate& gate) {
     Stopwatch watch;
-    const ComputeGate::Place place = place_in(gate, r);
-    watch.lap("queue");
+    const ComputeGate::Place place = place_in(gate, r, watch);
     const Json fields = fields_of(r, api::simulate_fields());
-    const std::string tag = tag_of(r, fields);
+    const std::string tag = tag_of(r, fields, options.answer_limit);
     api::SimulateRequest request = api::read_simulate_request(fields);
-    if (r.knows(tag)) return {.status = 304, .tag = tag};
+    if (!tag.empty() && names_tag(r.known_tags, tag)) return {.status = 304, .tag = tag};
     watch.lap("parse");
     const api::Stop stop = end_of_work(options.deadline, r, gate);
     api::SimulateAnswer answer = api::simulate_in_parts(
@@ -103,8 +108,7 @@ Response simulate(const Request& r, const RouteOptions& options, ComputeGate& ga
 
 Response manifold(const Request& r, const RouteOptions& options, ComputeGate& gate) {
     Stopwatch watch;
-    const ComputeGate::Place place = place_in(gate, r);
-    watch.lap("queue");
+    const ComputeGate::Place place = place_in(gate, r, watch);
     const api::ManifoldRequest request =
         api::read_manifold_request(fields_of(r, api::manifold_fields()));
     watch.lap("parse");
@@ -114,17 +118,19 @@ Response manifold(const Request& r, const RouteOptions& options, ComputeGate& ga
 }
 
 Response sweep(const Request& r, const RouteOptions& options, ComputeGate& gate) {
-    const ComputeGate::Place place = place_in(gate, r);  // to read the request
-    return stream_sweep(
-        api::read_sweep_request(body_of(r), options.sweep_points), options.sweep_deadline, r.id,
-        gate);
+    Stopwatch watch;
+    const ComputeGate::Place place = place_in(gate, r, watch);  // to read the request
+    api::SweepRequest request = api::read_sweep_request(body_of(r), options.sweep_points);
+    watch.lap("parse");
+    Response response = stream_sweep(std::move(request), options.sweep_deadline, r.id, gate);
+    response.timing = watch.take();
+    return response;
 }
 
 /// A CSV file with the fields in the query, or JSON with all in the body.
 Response identify(const Request& r, const RouteOptions& options, ComputeGate& gate) {
     Stopwatch watch;
-    const ComputeGate::Place place = place_in(gate, r);
-    watch.lap("queue");
+    const ComputeGate::Place place = place_in(gate, r, watch);
     const api::Stop stop = end_of_work(options.deadline, r, gate);
     const bool csv =
         r.content_type.rfind("text/csv", 0) == 0 || r.content_type.rfind("text/plain", 0) == 0;

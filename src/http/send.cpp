@@ -71,11 +71,6 @@ std::string server_timing(const Timing& timing) {
     return text;
 }
 
-/// Whether the client has what the tag names.
-bool is_known(const Head& head, const std::string& tag) {
-    return head.header("if-none-match").find(tag) != std::string_view::npos;
-}
-
 }  // namespace
 
 void send(
@@ -96,7 +91,7 @@ void send(
         // Kept for a year, or asked for again, with the tag.
         out.set_header(
             "Cache-Control", response.immutable ? "max-age=31536000, immutable" : "no-cache");
-        if (known || is_known(head, tag)) {
+        if (known || names_tag(head.header("if-none-match"), tag)) {
             out.status = 304;
             return;
         }

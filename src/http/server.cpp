@@ -82,8 +82,7 @@ struct Server::Implementation {
         work.keeps = work.exchange.head.keep_alive && !work.exchange.refused;
         Response response = response_to(work);
         const std::size_t size = response.body.size() + response.held;
-        if (size > small_answer && connections->memory().is_full())
-            response = problem_response(503, "the server holds as much as it may for its clients");
+        if (size > small_answer && connections->memory().is_full()) response = memory_refusal();
         work.connection->hold(size);
         // Of a stream that comes in no chunks the end is that of its connection.
         if (response.stream && !work.exchange.head.takes_chunks) work.keeps = false;
@@ -104,9 +103,8 @@ struct Server::Implementation {
         Exchange& exchange = work.exchange;
         if (exchange.refused) return std::move(*exchange.refused);
         const Head& head = exchange.head;
-        const Route& route = *find_route(routes, head.method, head.path());
         try {
-            return route.answer(
+            return exchange.route->answer(
                 {.method = head.method,
                  .path = std::string(head.path()),
                  .query = api::parse_query(head.query()),
@@ -160,19 +158,18 @@ struct Server::Implementation {
         return keeps;
     }
 
-    std::optional<Response> refusal_of(const Head& head) const {
-        std::optional<Response> refused =
+    Admitted admit(const Head& head) const {
+        Admitted admitted{.route = find_route(routes, head.method, head.path())};
+        admitted.refused =
             access_refusal(head, {.listens_on = options.host, .hosts = options.allowed_hosts});
-        return refused ? refused : refusal(head, routes, options.payload_limit);
+        if (!admitted.refused)
+            admitted.refused = refusal(head, admitted.route, routes, options.payload_limit);
+        return admitted;
     }
 
     Answering answering() {
         return {
-            .admission = [this](const Head& head) { return refusal_of(head); },
-            .is_light =
-                [this](const Head& head) {
-                    return find_route(routes, head.method, head.path())->light;
-                },
+            .admission = [this](const Head& head) { return admit(head); },
             .answer =
                 [this](Connection& connection, Exchange exchange, Patience patience) {
                     return answer(connection, std::move(exchange), std::move(patience));

@@ -88,81 +88,94 @@ std::string ending(std::size_t done, std::size_t of, const std::string& warning,
         done);
 }
 
-/// Writes the lines as they come, and the progress between them; returns how many they were. Stops
-/// the sweep and `present` is false once the client has left.
-std::size_t write_lines(
-    LineQueue& lines, const api::SweepRequest& request, GatePace& pace, Writer& out,
-    bool& present) {
-    const std::size_t of = request.plan.lines.size(), runs_of = request.plan.runs();
-    const auto started = Clock::now();
-    auto reported = started;
-    LineQueue::Taken taken;
-    do {
-        taken = lines.take(presence_look);
-        const auto now = Clock::now();
-        if (now - reported >= report || taken.finished) {
-            const std::chrono::duration<double> seconds = now - started;
-            taken.text += api::progress_line(
-                {.done = taken.count,
-                 .of = of,
-                 .runs = pace.runs,
-                 .runs_of = runs_of,
-                 .seconds = seconds.count()});
-            reported = now;
-        }
-        present = present && out.present() && (taken.text.empty() || out.write(taken.text));
-        if (!present) pace.stop();
-    } while (!taken.finished);
-    return taken.count;
-}
+/// One sweep on its way to its client.
+class Sending {
+public:
+    Sending(const api::SweepRequest& request, double deadline, ComputeGate& gate, Writer& out)
+        : request_(request),
+          gate_(gate),
+          out_(out),
+          pace_(gate, lines_, deadline) {}
 
-/// The points, on threads of their own: the calling one sends them. What a thread throws comes out
-/// of here. Returns how many lines were sent.
-std::size_t stream_points(
-    const api::SweepRequest& request, ComputeGate& gate, GatePace& pace, LineQueue& lines,
-    Writer& out, bool& present, std::string& warning) {
-    std::exception_ptr failure;
-    std::thread computing([&] {
+    /// False: the client has left. id: by which the log names the request.
+    bool run(const std::string& id) {
+        if (!out_.write(api::start_line(request_))) return false;
         try {
-            warning = api::run_sweep(
-                request, gate.threads(), pace,
-                [&](std::size_t, const std::string& line) { lines.push(line); });
+            const std::size_t done = points();
+            return present_ && out_.write(ending(done, of_, warning_, pace_.is_late()));
         } catch (...) {
-            failure = std::current_exception();
+            log_failure("/v1/sweep", id, std::current_exception());
+            const char* const detail = "the server failed at this sweep; its log says why";
+            return present_ && out_.write(api::error_line(500, detail, lines_.take({}).count));
         }
-        lines.finish();
-    });
-    std::size_t done = 0;
-    try {
-        done = write_lines(lines, request, pace, out, present);
-    } catch (...) {
-        pace.stop();
-        computing.join();
-        throw;
     }
-    computing.join();
-    if (failure) std::rethrow_exception(failure);
-    return done;
-}
 
-bool stream(
-    const api::SweepRequest& request, double deadline, const std::string& id, ComputeGate& gate,
-    Writer& out) {
-    LineQueue lines;
-    GatePace pace(gate, lines, deadline);
-    std::string warning;
-    if (!out.write(api::start_line(request))) return false;
-    bool present = true;
-    try {
-        const std::size_t done = stream_points(request, gate, pace, lines, out, present, warning);
-        return present &&
-               out.write(ending(done, request.plan.lines.size(), warning, pace.is_late()));
-    } catch (...) {
-        log_failure("/v1/sweep", id, std::current_exception());
-        const char* const detail = "the server failed at this sweep; its log says why";
-        return present && out.write(api::error_line(500, detail, lines.take({}).count));
+private:
+    /// Computed on threads of their own: the calling one sends them. What a thread throws comes out
+    /// of here. Returns how many lines were sent.
+    std::size_t points() {
+        std::exception_ptr failure;
+        std::thread computing([&] {
+            try {
+                warning_ = api::run_sweep(
+                    request_, gate_.threads(), pace_,
+                    [this](std::size_t, const std::string& line) { lines_.push(line); });
+            } catch (...) {
+                failure = std::current_exception();
+            }
+            lines_.finish();
+        });
+        std::size_t done = 0;
+        try {
+            done = write_lines();
+        } catch (...) {
+            pace_.stop();
+            computing.join();
+            throw;
+        }
+        computing.join();
+        if (failure) std::rethrow_exception(failure);
+        return done;
     }
-}
+
+    /// As they come, and the progress between them; returns how many they were. Stops the sweep
+    /// once the client has left.
+    std::size_t write_lines() {
+        auto reported = started_;
+        LineQueue::Taken taken;
+        do {
+            taken = lines_.take(presence_look);
+            const auto now = Clock::now();
+            if (now - reported >= report || taken.finished) {
+                taken.text += progress(taken.count, now);
+                reported = now;
+            }
+            present_ = present_ && out_.present() && (taken.text.empty() || out_.write(taken.text));
+            if (!present_) pace_.stop();
+        } while (!taken.finished);
+        return taken.count;
+    }
+
+    std::string progress(std::size_t done, Clock::time_point now) {
+        const std::chrono::duration<double> seconds = now - started_;
+        return api::progress_line(
+            {.done = done,
+             .of = of_,
+             .runs = pace_.runs,
+             .runs_of = request_.plan.runs(),
+             .seconds = seconds.count()});
+    }
+
+    const api::SweepRequest& request_;
+    const std::size_t of_ = request_.plan.lines.size();
+    const Clock::time_point started_ = Clock::now();
+    ComputeGate& gate_;
+    Writer& out_;
+    LineQueue lines_;
+    GatePace pace_;
+    bool present_ = true;       // the client
+    std::string warning_ = {};  // of all points
+};
 
 }  // namespace
 
@@ -178,7 +191,7 @@ Response stream_sweep(
         .content_type = "application/x-ndjson",
         .headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}},
         .stream = [request = std::move(request), deadline, request_id, &gate, room](Writer& out) {
-            return stream(request, deadline, request_id, gate, out);
+            return Sending(request, deadline, gate, out).run(request_id);
         }};
 }
 

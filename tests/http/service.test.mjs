@@ -74,6 +74,9 @@ test("GET takes the same fields in its query and has an ETag", async () => {
   assert.equal(body, await posted.text());
   const again = await fetch(url, {headers: {"If-None-Match": first.headers.get("etag")}});
   assert.equal(again.status, 304);
+  const repeated = await post(fields, {"If-None-Match": first.headers.get("etag")});
+  assert.equal(repeated.status, 200, "an answer to a POST is never left out");
+  assert.equal(await repeated.text(), body);
 });
 
 test("a query's value begins at its first = and is decoded", async () => {
