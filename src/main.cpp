@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "api/simulate.hpp"
+#include "api/version.hpp"
 #include "cli/commands.hpp"
 #include "http/commands.hpp"
 #include "program/command.hpp"

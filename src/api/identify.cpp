@@ -13,7 +13,7 @@
 #include "api/identify_text.hpp"
 #include "api/schema/words.hpp"
 #include "api/si_columns.hpp"
-#include "api/simulate.hpp"
+#include "api/version.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines::api {

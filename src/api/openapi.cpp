@@ -1,7 +1,7 @@
 #include "api/openapi.hpp"
 
 #include "api/schema/tables.hpp"
-#include "api/simulate.hpp"
+#include "api/version.hpp"
 
 namespace vines::api {
 

@@ -24,6 +24,12 @@ Problem::Problem(int status_, const std::string& detail, std::vector<FieldError>
       status(status_),
       errors(std::move(errors_)) {}
 
+Problem Problem::unavailable(const std::string& lacking, const std::string& detail) {
+    Problem problem(503, detail);
+    problem.lacking = lacking;
+    return problem;
+}
+
 std::string Problem::body(const std::string& request_id) const {
     Json document = {
         {"type", "about:blank"},
@@ -31,6 +37,7 @@ std::string Problem::body(const std::string& request_id) const {
         {"status", status},
         {"detail", what()}};
     if (!request_id.empty()) document["request_id"] = request_id;
+    if (!lacking.empty()) document["lacking"] = lacking;
     if (!errors.empty()) {
         Json& list = document["errors"] = Json::array();
         for (const FieldError& e : errors)

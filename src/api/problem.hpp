@@ -14,9 +14,12 @@ namespace vines::api {
 class Problem : public std::runtime_error {
 public:
     Problem(int status, const std::string& detail, std::vector<FieldError> errors = {});
+    /// 503 for now.
+    static Problem unavailable(const std::string& lacking, const std::string& detail);
 
     int status;
     std::vector<FieldError> errors;
+    std::string lacking = {};  ///< of a 503, what there is no more of: a word that stays the same
     /// The problem document; never throws, whatever bytes are in it. request_id: by which the log
     /// names the request, where it has such a name.
     std::string body(const std::string& request_id = {}) const;

@@ -11,6 +11,7 @@
 #include "api/perturbation.hpp"
 #include "api/schema/joined.hpp"
 #include "api/si_columns.hpp"
+#include "api/version.hpp"
 
 namespace vines::api {
 
@@ -166,9 +167,10 @@ SimulateAnswer simulate_in_parts(
             joined(parts.left_out));
     answer["warnings"] = warnings;
     if (!analysis.unkept_impacts || !answer.contains("impacts") || answer["impacts"].is_null())
-        return {std::move(answer), std::nullopt};
+        return {std::move(answer), std::nullopt, analysis.outcome.impacts};
     return {
-        std::move(answer), ListedRun{r.wanted, *analysis.unkept_impacts, scales_of(r, analysis)}};
+        std::move(answer), ListedRun{r.wanted, *analysis.unkept_impacts, scales_of(r, analysis)},
+        analysis.outcome.impacts};
 }
 
 void write_answer(
@@ -239,7 +241,5 @@ Json manifold_answer(const ManifoldRequest& r, const Stop& stop) {
         {"warnings", warnings},
         {"manifold", std::move(described)}};
 }
-
-std::string version() { return VINES_VERSION; }
 
 }  // namespace vines::api

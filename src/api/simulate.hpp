@@ -25,6 +25,7 @@ struct Stop {
 struct SimulateAnswer {
     Json json;
     std::optional<ListedRun> run;
+    long impacts = 0;  ///< of the run, told or not
 };
 
 // So many impacts, their columns in both units and the text of these take 45 MB.
@@ -49,8 +50,5 @@ Json simulate_answer(SimulateRequest request, const Stop& stop, std::size_t most
 
 /// The manifold, and the b that is recommended beside it: none once stop.asked() is true.
 Json manifold_answer(const ManifoldRequest& request, const Stop& stop = {});
-
-/// The version of this build.
-std::string version();
 
 }  // namespace vines::api

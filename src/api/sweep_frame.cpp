@@ -8,7 +8,7 @@
 #include "api/column.hpp"
 #include "api/describe.hpp"
 #include "api/json_text.hpp"
-#include "api/simulate.hpp"
+#include "api/version.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines::api {

@@ -90,4 +90,9 @@ void ComputeGate::close_to_sweeps() {
     for (Waiting* waiting : patient_) waiting->changed.notify_one();
 }
 
+ComputeLoad ComputeGate::load() const {
+    const std::lock_guard lock(mutex_);
+    return {limits_.running - free_, urgent_.size(), sweeps_};
+}
+
 }  // namespace vines::http

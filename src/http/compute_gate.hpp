@@ -23,6 +23,13 @@ struct ComputeLimits {
     int sweeps = 4;    ///< which share what is left
 };
 
+/// What is in work at a moment.
+struct ComputeLoad {
+    int running = 0;          ///< places that are taken
+    std::size_t waiting = 0;  ///< urgent work that waits for one
+    int sweeps = 0;
+};
+
 /// Outlives its places and rooms.
 class ComputeGate {
     struct Leave {
@@ -64,6 +71,8 @@ public:
     void end_all() { ends_all_ = true; }
     bool ends_all() const { return ends_all_; }
 
+    ComputeLoad load() const;
+
 private:
     struct Waiting {
         std::condition_variable_any changed = {};
@@ -77,7 +86,7 @@ private:
     bool drop_out(Queue& queue, Waiting& waiting);
 
     const ComputeLimits limits_;
-    std::mutex mutex_;
+    mutable std::mutex mutex_;
     int free_, sweeps_ = 0;  // where a place is free, nobody waits
     Queue urgent_, patient_;
     // Changed under the mutex; read without it by work that only takes a look.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "http/connection.hpp"
+#include "http/metrics.hpp"
 #include "http/patience.hpp"
 #include "http/workers.hpp"
 
@@ -42,6 +43,10 @@ public:
     void run();
     /// Of requests and answers.
     const HeldMemory& memory() const { return memory_; }
+    ConnectionLoad load() const {
+        const auto in_work = static_cast<std::size_t>(in_work_);
+        return {.open = number_ + in_work, .in_flight = in_work, .held_bytes = memory_.bytes()};
+    }
     /// From any thread, once: takes no new connection, answers what comes on the others for a
     /// moment, waits for the answers in work, and makes run() return.
     void stop();
@@ -76,10 +81,10 @@ private:
     const std::size_t most_connections_;
     const int poll_, wake_;
     HeldMemory memory_;
-    std::vector<Owned> kept_;       // by socket; of the thread in run()
-    std::vector<int> again_;        // sockets of those whose turn was over before they were done
-    std::size_t number_ = 0;        // of those
-    std::atomic<int> in_work_ = 0;  // with a worker, or on their way back
+    std::vector<Owned> kept_;  // by socket; of the thread in run()
+    std::vector<int> again_;   // sockets of those whose turn was over before they were done
+    std::atomic<std::size_t> number_ = 0;  // of those
+    std::atomic<int> in_work_ = 0;         // with a worker, or on their way back
     std::atomic<bool> stopping_ = false;
     bool listens_ = false, closing_ = false;
     Clock::time_point looked_ = Clock::now();

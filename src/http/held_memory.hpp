@@ -11,6 +11,7 @@ public:
     explicit HeldMemory(std::size_t limit) : limit_(limit) {}
     /// Whether nothing large should be taken on.
     bool is_full() const { return held_ >= limit_; }
+    std::size_t bytes() const { return held_; }
 
 private:
     friend class HeldBytes;

@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cmath>
 #include <ctime>
 #include <memory>
@@ -21,6 +22,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 LogFormat format = LogFormat::json;
+std::atomic<std::size_t> all_dropped = 0;
 
 /// In the order in which a reader wants them. Whatever bytes a path has in it.
 std::string line_of(const char* level, Json fields) {
@@ -60,6 +62,7 @@ protected:
     void sink_it_(const spdlog::details::log_msg& message) override {
         if (!has_room()) {
             ++dropped_;
+            ++all_dropped;
             return;
         }
         if (dropped_ > 0)
@@ -80,10 +83,12 @@ private:
         static_cast<void>(!::write(STDERR_FILENO, text.data(), text.size()));
     }
 
-    std::size_t dropped_ = 0;
+    std::size_t dropped_ = 0;  // since the last one that was not
 };
 
 }  // namespace
+
+std::size_t log_lines_dropped() { return all_dropped; }
 
 void start_log(LogFormat chosen) {
     format = chosen;

@@ -16,6 +16,8 @@ void start_log(LogFormat format);
 /// One request, and its answer.
 struct Served {
     std::string id, client, method, path;
+    std::string route;    ///< that its answer came from: "page" for all files, "none" for no route
+    std::string lacking;  ///< of a 503, what there was no more of
     int status;
     double ms;          ///< from its last byte to its answer's
     Timing timing;      ///< of its computation
@@ -32,5 +34,8 @@ void log_failure(
 
 /// What the service does by itself.
 void log_event(const std::string& what);
+
+/// That nobody read in time, so far.
+std::size_t log_lines_dropped();
 
 }  // namespace vines::http

@@ -14,7 +14,8 @@ Response problem_response(int status, const std::string& detail) {
 }
 
 Response memory_refusal() {
-    return problem_response(503, "the server holds as much as it may for its clients");
+    return problem_response(
+        api::Problem::unavailable("memory", "the server holds as much as it may for its clients"));
 }
 
 }  // namespace vines::http

@@ -55,12 +55,20 @@ Response timed_response(Json answer, std::size_t limit, Stopwatch& watch) {
     return response;
 }
 
+/// What a computation is made with.
+struct Service {
+    const RouteOptions options;
+    ComputeGate& gate;
+    Metrics& metrics;
+};
+
 /// A place to compute in, once it is free, or Problem 503.
 ComputeGate::Place place_in(ComputeGate& gate, const Request& request, Stopwatch& watch) {
     ComputeGate::Place place = gate.enter(request.left);
     if (!place)
-        throw Problem(
-            503, "as many requests as the server takes are waiting already; try again in a second");
+        throw Problem::unavailable(
+            "computing",
+            "as many requests as the server takes are waiting already; try again in a second");
     watch.lap("queue");
     return place;
 }
@@ -84,54 +92,56 @@ std::string tag_of(const Request& r, const Json& fields, std::size_t answer_limi
         fmt::format("{} {} {} {}", r.path, api::version(), answer_limit, fields.dump()));
 }
 
-Response simulate(const Request& r, const RouteOptions& options, ComputeGate& gate) {
+Response simulate(const Request& r, const Service& service) {
     Stopwatch watch;
-    const ComputeGate::Place place = place_in(gate, r, watch);
+    const ComputeGate::Place place = place_in(service.gate, r, watch);
     const Json fields = fields_of(r, api::simulate_fields());
-    const std::string tag = tag_of(r, fields, options.answer_limit);
+    const std::string tag = tag_of(r, fields, service.options.answer_limit);
     api::SimulateRequest request = api::read_simulate_request(fields);
     if (!tag.empty() && names_tag(r.known_tags, tag)) return {.status = 304, .tag = tag};
     watch.lap("parse");
-    const api::Stop stop = end_of_work(options.deadline, r, gate);
+    const api::Stop stop = end_of_work(service.options.deadline, r, service.gate);
     api::SimulateAnswer answer = api::simulate_in_parts(
-        std::move(request), stop, options.answer_limit, options.most_kept_impacts);
+        std::move(request), stop, service.options.answer_limit, service.options.most_kept_impacts);
+    service.metrics.count_simulation(answer.impacts);
     if (answer.run) {
         watch.lap("solve");
-        Response response = stream_answer(std::move(answer), r.id, gate);
+        Response response = stream_answer(std::move(answer), r.id, service.gate);
         response.timing = watch.take();
         return response;
     }
-    Response response = timed_response(std::move(answer.json), options.answer_limit, watch);
+    Response response = timed_response(std::move(answer.json), service.options.answer_limit, watch);
     if (!stop.asked()) response.tag = tag;  // another time it may get further
     return response;
 }
 
-Response manifold(const Request& r, const RouteOptions& options, ComputeGate& gate) {
+Response manifold(const Request& r, const Service& service) {
     Stopwatch watch;
-    const ComputeGate::Place place = place_in(gate, r, watch);
+    const ComputeGate::Place place = place_in(service.gate, r, watch);
     const api::ManifoldRequest request =
         api::read_manifold_request(fields_of(r, api::manifold_fields()));
     watch.lap("parse");
     return timed_response(
-        api::manifold_answer(request, end_of_work(options.deadline, r, gate)), options.answer_limit,
-        watch);
+        api::manifold_answer(request, end_of_work(service.options.deadline, r, service.gate)),
+        service.options.answer_limit, watch);
 }
 
-Response sweep(const Request& r, const RouteOptions& options, ComputeGate& gate) {
+Response sweep(const Request& r, const Service& service) {
     Stopwatch watch;
-    const ComputeGate::Place place = place_in(gate, r, watch);  // to read the request
-    api::SweepRequest request = api::read_sweep_request(body_of(r), options.sweep_points);
+    const ComputeGate::Place place = place_in(service.gate, r, watch);  // to read the request
+    api::SweepRequest request = api::read_sweep_request(body_of(r), service.options.sweep_points);
     watch.lap("parse");
-    Response response = stream_sweep(std::move(request), options.sweep_deadline, r.id, gate);
+    Response response = stream_sweep(
+        std::move(request), service.options.sweep_deadline, r.id, service.gate, service.metrics);
     response.timing = watch.take();
     return response;
 }
 
 /// A CSV file with the fields in the query, or JSON with all in the body.
-Response identify(const Request& r, const RouteOptions& options, ComputeGate& gate) {
+Response identify(const Request& r, const Service& service) {
     Stopwatch watch;
-    const ComputeGate::Place place = place_in(gate, r, watch);
-    const api::Stop stop = end_of_work(options.deadline, r, gate);
+    const ComputeGate::Place place = place_in(service.gate, r, watch);
+    const api::Stop stop = end_of_work(service.options.deadline, r, service.gate);
     const bool csv =
         r.content_type.rfind("text/csv", 0) == 0 || r.content_type.rfind("text/plain", 0) == 0;
     const api::IdentifyRequest request =
@@ -139,7 +149,7 @@ Response identify(const Request& r, const RouteOptions& options, ComputeGate& ga
             : api::read_identify_request(body_of(r));
     watch.lap("parse");
     return timed_response(
-        api::identify_answer(request, {.stop = stop.asked}), options.answer_limit, watch);
+        api::identify_answer(request, {.stop = stop.asked}), service.options.answer_limit, watch);
 }
 
 /// A route whose answer may throw a Problem.
@@ -165,13 +175,13 @@ Route light(std::string method, std::string path, std::function<Response(const R
 
 }  // namespace
 
-std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate) {
+std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate, Metrics& metrics) {
     std::vector<Route> routes;
-    using Computation = Response (*)(const Request&, const RouteOptions&, ComputeGate&);
+    using Computation = Response (*)(const Request&, const Service&);
+    const auto service = std::make_shared<const Service>(Service{options, gate, metrics});
     const auto compute = [&](const char* method, const char* path, Computation answer) {
-        routes.push_back(route(method, path, [answer, options, &gate](const Request& r) {
-            return answer(r, options, gate);
-        }));
+        routes.push_back(route(
+            method, path, [answer, service](const Request& r) { return answer(r, *service); }));
     };
     for (const char* method : {"GET", "POST"}) {
         compute(method, "/v1/simulate", simulate);
@@ -194,13 +204,25 @@ std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate) {
         routes.push_back(
             light("GET", path, [](const Request&) { return json_response({{"status", "ok"}}); }));
     routes.push_back(light("GET", "/readyz", [&gate](const Request&) {
-        if (gate.closed_to_sweeps()) throw Problem(503, "the server is stopping");
+        if (gate.closed_to_sweeps())
+            throw Problem::unavailable("stopping", "the server is stopping");
         return json_response({{"status", "ok"}});
     }));
     routes.push_back(light("GET", "/version", [](const Request&) {
-        return json_response({{"name", "vines"}, {"version", api::version()}});
+        return json_response(
+            {{"name", "vines"},
+             {"version", api::version()},
+             {"commit", api::commit()},
+             {"compiler", api::compiler()}});
     }));
-    for (Route& file : page_routes(options.page)) routes.push_back(std::move(file));
+    routes.push_back(light("GET", "/metrics", [&metrics](const Request&) {
+        return Response{.content_type = Metrics::content_type, .body = metrics.text()};
+    }));
+    for (Route& r : routes) r.name = r.path;
+    for (Route& file : page_routes(options.page)) {
+        file.name = "page";
+        routes.push_back(std::move(file));
+    }
     return routes;
 }
 

@@ -6,6 +6,7 @@
 
 #include "api/simulate.hpp"
 #include "http/compute_gate.hpp"
+#include "http/metrics.hpp"
 #include "http/page.hpp"
 #include "http/route.hpp"
 
@@ -22,7 +23,7 @@ struct RouteOptions {
     PageOptions page = {};
 };
 
-/// All routes. `gate` outlives them.
-std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate);
+/// All routes. `gate` and `metrics` outlive them.
+std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate, Metrics& metrics);
 
 }  // namespace vines::http

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "api/simulate.hpp"
+#include "api/version.hpp"
 #include "http/commands.hpp"
 #include "http/compute_gate.hpp"
 #include "http/log.hpp"
@@ -171,7 +171,8 @@ int serve(const ServeOptions& options) {
     block_end_signals();
     start_log(options.log == "text" ? LogFormat::text : LogFormat::json);
     ComputeGate gate(options.compute);
-    Server server(options.server, make_routes(options.routes, gate));
+    Metrics metrics(gate);
+    Server server(options.server, make_routes(options.routes, gate, metrics), metrics);
     int port = 0;
     try {
         port = server.bind();

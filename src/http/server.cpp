@@ -54,8 +54,14 @@ private:
 }  // namespace
 
 struct Server::Implementation {
+    Implementation(ServerOptions options_, std::vector<Route> routes_, Metrics& metrics_)
+        : options(std::move(options_)),
+          routes(std::move(routes_)),
+          metrics(metrics_) {}
+
     ServerOptions options;
     std::vector<Route> routes;
+    Metrics& metrics;
     Engine http;
     std::optional<Connections> connections;
     std::atomic<bool> closing = false;
@@ -68,6 +74,7 @@ struct Server::Implementation {
         const SocketStream* stream = nullptr;
         std::string id = {};
         int status = 0;
+        std::string lacking = {};
         Timing timing = {};
         bool keeps = false;  ///< the connection, for another request
     };
@@ -87,6 +94,7 @@ struct Server::Implementation {
         // Of a stream that comes in no chunks the end is that of its connection.
         if (response.stream && !work.exchange.head.takes_chunks) work.keeps = false;
         work.timing = response.timing;
+        if (response.problem) work.lacking = response.problem->lacking;
         send(work.exchange.head, work.id, out, std::move(response));
         work.status = out.status;
         // A client must hear that its connection ends, and the library says so to who asks for it.
@@ -144,16 +152,20 @@ struct Server::Implementation {
         const bool keeps = sent && work.keeps;
         if (!sent) connection.break_off();
         const std::chrono::duration<double, std::milli> taken = Clock::now() - work.exchange.since;
-        log_served(
-            {.id = work.id,
-             .client = connection.client(),
-             .method = work.exchange.head.method,
-             .path = std::string(work.exchange.head.path()),
-             .status = work.status,
-             .ms = taken.count(),
-             .timing = work.timing,
-             .bytes = stream.written(),
-             .left = !sent});
+        const Served served{
+            .id = work.id,
+            .client = connection.client(),
+            .method = work.exchange.head.method,
+            .path = std::string(work.exchange.head.path()),
+            .route = work.exchange.route ? work.exchange.route->name : "none",
+            .lacking = work.lacking,
+            .status = work.status,
+            .ms = taken.count(),
+            .timing = work.timing,
+            .bytes = stream.written(),
+            .left = !sent};
+        log_served(served);
+        metrics.count_served(served);
         work = {};
         return keeps;
     }
@@ -176,16 +188,14 @@ struct Server::Implementation {
                 },
             .overloaded =
                 [] {
-                    return problem_response(
-                        503, "as many requests as the server takes are in work already");
+                    return problem_response(api::Problem::unavailable(
+                        "threads", "as many requests as the server takes are in work already"));
                 }};
     }
 };
 
-Server::Server(const ServerOptions& options, std::vector<Route> routes)
-    : implementation_(std::make_unique<Implementation>()) {
-    implementation_->options = options;
-    implementation_->routes = std::move(routes);
+Server::Server(const ServerOptions& options, std::vector<Route> routes, Metrics& metrics)
+    : implementation_(std::make_unique<Implementation>(options, std::move(routes), metrics)) {
     Engine& http = implementation_->http;
     http.set_keep_alive_timeout(idle_time.count());  // as it tells its clients
     http.set_keep_alive_max_count(1000000);
@@ -223,6 +233,7 @@ int Server::bind() {
             .waiting = static_cast<std::size_t>(options.threads),
             .held_bytes = options.memory_limit},
         implementation_->answering());
+    implementation_->metrics.watch([this] { return implementation_->connections->load(); });
     return port;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "http/access.hpp"
+#include "http/metrics.hpp"
 #include "http/route.hpp"
 
 namespace vines::http {
@@ -22,7 +23,8 @@ struct ServerOptions {
 
 class Server {
 public:
-    Server(const ServerOptions& options, std::vector<Route> routes);
+    /// The metrics outlive it.
+    Server(const ServerOptions& options, std::vector<Route> routes, Metrics& metrics);
     ~Server();
 
     /// Binds and returns the port. Throws std::runtime_error with the reason where that fails.

@@ -76,10 +76,11 @@ private:
     std::stop_source stop_;
 };
 
-/// How a sweep ended whose client is still there.
-std::string ending(std::size_t done, std::size_t of, const std::string& warning, bool late) {
-    if (done == of)
+/// The last lines of a sweep whose client is still there.
+std::string last_lines(SweepEnd end, std::size_t done, const std::string& warning) {
+    if (end == SweepEnd::complete)
         return (warning.empty() ? "" : api::warning_line(warning)) + api::done_line(done);
+    const bool late = end == SweepEnd::deadline;
     return api::error_line(
         503,
         fmt::format(
@@ -97,18 +98,25 @@ public:
           out_(out),
           pace_(gate, lines_, deadline) {}
 
-    /// False: the client has left. id: by which the log names the request.
-    bool run(const std::string& id) {
-        if (!out_.write(api::start_line(request_))) return false;
+    /// id: by which the log names the request.
+    SweepEnd run(const std::string& id) {
+        if (!out_.write(api::start_line(request_))) return SweepEnd::client_left;
         try {
             const std::size_t done = points();
-            return present_ && out_.write(ending(done, of_, warning_, pace_.is_late()));
+            const SweepEnd end = done == of_       ? SweepEnd::complete
+                                 : pace_.is_late() ? SweepEnd::deadline
+                                                   : SweepEnd::stopping;
+            const bool sent = present_ && out_.write(last_lines(end, done, warning_));
+            return sent ? end : SweepEnd::client_left;
         } catch (...) {
             log_failure("/v1/sweep", id, std::current_exception());
-            const char* const detail = "the server failed at this sweep; its log says why";
-            return present_ && out_.write(api::error_line(500, detail, lines_.take({}).count));
+            const std::string line = api::error_line(
+                500, "the server failed at this sweep; its log says why", lines_.take({}).count);
+            return present_ && out_.write(line) ? SweepEnd::failed : SweepEnd::client_left;
         }
     }
+    std::size_t runs() const { return pace_.runs; }
+    std::size_t impacts() const { return pace_.impacts; }
 
 private:
     /// Computed on threads of their own: the calling one sends them. What a thread throws comes out
@@ -180,18 +188,27 @@ private:
 }  // namespace
 
 Response stream_sweep(
-    api::SweepRequest request, double deadline, const std::string& request_id, ComputeGate& gate) {
+    api::SweepRequest request, double deadline, const std::string& request_id, ComputeGate& gate,
+    Metrics& metrics) {
     // Shared, because a response can be copied: the room is given back when the last copy is gone,
     // whether or not it was ever sent.
     const std::shared_ptr<ComputeGate> room = gate.enter_sweep();
     if (!room)
         return problem_response(
-            503, "as many sweeps as the server takes are running already; try again later");
+            gate.closed_to_sweeps()
+                ? api::Problem::unavailable("stopping", "the server is stopping")
+                : api::Problem::unavailable(
+                      "sweeps",
+                      "as many sweeps as the server takes are running already; try again later"));
     return {
         .content_type = "application/x-ndjson",
         .headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}},
-        .stream = [request = std::move(request), deadline, request_id, &gate, room](Writer& out) {
-            return Sending(request, deadline, gate, out).run(request_id);
+        .stream = [request = std::move(request), deadline, request_id, &gate, &metrics,
+                   room](Writer& out) {
+            Sending sending(request, deadline, gate, out);
+            const SweepEnd end = sending.run(request_id);
+            metrics.count_sweep(end, sending.runs(), sending.impacts());
+            return end != SweepEnd::client_left;
         }};
 }
 

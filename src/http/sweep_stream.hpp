@@ -6,12 +6,14 @@
 #include "api/sweep.hpp"
 #include "http/compute_gate.hpp"
 #include "http/message.hpp"
+#include "http/metrics.hpp"
 
 namespace vines::http {
 
 /// Answers a sweep, which ends after so many seconds with the points that it has; 503 where the
-/// gate has no room for one more. The gate outlives the response.
+/// gate has no room for one more. The gate and the metrics outlive the response.
 Response stream_sweep(
-    api::SweepRequest request, double deadline, const std::string& request_id, ComputeGate& gate);
+    api::SweepRequest request, double deadline, const std::string& request_id, ComputeGate& gate,
+    Metrics& metrics);
 
 }  // namespace vines::http

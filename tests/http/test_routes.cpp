@@ -14,7 +14,9 @@ namespace {
 Response answer_of(
     ComputeGate& gate, const RouteOptions& options, const std::string& method,
     const std::string& path, const std::string& body = "{}") {
-    const std::vector<Route> routes = make_routes(options, gate);
+    static const ComputeGate idle({});
+    static Metrics metrics(idle);  // outlives what is streamed
+    const std::vector<Route> routes = make_routes(options, gate, metrics);
     const Route* route = find_route(routes, method, path);
     REQUIRE(route);
     return route->answer(

@@ -15,7 +15,8 @@ public:
     /// Asked every few events; true stops the sweep.
     virtual bool stop_or_yield() { return false; }
 
-    std::atomic<std::size_t> runs = 0;  ///< that are done: of SweepPlan::runs()
+    std::atomic<std::size_t> runs = 0;     ///< that are done: of SweepPlan::runs()
+    std::atomic<std::size_t> impacts = 0;  ///< of their measured parts
 };
 
 /// Thrown where the pace says stop.

@@ -38,6 +38,7 @@ PointOptions options_of(const PointSystem& system, PointOptions options) {
 void count(const PointResult& result, Pace& pace) {
     if (result.outcome.reason == End::stopped || pace.stop_or_yield()) throw Stopped();
     ++pace.runs;
+    pace.impacts += static_cast<std::size_t>(result.impacts);
 }
 
 /// The tasks that a thread takes, in batches of one flow.
