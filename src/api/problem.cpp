@@ -53,6 +53,7 @@ std::string Problem::body(const std::string& request_id) const {
 std::string_view reason_phrase(int status) {
     switch (status) {
         case 400: return "Bad Request";
+        case 401: return "Unauthorized";
         case 403: return "Forbidden";
         case 404: return "Not Found";
         case 405: return "Method Not Allowed";

@@ -64,6 +64,23 @@ bool is_foreign(const Head& head) {
     return !origin.empty() && authority_of(origin) != authority_of(head.host);
 }
 
+/// Whether a request comes from a page that may use the service.
+bool shares(const Head& head, const AccessOptions& options) {
+    const std::string origin = lower_case(head.header("origin"));
+    return !origin.empty() &&
+           std::any_of(
+               options.origins.begin(), options.origins.end(), [&origin](const auto& allowed) {
+                   return allowed == "*" || lower_case(allowed) == origin;
+               });
+}
+
+Response key_refusal() {
+    Response response = problem_response(
+        401, "this server asks for a key, in the header \"Authorization: Bearer KEY\"");
+    response.headers.emplace_back("WWW-Authenticate", "Bearer realm=\"vines\"");
+    return response;
+}
+
 }  // namespace
 
 bool is_loopback(std::string_view host) {
@@ -75,7 +92,8 @@ std::string in_url(const std::string& address) {
     return address.find(':') == std::string::npos ? address : "[" + address + "]";
 }
 
-std::optional<Response> access_refusal(const Head& head, const AccessOptions& options) {
+std::optional<Response> access_refusal(
+    const Head& head, const Route* route, const AccessOptions& options) {
     const std::string host = host_of(head.host);
     if (!host.empty() && !is_meant(host, options))
         return problem_response(
@@ -83,9 +101,34 @@ std::optional<Response> access_refusal(const Head& head, const AccessOptions& op
                      "this server is not {}: if that is its name, start it with --allow-host {}",
                      host, host));
     const bool follows_link = head.method != "POST" && head.header("sec-fetch-mode") == "navigate";
-    if (is_foreign(head) && !follows_link)
+    if (is_foreign(head) && !follows_link && !shares(head, options))
         return problem_response(403, "a page of another origin may not use this server");
+    if (route && !route->open && options.keys.are_asked_for() &&
+        !options.keys.open(head.header("authorization")))
+        return key_refusal();
     return std::nullopt;
+}
+
+bool is_preflight(const Head& head, const AccessOptions& options) {
+    return head.method == "OPTIONS" && head.has("access-control-request-method") &&
+           shares(head, options);
+}
+
+std::vector<std::pair<std::string, std::string>> sharing_headers(
+    const Head& head, const AccessOptions& options) {
+    if (options.origins.empty()) return {};
+    if (!shares(head, options)) return {{"Vary", "Origin"}};
+    std::vector<std::pair<std::string, std::string>> headers = {
+        {"Vary", "Origin"},
+        {"Access-Control-Allow-Origin", std::string(head.header("origin"))},
+        {"Access-Control-Expose-Headers", "ETag, Retry-After, Server-Timing, X-Request-ID"}};
+    if (!is_preflight(head, options)) return headers;
+    headers.insert(
+        headers.end(), {{"Access-Control-Allow-Methods", "GET, HEAD, POST"},
+                        {"Access-Control-Allow-Headers",
+                         "Authorization, Content-Type, If-None-Match, X-Request-ID, traceparent"},
+                        {"Access-Control-Max-Age", "86400"}});
+    return headers;
 }
 
 }  // namespace vines::http

@@ -44,8 +44,8 @@ const char* label_of(SweepEnd end) {
 }
 
 /// A number that is known when it is asked for.
-MetricFamily
-sampled(std::string name, std::string help, double value, MetricType type = MetricType::Gauge) {
+MetricFamily sampled(
+    std::string name, std::string help, double value, MetricType type = MetricType::Gauge) {
     ClientMetric metric;
     (type == MetricType::Counter ? metric.counter.value : metric.gauge.value) = value;
     return {std::move(name), std::move(help), type, {std::move(metric)}};
@@ -67,8 +67,8 @@ void add_process(std::vector<MetricFamily>& all) {
     all.push_back(sampled(
         "process_start_time_seconds", "Start of the process, since 1970.",
         load.start_time_seconds));
-    all.push_back(sampled(
-        "process_resident_memory_bytes", "Memory in use.", load.resident_memory_bytes));
+    all.push_back(
+        sampled("process_resident_memory_bytes", "Memory in use.", load.resident_memory_bytes));
     all.push_back(sampled(
         "process_virtual_memory_bytes", "Memory that is mapped.", load.virtual_memory_bytes));
     all.push_back(sampled("process_open_fds", "Open file descriptors.", load.open_fds));
@@ -118,12 +118,11 @@ struct Metrics::Implementation {
             .Name("vines_http_unavailable_total")
             .Help("Requests answered with 503, by what the server had no more of.")
             .Register(registry);
-    prometheus::Histogram& queued =
-        prometheus::BuildHistogram()
-            .Name("vines_compute_queue_seconds")
-            .Help("Wait of a request for a place to compute in.")
-            .Register(registry)
-            .Add({}, durations);
+    prometheus::Histogram& queued = prometheus::BuildHistogram()
+                                        .Name("vines_compute_queue_seconds")
+                                        .Help("Wait of a request for a place to compute in.")
+                                        .Register(registry)
+                                        .Add({}, durations);
     prometheus::Family<prometheus::Counter>& sweeps =
         prometheus::BuildCounter()
             .Name("vines_sweeps_total")
@@ -152,8 +151,8 @@ struct Metrics::Implementation {
             sampled("vines_sweeps_running", "Sweeps in work.", static_cast<double>(load.sweeps)));
         if (!connections) return;
         const ConnectionLoad now = connections();
-        all.push_back(sampled(
-            "vines_http_connections", "Open connections.", static_cast<double>(now.open)));
+        all.push_back(
+            sampled("vines_http_connections", "Open connections.", static_cast<double>(now.open)));
         all.push_back(sampled(
             "vines_http_requests_in_flight", "Requests that have come and are not yet answered.",
             static_cast<double>(now.in_flight)));

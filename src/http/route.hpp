@@ -11,13 +11,14 @@
 namespace vines::http {
 
 struct Route {
-    std::string method;  ///< GET (answers HEAD, too) or POST
-    std::string path;
+    std::string method = {};  ///< GET (answers HEAD, too) or POST
+    std::string path = {};
     std::string name = {};  ///< by which it is counted
     std::function<Response(const Request&)> answer = {};
     std::size_t body_limit = 0;  ///< bytes, where it is larger than the server's own
     /// Small and without any computing: answered however busy the server is.
     bool light = false;
+    bool open = false;  ///< to everyone, also where the service asks for a key
 };
 
 /// The route that takes this method at this path; null where none does.

@@ -46,12 +46,11 @@ Response limited_response(Json answer, std::size_t limit) {
     return {.body = std::move(text)};
 }
 
-/// The same with the time of each part of the work, whose last one, the solution, is just over.
+/// The same of an answer whose solution is just over.
 Response timed_response(Json answer, std::size_t limit, Stopwatch& watch) {
     watch.lap("solve");
     Response response = limited_response(std::move(answer), limit);
     watch.lap("encode");
-    response.timing = watch.take();
     return response;
 }
 
@@ -88,12 +87,11 @@ Json fields_of(const Request& r, const api::FieldTable& table) {
 /// Only what is read can be known already: a POST has no tag.
 std::string tag_of(const Request& r, const Json& fields, std::size_t answer_limit) {
     if (r.method == "POST") return {};
-    return entity_tag(
-        fmt::format("{} {} {} {}", r.path, api::version(), answer_limit, fields.dump()));
+    return entity_tag(fmt::format(
+        "{} {} {} {} {}", r.path, api::version(), api::commit(), answer_limit, fields.dump()));
 }
 
-Response simulate(const Request& r, const Service& service) {
-    Stopwatch watch;
+Response simulate(const Request& r, const Service& service, Stopwatch& watch) {
     const ComputeGate::Place place = place_in(service.gate, r, watch);
     const Json fields = fields_of(r, api::simulate_fields());
     const std::string tag = tag_of(r, fields, service.options.answer_limit);
@@ -106,17 +104,14 @@ Response simulate(const Request& r, const Service& service) {
     service.metrics.count_simulation(answer.impacts);
     if (answer.run) {
         watch.lap("solve");
-        Response response = stream_answer(std::move(answer), r.id, service.gate);
-        response.timing = watch.take();
-        return response;
+        return stream_answer(std::move(answer), r.id, service.gate);
     }
     Response response = timed_response(std::move(answer.json), service.options.answer_limit, watch);
     if (!stop.asked()) response.tag = tag;  // another time it may get further
     return response;
 }
 
-Response manifold(const Request& r, const Service& service) {
-    Stopwatch watch;
+Response manifold(const Request& r, const Service& service, Stopwatch& watch) {
     const ComputeGate::Place place = place_in(service.gate, r, watch);
     const api::ManifoldRequest request =
         api::read_manifold_request(fields_of(r, api::manifold_fields()));
@@ -126,20 +121,16 @@ Response manifold(const Request& r, const Service& service) {
         service.options.answer_limit, watch);
 }
 
-Response sweep(const Request& r, const Service& service) {
-    Stopwatch watch;
+Response sweep(const Request& r, const Service& service, Stopwatch& watch) {
     const ComputeGate::Place place = place_in(service.gate, r, watch);  // to read the request
     api::SweepRequest request = api::read_sweep_request(body_of(r), service.options.sweep_points);
     watch.lap("parse");
-    Response response = stream_sweep(
+    return stream_sweep(
         std::move(request), service.options.sweep_deadline, r.id, service.gate, service.metrics);
-    response.timing = watch.take();
-    return response;
 }
 
 /// A CSV file with the fields in the query, or JSON with all in the body.
-Response identify(const Request& r, const Service& service) {
-    Stopwatch watch;
+Response identify(const Request& r, const Service& service, Stopwatch& watch) {
     const ComputeGate::Place place = place_in(service.gate, r, watch);
     const api::Stop stop = end_of_work(service.options.deadline, r, service.gate);
     const bool csv =
@@ -152,24 +143,29 @@ Response identify(const Request& r, const Service& service) {
         api::identify_answer(request, {.stop = stop.asked}), service.options.answer_limit, watch);
 }
 
+/// What it returns, or the Problem that it throws.
+Response answer_of(const std::function<Response()>& answer) {
+    try {
+        return answer();
+    } catch (const Problem& problem) {
+        return problem_response(problem);
+    }
+}
+
 /// A route whose answer may throw a Problem.
 Route route(std::string method, std::string path, std::function<Response(const Request&)> answer) {
     return {
         .method = std::move(method),
         .path = std::move(path),
         .answer = [answer = std::move(answer)](const Request& request) {
-            try {
-                return answer(request);
-            } catch (const Problem& problem) {
-                return problem_response(problem);
-            }
+            return answer_of([&] { return answer(request); });
         }};
 }
 
-/// One that is answered however busy the server is.
-Route light(std::string method, std::string path, std::function<Response(const Request&)> answer) {
-    Route made = route(std::move(method), std::move(path), std::move(answer));
-    made.light = true;
+/// One that is answered however busy the server is, to everyone.
+Route health(std::string path, std::function<Response(const Request&)> answer) {
+    Route made = route("GET", std::move(path), std::move(answer));
+    made.light = made.open = true;
     return made;
 }
 
@@ -177,11 +173,16 @@ Route light(std::string method, std::string path, std::function<Response(const R
 
 std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate, Metrics& metrics) {
     std::vector<Route> routes;
-    using Computation = Response (*)(const Request&, const Service&);
+    using Computation = Response (*)(const Request&, const Service&, Stopwatch&);
     const auto service = std::make_shared<const Service>(Service{options, gate, metrics});
     const auto compute = [&](const char* method, const char* path, Computation answer) {
-        routes.push_back(route(
-            method, path, [answer, service](const Request& r) { return answer(r, *service); }));
+        routes.push_back(
+            {.method = method, .path = path, .answer = [answer, service](const Request& r) {
+                 Stopwatch watch;
+                 Response response = answer_of([&] { return answer(r, *service, watch); });
+                 response.timing = watch.take();
+                 return response;
+             }});
     };
     for (const char* method : {"GET", "POST"}) {
         compute(method, "/v1/simulate", simulate);
@@ -202,25 +203,27 @@ std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate, M
     // about to stop.
     for (const char* path : {"/healthz", "/livez"})
         routes.push_back(
-            light("GET", path, [](const Request&) { return json_response({{"status", "ok"}}); }));
-    routes.push_back(light("GET", "/readyz", [&gate](const Request&) {
+            health(path, [](const Request&) { return json_response({{"status", "ok"}}); }));
+    routes.push_back(health("/readyz", [&gate](const Request&) {
         if (gate.closed_to_sweeps())
             throw Problem::unavailable("stopping", "the server is stopping");
         return json_response({{"status", "ok"}});
     }));
-    routes.push_back(light("GET", "/version", [](const Request&) {
+    routes.push_back(health("/version", [](const Request&) {
         return json_response(
             {{"name", "vines"},
              {"version", api::version()},
              {"commit", api::commit()},
              {"compiler", api::compiler()}});
     }));
-    routes.push_back(light("GET", "/metrics", [&metrics](const Request&) {
+    routes.push_back(route("GET", "/metrics", [&metrics](const Request&) {
         return Response{.content_type = Metrics::content_type, .body = metrics.text()};
     }));
+    routes.back().light = true;
     for (Route& r : routes) r.name = r.path;
     for (Route& file : page_routes(options.page)) {
         file.name = "page";
+        file.open = true;
         routes.push_back(std::move(file));
     }
     return routes;

@@ -52,7 +52,6 @@ void send_stream(const Head& head, httplib::Response& out, Response response) {
     const bool zip = response.compressible && accepts_gzip(head.header("accept-encoding"));
     if (response.compressible) out.set_header("Vary", "Accept-Encoding");
     if (zip) out.set_header("Content-Encoding", "gzip");
-    set_head(out, response);
     const std::string type = response.content_type;
     auto provide = [response = std::move(response), zip](std::size_t, httplib::DataSink& sink) {
         SinkWriter writer(sink);
@@ -76,6 +75,7 @@ std::string server_timing(const Timing& timing) {
 void send(
     const Head& head, const std::string& request_id, httplib::Response& out, Response response) {
     out.set_header("X-Request-ID", request_id);
+    set_head(out, response);
     if (response.problem) response.body = response.problem->body(request_id);
     if (!response.timing.empty()) out.set_header("Server-Timing", server_timing(response.timing));
     // As what a browser would take the bytes for otherwise, they could be a script.
@@ -104,7 +104,6 @@ void send(
             out.set_header("Content-Encoding", "gzip");
         }
     }
-    set_head(out, response);
     // Through a content provider, which keeps the library from compressing by itself: brotli at its
     // slowest, 2 s for 1.7 MB.
     auto body = std::make_shared<const std::string>(std::move(response.body));

@@ -30,7 +30,13 @@ struct ServeOptions {
     ComputeLimits compute;
     double drain = 0;  ///< s
     std::string log = "json";
+    std::string key_file = {};
 };
+
+/// Empty: it is one.
+std::string refusal_of_origin(const std::string& text) {
+    return is_origin(text) ? "" : text + " is no origin such as https://example.org:8443";
+}
 
 /// A flag beats the environment, which beats the default.
 template <class Value>
@@ -49,11 +55,26 @@ void add_server_flags(CLI::App& c, ServerOptions& o) {
         c, "--connections", "VINES_CONNECTIONS", o.connections,
         "connections open at once; beyond that the one that has been idle longest is closed")
         ->check(within(1, 1000000));
+}
+
+void add_access_flags(CLI::App& c, AccessOptions& o, std::string& key_file) {
     c.add_option(
-         "--allow-host", o.allowed_hosts,
+         "--allow-host", o.hosts,
          "name with a dot that requests may be meant for, beside this machine's own; *: "
          "any (may come several times)")
         ->envname("VINES_ALLOW_HOST");
+    c.add_option(
+         "--cors-origin", o.origins,
+         "origin of a page that may use this service; *: any (may come several times)")
+        ->envname("VINES_CORS_ORIGIN")
+        ->check([](const std::string& text) {
+            return text == "*" ? std::string() : refusal_of_origin(text);
+        });
+    c.add_option(
+         "--api-key-file", key_file,
+         "file with a key on each line, one of which a request has to show, but for health and "
+         "the page")
+        ->envname("VINES_API_KEY_FILE");
 }
 
 void add_compute_flags(CLI::App& c, ServeOptions& o) {
@@ -113,14 +134,11 @@ void add_log_flags(CLI::App& c, std::string& format) {
 }
 
 void add_page_flags(CLI::App& c, PageOptions& o) {
-    const auto origin = [](const std::string& text) {
-        return is_origin(text) ? "" : text + " is no origin such as https://example.org:8443";
-    };
     c.add_option(
          "--embed-origin", o.embed_origins,
          "origin of a page that may show this one in a frame (may come several times)")
         ->envname("VINES_EMBED_ORIGIN")
-        ->check(origin);
+        ->check(refusal_of_origin);
     c.add_option(
          "--web-dir", o.web_dir,
          "serve the page from this folder instead of the program (while developing it)")
@@ -164,15 +182,30 @@ void keep_memory_small(int computing) {
 }
 #endif
 
+/// What it is told, with what the flags name.
+ServerOptions server_options(const ServeOptions& options) {
+    ServerOptions server = options.server;
+    server.access.listens_on = server.host;
+    if (!options.key_file.empty()) server.access.keys = ApiKeys::read(options.key_file);
+    return server;
+}
+
 int serve(const ServeOptions& options) {
 #ifdef __GLIBC__
     keep_memory_small(options.compute.running);
 #endif
     block_end_signals();
     start_log(options.log == "text" ? LogFormat::text : LogFormat::json);
+    ServerOptions chosen;
+    try {
+        chosen = server_options(options);
+    } catch (const std::runtime_error& e) {
+        tell(e.what());
+        end(2);
+    }
     ComputeGate gate(options.compute);
     Metrics metrics(gate);
-    Server server(options.server, make_routes(options.routes, gate, metrics), metrics);
+    Server server(chosen, make_routes(options.routes, gate, metrics), metrics);
     int port = 0;
     try {
         port = server.bind();
@@ -199,6 +232,7 @@ Command add_serve(CLI::App& app) {
     const auto options = std::make_shared<ServeOptions>();
     CLI::App* command = app.add_subcommand("serve", "run the HTTP service and its page");
     add_server_flags(*command, options->server);
+    add_access_flags(*command, options->server.access, options->key_file);
     add_compute_flags(*command, *options);
     add_size_flags(*command, *options);
     add_log_flags(*command, options->log);

@@ -62,6 +62,11 @@ struct Server::Implementation {
     ServerOptions options;
     std::vector<Route> routes;
     Metrics& metrics;
+    /// What it says stands in its headers.
+    const Route preflight = {
+        .name = "preflight",
+        .answer = [](const Request&) { return Response{.body = "{}\n"}; },
+        .light = true};
     Engine http;
     std::optional<Connections> connections;
     std::atomic<bool> closing = false;
@@ -88,6 +93,8 @@ struct Server::Implementation {
         InWork& work = current();
         work.keeps = work.exchange.head.keep_alive && !work.exchange.refused;
         Response response = response_to(work);
+        for (auto& header : sharing_headers(work.exchange.head, options.access))
+            response.headers.push_back(std::move(header));
         const std::size_t size = response.body.size() + response.held;
         if (size > small_answer && connections->memory().is_full()) response = memory_refusal();
         work.connection->hold(size);
@@ -172,8 +179,8 @@ struct Server::Implementation {
 
     Admitted admit(const Head& head) const {
         Admitted admitted{.route = find_route(routes, head.method, head.path())};
-        admitted.refused =
-            access_refusal(head, {.listens_on = options.host, .hosts = options.allowed_hosts});
+        admitted.refused = access_refusal(head, admitted.route, options.access);
+        if (!admitted.refused && is_preflight(head, options.access)) return {.route = &preflight};
         if (!admitted.refused)
             admitted.refused = refusal(head, admitted.route, routes, options.payload_limit);
         return admitted;

@@ -18,7 +18,7 @@ struct ServerOptions {
     std::size_t connections = 4096;        ///< open at once, idle ones too
     std::size_t payload_limit = 1 << 20;   ///< bytes of a request's body
     std::size_t memory_limit = 512 << 20;  ///< bytes of requests and answers held at once
-    std::vector<std::string> allowed_hosts = {};  ///< as in AccessOptions
+    AccessOptions access = {};             ///< its address is `host`
 };
 
 class Server {

@@ -127,12 +127,10 @@ async function noteSweep(keys, url, request) {
 
 /** The progress of a long sweep, and the last line of its stream when the service is told to stop. */
 async function noteBrokenSweep(keys) {
-  const service = await startService();
-  const axes = [{parameter: "b", from: 0.008, to: 0.03, count: 20000}];
-  const response = await fetch(`${service.url}/v1/sweep`, {
-    method: "POST",
-    body: JSON.stringify({axes}),
-  });
+  const service = await startService(["--sweeps", "1"]);
+  const body = JSON.stringify({axes: [{parameter: "b", from: 0.008, to: 0.03, count: 20000}]});
+  const response = await fetch(`${service.url}/v1/sweep`, {method: "POST", body});
+  keys.note("problem", await json(service.url, "/v1/sweep", body)); // no room for a second one
   let text = "";
   let stopped;
   for await (const piece of response.body.pipeThrough(new TextDecoderStream())) {

@@ -126,6 +126,29 @@ function documentedKeys() {
 /** Parts that hold what another one does, too. */
 const like = {"simulate.windows": "simulate.exponents", "identify.exponents": "simulate.exponents"};
 
+test("the table of metrics names each one that is served, with its type and labels", async () => {
+  await fetch(`${service.url}/v1/simulate`);
+  const text = await (await fetch(`${service.url}/metrics`)).text();
+  const types = Object.fromEntries(
+    [...text.matchAll(/^# TYPE (\S+) (\S+)$/gm)].map(([, name, type]) => [name, type]),
+  );
+  const [table] = tables(documents["docs/operations.md"], "metrics");
+  const told = {};
+  for (const row of table.rows) {
+    for (const name of codes(row.metric)) {
+      told[name] = row.type;
+      const sample = text.split("\n").find((line) => /^[^#]/.test(line) && line.startsWith(name));
+      const labels = [...sample.matchAll(/(\w+)="/g)].map(([, label]) => label);
+      sameNames(
+        labels.filter((label) => label !== "le"),
+        codes(row.labels),
+        name,
+      );
+    }
+  }
+  assert.deepEqual(told, types);
+});
+
 test("every key of every answer is in the table of its part, and no other one", async () => {
   const documented = documentedKeys();
   const answered = await answeredKeys(service.url);

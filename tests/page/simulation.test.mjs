@@ -1,7 +1,10 @@
 // The tab of simulations in real Chromium, as a visitor uses it.
 import assert from "node:assert/strict";
 import {execFile} from "node:child_process";
+import {mkdtemp, rm, writeFile} from "node:fs/promises";
 import {createServer} from "node:http";
+import {tmpdir} from "node:os";
+import {join} from "node:path";
 import {test} from "node:test";
 import {promisify} from "node:util";
 import {startService} from "../service.mjs";
@@ -656,6 +659,32 @@ test("a page of an allowed origin shows the plots in a frame; one of another ori
   for (const {host} of [allowed, other]) host.close();
   await own.stop();
   browser.complaints.length = 0; // the frame that was refused
+});
+
+test("where the service asks for a key the page asks for it once, again for a wrong one, and keeps it", async (t) => {
+  const folder = await mkdtemp(join(tmpdir(), "vines-key-"));
+  t.after(() => rm(folder, {recursive: true}));
+  const file = join(folder, "keys");
+  await writeFile(file, "key-of-the-laboratory\n");
+  const own = await startService(["--api-key-file", file]);
+  const page = await browser.context.newPage();
+  await page.goto(own.url);
+  const show = async (key) => {
+    await page.fill("dialog[open] input[type=password]", key);
+    await page.keyboard.press("Enter");
+  };
+  await show("no-key-of-the-laboratory");
+  await page.waitForSelector("dialog[open]:has-text('does not know this key')");
+  await show("key-of-the-laboratory");
+  await drawn(page, 1);
+  assert.equal(await page.$("dialog[open]"), null);
+  await page.reload();
+  await drawn(page, 1);
+  assert.doesNotMatch(page.url(), /laboratory/);
+  await page.close();
+  await own.stop();
+  const refusals = browser.complaints.splice(0); // Chromium tells of each 401
+  for (const text of refusals) assert.match(text, /401/);
 });
 
 test("printed, the page is its results, without what one turns", async () => {

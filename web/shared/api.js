@@ -1,4 +1,5 @@
 // The service's routes, relative to the page, so that it works behind a path prefix too.
+import {askForKey, hasKey, keyHeaders} from "./key.js";
 
 /**
  * A problem document (RFC 9457) as an Error: .errors holds {pointer, value, range, detail} for each
@@ -28,9 +29,19 @@ async function read(response) {
 }
 
 /** The response to a request; if it was broken off, who did so knows. */
-async function reach(path, options) {
+async function reach(path, options = {}) {
+  for (let again = false; ; again = true) {
+    const response = await answer(path, options);
+    if (response.status !== 401) return response;
+    // What the browser had loaded before showed no key, nor what was sent while one was typed.
+    if (!again && hasKey()) continue;
+    if (!(await askForKey())) return response;
+  }
+}
+
+async function answer(path, options) {
   try {
-    return await fetch(path, options);
+    return await fetch(path, {...options, headers: {...options.headers, ...keyHeaders()}});
   } catch {
     throw new Passing("the server does not answer");
   }

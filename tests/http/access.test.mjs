@@ -1,0 +1,178 @@
+// Who may use the service: those who have a key, and pages of other origins that are allowed to.
+import assert from "node:assert/strict";
+import {spawnSync} from "node:child_process";
+import {mkdtemp, rm, writeFile} from "node:fs/promises";
+import {tmpdir} from "node:os";
+import {join} from "node:path";
+import {after, before, test} from "node:test";
+import {program, startService} from "../service.mjs";
+import {exchange} from "./raw.mjs";
+
+let folder;
+before(async () => {
+  folder = await mkdtemp(join(tmpdir(), "vines-keys-"));
+});
+after(() => rm(folder, {recursive: true}));
+
+const keyFile = async (text) => {
+  const path = join(folder, "keys");
+  await writeFile(path, text);
+  return path;
+};
+const keys = ["first-key-0123456789", "second.key~with+all/of=them=="];
+
+test("with --api-key-file all but health and the page asks for one of its keys", async (t) => {
+  const service = await startService([
+    "--api-key-file",
+    await keyFile(`# of the laboratory\n\n${keys[0]}\r\n  ${keys[1]}  \n`),
+  ]);
+  t.after(() => service.stop());
+  const status = async (path, authorization, options = {}) => {
+    const headers = authorization === undefined ? {} : {Authorization: authorization};
+    const answer = await fetch(service.url + path, {headers, ...options});
+    await answer.arrayBuffer();
+    return answer.status;
+  };
+  for (const path of ["/", "/livez", "/readyz", "/healthz", "/version"])
+    assert.equal(await status(path), 200, path);
+  const asking = [
+    "/v1/simulate?include=regime",
+    "/v1/manifold",
+    "/v1/presets",
+    "/v1/parameters",
+    "/v1/openapi.json",
+    "/metrics",
+  ];
+  for (const path of asking) {
+    assert.equal(await status(path), 401, path);
+    assert.equal(await status(path, `Bearer ${keys[0]}`), 200, path);
+    assert.equal(await status(path, `bearer  ${keys[1]}`), 200, path);
+  }
+  const wrong = [
+    "Bearer",
+    "Bearer ",
+    `Basic ${keys[0]}`,
+    keys[0],
+    `Bearer ${keys[0]}x`,
+    `Bearer ${keys[0].slice(0, -1)}`,
+    "Bearer # of the laboratory",
+    `Bearer ${keys[0]}, Bearer ${keys[1]}`,
+  ];
+  for (const shown of wrong) assert.equal(await status("/v1/presets", shown), 401, shown);
+  const post = {method: "POST", body: "{}"};
+  for (const path of ["/v1/simulate", "/v1/sweep", "/v1/identify", "/v1/manifold"])
+    assert.equal(await status(path, undefined, post), 401, path);
+  const refused = await fetch(`${service.url}/v1/presets`);
+  assert.equal(refused.headers.get("www-authenticate"), 'Bearer realm="vines"');
+  assert.match((await refused.json()).detail, /Authorization: Bearer KEY/);
+});
+
+test("a key file that keeps nobody out, or cannot be read, is refused at the start", async () => {
+  const cases = [
+    ["", /there is no key in .*keys/],
+    ["# only words\n", /there is no key in/],
+    ["long-enough-0123456\nshort\n", /keys, line 2: a key has 16 or more letters/],
+    ["a key with blanks in it\n", /line 1/],
+  ];
+  for (const [text, message] of cases) {
+    const path = await keyFile(text);
+    const {status, stderr} = spawnSync(program, ["serve", "--port", "0", "--api-key-file", path], {
+      encoding: "utf8",
+      timeout: 5000,
+    });
+    assert.equal(status, 2, text);
+    assert.match(stderr, message);
+    assert.doesNotMatch(stderr, /short|blanks in it/, "a key is not told");
+  }
+  const missing = spawnSync(
+    program,
+    ["serve", "--port", "0", "--api-key-file", join(folder, "none")],
+    {encoding: "utf8", timeout: 5000},
+  );
+  assert.equal(missing.status, 2);
+  assert.match(missing.stderr, /cannot read .*none: No such file/);
+});
+
+test("a page of an origin that is allowed may use the service, and hears its headers; others may not", async (t) => {
+  const service = await startService(["--cors-origin", "https://lab.example.org"]);
+  t.after(() => service.stop());
+  const ask = (origin, options = {}) =>
+    exchange(
+      service.url,
+      [
+        `${options.method ?? "GET"} /v1/manifold HTTP/1.1`,
+        "Host: localhost",
+        `Origin: ${origin}`,
+        "Sec-Fetch-Site: cross-site",
+        ...(options.headers ?? []),
+        "Connection: close",
+        "\r\n",
+      ].join("\r\n"),
+    );
+  const allowed = await ask("https://lab.example.org");
+  assert.match(allowed, /^HTTP\/1.1 200/);
+  assert.match(allowed, /^Access-Control-Allow-Origin: https:\/\/lab\.example\.org\r$/m);
+  assert.match(allowed, /^Access-Control-Expose-Headers: .*X-Request-ID/m);
+  assert.match(allowed, /^Vary: Origin\r$/m);
+  const tag = /^ETag: (.*)\r$/m.exec(allowed)[1];
+  const known = await ask("https://lab.example.org", {headers: [`If-None-Match: ${tag}`]});
+  assert.match(known, /^HTTP\/1.1 304(.|\n)*^Access-Control-Allow-Origin: https/m);
+  const preflight = {
+    method: "OPTIONS",
+    headers: [
+      "Access-Control-Request-Method: POST",
+      "Access-Control-Request-Headers: content-type",
+    ],
+  };
+  const leave = await ask("https://lab.example.org", preflight);
+  assert.match(leave, /^HTTP\/1.1 200/);
+  assert.match(leave, /^Access-Control-Allow-Methods: GET, HEAD, POST\r$/m);
+  assert.match(leave, /^Access-Control-Allow-Headers: Authorization, Content-Type/m);
+  for (const other of ["https://lab.example.org.evil.net", "http://lab.example.org", "null"])
+    for (const request of [await ask(other), await ask(other, preflight)]) {
+      assert.match(request, /^HTTP\/1.1 403/, other);
+      assert.doesNotMatch(request, /Access-Control/);
+    }
+});
+
+test("--cors-origin * lets every page use the service; no origin at all is refused", async (t) => {
+  const service = await startService(["--cors-origin", "*"]);
+  t.after(() => service.stop());
+  const answer = await fetch(`${service.url}/v1/manifold`, {
+    method: "POST",
+    body: "{}",
+    headers: {Origin: "https://any.example.net"},
+  });
+  assert.equal(answer.status, 200);
+  assert.equal(answer.headers.get("access-control-allow-origin"), "https://any.example.net");
+  const {status, stderr} = spawnSync(
+    program,
+    ["serve", "--port", "0", "--cors-origin", "lab.example.org"],
+    {encoding: "utf8", timeout: 5000},
+  );
+  assert.equal(status, 2);
+  assert.match(stderr, /lab\.example\.org is no origin such as https:/);
+});
+
+test("where a key is asked for, a page of an allowed origin may ask for leave without one", async (t) => {
+  const service = await startService([
+    "--cors-origin",
+    "https://lab.example.org",
+    "--api-key-file",
+    await keyFile(`${keys[0]}\n`),
+  ]);
+  t.after(() => service.stop());
+  const from = {Origin: "https://lab.example.org"};
+  const leave = await fetch(`${service.url}/v1/simulate`, {
+    method: "OPTIONS",
+    headers: {...from, "Access-Control-Request-Method": "POST"},
+  });
+  assert.equal(leave.status, 200);
+  const none = await fetch(`${service.url}/v1/manifold`, {headers: from});
+  assert.equal(none.status, 401);
+  assert.equal(
+    none.headers.get("access-control-allow-origin"),
+    from.Origin,
+    "the page hears that it lacks a key",
+  );
+});

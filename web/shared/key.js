@@ -1,0 +1,50 @@
+// The key that a server asks for, kept as long as the tab is open.
+import {element} from "./dom.js";
+
+const name = "vines-api-key";
+let asking = null; // one dialog, for all requests that wait for it
+
+export const hasKey = () => sessionStorage.getItem(name) !== null;
+
+/** The headers that show the key. */
+export const keyHeaders = () =>
+  hasKey() ? {Authorization: `Bearer ${sessionStorage.getItem(name)}`} : {};
+
+/** Whether a key was given, in place of one that is none. */
+export function askForKey() {
+  asking ??= ask().finally(() => {
+    asking = null;
+  });
+  return asking;
+}
+
+function ask() {
+  const input = element("input", {
+    type: "password",
+    name: "key",
+    required: true,
+    autocomplete: "current-password",
+  });
+  const wrong = hasKey() ? "The server does not know this key. " : "";
+  const dialog = element(
+    "dialog",
+    {},
+    element("h2", {textContent: "A key, please"}),
+    element("p", {textContent: `${wrong}This server answers only those who have one.`}),
+    element(
+      "form",
+      {method: "dialog"},
+      element("label", {}, "Key ", input, " ", element("button", {textContent: "Use it"})),
+    ),
+  );
+  document.body.append(dialog);
+  dialog.showModal();
+  return new Promise((resolve) => {
+    dialog.addEventListener("close", () => {
+      const given = input.value.trim();
+      if (given) sessionStorage.setItem(name, given);
+      dialog.remove();
+      resolve(Boolean(given));
+    });
+  });
+}
