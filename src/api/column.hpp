@@ -49,6 +49,17 @@ inline constexpr Packed packing = std::is_same_v<Entry, double>         ? Packed
                                   : std::is_same_v<Entry, bool>         ? Packed::flags
                                                                         : Packed::no;
 
+/// Bytes of an entry.
+inline std::size_t entry_size(Packed packing) {
+    switch (packing) {
+        case Packed::numbers: return sizeof(double);
+        case Packed::quadruples: return sizeof(Quadruple);
+        case Packed::matrices: return sizeof(MatrixByRows);
+        case Packed::integers: return sizeof(int);
+        default: return sizeof(bool);
+    }
+}
+
 /// One value for each element.
 template <class Elements, class Value>
 Json column(const Elements& elements, Value value) {

@@ -49,12 +49,6 @@ constexpr ImpactColumn impact_columns[] = {
 
 const ImpactColumn& column_of(const ListToCome& list) { return impact_columns[list.column]; }
 
-std::size_t entry_size(Packed packing) {
-    return packing == Packed::numbers    ? sizeof(double)
-           : packing == Packed::integers ? sizeof(int)
-                                         : sizeof(bool);
-}
-
 /// The columns made by a function of theirs.
 template <class Make>
 Json describe(Make make) {

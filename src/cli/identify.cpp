@@ -1,12 +1,12 @@
 // `vines identify`: a measurement as CSV or JSON.
 #include "api/identify.hpp"
+#include "api/answer_form.hpp"
 #include "api/parse_object.hpp"
 
 #include <memory>
 #include <optional>
 #include <string>
 
-#include "api/json_text.hpp"
 #include "api/query.hpp"
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
@@ -24,16 +24,25 @@ struct IdentifyOptions {
     std::string query;  ///< fields for a CSV file, as in a URL
 };
 
-api::IdentifyRequest read_request(const std::string& text, const std::string& query) {
+struct Asked {
+    api::IdentifyRequest request;
+    api::AnswerForm form;
+};
+
+Asked read_request(const std::string& text, const std::string& query) {
+    const api::FieldTable& table = api::identify_fields();
     const std::size_t first = text.find_first_not_of(" \t\r\n");
-    if (first != std::string::npos && text[first] == '{')
-        return api::read_identify_request(api::parse_object(text));
-    return api::read_identify_request(
-        api::from_query(api::identify_fields(), api::parse_query(query)), text);
+    const bool is_json = first != std::string::npos && text[first] == '{';
+    api::Json fields =
+        is_json ? api::parse_object(text) : api::from_query(table, api::parse_query(query));
+    api::AnswerForm form = api::take_form(fields, table);
+    return {
+        is_json ? api::read_identify_request(fields) : api::read_identify_request(fields, text),
+        std::move(form)};
 }
 
 int identify(const IdentifyOptions& o) {
-    const api::IdentifyRequest request = read_request(read_all(o.files.input), o.query);
+    const auto [request, form] = read_request(read_all(o.files.input), o.query);
     std::optional<StageLine> line(std::in_place);
     const IdentificationWatch watch{
         .stop = stopped, .reached = [&line](IdentificationStage stage, int round) {
@@ -41,7 +50,9 @@ int identify(const IdentifyOptions& o) {
         }};
     std::string answer;
     try {
-        answer = api::json_text(api::identify_answer(request, watch)) + "\n";
+        api::Json told = api::identify_answer(request, watch);
+        api::thin(told, form.fields);
+        answer = api::encoded(std::move(told), form.format.value_or(api::Format::json));
     } catch (const api::Problem& problem) {
         line.reset();
         if (!stopped()) throw;

@@ -1,6 +1,8 @@
 // `vines simulate`: one run, without the service's deadline and limits.
 #include "api/simulate.hpp"
+#include "api/answer_form.hpp"
 #include "api/parse_object.hpp"
+#include "api/schema/tables.hpp"
 
 #include <memory>
 #include <utility>
@@ -15,12 +17,21 @@ namespace vines::cli {
 namespace {
 
 int simulate(const Files& files) {
-    const api::SimulateRequest request =
-        api::read_simulate_request(api::parse_object(read_all(files.input)));
+    api::Json fields = api::parse_object(read_all(files.input));
+    const api::AnswerForm form = api::take_form(fields, api::simulate_fields());
+    const api::SimulateRequest request = api::read_simulate_request(fields);
     const api::Stop stop{
         .asked = stopped, .reason = "interrupted", .message = "ended by a signal, before tau_end"};
-    api::SimulateAnswer answer = api::simulate_in_parts(request, stop);
+    const api::Format format = form.format.value_or(api::Format::json);
+    const bool is_json = format == api::Format::json;
+    api::SimulateAnswer answer = api::simulate_in_parts(
+        request, stop, api::any_size, is_json ? api::most_kept_impacts : everything);
     const int code = stopped() ? incomplete : complete;
+    api::thin(answer.json, form.fields);
+    if (!is_json) {
+        write_all(files.output, api::encoded(std::move(answer.json), format));
+        return code;
+    }
     Output out(files.output);
     Pace pace;  // a signal that comes now lets the answer be written
     api::write_answer(

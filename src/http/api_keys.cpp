@@ -52,8 +52,8 @@ bool ApiKeys::open(std::string_view authorization) const {
     if (lower_case(scheme) != "bearer") return false;
     bool opens = false;
     for (const std::string& key : keys_)
-        opens |= key.size() == shown.size() &&
-                 CRYPTO_memcmp(key.data(), shown.data(), key.size()) == 0;
+        opens |=
+            key.size() == shown.size() && CRYPTO_memcmp(key.data(), shown.data(), key.size()) == 0;
     return opens;
 }
 

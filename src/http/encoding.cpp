@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <optional>
 #include <stdexcept>
@@ -14,26 +13,6 @@
 #include "http/header_text.hpp"
 
 namespace vines::http {
-
-namespace {
-
-/// An element of Accept-Encoding: "gzip;q=0.5". RFC 9110, 12.4.2: a weight of 0 refuses. One that
-/// is no number is taken for 0: what is not compressed anyone can read.
-struct Coding {
-    std::string name;
-    double weight = 1;
-};
-Coding coding_of(std::string_view element) {
-    Coding coding{lower_case(next_part(element, ';'))};
-    while (!element.empty()) {
-        const std::string parameter = lower_case(next_part(element, ';'));
-        if (parameter.rfind("q=", 0) == 0)
-            coding.weight = std::strtod(parameter.c_str() + 2, nullptr);
-    }
-    return coding;
-}
-
-}  // namespace
 
 struct Gzip::Stream {
     Stream() {
@@ -91,8 +70,7 @@ bool accepts_gzip(std::string_view accept_encoding) {
     std::optional<double> by_name, by_star;
     double identity = 0;  // unless it is named, it is as good as nothing else
     while (!accept_encoding.empty()) {
-        const std::string_view element = next_part(accept_encoding, ',');
-        const Coding coding = coding_of(element);
+        const Preference coding = preference_of(next_part(accept_encoding, ','));
         if (coding.name == "gzip" || coding.name == "x-gzip") by_name = coding.weight;
         if (coding.name == "*") by_star = coding.weight;
         if (coding.name == "identity") identity = coding.weight;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdlib>
 #include <string>
 #include <string_view>
 
@@ -29,6 +30,22 @@ inline std::string lower_case(std::string_view text) {
     std::string lower(text);
     for (char& c : lower) c = lower_case(c);
     return lower;
+}
+
+/// An element of a header that lists what a client takes: "gzip;q=0.5". RFC 9110, 12.4.2: a weight
+/// of 0 refuses, and so does one that is no number.
+struct Preference {
+    std::string name;  ///< in lower case
+    double weight = 1;
+};
+inline Preference preference_of(std::string_view element) {
+    Preference preference{lower_case(next_part(element, ';'))};
+    while (!element.empty()) {
+        const std::string parameter = lower_case(next_part(element, ';'));
+        if (parameter.starts_with("q="))
+            preference.weight = std::strtod(parameter.c_str() + 2, nullptr);
+    }
+    return preference;
 }
 
 }  // namespace vines::http

@@ -23,6 +23,7 @@ struct Request {
     api::Query query;
     std::string content_type;
     std::string body;
+    std::string accept = {};      ///< the header Accept
     std::string known_tags = {};  ///< the header If-None-Match
     std::string id = {};          ///< by which the log names it
     /// Whether the client has left and nobody waits for the answer.

@@ -125,6 +125,7 @@ struct Server::Implementation {
                  .query = api::parse_query(head.query()),
                  .content_type = std::string(head.header("content-type")),
                  .body = std::move(exchange.body),
+                 .accept = std::string(head.header("accept")),
                  .known_tags = std::string(head.header("if-none-match")),
                  .id = work.id,
                  .left = [&work] { return work.connection->has_left(may_ask(work)); }});

@@ -36,7 +36,8 @@ struct Field {
     Json fallback = nullptr;
     std::string fallback_note = "";   ///< and from which
     std::optional<Range> range = {};  ///< of a number or integer: each has one
-    /// Of a choice, none: any word. Of objects: words that may stand in place of the array.
+    /// Of a choice or of choices, none: any word. Of objects: words that may stand in place of the
+    /// array.
     std::vector<std::string> choices = {};
     /// Of an object that is checked with the others: its own.
     std::vector<Field> fields = {};

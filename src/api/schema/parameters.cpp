@@ -83,7 +83,8 @@ Json describe_fields() {
         {"manifold_fields", describe(manifold_fields())},
         {"sweep_fields", describe(sweep_fields())},
         {"axis_fields", describe(axis_fields())},
-        {"identify_fields", describe(identify_fields())}};
+        {"identify_fields", describe(identify_fields())},
+        {"form_fields", describe(form_fields())}};
 }
 
 }  // namespace vines::api

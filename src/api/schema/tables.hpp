@@ -1,5 +1,6 @@
 // The fields of each route: a new one is a new row in simulate_fields.cpp, sweep_fields.cpp,
-// manifold_fields.cpp or identify_fields.cpp.
+// manifold_fields.cpp, identify_fields.cpp
+// or form_fields.cpp.
 #pragma once
 
 #include "api/schema/field.hpp"
@@ -31,6 +32,9 @@ const FieldTable& identify_fields();
 
 /// The fields of /v1/manifold.
 const FieldTable& manifold_fields();
+
+/// Of how an answer is told: beside those of /v1/simulate, /v1/manifold and /v1/identify.
+const FieldTable& form_fields();
 
 /// Whether a field of /v1/simulate says what the system is: of the group system, reduced or SI.
 bool is_of_system(const Field& field);

@@ -1,0 +1,154 @@
+#include "http/computations.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "api/answer_form.hpp"
+#include "api/identify.hpp"
+#include "api/parse_object.hpp"
+#include "api/version.hpp"
+#include "http/accept.hpp"
+#include "http/answer_stream.hpp"
+#include "http/encoding.hpp"
+#include "http/end_of_work.hpp"
+#include "http/memory.hpp"
+#include "http/sweep_stream.hpp"
+
+namespace vines::http {
+
+namespace {
+
+using api::Json;
+using api::Problem;
+
+// From this size on an answer's memory is given back to the system at once.
+constexpr std::size_t large = 16 << 20;
+
+/// What a request asks for, and how it wants to be told.
+struct Asked {
+    Json fields;
+    api::AnswerForm form;
+    api::Format format;
+};
+
+/// A place to compute in, once it is free, or Problem 503.
+ComputeGate::Place place_in(ComputeGate& gate, const Request& request, Stopwatch& watch) {
+    ComputeGate::Place place = gate.enter(request.left);
+    if (!place)
+        throw Problem::unavailable(
+            "computing",
+            "as many requests as the server takes are waiting already; try again in a second");
+    watch.lap("queue");
+    return place;
+}
+
+Json body_of(const Request& r) {
+    if (!r.query.empty())
+        throw Problem(400, "a POST takes its fields from the body; the query must be empty");
+    return api::parse_object(r.body);
+}
+
+Asked asked(const Request& r, const api::FieldTable& table, Json fields) {
+    Asked asked{.fields = std::move(fields), .form = {}, .format = {}};
+    asked.form = api::take_form(asked.fields, table);
+    asked.format = asked.form.format ? *asked.form.format : accepted_format(r.accept);
+    return asked;
+}
+
+/// Of a GET or a POST.
+Asked asked(const Request& r, const api::FieldTable& table) {
+    return asked(r, table, r.method == "POST" ? body_of(r) : api::from_query(table, r.query));
+}
+
+/// The same requests to the same build, with the same limit of its answers, have the same answer.
+/// Only what is read can be known already: a POST has no tag.
+std::string tag_of(const Request& r, const Asked& asked, std::size_t answer_limit) {
+    if (r.method == "POST") return {};
+    const api::AnswerForm& form = asked.form;
+    return entity_tag(fmt::format(
+        "{} {} {} {} {} {} {}", r.path, api::version(), api::commit(), answer_limit,
+        asked.fields.dump(), Json(form.fields).dump(), api::name_of(asked.format).word));
+}
+
+/// Problem 413 beyond the limit.
+Response encoded_response(Json answer, const Asked& asked, std::size_t limit, Stopwatch& watch) {
+    watch.lap("solve");
+    api::thin(answer, asked.form.fields);
+    std::string bytes = api::encoded(std::move(answer), asked.format);
+    if (bytes.size() >= large) give_memory_back();
+    if (bytes.size() > limit)
+        throw Problem(
+            413, fmt::format(
+                     "the answer has {} bytes, and this server sends no more than {}: ask for "
+                     "fewer parts (include, fields), points (max_points) or impacts (max_impacts)",
+                     bytes.size(), limit));
+    watch.lap("encode");
+    return {
+        .content_type = api::name_of(asked.format).media_type,
+        .body = std::move(bytes),
+        .headers = {{"Vary", "Accept"}}};
+}
+
+}  // namespace
+
+Response simulate(const Request& r, const Service& service, Stopwatch& watch) {
+    const RouteOptions& options = service.options;
+    const ComputeGate::Place place = place_in(service.gate, r, watch);
+    const Asked asked = vines::http::asked(r, api::simulate_fields());
+    const std::string tag = tag_of(r, asked, options.answer_limit);
+    api::SimulateRequest request = api::read_simulate_request(asked.fields);
+    if (!tag.empty() && names_tag(r.known_tags, tag)) return {.status = 304, .tag = tag};
+    watch.lap("parse");
+    const api::Stop stop = end_of_work(options.deadline, r, service.gate);
+    // Only text is written while its lists are made.
+    const std::size_t most_kept =
+        asked.format == api::Format::json ? options.most_kept_impacts : everything;
+    api::SimulateAnswer answer =
+        api::simulate_in_parts(std::move(request), stop, options.answer_limit, most_kept);
+    service.metrics.count_simulation(answer.impacts);
+    if (answer.run) {
+        watch.lap("solve");
+        api::thin(answer.json, asked.form.fields);
+        return stream_answer(std::move(answer), r.id, service.gate);
+    }
+    Response response =
+        encoded_response(std::move(answer.json), asked, options.answer_limit, watch);
+    if (!stop.asked()) response.tag = tag;  // another time it may get further
+    return response;
+}
+
+Response manifold(const Request& r, const Service& service, Stopwatch& watch) {
+    const ComputeGate::Place place = place_in(service.gate, r, watch);
+    const Asked asked = vines::http::asked(r, api::manifold_fields());
+    const api::ManifoldRequest request = api::read_manifold_request(asked.fields);
+    watch.lap("parse");
+    return encoded_response(
+        api::manifold_answer(request, end_of_work(service.options.deadline, r, service.gate)),
+        asked, service.options.answer_limit, watch);
+}
+
+Response sweep(const Request& r, const Service& service, Stopwatch& watch) {
+    const ComputeGate::Place place = place_in(service.gate, r, watch);  // to read the request
+    api::SweepRequest request = api::read_sweep_request(body_of(r), service.options.sweep_points);
+    watch.lap("parse");
+    return stream_sweep(
+        std::move(request), service.options.sweep_deadline, r.id, service.gate, service.metrics);
+}
+
+Response identify(const Request& r, const Service& service, Stopwatch& watch) {
+    const ComputeGate::Place place = place_in(service.gate, r, watch);
+    const api::Stop stop = end_of_work(service.options.deadline, r, service.gate);
+    const api::FieldTable& table = api::identify_fields();
+    const bool csv = r.content_type.starts_with("text/csv") || r.content_type.starts_with("text/plain");
+    const Asked asked =
+        vines::http::asked(r, table, csv ? api::from_query(table, r.query) : body_of(r));
+    const api::IdentifyRequest request = csv ? api::read_identify_request(asked.fields, r.body)
+                                             : api::read_identify_request(asked.fields);
+    watch.lap("parse");
+    return encoded_response(
+        api::identify_answer(request, {.stop = stop.asked}), asked, service.options.answer_limit,
+        watch);
+}
+
+}  // namespace vines::http

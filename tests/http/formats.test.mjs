@@ -1,0 +1,239 @@
+// An answer as CSV, CBOR or arrays for NumPy, and as much of it as one wants.
+import assert from "node:assert/strict";
+import {execFileSync} from "node:child_process";
+import {after, before, test} from "node:test";
+import {startService} from "../service.mjs";
+
+let service;
+before(async () => {
+  service = await startService();
+});
+after(() => service.stop());
+
+const get = (query, accept) =>
+  fetch(`${service.url}/v1/simulate?b=0.022&damping=closed_form&tau_end=1709&${query}`, {
+    headers: accept ? {Accept: accept} : {},
+  });
+const json = async (query) => (await get(query)).json();
+
+/** What Debian's Python makes of bytes: it prints JSON. */
+const python = (code, bytes) =>
+  JSON.parse(
+    execFileSync("/usr/bin/python3", ["-c", code], {
+      input: Buffer.from(bytes),
+      maxBuffer: 1 << 28,
+      encoding: "utf8",
+    }),
+  );
+
+const everything =
+  "include=series,impacts,exponents,eigenvalues,matrices,section,energy,regime,manifold";
+
+test("as CSV an answer is one table, with the numbers of the JSON", async () => {
+  const {impacts} = await json("include=impacts");
+  const answer = await get("format=csv&fields=impacts");
+  assert.equal(answer.headers.get("content-type"), "text/csv");
+  assert.match(answer.headers.get("vary"), /^Accept\b/);
+  const [head, ...rows] = (await answer.text()).trimEnd().split("\n");
+  assert.deepEqual(head.split(","), Object.keys(impacts));
+  assert.equal(rows.length, impacts.tau.length);
+  const cells = rows.map((row) => row.split(","));
+  for (const [k, name] of Object.keys(impacts).entries())
+    assert.deepEqual(
+      cells.map((row) => JSON.parse(row[k])),
+      impacts[name],
+      name,
+    );
+  const thin = await get("fields=impacts.tau,impacts.side", "text/csv");
+  assert.match(await thin.text(), /^tau,side\n18\.14\d+,-?1\n/);
+});
+
+test("as CSV four numbers and matrices are columns of their own, and null is an empty cell", async () => {
+  const {matrices, eigenvalues} = await json("include=matrices,eigenvalues");
+  const told = await (await get("format=csv&fields=matrices.tau,matrices.T")).text();
+  const [head, first] = told.split("\n").map((line) => line.split(","));
+  const names = [1, 2, 3, 4].flatMap((i) => [1, 2, 3, 4].map((j) => `T${i}${j}`));
+  assert.deepEqual(head, ["tau", ...names]);
+  assert.deepEqual(first.map(Number), [matrices.tau[0], ...matrices.T[0].flat()]);
+  const moduli = (await (await get("format=csv&fields=eigenvalues")).text()).split("\n");
+  assert.match(moduli[0], /^tau,J1,J2,J3,J4,M1/);
+  const J = moduli[1].split(",").slice(1, 5);
+  assert.deepEqual(
+    J.map((cell) => (cell === "" ? null : Number(cell))),
+    eigenvalues.J[0],
+  );
+  const {exponents} = await json("include=exponents&exponents=raw_product");
+  const history = exponents.raw_product.history;
+  assert.ok(history.lambda4.includes(null), "the product has lost them");
+  const csv = await get("format=csv&exponents=raw_product&fields=exponents.raw_product.history");
+  const rows = (await csv.text()).trimEnd().split("\n").slice(1);
+  const k = Object.keys(history).indexOf("lambda4");
+  assert.deepEqual(
+    rows.map((row) => row.split(",")[k] === ""),
+    history.lambda4.map((value) => value === null),
+  );
+});
+
+test("an answer of several tables, or of none, is no CSV: it names them", async () => {
+  for (const [query, range] of [
+    ["include=series,impacts&format=csv", ["series", "impacts", "sticking"]],
+    ["fields=status&format=csv", []],
+    ["fields=matrices&format=csv", []],
+  ]) {
+    const answer = await get(query);
+    assert.equal(answer.status, 422, query);
+    const {errors} = await answer.json();
+    assert.equal(errors[0].pointer, "/fields");
+    assert.deepEqual(errors[0].range, range);
+    assert.match(errors[0].detail, /CSV is one table/);
+  }
+});
+
+test("as CBOR the lists are typed arrays, and all else is as in the JSON", async () => {
+  const answer = await get(`${everything}&format=cbor`);
+  assert.equal(answer.headers.get("content-type"), "application/cbor");
+  const bytes = await answer.arrayBuffer();
+  const code = `
+import sys, json, cbor2, struct, math
+def typed(decoder, tag):
+    code = {86: "d", 78: "i"}[tag.tag]
+    size = struct.calcsize(code)
+    numbers = struct.unpack("<%d%s" % (len(tag.value) // size, code), tag.value)
+    return [None if isinstance(n, float) and math.isnan(n) else n for n in numbers]
+json.dump(cbor2.loads(sys.stdin.buffer.read(), tag_hook=typed), sys.stdout)`;
+  const whole = await json(everything);
+  assert.deepEqual(python(code, bytes), whole);
+  assert.ok(bytes.byteLength < 0.6 * JSON.stringify(whole).length);
+});
+
+test("as npz each list is an array that numpy.load gives, and the rest is JSON beside them", async () => {
+  const answer = await get(`${everything}&format=npz`);
+  assert.equal(answer.headers.get("content-type"), "application/x-npz");
+  const code = `
+import sys, io, json, zipfile, numpy
+bytes = sys.stdin.buffer.read()
+assert zipfile.ZipFile(io.BytesIO(bytes)).testzip() is None
+arrays = numpy.load(io.BytesIO(bytes))
+def plain(value):
+    if isinstance(value, list): return [plain(v) for v in value]
+    return None if isinstance(value, float) and value != value else value
+told = {n: {"type": arrays[n].dtype.str, "values": plain(arrays[n].tolist())} for n in arrays.files if n != "answer.json"}
+json.dump({"arrays": told, "rest": json.loads(arrays["answer.json"])}, sys.stdout)`;
+  const {arrays, rest} = python(code, await answer.arrayBuffer());
+  const whole = await json(everything);
+  assert.deepEqual(arrays["impacts.tau"], {type: "<f8", values: whole.impacts.tau});
+  assert.deepEqual(arrays["impacts.side"], {type: "<i4", values: whole.impacts.side});
+  assert.deepEqual(arrays["impacts.grazing"], {type: "|b1", values: whole.impacts.grazing});
+  assert.deepEqual(arrays["matrices.T"].values, whole.matrices.T);
+  assert.deepEqual(arrays["eigenvalues.J"].values, whole.eigenvalues.J);
+  const {lambda4} = whole.exponents.raw_product.history;
+  assert.deepEqual(arrays["exponents.raw_product.history.lambda4"].values, lambda4);
+  assert.deepEqual(arrays["exponents.qr.status"].values, whole.exponents.qr.status);
+  assert.deepEqual(rest.regime.type, whole.regime.type);
+  assert.deepEqual(rest.parameters, whole.parameters);
+  assert.equal(rest.impacts.tau, undefined, "each list once");
+  const twice = await (await get(`${everything}&format=npz`)).arrayBuffer();
+  const again = await (await get(`${everything}&format=npz`)).arrayBuffer();
+  assert.deepEqual(Buffer.from(twice), Buffer.from(again), "no clock in it");
+});
+
+test("the format is what Accept asks for most; what the service has not is refused with its formats", async () => {
+  const type = async (accept) => {
+    const answer = await get("fields=impacts", accept);
+    await answer.arrayBuffer();
+    return answer.status === 200 ? answer.headers.get("content-type") : answer.status;
+  };
+  assert.equal(await type("*/*"), "application/json");
+  assert.equal(await type("text/csv"), "text/csv");
+  assert.equal(await type("text/*"), "text/csv");
+  assert.equal(await type("application/*"), "application/json");
+  assert.equal(await type("application/cbor, application/json;q=0.9"), "application/cbor");
+  assert.equal(await type("application/json;q=0.1, APPLICATION/CBOR;q=.2"), "application/cbor");
+  assert.equal(await type("application/json;q=0, */*;q=0.1"), "text/csv");
+  assert.equal(
+    await type("text/html,application/xhtml+xml,application/xml;q=0.9,*/*;q=0.8"),
+    "application/json",
+  );
+  for (const none of ["image/png", "text/csv;q=0", "text/html, application/xml"])
+    assert.equal(await type(none), 406, none);
+  const refused = await get("fields=impacts", "image/png");
+  assert.match(
+    (await refused.json()).detail,
+    /application\/json, text\/csv, application\/cbor, application\/x-npz/,
+  );
+  const named = await get("fields=impacts&format=json", "image/png");
+  assert.equal(named.status, 200, "the field says it");
+});
+
+test("fields keep what they name, compute nothing else, and say what they do not find", async () => {
+  const thin = await json("fields=impacts.tau,regime.z,exponents.qr.final");
+  assert.deepEqual(Object.keys(thin), [
+    "version",
+    "status",
+    "warnings",
+    "impacts",
+    "exponents",
+    "regime",
+  ]);
+  const whole = await json("include=impacts,regime,exponents");
+  assert.deepEqual(thin.impacts, {tau: whole.impacts.tau});
+  assert.deepEqual(thin.regime, {z: whole.regime.z});
+  assert.deepEqual(thin.exponents, {qr: {final: whole.exponents.qr.final}});
+  assert.deepEqual(thin.warnings, whole.warnings);
+  const lost = await json("fields=impacts.tau,impacts.tao,nothing");
+  assert.deepEqual(lost.warnings.slice(-2), [
+    "fields: there is no impacts.tao in this answer",
+    "fields: there is no nothing in this answer",
+  ]);
+  const windows = await json("windows=100,500;500,900&fields=windows.verdict");
+  assert.deepEqual(Object.keys(windows.windows[0]), ["verdict"]);
+  assert.equal(windows.windows.length, 2);
+});
+
+test("a POST takes format and fields in its body; so do the manifold and an identification", async () => {
+  const post = (path, body) =>
+    fetch(service.url + path, {
+      method: "POST",
+      headers: {"Content-Type": "application/json"},
+      body: JSON.stringify(body),
+    });
+  const run = await post("/v1/simulate", {b: 0.022, fields: ["impacts.tau"], format: "csv"});
+  assert.match(await run.text(), /^tau\n18/);
+  const manifold = await fetch(`${service.url}/v1/manifold?fields=manifold.fold`);
+  assert.deepEqual(Object.keys((await manifold.json()).manifold), ["fold"]);
+  const {impacts} = await (await post("/v1/simulate", {b: 0.022, tau_end: 1709})).json();
+  const listed = {impacts, b: 0.022, fields: ["verdict", "restitution"]};
+  const identified = await (await post("/v1/identify", listed)).json();
+  assert.deepEqual(Object.keys(identified), ["version", "restitution", "verdict", "warnings"]);
+  for (const [body, pointer] of [
+    [{format: "xml"}, "/format"],
+    [{fields: [1]}, "/fields/0"],
+    [{fields: {}}, "/fields"],
+  ]) {
+    const refused = await post("/v1/simulate", body);
+    assert.equal(refused.status, 422);
+    assert.equal((await refused.json()).errors[0].pointer, pointer);
+  }
+});
+
+test("what is known is told by format and fields, too", async () => {
+  const first = await get("fields=impacts.tau&format=csv");
+  const tag = first.headers.get("etag");
+  const again = (query) =>
+    fetch(`${service.url}/v1/simulate?b=0.022&damping=closed_form&tau_end=1709&${query}`, {
+      headers: {"If-None-Match": tag},
+    });
+  assert.equal((await again("fields=impacts.tau&format=csv")).status, 304);
+  assert.equal((await again("fields=impacts.tau&format=cbor")).status, 200);
+  assert.equal((await again("fields=impacts.side&format=csv")).status, 200);
+});
+
+test("more impacts than are kept are thinned, too, and told in every format", async () => {
+  const many = "b=0.003&tau_end=60000&max_impacts=60000";
+  const ask = (rest) => fetch(`${service.url}/v1/simulate?${many}&${rest}`);
+  const {impacts} = await (await ask("fields=impacts.tau")).json();
+  assert.ok(impacts.tau.length > 32768, `${impacts.tau.length}`);
+  assert.deepEqual(Object.keys(impacts), ["tau"]);
+  const csv = await (await ask("fields=impacts.tau&format=csv")).text();
+  assert.deepEqual(csv.trimEnd().split("\n").slice(1).map(Number), impacts.tau);
+});
