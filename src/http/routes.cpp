@@ -8,7 +8,7 @@
 
 #include "api/identify.hpp"
 #include "api/json_text.hpp"
-#include "api/openapi.hpp"
+#include "api/openapi/openapi.hpp"
 #include "api/parse_object.hpp"
 #include "api/presets.hpp"
 #include "api/schema/parameters.hpp"
