@@ -91,7 +91,9 @@ void add_service(Json& schemas) {
     schemas["Presets"] = presets_schema();
     schemas["Version"] = version_schema();
     schemas["OpenApi"] = {
-        {"type", "object"}, {"required", {"openapi", "info", "paths", "components"}}};
+        {"type", "object"},
+        {"required", {"openapi", "paths"}},
+        {"properties", {{"openapi", text()}, {"paths", {{"type", "object"}}}}}};
     schemas["Status"] = object_of({{"status", constant("ok"), "it is well"}});
     schemas["Problem"] = problem();
 }

@@ -81,7 +81,8 @@ Json eigenvalues() {
         {moments("moment"),
          {"J", moduli, "of the flight before it: four moduli each, descending"},
          {"M", moduli, "of the impact"},
-         {"T", moduli, "of T = M J"},
+         {"T", list_of(four_exponents()),
+          "of T = M J; null where rounding leaves none, at the end of a chatter"},
          {"M_condition", list_of(or_null(number())),
           "condition number of M in the Frobenius norm; null for R = 0"}});
 }

@@ -165,6 +165,18 @@ Json reduced_point() {
             depends()});
 }
 
+/// What all of them have stands outside, too: without it generators of clients pass it over.
+Json point_line_schema() {
+    Json line = object_of(place_keys());
+    line.erase("additionalProperties");
+    line["description"] =
+        "its results, or a fault in place of them; with reduce a line for all points along the "
+        "reduced axis";
+    line["oneOf"] = {
+        reference("SweepResult"), reference("SweepFault"), reference("SweepReduction")};
+    return line;
+}
+
 Json start_line_schema() {
     const Json axis = object_of(
         {{"parameter", text(), "its name"}, {"values", numbers(), "all of them, in their order"}});
@@ -224,12 +236,7 @@ void add_sweep_lines(Json& schemas) {
          {"done", "SweepDone"},
          {"error", "SweepError"}});
     schemas["SweepStart"] = start_line_schema();
-    schemas["SweepPoint"] = {
-        {"description",
-         "its results, or a fault in place of them; with reduce a line for all "
-         "points along the reduced axis"},
-        {"oneOf",
-         {reference("SweepResult"), reference("SweepFault"), reference("SweepReduction")}}};
+    schemas["SweepPoint"] = point_line_schema();
     schemas["SweepResult"] = measured_point();
     schemas["SweepFault"] = faulty_point();
     schemas["SweepReduction"] = reduced_point();
