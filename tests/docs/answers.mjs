@@ -186,6 +186,9 @@ async function noteService(keys, url) {
   for (const path of ["/version", "/healthz", "/livez", "/readyz"])
     keys.note("health-answer", await json(url, path));
   keys.note("problem", await json(url, "/v1/simulate", '{"b":-1,"q":2}'));
+  const without = await startService(["--sweeps", "0"]);
+  keys.note("problem", await json(without.url, "/v1/sweep", JSON.stringify(sweeps[0])));
+  await without.stop();
 }
 
 /** By part of the documents: the paths of all keys. */

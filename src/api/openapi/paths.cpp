@@ -144,7 +144,7 @@ Json identify_path() {
 }
 
 Json read_path(const char* id, const char* summary, const char* description, const char* schema) {
-    return {{"get", get({id, "service", summary, description, schema})}};
+    return {{"get", get({id, "service", summary, description, schema}, {503})}};
 }
 
 /// Answered however busy the server is, and to anyone.
