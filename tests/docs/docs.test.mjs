@@ -159,7 +159,10 @@ test("the OpenAPI document has the keys of the tables, and no other ones", () =>
     const known = [...documented.get(part), ...(documented.get(like[part]) ?? [])];
     for (const path of paths) assert.ok(known.includes(path), `${part}: ${path} is not in a table`);
     for (const path of documented.get(part))
-      assert.ok(paths.has(path), `${part}: ${path} is not in the document`);
+      assert.ok(
+        [...paths].some((own) => own === path || own.startsWith(`${path}.`)),
+        `${part}: ${path} is not in the document`,
+      );
   }
 });
 
