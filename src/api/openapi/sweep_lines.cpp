@@ -85,8 +85,9 @@ Keys measured_keys() {
 }
 
 Json point_section() {
-    const auto with_moments = [](Keys keys) { return with_si(object_of(std::move(keys))); };
-    return {{"oneOf", {with_moments(impact_section_keys()), with_moments(stroboscopic_keys())}}};
+    return {
+        {"oneOf",
+         {with_si(object_of(impact_section_keys())), with_si(object_of(stroboscopic_keys()))}}};
 }
 
 Json measured_point() {
