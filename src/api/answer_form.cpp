@@ -38,9 +38,8 @@ std::map<std::string, std::vector<Path>> by_name(const std::vector<Path>& paths)
 bool has(const Json& value, std::span<const std::string> path) {
     if (path.empty() || value.is_null()) return true;
     if (value.is_array())
-        return std::any_of(value.begin(), value.end(), [path](const Json& entry) {
-            return has(entry, path);
-        });
+        return std::any_of(
+            value.begin(), value.end(), [path](const Json& entry) { return has(entry, path); });
     return value.is_object() && value.contains(path[0]) && has(value[path[0]], path.subspan(1));
 }
 

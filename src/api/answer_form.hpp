@@ -15,8 +15,9 @@ struct AnswerForm {
     std::vector<std::string> fields;  ///< paths of what is kept; none: everything
 };
 
-/// Takes form_fields() out of those of a request, whose table has the others: where it says which parts
-/// of the answer are kept and not which are computed, those are. Problem 422 where one is at fault.
+/// Takes form_fields() out of those of a request, whose table has the others: where it says which
+/// parts of the answer are kept and not which are computed, those are. Problem 422 where one is at
+/// fault.
 AnswerForm take_form(Json& fields, const FieldTable& table);
 
 /// What an answer's `fields` name, and always version, status and warnings, among them a sentence

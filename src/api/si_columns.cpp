@@ -1,6 +1,5 @@
 #include "api/si_columns.hpp"
 
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,16 +12,8 @@ namespace vines::api {
 
 namespace {
 
-/// A quantity in units of tau and its twin: value * omega0^power, and m1 beside it for what is per
-/// m1.
-struct Twin {
-    const char *name, *si_name;
-    int power;
-    bool per_m1 = false;
-};
-
 // t = tau/omega0.
-constexpr Twin twins[] = {
+constexpr Twin of_any_part[] = {
     {"tau", "time_s", -1},
     {"tau_start", "time_start_s", -1},
     {"tau_end", "time_end_s", -1},
@@ -44,7 +35,7 @@ constexpr Twin twins[] = {
     {"impulse", "impulse_N_s", 1, true},
     {"V", "V_velocity", 1},
 };
-constexpr Twin energies[] = {
+constexpr Twin of_energy[] = {
     {"input", "input_J", 2, true},       {"damper", "damper_J", 2, true},
     {"impacts", "impacts_J", 2, true},   {"stored", "stored_J", 2, true},
     {"residual", "residual_J", 2, true}, {"at_start", "at_start_J", 2, true},
@@ -77,16 +68,19 @@ void add(Json& object, std::span<const Twin> table, const SiParameters& si) {
 
 }  // namespace
 
+std::span<const Twin> twins() { return of_any_part; }
+std::span<const Twin> joule_twins() { return of_energy; }
+
 void add_si(Json& part, const SiParameters& si) {
     if (!part.is_object()) {
         if (part.is_array() && !part.empty() && part[0].is_object())
             for (Json& entry : part) add_si(entry, si);
         return;
     }
-    add(part, twins, si);
+    add(part, of_any_part, si);
     for (auto& [name, value] : part.items()) add_si(value, si);
 }
 
-void add_joules(Json& energy, const SiParameters& si) { add(energy, energies, si); }
+void add_joules(Json& energy, const SiParameters& si) { add(energy, of_energy, si); }
 
 }  // namespace vines::api

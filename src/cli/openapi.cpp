@@ -1,5 +1,5 @@
 // `vines openapi`: the document that the service has at /v1/openapi.json.
-#include "api/openapi.hpp"
+#include "api/openapi/openapi.hpp"
 
 #include <cstdio>
 

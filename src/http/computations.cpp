@@ -140,7 +140,8 @@ Response identify(const Request& r, const Service& service, Stopwatch& watch) {
     const ComputeGate::Place place = place_in(service.gate, r, watch);
     const api::Stop stop = end_of_work(service.options.deadline, r, service.gate);
     const api::FieldTable& table = api::identify_fields();
-    const bool csv = r.content_type.starts_with("text/csv") || r.content_type.starts_with("text/plain");
+    const bool csv =
+        r.content_type.starts_with("text/csv") || r.content_type.starts_with("text/plain");
     const Asked asked =
         vines::http::asked(r, table, csv ? api::from_query(table, r.query) : body_of(r));
     const api::IdentifyRequest request = csv ? api::read_identify_request(asked.fields, r.body)

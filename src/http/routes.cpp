@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "api/json_text.hpp"
-#include "api/openapi.hpp"
+#include "api/openapi/openapi.hpp"
 #include "api/presets.hpp"
 #include "api/schema/parameters.hpp"
 #include "api/version.hpp"
@@ -75,8 +75,10 @@ std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate, M
     routes.push_back(route("GET", "/v1/parameters", [](const Request&) {
         return json_response(api::describe_fields());
     }));
-    routes.push_back(route(
-        "GET", "/v1/openapi.json", [](const Request&) { return json_response(api::openapi()); }));
+    routes.push_back(route("GET", "/v1/openapi.json", [](const Request&) {
+        static const Response made = json_response(api::openapi());  // 20 ms
+        return made;
+    }));
     // Alive: the process answers. Ready: it takes work; a proxy stops sending it some once it is
     // about to stop.
     for (const char* path : {"/healthz", "/livez"})

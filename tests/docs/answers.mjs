@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import {measured} from "../record.mjs";
 import {startService} from "../service.mjs";
 
-const everything = [
+export const everything = [
   "series",
   "impacts",
   "exponents",
@@ -18,7 +18,7 @@ const parts = [...everything, "status", "sticking", "touches", "perturbation"];
 const machine = {m1: 12, f0: 14, damping_ratio: 0.006, mass_ratio: 0.01, F: 0.0004, R: 0.4};
 const platform = {...machine, b: 0.03, f: 14};
 
-const simulations = [
+export const simulations = [
   // Reduced and periodic; SI and periodic, with windows; a free decay in SI.
   {preset: "fig11", tau_end: 300, include: everything},
   {preset: "fig16", include: everything, windows: [[100, 300]], perturbation: {size: 1e-8}},
@@ -30,7 +30,7 @@ const simulations = [
 const b = (values) => [{parameter: "b", values}];
 const f = [{parameter: "f", from: 13.8, to: 14.2, count: 3}];
 const short = {cycles: 50, transient_cycles: 30};
-const sweeps = [
+export const sweeps = [
   {axes: b([0.008, 0.015]), section: "impact", ...short},
   {axes: b([0.008, 0.015]), section: "stroboscopic", ...short},
   {axes: f, base: {...machine, b: 0.03}, section: "impact", ...short},
@@ -147,7 +147,7 @@ async function noteBrokenSweep(keys) {
 }
 
 /** The record with a channel of a force of 8.35 Hz. */
-const withForce = (csv) =>
+export const withForce = (csv) =>
   csv
     .trimEnd()
     .split("\n")
@@ -184,6 +184,9 @@ async function noteService(keys, url) {
   for (const path of ["/version", "/healthz", "/livez", "/readyz"])
     keys.note("health-answer", await json(url, path));
   keys.note("problem", await json(url, "/v1/simulate", '{"b":-1,"q":2}'));
+  const without = await startService(["--sweeps", "0"]);
+  keys.note("problem", await json(without.url, "/v1/sweep", JSON.stringify(sweeps[0])));
+  await without.stop();
 }
 
 /** By part of the documents: the paths of all keys. */

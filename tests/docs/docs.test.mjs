@@ -8,11 +8,13 @@ import {after, before, test} from "node:test";
 import {fileURLToPath} from "node:url";
 import {program, startService} from "../service.mjs";
 import {answeredKeys} from "./answers.mjs";
+import {describedKeys} from "./described.mjs";
 import {anchors, between, codes, links, read, root, tables, transcripts} from "./markdown.mjs";
 
 const documents = {};
 let service;
 let parameters;
+let openapi;
 before(async () => {
   const names = (await readdir(root)).filter((name) => name.endsWith(".md"));
   for (const name of await readdir(new URL("docs/", root)))
@@ -20,6 +22,7 @@ before(async () => {
   for (const name of names) documents[name] = await read(name);
   service = await startService();
   parameters = await (await fetch(`${service.url}/v1/parameters`)).json();
+  openapi = await (await fetch(`${service.url}/v1/openapi.json`)).json();
 });
 after(() => service.stop());
 
@@ -93,21 +96,26 @@ test("no table has a field that the service does not know, or in another group",
 
 // Routes.
 
-test("the table of routes is the OpenAPI document's, with every method and status", async () => {
-  const {paths} = await (await fetch(`${service.url}/v1/openapi.json`)).json();
+test("the tables of routes and statuses are the OpenAPI document's", async () => {
   const [table] = tables(documents["docs/api.md"], "routes");
   const rows = named(table, "route");
-  sameNames(rows.keys(), Object.keys(paths));
+  sameNames(rows.keys(), Object.keys(openapi.paths));
   const [statuses] = tables(documents["docs/api.md"], "statuses");
-  const explained = new Set(named(statuses, "status").keys());
-  for (const [path, methods] of Object.entries(paths)) {
+  const explained = named(statuses, "status");
+  const ofAny = (method) =>
+    [...explained]
+      .filter(([, {of}]) => of === "any" || of === `any \`${method}\``)
+      .map(([status]) => status);
+  for (const [path, methods] of Object.entries(openapi.paths)) {
     const row = rows.get(path);
     const allowed = Object.keys(methods).map((method) => method.toUpperCase());
     sameNames(codes(row.method), allowed, path);
-    for (const {responses} of Object.values(methods))
-      for (const status of Object.keys(responses))
-        assert.ok(codes(row.statuses).includes(status), `${status} of ${path}`);
-    for (const status of codes(row.statuses)) assert.ok(explained.has(status), status);
+    for (const method of allowed) {
+      const {responses} = methods[method.toLowerCase()];
+      const known = [...codes(row.statuses), ...ofAny(method)];
+      sameNames(Object.keys(responses), known, `${method} ${path}`);
+      for (const status of known) assert.ok(explained.has(status), status);
+    }
   }
 });
 
@@ -163,6 +171,21 @@ test("every key of every answer is in the table of its part, and no other one", 
         `${part}: ${path} is answered, but not documented`,
       );
     for (const path of own) assert.ok(paths.has(path), `${part}: ${path} is not answered`);
+  }
+});
+
+test("the OpenAPI document has the keys of the tables, and no other ones", () => {
+  const documented = documentedKeys();
+  const described = describedKeys(openapi);
+  sameNames(described.keys(), documented.keys());
+  for (const [part, paths] of described) {
+    const known = [...documented.get(part), ...(documented.get(like[part]) ?? [])];
+    for (const path of paths) assert.ok(known.includes(path), `${part}: ${path} is not in a table`);
+    for (const path of documented.get(part))
+      assert.ok(
+        [...paths].some((own) => own === path || own.startsWith(`${path}.`)),
+        `${part}: ${path} is not in the document`,
+      );
   }
 });
 

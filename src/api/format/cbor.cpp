@@ -38,8 +38,7 @@ Json typed(const List& list) {
             return matrices;
         }
         case Packed::integers:
-            return Json::binary(
-                std::vector<std::uint8_t>(bytes.begin(), bytes.end()), int32_tag);
+            return Json::binary(std::vector<std::uint8_t>(bytes.begin(), bytes.end()), int32_tag);
         default: {
             Json flags = Json::array();
             for (const std::uint8_t flag : bytes) flags.push_back(flag != 0);

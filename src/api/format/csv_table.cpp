@@ -70,8 +70,7 @@ void put_csv_names(const ToldColumn& column, std::string& text) {
 
 void put_csv_number(double number, std::string& text) {
     std::array<char, room_for_number> digits;
-    if (std::isfinite(number))
-        text.append(digits.data(), write_number(digits.data(), number));
+    if (std::isfinite(number)) text.append(digits.data(), write_number(digits.data(), number));
 }
 
 /// RFC 4180, 2.5 to 2.7.

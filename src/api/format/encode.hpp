@@ -26,9 +26,9 @@ const FormatName& name_of(Format format);
 /// All lists are there. Problem 422 where the format cannot hold this answer.
 std::string encoded(Json answer, Format format);
 
-/// One table: lists of one length in one object, a column each; of four numbers or a matrix several,
-/// with the number of each behind its name. Null is an empty cell. Problem 422 where the answer has
-/// none, or more than one, which it names.
+/// One table: lists of one length in one object, a column each; of four numbers or a matrix
+/// several, with the number of each behind its name. Null is an empty cell. Problem 422 where the
+/// answer has none, or more than one, which it names.
 std::string csv_text(const Json& answer);
 
 /// Lists of numbers as typed arrays (float64, int32, little-endian), null in them as NaN; of four

@@ -17,8 +17,8 @@ bool all_are(const Json& array, bool (Json::*is)() const noexcept) {
 std::vector<std::uint8_t> doubles_of(const Json& array) {
     std::vector<std::uint8_t> bytes(array.size() * sizeof(double));
     for (std::size_t k = 0; k < array.size(); ++k) {
-        const double number = array[k].is_null() ? std::numeric_limits<double>::quiet_NaN()
-                                                 : array[k].get<double>();
+        const double number =
+            array[k].is_null() ? std::numeric_limits<double>::quiet_NaN() : array[k].get<double>();
         std::memcpy(bytes.data() + k * sizeof number, &number, sizeof number);
     }
     return bytes;
@@ -49,9 +49,8 @@ std::optional<List> List::of(const Json& value) {
     if (all_are(value, &Json::is_number)) {
         list.packing_ = Packed::numbers;
         list.own_ = doubles_of(value);
-    } else if (std::all_of(value.begin(), value.end(), [](const Json& e) {
-                   return e.is_boolean();
-               })) {
+    } else if (std::all_of(
+                   value.begin(), value.end(), [](const Json& e) { return e.is_boolean(); })) {
         list.packing_ = Packed::flags;
         for (const Json& entry : value) list.own_.push_back(entry.get<bool>());
     } else if (all_are(value, &Json::is_string)) {

@@ -25,10 +25,10 @@ public:
         const auto crc = ::crc32(
             0, reinterpret_cast<const Bytef*>(content.data()), static_cast<uInt>(content.size()));
         std::string common;
-        put_little(common, 20, 2);           // version that is needed
-        put_little(common, 0x0800, 2);       // names in UTF-8
-        put_little(common, 0, 2);            // stored
-        put_little(common, 0x00210000, 4);   // 1980-01-01: the same answer has the same bytes
+        put_little(common, 20, 2);          // version that is needed
+        put_little(common, 0x0800, 2);      // names in UTF-8
+        put_little(common, 0, 2);           // stored
+        put_little(common, 0x00210000, 4);  // 1980-01-01: the same answer has the same bytes
         put_little(common, crc, 4);
         put_little(common, content.size(), 4);
         put_little(common, content.size(), 4);

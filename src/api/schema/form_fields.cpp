@@ -8,8 +8,9 @@ const FieldTable& form_fields() {
         {.name = "format",
          .type = FieldType::choice,
          .group = "answer",
-         .description = "of the answer: json; csv: its one table; cbor: with typed arrays (RFC 8746); "
-                        "npz: arrays for numpy.load",
+         .description =
+             "of the answer: json; csv: its one table; cbor: with typed arrays (RFC 8746); "
+             "npz: arrays for numpy.load",
          .fallback_note = "what the header Accept asks for, else json",
          .choices = {"json", "csv", "cbor", "npz"}},
         {.name = "fields",

@@ -1,31 +1,16 @@
 #include "api/schema/parameters.hpp"
 
 #include "api/schema/tables.hpp"
+#include "api/schema/words.hpp"
 
 namespace vines::api {
 
 namespace {
 
-const char* type_name(FieldType type) {
-    switch (type) {
-        case FieldType::number: return "number";
-        case FieldType::integer: return "integer";
-        case FieldType::choice: return "choice";
-        case FieldType::choices: return "choices";
-        case FieldType::interval: return "interval";
-        case FieldType::intervals: return "intervals";
-        case FieldType::integers: return "integers";
-        case FieldType::numbers: return "numbers";
-        case FieldType::object: return "object";
-        case FieldType::objects: return "objects";
-    }
-    return "";
-}
-
 Json describe(const FieldTable& table) {
     Json list = Json::array();
     for (const Field& f : table) {
-        Json entry = {{"name", f.name},       {"type", type_name(f.type)},
+        Json entry = {{"name", f.name},       {"type", word_of(f.type)},
                       {"group", f.group},     {"unit", f.unit},
                       {"symbol", f.symbol},   {"description", f.description},
                       {"default", f.fallback}};

@@ -4,6 +4,13 @@ namespace vines::api {
 
 namespace {
 
+constexpr Word<FieldType> field_types[] = {
+    {FieldType::number, "number"},     {FieldType::integer, "integer"},
+    {FieldType::choice, "choice"},     {FieldType::choices, "choices"},
+    {FieldType::interval, "interval"}, {FieldType::intervals, "intervals"},
+    {FieldType::integers, "integers"}, {FieldType::numbers, "numbers"},
+    {FieldType::object, "object"},     {FieldType::objects, "objects"}};
+
 constexpr Word<Damping> dampings[] = {
     {Damping::equation_of_motion, "equation_of_motion"}, {Damping::closed_form, "closed_form"}};
 
@@ -41,6 +48,10 @@ constexpr Word<Unknown> fitted_unknowns[] = {
 
 }  // namespace
 
+template <>
+std::span<const Word<FieldType>> words() {
+    return field_types;
+}
 template <>
 std::span<const Word<Damping>> words() {
     return dampings;

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "api/schema/json.hpp"
+#include "api/schema/field.hpp"
 #include "core/measurement/unknowns.hpp"
 #include "core/sweep/sweep.hpp"
 
@@ -22,6 +22,8 @@ struct Word {
 template <class Enum>
 std::span<const Word<Enum>> words();
 
+template <>
+std::span<const Word<FieldType>> words();
 template <>
 std::span<const Word<Damping>> words();
 template <>

@@ -1,0 +1,225 @@
+#include "api/openapi/paths.hpp"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "api/format/encode.hpp"
+#include "api/openapi/examples.hpp"
+#include "api/openapi/json_schema.hpp"
+#include "api/openapi/requests.hpp"
+#include "api/openapi/responses.hpp"
+
+namespace vines::api::document {
+
+namespace {
+
+constexpr const char *json_type = "application/json", *lines_type = "application/x-ndjson";
+
+struct Operation {
+    const char *id, *tag, *summary, *description;
+    const char* schema;  ///< of its answer; null: text
+    const char* type = json_type;
+    bool computes = false;  ///< takes fields, waits for a place, tells its time
+    bool has_form = false;  ///< takes form_fields(), too
+    bool is_open = false;   ///< takes no key
+};
+
+Json content_of(const Operation& o) {
+    const Json schema = o.schema ? reference(o.schema) : text();
+    Json media = {{"schema", schema}};
+    Json example = o.schema ? answer_example(o.schema) : Json();
+    if (!example.is_null()) media["example"] = std::move(example);
+    Json content = {{o.type, std::move(media)}};
+    if (!o.has_form) return content;
+    for (const FormatName& name : format_names)
+        if (name.format != Format::json) content[name.media_type] = {{"schema", text()}};
+    return content;
+}
+
+/// With 200 before all others.
+Json responses(const Operation& o, const std::vector<int>& others, bool reads) {
+    std::vector<std::string> headers;
+    if (reads) headers.push_back("ETag");
+    if (o.computes) headers.push_back("Server-Timing");
+    Json all = {
+        {"200",
+         {{"description", o.description},
+          {"headers", headers_of(headers)},
+          {"content", content_of(o)}}}};
+    std::vector<int> statuses = any_statuses();
+    statuses.insert(statuses.end(), others.begin(), others.end());
+    if (reads) statuses.push_back(304);
+    if (o.computes) statuses.insert(statuses.end(), {413, 422, 503});
+    if (o.has_form) statuses.push_back(406);
+    all.update(responses_of(statuses));
+    return all;
+}
+
+Json operation_of(const Operation& o, const std::vector<int>& others, bool reads) {
+    Json operation = {
+        {"operationId", o.id},
+        {"tags", {o.tag}},
+        {"summary", o.summary},
+        {"description", o.description}};
+    if (o.is_open) operation["security"] = Json::array();
+    operation["responses"] = responses(o, others, reads);
+    return operation;
+}
+
+/// `others`: statuses beside those of all.
+Json get(const Operation& o, const std::vector<int>& others = {}) {
+    Json operation = operation_of(o, others, true);
+    operation["parameters"] = Json::array({{{"$ref", "#/components/parameters/If-None-Match"}}});
+    return operation;
+}
+
+Json get_by_query(const Operation& o, const FieldTable& fields) {
+    Json operation = get(o);
+    for (Json& parameter : query_of(fields, request_example(o.id)))
+        operation["parameters"].push_back(std::move(parameter));
+    return operation;
+}
+
+Json post(const Operation& o, const char* request) {
+    Json operation = operation_of(o, {}, false);
+    operation["requestBody"] = {
+        {"required", true},
+        {"content",
+         {{json_type, {{"schema", reference(request)}, {"examples", request_example(o.id)}}}}}};
+    return operation;
+}
+
+Json simulate_path() {
+    Operation o = {
+        "simulate", "simulation", "One run",
+        "Parameters in; trajectory, impacts, exponents out: what was asked for by include, and of "
+        "that what fields name.",
+        "Simulation"};
+    o.computes = o.has_form = true;
+    Operation by_query = o;
+    by_query.id = "simulate_by_query";
+    by_query.summary = "One run, its fields in the query";
+    return {
+        {"get", get_by_query(by_query, simulate_fields())}, {"post", post(o, "SimulateRequest")}};
+}
+
+Json manifold_path() {
+    Operation o = {
+        "manifold", "simulation", "The slow invariant manifold",
+        "The slow invariant manifold of the same parameters, and a recommended b. It needs the "
+        "same R at both walls.",
+        "Manifold"};
+    o.computes = o.has_form = true;
+    Operation by_query = o;
+    by_query.id = "manifold_by_query";
+    by_query.summary = "The slow invariant manifold, its fields in the query";
+    return {
+        {"get", get_by_query(by_query, manifold_fields())}, {"post", post(o, "ManifoldRequest")}};
+}
+
+Json sweep_path() {
+    Operation o = {
+        "sweep", "sweep", "Many runs over one to three parameters, as a stream",
+        "A line of JSON each, as it comes: start, then points in any order, progress every 200 "
+        "ms, perhaps a warning, and done or error.",
+        "SweepLine"};
+    o.type = lines_type;
+    o.computes = true;
+    return {{"post", post(o, "SweepRequest")}};
+}
+
+/// JSON with all in the body, or a file of columns with the fields in the query.
+Json identify_path() {
+    Operation o = {
+        "identify", "measurement", "Exponents from a measurement",
+        "Impacts, restitution, exponents and a verdict from a record of the oscillator, or from a "
+        "list of impacts. As CSV, or text, the body is a file of columns and the fields are in "
+        "the query; as JSON all is in the body.",
+        "Identification"};
+    o.computes = o.has_form = true;
+    Json operation = post(o, "IdentifyRequest");
+    operation["parameters"] = query_of(identify_fields(), Json::object());
+    const Json file = {
+        {"schema",
+         {{"type", "string"},
+          {"description",
+           "columns, by default time_s, displacement_m, acceleration_m_s2, as measuring programs "
+           "and spreadsheets write them; at least 100 samples"}}}};
+    for (const char* type : {"text/csv", "text/plain"})
+        operation["requestBody"]["content"][type] = file;
+    return {{"post", std::move(operation)}};
+}
+
+Json read_path(const char* id, const char* summary, const char* description, const char* schema) {
+    return {{"get", get({id, "service", summary, description, schema}, {503})}};
+}
+
+/// Answered however busy the server is, and to anyone.
+Json open_path(
+    const char* id, const char* summary, const char* description, const char* schema,
+    const std::vector<int>& others = {}) {
+    Operation o = {id, "health", summary, description, schema};
+    o.is_open = true;
+    return {{"get", get(o, others)}};
+}
+
+Json metrics_path() {
+    Operation o = {
+        "metrics", "service", "Metrics",
+        "What the service counts, in the text that Prometheus reads: requests, waits, refusals, "
+        "sweeps, impacts, the process and the build. It is answered however busy the server is.",
+        nullptr};
+    o.type = "text/plain; version=0.0.4; charset=utf-8";
+    return {{"get", get(o)}};
+}
+
+}  // namespace
+
+Json paths() {
+    return {
+        {"/v1/simulate", simulate_path()},
+        {"/v1/manifold", manifold_path()},
+        {"/v1/sweep", sweep_path()},
+        {"/v1/identify", identify_path()},
+        {"/v1/parameters",
+         read_path(
+             "parameters", "Every field",
+             "The model and its symbols, and every field: type, unit, range, default, meaning.",
+             "Parameters")},
+        {"/v1/presets", read_path(
+                            "presets", "Presets of the paper",
+                            "One preset for each figure and table of the paper.", "Presets")},
+        {"/v1/openapi.json",
+         read_path("openapi", "This document", "The OpenAPI 3.1 document of all this.", "OpenApi")},
+        {"/healthz", open_path("healthz", "Alive", "The process answers.", "Status")},
+        {"/livez",
+         open_path("livez", "Alive, as Kubernetes asks", "The process answers.", "Status")},
+        {"/readyz", open_path(
+                        "readyz", "Ready", "The service takes work; 503 once it is about to stop.",
+                        "Status", {503})},
+        {"/version",
+         open_path("version", "Version", "Name, version, commit and compiler.", "Version")},
+        {"/metrics", metrics_path()},
+    };
+}
+
+Json tags() {
+    return {
+        {{"name", "simulation"}, {"description", "one run, and the manifold of its system"}},
+        {{"name", "sweep"}, {"description", "many runs"}},
+        {{"name", "measurement"}, {"description", "what a record of the oscillator says"}},
+        {{"name", "service"}, {"description", "what the service says of itself"}},
+        {{"name", "health"}, {"description", "for probes; no key is needed"}}};
+}
+
+Json parameter_components() {
+    return {
+        {"If-None-Match",
+         {{"name", "If-None-Match"},
+          {"in", "header"},
+          {"description", "ETag of an answer that is known"},
+          {"schema", text()}}}};
+}
+
+}  // namespace vines::api::document

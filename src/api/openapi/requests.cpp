@@ -1,0 +1,159 @@
+#include "api/openapi/requests.hpp"
+
+#include "api/openapi/json_schema.hpp"
+#include "api/openapi/schemas.hpp"
+
+namespace vines::api::document {
+
+namespace {
+
+Json request_of(const FieldTable& fields, const std::vector<std::string>& required = {});
+
+/// Without what it means.
+Json value_schema(const Field& f) {
+    switch (f.type) {
+        case FieldType::number: return number();
+        case FieldType::integer: return {{"type", "integer"}};
+        case FieldType::choice: return f.choices.empty() ? text() : one_of(f.choices);
+        case FieldType::choices: return list_of(f.choices.empty() ? text() : one_of(f.choices));
+        case FieldType::interval: return interval();
+        case FieldType::intervals: return list_of(interval());
+        case FieldType::integers: return list_of(whole());
+        case FieldType::numbers: return numbers();
+        case FieldType::object:
+            return f.fields.empty() ? reference("SweepBase") : request_of(f.fields);
+        case FieldType::objects:
+            Json objects = list_of(reference(f.name == "axes" ? "Axis" : "Start"));
+            if (f.choices.empty()) return objects;
+            return {{"anyOf", {std::move(objects), one_of(f.choices)}}};
+    }
+    return {};
+}
+
+std::string description_of(const Field& f) {
+    std::string words = f.description;
+    if (!f.unit.empty()) words += " (" + f.unit + (f.symbol.empty() ? "" : ", " + f.symbol) + ")";
+    if (!f.fallback_note.empty()) words += "; default: " + f.fallback_note;
+    return words;
+}
+
+Json schema_of(const Field& f) {
+    Json schema = value_schema(f);
+    if (f.range) {
+        schema["minimum"] = f.range->minimum;
+        schema["maximum"] = f.range->maximum;
+    }
+    if (!f.fallback.is_null()) schema["default"] = f.fallback;
+    return schema;
+}
+
+FieldTable with_form(FieldTable fields) {
+    fields.insert(fields.end(), form_fields().begin(), form_fields().end());
+    return fields;
+}
+
+Json request_of(const FieldTable& fields, const std::vector<std::string>& required) {
+    Json properties = Json::object();
+    for (const Field& f : fields) {
+        Json& schema = properties[f.name] = schema_of(f);
+        schema["description"] = description_of(f);
+    }
+    Json request = {
+        {"type", "object"}, {"additionalProperties", false}, {"properties", std::move(properties)}};
+    if (!required.empty()) request["required"] = required;
+    return request;
+}
+
+void add_query(
+    const FieldTable& fields, const std::string& prefix, const Json& example, Json& list) {
+    for (const Field& f : fields) {
+        if (!f.fields.empty()) {
+            add_query(f.fields, f.name + ".", example, list);
+            continue;
+        }
+        Json schema = schema_of(f);
+        std::string description = description_of(f);
+        if (f.type == FieldType::intervals) {
+            schema = text();
+            description += "; as from,to;from,to";
+        }
+        Json parameter = {
+            {"name", prefix + f.name}, {"in", "query"}, {"description", std::move(description)}};
+        // Separated by commas.
+        if (schema["type"] == "array") parameter["explode"] = false;
+        parameter["schema"] = std::move(schema);
+        if (example.contains(prefix + f.name)) parameter["example"] = example[prefix + f.name];
+        list.push_back(std::move(parameter));
+    }
+}
+
+/// As a simulation or an identification gives them, or what a laboratory knows of them: of other
+/// columns nothing is read.
+Json impact_columns() {
+    const Json some = list_of(or_null(number()));
+    Keys keys = {
+        optional({"tau", numbers(), "moment; or time_s"}),
+        optional({"time_s", numbers(), "moment, of a system in SI"}),
+        optional({"x", numbers(), "displacement of the oscillator, m"}),
+        optional({"side", list_of(number()), "1 or -1; else by the jump of x'"}),
+        optional({"phase", numbers(), "of the forcing; else it is fitted to the list"})};
+    for (const char* when : {"before", "after"})
+        for (const auto& [name, twin] :
+             {std::pair("x_dot_", "x_velocity_"), std::pair("y_dot_", "y_velocity_")}) {
+            const bool of_mass = name[0] == 'y';
+            const Json values = of_mass ? some : numbers();
+            const std::string what = of_mass ? "velocity of the free mass; else of the flights"
+                                             : "velocity of the oscillator";
+            keys.push_back(optional({std::string(name) + when, values, what}));
+            keys.push_back(
+                optional({std::string(twin) + when, values, what + ", of a system in SI, m/s"}));
+        }
+    keys.push_back(optional({"x_ddot_before", numbers(), "where phase is not known"}));
+    keys.push_back(
+        optional({"x_acceleration_before", numbers(), "where phase is not known, m/s^2"}));
+    Json schema = object_of(keys);
+    schema["additionalProperties"] = true;
+    schema["required"] = {"x"};
+    return schema;
+}
+
+Json identify_request() {
+    Json request = request_of(with_form(identify_fields()));
+    Json& properties = request["properties"];
+    properties["record"] = map_of(numbers());
+    properties["record"]["description"] =
+        "columns: time_s, displacement_m, acceleration_m_s2; a unit in a name (displacement_mm, "
+        "time (ms)) is obeyed";
+    properties["impacts"] = impact_columns();
+    properties["impacts"]["description"] =
+        "columns as in the answer of /v1/simulate, in place of a record";
+    return request;
+}
+
+Json sweep_request() {
+    Json request = request_of(sweep_fields(), {"axes"});
+    Json& axes = request["properties"]["axes"];
+    axes["minItems"] = 1;
+    axes["maxItems"] = 3;
+    return request;
+}
+
+}  // namespace
+
+Json query_of(const FieldTable& fields, const Json& example) {
+    Json list = Json::array();
+    add_query(with_form(fields), "", example, list);
+    return list;
+}
+
+void add_requests(Json& schemas) {
+    schemas["SimulateRequest"] = request_of(with_form(simulate_fields()));
+    schemas["ManifoldRequest"] = request_of(with_form(manifold_fields()));
+    schemas["IdentifyRequest"] = identify_request();
+    schemas["SweepRequest"] = sweep_request();
+    schemas["SweepBase"] = request_of(sweep_base_fields());
+    schemas["Axis"] = request_of(axis_fields(), {"parameter"});
+    schemas["Start"] = request_of(start_fields());
+}
+
+}  // namespace vines::api::document
