@@ -15,16 +15,20 @@ RUN cd web && { npm ls --omit=dev >/dev/null 2>&1 || npm ci --omit=dev --no-audi
 
 COPY CMakeLists.txt ./
 COPY src src
-RUN cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DVINES_TESTS=OFF \
+# Here is no git to ask for it.
+ARG VINES_COMMIT=
+RUN cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DVINES_TESTS=OFF -DVINES_COMMIT="$VINES_COMMIT" \
     && cmake --build build --target vines \
     && strip build/vines
 
 # The program and the libraries it loads, each at the path where the loader looks for it: Debian has no static archive
-# for some of them.
+# for some of them. All of one age, so that two builds give the same bytes.
+ARG SOURCE_DATE_EPOCH
 RUN mkdir /image \
     && cp build/vines /image/ \
     && ldd build/vines >/tmp/libraries && ! grep 'not found' /tmp/libraries \
-    && grep -o '/[^ ]*' /tmp/libraries | xargs cp -L --parents -t /image
+    && grep -o '/[^ ]*' /tmp/libraries | xargs cp -L --parents -t /image \
+    && find /image -exec touch -d "@${SOURCE_DATE_EPOCH:-0}" {} +
 
 # Nothing but the program: no shell or package manager to attack or to update.
 FROM scratch

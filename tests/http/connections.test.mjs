@@ -198,6 +198,26 @@ test("nor is it through the proxy, where another client would get the answer", a
     }
 });
 
+test("the proxy passes /metrics on to nobody, however it is asked for", async (t) => {
+  const proxy = await startProxy([service, service, service]);
+  t.after(() => proxy.stop());
+  const {host} = new URL(proxy.url);
+  for (const target of [
+    "/metrics",
+    "/metrics?a=b",
+    `http://${host}/metrics`,
+    "/%6detrics",
+    "/x/../metrics",
+  ])
+    for (const method of ["GET", "HEAD"]) {
+      const request = `${method} ${target} HTTP/1.1\r\nHost: ${host}\r\nConnection: close\r\n\r\n`;
+      const text = await exchange(proxy.url, request);
+      assert.match(text, /^HTTP\/1\.1 404 /, target);
+      assert.doesNotMatch(text, /vines_/, target);
+    }
+  assert.match(await (await fetch(`${service.url}/metrics`)).text(), /^vines_build_info/m);
+});
+
 test("a body is asked for only where it would be taken", async () => {
   const expect = (length, path = "/v1/simulate") =>
     `POST ${path} HTTP/1.1\r\nHost: localhost\r\nExpect: 100-continue\r\nContent-Length: ${length}\r\n\r\n`;

@@ -1,0 +1,264 @@
+// What deploy/ holds is what its readers take: Kubernetes, HAProxy, Prometheus, Compose, systemd,
+// and the program itself.
+import assert from "node:assert/strict";
+import {execFile, spawnSync} from "node:child_process";
+import {access, mkdtemp, readdir, readFile, rm, writeFile} from "node:fs/promises";
+import {createRequire} from "node:module";
+import {tmpdir} from "node:os";
+import {delimiter, join} from "node:path";
+import {before, test} from "node:test";
+import {fileURLToPath} from "node:url";
+import {program, startService} from "../service.mjs";
+
+const root = fileURLToPath(new URL("../../", import.meta.url));
+const require = createRequire(join(root, "web/package.json"));
+const {parse, parseAllDocuments} = require("yaml");
+
+/** Runs a program to its end: its exit code and what it wrote. */
+const run = (file, args, env = {}) =>
+  new Promise((resolve) => {
+    execFile(file, args, {cwd: root, env: {...process.env, ...env}}, (error, stdout, stderr) =>
+      resolve({code: error ? error.code : 0, text: stdout + stderr}),
+    );
+  });
+
+const texts = {};
+let compose;
+before(async () => {
+  for (const name of await readdir(join(root, "deploy")))
+    texts[name] = await readFile(join(root, "deploy", name), "utf8");
+  texts.Dockerfile = await readFile(join(root, "Dockerfile"), "utf8");
+  compose = parse(texts["compose.yaml"], {merge: true});
+});
+
+// Kubernetes.
+
+const kubernetes = () =>
+  Object.entries(texts)
+    .filter(([name]) => name.startsWith("kubernetes-"))
+    .flatMap(([, text]) => parseAllDocuments(text).map((document) => document.toJS()));
+
+/** The value, and the paths in it that nobody has looked at yet. */
+function watched(value, path = "") {
+  if (value === null || typeof value !== "object") return [value, () => []];
+  const seen = new Set();
+  const parts = Object.entries(value).map(([key, part]) => [key, watched(part, `${path}/${key}`)]);
+  const copy = Array.isArray(value) ? [] : {};
+  for (const [key, [part]] of parts) copy[key] = part;
+  const get = (target, key) => {
+    seen.add(key);
+    return target[key];
+  };
+  const unseen = () =>
+    parts.flatMap(([key, [, below]]) => (seen.has(key) ? below() : [`${path}/${key}`]));
+  return [new Proxy(copy, {get}), unseen];
+}
+
+/**
+ * Throws where a resource is not as the published schema of its kind. They allow keys that they do
+ * not know, which a cluster would drop: so they are told by that the schema never looks at them.
+ */
+function validate(resource) {
+  const {[resource.kind]: Kind} = require(`kubernetes-models/${resource.apiVersion}`);
+  const [value, unseen] = watched(resource);
+  Kind.prototype.validate.call(value);
+  assert.deepEqual(unseen(), [], `keys that a ${resource.kind} does not have`);
+}
+
+test("every Kubernetes resource is as the published schema of its kind", () => {
+  const resources = kubernetes();
+  assert.ok(resources.length >= 8);
+  for (const resource of resources) validate(resource);
+});
+
+test("a resource with a wrong type, an unknown key or without a required one is refused", () => {
+  const faults = {
+    type: (spec) => {
+      spec.template.spec.terminationGracePeriodSeconds = "40";
+    },
+    choice: (spec) => {
+      spec.template.spec.containers[0].imagePullPolicy = "Maybe";
+    },
+    quantity: (spec) => {
+      spec.template.spec.containers[0].resources.limits.memory = "1 GB";
+    },
+    unknown: (spec) => {
+      spec.template.spec.containers[0].readynessProbe = {};
+    },
+    missing: (spec) => {
+      delete spec.selector;
+    },
+  };
+  const [deployment] = kubernetes().filter(({kind}) => kind === "Deployment");
+  for (const [name, spoil] of Object.entries(faults)) {
+    const copy = structuredClone(deployment);
+    spoil(copy.spec);
+    assert.throws(() => validate(copy), name);
+  }
+});
+
+// The program.
+
+/** By subcommand: the flags and the variables that its help names. */
+async function known() {
+  const names = new Map();
+  for (const subcommand of ["serve", "healthcheck", "sweep", "merge"]) {
+    const {text} = await run(program, [subcommand, "--help"]);
+    names.set(subcommand, new Set(text.match(/--[a-z][a-z-]*|VINES_[A-Z_]+/g)));
+  }
+  return names;
+}
+
+/** The command lines of the program in a file: subcommand and the rest. */
+function commands(text) {
+  const shell = text.replace(/\\\n/g, " ");
+  const written = shell.matchAll(
+    /(?:"\$VINES"|\/vines|\bvines)"?,? "?(serve|healthcheck|sweep|merge)\b([^\n|]*)/g,
+  );
+  const listed = text.matchAll(/args: \["(serve|healthcheck|sweep|merge)"([^\]]*)\]/g);
+  return [...written, ...listed];
+}
+
+/** Lines with flags of other programs. */
+const others = /sbatch|parallel|kubectl|docker|cmake|systemctl/i;
+
+test("every flag and variable that a file uses is one of the program, or its own", async () => {
+  const names = await known();
+  const all = new Set([...names.values()].flatMap((set) => [...set]));
+  for (const name of texts["haproxy.cfg"].match(/(?<=presetenv )\w+/g)) all.add(name);
+  for (const name of texts.Dockerfile.match(/(?<=ARG )\w+/g)) all.add(name);
+  let flags = 0;
+  for (const [file, text] of Object.entries(texts)) {
+    for (const variable of text.match(/\bVINES_\w+/g) ?? [])
+      assert.ok(all.has(variable), `${variable} of ${file}`);
+    if (file !== "Dockerfile")
+      for (const line of text.split("\n").filter((text) => !others.test(text)))
+        for (const flag of line.match(/--[a-z][a-z-]*/g) ?? [])
+          assert.ok(all.has(flag), `${flag} of ${file}`);
+    for (const [, subcommand, rest] of commands(text))
+      for (const flag of rest.match(/--[a-z][a-z-]*/g) ?? []) {
+        assert.ok(names.get(subcommand).has(flag), `${flag} of ${subcommand} in ${file}`);
+        ++flags;
+      }
+  }
+  assert.ok(flags >= 10, `${flags} flags were found`);
+});
+
+test("each way to stop leaves the time that the service takes for its end", async () => {
+  const source = await readFile(join(root, "src/http/serve.cpp"), "utf8");
+  const [work, last] = [...source.matchAll(/_time = std::chrono::seconds\((\d+)\)/g)];
+  const end = Number(work[1]) + Number(last[1]) + 0.3;
+  const inTime = (what, grace, drain) =>
+    assert.ok(grace > drain + end, `${what}: ${grace} s for ${drain} + ${end} s`);
+  for (const [name, service] of Object.entries(compose.services))
+    if (service.image === "vines") {
+      const {stop_grace_period, environment} = service;
+      inTime(name, Number.parseInt(stop_grace_period, 10), Number(environment.VINES_DRAIN));
+    }
+  const {spec} = kubernetes().find(({kind}) => kind === "Deployment").spec.template;
+  const drain = spec.containers[0].env.find(({name}) => name === "VINES_DRAIN").value;
+  inTime("Deployment", spec.terminationGracePeriodSeconds, Number(drain));
+  const unit = texts["vines.service"];
+  inTime(
+    "unit",
+    Number(unit.match(/TimeoutStopSec=(\d+)/)[1]),
+    Number(unit.match(/up to (\d+) s/)[1]),
+  );
+});
+
+// Compose.
+
+test("each container of the compose set is as closed, and as bounded, as it can be", async () => {
+  for (const [name, service] of Object.entries(compose.services)) {
+    assert.equal(service.read_only, true, name);
+    assert.deepEqual(service.cap_drop, ["ALL"], name);
+    assert.deepEqual(service.security_opt, ["no-new-privileges:true"], name);
+    assert.equal(service.restart, "unless-stopped", name);
+    for (const bound of ["cpus", "mem_limit", "stop_grace_period"])
+      assert.ok(service[bound], `${bound} of ${name}`);
+    assert.ok(service.build || service.healthcheck, `${name}: the image's own check, or one here`);
+    for (const volume of service.volumes ?? [])
+      if (volume.startsWith("./")) await access(join(root, "deploy", volume.split(":")[0]));
+  }
+  assert.match(texts.Dockerfile, /^HEALTHCHECK /m);
+});
+
+test("of the compose set the proxy alone is reached from outside", () => {
+  const published = Object.entries(compose.services).filter(([, service]) => service.ports);
+  assert.deepEqual(Object.fromEntries(published.map(([name, {ports}]) => [name, ports])), {
+    proxy: ["8080:8080"],
+    prometheus: ["127.0.0.1:9090:9090"],
+  });
+});
+
+test("the proxy and Prometheus know every replica, and each computes on its own cores", () => {
+  const replicas = Object.entries(compose.services).filter(([, {image}]) => image === "vines");
+  const addresses = replicas.map(([name]) => `${name}:8080`);
+  assert.deepEqual(Object.values(compose.services.proxy.environment), addresses);
+  const [job] = parse(texts["prometheus.yml"]).scrape_configs;
+  assert.deepEqual(job.static_configs, [{targets: addresses}]);
+  for (const [name, {environment, cpus}] of replicas)
+    assert.equal(Number(environment.VINES_COMPUTE_THREADS), cpus, name);
+});
+
+// HAProxy, Prometheus, systemd.
+
+test("HAProxy takes its file, with addresses and with names that are not known yet", async () => {
+  for (const env of [{}, compose.services.proxy.environment]) {
+    const {code, text} = await run("haproxy", ["-c", "-f", "deploy/haproxy.cfg"], env);
+    assert.equal(code, 0, text);
+  }
+});
+
+/** promtool of the PATH, or the one that scripts/setup fetches. */
+const promtool = (args) =>
+  run("promtool", args, {
+    PATH: [process.env.PATH, join(root, "build/tools")].join(delimiter),
+  });
+
+test("Prometheus takes its files, and each alert is raised by what it is for", async () => {
+  for (const args of [
+    ["check", "config", "deploy/prometheus.yml"],
+    ["check", "rules", "deploy/alerts.yml"],
+    ["test", "rules", "tests/deploy/alerts.test.yml"],
+  ]) {
+    const {code, text} = await promtool(args);
+    assert.equal(code, 0, `${args.join(" ")}: ${text}`);
+  }
+});
+
+test("every metric that an alert asks for is one of the service", async () => {
+  const service = await startService();
+  await (await fetch(`${service.url}/v1/simulate?tau_end=20`)).text();
+  const text = await (await fetch(`${service.url}/metrics`)).text();
+  await service.stop();
+  const served = new Set([...text.matchAll(/^\w+/gm)].map(([name]) => name));
+  const rules = parse(texts["alerts.yml"]).groups.flatMap((group) => group.rules);
+  const names = rules.flatMap(({expr}) => expr.match(/\b(?:vines|process)_\w+/g) ?? []);
+  assert.ok(names.length >= 5);
+  for (const name of names) assert.ok(served.has(name), name);
+});
+
+const exposure = 1.5;
+const analyze = spawnSync("systemd-analyze", ["--version"]).error
+  ? {skip: "there is no systemd-analyze (Debian's systemd)"}
+  : {};
+
+test(
+  `systemd takes the unit, and finds it exposed by less than ${exposure} of 10`,
+  analyze,
+  async (t) => {
+    const folder = await mkdtemp(join(tmpdir(), "vines-unit-"));
+    t.after(() => rm(folder, {recursive: true}));
+    const unit = join(folder, "vines.service");
+    // It looks whether the program is there.
+    await writeFile(unit, texts["vines.service"].replace("/usr/bin/vines", program));
+    assert.deepEqual(await run("systemd-analyze", ["verify", "--man=no", unit]), {
+      code: 0,
+      text: "",
+    });
+    const {text} = await run("systemd-analyze", ["security", "--offline=true", unit]);
+    const level = Number(text.match(/Overall exposure level .*: ([\d.]+)/)[1]);
+    assert.ok(level < exposure, text);
+  },
+);
