@@ -1,6 +1,6 @@
 #include "api/version.hpp"
 
-#include "commit.hpp"  // made by commit.cmake
+#include "api/commit.hpp"  // made by commit.cmake
 
 namespace vines::api {
 

@@ -1,6 +1,6 @@
 // `vines identify`: a measurement as CSV or JSON.
 #include "api/identify.hpp"
-#include "api/answer_form.hpp"
+#include "api/format/answer_form.hpp"
 #include "api/parse_object.hpp"
 
 #include <memory>

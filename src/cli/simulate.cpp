@@ -1,8 +1,7 @@
 // `vines simulate`: one run, without the service's deadline and limits.
 #include "api/simulate.hpp"
-#include "api/answer_form.hpp"
+#include "api/format/answer_form.hpp"
 #include "api/parse_object.hpp"
-#include "api/schema/tables.hpp"
 
 #include <memory>
 #include <utility>

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "api/answer_form.hpp"
+#include "api/format/answer_form.hpp"
 #include "api/identify.hpp"
 #include "api/parse_object.hpp"
 #include "api/version.hpp"
@@ -71,6 +71,10 @@ std::string tag_of(const Request& r, const Asked& asked, std::size_t answer_limi
         asked.fields.dump(), Json(form.fields).dump(), api::name_of(asked.format).word));
 }
 
+bool is_known(const Request& r, const std::string& tag) {
+    return !tag.empty() && names_tag(r.known_tags, tag);
+}
+
 /// Problem 413 beyond the limit.
 Response encoded_response(Json answer, const Asked& asked, std::size_t limit, Stopwatch& watch) {
     watch.lap("solve");
@@ -98,7 +102,7 @@ Response simulate(const Request& r, const Service& service, Stopwatch& watch) {
     const Asked asked = vines::http::asked(r, api::simulate_fields());
     const std::string tag = tag_of(r, asked, options.answer_limit);
     api::SimulateRequest request = api::read_simulate_request(asked.fields);
-    if (!tag.empty() && names_tag(r.known_tags, tag)) return {.status = 304, .tag = tag};
+    if (is_known(r, tag)) return {.status = 304, .tag = tag};
     watch.lap("parse");
     const api::Stop stop = end_of_work(options.deadline, r, service.gate);
     // Only text is written while its lists are made.
@@ -121,11 +125,15 @@ Response simulate(const Request& r, const Service& service, Stopwatch& watch) {
 Response manifold(const Request& r, const Service& service, Stopwatch& watch) {
     const ComputeGate::Place place = place_in(service.gate, r, watch);
     const Asked asked = vines::http::asked(r, api::manifold_fields());
+    const std::string tag = tag_of(r, asked, service.options.answer_limit);
     const api::ManifoldRequest request = api::read_manifold_request(asked.fields);
+    if (is_known(r, tag)) return {.status = 304, .tag = tag};
     watch.lap("parse");
-    return encoded_response(
-        api::manifold_answer(request, end_of_work(service.options.deadline, r, service.gate)),
-        asked, service.options.answer_limit, watch);
+    const api::Stop stop = end_of_work(service.options.deadline, r, service.gate);
+    Response response = encoded_response(
+        api::manifold_answer(request, stop), asked, service.options.answer_limit, watch);
+    if (!stop.asked()) response.tag = tag;  // another time it may get further
+    return response;
 }
 
 Response sweep(const Request& r, const Service& service, Stopwatch& watch) {

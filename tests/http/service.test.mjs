@@ -265,9 +265,9 @@ test("the OpenAPI document names every route and every field", async () => {
       assert.ok(status === 200 || (hasRequired && status === 422), `${method} ${path}: ${status}`);
     }
   }
-  const {fields} = await getJson("/v1/parameters");
+  const {fields, form_fields: form} = await getJson("/v1/parameters");
   const {properties} = document.components.schemas.SimulateRequest;
-  const names = fields.map((f) => f.name);
+  const names = [...fields, ...form].map((f) => f.name);
   assert.deepEqual(Object.keys(properties), names);
   for (const [reference] of JSON.stringify(document).matchAll(/#\/components\/schemas\/(\w+)/g))
     assert.ok(reference.split("/").at(-1) in document.components.schemas);

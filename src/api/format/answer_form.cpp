@@ -1,4 +1,4 @@
-#include "api/answer_form.hpp"
+#include "api/format/answer_form.hpp"
 
 #include <algorithm>
 #include <array>
