@@ -30,10 +30,11 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     // In the order of --help.
     const std::vector<vines::Command> commands = {
-        vines::http::add_serve(app),   vines::http::add_healthcheck(app),
-        vines::cli::add_simulate(app), vines::cli::add_identify(app),
-        vines::cli::add_sweep(app),    vines::cli::add_merge(app),
-        vines::cli::add_openapi(app),  vines::report::add_reproduce(app)};
+        vines::http::add_serve(app),      vines::http::add_healthcheck(app),
+        vines::cli::add_simulate(app),    vines::cli::add_identify(app),
+        vines::cli::add_sweep(app),       vines::cli::add_merge(app),
+        vines::cli::add_verify(app),      vines::cli::add_openapi(app),
+        vines::report::add_reproduce(app)};
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& asked) {  // --help, --version

@@ -177,10 +177,11 @@ void write_answer(
     SimulateAnswer answer, Pace& pace, const JsonText::Take& take, std::size_t list_bytes) {
     std::optional<ImpactLists> lists;
     if (answer.run) lists.emplace(*answer.run, answer.json, pace, list_bytes);
-    JsonText text(take, lists ? &*lists : nullptr);
+    Seal seal(answer.provenance, take);
+    JsonText text([&seal](std::string_view piece) { seal.add(piece); }, lists ? &*lists : nullptr);
     text.write(answer.json);
     text.end();
-    take("\n");
+    seal.end();
 }
 
 Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes) {

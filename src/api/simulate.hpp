@@ -5,6 +5,7 @@
 
 #include "api/answer_size.hpp"
 #include "api/impact_columns.hpp"
+#include "api/provenance.hpp"
 
 namespace vines::api {
 
@@ -26,6 +27,7 @@ struct SimulateAnswer {
     Json json;
     std::optional<ListedRun> run;
     long impacts = 0;  ///< of the run, told or not
+    std::optional<Provenance> provenance = {};
 };
 
 // So many impacts, their columns in both units and the text of these take 45 MB.
@@ -39,8 +41,9 @@ SimulateAnswer simulate_in_parts(
     SimulateRequest request, const Stop& stop, std::size_t most_bytes = any_size,
     std::size_t most_kept = most_kept_impacts);
 
-/// Writes its text, a line, in pieces. Lists to come are made while it is written, as many at a
-/// time as fit into `list_bytes`, by runs at `pace`. Throws BrokenOff where that stops one.
+/// Writes its text, a line, in pieces, sealed where there is a provenance. Lists to come are made
+/// while it is written, as many at a time as fit into `list_bytes`, by runs at `pace`. Throws
+/// BrokenOff where that stops one.
 void write_answer(
     SimulateAnswer answer, Pace& pace, const JsonText::Take& take,
     std::size_t list_bytes = most_listed_bytes);

@@ -50,6 +50,7 @@ Json sweep_start(const SweepRequest& r) {
     return {
         {"type", "start"},
         {"version", version()},
+        {"commit", commit()},
         {"points", r.plan.grid.lines()},
         {"cycles",
          static_cast<double>(r.plan.runs_of_all()) * (options.cycles + options.transient_cycles)},

@@ -18,6 +18,9 @@ Command add_sweep(CLI::App& app);
 /// Puts the files of all shards together: byte for byte the file of the whole sweep.
 Command add_merge(CLI::App& app);
 
+/// Recomputes an answer and compares.
+Command add_verify(CLI::App& app);
+
 /// Writes the OpenAPI document.
 Command add_openapi(CLI::App& app);
 

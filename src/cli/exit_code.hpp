@@ -11,6 +11,7 @@ namespace vines::cli {
 /// together.
 enum ExitCode : int {
     complete = 0,
+    differs = 1,    ///< of verify: it is not what was answered
     refused = 2,    ///< the request is at fault: a problem document on stderr says where
     incomplete = 3  ///< stopped by a signal, or points are missing: what is there is usable
 };

@@ -30,6 +30,11 @@ void add_files(CLI::App& command, Files& files) {
 
 bool is_standard(const std::string& path) { return path.empty() || path == "-"; }
 
+bool is_json(const std::string& text) {
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    return first != std::string::npos && text[first] == '{';
+}
+
 std::string read_all(const std::string& path) {
     if (!is_standard(path)) return read_file(path);
     std::ostringstream text;

@@ -21,6 +21,9 @@ bool is_standard(const std::string& path);
 std::string read_all(const std::string& path);
 std::string read_file(const std::string& path);
 
+/// Whether a text is JSON rather than a file of columns.
+bool is_json(const std::string& text);
+
 /// A text on its way to a file or stdout. A file is replaced at its end, at once: another one sees
 /// the old text or the new. All throw std::runtime_error with the reason.
 class Output {

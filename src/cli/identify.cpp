@@ -27,22 +27,23 @@ struct IdentifyOptions {
 struct Asked {
     api::IdentifyRequest request;
     api::AnswerForm form;
+    api::Provenance provenance;
 };
 
 Asked read_request(const std::string& text, const std::string& query) {
     const api::FieldTable& table = api::identify_fields();
-    const std::size_t first = text.find_first_not_of(" \t\r\n");
-    const bool is_json = first != std::string::npos && text[first] == '{';
     api::Json fields =
-        is_json ? api::parse_object(text) : api::from_query(table, api::parse_query(query));
+        is_json(text) ? api::parse_object(text) : api::from_query(table, api::parse_query(query));
+    api::Provenance provenance = api::identify_provenance(fields, text);
     api::AnswerForm form = api::take_form(fields, table);
     return {
-        is_json ? api::read_identify_request(fields) : api::read_identify_request(fields, text),
-        std::move(form)};
+        is_json(text) ? api::read_identify_request(fields)
+                      : api::read_identify_request(fields, text),
+        std::move(form), std::move(provenance)};
 }
 
 int identify(const IdentifyOptions& o) {
-    const auto [request, form] = read_request(read_all(o.files.input), o.query);
+    const auto [request, form, provenance] = read_request(read_all(o.files.input), o.query);
     std::optional<StageLine> line(std::in_place);
     const IdentificationWatch watch{
         .stop = stopped, .reached = [&line](IdentificationStage stage, int round) {
@@ -52,7 +53,7 @@ int identify(const IdentifyOptions& o) {
     try {
         api::Json told = api::identify_answer(request, watch);
         api::thin(told, form.fields);
-        answer = api::encoded(std::move(told), form.format.value_or(api::Format::json));
+        answer = api::encoded(std::move(told), form.format.value_or(api::Format::json), provenance);
     } catch (const api::Problem& problem) {
         line.reset();
         if (!stopped()) throw;

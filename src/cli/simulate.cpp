@@ -17,6 +17,7 @@ namespace {
 
 int simulate(const Files& files) {
     api::Json fields = api::parse_object(read_all(files.input));
+    const api::Provenance provenance{.route = "/v1/simulate", .request = api::canonical(fields)};
     const api::AnswerForm form = api::take_form(fields, api::simulate_fields());
     const api::SimulateRequest request = api::read_simulate_request(fields);
     const api::Stop stop{
@@ -28,9 +29,10 @@ int simulate(const Files& files) {
     const int code = stopped() ? incomplete : complete;
     api::thin(answer.json, form.fields);
     if (!is_json) {
-        write_all(files.output, api::encoded(std::move(answer.json), format));
+        write_all(files.output, api::encoded(std::move(answer.json), format, provenance));
         return code;
     }
+    answer.provenance = provenance;
     Output out(files.output);
     Pace pace;  // a signal that comes now lets the answer be written
     api::write_answer(

@@ -10,7 +10,6 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <thread>
 
 #include "api/json_text.hpp"
 #include "cli/commands.hpp"
@@ -18,7 +17,7 @@
 #include "cli/files.hpp"
 #include "cli/progress_bar.hpp"
 #include "cli/shard.hpp"
-#include "cli/stop_signals.hpp"
+#include "cli/signal_pace.hpp"
 #include "cli/sweep_file.hpp"
 #include "program/tell.hpp"
 #include "program/within.hpp"
@@ -36,11 +35,6 @@ struct SweepOptions {
     std::string shard;    ///< as read_shard() takes it
     int shards = 0;       ///< N for "auto" where the environment has only i
     int threads = 0;      ///< 0: the cores
-};
-
-class SignalPace : public api::Pace {
-public:
-    bool stop_or_yield() override { return stopped(); }
 };
 
 /// The points wanted: those of the shard.
@@ -78,9 +72,8 @@ std::string compute(
     }
     ProgressBar bar(of - request.plan.lines.size(), of);
     SignalPace pace;
-    const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     return api::run_sweep(
-        request, o.threads > 0 ? o.threads : cores, pace,
+        request, o.threads > 0 ? o.threads : cores(), pace,
         [&](std::size_t index, const std::string& line) {
             if (out) out->line(line);
             file.points[index] = line;

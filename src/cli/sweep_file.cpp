@@ -16,6 +16,11 @@ std::string type_of(const api::Json& line) {
     return typed ? line["type"].get<std::string>() : "";
 }
 
+/// Of a line that tells nothing of a point.
+bool is_between_points(const std::string& type) {
+    return type == "done" || type == "progress" || type == "warning" || type == "error";
+}
+
 }  // namespace
 
 std::string SweepFile::lines() const {
@@ -27,7 +32,10 @@ std::string SweepFile::lines() const {
 std::string SweepFile::text() const { return lines() + api::done_line(points.size()); }
 
 SweepFile read_sweep_file(const std::string& path) {
-    const std::string text = read_file(path);
+    return parse_sweep_file(read_file(path), path);
+}
+
+SweepFile parse_sweep_file(const std::string& text, const std::string& name) {
     SweepFile file;
     long number = 0;
     for (std::size_t from = 0, end; (end = text.find('\n', from)) != std::string::npos;
@@ -41,9 +49,9 @@ SweepFile read_sweep_file(const std::string& path) {
             number > 1 && type == "point" && json.contains("index") &&
             json["index"].is_number_unsigned())
             file.points[json["index"].get<std::size_t>()] = line;
-        else if (number == 1 || type != "done")
+        else if (number == 1 || !is_between_points(type))
             throw std::runtime_error(
-                fmt::format("{}, line {}: not a line of a sweep", path, number));
+                fmt::format("{}, line {}: not a line of a sweep", name, number));
     }
     return file;
 }

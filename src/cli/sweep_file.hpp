@@ -21,5 +21,8 @@ struct SweepFile {
 /// Reads what is there; a last line that was cut off is left out. Throws std::runtime_error where
 /// it cannot be read or is no such file.
 SweepFile read_sweep_file(const std::string& path);
+/// The same of a text, by its name in messages. Of a stream of the service all lines but those of
+/// points are left out.
+SweepFile parse_sweep_file(const std::string& text, const std::string& name);
 
 }  // namespace vines::cli

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "api/format/answer_form.hpp"
@@ -25,11 +26,15 @@ using api::Problem;
 // From this size on an answer's memory is given back to the system at once.
 constexpr std::size_t large = 16 << 20;
 
+// Bytes, beside the request that it holds.
+constexpr std::size_t most_provenance = 512;
+
 /// What a request asks for, and how it wants to be told.
 struct Asked {
     Json fields;
     api::AnswerForm form;
     api::Format format;
+    api::Provenance provenance;
 };
 
 /// A place to compute in, once it is free, or Problem 503.
@@ -49,26 +54,33 @@ Json body_of(const Request& r) {
     return api::parse_object(r.body);
 }
 
-Asked asked(const Request& r, const api::FieldTable& table, Json fields) {
-    Asked asked{.fields = std::move(fields), .form = {}, .format = {}};
+Asked asked(
+    const Request& r, const api::FieldTable& table, Json fields, api::Provenance provenance,
+    const RouteOptions& options) {
+    Asked asked{
+        .fields = std::move(fields), .form = {}, .format = {}, .provenance = std::move(provenance)};
     asked.form = api::take_form(asked.fields, table);
     asked.format = asked.form.format ? *asked.form.format : accepted_format(r.accept);
+    // What is told of the request comes to the answer.
+    const std::size_t told = asked.provenance.request.dump().size() + most_provenance;
+    asked.provenance.answer_limit = options.answer_limit - std::min(options.answer_limit, told);
     return asked;
 }
 
 /// Of a GET or a POST.
-Asked asked(const Request& r, const api::FieldTable& table) {
-    return asked(r, table, r.method == "POST" ? body_of(r) : api::from_query(table, r.query));
+Asked asked(const Request& r, const api::FieldTable& table, const RouteOptions& options) {
+    Json fields = r.method == "POST" ? body_of(r) : api::from_query(table, r.query);
+    api::Provenance provenance{.route = r.path, .request = api::canonical(fields)};
+    return asked(r, table, std::move(fields), std::move(provenance), options);
 }
 
 /// The same requests to the same build, with the same limit of its answers, have the same answer.
 /// Only what is read can be known already: a POST has no tag.
-std::string tag_of(const Request& r, const Asked& asked, std::size_t answer_limit) {
+std::string tag_of(const Request& r, const Asked& asked) {
     if (r.method == "POST") return {};
-    const api::AnswerForm& form = asked.form;
     return entity_tag(fmt::format(
-        "{} {} {} {} {} {} {}", r.path, api::version(), api::commit(), answer_limit,
-        asked.fields.dump(), Json(form.fields).dump(), api::name_of(asked.format).word));
+        "{} {} {}", api::version(), api::name_of(asked.format).word,
+        api::describe(asked.provenance, nullptr).dump()));
 }
 
 bool is_known(const Request& r, const std::string& tag) {
@@ -79,7 +91,7 @@ bool is_known(const Request& r, const std::string& tag) {
 Response encoded_response(Json answer, const Asked& asked, std::size_t limit, Stopwatch& watch) {
     watch.lap("solve");
     api::thin(answer, asked.form.fields);
-    std::string bytes = api::encoded(std::move(answer), asked.format);
+    std::string bytes = api::encoded(std::move(answer), asked.format, asked.provenance);
     if (bytes.size() >= large) give_memory_back();
     if (bytes.size() > limit)
         throw Problem(
@@ -99,8 +111,8 @@ Response encoded_response(Json answer, const Asked& asked, std::size_t limit, St
 Response simulate(const Request& r, const Service& service, Stopwatch& watch) {
     const RouteOptions& options = service.options;
     const ComputeGate::Place place = place_in(service.gate, r, watch);
-    const Asked asked = vines::http::asked(r, api::simulate_fields());
-    const std::string tag = tag_of(r, asked, options.answer_limit);
+    const Asked asked = vines::http::asked(r, api::simulate_fields(), options);
+    const std::string tag = tag_of(r, asked);
     api::SimulateRequest request = api::read_simulate_request(asked.fields);
     if (is_known(r, tag)) return {.status = 304, .tag = tag};
     watch.lap("parse");
@@ -109,11 +121,12 @@ Response simulate(const Request& r, const Service& service, Stopwatch& watch) {
     const std::size_t most_kept =
         asked.format == api::Format::json ? options.most_kept_impacts : everything;
     api::SimulateAnswer answer =
-        api::simulate_in_parts(std::move(request), stop, options.answer_limit, most_kept);
+        api::simulate_in_parts(std::move(request), stop, *asked.provenance.answer_limit, most_kept);
     service.metrics.count_simulation(answer.impacts);
     if (answer.run) {
         watch.lap("solve");
         api::thin(answer.json, asked.form.fields);
+        answer.provenance = asked.provenance;
         return stream_answer(std::move(answer), r.id, service.gate);
     }
     Response response =
@@ -124,8 +137,8 @@ Response simulate(const Request& r, const Service& service, Stopwatch& watch) {
 
 Response manifold(const Request& r, const Service& service, Stopwatch& watch) {
     const ComputeGate::Place place = place_in(service.gate, r, watch);
-    const Asked asked = vines::http::asked(r, api::manifold_fields());
-    const std::string tag = tag_of(r, asked, service.options.answer_limit);
+    const Asked asked = vines::http::asked(r, api::manifold_fields(), service.options);
+    const std::string tag = tag_of(r, asked);
     const api::ManifoldRequest request = api::read_manifold_request(asked.fields);
     if (is_known(r, tag)) return {.status = 304, .tag = tag};
     watch.lap("parse");
@@ -150,8 +163,10 @@ Response identify(const Request& r, const Service& service, Stopwatch& watch) {
     const api::FieldTable& table = api::identify_fields();
     const bool csv =
         r.content_type.starts_with("text/csv") || r.content_type.starts_with("text/plain");
+    Json fields = csv ? api::from_query(table, r.query) : body_of(r);
+    api::Provenance provenance = api::identify_provenance(fields, r.body);
     const Asked asked =
-        vines::http::asked(r, table, csv ? api::from_query(table, r.query) : body_of(r));
+        vines::http::asked(r, table, std::move(fields), std::move(provenance), service.options);
     const api::IdentifyRequest request = csv ? api::read_identify_request(asked.fields, r.body)
                                              : api::read_identify_request(asked.fields);
     watch.lap("parse");

@@ -2,22 +2,17 @@
 
 #include <utility>
 
-#include "api/json_text.hpp"
-
 namespace vines::api {
 
 const FormatName& name_of(Format format) {
     return format_names[static_cast<std::size_t>(format)];  // they stand in this order
 }
 
-std::string encoded(Json answer, Format format) {
-    switch (format) {
-        case Format::json: return json_text(std::move(answer)) + "\n";
-        case Format::csv: return csv_text(answer);
-        case Format::cbor: return cbor_bytes(std::move(answer));
-        case Format::npz: return npz_bytes(std::move(answer));
-    }
-    return {};
+std::string encoded(Json answer, Format format, const std::optional<Provenance>& provenance) {
+    if (format == Format::json) return sealed_text(std::move(answer), provenance);
+    if (format == Format::csv) return csv_text(answer);
+    if (provenance) answer["provenance"] = describe(*provenance, nullptr);
+    return format == Format::cbor ? cbor_bytes(std::move(answer)) : npz_bytes(std::move(answer));
 }
 
 }  // namespace vines::api

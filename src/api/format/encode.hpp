@@ -4,6 +4,7 @@
 #include <array>
 #include <string>
 
+#include "api/provenance.hpp"
 #include "api/schema/json.hpp"
 
 namespace vines::api {
@@ -23,8 +24,9 @@ inline constexpr std::array<FormatName, 4> format_names = {
      {Format::npz, "npz", "application/x-npz"}}};
 const FormatName& name_of(Format format);
 
-/// All lists are there. Problem 422 where the format cannot hold this answer.
-std::string encoded(Json answer, Format format);
+/// All lists are there. With its provenance, which has a sha256 in JSON alone, but for CSV. Problem
+/// 422 where the format cannot hold this answer.
+std::string encoded(Json answer, Format format, const std::optional<Provenance>& provenance);
 
 /// One table: lists of one length in one object, a column each; of four numbers or a matrix
 /// several, with the number of each behind its name. Null is an empty cell. Problem 422 where the

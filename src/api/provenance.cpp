@@ -1,0 +1,132 @@
+#include "api/provenance.hpp"
+
+#include <fmt/format.h>
+#include <openssl/evp.h>
+
+#include <array>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+#include "api/column.hpp"
+#include "api/json_text.hpp"
+#include "api/version.hpp"
+
+namespace vines::api {
+
+namespace {
+
+constexpr std::string_view before_provenance = ",\"provenance\":";
+
+/// SHA-256 of a text that comes in pieces.
+class Sha256 {
+public:
+    Sha256() {
+        if (!context_ || EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) != 1)
+            throw std::runtime_error("libcrypto: SHA-256");
+    }
+    void add(std::string_view text) {
+        if (EVP_DigestUpdate(context_.get(), text.data(), text.size()) != 1)
+            throw std::runtime_error("libcrypto: SHA-256");
+    }
+    std::string end() {
+        std::array<unsigned char, EVP_MAX_MD_SIZE> bytes;
+        unsigned int size = 0;
+        if (EVP_DigestFinal_ex(context_.get(), bytes.data(), &size) != 1)
+            throw std::runtime_error("libcrypto: SHA-256");
+        std::string digits;
+        for (unsigned int k = 0; k < size; ++k) digits += fmt::format("{:02x}", bytes[k]);
+        return digits;
+    }
+
+private:
+    std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context_{EVP_MD_CTX_new(), EVP_MD_CTX_free};
+};
+
+}  // namespace
+
+struct Seal::Hash : Sha256 {};
+
+Seal::Seal(const std::optional<Provenance>& provenance, Take take)
+    : provenance_(provenance),
+      take_(std::move(take)),
+      hash_(provenance ? std::make_unique<Hash>() : nullptr) {}
+
+Seal::~Seal() = default;
+
+void Seal::add(std::string_view piece) {
+    if (piece.empty()) return;
+    if (!hash_) return take_(piece);
+    hash_->add(piece);
+    if (holds_brace_) take_("}");
+    holds_brace_ = piece.back() == '}';
+    if (holds_brace_) piece.remove_suffix(1);
+    take_(piece);
+}
+
+void Seal::end() {
+    if (hash_) {
+        if (!holds_brace_) throw std::logic_error("no object is sealed");
+        take_(before_provenance);
+        take_(json_text(describe(*provenance_, hash_->end())));
+        take_("}");
+    }
+    take_("\n");
+}
+
+Json describe(const Provenance& p, const Json& sha256) {
+    Json described = {
+        {"route", p.route},
+        {"commit", commit()},
+        {"answer_limit", or_null(p.answer_limit)},
+        {"request", p.request}};
+    if (p.record) described["record_sha256"] = *p.record;
+    described["sha256"] = sha256;
+    return described;
+}
+
+Json canonical(const Json& request) {
+    if (request.is_array()) {
+        Json array = Json::array();
+        for (const Json& entry : request) array.push_back(canonical(entry));
+        return array;
+    }
+    if (!request.is_object()) return request;
+    std::map<std::string, Json> ordered;
+    for (const auto& [name, value] : request.items()) ordered[name] = canonical(value);
+    Json object = Json::object();
+    for (auto& [name, value] : ordered) object[name] = std::move(value);
+    return object;
+}
+
+std::string sha256(std::string_view text) {
+    Sha256 hash;
+    hash.add(text);
+    return hash.end();
+}
+
+std::string sealed_text(Json answer, const std::optional<Provenance>& provenance) {
+    std::string text = json_text(std::move(answer));
+    std::string sealed;
+    sealed.reserve(text.size() + 1024);
+    Seal seal(provenance, [&sealed](std::string_view piece) { sealed += piece; });
+    seal.add(text);
+    seal.end();
+    return sealed;
+}
+
+std::optional<Unsealed> unsealed(std::string_view sealed) {
+    const std::size_t at = sealed.rfind(before_provenance);
+    const std::size_t end = sealed.rfind('}');
+    if (at == std::string_view::npos || end == std::string_view::npos || end < at)
+        return std::nullopt;
+    const std::size_t from = at + before_provenance.size();
+    Json provenance = Json::parse(sealed.substr(from, end - from), nullptr, false);
+    const bool is_one = provenance.is_object() && provenance.contains("route") &&
+                        provenance["route"].is_string() && provenance.contains("request") &&
+                        provenance["request"].is_object() && provenance.contains("sha256");
+    if (!is_one) return std::nullopt;
+    return Unsealed{std::string(sealed.substr(0, at)) + "}", std::move(provenance)};
+}
+
+}  // namespace vines::api

@@ -1,0 +1,215 @@
+// `vines verify`: whether an answer is what this program answers, too.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "api/format/answer_form.hpp"
+#include "api/identify.hpp"
+#include "api/json_text.hpp"
+#include "api/parse_object.hpp"
+#include "api/simulate.hpp"
+#include "api/sweep.hpp"
+#include "api/version.hpp"
+#include "cli/commands.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/files.hpp"
+#include "cli/signal_pace.hpp"
+#include "cli/stop_signals.hpp"
+#include "cli/sweep_file.hpp"
+
+namespace vines::cli {
+
+namespace {
+
+using api::Json;
+
+struct VerifyOptions {
+    std::string answer, record;
+};
+
+void say(const std::string& line) { fmt::print("{}\n", line); }
+
+/// Where two answers first differ: "impacts.tau[3]: 1.0 became 2.0"; empty: nowhere.
+std::string difference(const Json& told, const Json& made, const std::string& path) {
+    const auto below = [&path](const std::string& name) {
+        return path.empty() ? name : path + "." + name;
+    };
+    if (told.is_object() && made.is_object()) {
+        for (const auto& [name, value] : told.items()) {
+            if (!made.contains(name)) return below(name) + " is no more";
+            if (std::string found = difference(value, made[name], below(name)); !found.empty())
+                return found;
+        }
+        for (const auto& [name, value] : made.items())
+            if (!told.contains(name)) return below(name) + " is new";
+        return {};
+    }
+    if (told.is_array() && made.is_array()) {
+        for (std::size_t k = 0; k < std::min(told.size(), made.size()); ++k)
+            if (std::string found =
+                    difference(told[k], made[k], fmt::format("{}[{}]", path, k));
+                !found.empty())
+                return found;
+        if (told.size() == made.size()) return {};
+        return fmt::format("{} has {} entries in place of {}", path, made.size(), told.size());
+    }
+    return told == made ? std::string()
+                        : fmt::format("{}: {} became {}", path, told.dump(), made.dump());
+}
+
+/// Ends with 1 where an answer is another one than it says.
+int compared(const std::string& told, const std::string& made) {
+    if (told == made) {
+        say(fmt::format("recomputed: the same {} bytes", made.size()));
+        return complete;
+    }
+    const std::string where =
+        difference(Json::parse(told, nullptr, false), Json::parse(made, nullptr, false), "");
+    say("recomputed: " + (where.empty() ? "the same numbers, written in another way" : where));
+    return differs;
+}
+
+std::string text_of(api::SimulateAnswer answer) {
+    std::string text;
+    Pace pace;
+    api::write_answer(std::move(answer), pace, [&text](std::string_view piece) { text += piece; });
+    text.pop_back();  // the line's end
+    return text;
+}
+
+/// With what was measured, as it was sent: a file of columns, or JSON.
+api::IdentifyRequest identification(Json fields, const std::string& sent) {
+    if (!is_json(sent)) return api::read_identify_request(fields, sent);
+    const Json whole = api::parse_object(sent);
+    for (const char* name : {"record", "impacts"})
+        if (whole.contains(name)) fields[name] = whole[name];
+    return api::read_identify_request(fields);
+}
+
+/// The same request's answer, without provenance. Throws Problem where it has none.
+std::string recomputed(const api::Provenance& p, const std::string& record) {
+    Json fields = p.request;
+    const auto form_of = [&fields](const api::FieldTable& table) {
+        return api::take_form(fields, table);
+    };
+    if (p.route == "/v1/simulate") {
+        const api::AnswerForm form = form_of(api::simulate_fields());
+        api::SimulateAnswer answer = api::simulate_in_parts(
+            api::read_simulate_request(fields), {.asked = stopped},
+            p.answer_limit.value_or(api::any_size));
+        api::thin(answer.json, form.fields);
+        return text_of(std::move(answer));
+    }
+    Json answer;
+    api::AnswerForm form;
+    if (p.route == "/v1/manifold") {
+        form = form_of(api::manifold_fields());
+        answer = api::manifold_answer(api::read_manifold_request(fields), {.asked = stopped});
+    } else if (p.route == "/v1/identify") {
+        form = form_of(api::identify_fields());
+        answer = api::identify_answer(identification(fields, record), {.stop = stopped});
+    } else {
+        throw api::Problem(422, "no answer of this program has the route " + p.route);
+    }
+    api::thin(answer, form.fields);
+    return api::json_text(std::move(answer));
+}
+
+/// Whether it ended before its end, so that another time it may get further.
+bool was_ended(const Json& answer) {
+    const std::string reason = answer.value("/status/reason"_json_pointer, "");
+    return reason == "deadline" || reason == "interrupted";
+}
+
+std::string build_of(const std::string& version, const std::string& commit) {
+    return commit.empty() ? version : version + " (" + commit + ")";
+}
+
+void say_builds(const std::string& version, const std::string& commit) {
+    say(fmt::format(
+        "answered by {}, recomputed by {}", build_of(version, commit),
+        build_of(api::version(), api::commit())));
+}
+
+int verify_answer(const api::Unsealed& told, const VerifyOptions& o) {
+    const Json answer = Json::parse(told.text, nullptr, false);
+    const Json& p = told.provenance;
+    say_builds(answer.value("version", ""), p.value("commit", ""));
+    const bool untouched = p["sha256"] == api::sha256(told.text);
+    say(untouched ? "sha256: as told" : "sha256: the answer was changed");
+    std::string record;
+    if (p.contains("record_sha256")) {
+        if (o.record.empty())
+            throw api::Problem(422, "what was measured is not in the answer: name its file by --record");
+        record = read_file(o.record);
+        if (p["record_sha256"] != api::sha256(record))
+            say("record: another file than the one that was sent");
+    }
+    if (was_ended(answer)) {
+        say("not decided: the run was ended before its end, by a time limit or a signal");
+        return incomplete;
+    }
+    const Json& limit = p["answer_limit"];
+    api::Provenance provenance{.route = p["route"], .request = p["request"]};
+    if (limit.is_number_unsigned()) provenance.answer_limit = limit.get<std::size_t>();
+    const int code = compared(told.text, recomputed(provenance, record));
+    if (stopped()) return incomplete;
+    return untouched ? code : differs;
+}
+
+/// The points that a file has, whatever is missing.
+int verify_sweep(const SweepFile& file) {
+    const Json start = Json::parse(file.start);
+    say_builds(start.value("version", ""), start.value("commit", ""));
+    api::SweepRequest request =
+        api::read_sweep_request(start["request"], std::numeric_limits<std::size_t>::max());
+    request.plan.lines.clear();
+    for (const auto& [index, line] : file.points) request.plan.lines.push_back(index);
+    std::optional<std::string> first;
+    std::size_t same = 0, all = 0;
+    SignalPace pace;
+    api::run_sweep(request, cores(), pace, [&](std::size_t index, const std::string& made) {
+        const std::string& told = file.points.at(index);
+        ++all;
+        same += told == made;
+        if (told != made && !first)
+            first = fmt::format(
+                "point {}: {}", index,
+                difference(
+                    Json::parse(told, nullptr, false), Json::parse(made, nullptr, false), ""));
+    });
+    say(fmt::format("recomputed: {} of {} points are the same", same, file.points.size()));
+    if (first) say(*first);
+    if (all < file.points.size()) return incomplete;
+    return first ? differs : complete;
+}
+
+int verify(const VerifyOptions& o) {
+    const std::string text = read_all(o.answer);
+    if (text.starts_with("{\"type\":\"start\"")) return verify_sweep(parse_sweep_file(text, o.answer));
+    const std::optional<api::Unsealed> told = api::unsealed(text);
+    if (!told)
+        throw api::Problem(
+            422, "there is no provenance at the end of this answer: it is none of this program's, or "
+                 "not as it was answered, in JSON");
+    return verify_answer(*told, o);
+}
+
+}  // namespace
+
+Command add_verify(CLI::App& app) {
+    const auto options = std::make_shared<VerifyOptions>();
+    CLI::App* command = app.add_subcommand(
+        "verify", "recompute an answer, or the points of a sweep, and compare byte for byte");
+    command->add_option("answer", options->answer, "file with the answer; - or nothing: stdin");
+    command->add_option(
+        "--record", options->record, "of an identification: the file that was sent");
+    return with_exit_codes(command, [options] { return verify(*options); });
+}
+
+}  // namespace vines::cli
