@@ -15,7 +15,7 @@ namespace vines::api {
 struct Provenance {
     std::string route;                             ///< /v1/simulate
     Json request;                                  ///< canonical(); without a record
-    std::optional<std::size_t> answer_limit = {};  ///< bytes, of a server that thins answers
+    std::optional<std::size_t> answer_limit = {};  ///< bytes, of an answer that was fitted to them
     std::optional<std::string> record = {};        ///< its sha256(), of an identification
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "api/describe.hpp"
@@ -77,6 +78,14 @@ Result taken(Result& result) {
 
 ImpactScales scales_of(const SimulateRequest& r, const Analysis& a) {
     return {r.wanted.parameters.epsilon, a.typical_speed};
+}
+
+/// Whether something was left out for the answer's size.
+bool says_limit(const Warnings& warnings, std::size_t most_bytes) {
+    const std::string limit = limit_of(most_bytes);
+    return std::any_of(warnings.begin(), warnings.end(), [&limit](const std::string& warning) {
+        return warning.find(limit) != std::string::npos;
+    });
 }
 
 /// The parts of an answer, one by one while there is time, with their twins in SI.
@@ -166,11 +175,12 @@ SimulateAnswer simulate_in_parts(
             "null: " +
             joined(parts.left_out));
     answer["warnings"] = warnings;
+    const bool is_fitted = says_limit(warnings, most_bytes);
     if (!analysis.unkept_impacts || !answer.contains("impacts") || answer["impacts"].is_null())
-        return {std::move(answer), std::nullopt, analysis.outcome.impacts};
+        return {std::move(answer), std::nullopt, analysis.outcome.impacts, is_fitted};
     return {
         std::move(answer), ListedRun{r.wanted, *analysis.unkept_impacts, scales_of(r, analysis)},
-        analysis.outcome.impacts};
+        analysis.outcome.impacts, is_fitted};
 }
 
 void write_answer(

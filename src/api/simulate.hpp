@@ -26,7 +26,8 @@ struct Stop {
 struct SimulateAnswer {
     Json json;
     std::optional<ListedRun> run;
-    long impacts = 0;  ///< of the run, told or not
+    long impacts = 0;        ///< of the run, told or not
+    bool is_fitted = false;  ///< it would have had more than `most_bytes`
     std::optional<Provenance> provenance = {};
 };
 

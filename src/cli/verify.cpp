@@ -51,8 +51,7 @@ std::string difference(const Json& told, const Json& made, const std::string& pa
     }
     if (told.is_array() && made.is_array()) {
         for (std::size_t k = 0; k < std::min(told.size(), made.size()); ++k)
-            if (std::string found =
-                    difference(told[k], made[k], fmt::format("{}[{}]", path, k));
+            if (std::string found = difference(told[k], made[k], fmt::format("{}[{}]", path, k));
                 !found.empty())
                 return found;
         if (told.size() == made.size()) return {};
@@ -145,7 +144,8 @@ int verify_answer(const api::Unsealed& told, const VerifyOptions& o) {
     std::string record;
     if (p.contains("record_sha256")) {
         if (o.record.empty())
-            throw api::Problem(422, "what was measured is not in the answer: name its file by --record");
+            throw api::Problem(
+                422, "what was measured is not in the answer: name its file by --record");
         record = read_file(o.record);
         if (p["record_sha256"] != api::sha256(record))
             say("record: another file than the one that was sent");
@@ -191,12 +191,14 @@ int verify_sweep(const SweepFile& file) {
 
 int verify(const VerifyOptions& o) {
     const std::string text = read_all(o.answer);
-    if (text.starts_with("{\"type\":\"start\"")) return verify_sweep(parse_sweep_file(text, o.answer));
+    if (text.starts_with("{\"type\":\"start\""))
+        return verify_sweep(parse_sweep_file(text, o.answer));
     const std::optional<api::Unsealed> told = api::unsealed(text);
     if (!told)
         throw api::Problem(
-            422, "there is no provenance at the end of this answer: it is none of this program's, or "
-                 "not as it was answered, in JSON");
+            422,
+            "there is no provenance at the end of this answer: it is none of this program's, or "
+            "not as it was answered, in JSON");
     return verify_answer(*told, o);
 }
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "api/format/answer_form.hpp"
@@ -35,6 +34,7 @@ struct Asked {
     api::AnswerForm form;
     api::Format format;
     api::Provenance provenance;
+    std::size_t provenance_bytes;  ///< at most
 };
 
 /// A place to compute in, once it is free, or Problem 503.
@@ -55,31 +55,32 @@ Json body_of(const Request& r) {
 }
 
 Asked asked(
-    const Request& r, const api::FieldTable& table, Json fields, api::Provenance provenance,
-    const RouteOptions& options) {
+    const Request& r, const api::FieldTable& table, Json fields, api::Provenance provenance) {
     Asked asked{
-        .fields = std::move(fields), .form = {}, .format = {}, .provenance = std::move(provenance)};
+        .fields = std::move(fields),
+        .form = {},
+        .format = {},
+        .provenance = std::move(provenance),
+        .provenance_bytes = 0};
     asked.form = api::take_form(asked.fields, table);
     asked.format = asked.form.format ? *asked.form.format : accepted_format(r.accept);
-    // What is told of the request comes to the answer.
-    const std::size_t told = asked.provenance.request.dump().size() + most_provenance;
-    asked.provenance.answer_limit = options.answer_limit - std::min(options.answer_limit, told);
+    asked.provenance_bytes = asked.provenance.request.dump().size() + most_provenance;
     return asked;
 }
 
 /// Of a GET or a POST.
-Asked asked(const Request& r, const api::FieldTable& table, const RouteOptions& options) {
+Asked asked(const Request& r, const api::FieldTable& table) {
     Json fields = r.method == "POST" ? body_of(r) : api::from_query(table, r.query);
     api::Provenance provenance{.route = r.path, .request = api::canonical(fields)};
-    return asked(r, table, std::move(fields), std::move(provenance), options);
+    return asked(r, table, std::move(fields), std::move(provenance));
 }
 
 /// The same requests to the same build, with the same limit of its answers, have the same answer.
 /// Only what is read can be known already: a POST has no tag.
-std::string tag_of(const Request& r, const Asked& asked) {
+std::string tag_of(const Request& r, const Asked& asked, std::size_t answer_limit) {
     if (r.method == "POST") return {};
     return entity_tag(fmt::format(
-        "{} {} {}", api::version(), api::name_of(asked.format).word,
+        "{} {} {} {}", api::version(), api::name_of(asked.format).word, answer_limit,
         api::describe(asked.provenance, nullptr).dump()));
 }
 
@@ -93,7 +94,7 @@ Response encoded_response(Json answer, const Asked& asked, std::size_t limit, St
     api::thin(answer, asked.form.fields);
     std::string bytes = api::encoded(std::move(answer), asked.format, asked.provenance);
     if (bytes.size() >= large) give_memory_back();
-    if (bytes.size() > limit)
+    if (bytes.size() > limit + asked.provenance_bytes)
         throw Problem(
             413, fmt::format(
                      "the answer has {} bytes, and this server sends no more than {}: ask for "
@@ -111,8 +112,8 @@ Response encoded_response(Json answer, const Asked& asked, std::size_t limit, St
 Response simulate(const Request& r, const Service& service, Stopwatch& watch) {
     const RouteOptions& options = service.options;
     const ComputeGate::Place place = place_in(service.gate, r, watch);
-    const Asked asked = vines::http::asked(r, api::simulate_fields(), options);
-    const std::string tag = tag_of(r, asked);
+    Asked asked = vines::http::asked(r, api::simulate_fields());
+    const std::string tag = tag_of(r, asked, options.answer_limit);
     api::SimulateRequest request = api::read_simulate_request(asked.fields);
     if (is_known(r, tag)) return {.status = 304, .tag = tag};
     watch.lap("parse");
@@ -121,7 +122,8 @@ Response simulate(const Request& r, const Service& service, Stopwatch& watch) {
     const std::size_t most_kept =
         asked.format == api::Format::json ? options.most_kept_impacts : everything;
     api::SimulateAnswer answer =
-        api::simulate_in_parts(std::move(request), stop, *asked.provenance.answer_limit, most_kept);
+        api::simulate_in_parts(std::move(request), stop, options.answer_limit, most_kept);
+    if (answer.is_fitted) asked.provenance.answer_limit = options.answer_limit;
     service.metrics.count_simulation(answer.impacts);
     if (answer.run) {
         watch.lap("solve");
@@ -137,8 +139,8 @@ Response simulate(const Request& r, const Service& service, Stopwatch& watch) {
 
 Response manifold(const Request& r, const Service& service, Stopwatch& watch) {
     const ComputeGate::Place place = place_in(service.gate, r, watch);
-    const Asked asked = vines::http::asked(r, api::manifold_fields(), service.options);
-    const std::string tag = tag_of(r, asked);
+    const Asked asked = vines::http::asked(r, api::manifold_fields());
+    const std::string tag = tag_of(r, asked, service.options.answer_limit);
     const api::ManifoldRequest request = api::read_manifold_request(asked.fields);
     if (is_known(r, tag)) return {.status = 304, .tag = tag};
     watch.lap("parse");
@@ -165,8 +167,7 @@ Response identify(const Request& r, const Service& service, Stopwatch& watch) {
         r.content_type.starts_with("text/csv") || r.content_type.starts_with("text/plain");
     Json fields = csv ? api::from_query(table, r.query) : body_of(r);
     api::Provenance provenance = api::identify_provenance(fields, r.body);
-    const Asked asked =
-        vines::http::asked(r, table, std::move(fields), std::move(provenance), service.options);
+    const Asked asked = vines::http::asked(r, table, std::move(fields), std::move(provenance));
     const api::IdentifyRequest request = csv ? api::read_identify_request(asked.fields, r.body)
                                              : api::read_identify_request(asked.fields);
     watch.lap("parse");

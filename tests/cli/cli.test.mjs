@@ -1,11 +1,13 @@
 // The subcommands, as a terminal and a batch system use them.
 import assert from "node:assert/strict";
 import {spawn} from "node:child_process";
+import {createHash} from "node:crypto";
 import {readFileSync} from "node:fs";
 import {appendFile, mkdtemp, readFile, rm, writeFile} from "node:fs/promises";
 import {tmpdir} from "node:os";
 import {join} from "node:path";
 import {after, before, test} from "node:test";
+import {measured} from "../record.mjs";
 import {program, startService} from "../service.mjs";
 
 let folder;
@@ -37,6 +39,78 @@ const run = (args, {input = "", env = {}, signal, until} = {}) =>
     };
     if (signal) look();
   });
+
+const simulated = async (fields) => (await run(["simulate"], {input: JSON.stringify(fields)})).out;
+const verified = async (answer, args = []) => run(["verify", ...args], {input: answer});
+
+test("an answer says what it was made of, and verify makes the same of it", async () => {
+  const fields = {preset: "fig3", tau_end: 400, fields: ["impacts", "regime.z"]};
+  const answer = await simulated(fields);
+  const {provenance} = JSON.parse(answer);
+  assert.equal(provenance.route, "/v1/simulate");
+  assert.deepEqual(provenance.request, fields);
+  const text = `${answer.slice(0, answer.lastIndexOf(',"provenance":'))}}`;
+  assert.equal(createHash("sha256").update(text).digest("hex"), provenance.sha256);
+  const same = await verified(answer);
+  assert.equal(same.code, 0, same.errors);
+  assert.match(same.out, /sha256: as told\nrecomputed: the same \d+ bytes\n/);
+  const changed = await verified(answer.replace(/"z":[\d.]+/, '"z":9'));
+  assert.equal(changed.code, 1);
+  assert.match(changed.out, /the answer was changed\nrecomputed: regime\.z: 9 became /);
+  // A hash that is made anew does not help.
+  const z = /"z":[\d.]+/;
+  const forged = text.replace(z, '"z":9');
+  const sha256 = createHash("sha256").update(forged).digest("hex");
+  const again = await verified(answer.replace(z, '"z":9').replace(provenance.sha256, sha256));
+  assert.equal(again.code, 1);
+  assert.match(again.out, /sha256: as told\nrecomputed: regime\.z: 9 became /);
+});
+
+test("verify takes what the service answers: runs, manifolds, identifications, sweeps", async () => {
+  const service = await startService(["--answer-limit", "300000"]);
+  const post = async (path, body, type = "application/json") =>
+    (
+      await fetch(service.url + path, {method: "POST", headers: {"Content-Type": type}, body})
+    ).text();
+  const long = {b: 0.003, tau_end: 60000, include: ["impacts"]};
+  for (const [path, fields] of [
+    ["/v1/simulate", long], // thinned to the limit
+    ["/v1/simulate", {preset: "fig11", include: ["matrices"], fields: "matrices.T"}],
+    ["/v1/manifold", {b: 0.015}],
+  ]) {
+    const {code, out, errors} = await verified(await post(path, JSON.stringify(fields)));
+    assert.equal(code, 0, out + errors);
+  }
+  const record = await measured(service.url, "fig20", 3);
+  const file = at("verify.csv");
+  await writeFile(file, record);
+  const identified = await post("/v1/identify?preset=fig20", record, "text/csv");
+  const same = await verified(identified, ["--record", file]);
+  assert.equal(same.code, 0, same.out + same.errors);
+  assert.equal((await verified(identified)).code, 2, "what was measured is not in it");
+  await writeFile(file, record.replace(/^.*\n.*\n/, ""));
+  assert.match((await verified(identified, ["--record", file])).out, /another file/);
+  const lines = await post("/v1/sweep", sweep);
+  const points = await verified(lines);
+  assert.equal(points.code, 0, points.out + points.errors);
+  assert.match(points.out, /40 of 40 points are the same/);
+  const changed = await verified(lines.replace(/("index":7,.*"z":)[\d.]+/, "$19"));
+  assert.equal(changed.code, 1);
+  assert.match(changed.out, /39 of 40 points are the same\npoint 7: z: 9 became /);
+  await service.stop();
+});
+
+test("of a run that a time limit ended, and of what is no answer, verify says so", async () => {
+  const hasty = await startService(["--deadline", "0.2"]);
+  const body = '{"b":0.0005,"R":1,"tau_end":1e7,"max_impacts":2000000,"include":["regime"]}';
+  const answer = await fetch(`${hasty.url}/v1/simulate`, {method: "POST", body});
+  const late = await verified(await answer.text());
+  assert.equal(late.code, 3);
+  assert.match(late.out, /not decided: the run was ended/);
+  await hasty.stop();
+  for (const none of ["", "{}", "[1]", '{"provenance":1}', '{"a":1,"provenance":{"route":"/x"}}'])
+    assert.equal((await verified(none)).code, 2, none);
+});
 
 const sweep = JSON.stringify({
   base: {damping: "closed_form"},

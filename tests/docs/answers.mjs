@@ -78,6 +78,7 @@ const json = async (url, path, body, type = "application/json") => {
 
 function noteSimulation(keys, answer) {
   keys.noteTop("simulate", answer);
+  keys.note("provenance", answer.provenance, ["request"]);
   keys.note("parameters", answer.parameters, ["origin"]);
   for (const part of parts)
     if (part in answer) keys.note(part === "manifold" ? part : `simulate.${part}`, answer[part]);
@@ -156,6 +157,7 @@ export const withForce = (csv) =>
 
 function noteIdentification(keys, answer) {
   keys.noteTop("identify", answer);
+  keys.note("provenance", answer.provenance, ["request"]);
   keys.note("parameters", answer.parameters, ["origin"]);
   for (const part of [
     "signal",

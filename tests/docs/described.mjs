@@ -34,6 +34,7 @@ const parts = {
   "sweep.reduced": {of: ["SweepReduction"], swept: []},
   "sweep.progress": {of: ["SweepProgress"]},
   "sweep.end": {of: ["SweepWarning", "SweepDone", "SweepError"]},
+  provenance: {of: ["Provenance"], opaque: ["request"]},
   identify: {of: ["Identification"], top: true},
   "identify.signal": {of: ["Signal"]},
   "identify.fitted": {of: ["Fitted"]},

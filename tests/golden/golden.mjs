@@ -4,7 +4,7 @@
 //   node tests/golden/golden.mjs compare BEFORE AFTER
 // compare tells those that are equal byte for byte, those that say the same as JSON, and of the
 // others by how much their numbers differ, as a share of the largest of their list.
-// The version is left out, and of a sweep's stream the progress; its points are put in order.
+// The version, the commit and the hash that follows from it are left out, and of a sweep's stream the progress; its points are put in order.
 import {spawn} from "node:child_process";
 import {mkdir, mkdtemp, readdir, readFile, rm, stat, writeFile} from "node:fs/promises";
 import {tmpdir} from "node:os";
@@ -13,7 +13,8 @@ import {program, startService} from "../service.mjs";
 import {commands, identifications, requests} from "./requests.mjs";
 
 const nameOf = (name) => name.replace(/[^A-Za-z0-9.]+/g, "_").slice(0, 100);
-const withoutVersion = (text) => text.replace(/\b0\.\d+\.\d+\b/g, "VERSION");
+const withoutVersion = (text) =>
+  text.replace(/\b0\.\d+\.\d+\b/g, "VERSION").replace(/"(commit|sha256)":"[^"]*"/g, '"$1":"BUILD"');
 
 /** The lines of a sweep in the order of their indices. */
 const ordered = (text) => {

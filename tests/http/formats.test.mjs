@@ -101,8 +101,11 @@ def typed(decoder, tag):
     numbers = struct.unpack("<%d%s" % (len(tag.value) // size, code), tag.value)
     return [None if isinstance(n, float) and math.isnan(n) else n for n in numbers]
 json.dump(cbor2.loads(sys.stdin.buffer.read(), tag_hook=typed), sys.stdout)`;
-  const whole = await json(everything);
-  assert.deepEqual(python(code, bytes), whole);
+  const {provenance, ...told} = python(code, bytes);
+  const {provenance: sealed, ...whole} = await json(everything);
+  assert.deepEqual(told, whole);
+  assert.equal(provenance.sha256, null, "it is that of the JSON text");
+  assert.equal(provenance.commit, sealed.commit);
   assert.ok(bytes.byteLength < 0.6 * JSON.stringify(whole).length);
 });
 

@@ -6,6 +6,7 @@ import {readFileSync} from "node:fs";
 import {test} from "node:test";
 import {identifications, requests} from "../golden/requests.mjs";
 import {startService} from "../service.mjs";
+import {answerOf, ask} from "./answers.mjs";
 
 const older = {GLIBC_TUNABLES: "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F,-FMA4"};
 
@@ -18,30 +19,15 @@ const nothingToCompare = () => {
   return false;
 };
 
-const post = async (url, {path, body, type = "application/json"}) => {
-  const text = typeof body === "string" ? body : JSON.stringify(body);
-  const options = body === undefined ? {} : {method: "POST", body: text};
-  // A fault tells the request's name, which the service would make up.
-  const headers = {"Content-Type": type, "X-Request-ID": "same"};
-  return await fetch(url + path, {...options, headers});
-};
-/** A sweep's points come in any order, its progress by the clock. */
-const steady = (text) =>
-  text
-    .split("\n")
-    .filter((line) => !line.startsWith('{"type":"progress"'))
-    .sort()
-    .join("\n");
-const answerOf = async (url, request) => steady(await (await post(url, request)).text());
-
 test("an answer is the same, byte for byte, on a processor without fused operations", {
   skip: nothingToCompare(),
 }, async () => {
   const services = [await startService(), await startService([], older)];
   try {
-    const ask = async (body) => (await post(services[0].url, {path: "/v1/simulate", body})).json();
+    const simulate = async (body) =>
+      (await ask(services[0].url, {path: "/v1/simulate", body})).json();
     const asked = requests.filter(({path}) => path.startsWith("/v1/"));
-    for (const request of [...asked, ...(await identifications(ask))]) {
+    for (const request of [...asked, ...(await identifications(simulate))]) {
       const [here, there] = await Promise.all(services.map(({url}) => answerOf(url, request)));
       assert.ok(here === there, `${request.name} differs`);
     }

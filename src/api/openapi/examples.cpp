@@ -1,5 +1,10 @@
 #include "api/openapi/examples.hpp"
 
+#include "api/identify_request.hpp"
+#include "api/provenance.hpp"
+
+#include <algorithm>
+#include <iterator>
 #include <string_view>
 
 namespace vines::api::document {
@@ -169,6 +174,15 @@ constexpr Example answers[] = {
     {"Status", R"({"status": "ok"})"},
 };
 
+/// Answers that tell what they were made of.
+struct SealedAnswer {
+    const char *schema, *operation, *route;
+};
+constexpr SealedAnswer sealed_answers[] = {
+    {"Simulation", "simulate", "/v1/simulate"},
+    {"Manifold", "manifold", "/v1/manifold"},
+    {"Identification", "identify", "/v1/identify"}};
+
 template <std::size_t n>
 Json example_of(const Example (&table)[n], std::string_view of) {
     for (const Example& example : table)
@@ -180,6 +194,19 @@ Json example_of(const Example (&table)[n], std::string_view of) {
 
 Json request_example(const char* operation) { return example_of(requests, operation); }
 
-Json answer_example(const char* schema) { return example_of(answers, schema); }
+Json answer_example(const char* schema) {
+    Json example = example_of(answers, schema);
+    const auto sealed = std::find_if(
+        std::begin(sealed_answers), std::end(sealed_answers),
+        [schema](const SealedAnswer& answer) { return answer.schema == std::string_view(schema); });
+    if (sealed == std::end(sealed_answers)) return example;
+    const Json request = request_example(sealed->operation).begin()->at("value");
+    const Provenance provenance =
+        std::string_view(sealed->operation) == "identify"
+            ? identify_provenance(request, request.dump())
+            : Provenance{.route = sealed->route, .request = canonical(request)};
+    example["provenance"] = describe(provenance, sha256(example.dump()));
+    return example;
+}
 
 }  // namespace vines::api::document

@@ -137,7 +137,7 @@ Keys record_keys() {
 
 Json identification() {
     return object_of(
-        answer_keys("System") + record_keys() +
+        sealed_keys("System") + record_keys() +
         Keys{
             {"impacts", reference("IdentifiedImpacts"), "every impact, with a status"},
             {"sticking", reference("Sticking"), "every stuck phase"},

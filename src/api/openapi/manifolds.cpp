@@ -73,7 +73,7 @@ void add_manifolds(Json& schemas) {
         "manifold", reference("SlowManifold"), "its fold, branches and ends, and a recommended b"};
     schemas["SlowManifold"] = with_si(object_of(manifold_keys() + recommended));
     schemas["RunManifold"] = with_si(object_of(run_keys()));
-    schemas["Manifold"] = object_of(answer_keys("System") + Keys{manifold});
+    schemas["Manifold"] = object_of(sealed_keys("System") + Keys{manifold});
 }
 
 }  // namespace vines::api::document

@@ -261,7 +261,7 @@ Key part(const std::string& name, const std::string& schema, const std::string& 
 
 Json simulation() {
     return object_of(
-        answer_keys("SimulationParameters") +
+        sealed_keys("SimulationParameters") +
         Keys{
             {"status", reference("RunStatus"), "how the run ended"},
             part("series", "Series", "the motion"),

@@ -185,6 +185,7 @@ Json start_line_schema() {
         answer_keys("System") +
         Keys{
             {"type", constant("start"), ""},
+            {"commit", text(), "of the program; empty where that is not known"},
             {"points", whole(), "lines of the whole sweep"},
             {"of", whole(), "lines asked for by indices"},
             {"cycles", number(), "of all runs together, transients included"},

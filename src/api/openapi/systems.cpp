@@ -77,11 +77,22 @@ Json simulation_parameters() {
             derived()}));
 }
 
+Json provenance() {
+    return object_of(
+        {{"route", text(), "that answered"},
+         {"commit", text(), "of the program; empty where that is not known"},
+         {"answer_limit", or_null(whole()), "bytes to which the answer was thinned, if it was"},
+         {"request", map_of(Json::object()), "its fields, names in order; without a record"},
+         optional({"record_sha256", text(), "of the file, or the JSON, that was sent"}),
+         {"sha256", or_null(text()), "of the answer's text without provenance; null but in JSON"}});
+}
+
 }  // namespace
 
 void add_systems(Json& schemas) {
     schemas["System"] = object_of(reduced_keys() + Keys{si_system(si_keys()), derived()});
     schemas["SimulationParameters"] = simulation_parameters();
+    schemas["Provenance"] = provenance();
 }
 
 Keys answer_keys(const std::string& parameters) {
@@ -89,6 +100,11 @@ Keys answer_keys(const std::string& parameters) {
         {"version", text(), "of the program"},
         {"parameters", reference(parameters), "all of them, resolved"},
         {"warnings", list_of(text()), "sentences"}};
+}
+
+Keys sealed_keys(const std::string& parameters) {
+    return answer_keys(parameters) +
+           Keys{{"provenance", reference("Provenance"), "what it was made of"}};
 }
 
 }  // namespace vines::api::document

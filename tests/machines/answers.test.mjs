@@ -1,0 +1,35 @@
+// Answers whose bytes are published (answers.json): every compiler, every instruction set and every
+// build gives the same. After a change that is meant to change them:
+//   VINES=build/release/vines PUBLISH=1 node --test tests/machines/answers.test.mjs
+import assert from "node:assert/strict";
+import {createHash} from "node:crypto";
+import {readFile, writeFile} from "node:fs/promises";
+import {test} from "node:test";
+import {identifications, requests} from "../golden/requests.mjs";
+import {startService} from "../service.mjs";
+import {answerOf, ask} from "./answers.mjs";
+
+const file = new URL("answers.json", import.meta.url);
+
+/** Without what a build says of itself. */
+const asPublished = (text) =>
+  text
+    .replace(/,"provenance":.*$/m, "}")
+    .replace(/"commit":"[^"]*",/, "")
+    .replaceAll(/"version":"[^"]*"/g, '"version":""');
+
+test("answers have the bytes that are published", async (t) => {
+  const service = await startService();
+  t.after(() => service.stop());
+  const simulate = async (body) => (await ask(service.url, {path: "/v1/simulate", body})).json();
+  const computed = requests.filter(({path}) =>
+    /^\/v1\/(simulate|manifold|sweep|identify)/.test(path),
+  );
+  const hashes = {};
+  for (const request of [...computed, ...(await identifications(simulate))]) {
+    const text = asPublished(await answerOf(service.url, request));
+    hashes[request.name] = createHash("sha256").update(text).digest("hex");
+  }
+  if (process.env.PUBLISH) await writeFile(file, `${JSON.stringify(hashes, null, 2)}\n`);
+  assert.deepEqual(hashes, JSON.parse(await readFile(file, "utf8")));
+});
