@@ -8,6 +8,7 @@
 #include "api/fitted_unknowns.hpp"
 #include "api/impact_list.hpp"
 #include "api/record_columns.hpp"
+#include "api/schema/check.hpp"
 
 namespace vines::api {
 
@@ -191,6 +192,8 @@ std::vector<CsvColumn> read_record_columns(const Json& record) {
 
 /// A channel of the forcing tells its frequency, if the request does not.
 IdentifyRequest read_request_of_record(const Json& given, const Csv& csv) {
+    // The columns are looked up by fields that nobody has checked yet.
+    if (auto errors = check(identify_fields(), given); !errors.empty()) refuse(std::move(errors));
     const std::optional<MeasuredForcing> forcing = measured_forcing(csv.columns, given);
     Json fields = given;
     const bool f_is_given = fields.contains("f") || fields.contains("Omega");

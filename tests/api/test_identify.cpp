@@ -472,6 +472,20 @@ TEST_CASE(
     CHECK(contradiction.detail == "displacement_unit is mm, but the column displacement_m says m");
 }
 
+TEST_CASE("a field that names or measures a column is refused where it is at fault itself") {
+    const std::string csv = header + "0,1e-3,1\n0.001,2e-3,1\n";
+    for (const auto& [field, value] : std::vector<std::pair<const char*, Json>>{
+             {"time_unit", "furlong"},
+             {"time_unit", 1},
+             {"time_column", 1},
+             {"base_acceleration_column", Json::array()}}) {
+        const Problem problem = refused({{"preset", "fig15"}, {field, value}}, csv);
+        CAPTURE(problem.what());
+        CHECK(problem.status == 422);
+        CHECK(pointers(problem) == std::set<std::string>{std::string("/") + field});
+    }
+}
+
 TEST_CASE(
     "impacts in a list are judged as those of a record: momentum over the typical jump, R within "
     "[0, 1], no missing one flown over") {

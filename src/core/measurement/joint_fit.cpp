@@ -39,6 +39,9 @@ constexpr double release_error = 1e-4;
 // What is known of the forcing holds to that share of its amplitude: far better than any record
 // tells it.
 constexpr double known_to = 1e-7;
+// No step takes frequency and stiffness further from what is given, in deviations of their priors,
+// nor the damping beyond that of the largest ratio that validate() takes.
+constexpr double most_priors = 40, most_damping = 20;
 // Samples beside the pulses that a share of a step reaches beyond what is spoiled.
 constexpr double pulse_margin = 0.1;
 
@@ -95,7 +98,7 @@ public:
             const bool first = starts_at_rest_ && step == 0;
             JointEquations equations = equations_at(first);
             JointEquations::Solution s = equations.solve();
-            if (!s.solved) break;
+            if (!s.solved || !leads_to_oscillator(equations, s)) break;
             if (step >= first_half_step) s.step *= 0.5;
             fit_.converged = !first && is_small(equations, s);
             if (!first) take_errors(s, equations);
@@ -372,6 +375,20 @@ private:
             moved += std::abs(s.step(equations.moment_of(k))) >
                      converged_move_steps * in_.statistics.step;
         return static_cast<double>(moved) <= few_moved * static_cast<double>(moments_.size());
+    }
+
+    /// Whether a step leads to such an oscillator as is given. Wild samples ask for any, and a flow
+    /// of that may take any time.
+    bool leads_to_oscillator(
+        const JointEquations& equations, const JointEquations::Solution& s) const {
+        const auto after = [&](Unknown u) {
+            return fit_.values[u] + (fixed_[u] ? 0 : s.step(equations.unknown_at(u)));
+        };
+        const auto is_near = [&](Unknown u) {
+            return std::abs(after(u) - prior_mean_[u]) < most_priors * prior_[u];
+        };
+        return is_near(Unknown::Omega) && is_near(Unknown::stiffness) &&
+               std::abs(after(Unknown::damping)) < most_damping;
     }
 
     void take_step(const JointEquations& equations, const JointEquations::Solution& s, bool first) {

@@ -225,6 +225,17 @@ Measurement with_moments(const Experiment& m) {
 
 }  // namespace
 
+TEST_CASE("a wild sample of the acceleration leads to no oscillator that takes for ever") {
+    for (const double wild : {1e9, 1e15, 1e200}) {
+        CAPTURE(wild);
+        Experiment m = measured(motion_after(2, 0.015, 0.85, 0.85, 1), {.rate = 1024});
+        m.record.x_ddot[m.record.tau.size() / 6] = -wild;
+        const MeasurementResult r = identified(m);
+        CHECK(r.parameters.Omega == doctest::Approx(m.parameters.Omega).epsilon(1));
+        CHECK(r.judged.verdict != Verdict::chaotic);
+    }
+}
+
 TEST_CASE("a given moment without a jump of the velocity is dropped") {
     const Experiment m = regular_record();
     Measurement measurement = with_moments(m);

@@ -1,0 +1,36 @@
+// A record as text: the first line is the query that comes with it.
+#include "api/csv.hpp"
+
+#include <cmath>
+
+#include "api/identify_request.hpp"
+#include "api/query.hpp"
+#include "api/schema/tables.hpp"
+#include "fuzz.hpp"
+
+using namespace vines;
+
+namespace {
+
+void check(const api::Csv& csv) {
+    fuzz::require(csv.columns.size() >= 2, "a record has two columns");
+    for (const api::CsvColumn& c : csv.columns) {
+        fuzz::require(c.values.size() == csv.lines.size(), "each row has a number of each column");
+        for (const double v : c.values) fuzz::require(std::isfinite(v), "numbers are finite");
+    }
+    for (std::size_t k = 1; k < csv.lines.size(); ++k)
+        fuzz::require(csv.lines[k] > csv.lines[k - 1], "rows follow each other");
+}
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    std::string_view text = fuzz::text_of(data, size);
+    const std::string_view query = fuzz::take_part(text, '\n');
+    fuzz::or_problem([text] { check(api::parse_csv(text)); });
+    fuzz::or_problem([&] {
+        const api::Json fields = api::from_query(api::identify_fields(), api::parse_query(query));
+        api::read_identify_request(fields, text);
+    });
+    return 0;
+}

@@ -1,0 +1,116 @@
+// The head of a request, as it may come from the network: in pieces.
+#include "http/head.hpp"
+
+#include <optional>
+#include <random>
+
+#include "fuzz.hpp"
+#include "http/header_text.hpp"
+
+using namespace vines;
+using http::Head;
+using http::HeadReader;
+
+namespace {
+
+/// What has become of the bytes so far.
+struct Reading {
+    std::optional<Head> head;  ///< complete
+    std::size_t size = 0;      ///< of it
+    int status = 0;            ///< of a refusal
+    std::string refusal = {};
+    bool is_over() const { return head || status != 0; }
+};
+
+/// Bytes that come up to each of the ends, the last one all of them; each time alone in memory, so
+/// that a look behind them is seen.
+Reading read_up_to(std::string_view bytes, const std::vector<std::size_t>& ends) {
+    HeadReader reader;
+    Reading result;
+    try {
+        for (const std::size_t end : ends) {
+            const std::vector<char> so_far(bytes.begin(), bytes.begin() + static_cast<long>(end));
+            if (!reader.read({so_far.data(), so_far.size()})) continue;
+            result.size = reader.size();
+            result.head = reader.take();
+            break;
+        }
+    } catch (const api::Problem& problem) {
+        result.status = problem.status;
+        result.refusal = problem.what();
+    }
+    return result;
+}
+
+bool same(const Reading& a, const Reading& b) {
+    if (a.status != b.status || a.refusal != b.refusal || a.size != b.size ||
+        a.head.has_value() != b.head.has_value())
+        return false;
+    if (!a.head) return true;
+    const Head &h = *a.head, &k = *b.head;
+    return h.method == k.method && h.target == k.target && h.host == k.host &&
+           h.headers == k.headers && h.content_length == k.content_length &&
+           h.keep_alive == k.keep_alive && h.takes_chunks == k.takes_chunks &&
+           h.expects_continue == k.expects_continue;
+}
+
+/// Some ends of pieces, the same for the same bytes; short ones come more often.
+std::vector<std::size_t> some_ends(std::string_view bytes) {
+    std::minstd_rand random(static_cast<unsigned>(std::hash<std::string_view>()(bytes)));
+    std::vector<std::size_t> ends;
+    for (std::size_t end = 0; end < bytes.size() && ends.size() < 50;) {
+        end = std::min(bytes.size(), end + 1 + random() % (std::size_t{1} << random() % 12));
+        ends.push_back(end);
+    }
+    ends.push_back(bytes.size());
+    return ends;
+}
+
+/// Of the bytes of a head that was taken, by their lines: nothing that two readers could take for
+/// different requests.
+void check_strictness(std::string_view bytes, const Head& head) {
+    using fuzz::require;
+    require(bytes.ends_with("\r\n\r\n"), "a head ends with an empty line");
+    bytes.remove_suffix(2);
+    if (bytes.starts_with("\r\n")) bytes.remove_prefix(2);
+    std::size_t hosts = 0, lengths = 0, headers = 0;
+    const std::string_view first = bytes.substr(0, bytes.find('\n') + 1);
+    const bool is_old = first.ends_with(" HTTP/1.0\r\n");
+    require(is_old || first.ends_with(" HTTP/1.1\r\n"), "the version is one of two");
+    bytes.remove_prefix(first.size());
+    while (!bytes.empty()) {
+        std::string_view line = fuzz::take_part(bytes, '\n');
+        require(line.ends_with('\r'), "a line ends with CR LF");
+        line.remove_suffix(1);
+        require(line.find_first_of(std::string_view("\r\0", 2)) == line.npos, "no CR, no NUL");
+        const std::string_view name = line.substr(0, line.find(':'));
+        require(name.size() < line.size() && !name.empty(), "a header has a name");
+        require(name.find_first_of(" \t") == name.npos, "no blank before the colon");
+        ++headers;
+        hosts += http::lower_case(name) == "host";
+        lengths += http::lower_case(name) == "content-length";
+        require(http::lower_case(name) != "transfer-encoding", "no chunks");
+    }
+    require(headers == head.headers.size(), "each header is told");
+    require(hosts == 1 || (hosts == 0 && is_old), "one Host");
+    require(lengths == 1 || (lengths == 0 && head.content_length == 0), "one Content-Length");
+    require(head.target.starts_with('/'), "a target begins with /");
+    require(head.target.find_first_of(" \t\r\n") == head.target.npos, "no blank in a target");
+    require(head.path().starts_with('/'), "so does a path");
+}
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view bytes = fuzz::text_of(data, size);
+    const Reading whole = read_up_to(bytes, {size});
+    fuzz::require(same(whole, read_up_to(bytes, some_ends(bytes))), "pieces are read as the whole");
+    if (whole.head) {
+        fuzz::require(whole.size <= size && whole.size <= HeadReader::most_bytes, "it is bounded");
+        check_strictness(bytes.substr(0, whole.size), *whole.head);
+        fuzz::require(same(whole, read_up_to(bytes, {whole.size})), "what follows does not matter");
+    }
+    if (!whole.is_over())
+        fuzz::require(size <= HeadReader::most_bytes, "what is too long is refused at once");
+    return 0;
+}

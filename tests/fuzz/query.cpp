@@ -1,0 +1,30 @@
+// A URL's query to the requests that take one.
+#include "api/query.hpp"
+#include "api/identify_request.hpp"
+#include "api/schema/tables.hpp"
+#include "fuzz.hpp"
+
+using namespace vines;
+
+namespace {
+
+/// The shortest record that is taken.
+std::string record() {
+    std::string csv = "time_s,displacement_m\n";
+    for (int k = 0; k < 100; ++k) csv += std::to_string(k) + "e-3," + std::to_string(k % 7) + "\n";
+    return csv;
+}
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static const std::string csv = record();
+    const api::Query query = api::parse_query(fuzz::text_of(data, size));
+    fuzz::or_problem(
+        [&] { api::read_simulate_request(api::from_query(api::simulate_fields(), query)); });
+    fuzz::or_problem(
+        [&] { api::read_manifold_request(api::from_query(api::manifold_fields(), query)); });
+    fuzz::or_problem(
+        [&] { api::read_identify_request(api::from_query(api::identify_fields(), query), csv); });
+    return 0;
+}

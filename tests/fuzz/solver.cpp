@@ -1,0 +1,151 @@
+// Motions of systems that a request may ask for, held against what holds of every motion. The input
+// is a line of numbers: the system and its start in the order of parameter_ranges(), y as a share
+// of b, then the damping, tau_end and the moment of the start.
+#include <cmath>
+#include <vector>
+
+#include "core/analysis/analysis.hpp"
+#include "core/motion/guard.hpp"
+#include "core/motion/together.hpp"
+#include "fuzz.hpp"
+
+using namespace vines;
+using fuzz::require;
+
+namespace {
+
+constexpr long most_impacts = 1000;
+// Of a stop function, which is asked every 64 events.
+constexpr long looks = 100, looks_of_analysis = 400;
+
+/// Momentum, restitution, energy, order and walls, and all of it as a list to compare.
+class Invariants : public Observer {
+public:
+    explicit Invariants(const Parameters& p, double tau) : p_(p), tau_(tau) {}
+    void on_stretch(const Stretch& s) override {
+        require(s.duration >= 0, "time goes on");
+        require(std::abs(s.tau - tau_) <= 1e-12 * (1 + std::abs(tau_)), "stretches join");
+        tau_ = s.tau + s.duration;
+        const double rounding =
+            64 * position_rounding(s.flow.bounds(s.start, s.duration), std::abs(s.y) + p_.b, p_.b);
+        for (int k = 0; k <= 4; ++k) {
+            const State at = s.at(s.duration * k / 4);
+            const double apart = at.x - at.y;
+            require(std::abs(apart) <= p_.b + rounding, "the mass stays in its cavity");
+            if (s.stuck_side != 0)
+                require(std::abs(apart - s.stuck_side * p_.b) <= rounding, "it sticks to its wall");
+        }
+    }
+    void on_impact(const Impact& i) override {
+        const double epsilon = p_.epsilon, R = p_.restitution(i.side);
+        const double before = i.x_dot_before - i.y_dot_before,
+                     after = i.x_dot_after - i.y_dot_after,
+                     speed = std::abs(i.x_dot_before) + std::abs(i.y_dot_before);
+        const double momentum = i.x_dot_after - i.x_dot_before +
+                                epsilon * (i.y_dot_after - i.y_dot_before),
+                     gain = i.x_dot_after * i.x_dot_after - i.x_dot_before * i.x_dot_before +
+                            epsilon *
+                                (i.y_dot_after * i.y_dot_after - i.y_dot_before * i.y_dot_before);
+        require(i.side * i.relative_speed_before > 0, "the masses meet");
+        require(std::abs(momentum) <= 1e-14 * (1 + epsilon) * speed, "momentum stays");
+        require(std::abs(after + R * before) <= 1e-14 * speed, "the relative speed is R times it");
+        require(gain <= 1e-13 * (1 + epsilon) * speed * speed, "no energy is gained");
+        require(i.tau >= last_, "impacts follow each other");
+        last_ = i.tau;
+        told.insert(told.end(), {i.tau, i.x, i.x_dot_after, i.y_dot_after});
+    }
+
+    std::vector<double> told;
+
+private:
+    const Parameters& p_;
+    double tau_, last_ = -infinity;
+};
+
+struct Followed {
+    Outcome outcome;
+    std::vector<double> told;
+};
+
+/// The only run of its line.
+class Once : public RunLine {
+public:
+    explicit Once(RunPlan plan) : plan_(std::move(plan)) {}
+    std::optional<RunPlan> next(const std::optional<Outcome>& last) override {
+        outcome = last;
+        return last ? std::nullopt : std::optional(plan_);
+    }
+
+    std::optional<Outcome> outcome;
+
+private:
+    const RunPlan plan_;
+};
+
+Followed follow(RunPlan plan, bool in_lanes) {
+    Invariants invariants(plan.parameters, plan.limits.tau_start);
+    fuzz::Patience patience(looks);
+    plan.limits.stop = [&] { return patience.is_over(); };
+    plan.observers = {&invariants};
+    Once line(plan);
+    RunLine* const lines[] = {&line};
+    if (in_lanes) simulate_together(lines);
+    else line.outcome = simulate(plan);
+    return {*line.outcome, std::move(invariants.told)};
+}
+
+void check(const Followed& alone, const Followed& in_lanes) {
+    const State& s = alone.outcome.state;
+    require(std::isfinite(s.x) && std::isfinite(s.x_dot), "the oscillator's state is finite");
+    require(std::isfinite(s.y) && std::isfinite(s.y_dot), "the mass' state is finite");
+    require(alone.told == in_lanes.told, "impacts are the same in a lane");
+    require(alone.outcome.tau == in_lanes.outcome.tau, "a run in a lane ends with the one alone");
+}
+
+/// The exact sum of the exponents, where nothing sticks and all four have a value.
+void check_sum_rule(const Parameters& p, const Analysis& a) {
+    if (!a.exponents || a.exponents->product.rank() != 4) return;
+    const TransferProduct& product = a.exponents->product;
+    double sum = 0, logs = 0, magnitude = 0;
+    for (const double exponent : product.qr()) sum += exponent, magnitude += std::abs(exponent);
+    if (!std::isfinite(sum)) return;
+    for (const Impact& i : a.impacts)
+        if (i.tau > product.start_tau() && i.tau <= product.end_tau()) logs += std::log(i.R);
+    const double T = product.end_tau() - product.start_tau(), rule = -2 * p.zeta() + 2 * logs / T;
+    require(
+        std::abs(sum - rule) <= 4 * most_residual + 1e-12 * magnitude, "the sum rule of exponents");
+}
+
+void check_analysis(const Parameters& p, const State& start, double tau_end) {
+    fuzz::Patience patience(looks_of_analysis);
+    const auto is_over = [&] { return patience.is_over(); };
+    Wanted w{.parameters = p, .start = start, .tau_end = tau_end, .max_impacts = most_impacts / 4};
+    w.parts = {.impacts = true, .exponents = true, .energy = true, .regime = true};
+    w.estimators = qr_alone;
+    check_sum_rule(p, analyse(w, {.run = is_over, .late = is_over}));
+}
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    fuzz::Numbers numbers(fuzz::text_of(data, size));
+    Parameters p;
+    State start;
+    for (const ParameterRange& r : parameter_ranges()) {
+        double& to = r.parameter ? p.*r.parameter : start.*r.state;
+        to = numbers.next(to, r.minimum, r.maximum);
+    }
+    start.y = start.x - std::clamp(start.y, -1.0, 1.0) * p.b;
+    if (numbers.next(0) != 0) p.damping = Damping::closed_form;
+    const double tau_end = numbers.next(100, 1e-6, 1e5), tau_start = numbers.next(0, -1e5, 1e5);
+    if (!validate(p, start).empty()) return 0;
+
+    const RunPlan plan{
+        p,
+        start,
+        {.tau_end = tau_start + tau_end, .max_impacts = most_impacts, .tau_start = tau_start}};
+    const Followed alone = follow(plan, false);
+    check(alone, follow(plan, true));
+    check_analysis(p, start, tau_end);
+    return 0;
+}

@@ -1,0 +1,55 @@
+// A sweep of a few points: each line is JSON, and comes once.
+#include "api/sweep.hpp"
+
+#include <set>
+
+#include "api/json_text.hpp"
+#include "api/parse_object.hpp"
+#include "fuzz.hpp"
+
+using namespace vines;
+
+namespace {
+
+constexpr std::size_t most_points = 64;
+// About a tenth of a second under the sanitizers.
+constexpr long looks = 400;
+
+class ShortPace : public Pace {
+public:
+    bool stop_or_yield() override { return stopped_ = stopped_ || patience_.is_over(); }
+    bool has_stopped() const { return stopped_; }
+
+private:
+    fuzz::Patience patience_{looks};
+    bool stopped_ = false;
+};
+
+void check_line(std::size_t index, const std::string& text) {
+    const api::Json line = api::Json::parse(text);
+    fuzz::require(line["type"] == "point", "a line is of a point");
+    fuzz::require(line["index"] == index, "a line tells its index");
+}
+
+void sweep(const api::SweepRequest& request) {
+    const std::vector<std::size_t>& wanted = request.plan.lines;
+    fuzz::require(api::Json::accept(api::start_line(request)), "the first line is JSON");
+    ShortPace pace;
+    std::set<std::size_t> seen;
+    api::run_sweep(request, 1, pace, [&](std::size_t index, const std::string& text) {
+        check_line(index, text);
+        fuzz::require(seen.insert(index).second, "a line comes once");
+        fuzz::require(
+            std::binary_search(wanted.begin(), wanted.end(), index), "a line was asked for");
+    });
+    fuzz::require(pace.has_stopped() || seen.size() == wanted.size(), "all lines come");
+}
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view text = fuzz::text_of(data, size);
+    fuzz::or_problem(
+        [text] { sweep(api::read_sweep_request(api::parse_object(text), most_points)); });
+    return 0;
+}
