@@ -177,6 +177,7 @@ test("fields keep what they name, compute nothing else, and say what they do not
     "impacts",
     "exponents",
     "regime",
+    "provenance",
   ]);
   const whole = await json("include=impacts,regime,exponents");
   assert.deepEqual(thin.impacts, {tau: whole.impacts.tau});
@@ -207,7 +208,13 @@ test("a POST takes format and fields in its body; so do the manifold and an iden
   const {impacts} = await (await post("/v1/simulate", {b: 0.022, tau_end: 1709})).json();
   const listed = {impacts, b: 0.022, fields: ["verdict", "restitution"]};
   const identified = await (await post("/v1/identify", listed)).json();
-  assert.deepEqual(Object.keys(identified), ["version", "restitution", "verdict", "warnings"]);
+  assert.deepEqual(Object.keys(identified), [
+    "version",
+    "restitution",
+    "verdict",
+    "warnings",
+    "provenance",
+  ]);
   for (const [body, pointer] of [
     [{format: "xml"}, "/format"],
     [{fields: [1]}, "/fields/0"],

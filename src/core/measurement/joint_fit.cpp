@@ -385,7 +385,7 @@ private:
             return fit_.values[u] + (fixed_[u] ? 0 : s.step(equations.unknown_at(u)));
         };
         const auto is_near = [&](Unknown u) {
-            return std::abs(after(u) - prior_mean_[u]) < most_priors * prior_[u];
+            return std::abs(after(u) - prior_mean_[u]) <= most_priors * prior_[u];
         };
         return is_near(Unknown::Omega) && is_near(Unknown::stiffness) &&
                std::abs(after(Unknown::damping)) < most_damping;
