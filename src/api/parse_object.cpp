@@ -16,6 +16,8 @@ namespace {
 constexpr std::size_t deepest = 16;
 // Of one object: several times as many as any request has.
 constexpr std::size_t most_names = 1000;
+// Of all: a record is made of numbers.
+constexpr std::size_t most_texts = 10000;
 
 [[noreturn]] void invalid(const std::string& what) {
     throw Problem(400, "the body is not valid JSON: " + what);
@@ -31,7 +33,11 @@ public:
     bool number_integer(Json::number_integer_t value) { return add(value); }
     bool number_unsigned(Json::number_unsigned_t value) { return add(value); }
     bool number_float(Json::number_float_t value, const std::string&) { return add(value); }
-    bool string(std::string& value) { return add(std::move(value)); }
+    bool string(std::string& value) {
+        if (++texts_ > most_texts)
+            throw Problem(400, fmt::format("the JSON text has more than {} texts", most_texts));
+        return add(std::move(value));
+    }
     bool binary(Json::binary_t&) { return false; }  // of formats other than JSON
     bool start_object(std::size_t) { return open(Json::object()); }
     bool end_object() { return close(); }
@@ -98,6 +104,7 @@ private:
     Json whole_;
     std::vector<Open> open_;  // objects and arrays, the outermost first
     std::string name_;
+    std::size_t texts_ = 0;
 };
 
 }  // namespace

@@ -16,7 +16,10 @@ Json shortened_value(const Json& value) {
 }  // namespace
 
 std::string shortened(const std::string& text) {
-    return text.size() <= longest_echo ? text : text.substr(0, longest_echo) + "...";
+    if (text.size() <= longest_echo) return text;
+    std::size_t end = longest_echo;  // of a character of UTF-8, not within one
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;
+    return text.substr(0, end) + "...";
 }
 
 Problem::Problem(int status_, const std::string& detail, std::vector<FieldError> errors_)
@@ -68,6 +71,7 @@ std::string_view reason_phrase(int status) {
         case 421: return "Misdirected Request";
         case 422: return "Unprocessable Content";
         case 431: return "Request Header Fields Too Large";
+        case 499: return "Client Closed Request";
         case 505: return "HTTP Version Not Supported";
         case 503: return "Service Unavailable";
         default: return status >= 500 ? "Internal Server Error" : "Bad Request";

@@ -4,6 +4,8 @@
 #include <openssl/evp.h>
 
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <map>
 #include <stdexcept>
 #include <utility>
@@ -17,6 +19,9 @@ namespace vines::api {
 namespace {
 
 constexpr std::string_view before_provenance = ",\"provenance\":";
+
+// Up to here each whole number is a double.
+constexpr double largest_whole = 9007199254740992;
 
 /// SHA-256 of a text that comes in pieces.
 class Sha256 {
@@ -91,6 +96,10 @@ Json canonical(const Json& request) {
         for (const Json& entry : request) array.push_back(canonical(entry));
         return array;
     }
+    // 100.0 of a query is the 100 of a body.
+    if (request.is_number_float() && std::abs(request.get<double>()) < largest_whole &&
+        request == std::trunc(request.get<double>()))
+        return static_cast<std::int64_t>(request.get<double>());
     if (!request.is_object()) return request;
     std::map<std::string, Json> ordered;
     for (const auto& [name, value] : request.items()) ordered[name] = canonical(value);

@@ -22,7 +22,7 @@ struct Provenance {
 /// {route, commit, answer_limit, request, record_sha256, sha256}; sha256: of the answer.
 Json describe(const Provenance& provenance, const Json& sha256);
 
-/// The same request with its names in order, at every level.
+/// The same request with its names in order, at every level, and whole numbers without a point.
 Json canonical(const Json& request);
 
 /// 64 hexadecimal digits.

@@ -5,6 +5,7 @@
 
 #include "api/problem.hpp"
 #include "api/schema/text_value.hpp"
+#include "api/text_encoding.hpp"
 
 namespace vines::api {
 
@@ -61,6 +62,8 @@ void add_text(
 Json from_query(const FieldTable& table, const Query& query) {
     Json object = Json::object();
     for (const auto& [name, text] : query) {
+        if (!is_utf8(name) || !is_utf8(text))
+            throw Problem(400, "the query is not in UTF-8: " + shortened(name));
         const std::size_t point = name.find('.');
         const std::string outer = name.substr(0, point);
         const Field* f = point == std::string::npos ? nullptr : find(table, outer);

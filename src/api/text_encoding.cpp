@@ -44,6 +44,8 @@ const char* encoding_of(std::string_view bytes) {
 
 }  // namespace
 
+bool is_utf8(std::string_view bytes) { return converted(bytes, "UTF-8").has_value(); }
+
 std::string_view as_utf8(std::string_view bytes, std::string& room) {
     const std::string_view encoding = encoding_of(bytes);
     if (encoding == "UTF-8") {

@@ -10,4 +10,6 @@ namespace vines::api {
 /// characters), UTF-8, or else Latin-1. What is UTF-8 already is not copied; else `room` holds it.
 std::string_view as_utf8(std::string_view bytes, std::string& room);
 
+bool is_utf8(std::string_view bytes);
+
 }  // namespace vines::api

@@ -42,7 +42,7 @@ double weight_of(std::string_view type, std::string_view accept) {
 }  // namespace
 
 api::Format accepted_format(std::string_view accept) {
-    if (trimmed(accept).empty()) return api::Format::json;
+    if (accept.find_first_not_of(" \t,") == std::string_view::npos) return api::Format::json;
     const api::FormatName* best = nullptr;
     double most = 0;
     for (const api::FormatName& name : api::format_names) {

@@ -40,6 +40,7 @@ struct Asked {
 /// A place to compute in, once it is free, or Problem 503.
 ComputeGate::Place place_in(ComputeGate& gate, const Request& request, Stopwatch& watch) {
     ComputeGate::Place place = gate.enter(request.left);
+    if (!place && request.left()) throw Problem(499, "the client has left");  // for the log alone
     if (!place)
         throw Problem::unavailable(
             "computing",
@@ -88,6 +89,13 @@ bool is_known(const Request& r, const std::string& tag) {
     return !tag.empty() && names_tag(r.known_tags, tag);
 }
 
+/// What is said of formats is said by each of them.
+const std::pair<std::string, std::string> varies{"Vary", "Accept"};
+
+Response not_modified(const std::string& tag) {
+    return {.status = 304, .tag = tag, .headers = {varies}};
+}
+
 /// Problem 413 beyond the limit.
 Response encoded_response(Json answer, const Asked& asked, std::size_t limit, Stopwatch& watch) {
     watch.lap("solve");
@@ -104,7 +112,7 @@ Response encoded_response(Json answer, const Asked& asked, std::size_t limit, St
     return {
         .content_type = api::name_of(asked.format).media_type,
         .body = std::move(bytes),
-        .headers = {{"Vary", "Accept"}}};
+        .headers = {varies}};
 }
 
 }  // namespace
@@ -115,7 +123,7 @@ Response simulate(const Request& r, const Service& service, Stopwatch& watch) {
     Asked asked = vines::http::asked(r, api::simulate_fields());
     const std::string tag = tag_of(r, asked, options.answer_limit);
     api::SimulateRequest request = api::read_simulate_request(asked.fields);
-    if (is_known(r, tag)) return {.status = 304, .tag = tag};
+    if (is_known(r, tag)) return not_modified(tag);
     watch.lap("parse");
     const api::Stop stop = end_of_work(options.deadline, r, service.gate);
     // Only text is written while its lists are made.
@@ -129,7 +137,9 @@ Response simulate(const Request& r, const Service& service, Stopwatch& watch) {
         watch.lap("solve");
         api::thin(answer.json, asked.form.fields);
         answer.provenance = asked.provenance;
-        return stream_answer(std::move(answer), r.id, service.gate);
+        Response response = stream_answer(std::move(answer), r.id, service.gate);
+        response.headers.push_back(varies);
+        return response;
     }
     Response response =
         encoded_response(std::move(answer.json), asked, options.answer_limit, watch);
@@ -142,7 +152,7 @@ Response manifold(const Request& r, const Service& service, Stopwatch& watch) {
     const Asked asked = vines::http::asked(r, api::manifold_fields());
     const std::string tag = tag_of(r, asked, service.options.answer_limit);
     const api::ManifoldRequest request = api::read_manifold_request(asked.fields);
-    if (is_known(r, tag)) return {.status = 304, .tag = tag};
+    if (is_known(r, tag)) return not_modified(tag);
     watch.lap("parse");
     const api::Stop stop = end_of_work(service.options.deadline, r, service.gate);
     Response response = encoded_response(

@@ -153,7 +153,7 @@ Exchange Connection::take() {
         bytes_.clear();
     }
     exchange.head = std::move(*std::exchange(head_, {}));
-    exchange.route = route_;
+    exchange.route = std::exchange(route_, nullptr);
     const std::size_t length = exchange.refused ? 0 : exchange.head.content_length;
     // The large buffer goes with the body.
     std::string rest = bytes_.substr(length);

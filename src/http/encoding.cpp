@@ -91,7 +91,8 @@ std::string entity_tag(const std::string& body) {
 }
 
 bool names_tag(std::string_view if_none_match, std::string_view tag) {
-    return if_none_match == "*" || if_none_match.find(tag) != std::string_view::npos;
+    // By the weak comparison, for which a client need not repeat the W/.
+    return if_none_match.find(tag.substr(tag.find('"'))) != std::string_view::npos;
 }
 
 }  // namespace vines::http

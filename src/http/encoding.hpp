@@ -32,7 +32,8 @@ bool accepts_gzip(std::string_view accept_encoding);
 /// apart, guards against nothing.
 std::string entity_tag(const std::string& body);
 
-/// Whether a request with this header If-None-Match (RFC 9110, 13.1.2) has what the tag names.
+/// Whether a request with this header If-None-Match (RFC 9110, 13.1.2) names the tag. ("*" is for
+/// who knows that there is an answer.)
 bool names_tag(std::string_view if_none_match, std::string_view tag);
 
 }  // namespace vines::http

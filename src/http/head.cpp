@@ -57,6 +57,13 @@ std::size_t length_of(std::string_view text) {
     return length;
 }
 
+/// Of those that are read here: it may stand there several times, with a part of its list each (RFC
+/// 9110, 5.3). Two of Authorization are no key.
+bool is_list(std::string_view name) {
+    return name == "accept" || name == "accept-encoding" || name == "authorization" ||
+           name == "if-none-match";
+}
+
 /// Whether a word stands in the comma-separated lists of a header, in lower case.
 bool lists(const Head& head, std::string_view header, std::string_view word) {
     for (const auto& [name, value] : head.headers) {
@@ -152,7 +159,17 @@ void HeadReader::take_header(std::string_view line) {
     if (has_control(value)) malformed("a header's value holds a control character");
     if (head_.headers.size() >= most_headers)
         throw Problem(431, fmt::format("the request has more than {} headers", most_headers));
-    head_.headers.emplace_back(lower_case(name), value);
+    std::string lower = lower_case(name);
+    if (is_list(lower)) {
+        const auto before = std::find_if(
+            head_.headers.begin(), head_.headers.end(),
+            [&lower](const auto& header) { return header.first == lower; });
+        if (before != head_.headers.end()) {
+            before->second.append(", ").append(value);
+            return;
+        }
+    }
+    head_.headers.emplace_back(std::move(lower), value);
 }
 
 void HeadReader::finish() {

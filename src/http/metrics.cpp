@@ -32,16 +32,8 @@ std::string method_label(const std::string& method) {
     return std::find(known.begin(), known.end(), method) != known.end() ? method : "other";
 }
 
-const char* label_of(SweepEnd end) {
-    switch (end) {
-        case SweepEnd::complete: return "complete";
-        case SweepEnd::client_left: return "client_left";
-        case SweepEnd::deadline: return "deadline";
-        case SweepEnd::stopping: return "stopping";
-        case SweepEnd::failed: return "failed";
-    }
-    return "";
-}
+// In the order of SweepEnd.
+constexpr std::array sweep_ends{"complete", "client_left", "deadline", "stopping", "failed"};
 
 /// A number that is known when it is asked for.
 MetricFamily sampled(
@@ -83,10 +75,7 @@ struct Metrics::Implementation {
         // From the start on: a rate needs a value before the first one.
         for (const char* lacking : {"computing", "memory", "stopping", "sweeps", "threads"})
             unavailable.Add({{"reason", lacking}});
-        for (const SweepEnd end :
-             {SweepEnd::complete, SweepEnd::client_left, SweepEnd::deadline, SweepEnd::stopping,
-              SweepEnd::failed})
-            sweeps.Add({{"end", label_of(end)}});
+        for (const char* end : sweep_ends) sweeps.Add({{"end", end}});
     }
 
     const ComputeGate& gate;
@@ -188,7 +177,7 @@ void Metrics::count_simulation(long impacts) {
 }
 
 void Metrics::count_sweep(SweepEnd end, std::size_t runs, std::size_t impacts) {
-    implementation_->sweeps.Add({{"end", label_of(end)}}).Increment();
+    implementation_->sweeps.Add({{"end", sweep_ends[static_cast<std::size_t>(end)]}}).Increment();
     implementation_->runs.Increment(static_cast<double>(runs));
     implementation_->impacts.Increment(static_cast<double>(impacts));
 }

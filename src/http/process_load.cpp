@@ -53,6 +53,7 @@ ProcessLoad process_load() {
     for (std::filesystem::directory_iterator entry("/proc/self/fd", ignored), end; entry != end;
          entry.increment(ignored))
         ++load.open_fds;
+    --load.open_fds;  // that which looks
     rlimit limit{};
     if (::getrlimit(RLIMIT_NOFILE, &limit) == 0) load.max_fds = static_cast<double>(limit.rlim_cur);
     return load;

@@ -82,6 +82,8 @@ void send(
     out.set_header("X-Content-Type-Options", "nosniff");
     if (response.stream) return send_stream(head, out, std::move(response));
     const bool known = response.status == 304;
+    const bool zips = response.body.size() >= compress_from || !response.gzipped.empty();
+    if (zips || known) out.set_header("Vary", "Accept-Encoding");
     const bool reads = head.method == "GET" || head.method == "HEAD";
     // Else the library would promise parts of answers.
     if (head.method == "HEAD") out.set_header("Accept-Ranges", "none");
@@ -91,18 +93,16 @@ void send(
         // Kept for a year, or asked for again, with the tag.
         out.set_header(
             "Cache-Control", response.immutable ? "max-age=31536000, immutable" : "no-cache");
-        if (known || names_tag(head.header("if-none-match"), tag)) {
+        const std::string_view having = head.header("if-none-match");
+        if (known || having == "*" || names_tag(having, tag)) {
             out.status = 304;
             return;
         }
     }
-    if (response.body.size() >= compress_from || !response.gzipped.empty()) {
-        out.set_header("Vary", "Accept-Encoding");
-        if (accepts_gzip(head.header("accept-encoding"))) {
-            response.body =
-                response.gzipped.empty() ? gzip(response.body) : std::string(response.gzipped);
-            out.set_header("Content-Encoding", "gzip");
-        }
+    if (zips && accepts_gzip(head.header("accept-encoding"))) {
+        response.body =
+            response.gzipped.empty() ? gzip(response.body) : std::string(response.gzipped);
+        out.set_header("Content-Encoding", "gzip");
     }
     // Through a content provider, which keeps the library from compressing by itself: brotli at its
     // slowest, 2 s for 1.7 MB.

@@ -93,10 +93,10 @@ struct Server::Implementation {
         InWork& work = current();
         work.keeps = work.exchange.head.keep_alive && !work.exchange.refused;
         Response response = response_to(work);
-        for (auto& header : sharing_headers(work.exchange.head, options.access))
-            response.headers.push_back(std::move(header));
         const std::size_t size = response.body.size() + response.held;
         if (size > small_answer && connections->memory().is_full()) response = memory_refusal();
+        for (auto& header : sharing_headers(work.exchange.head, options.access))
+            response.headers.push_back(std::move(header));
         work.connection->hold(size);
         // Of a stream that comes in no chunks the end is that of its connection.
         if (response.stream && !work.exchange.head.takes_chunks) work.keeps = false;
@@ -181,7 +181,7 @@ struct Server::Implementation {
     Admitted admit(const Head& head) const {
         Admitted admitted{.route = find_route(routes, head.method, head.path())};
         admitted.refused = access_refusal(head, admitted.route, options.access);
-        if (!admitted.refused && is_preflight(head, options.access)) return {.route = &preflight};
+        if (!admitted.refused && is_preflight(head, options.access)) admitted.route = &preflight;
         if (!admitted.refused)
             admitted.refused = refusal(head, admitted.route, routes, options.payload_limit);
         return admitted;

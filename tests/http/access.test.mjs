@@ -58,6 +58,17 @@ test("with --api-key-file all but health and the page asks for one of its keys",
     "Bearer # of the laboratory",
     `Bearer ${keys[0]}, Bearer ${keys[1]}`,
   ];
+  const twice = await exchange(
+    service.url,
+    [
+      "GET /v1/presets HTTP/1.1",
+      "Host: localhost",
+      `Authorization: Bearer ${keys[0]}`,
+      "Authorization: Bearer x",
+      "\r\n",
+    ].join("\r\n"),
+  );
+  assert.match(twice, /^HTTP\/1.1 401/, "two are none");
   for (const shown of wrong) assert.equal(await status("/v1/presets", shown), 401, shown);
   const post = {method: "POST", body: "{}"};
   for (const path of ["/v1/simulate", "/v1/sweep", "/v1/identify", "/v1/manifold"])
@@ -133,6 +144,36 @@ test("a page of an origin that is allowed may use the service, and hears its hea
       assert.match(request, /^HTTP\/1.1 403/, other);
       assert.doesNotMatch(request, /Access-Control/);
     }
+});
+
+test("a question of a browser has no body, as no request but a POST has", async (t) => {
+  const service = await startService(["--cors-origin", "https://lab.example.org"]);
+  t.after(() => service.stop());
+  const head = [
+    "OPTIONS /v1/simulate HTTP/1.1",
+    "Host: localhost",
+    "Origin: https://lab.example.org",
+    "Access-Control-Request-Method: POST",
+    "Content-Length: 999999999999",
+    "\r\n",
+  ];
+  assert.match(await exchange(service.url, head.join("\r\n")), /^HTTP\/1.1 400/);
+});
+
+test("what is refused for lack of memory is told to a page of an allowed origin, too", async (t) => {
+  const service = await startService([
+    "--cors-origin",
+    "https://lab.example.org",
+    "--memory-limit",
+    "1",
+  ]);
+  t.after(() => service.stop());
+  const answer = await fetch(`${service.url}/v1/simulate?preset=fig3&tau_end=3000`, {
+    headers: {Origin: "https://lab.example.org"},
+  });
+  assert.equal(answer.status, 503);
+  assert.equal((await answer.json()).lacking, "memory");
+  assert.equal(answer.headers.get("access-control-allow-origin"), "https://lab.example.org");
 });
 
 test("--cors-origin * lets every page use the service; no origin at all is refused", async (t) => {

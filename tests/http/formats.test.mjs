@@ -10,9 +10,9 @@ before(async () => {
 });
 after(() => service.stop());
 
-const get = (query, accept) =>
+const get = (query, accept, headers = {}) =>
   fetch(`${service.url}/v1/simulate?b=0.022&damping=closed_form&tau_end=1709&${query}`, {
-    headers: accept ? {Accept: accept} : {},
+    headers: {...headers, ...(accept ? {Accept: accept} : {})},
   });
 const json = async (query) => (await get(query)).json();
 
@@ -226,6 +226,56 @@ test("a POST takes format and fields in its body; so do the manifold and an iden
   }
 });
 
+test("fields are bounded, in names and in work, whatever is sent", async () => {
+  const post = (fields) =>
+    fetch(`${service.url}/v1/simulate`, {method: "POST", body: JSON.stringify(fields)});
+  const windows = Array.from({length: 1000}, (_, k) => [k, k + 1]);
+  const began = performance.now();
+  for (const [fields, pointer] of [
+    [Array.from({length: 60000}, (_, k) => `windows.${k}`), null],
+    [Array.from({length: 2000}, (_, k) => `windows.${k}`), "/fields"],
+    [[`windows.${"a.".repeat(50000)}`], "/fields/0"],
+    ["a,".repeat(100000), "/fields"],
+  ]) {
+    const answer = await post({preset: "fig3", windows, fields});
+    if (pointer === null) {
+      assert.equal(answer.status, 400); // too many texts
+      continue;
+    }
+    assert.equal(answer.status, 422);
+    assert.equal((await answer.json()).errors[0].pointer, pointer);
+  }
+  assert.ok(performance.now() - began < 3000);
+  const most = Array.from({length: 1000}, (_, k) => `windows.${k}`);
+  const answer = await post({preset: "fig3", windows, fields: most});
+  assert.equal(answer.status, 200);
+  assert.equal((await answer.json()).warnings.length >= 1000, true);
+});
+
+test("texts that are no UTF-8, or are cut within a character, harm no answer", async () => {
+  const answer = await fetch(`${service.url}/v1/simulate?fields=%ff`);
+  assert.equal(answer.status, 400);
+  assert.match((await answer.json()).detail, /not in UTF-8/);
+  const ask = (fields, format) => {
+    const body = JSON.stringify({preset: "fig3", tau_end: 50, fields, format});
+    return fetch(`${service.url}/v1/simulate`, {method: "POST", body});
+  };
+  for (const format of ["json", "cbor", "npz"]) {
+    const told = await ask([`a${"\u00e9".repeat(99)}`], format);
+    assert.equal(told.status, 200, format);
+    await told.arrayBuffer();
+  }
+  const {errors} = await (await ask([`a${"\u00e9".repeat(150)}`], "json")).json();
+  assert.match(errors[0].value, /^a\u00e9+\.\.\.$/);
+});
+
+test("touches are computed where fields name them", async () => {
+  const system = {G: 0, lambda: 0, x0: 0.02, y0: 0, b: 0.02, tau_end: 30, fields: ["touches"]};
+  const body = JSON.stringify(system);
+  const answer = await fetch(`${service.url}/v1/simulate`, {method: "POST", body});
+  assert.ok((await answer.json()).touches.tau.length > 0);
+});
+
 test("what is known is told by format and fields, too", async () => {
   const first = await get("fields=impacts.tau&format=csv");
   const tag = first.headers.get("etag");
@@ -233,7 +283,13 @@ test("what is known is told by format and fields, too", async () => {
     fetch(`${service.url}/v1/simulate?b=0.022&damping=closed_form&tau_end=1709&${query}`, {
       headers: {"If-None-Match": tag},
     });
-  assert.equal((await again("fields=impacts.tau&format=csv")).status, 304);
+  const known = await again("fields=impacts.tau&format=csv");
+  assert.equal(known.status, 304);
+  assert.match(known.headers.get("vary"), /Accept\b/);
+  const weak = await fetch(first.url, {headers: {"If-None-Match": `"x", ${tag.slice(2)}`}});
+  assert.equal(weak.status, 304, "a client need not repeat the W/");
+  const any = await get("format=csv", undefined, {"If-None-Match": "*"});
+  assert.equal(any.status, 422, "there is nothing to be known of what is refused");
   assert.equal((await again("fields=impacts.tau&format=cbor")).status, 200);
   assert.equal((await again("fields=impacts.side&format=csv")).status, 200);
 });

@@ -39,6 +39,8 @@ test("requests are counted by route, method and status, their times by route; pr
   ];
   for (const answer of answers) await answer.arrayBuffer();
   await exchange(url, "BREW /v1/simulate HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  const second = "GET /livez HTTP/1.1\r\nHost: localhost\r\n\r\nGARBAGE\r\n\r\n";
+  await exchange(url, second);
   const answer = await fetch(`${url}/metrics`);
   assert.equal(answer.headers.get("content-type"), "text/plain; version=0.0.4; charset=utf-8");
   const {status, stdout, stderr} = spawnSync(promtool, ["check", "metrics"], {
@@ -54,6 +56,7 @@ test("requests are counted by route, method and status, their times by route; pr
   assert.equal(requests("/v1/simulate", "GET", 422), 1);
   assert.equal(requests("none", "GET", 404), 1);
   assert.equal(requests("none", "other", 405), 1, "no series of a client's own words");
+  assert.equal(requests("none", "other", 400), 1, "behind another one on its connection, too");
   assert.equal(requests("page", "GET", 200), 1);
   assert.equal(
     all.get('vines_http_request_duration_seconds_count{route="/v1/simulate"}'),
@@ -97,6 +100,24 @@ test("impacts, sweeps and their runs are counted, and how each sweep ended", asy
   assert.equal(all.get("vines_sweeps_running"), 0);
 });
 
+test("a client that leaves the queue is none that the server had no room for", async (t) => {
+  const one = await startService(["--compute-threads", "1"]);
+  t.after(() => one.stop());
+  const leaving = new AbortController();
+  const {signal} = leaving;
+  const body = JSON.stringify(endless);
+  const asked = [1, 2, 3].map(() =>
+    fetch(`${one.url}/v1/simulate`, {method: "POST", body, signal}).catch(() => {}),
+  );
+  await until(async () => (await metrics(one.url)).get("vines_compute_queue_depth") === 2);
+  leaving.abort();
+  await Promise.all(asked);
+  await until(async () => (await metrics(one.url)).get("vines_http_requests_in_flight") === 0);
+  const all = await metrics(one.url);
+  assert.equal(all.get('vines_http_unavailable_total{reason="computing"}'), 0);
+  for (const name of all.keys()) assert.doesNotMatch(name, /code="503"/);
+});
+
 test("what waits, computes and is refused for lack of room is told while it is so", async (t) => {
   const one = await startService(["--compute-threads", "1", "--compute-queue", "1"]);
   t.after(() => one.stop());
@@ -115,8 +136,10 @@ test("what waits, computes and is refused for lack of room is told while it is s
   const refused = await post(one.url, "/v1/simulate", {b: 0.022});
   assert.equal(refused.status, 503);
   assert.equal((await refused.json()).lacking, "computing");
+  // An answer is counted once it has been sent.
+  const lacking = 'vines_http_unavailable_total{reason="computing"}';
+  await until(async () => (await load(lacking)) === 1);
   const all = await metrics(one.url);
-  assert.equal(all.get('vines_http_unavailable_total{reason="computing"}'), 1);
   await until(async () => (await load("vines_http_requests_in_flight")) === 2);
   assert.ok(all.get("vines_http_connections") >= 3);
   leaving.abort();

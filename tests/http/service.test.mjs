@@ -344,7 +344,7 @@ test("an answer with very many impacts leaves as a stream of the same bytes", as
       request.end(body);
     });
     assert.equal(headers["transfer-encoding"], "chunked");
-    assert.equal(headers.vary, "Accept-Encoding");
+    assert.match(headers.vary, /Accept\b.*Accept-Encoding|Accept-Encoding.*Accept\b/);
     assert.equal(headers["content-encoding"], coding === "identity" ? undefined : "gzip");
     const text = coding === "identity" ? bytes : gunzipSync(bytes);
     assert.ok(text.length > 8e6);

@@ -23,6 +23,8 @@ function ask() {
     type: "password",
     name: "key",
     required: true,
+    pattern: "\\s*[A-Za-z0-9._~+\\/=\\-]{16,}\\s*", // as the service takes them
+    title: "16 or more letters, digits or -._~+/=",
     autocomplete: "current-password",
   });
   const wrong = hasKey() ? "The server does not know this key. " : "";

@@ -80,7 +80,7 @@ void put_csv_word(const std::string& word, std::string& text) {
         return;
     }
     text += '"';
-    for (const char c : word) text += c == '"' ? std::string("\"\"") : std::string(1, c);
+    for (const char c : word) text.append(c == '"' ? 2 : 1, c);
     text += '"';
 }
 
@@ -114,10 +114,12 @@ std::string csv_text(const Json& answer) {
     }
     text += '\n';
     for (std::size_t row = 0; row < table.columns[0].list.size(); ++row) {
+        const std::size_t begins = text.size();
         for (const ToldColumn& column : table.columns) {
             if (&column != table.columns.data()) text += ',';
             put_csv_entry(column.list, row, text);
         }
+        if (text.size() == begins) text += "\"\"";  // readers leave an empty line out
         text += '\n';
     }
     return text;

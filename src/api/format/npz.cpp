@@ -37,7 +37,7 @@ public:
         directory_ += "PK\x01\x02";
         put_little(directory_, 20, 2);
         directory_ += common;
-        put_little(directory_, 0, 10);  // no comment, first disk, attributes
+        directory_.append(10, '\0');  // no comment, first disk, attributes
         put_little(directory_, files_.size(), 4);
         directory_ += name;
         files_ += "PK\x03\x04" + common + name + content;

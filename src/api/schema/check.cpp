@@ -77,8 +77,11 @@ void check_choice(const Checked& c, const Json& value) {
 void check_choices(const Checked& c, const Json& value) {
     if (!value.is_array()) return c.fault("", value, "must be an array of words");
     c.each(value, [&](const std::string& where, const Json& element) {
-        if (c.field.choices.empty() && element.is_string()) return;
-        if (!c.is_choice(element)) c.fault(where, element, "may hold " + joined(c.field.choices));
+        if (c.field.choices.empty()) {
+            if (!element.is_string()) c.fault(where, element, "must hold words");
+        } else if (!c.is_choice(element)) {
+            c.fault(where, element, "may hold " + joined(c.field.choices));
+        }
     });
 }
 

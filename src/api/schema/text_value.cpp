@@ -16,6 +16,14 @@ Json number_or_text(const std::string& text) {
     return value;
 }
 
+Json numbers_of(const std::string& text) {
+    Json array = Json::array();
+    for (const std::string& part : split(text, ',')) array.push_back(number_or_text(part));
+    return array;
+}
+
+}  // namespace
+
 std::vector<std::string> split(const std::string& text, char separator) {
     std::vector<std::string> parts;
     for (std::size_t from = 0, at; !text.empty(); from = at + 1) {
@@ -25,14 +33,6 @@ std::vector<std::string> split(const std::string& text, char separator) {
     }
     return parts;
 }
-
-Json numbers_of(const std::string& text) {
-    Json array = Json::array();
-    for (const std::string& part : split(text, ',')) array.push_back(number_or_text(part));
-    return array;
-}
-
-}  // namespace
 
 Json value_of_text(FieldType type, const std::string& text) {
     switch (type) {
