@@ -13,10 +13,11 @@ namespace vines::http {
 
 namespace {
 
-// A client that reads slower than this, beside its patience, holds a thread for nothing.
-constexpr double slowest_reader = 8192;  // bytes per second
+// A client that reads slower than this, beside its patience, holds a thread for nothing; where
+// others wait for the thread, so does a faster one.
+constexpr double slowest_reader = 8192, slowest_of_many = 65536;  // bytes per second
 
-// Where others wait for the thread, the patience is shorter. That is looked for so often.
+// Then the patience is shorter, too. That is looked for so often.
 constexpr std::chrono::milliseconds hurried_time(2000), look(500);
 
 }  // namespace
@@ -70,8 +71,10 @@ bool SocketStream::send(std::string_view first, std::string_view second) {
 /// How long the client may still keep from reading: all in all, so that one that reads a byte now
 /// and then gains nothing by it.
 std::chrono::milliseconds SocketStream::patience_left() const {
-    const auto time = patience_.hurried() ? std::min(patience_.time, hurried_time) : patience_.time;
-    const std::chrono::duration<double> earned(static_cast<double>(written_) / slowest_reader);
+    const bool hurried = patience_.hurried();
+    const auto time = hurried ? std::min(patience_.time, hurried_time) : patience_.time;
+    const std::chrono::duration<double> earned(
+        static_cast<double>(written_) / (hurried ? slowest_of_many : slowest_reader));
     return std::chrono::ceil<std::chrono::milliseconds>(time + earned - waited_);
 }
 

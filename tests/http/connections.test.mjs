@@ -378,7 +378,7 @@ test("clients that do not read hold no thread that others wait for", async (t) =
     Array.from({length: 12}, async () => {
       const connection = await connect(one.url);
       connection.socket.pause();
-      connection.socket.write(get("/v1/openapi.json").repeat(200));
+      connection.socket.write(get("/v1/parameters").repeat(200));
       return connection;
     }),
   );

@@ -218,6 +218,7 @@ test("a POST takes format and fields in its body; so do the manifold and an iden
   for (const [body, pointer] of [
     [{format: "xml"}, "/format"],
     [{fields: [1]}, "/fields/0"],
+    [{fields: [""]}, "/fields/0"],
     [{fields: {}}, "/fields"],
   ]) {
     const refused = await post("/v1/simulate", body);

@@ -64,11 +64,13 @@ std::vector<FieldError> check_fields(const Json& fields) {
         return {
             {"/fields", fields.size(), Json::array({0, most_fields}),
              "fields may hold " + std::to_string(most_fields) + " names"}};
-    for (std::size_t k = 0; k < fields.size(); ++k)
-        if (fields[k].get_ref<const std::string&>().size() > longest_field)
+    for (std::size_t k = 0; k < fields.size(); ++k) {
+        const std::size_t length = fields[k].get_ref<const std::string&>().size();
+        if (length == 0 || length > longest_field)
             return {
                 {"/fields/" + std::to_string(k), fields[k], nullptr,
-                 "a name of a field has at most " + std::to_string(longest_field) + " characters"}};
+                 "a name of a field has 1 to " + std::to_string(longest_field) + " bytes"}};
+    }
     return {};
 }
 
@@ -97,7 +99,7 @@ AnswerForm take_form(Json& fields, const FieldTable& table) {
         if (value.is_string() && value.get_ref<const std::string&>().size() > longest_text)
             refuse(
                 {{"/" + f.name, value, nullptr,
-                  f.name + " has at most " + std::to_string(longest_text) + " characters"}});
+                  f.name + " has at most " + std::to_string(longest_text) + " bytes"}});
         form[f.name] = value.is_string() ? value_of_text(f.type, value) : std::move(value);
         fields.erase(f.name);
     }
