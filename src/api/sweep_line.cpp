@@ -47,15 +47,6 @@ Json describe_section(const SweepRequest& r, const Sections& sections, const Pla
     return j;
 }
 
-/// Where a line lies.
-Json located(const SweepRequest& r, std::size_t line, const Place& place) {
-    Json j = {{"type", "point"}, {"index", line}};
-    for (std::size_t a = 0; a < r.axes.size(); ++a)
-        if (a != r.plan.grid.reduced) j[r.axes[a].parameter] = r.axes[a].values[place.at[a]];
-    if (r.starts.size() > 1) j["start"] = place.start;
-    return j;
-}
-
 void add_exponents(Json& line, const PointResult& p) {
     line["lambda"] = column(p.lambda);
     line["status"] = column(p.lambda, [](double v) { return word(status_of(v)); });
@@ -151,9 +142,18 @@ std::string fault_of(const SweepRequest& r, const Place& place) {
 
 }  // namespace
 
+Json describe_place(const SweepRequest& r, std::size_t line) {
+    const Place place = r.plan.grid.place_of(line);
+    Json j = {{"type", "point"}, {"index", line}};
+    for (std::size_t a = 0; a < r.axes.size(); ++a)
+        if (a != r.plan.grid.reduced) j[r.axes[a].parameter] = r.axes[a].values[place.at[a]];
+    if (r.starts.size() > 1) j["start"] = place.start;
+    return j;
+}
+
 Json describe_point(const SweepRequest& r, std::size_t index, const SweepPoint& point) {
     const Place place = r.plan.grid.place_of(index);
-    Json line = located(r, index, place);
+    Json line = describe_place(r, index);
     if (!point.system) {
         line["error"] = fault_of(r, place);
         return line;
@@ -179,7 +179,7 @@ Json describe_point(const SweepRequest& r, std::size_t index, const SweepPoint& 
 
 Json describe_row(const SweepRequest& r, std::size_t index, const RowSummary& row) {
     const Axis& axis = r.reduced_axis();
-    Json line = located(r, index, r.plan.grid.place_of(index));
+    Json line = describe_place(r, index);
     line["reduce"] = (r.plan.largest ? "max over " : "min over ") + axis.parameter;
     line.update(describe_peak(axis, row.worst));
     if (r.plan.default_set) {

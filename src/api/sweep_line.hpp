@@ -7,6 +7,10 @@
 
 namespace vines::api {
 
+/// What each line begins with: {type, index, the values of its axes, start}, without its reduced
+/// axis.
+Json describe_place(const SweepRequest& request, std::size_t line);
+
 /// The line of one point.
 Json describe_point(const SweepRequest& request, std::size_t line, const SweepPoint& point);
 

@@ -8,7 +8,7 @@
 namespace vines::cli {
 
 /// Beside 1, for what a command throws: a file cannot be read or written, or files do not fit
-/// together.
+/// together; and 128 + its number of a signal that finds nothing to be kept.
 enum ExitCode : int {
     complete = 0,
     differs = 1,    ///< of verify: it is not what was answered
@@ -16,8 +16,8 @@ enum ExitCode : int {
     incomplete = 3  ///< stopped by a signal, or points are missing: what is there is usable
 };
 
-/// A command that SIGINT and SIGTERM stop, that is refused by an api::Problem, and whose help lists
-/// the exit codes.
+/// A command that signals end, that is refused by an api::Problem, and whose help lists the exit
+/// codes.
 Command with_exit_codes(CLI::App* app, std::function<int()> run);
 
 }  // namespace vines::cli

@@ -1,24 +1,25 @@
 #include "cli/files.hpp"
 
 #include <fcntl.h>
-#include <fmt/format.h>
-#include <unistd.h>
+#include <poll.h>
+#include <sys/stat.h>
 
 #include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <iostream>
-#include <sstream>
-#include <stdexcept>
-#include <utility>
+
+#include "cli/descriptor.hpp"
+#include "cli/file_error.hpp"
 
 namespace vines::cli {
 
 namespace {
 
-/// The reason is errno's: call it next after what failed.
-[[noreturn]] void fail(const char* what, const std::string& path) {
-    throw std::runtime_error(fmt::format("cannot {} {}: {}", what, path, std::strerror(errno)));
+constexpr std::size_t piece_read = 1 << 16;
+
+/// Of a file that says its size, so much more than is there that its end is seen without growing.
+std::size_t size_of(int descriptor) {
+    struct stat entry{};
+    const bool known = ::fstat(descriptor, &entry) == 0 && S_ISREG(entry.st_mode);
+    return known ? static_cast<std::size_t>(entry.st_size) + 1 : piece_read;
 }
 
 }  // namespace
@@ -36,65 +37,34 @@ bool is_json(const std::string& text) {
 }
 
 std::string read_all(const std::string& path) {
-    if (!is_standard(path)) return read_file(path);
-    std::ostringstream text;
-    text << std::cin.rdbuf();
-    return text.str();
+    return is_standard(path) ? read_open(STDIN_FILENO, "stdin") : read_file(path);
 }
 
 std::string read_file(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    if (!in) fail("read", path);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
+    if (path == "/dev/stdin") return read_open(STDIN_FILENO, path);  // a socket cannot be opened
+    const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    if (!file) fail_at("read", path);
+    return read_open(file.number(), path);
 }
 
-Output::Output(const std::string& path)
-    : path_(is_standard(path) ? "" : path),
-      next_(path_.empty() ? "" : path_ + ".part"),
-      file_(
-          path_.empty() ? STDOUT_FILENO
-                        : ::open(next_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
-    if (file_ < 0) fail();
-}
-
-Output::~Output() {
-    if (!path_.empty() && file_ >= 0) ::close(file_);
-}
-
-void Output::fail() { cli::fail("write", path_.empty() ? "to stdout" : path_); }
-
-void Output::write(std::string_view text) {
-    while (!text.empty()) {
-        const ssize_t n = ::write(file_, text.data(), text.size());
-        if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) fail();
-        text.remove_prefix(static_cast<std::size_t>(n));
+std::string read_open(int descriptor, const std::string& name) {
+    std::string text(size_of(descriptor), '\0');
+    std::size_t length = 0;
+    for (;;) {
+        if (length == text.size()) text.resize(2 * length);
+        const ssize_t n = ::read(descriptor, text.data() + length, text.size() - length);
+        if (n == 0) break;
+        if (n > 0) {
+            length += static_cast<std::size_t>(n);
+        } else if (errno == EAGAIN) {  // who else has the terminal or the pipe made it so
+            pollfd readable{descriptor, POLLIN, 0};
+            ::poll(&readable, 1, -1);
+        } else if (errno != EINTR) {
+            fail_at("read", name);
+        }
     }
-}
-
-void Output::end() {
-    if (path_.empty()) return;
-    const bool ok = ::fsync(file_) == 0 && ::close(std::exchange(file_, -1)) == 0;
-    if (!ok || ::rename(next_.c_str(), path_.c_str()) != 0) fail();
-}
-
-void write_all(const std::string& path, const std::string& text) {
-    Output out(path);
-    out.write(text);
-    out.end();
-}
-
-Appending::Appending(const std::string& path) : path_(path), file_(std::fopen(path.c_str(), "ab")) {
-    if (!file_) fail("write", path_);
-}
-
-void Appending::line(const std::string& text) {
-    const std::string whole = text + "\n";
-    if (std::fwrite(whole.data(), 1, whole.size(), file_) != whole.size() ||
-        std::fflush(file_) != 0)
-        fail("write", path_);
+    text.resize(length);
+    return text;
 }
 
 }  // namespace vines::cli

@@ -6,11 +6,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "api/query.hpp"
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/files.hpp"
+#include "cli/output.hpp"
 #include "cli/progress_bar.hpp"
 #include "cli/stop_signals.hpp"
 #include "program/tell.hpp"
@@ -30,7 +32,7 @@ struct Asked {
     api::Provenance provenance;
 };
 
-Asked read_request(const std::string& text, const std::string& query) {
+Asked read_request(std::string text, const std::string& query) {
     const api::FieldTable& table = api::identify_fields();
     api::Json fields =
         is_json(text) ? api::parse_object(text) : api::from_query(table, api::parse_query(query));
@@ -43,7 +45,11 @@ Asked read_request(const std::string& text, const std::string& query) {
 }
 
 int identify(const IdentifyOptions& o) {
-    const auto [request, form, provenance] = read_request(read_all(o.files.input), o.query);
+    std::string text = read_all(o.files.input);
+    // What takes long of a list of impacts does not ask whether it is to stop.
+    std::optional<Stoppable> stoppable(
+        std::in_place, [] { tell("the identification was stopped"); });
+    const auto [request, form, provenance] = read_request(std::move(text), o.query);
     std::optional<StageLine> line(std::in_place);
     const IdentificationWatch watch{
         .stop = stopped, .reached = [&line](IdentificationStage stage, int round) {
@@ -61,6 +67,7 @@ int identify(const IdentifyOptions& o) {
         return incomplete;
     }
     line.reset();
+    stoppable.reset();
     write_all(o.files.output, answer);
     return complete;
 }

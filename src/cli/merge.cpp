@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "api/problem.hpp"
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/files.hpp"
+#include "cli/output.hpp"
 #include "cli/sweep_file.hpp"
 #include "program/tell.hpp"
 
@@ -22,10 +22,10 @@ struct MergeOptions {
     std::string output;
 };
 
-/// Adds a shard's points to those of the others. Throws std::runtime_error where they are of
-/// different sweeps or differ in a point.
+/// Adds a shard's points to those of the others. Throws std::runtime_error where a line is at
+/// fault, or they are of different sweeps or differ in a point.
 void add(SweepFile& all, const std::string& path, const std::string& first_path) {
-    const SweepFile part = read_sweep_file(path);
+    const SweepFile part = parse_sweep_file(read_file(path), path, Lines::whole);
     if (part.start.empty()) throw std::runtime_error(path + " is empty");
     if (all.start.empty()) all.start = part.start;
     if (part.start != all.start)
@@ -33,9 +33,10 @@ void add(SweepFile& all, const std::string& path, const std::string& first_path)
             "{} belongs to another sweep than {}: its first line differs", path, first_path));
     for (const auto& [index, line] : part.points) {
         const auto [there, added] = all.points.try_emplace(index, line);
-        if (!added && there->second != line)
-            throw std::runtime_error(fmt::format(
-                "{}: point {} differs from the same point in another file", path, index));
+        if (!added && there->second.text != line.text)
+            fail_in_line(
+                path, line.number,
+                fmt::format("point {} differs from the same point in another file", index));
     }
 }
 
@@ -51,7 +52,7 @@ std::size_t first_missing(const SweepFile& file) {
 int merge(const MergeOptions& o) {
     SweepFile all;
     for (const std::string& path : o.inputs) add(all, path, o.inputs[0]);
-    const std::size_t points = api::Json::parse(all.start)["points"].get<std::size_t>();
+    const std::size_t points = request_of(all, o.inputs[0]).plan.grid.lines();
     if (all.points.size() < points) {
         tell(fmt::format(
             "{} of {} points are missing, the first is {}: a shard is not complete or was not "

@@ -4,11 +4,13 @@
 #include "api/parse_object.hpp"
 
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/files.hpp"
+#include "cli/output.hpp"
 #include "cli/stop_signals.hpp"
 
 namespace vines::cli {
@@ -24,8 +26,10 @@ int simulate(const Files& files) {
         .asked = stopped, .reason = "interrupted", .message = "ended by a signal, before tau_end"};
     const api::Format format = form.format.value_or(api::Format::json);
     const bool is_json = format == api::Format::json;
+    std::optional<Stoppable> stoppable(std::in_place);
     api::SimulateAnswer answer = api::simulate_in_parts(
         request, stop, api::any_size, is_json ? api::most_kept_impacts : everything);
+    stoppable.reset();
     const int code = stopped() ? incomplete : complete;
     api::thin(answer.json, form.fields);
     if (!is_json) {
@@ -34,7 +38,7 @@ int simulate(const Files& files) {
     }
     answer.provenance = provenance;
     Output out(files.output);
-    Pace pace;  // a signal that comes now lets the answer be written
+    Pace pace;  // a signal that has come lets the answer be written
     api::write_answer(
         std::move(answer), pace, [&out](std::string_view piece) { out.write(piece); });
     out.end();

@@ -1,33 +1,24 @@
 // `vines sweep`: a sweep or a shard of one into a file, which a later run can complete.
-#include "api/sweep.hpp"
 #include "api/parse_object.hpp"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
-#include <algorithm>
 #include <memory>
-#include <optional>
-#include <stdexcept>
 #include <string>
+#include <utility>
 
-#include "api/json_text.hpp"
 #include "cli/commands.hpp"
+#include "cli/destination.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/files.hpp"
-#include "cli/progress_bar.hpp"
 #include "cli/shard.hpp"
 #include "cli/signal_pace.hpp"
 #include "cli/sweep_file.hpp"
-#include "program/tell.hpp"
+#include "cli/sweep_to_file.hpp"
+#include "cli/sweep_to_stream.hpp"
 #include "program/within.hpp"
 
 namespace vines::cli {
 
 namespace {
-
-// More points than this do not fit a file that is put in order in memory.
-constexpr std::size_t most_points = 10'000'000;
 
 struct SweepOptions {
     Files files;
@@ -46,59 +37,13 @@ api::SweepRequest read_request(const SweepOptions& o) {
     return request;
 }
 
-/// The output file as an earlier run left it; a new one where there is none.
-SweepFile resumed(const SweepOptions& o, const std::string& start) {
-    const std::string& path = o.files.output;
-    SweepFile file;
-    if (!is_standard(path) && ::access(path.c_str(), F_OK) == 0) {
-        if (!o.resume) throw std::runtime_error(path + " is there already; --resume completes it");
-        file = read_sweep_file(path);
-        if (!file.start.empty() && file.start != start)
-            throw std::runtime_error(
-                path + " belongs to another sweep (or another version): its first line differs");
-    }
-    file.start = start;
-    return file;
-}
-
-/// Computes the points wanted, adds them to the file's and writes each at once. Returns a warning
-/// about all of them, or "".
-std::string compute(
-    const SweepOptions& o, const api::SweepRequest& request, std::size_t of, SweepFile& file) {
-    std::optional<Appending> out;
-    if (!is_standard(o.files.output)) {
-        write_all(o.files.output, file.lines());  // without what a killed run left half written
-        out.emplace(o.files.output);
-    }
-    ProgressBar bar(of - request.plan.lines.size(), of);
-    SignalPace pace;
-    return api::run_sweep(
-        request, o.threads > 0 ? o.threads : cores(), pace,
-        [&](std::size_t index, const std::string& line) {
-            if (out) out->line(line);
-            file.points[index] = line;
-            bar.step();
-        });
-}
-
 int sweep(const SweepOptions& o) {
     api::SweepRequest request = read_request(o);
     const std::size_t of = request.plan.lines.size();
-    SweepFile file = resumed(o, api::json_text(api::sweep_start(request)));
-    std::erase_if(request.plan.lines, [&](std::size_t i) { return file.points.contains(i); });
-
-    const std::string warning = compute(o, request, of, file);
-    if (!warning.empty()) tell(warning);
-    if (file.points.size() == of) {
-        write_all(o.files.output, file.text());
-        return complete;
-    }
-    const bool to_file = !is_standard(o.files.output);
-    if (!to_file) write_all("", file.lines());
-    tell(fmt::format(
-        "stopped after {} of {} points{}", file.points.size(), of,
-        to_file ? "; --resume completes the file" : ""));
-    return incomplete;
+    SweepRun run{std::move(request), of, o.threads > 0 ? o.threads : cores()};
+    Destination to = destination_of(o.files.output);
+    return to.is_stream() ? sweep_to_stream(std::move(run), std::move(to))
+                          : sweep_to_file(std::move(run), to, o.resume);
 }
 
 }  // namespace

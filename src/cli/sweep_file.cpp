@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <stdexcept>
 
+#include "api/problem.hpp"
 #include "api/sweep_frame.hpp"
-#include "cli/files.hpp"
+#include "api/sweep_line_check.hpp"
 
 namespace vines::cli {
 
@@ -21,39 +23,90 @@ bool is_between_points(const std::string& type) {
     return type == "done" || type == "progress" || type == "warning" || type == "error";
 }
 
-}  // namespace
+/// Takes one line after the other.
+class Reader {
+public:
+    Reader(const std::string& name, Lines lines) : name_(name), lines_(lines) {}
 
-std::string SweepFile::lines() const {
-    std::string all = start + "\n";
-    for (const auto& [index, line] : points) all += line + "\n";
-    return all;
-}
-
-std::string SweepFile::text() const { return lines() + api::done_line(points.size()); }
-
-SweepFile read_sweep_file(const std::string& path) {
-    return parse_sweep_file(read_file(path), path);
-}
-
-SweepFile parse_sweep_file(const std::string& text, const std::string& name) {
-    SweepFile file;
-    long number = 0;
-    for (std::size_t from = 0, end; (end = text.find('\n', from)) != std::string::npos;
-         from = end + 1) {
-        ++number;
-        const std::string line = text.substr(from, end - from);
+    void take(std::string line) {
+        ++number_;
+        file_.whole += line.size() + 1;
         const api::Json json = api::Json::parse(line, nullptr, false);
         const std::string type = type_of(json);
-        if (number == 1 && type == "start") file.start = line;
-        else if (
-            number > 1 && type == "point" && json.contains("index") &&
-            json["index"].is_number_unsigned())
-            file.points[json["index"].get<std::size_t>()] = line;
-        else if (number == 1 || !is_between_points(type))
-            throw std::runtime_error(
-                fmt::format("{}, line {}: not a line of a sweep", name, number));
+        if (number_ == 1 && type == "start") return take_start(std::move(line));
+        if (number_ == 1 || (type != "point" && !is_between_points(type)))
+            fail_in_line(name_, number_, "not a line of a sweep");
+        if (file_.ended) file_.in_order = false;
+        file_.ended = type == "done";
+        if (type == "point") take_point(std::move(line), json);
+        else if (!file_.ended) file_.in_order = false;
     }
-    return file;
+
+    SweepFile taken() { return std::move(file_); }
+
+private:
+    void take_start(std::string line) {
+        file_.start = std::move(line);
+        request_.emplace(request_of(file_, name_));
+        check_.emplace(*request_);
+    }
+
+    std::string fault_of(const std::string& line, const api::Json& json) const {
+        return lines_ == Lines::whole ? check_->fault_of(line, json) : check_->fault_of_index(json);
+    }
+
+    void take_point(std::string line, const api::Json& json) {
+        if (const std::string fault = fault_of(line, json); !fault.empty())
+            fail_in_line(name_, number_, fault);
+        const std::size_t index = json["index"].get<std::size_t>();
+        auto& points = file_.points;
+        if (!points.empty() && index <= points.rbegin()->first) file_.in_order = false;
+        const auto [there, is_new] = points.try_emplace(index, SweepFile::Line{line, number_});
+        if (!is_new && there->second.text != line)
+            fail_in_line(
+                name_, number_,
+                fmt::format(
+                    "point {} differs from the same in line {}", index, there->second.number));
+    }
+
+    const std::string& name_;
+    const Lines lines_;
+    long number_ = 0;
+    SweepFile file_;
+    std::optional<api::SweepRequest> request_;
+    std::optional<api::SweepLineCheck> check_;
+};
+
+}  // namespace
+
+void fail_in_line(const std::string& name, long number, const std::string& fault) {
+    throw std::runtime_error(fmt::format("{}, line {}: {}", name, number, fault));
+}
+
+std::string SweepFile::text() const {
+    std::string all = start + "\n";
+    for (const auto& [index, line] : points) all += line.text + "\n";
+    return all + api::done_line(points.size());
+}
+
+SweepFile parse_sweep_file(const std::string& text, const std::string& name, Lines lines) {
+    Reader reader(name, lines);
+    for (std::size_t from = 0, end; (end = text.find('\n', from)) != std::string::npos;
+         from = end + 1)
+        reader.take(text.substr(from, end - from));
+    return reader.taken();
+}
+
+api::SweepRequest request_of(const SweepFile& file, const std::string& name) {
+    const api::Json start = api::Json::parse(file.start, nullptr, false);
+    const auto request = start.find("request");
+    if (request == start.end() || !request->is_object())
+        fail_in_line(name, 1, "it does not say which request it answers");
+    try {
+        return api::read_sweep_request(*request, most_points);
+    } catch (const api::Problem& problem) {
+        fail_in_line(name, 1, std::string("its request is at fault: ") + problem.what());
+    }
 }
 
 }  // namespace vines::cli

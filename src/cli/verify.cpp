@@ -21,6 +21,8 @@
 #include "cli/signal_pace.hpp"
 #include "cli/stop_signals.hpp"
 #include "cli/sweep_file.hpp"
+#include "program/print.hpp"
+#include "program/tell.hpp"
 
 namespace vines::cli {
 
@@ -32,7 +34,9 @@ struct VerifyOptions {
     std::string answer, record;
 };
 
-void say(const std::string& line) { fmt::print("{}\n", line); }
+void say(const std::string& line) { print(line + "\n"); }
+
+void say_stopped() { tell("stopped before all was recomputed"); }
 
 /// Where two answers first differ: "impacts.tau[3]: 1.0 became 2.0"; empty: nowhere.
 std::string difference(const Json& told, const Json& made, const std::string& path) {
@@ -119,6 +123,19 @@ std::string recomputed(const api::Provenance& p, const std::string& record) {
     return api::json_text(std::move(answer));
 }
 
+/// The same; none where a signal stops it.
+std::optional<std::string> recomputed_to_its_end(
+    const api::Provenance& p, const std::string& record) {
+    const Stoppable stoppable(say_stopped);
+    std::string made;
+    try {
+        made = recomputed(p, record);
+    } catch (const api::Problem&) {  // what an identification that is stopped says
+        if (!stopped()) throw;
+    }
+    return stopped() ? std::nullopt : std::optional(std::move(made));
+}
+
 /// Whether it ended before its end, so that another time it may get further.
 bool was_ended(const Json& answer) {
     const std::string reason = answer.value("/status/reason"_json_pointer, "");
@@ -157,8 +174,12 @@ int verify_answer(const api::Unsealed& told, const VerifyOptions& o) {
     const Json& limit = p["answer_limit"];
     api::Provenance provenance{.route = p["route"], .request = p["request"]};
     if (limit.is_number_unsigned()) provenance.answer_limit = limit.get<std::size_t>();
-    const int code = compared(told.text, recomputed(provenance, record));
-    if (stopped()) return incomplete;
+    const std::optional<std::string> made = recomputed_to_its_end(provenance, record);
+    if (!made) {
+        say_stopped();
+        return incomplete;
+    }
+    const int code = compared(told.text, *made);
     return untouched ? code : differs;
 }
 
@@ -173,8 +194,9 @@ int verify_sweep(const SweepFile& file) {
     std::optional<std::string> first;
     std::size_t same = 0, all = 0;
     SignalPace pace;
+    const Stoppable stoppable(say_stopped);
     api::run_sweep(request, cores(), pace, [&](std::size_t index, const std::string& made) {
-        const std::string& told = file.points.at(index);
+        const std::string& told = file.points.at(index).text;
         ++all;
         same += told == made;
         if (told != made && !first)
@@ -192,7 +214,8 @@ int verify_sweep(const SweepFile& file) {
 int verify(const VerifyOptions& o) {
     const std::string text = read_all(o.answer);
     if (text.starts_with("{\"type\":\"start\""))
-        return verify_sweep(parse_sweep_file(text, o.answer));
+        return verify_sweep(
+            parse_sweep_file(text, is_standard(o.answer) ? "stdin" : o.answer, Lines::placed));
     const std::optional<api::Unsealed> told = api::unsealed(text);
     if (!told)
         throw api::Problem(

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <stdexcept>
@@ -17,6 +16,7 @@
 #include "http/routes.hpp"
 #include "http/server.hpp"
 #include "program/end_signals.hpp"
+#include "program/print.hpp"
 #include "program/tell.hpp"
 #include "program/within.hpp"
 
@@ -182,6 +182,17 @@ void keep_memory_small(int computing) {
 }
 #endif
 
+/// On stdout, where somebody may wait for it; who has left needs none.
+void greet(const std::string& greeting) {
+    try {
+        print(greeting);
+    } catch (const ReaderLeft&) {
+    } catch (const std::runtime_error& e) {
+        tell(e.what());
+        end(1);
+    }
+}
+
 /// What it is told, with what the flags name.
 ServerOptions server_options(const ServeOptions& options) {
     ServerOptions server = options.server;
@@ -215,8 +226,7 @@ int serve(const ServeOptions& options) {
     }
     const std::string greeting = fmt::format(
         "vines {} listens on http://{}:{}\n", api::version(), in_url(options.server.host), port);
-    std::fputs(greeting.c_str(), stdout);
-    std::fflush(stdout);
+    greet(greeting);
     log_event(fmt::format(
         "vines {} listens on {}:{}", api::version(), in_url(options.server.host), port));
 

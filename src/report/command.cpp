@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <memory>
 #include <string>
 
+#include "program/print.hpp"
 #include "program/tell.hpp"
 #include "report/markdown.hpp"
 #include "report/reproduce.hpp"
@@ -16,7 +16,7 @@ namespace {
 
 int run(const std::string& folder) {
     const Report result = reproduce(folder);
-    std::fputs(markdown_table(result.findings).c_str(), stdout);
+    print(markdown_table(result.findings));
     if (!folder.empty()) tell(fmt::format("wrote {}/report.md and its plots", folder));
     if (!result.stands()) tell("a verdict is not what it was found to be");
     return result.stands() ? 0 : 1;

@@ -9,6 +9,7 @@ import {join} from "node:path";
 import {after, before, test} from "node:test";
 import {measured} from "../record.mjs";
 import {program, startService} from "../service.mjs";
+import {hasComputed, parsed, run} from "./run.mjs";
 
 let folder;
 before(async () => {
@@ -16,29 +17,6 @@ before(async () => {
 });
 after(() => rm(folder, {recursive: true}));
 const at = (name) => join(folder, name);
-
-/**
- * Runs the program to its end, or sends it one signal once `until`, given its process's number, says
- * so: {code, out, errors}.
- */
-const run = (args, {input = "", env = {}, signal, until} = {}) =>
-  new Promise((resolve) => {
-    const child = spawn(program, args, {env: {...process.env, ...env}});
-    let out = "";
-    let errors = "";
-    child.stdout.on("data", (d) => (out += d));
-    child.stderr.on("data", (d) => (errors += d));
-    child.on("close", (code) => resolve({code, out, errors}));
-    child.stdin.on("error", () => {});
-    child.stdin.end(input);
-    // One look after the other: a second signal would end the program at once.
-    const look = async () => {
-      if (child.exitCode !== null) return;
-      if (await until(child.pid)) child.kill(signal);
-      else setTimeout(look, 5);
-    };
-    if (signal) look();
-  });
 
 const simulated = async (fields) => (await run(["simulate"], {input: JSON.stringify(fields)})).out;
 const verified = async (answer, args = []) => run(["verify", ...args], {input: answer});
@@ -121,11 +99,6 @@ const sweep = JSON.stringify({
 });
 // Longer than a look at its file may take on any machine.
 const long = JSON.stringify({...JSON.parse(sweep), cycles: 100000});
-const parsed = (text) =>
-  text
-    .trim()
-    .split("\n")
-    .map((line) => JSON.parse(line));
 const lines = async (name) =>
   (await readFile(at(name), "utf8").catch(() => "")).split("\n").length - 1;
 
@@ -246,17 +219,11 @@ test("a request at fault is a problem document on stderr and exit code 2, a file
   assert.equal((await run(["sweep", "--shard", "auto"], {input: sweep})).code, 2);
 });
 
-/** Whether a process has SIGINT blocked: it waits for it then. */
-const waitsForSignals = async (pid) =>
-  (BigInt(`0x${(await readFile(`/proc/${pid}/status`, "utf8")).match(/^SigBlk:\s+(\w+)/m)[1]}`) &
-    2n) !==
-  0n;
-
 test("an interrupted simulation answers with what it has and exit code 3", async () => {
   const {code, out} = await run(["simulate"], {
     input: '{"b":0.003,"R":1,"tau_end":1e7,"max_impacts":2000000,"include":["exponents"]}',
     signal: "SIGINT",
-    until: waitsForSignals,
+    until: hasComputed(0.3),
   });
   assert.equal(code, 3);
   assert.equal(JSON.parse(out).status.reason, "interrupted");
@@ -267,7 +234,7 @@ test("an interrupted identification says what it was at, with exit code 3", asyn
   const {code, out, errors} = await run(["identify", "-q", "preset=fig15"], {
     input: ["time_s,a", ...Array.from({length: 200000}, (_, k) => sample(k))].join("\n"),
     signal: "SIGINT",
-    until: waitsForSignals,
+    until: hasComputed(0.3),
   });
   assert.equal(code, 3);
   assert.equal(out, "");

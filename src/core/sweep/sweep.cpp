@@ -26,12 +26,11 @@ public:
         : plan_(plan),
           threads_(threads),
           pace_(pace),
-          sink_(sink),
-          every_((plan.grid.points() + second_starts - 1) / second_starts) {}
+          sink_(sink) {}
 
     void run() {
         if (plan_.by_rows()) return run_rows();
-        const std::vector<std::size_t> lines = coarse_to_fine();
+        const std::vector<std::size_t> lines = plan_.in_order ? plan_.lines : coarse_to_fine();
         run_points(lines.size(), threads_, plan_.options, pace_, [&](std::size_t i) {
             return single(lines[i]);
         });
@@ -100,7 +99,7 @@ private:
     std::vector<NamedStart> starts_of(const PointSystem& system, std::size_t count) const {
         const State& first = system.start;
         std::vector<NamedStart> starts = {{"", first}};
-        if (plan_.grid.starts != 1 || count % every_ != 0) return starts;
+        if (!plan_.tries_second_start(count)) return starts;
         const bool from_middle =
             first.x == 0 && first.x_dot == 0 && first.y == 0 && first.y_dot == 0;
         starts.push_back(default_starts(system.parameters)[from_middle ? 1 : 0]);
@@ -141,6 +140,7 @@ private:
             }
             rows.back().wanted.push_back(line);
         }
+        if (plan_.in_order) return rows;
         std::stable_sort(rows.begin(), rows.end(), [this](const Row& one, const Row& other) {
             return plan_.grid.level(one.place) < plan_.grid.level(other.place);
         });
@@ -262,7 +262,6 @@ private:
     const int threads_;
     Pace& pace_;
     SweepSink& sink_;
-    const std::size_t every_;
     std::atomic<std::size_t> tried_ = 0, elsewhere_ = 0;
 };
 
@@ -275,6 +274,11 @@ std::size_t SweepPlan::runs() const {
     for (std::size_t i = 0; i < lines.size(); ++i)
         rows += i == 0 || lines[i] / of_chain != lines[i - 1] / of_chain;
     return rows * grid.row() * runs_per_point();
+}
+
+bool SweepPlan::tries_second_start(std::size_t point) const {
+    const std::size_t every = (grid.points() + second_starts - 1) / second_starts;
+    return !default_set && carry == Carry::none && grid.starts == 1 && point % every == 0;
 }
 
 StartTrial run_sweep(const SweepPlan& plan, int threads, Pace& pace, SweepSink& sink) {

@@ -21,6 +21,7 @@ struct SweepPlan {
     Carry carry = Carry::none;
     bool largest = true;                  ///< of a reduced axis the highest peak, else the lowest
     std::vector<std::size_t> lines = {};  ///< those wanted, ascending
+    bool in_order = false;                ///< lines are begun by their number, not coarse to fine
     /// The system of a point, or none where its values make none. Called from several threads.
     std::function<std::optional<PointSystem>(const Place&)> system_at;
 
@@ -29,6 +30,8 @@ struct SweepPlan {
     /// How many lines belong together: a row where its points are computed together and each has a
     /// line, else one.
     std::size_t chain() const { return by_rows() && !grid.reduced ? grid.row() : 1; }
+    /// Whether a point is run from a second start too, to see whether that matters.
+    bool tries_second_start(std::size_t point) const;
     /// How many runs the wanted lines take, about: where rows are computed together their lines
     /// come late, and only the runs tell how far it is.
     std::size_t runs() const;
@@ -53,9 +56,9 @@ struct StartTrial {
     std::size_t tried = 0, elsewhere = 0;
 };
 
-/// Computes the wanted lines on so many threads, coarse to fine over the axes, and hands them out
-/// in the order in which they come. What a line holds depends on the plan and its number alone.
-/// Ends early, without those that are left, once the pace says stop.
+/// Computes the wanted lines on so many threads, coarse to fine over the axes unless the plan says
+/// otherwise, and hands them out in the order in which they come. What a line holds depends on the
+/// plan and its number alone. Ends early, without those that are left, once the pace says stop.
 StartTrial run_sweep(const SweepPlan& plan, int threads, Pace& pace, SweepSink& sink);
 
 }  // namespace vines

@@ -1,0 +1,219 @@
+#include "api/sweep_line_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+
+#include "api/json_text.hpp"
+#include "api/sweep_line.hpp"
+
+namespace vines::api {
+
+namespace {
+
+/// As it is read back.
+Json read_back(Json line) { return Json::parse(json_text(std::move(line))); }
+
+/// Each once.
+void add(std::vector<Json>& samples, Json line) {
+    line = read_back(std::move(line));
+    if (std::find(samples.begin(), samples.end(), line) == samples.end())
+        samples.push_back(std::move(line));
+}
+
+/// Of each kind one, whatever the numbers.
+std::vector<Motion> sample_motions() {
+    Motion not_measured{"", {}, PointResult{}}, measured = not_measured;
+    measured.result.measured = true;
+    Motion periodic = measured;
+    periodic.result.regime.orbit.emplace();
+    measured.result.verdict = Verdict::none;
+    return {periodic, measured, not_measured};
+}
+
+std::vector<Json> sample_points(const SweepRequest& r, bool second) {
+    // Its values mean nothing here, and are those of no point.
+    const PointSystem system{Parameters(), State(), 0};
+    std::vector<Json> samples;
+    for (const Motion& motion : sample_motions())
+        for (const Motion& other : sample_motions())
+            for (const bool afresh : {false, true}) {
+                SweepPoint point;
+                point.system = system;
+                point.afresh = afresh && r.plan.carry != Carry::none;
+                point.motions = {motion};
+                if (r.plan.default_set) point.motions.push_back(other);
+                if (second) point.second = other;
+                add(samples, describe_point(r, 0, point));
+            }
+    return samples;
+}
+
+std::vector<Json> sample_rows(const SweepRequest& r) {
+    std::vector<Motion> motions = sample_motions();
+    std::vector<const Motion*> peaks = {nullptr};  // of a row without a motion
+    for (Motion& motion : motions) {
+        if (r.plan.default_set) motion.start = "middle";
+        if (motion.result.measured) peaks.push_back(&motion);
+    }
+    std::vector<Json> samples;
+    for (const Motion* motion : peaks)
+        for (const std::optional<bool> depends : {std::optional<bool>(), std::optional(false)}) {
+            RowSummary row;
+            row.worst = row.best = {0, motion};
+            row.starts = {{"middle", {0, motion}}};
+            row.depends_on_start = depends;
+            add(samples, describe_row(r, 0, row));
+        }
+    return samples;
+}
+
+/// What stands for each other: a number that does not exist is null, as is what was not measured.
+enum class Kind { absent_or_number, flag, text, list, object };
+
+Kind kind_of(const Json& value) {
+    if (value.is_boolean()) return Kind::flag;
+    if (value.is_string()) return Kind::text;
+    if (value.is_array()) return Kind::list;
+    if (value.is_object()) return Kind::object;
+    return Kind::absent_or_number;
+}
+
+using Samples = std::vector<const Json*>;
+
+std::string fault_among(const std::string& name, const Json& value, const Samples& samples);
+
+bool has_same_names(const Json& one, const Json& other) {
+    return one.size() == other.size() &&
+           std::equal(
+               one.items().begin(), one.items().end(), other.items().begin(),
+               [](const auto& a, const auto& b) { return a.key() == b.key(); });
+}
+
+std::size_t common_names(const Json& one, const Json& other) {
+    std::size_t common = 0;
+    for (const auto& [name, value] : one.items()) common += other.contains(name);
+    return common;
+}
+
+/// How an object's fields differ from those of the sample that is nearest to it.
+std::string fault_of_names(const std::string& name, const Json& object, const Samples& samples) {
+    const Json& nearest = **std::max_element(samples.begin(), samples.end(), [&](auto* a, auto* b) {
+        return common_names(object, *a) < common_names(object, *b);
+    });
+    const std::string where = name.empty() ? "" : " in " + name;
+    for (const auto& [field, value] : nearest.items())
+        if (!object.contains(field)) return fmt::format("{} is missing{}", field, where);
+    for (const auto& [field, value] : object.items())
+        if (!nearest.contains(field)) return fmt::format("{} is no field of it{}", field, where);
+    return "its fields stand in another order" + where;
+}
+
+std::string fault_of_object(const std::string& name, const Json& object, const Samples& samples) {
+    if (std::none_of(samples.begin(), samples.end(), [&](const Json* sample) {
+            return has_same_names(object, *sample);
+        }))
+        return fault_of_names(name, object, samples);
+    for (const auto& [field, value] : object.items()) {
+        Samples of_field;
+        for (const Json* sample : samples)
+            if (sample->contains(field)) of_field.push_back(&(*sample)[field]);
+        const std::string path = name.empty() ? field : name + "." + field;
+        if (std::string fault = fault_among(path, value, of_field); !fault.empty()) return fault;
+    }
+    return "";
+}
+
+/// A sample's list that is empty says nothing of what a list holds.
+std::string fault_of_list(const std::string& name, const Json& list, const Samples& samples) {
+    Samples entries;
+    for (const Json* sample : samples)
+        for (const Json& entry : *sample) entries.push_back(&entry);
+    if (entries.empty()) return "";
+    for (const Json& entry : list)
+        if (std::string fault = fault_among(name, entry, entries); !fault.empty()) return fault;
+    const bool of_objects = entries[0]->is_object();  // a set of starts: of any number
+    const auto same_size = [&](const Json* sample) { return sample->size() == list.size(); };
+    if (!of_objects && std::none_of(samples.begin(), samples.end(), same_size))
+        return fmt::format("{} has {} entries", name, list.size());
+    return "";
+}
+
+/// Of a value, which has to be as one of the samples is.
+std::string fault_among(const std::string& name, const Json& value, const Samples& samples) {
+    Samples alike;
+    for (const Json* sample : samples)
+        if (kind_of(*sample) == kind_of(value)) alike.push_back(sample);
+    if (alike.empty()) return fmt::format("{} is {}", name, value.dump());
+    if (value.is_object()) return fault_of_object(name, value, alike);
+    if (value.is_array()) return fault_of_list(name, value, alike);
+    return "";
+}
+
+/// Of a point whose transient did not end nothing was measured, of all others everything was.
+bool is_measured(const Json& line) { return line.value("reason", "") != "transient_max_impacts"; }
+
+Samples samples_for(const Json& line, const std::vector<Json>& all) {
+    Samples samples;
+    for (const Json& sample : all)
+        if (is_measured(sample) == is_measured(line)) samples.push_back(&sample);
+    return samples;
+}
+
+}  // namespace
+
+SweepLineCheck::SweepLineCheck(const SweepRequest& request) : request_(request) {
+    if (request.plan.grid.reduced) {
+        single_ = tried_ = sample_rows(request);
+        return;
+    }
+    single_ = sample_points(request, false);
+    tried_ = sample_points(request, true);
+    without_system_ = {read_back(describe_point(request, 0, SweepPoint()))};
+}
+
+std::string SweepLineCheck::fault_of_index(const Json& parsed) const {
+    const std::size_t lines = request_.plan.grid.lines();
+    const auto index = parsed.find("index");
+    if (index == parsed.end()) return "index is missing";
+    if (index->is_number_unsigned() && index->get<std::size_t>() < lines) return "";
+    return fmt::format(
+        "point {} is none of the sweep, which has {}, from 0 on", index->dump(), lines);
+}
+
+std::string SweepLineCheck::fault_of_place(const std::string& line, const Json& parsed) const {
+    if (std::string fault = fault_of_index(parsed); !fault.empty()) return fault;
+    const Json& index = parsed["index"];
+    const std::string place_text = json_text(describe_place(request_, index.get<std::size_t>()));
+    if (line.starts_with(place_text.substr(0, place_text.size() - 1) + ",")) return "";
+    const Json place = Json::parse(place_text);
+    for (const auto& [name, value] : place.items()) {
+        const auto told = parsed.find(name);
+        if (told == parsed.end()) return name + " is missing";
+        if (told->type() != value.type() || *told != value)
+            return fmt::format(
+                "{} is {}, but point {} lies at {}", name, told->dump(), index.dump(),
+                value.dump());
+    }
+    return "";
+}
+
+std::string SweepLineCheck::fault_of(const std::string& line, const Json& parsed) const {
+    if (std::string fault = fault_of_place(line, parsed); !fault.empty()) return fault;
+    const std::size_t index = parsed["index"].get<std::size_t>();
+    const bool has_system =
+        request_.plan.grid.reduced || request_.plan.system_at(request_.plan.grid.place_of(index));
+    const std::vector<Json>& samples = !has_system                               ? without_system_
+                                       : request_.plan.tries_second_start(index) ? tried_
+                                                                                 : single_;
+    if (const auto reason = parsed.find("reason"); reason != parsed.end() && !reason->is_string())
+        return "reason is " + reason->dump();
+    const Samples of_kind = samples_for(parsed, samples);
+    if (of_kind.empty()) return "reason is none of such a line";
+    if (std::string fault = fault_of_object("", parsed, of_kind); !fault.empty()) return fault;
+    return json_text(parsed) == line ? "" : "it is written in another way than it was";
+}
+
+}  // namespace vines::api

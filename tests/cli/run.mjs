@@ -1,0 +1,57 @@
+// Runs of the program.
+import {spawn} from "node:child_process";
+import {readFile} from "node:fs/promises";
+import {program} from "../service.mjs";
+
+/**
+ * Runs the program to its end, or sends it one signal once `until`, given its process's number and
+ * what it has written, says so. shell: a command line in which $VINES is the program and "$@" its
+ * arguments. Resolves to {code, out, errors}, and ms: how long it took from the signal to its end.
+ */
+export const run = (args, {input = "", open = false, env = {}, signal, until, shell} = {}) =>
+  new Promise((resolve) => {
+    const [file, words] = shell ? ["bash", ["-c", shell, "vines", ...args]] : [program, args];
+    const child = spawn(file, words, {env: {...process.env, VINES: program, ...env}});
+    let out = "";
+    let errors = "";
+    let sent;
+    child.stdout.on("data", (d) => (out += d));
+    child.stderr.on("data", (d) => (errors += d));
+    child.on("close", (code) =>
+      resolve({code, out, errors, ...(sent && {ms: performance.now() - sent})}),
+    );
+    child.stdin.on("error", () => {});
+    child.stdin.write(input);
+    if (!open) child.stdin.end();
+    // One look after the other: a second signal would end the program at once.
+    const look = async () => {
+      if (child.exitCode !== null) return;
+      if (await until(child.pid, out)) {
+        sent = performance.now();
+        child.kill(signal);
+      } else setTimeout(look, 5);
+    };
+    if (signal) look();
+  });
+
+/** Whether a process has SIGINT blocked: it waits for it then. */
+export const waitsForSignals = async (pid) =>
+  (BigInt(`0x${(await readFile(`/proc/${pid}/status`, "utf8")).match(/^SigBlk:\s+(\w+)/m)[1]}`) &
+    2n) !==
+  0n;
+
+/** For how many seconds a process has had a processor. */
+export async function computed(pid) {
+  const fields = (await readFile(`/proc/${pid}/stat`, "utf8")).split(") ")[1].split(" ");
+  return (Number(fields[11]) + Number(fields[12])) / 100;
+}
+
+/** Whether that is so long: it has read its request then. */
+export const hasComputed = (seconds) => async (pid) => (await computed(pid)) >= seconds;
+
+/** Lines of JSON. */
+export const parsed = (text) =>
+  text
+    .trim()
+    .split("\n")
+    .map((line) => JSON.parse(line));

@@ -1,0 +1,214 @@
+// How the subcommands end: at a signal, and where nobody reads any more.
+import assert from "node:assert/strict";
+import {mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync} from "node:fs";
+import {readFile} from "node:fs/promises";
+import {tmpdir} from "node:os";
+import {join} from "node:path";
+import {after, test} from "node:test";
+import {computed, hasComputed, parsed, run, waitsForSignals} from "./run.mjs";
+
+const folder = mkdtempSync(join(tmpdir(), "vines-signals-"));
+after(() => rmSync(folder, {recursive: true}));
+const at = (name) => join(folder, name);
+
+const fields = {
+  base: {damping: "closed_form"},
+  axes: [{parameter: "b", from: 0.008, to: 0.03, count: 40}],
+};
+// Longer than a look at it may take on any machine.
+const long = JSON.stringify({...fields, cycles: 100000});
+const endless = JSON.stringify({...fields, cycles: 1e6});
+const lines = (text) => text.split("\n").length - 1;
+
+/** The run that ended soonest: others may have had to wait for a processor. */
+async function soonest(args, options) {
+  let best;
+  for (let tries = 0; tries < 4 && !(best?.ms < 100); ++tries) {
+    const result = await run(args, options);
+    if (!best || result.ms < best.ms) best = result;
+  }
+  return best;
+}
+
+/** Asserts how a run ends, and that a tenth of a second is enough for it. */
+async function ends(args, options, code, said = /^$/) {
+  const result = await soonest(args, options);
+  const what = `${args.join(" ")} by ${options.signal}: ${result.errors}`;
+  assert.equal(result.code, code, what);
+  assert.ok(result.ms < 100, `${result.ms} ms for ${what}`);
+  assert.match(result.errors, said, what);
+  return result;
+}
+
+test("a command that waits for its input ends at a signal", async () => {
+  for (const command of ["simulate", "sweep", "identify", "verify"])
+    for (const [signal, code] of [
+      ["SIGINT", 130],
+      ["SIGTERM", 143],
+      ["SIGHUP", 129],
+    ])
+      await ends([command], {open: true, input: "{", signal, until: waitsForSignals}, code);
+});
+
+test("a report ends at a signal, also one whose parent ignores SIGINT", async () => {
+  const until = hasComputed(0.2);
+  await ends(["reproduce"], {signal: "SIGINT", until}, 130);
+  await ends(["reproduce"], {signal: "SIGTERM", until}, 143);
+  const shell = 'trap "" INT; exec "$VINES" "$@"';
+  await ends(["reproduce"], {signal: "SIGINT", until, shell}, 130);
+});
+
+test("a run that is stopped answers with what it has, an identification says what it was at", async () => {
+  const input = '{"b":0.003,"R":1,"tau_end":1e7,"max_impacts":2000000,"include":["exponents"]}';
+  const until = hasComputed(0.3);
+  for (const signal of ["SIGINT", "SIGTERM"]) {
+    const {out} = await ends(["simulate"], {input, signal, until}, 3);
+    assert.equal(JSON.parse(out).status.reason, "interrupted");
+  }
+});
+
+test("an identification of a list of impacts ends at a signal", async () => {
+  const impacts = 200000;
+  const column = (value) => Array.from({length: impacts}, (_, k) => value(k));
+  const list = {
+    tau: column((k) => Math.PI * k),
+    side: column((k) => (k % 2 ? -1 : 1)),
+    x: column(() => 0.001),
+    x_dot_before: column(() => 0.01),
+    x_dot_after: column(() => 0.009),
+    y_dot_before: column((k) => (k % 2 ? 0.02 : -0.02)),
+    y_dot_after: column((k) => (k % 2 ? -0.01 : 0.01)),
+  };
+  writeFileSync(at("list.json"), JSON.stringify({b: 0.015, impacts: list}));
+  const options = {signal: "SIGINT", until: hasComputed(0.3)};
+  await ends(["identify", at("list.json")], options, 3, /^vines: the identification was stopped/);
+});
+
+test("a sweep ends at a signal, whatever each point takes", async () => {
+  for (const starts of [[{}], "default set"]) {
+    const input = JSON.stringify({...JSON.parse(endless), starts});
+    const options = {input, signal: "SIGINT", until: hasComputed(0.3)};
+    const {out} = await ends(["sweep"], options, 3, /^vines: stopped after \d+ of 40 points\n$/m);
+    assert.ok(lines(out) >= 1);
+    const shell = 'rm -f "$3"; exec "$VINES" "$@"';
+    const said = /^vines: stopped after \d+ of 40 points; --resume completes the file\n$/m;
+    await ends(["sweep", "-o", at("endless")], {...options, shell}, 3, said);
+    assert.match(readFileSync(at("endless"), "utf8"), /^(\{.*\}\n)+$/);
+  }
+});
+
+test("verify ends at a signal with exit code 3", async () => {
+  const {out} = await run(["sweep"], {
+    input: long,
+    signal: "SIGINT",
+    until: (_, written) => lines(written) > 3,
+  });
+  writeFileSync(at("some"), out);
+  const options = {signal: "SIGINT", until: hasComputed(0.1)};
+  const {out: said} = await ends(["verify", at("some")], options, 3);
+  assert.match(said, /recomputed: \d+ of \d+ points are the same/);
+  const request = '{"b":0.015,"tau_end":1e7,"max_impacts":2000000,"include":["exponents"]}';
+  const answer = JSON.parse(
+    (await run(["simulate"], {input: request.replace("2000000", "10")})).out,
+  );
+  answer.provenance.request.max_impacts = 2000000;
+  writeFileSync(at("answer"), JSON.stringify(answer));
+  const {out: compared} = await ends(["verify", at("answer")], options, 3, /stopped before all/);
+  assert.doesNotMatch(compared, /recomputed:/);
+});
+
+test("a signal while a large answer is written ends that, and leaves the file that was there", async () => {
+  writeFileSync(at("large"), "old");
+  const input = '{"b":0.015,"tau_end":1e7,"max_impacts":1000000,"include":["impacts"]}';
+  const until = () => readdirSync(folder).some((name) => name.startsWith(".vines-"));
+  await ends(["simulate", "-o", at("large")], {input, signal: "SIGINT", until}, 130);
+  assert.equal(readFileSync(at("large"), "utf8"), "old");
+  assert.deepEqual(
+    readdirSync(folder).filter((name) => name.startsWith(".vines-")),
+    [],
+  );
+});
+
+test("a sweep writes each line to a pipe as it comes, in order, and what it has when it is stopped", async () => {
+  let first;
+  const {code, out, errors} = await run(["sweep"], {
+    input: long,
+    signal: "SIGINT",
+    until: (_, written) => {
+      first ??= written;
+      return lines(written) > 4;
+    },
+  });
+  assert.equal(lines(first), 0, "it has not waited for all");
+  assert.equal(code, 3);
+  const [start, ...points] = parsed(out);
+  assert.equal(start.type, "start");
+  assert.ok(points.length < 40);
+  const indices = points.map((point) => point.index);
+  assert.deepEqual(indices.slice(0, 4), [0, 1, 2, 3]);
+  assert.deepEqual(
+    indices,
+    indices.toSorted((a, b) => a - b),
+  );
+  assert.match(errors, new RegExp(`^vines: stopped after ${points.length} of 40 points\n$`, "m"));
+});
+
+test("the first line of a sweep is there before its first point", async () => {
+  const {out} = await run(["sweep"], {
+    input: endless,
+    signal: "SIGKILL",
+    until: (_, written) => written.includes("\n"),
+  });
+  assert.equal(parsed(out)[0].type, "start");
+});
+
+test("who reads no more ends a command without a word, with exit code 141", async () => {
+  const many = JSON.stringify({...fields, cycles: 100});
+  const large = '{"b":0.015,"tau_end":1e5,"include":["impacts"]}';
+  const shell = 'set -o pipefail; "$VINES" "$@" | head -c 100 >/dev/null';
+  for (const [args, input] of [
+    [["sweep"], long],
+    [["sweep"], many],
+    [["simulate"], large],
+    [["simulate", "-o", "/proc/self/fd/1"], large],
+    [["openapi"], ""],
+  ]) {
+    const {code, errors} = await run(args, {input, shell});
+    assert.deepEqual({code, errors}, {code: 141, errors: ""}, args.join(" "));
+  }
+});
+
+test("who leaves stderr does not end a sweep into a file", async () => {
+  const many = JSON.stringify({...fields, cycles: 100});
+  const shell = '"$VINES" "$@" 2> >(exec true); exit $?';
+  const {code} = await run(["sweep", "-o", at("told")], {input: many, shell});
+  assert.equal(code, 0);
+  assert.equal(lines(await readFile(at("told"), "utf8")), 42);
+});
+
+test("a reader that stands still keeps no command from ending", async () => {
+  const still = JSON.stringify({
+    ...fields,
+    axes: [{parameter: "b", from: 0.008, to: 0.03, count: 4000}],
+    cycles: 20,
+    transient_cycles: 10,
+    section: "impact",
+  });
+  const large = '{"b":0.015,"tau_end":1e5,"include":["impacts"]}';
+  // `read` holds the pipe open, and takes nothing of it.
+  const shell = 'mkfifo "$PIPE"; exec 9<>"$PIPE"; exec "$VINES" "$@" >"$PIPE"';
+  for (const [k, [args, input, code]] of [
+    [["sweep"], still, 3],
+    [["simulate"], large, 130],
+  ].entries()) {
+    const env = {PIPE: at(`still${k}`)};
+    const used = [];
+    const sleeps = async (pid) => {
+      used.push(await computed(pid));
+      return (await waitsForSignals(pid)) && used.at(-1) === used.at(-60);
+    };
+    const {ms, ...result} = await run(args, {input, env, shell, signal: "SIGINT", until: sleeps});
+    assert.equal(result.code, code, result.errors);
+    assert.ok(ms < 500, `${ms} ms`);
+  }
+});
