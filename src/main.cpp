@@ -1,10 +1,13 @@
 // The program `vines`: which subcommands there are, and which of them runs.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "api/schema/nearest_name.hpp"
 #include "api/version.hpp"
 #include "cli/commands.hpp"
 #include "cli/stop_signals.hpp"
@@ -21,6 +24,35 @@ namespace {
 std::string name_of_asked(const CLI::App& app) {
     const auto asked = app.get_subcommands();
     return "vines" + (asked.empty() ? "" : " " + asked[0]->get_name());
+}
+
+std::vector<std::string> names_of(const std::vector<vines::Command>& commands) {
+    std::vector<std::string> names;
+    for (const vines::Command& command : commands) names.push_back(command.app->get_name());
+    return names;
+}
+
+/// What is wrong with the first argument, which has to ask for a subcommand; empty: nothing.
+std::string fault_of_first(
+    const CLI::App& app, const std::vector<std::string>& names, const std::string& first) {
+    if (first.empty()) return fmt::format("a subcommand is missing: {}", fmt::join(names, ", "));
+    if (first[0] == '-') return app.get_option_no_throw(first) ? "" : "unknown flag " + first;
+    if (std::find(names.begin(), names.end(), first) != names.end()) return "";
+    const std::string meant = vines::api::nearest_name(names, first);
+    return "unknown subcommand " + first + (meant.empty() ? "" : "; did you mean " + meant + "?");
+}
+
+/// Their variables, which may be meant for another run, are not looked at.
+void forget_others(const std::vector<vines::Command>& commands, const std::string& asked) {
+    for (const vines::Command& command : commands)
+        if (command.app->get_name() != asked)
+            for (CLI::Option* option : command.app->get_options()) option->envname("");
+}
+
+/// A wrong use of the program.
+int refuse(const std::string& fault, const std::string& command) {
+    vines::tell(fault + "; see " + command + " --help");
+    return 2;
 }
 
 /// Of what writes to stdout.
@@ -64,13 +96,16 @@ int main(int argc, char** argv) {
         vines::cli::add_verify(app),
         vines::cli::add_openapi(app),
         vines::cli::ended_by_signals(vines::report::add_reproduce(app))};
+    const std::string first = argc > 1 ? argv[1] : "";
+    const std::string fault = fault_of_first(app, names_of(commands), first);
+    if (!fault.empty()) return refuse(fault, "vines");
+    forget_others(commands, first);
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& asked) {
         return checked([&] { return answer(app, asked); });
     } catch (const CLI::ParseError& e) {
-        vines::tell(std::string(e.what()) + "; see " + name_of_asked(app) + " --help");
-        return 2;
+        return refuse(e.what(), name_of_asked(app));
     }
     return checked(
         std::find_if(commands.begin(), commands.end(), [](const vines::Command& command) {

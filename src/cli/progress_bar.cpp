@@ -10,8 +10,23 @@ namespace vines::cli {
 
 namespace {
 
-constexpr std::size_t width = 30;                         // characters
+constexpr std::size_t narrowest = 10;                     // characters between the brackets
 constexpr auto between = std::chrono::milliseconds(100);  // two drawings
+
+/// What fits a line without its last place, where some terminals break it.
+std::string fitting(std::string text, std::size_t width) {
+    text.resize(std::min(text.size(), width - std::min<std::size_t>(width, 1)));
+    return text;
+}
+
+/// A bar in what a line has left beside words; where that is too little the words alone.
+std::string with_bar(const std::string& words, double share, std::size_t width) {
+    const std::size_t frame = words.size() + 4;  // brackets, a space, the last place
+    if (width < frame + narrowest) return fitting(words, width);
+    const std::size_t room = width - frame;
+    const auto full = static_cast<std::size_t>(share * static_cast<double>(room));
+    return fmt::format("[{:.<{}}] {}", std::string(full, '#'), room, words);
+}
 
 }  // namespace
 
@@ -35,27 +50,29 @@ void ProgressBar::draw(bool always) {
     const auto now = Clock::now();
     if (!shown_ || (!always && now - drawn_ < between)) return;
     drawn_ = now;
-    const double seconds = std::chrono::duration<double>(now - started_).count(),
+    const double share = of_ ? static_cast<double>(done_) / static_cast<double>(of_) : 1;
+    const std::string line = with_bar(words(), share, terminal_width());
+    show_in_place(line, length_);
+    length_ = line.size();
+}
+
+std::string ProgressBar::words() const {
+    std::string text = fmt::format("{} of {} points", done_, of_);
+    if (done_ == done_before_) return text;
+    const double seconds = std::chrono::duration<double>(Clock::now() - started_).count(),
                  rate = static_cast<double>(done_ - done_before_) / std::max(seconds, 1e-9);
-    const std::size_t full = of_ ? width * done_ / of_ : width;
-    std::string text = fmt::format(
-        "\r[{}{}] {} of {} points", std::string(full, '#'), std::string(width - full, '.'), done_,
-        of_);
-    if (done_ > done_before_)
-        text += fmt::format(
-            ", {:.3g} per second, {:.0f} s left  ", rate, static_cast<double>(of_ - done_) / rate);
-    std::fputs(text.c_str(), stderr);
-    std::fflush(stderr);
+    return text +
+           fmt::format(
+               ", {:.3g} per second, {:.0f} s left", rate, static_cast<double>(of_ - done_) / rate);
 }
 
 StageLine::~StageLine() { show(""); }
 
 void StageLine::show(const std::string& stage) {
     if (!shown_) return;
-    const std::string blank(length_, ' ');
-    std::fputs(("\r" + blank + "\r" + stage).c_str(), stderr);
-    std::fflush(stderr);
-    length_ = stage.size();
+    const std::string line = fitting(stage, terminal_width());
+    show_in_place(line, length_);
+    length_ = line.size();
 }
 
 }  // namespace vines::cli

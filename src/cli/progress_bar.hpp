@@ -1,14 +1,15 @@
 // How far work has come, on stderr where that is a terminal.
 #pragma once
 
-#include <unistd.h>
-
 #include <chrono>
 #include <cstddef>
 #include <string>
 
+#include "cli/terminal.hpp"
+
 namespace vines::cli {
 
+/// As wide as the terminal.
 class ProgressBar {
 public:
     /// `done` points of `of` are done already.
@@ -23,9 +24,11 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
     void draw(bool always);
+    std::string words() const;
     std::size_t done_;
     const std::size_t of_, done_before_;
-    const bool shown_ = ::isatty(STDERR_FILENO) == 1;
+    const bool shown_ = terminal_width() > 0;
+    std::size_t length_ = 0;  ///< of what stands there
     const Clock::time_point started_ = Clock::now();
     Clock::time_point drawn_{};
 };
@@ -41,7 +44,7 @@ public:
     void show(const std::string& stage);
 
 private:
-    const bool shown_ = ::isatty(STDERR_FILENO) == 1;
+    const bool shown_ = terminal_width() > 0;
     std::size_t length_ = 0;  ///< of what stands there
 };
 

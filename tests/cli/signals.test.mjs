@@ -154,11 +154,12 @@ test("a sweep writes each line to a pipe as it comes, in order, and what it has 
 });
 
 test("the first line of a sweep is there before its first point", async () => {
-  const {out} = await run(["sweep"], {
+  const {code, out} = await run(["sweep"], {
     input: endless,
     signal: "SIGKILL",
     until: (_, written) => written.includes("\n"),
   });
+  assert.equal(code, null, "it was still at work");
   assert.equal(parsed(out)[0].type, "start");
 });
 

@@ -30,7 +30,11 @@ int main(int count, char** arguments) {
         "--first 61 repeats one");
     app.add_option("--seed", seed, "of all");
     app.add_option("--threads", threads);
-    CLI11_PARSE(app, count, arguments);
+    try {
+        app.parse(count, arguments);
+    } catch (const CLI::ParseError& e) {
+        return app.exit(e) == 0 ? 0 : 2;
+    }
 
     const bool exponents = damped == 0 || vines::hunt::hunt_exponents(damped, seed, threads);
     const bool verdicts = systems == 0 || vines::hunt::hunt_verdicts(systems, seed, first, threads);

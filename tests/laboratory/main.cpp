@@ -40,7 +40,11 @@ int main(int argc, char** argv) {
         "--settling", settling,
         "s from the start to the records; without: once it has settled, where it does not stick");
     app.add_option("--only", only, "effects whose names hold this");
-    CLI11_PARSE(app, argc, argv);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        return app.exit(e) == 0 ? 0 : 2;
+    }
     fmt::print(
         "| effect | b, mm | found of | false | within .1 ms | R off by | b off by | lambda1 off by "
         "| verdict | s |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");

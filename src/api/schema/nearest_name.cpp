@@ -30,15 +30,20 @@ std::size_t distance(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-std::string nearest_name(const FieldTable& table, const std::string& name) {
+std::string nearest_name(std::span<const std::string> names, const std::string& name) {
     if (name.size() > longest_name) return "";
-    const auto nearest =
-        std::min_element(table.begin(), table.end(), [&](const Field& a, const Field& b) {
-            return distance(name, a.name) < distance(name, b.name);
-        });
+    const auto nearest = std::min_element(
+        names.begin(), names.end(),
+        [&](const auto& a, const auto& b) { return distance(name, a) < distance(name, b); });
     // One slip in three letters, and one in a short name.
     const std::size_t slips = std::max<std::size_t>(1, name.size() / 3);
-    return distance(name, nearest->name) <= slips ? nearest->name : "";
+    return distance(name, *nearest) <= slips ? *nearest : "";
+}
+
+std::string nearest_name(const FieldTable& table, const std::string& name) {
+    std::vector<std::string> names;
+    for (const Field& field : table) names.push_back(field.name);
+    return nearest_name(names, name);
 }
 
 }  // namespace vines::api

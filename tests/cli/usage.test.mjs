@@ -1,0 +1,77 @@
+// What the command line says to who uses it wrongly, and shows at a terminal.
+import assert from "node:assert/strict";
+import {mkdtempSync, rmSync, writeFileSync} from "node:fs";
+import {tmpdir} from "node:os";
+import {join} from "node:path";
+import {after, test} from "node:test";
+import {run} from "./run.mjs";
+
+const folder = mkdtempSync(join(tmpdir(), "vines-usage-"));
+after(() => rmSync(folder, {recursive: true}));
+const at = (name) => join(folder, name);
+
+test("a wrong use is one line that says what and where to look, with exit code 2", async () => {
+  for (const [args, said] of [
+    [[], /a subcommand is missing: serve, healthcheck, simulate, .*; see vines --help/],
+    [["swep"], /unknown subcommand swep; did you mean sweep\?; see vines --help/],
+    [["Simulate"], /unknown subcommand Simulate; did you mean simulate\?/],
+    [["foo"], /unknown subcommand foo; see vines --help/],
+    [["x".repeat(100)], /unknown subcommand x+; see/],
+    [["--foo"], /unknown flag --foo; see vines --help/],
+    [["simulate", "--foo"], /--foo; see vines simulate --help/],
+    [["simulate", "a", "b"], /not expected: b; see vines simulate/],
+    [["simulate", "-o"], /--output/],
+    [["simulate", "-o", "a", "-o", "b"], /--output/],
+    [["sweep", "--threads", "many"], /--threads/],
+    [["sweep", "--shards", "0"], /--shards/],
+    [["merge"], /files is required/],
+    [["serve", "--port", "99999"], /--port/],
+    [["serve", "--log-format", "yaml"], /--log-format/],
+    [["healthcheck", "--port", "x"], /--port/],
+    [["openapi", "x"], /x/],
+    [["reproduce", "x"], /x/],
+  ]) {
+    const {code, out, errors} = await run(args);
+    assert.deepEqual({code, out}, {code: 2, out: ""}, args.join(" "));
+    assert.match(errors, /^vines: [^\n]+; see vines( \w+)? --help\n$/);
+    assert.match(errors, said);
+  }
+});
+
+test("a variable of one subcommand is no fault of another", async () => {
+  const env = {VINES_PORT: "x", VINES_SHARDS: "x"};
+  const input = '{"b":0.015,"tau_end":10}';
+  assert.equal((await run(["simulate"], {input, env})).code, 0);
+  assert.match((await run(["sweep"], {env})).errors, /--shards/);
+});
+
+/** What a terminal of so many columns gets while a sweep runs, line by line as it is drawn anew. */
+async function drawn(columns) {
+  const axes = [{parameter: "b", from: 0.008, to: 0.03, count: 400}];
+  writeFileSync(at("sweep.json"), JSON.stringify({axes, cycles: 300}));
+  const command = `stty cols ${columns}; "$VINES" sweep ${at("sweep.json")} >/dev/null`;
+  const {code, out} = await run([command], {shell: 'script -qec "$1" /dev/null </dev/null'});
+  assert.equal(code, 0, out);
+  return out.split("\n")[0].split("\r").filter(Boolean);
+}
+
+test("the bar of a sweep is as wide as the terminal, and breaks no line of a narrow one", async () => {
+  for (const columns of [30, 50, 80, 200]) {
+    const lines = await drawn(columns);
+    assert.ok(lines.length > 1);
+    for (const line of lines) assert.ok(line.length < columns, `${line.length}: ${line}`);
+    const last = lines.at(-1);
+    assert.match(last, /400 of 400 points/);
+    if (columns >= 80) assert.equal(last.trimEnd().length, columns - 1);
+    if (columns >= 80) assert.match(last, /^\[#+\] /);
+  }
+});
+
+test("without a terminal there is no bar", async () => {
+  const axes = [{parameter: "b", from: 0.02, to: 0.03, count: 4}];
+  const {code, errors} = await run(["sweep", "-o", at("plain")], {
+    input: JSON.stringify({axes, cycles: 20}),
+  });
+  assert.equal(code, 0);
+  assert.doesNotMatch(errors, /[[\r#]/);
+});
