@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstring>
 #include <optional>
+#include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -112,10 +113,9 @@ inline ListToCome list_to_come(const Json& value) {
     return list;
 }
 
-/// Puts another number in the place of each in a packed list of doubles.
+/// Puts another number in the place of each in packed doubles.
 template <class Change>
-void change_numbers(Json& list, Change change) {
-    Json::binary_t& bytes = list.get_binary();
+void change_numbers(std::span<std::uint8_t> bytes, Change change) {
     for (std::size_t at = 0; at < bytes.size(); at += sizeof(double)) {
         double number;
         std::memcpy(&number, bytes.data() + at, sizeof number);

@@ -139,7 +139,8 @@ Json describe_measured(
                           of_longest = of_longest_stretch(estimators);
     Json j = describe_window(e.all());
     add_estimators(j, e.all(), growth_of(e.all()), of_all, true);
-    change_numbers(j["qr"]["history"]["tau"], [&e](double tau) { return e.moment(tau); });
+    change_numbers(
+        j["qr"]["history"]["tau"].get_binary(), [&e](double tau) { return e.moment(tau); });
     std::vector<Warning> odd;
     add_warnings(e.all(), of_all, true, odd);
     add_warnings(e.longest(), of_longest, true, odd);

@@ -232,11 +232,4 @@ IdentifyRequest read_identify_request(const Json& fields, std::string_view csv) 
     return read_request_of_record(fields, parse_csv(csv));
 }
 
-Provenance identify_provenance(const Json& fields, std::string_view sent) {
-    Json others = Json::object();
-    for (const auto& [name, value] : fields.items())
-        if (name != "record" && name != "impacts") others[name] = value;
-    return {.route = "/v1/identify", .request = canonical(others), .record = sha256(sent)};
-}
-
 }  // namespace vines::api

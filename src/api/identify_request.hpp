@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include "api/measured_forcing.hpp"
-#include "api/provenance.hpp"
 #include "api/request.hpp"
 #include "core/measurement/measurement.hpp"
 
@@ -28,9 +27,5 @@ struct IdentifyRequest {
 IdentifyRequest read_identify_request(const Json& object);
 /// From the text of a CSV file and the fields beside it.
 IdentifyRequest read_identify_request(const Json& fields, std::string_view csv);
-
-/// With its record, or its list of impacts, by the hash of what was sent: a file of columns, or the
-/// JSON of all.
-Provenance identify_provenance(const Json& fields, std::string_view sent);
 
 }  // namespace vines::api

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "api/broken_off.hpp"
 #include "api/json_text.hpp"
 #include "core/analysis/analysis.hpp"
 #include "core/sweep/sweep.hpp"
@@ -29,9 +30,6 @@ struct ListedRun {
     ImpactRange listed;
     ImpactScales scales;
 };
-
-/// Thrown where an answer is not written to its end.
-struct BrokenOff {};
 
 /// Makes the columns to come of an answer, in the order in which they stand there: as many at a
 /// time as fit into `most_bytes`, or one, by making the run once more.

@@ -21,11 +21,12 @@ bool is_plain(const std::string& text) {
     });
 }
 
-/// No fewer bytes than the packed lists of a value take as text.
-std::size_t most_of_lists(const Json& json) {
+}  // namespace
+
+std::size_t room_for_lists(const Json& json) {
     std::size_t most = 0;
     if (json.is_structured())
-        for (const Json& part : json) most += most_of_lists(part);
+        for (const Json& part : json) most += room_for_lists(part);
     if (!json.is_binary()) return most;
     // "-2.2250738585072014e-308", a comma, a share of the brackets around four.
     constexpr std::size_t number = 26, integer = longest_integer + 1, flag = 6;
@@ -36,8 +37,6 @@ std::size_t most_of_lists(const Json& json) {
         default: return 2 + bytes / sizeof(double) * number;
     }
 }
-
-}  // namespace
 
 char* JsonText::room(std::size_t length) {
     if (piece_.size() - used_ < length) end();
@@ -165,7 +164,7 @@ void JsonText::write(Json& json) {
 
 std::string json_text(Json json) {
     std::string text;
-    text.reserve(most_of_lists(json));
+    text.reserve(room_for_lists(json));
     JsonText out([&text](std::string_view piece) { text += piece; });
     out.write(json);
     out.end();

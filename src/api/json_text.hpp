@@ -68,6 +68,9 @@ private:
     std::size_t used_ = 0;
 };
 
+/// No fewer bytes than the packed lists of a value take as text.
+std::size_t room_for_lists(const Json& json);
+
 /// The whole text.
 std::string json_text(Json json);
 

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "api/column.hpp"
-#include "api/json_text.hpp"
 #include "api/version.hpp"
 
 namespace vines::api {
@@ -23,11 +22,13 @@ constexpr std::string_view before_provenance = ",\"provenance\":";
 // Up to here each whole number is a double.
 constexpr double largest_whole = 9007199254740992;
 
+}  // namespace
+
 /// SHA-256 of a text that comes in pieces.
 class Sha256 {
 public:
     Sha256() {
-        if (!context_ || EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) != 1)
+        if (!context_ || EVP_DigestInit_ex(context_.get(), method(), nullptr) != 1)
             throw std::runtime_error("libcrypto: SHA-256");
     }
     void add(std::string_view text) {
@@ -45,17 +46,19 @@ public:
     }
 
 private:
+    /// Looked up once: that takes longer than to hash a small answer.
+    static const EVP_MD* method() {
+        static const EVP_MD* const fetched = EVP_MD_fetch(nullptr, "SHA256", nullptr);
+        return fetched;
+    }
+
     std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context_{EVP_MD_CTX_new(), EVP_MD_CTX_free};
 };
 
-}  // namespace
-
-struct Seal::Hash : Sha256 {};
-
-Seal::Seal(const std::optional<Provenance>& provenance, Take take)
+Seal::Seal(const std::optional<Provenance>& provenance, JsonText::Take take)
     : provenance_(provenance),
       take_(std::move(take)),
-      hash_(provenance ? std::make_unique<Hash>() : nullptr) {}
+      hash_(provenance ? std::make_unique<Sha256>() : nullptr) {}
 
 Seal::~Seal() = default;
 
@@ -114,14 +117,14 @@ std::string sha256(std::string_view text) {
     return hash.end();
 }
 
-std::string sealed_text(Json answer, const std::optional<Provenance>& provenance) {
-    std::string text = json_text(std::move(answer));
-    std::string sealed;
-    sealed.reserve(text.size() + 1024);
-    Seal seal(provenance, [&sealed](std::string_view piece) { sealed += piece; });
-    seal.add(text);
+void write_sealed(
+    Json& answer, const std::optional<Provenance>& provenance, const JsonText::Take& take,
+    ListSource* lists) {
+    Seal seal(provenance, take);
+    JsonText text([&seal](std::string_view piece) { seal.add(piece); }, lists);
+    text.write(answer);
+    text.end();
     seal.end();
-    return sealed;
 }
 
 std::optional<Unsealed> unsealed(std::string_view sealed) {

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "api/json_text.hpp"
 #include "api/schema/json.hpp"
 
 namespace vines::api {
@@ -28,28 +28,30 @@ Json canonical(const Json& request);
 /// 64 hexadecimal digits.
 std::string sha256(std::string_view text);
 
+class Sha256;
+
 /// Hands an answer's text on, an object that comes in pieces, with its provenance as its last
 /// member: sha256 is that of the text without it.
 class Seal {
 public:
-    using Take = std::function<void(std::string_view)>;
     /// Nothing: the text as it is. The provenance outlives it.
-    Seal(const std::optional<Provenance>& provenance, Take take);
+    Seal(const std::optional<Provenance>& provenance, JsonText::Take take);
     ~Seal();
     void add(std::string_view piece);
     /// That was all.
     void end();
 
 private:
-    struct Hash;
     const std::optional<Provenance>& provenance_;
-    const Take take_;
-    const std::unique_ptr<Hash> hash_;
+    const JsonText::Take take_;
+    const std::unique_ptr<Sha256> hash_;
     bool holds_brace_ = false;  // the last one, it may be
 };
 
-/// The text of a whole answer, sealed, a line.
-std::string sealed_text(Json answer, const std::optional<Provenance>& provenance);
+/// Writes an answer's text, a line, sealed where there is a provenance. `lists`: of those to come.
+void write_sealed(
+    Json& answer, const std::optional<Provenance>& provenance, const JsonText::Take& take,
+    ListSource* lists = nullptr);
 
 /// An answer's text taken apart.
 struct Unsealed {

@@ -52,7 +52,7 @@ Json scaled(const Json& value, double factor) {
     }
     Json list = value;
     if (value.is_binary())
-        change_numbers(list, [factor](double number) { return number * factor; });
+        change_numbers(list.get_binary(), [factor](double number) { return number * factor; });
     else
         for (Json& v : list) v = scaled(v, factor);
     return list;

@@ -89,9 +89,9 @@ bool says_limit(const Warnings& warnings, std::size_t most_bytes) {
 }
 
 /// The parts of an answer, one by one while there is time, with their twins in SI.
-class Answer {
+class AnswerParts {
 public:
-    Answer(const SimulateRequest& r, const Stop& stop, Json& answer)
+    AnswerParts(const SimulateRequest& r, const Stop& stop, Json& answer)
         : r_(r),
           stop_(stop),
           answer_(answer) {}
@@ -148,7 +148,7 @@ private:
 
 }  // namespace
 
-SimulateAnswer simulate_in_parts(
+Answer simulate_in_parts(
     SimulateRequest r, const Stop& stop, std::size_t most_bytes, std::size_t most_kept) {
     Warnings warnings = r.system.notes;
     fit_answer(r, most_bytes, warnings);
@@ -161,7 +161,7 @@ SimulateAnswer simulate_in_parts(
          {"warnings", nullptr}});
     if (analysis.outcome.reason != End::tau_end) warnings.push_back(answer["status"]["message"]);
     for (const Warning& w : analysis.warnings) warnings.push_back(text_of(w, most_bytes));
-    Answer parts(r, stop, answer);
+    AnswerParts parts(r, stop, answer);
     parts.describe(analysis);
     if (r.system.si) {
         if (r.includes("energy") && answer["energy"].is_object())
@@ -183,15 +183,10 @@ SimulateAnswer simulate_in_parts(
         analysis.outcome.impacts, is_fitted};
 }
 
-void write_answer(
-    SimulateAnswer answer, Pace& pace, const JsonText::Take& take, std::size_t list_bytes) {
+void write_answer(Answer answer, Pace& pace, const JsonText::Take& take, std::size_t list_bytes) {
     std::optional<ImpactLists> lists;
     if (answer.run) lists.emplace(*answer.run, answer.json, pace, list_bytes);
-    Seal seal(answer.provenance, take);
-    JsonText text([&seal](std::string_view piece) { seal.add(piece); }, lists ? &*lists : nullptr);
-    text.write(answer.json);
-    text.end();
-    seal.end();
+    write_sealed(answer.json, answer.provenance, take, lists ? &*lists : nullptr);
 }
 
 Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes) {

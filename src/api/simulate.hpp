@@ -23,9 +23,9 @@ struct Stop {
 };
 
 /// An answer. Its lists of impacts, where they are too long to be kept, are to come of `run`.
-struct SimulateAnswer {
+struct Answer {
     Json json;
-    std::optional<ListedRun> run;
+    std::optional<ListedRun> run = {};
     long impacts = 0;        ///< of the run, told or not
     bool is_fitted = false;  ///< it would have had more than `most_bytes`
     std::optional<Provenance> provenance = {};
@@ -38,7 +38,7 @@ inline constexpr std::size_t most_listed_bytes = 24 << 20;
 
 /// Of no more than about `most_bytes` of JSON: see fit_answer(). More listed impacts than
 /// `most_kept` are to come.
-SimulateAnswer simulate_in_parts(
+Answer simulate_in_parts(
     SimulateRequest request, const Stop& stop, std::size_t most_bytes = any_size,
     std::size_t most_kept = most_kept_impacts);
 
@@ -46,7 +46,7 @@ SimulateAnswer simulate_in_parts(
 /// while it is written, as many at a time as fit into `list_bytes`, by runs at `pace`. Throws
 /// BrokenOff where that stops one.
 void write_answer(
-    SimulateAnswer answer, Pace& pace, const JsonText::Take& take,
+    Answer answer, Pace& pace, const JsonText::Take& take,
     std::size_t list_bytes = most_listed_bytes);
 
 /// The same with all lists.

@@ -34,6 +34,12 @@ std::optional<std::string> converted(std::string_view bytes, const char* encodin
     }
 }
 
+/// Told at once, as most texts are.
+bool is_ascii(std::string_view bytes) {
+    return std::all_of(
+        bytes.begin(), bytes.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+}
+
 const char* encoding_of(std::string_view bytes) {
     using namespace std::string_view_literals;
     if (bytes.starts_with("\xff\xfe"sv) || bytes.starts_with("\xfe\xff"sv)) return "UTF-16";
@@ -44,15 +50,15 @@ const char* encoding_of(std::string_view bytes) {
 
 }  // namespace
 
-bool is_utf8(std::string_view bytes) { return converted(bytes, "UTF-8").has_value(); }
+bool is_utf8(std::string_view bytes) {
+    return is_ascii(bytes) || converted(bytes, "UTF-8").has_value();
+}
 
 std::string_view as_utf8(std::string_view bytes, std::string& room) {
     const std::string_view encoding = encoding_of(bytes);
     if (encoding == "UTF-8") {
         if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
-        const auto is_ascii = [](char c) { return static_cast<unsigned char>(c) < 0x80; };
-        if (std::all_of(bytes.begin(), bytes.end(), is_ascii) || converted(bytes, "UTF-8"))
-            return bytes;
+        if (is_utf8(bytes)) return bytes;
     }
     const auto text = converted(bytes, encoding.data());
     room = text ? *text : converted(bytes, "ISO-8859-1").value_or(std::string());

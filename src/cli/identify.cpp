@@ -1,6 +1,5 @@
 // `vines identify`: a measurement as CSV or JSON.
-#include "api/identify.hpp"
-#include "api/format/answer_form.hpp"
+#include "api/answers/asked.hpp"
 #include "api/parse_object.hpp"
 
 #include <memory>
@@ -26,22 +25,13 @@ struct IdentifyOptions {
     std::string query;  ///< fields for a CSV file, as in a URL
 };
 
-struct Asked {
-    api::IdentifyRequest request;
-    api::AnswerForm form;
-    api::Provenance provenance;
-};
-
-Asked read_request(std::string text, const std::string& query) {
-    const api::FieldTable& table = api::identify_fields();
-    api::Json fields =
-        is_json(text) ? api::parse_object(text) : api::from_query(table, api::parse_query(query));
-    api::Provenance provenance = api::identify_provenance(fields, text);
-    api::AnswerForm form = api::take_form(fields, table);
-    return {
-        is_json(text) ? api::read_identify_request(fields)
-                      : api::read_identify_request(fields, text),
-        std::move(form), std::move(provenance)};
+api::Asked read(const std::string& text, const std::string& query) {
+    const bool is_columns = !is_json(text);
+    return api::read_asked(
+        "/v1/identify",
+        is_columns ? api::from_query(api::identify_fields(), api::parse_query(query))
+                   : api::parse_object(text),
+        {text, is_columns});
 }
 
 int identify(const IdentifyOptions& o) {
@@ -49,17 +39,17 @@ int identify(const IdentifyOptions& o) {
     // What takes long of a list of impacts does not ask whether it is to stop.
     std::optional<Stoppable> stoppable(
         std::in_place, [] { tell("the identification was stopped"); });
-    const auto [request, form, provenance] = read_request(std::move(text), o.query);
+    api::Asked asked = read(text, o.query);
+    std::string().swap(text);  // a record may be large
+    const api::Format format = asked.form.format.value_or(api::Format::json);
     std::optional<StageLine> line(std::in_place);
-    const IdentificationWatch watch{
-        .stop = stopped, .reached = [&line](IdentificationStage stage, int round) {
-            line->show(api::words_of(stage, round) + " ...");
-        }};
-    std::string answer;
+    api::Answer answer;
     try {
-        api::Json told = api::identify_answer(request, watch);
-        api::thin(told, form.fields);
-        answer = api::encoded(std::move(told), form.format.value_or(api::Format::json), provenance);
+        answer = api::answered(
+            std::move(asked),
+            {.stop = {.asked = stopped}, .reached = [&line](IdentificationStage stage, int round) {
+                 line->show(api::words_of(stage, round) + " ...");
+             }});
     } catch (const api::Problem& problem) {
         line.reset();
         if (!stopped()) throw;
@@ -68,7 +58,7 @@ int identify(const IdentifyOptions& o) {
     }
     line.reset();
     stoppable.reset();
-    write_all(o.files.output, answer);
+    write_all(o.files.output, api::encoded(std::move(answer.json), format, answer.provenance));
     return complete;
 }
 

@@ -1,6 +1,5 @@
 // `vines simulate`: one run, without the service's deadline and limits.
-#include "api/simulate.hpp"
-#include "api/format/answer_form.hpp"
+#include "api/answers/asked.hpp"
 #include "api/parse_object.hpp"
 
 #include <memory>
@@ -18,25 +17,18 @@ namespace vines::cli {
 namespace {
 
 int simulate(const Files& files) {
-    api::Json fields = api::parse_object(read_all(files.input));
-    const api::Provenance provenance{.route = "/v1/simulate", .request = api::canonical(fields)};
-    const api::AnswerForm form = api::take_form(fields, api::simulate_fields());
-    const api::SimulateRequest request = api::read_simulate_request(fields);
     const api::Stop stop{
         .asked = stopped, .reason = "interrupted", .message = "ended by a signal, before tau_end"};
-    const api::Format format = form.format.value_or(api::Format::json);
-    const bool is_json = format == api::Format::json;
+    api::Asked asked = api::read_asked("/v1/simulate", api::parse_object(read_all(files.input)));
+    const api::Format format = asked.form.format.value_or(api::Format::json);
     std::optional<Stoppable> stoppable(std::in_place);
-    api::SimulateAnswer answer = api::simulate_in_parts(
-        request, stop, api::any_size, is_json ? api::most_kept_impacts : everything);
+    api::Answer answer = api::answered(std::move(asked), {.stop = stop});
     stoppable.reset();
     const int code = stopped() ? incomplete : complete;
-    api::thin(answer.json, form.fields);
-    if (!is_json) {
-        write_all(files.output, api::encoded(std::move(answer.json), format, provenance));
+    if (format != api::Format::json) {
+        write_all(files.output, api::encoded(std::move(answer.json), format, answer.provenance));
         return code;
     }
-    answer.provenance = provenance;
     Output out(files.output);
     Pace pace;  // a signal that has come lets the answer be written
     api::write_answer(

@@ -8,11 +8,8 @@
 #include <string>
 #include <thread>
 
-#include "api/format/answer_form.hpp"
-#include "api/identify.hpp"
-#include "api/json_text.hpp"
+#include "api/answers/asked.hpp"
 #include "api/parse_object.hpp"
-#include "api/simulate.hpp"
 #include "api/sweep.hpp"
 #include "api/version.hpp"
 #include "cli/commands.hpp"
@@ -77,50 +74,29 @@ int compared(const std::string& told, const std::string& made) {
     return differs;
 }
 
-std::string text_of(api::SimulateAnswer answer) {
+/// A request with what was measured, of the file that was sent.
+api::Asked asked_again(const api::Provenance& p, const std::string& record) {
+    Json fields = p.request;
+    const bool is_columns = !record.empty() && !is_json(record);
+    if (!record.empty() && !is_columns) {
+        const Json whole = api::parse_object(record);
+        for (const char* name : {"record", "impacts"})
+            if (whole.contains(name)) fields[name] = whole[name];
+    }
+    return api::read_asked(p.route, std::move(fields), {record, is_columns});
+}
+
+/// The same request's answer, without provenance. Throws Problem where it has none.
+std::string recomputed(const api::Provenance& p, const std::string& record) {
+    api::Answer answer = api::answered(
+        asked_again(p, record),
+        {.stop = {.asked = stopped}, .most_bytes = p.answer_limit.value_or(api::any_size)});
+    answer.provenance.reset();
     std::string text;
     Pace pace;
     api::write_answer(std::move(answer), pace, [&text](std::string_view piece) { text += piece; });
     text.pop_back();  // the line's end
     return text;
-}
-
-/// With what was measured, as it was sent: a file of columns, or JSON.
-api::IdentifyRequest identification(Json fields, const std::string& sent) {
-    if (!is_json(sent)) return api::read_identify_request(fields, sent);
-    const Json whole = api::parse_object(sent);
-    for (const char* name : {"record", "impacts"})
-        if (whole.contains(name)) fields[name] = whole[name];
-    return api::read_identify_request(fields);
-}
-
-/// The same request's answer, without provenance. Throws Problem where it has none.
-std::string recomputed(const api::Provenance& p, const std::string& record) {
-    Json fields = p.request;
-    const auto form_of = [&fields](const api::FieldTable& table) {
-        return api::take_form(fields, table);
-    };
-    if (p.route == "/v1/simulate") {
-        const api::AnswerForm form = form_of(api::simulate_fields());
-        api::SimulateAnswer answer = api::simulate_in_parts(
-            api::read_simulate_request(fields), {.asked = stopped},
-            p.answer_limit.value_or(api::any_size));
-        api::thin(answer.json, form.fields);
-        return text_of(std::move(answer));
-    }
-    Json answer;
-    api::AnswerForm form;
-    if (p.route == "/v1/manifold") {
-        form = form_of(api::manifold_fields());
-        answer = api::manifold_answer(api::read_manifold_request(fields), {.asked = stopped});
-    } else if (p.route == "/v1/identify") {
-        form = form_of(api::identify_fields());
-        answer = api::identify_answer(identification(fields, record), {.stop = stopped});
-    } else {
-        throw api::Problem(422, "no answer of this program has the route " + p.route);
-    }
-    api::thin(answer, form.fields);
-    return api::json_text(std::move(answer));
 }
 
 /// The same; none where a signal stops it.

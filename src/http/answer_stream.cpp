@@ -52,7 +52,7 @@ private:
 constexpr std::size_t held_by_answer = 8 << 20;
 
 /// False where it was broken off.
-bool write(api::SimulateAnswer answer, const std::string& id, ComputeGate& gate, Writer& out) {
+bool write(api::Answer answer, const std::string& id, ComputeGate& gate, Writer& out) {
     give_memory_back();  // that of the run
     AnswerPace pace(gate, out);
     try {
@@ -69,10 +69,9 @@ bool write(api::SimulateAnswer answer, const std::string& id, ComputeGate& gate,
 
 }  // namespace
 
-Response stream_answer(
-    api::SimulateAnswer answer, const std::string& request_id, ComputeGate& gate) {
+Response stream_answer(api::Answer answer, const std::string& request_id, ComputeGate& gate) {
     // Shared, because a response can be copied.
-    auto kept = std::make_shared<api::SimulateAnswer>(std::move(answer));
+    auto kept = std::make_shared<api::Answer>(std::move(answer));
     return {
         .headers = {{"Cache-Control", "no-store"}},
         .stream =

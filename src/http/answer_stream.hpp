@@ -11,7 +11,6 @@
 namespace vines::http {
 
 /// The gate outlives the response.
-Response stream_answer(
-    api::SimulateAnswer answer, const std::string& request_id, ComputeGate& gate);
+Response stream_answer(api::Answer answer, const std::string& request_id, ComputeGate& gate);
 
 }  // namespace vines::http

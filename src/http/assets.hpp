@@ -7,7 +7,7 @@
 namespace vines::http {
 
 struct Asset {
-    /// "/", or one in a folder that is named by the content of all of them: what it names never
+    /// Of a page, or one in a folder that is named by the content of all files: what it names never
     /// changes.
     std::string_view path;
     std::string_view content;

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <functional>
 #include <utility>
 
-#include "api/format/answer_form.hpp"
-#include "api/identify.hpp"
+#include "api/answers/asked.hpp"
+#include "api/broken_off.hpp"
 #include "api/parse_object.hpp"
+#include "api/schema/tables.hpp"
 #include "api/version.hpp"
 #include "http/accept.hpp"
 #include "http/answer_stream.hpp"
@@ -25,17 +27,8 @@ using api::Problem;
 // From this size on an answer's memory is given back to the system at once.
 constexpr std::size_t large = 16 << 20;
 
-// Bytes, beside the request that it holds.
-constexpr std::size_t most_provenance = 512;
-
-/// What a request asks for, and how it wants to be told.
-struct Asked {
-    Json fields;
-    api::AnswerForm form;
-    api::Format format;
-    api::Provenance provenance;
-    std::size_t provenance_bytes;  ///< at most
-};
+// Bytes of a provenance, beside what was asked for: a hash, the answer's limit.
+constexpr std::size_t most_hash = 256;
 
 /// A place to compute in, once it is free, or Problem 503.
 ComputeGate::Place place_in(ComputeGate& gate, const Request& request, Stopwatch& watch) {
@@ -55,110 +48,103 @@ Json body_of(const Request& r) {
     return api::parse_object(r.body);
 }
 
-Asked asked(
-    const Request& r, const api::FieldTable& table, Json fields, api::Provenance provenance) {
-    Asked asked{
-        .fields = std::move(fields),
-        .form = {},
-        .format = {},
-        .provenance = std::move(provenance),
-        .provenance_bytes = 0};
-    asked.form = api::take_form(asked.fields, table);
-    asked.format = asked.form.format ? *asked.form.format : accepted_format(r.accept);
-    asked.provenance_bytes = asked.provenance.request.dump().size() + most_provenance;
-    return asked;
+api::Asked asked_run(const Request& r, const api::FieldTable& table) {
+    return api::read_asked(
+        r.path, r.method == "POST" ? body_of(r) : api::from_query(table, r.query));
 }
 
-/// Of a GET or a POST.
-Asked asked(const Request& r, const api::FieldTable& table) {
-    Json fields = r.method == "POST" ? body_of(r) : api::from_query(table, r.query);
-    api::Provenance provenance{.route = r.path, .request = api::canonical(fields)};
-    return asked(r, table, std::move(fields), std::move(provenance));
-}
-
-/// The same requests to the same build, with the same limit of its answers, have the same answer.
-/// Only what is read can be known already: a POST has no tag.
-std::string tag_of(const Request& r, const Asked& asked, std::size_t answer_limit) {
-    if (r.method == "POST") return {};
-    return entity_tag(fmt::format(
-        "{} {} {} {}", api::version(), api::name_of(asked.format).word, answer_limit,
-        api::describe(asked.provenance, nullptr).dump()));
-}
-
-bool is_known(const Request& r, const std::string& tag) {
-    return !tag.empty() && names_tag(r.known_tags, tag);
+api::Asked asked_identification(const Request& r) {
+    const bool is_columns =
+        r.content_type.starts_with("text/csv") || r.content_type.starts_with("text/plain");
+    return api::read_asked(
+        r.path, is_columns ? api::from_query(api::identify_fields(), r.query) : body_of(r),
+        {r.body, is_columns});
 }
 
 /// What is said of formats is said by each of them.
 const std::pair<std::string, std::string> varies{"Vary", "Accept"};
 
-Response not_modified(const std::string& tag) {
-    return {.status = 304, .tag = tag, .headers = {varies}};
+/// The same requests to the same build, with the same limit of its answers, have the same answer.
+/// Only what is read can be known already: a POST has no tag.
+std::string tag_of(
+    const Request& r, api::Format format, std::size_t answer_limit, const std::string& provenance) {
+    if (r.method == "POST") return {};
+    return entity_tag(fmt::format(
+        "{} {} {} {}", api::version(), api::name_of(format).word, answer_limit, provenance));
 }
 
-/// Problem 413 beyond the limit.
-Response encoded_response(Json answer, const Asked& asked, std::size_t limit, Stopwatch& watch) {
-    watch.lap("solve");
-    api::thin(answer, asked.form.fields);
-    std::string bytes = api::encoded(std::move(answer), asked.format, asked.provenance);
-    if (bytes.size() >= large) give_memory_back();
-    if (bytes.size() > limit + asked.provenance_bytes)
+/// Problem 413 beyond the limit, to which what it tells of its provenance does not count.
+std::string encoded(
+    api::Answer answer, api::Format format, std::size_t limit, std::size_t provenance,
+    const std::function<bool()>& gives_up) {
+    try {
+        std::string bytes =
+            api::encoded(std::move(answer.json), format, answer.provenance, gives_up);
+        if (bytes.size() >= large) give_memory_back();
+        if (bytes.size() <= limit + provenance) return bytes;
         throw Problem(
             413, fmt::format(
                      "the answer has {} bytes, and this server sends no more than {}: ask for "
                      "fewer parts (include, fields), points (max_points) or impacts (max_impacts)",
                      bytes.size(), limit));
+    } catch (const api::BrokenOff&) {
+        throw Problem(499, "the client has left");
+    }
+}
+
+/// The answer to what is read(request), in a place to compute in.
+Response answer(
+    const Request& r, const Service& service, Stopwatch& watch,
+    const std::function<api::Asked(const Request&)>& read) {
+    const ComputeGate::Place place = place_in(service.gate, r, watch);
+    const RouteOptions& options = service.options;
+    const api::Stop stop = end_of_work(options.deadline, r, service.gate);
+    api::Asked asked = read(r);
+    std::optional<api::Format>& format = asked.form.format;
+    if (!format) format = accepted_format(r.accept);
+    const std::string provenance = api::describe(asked.provenance, nullptr).dump();
+    std::string tag = tag_of(r, *format, options.answer_limit, provenance);
+    if (!tag.empty() && names_tag(r.known_tags, tag))
+        return {.status = 304, .tag = tag, .headers = {varies}};
+    watch.lap("parse");
+    api::Answer answer = api::answered(
+        std::move(asked),
+        {.stop = stop, .most_bytes = options.answer_limit, .most_kept = options.most_kept_impacts});
+    watch.lap("solve");
+    service.metrics.count_impacts(answer.impacts);
+    if (answer.run) {
+        Response response = stream_answer(std::move(answer), r.id, service.gate);
+        response.headers.push_back(varies);
+        return response;
+    }
+    std::string bytes = encoded(
+        std::move(answer), *format, options.answer_limit, provenance.size() + most_hash,
+        [&] { return r.left() || service.gate.ends_all(); });
     watch.lap("encode");
+    if (stop.asked()) tag = {};  // another time it may get further
     return {
-        .content_type = api::name_of(asked.format).media_type,
+        .content_type = api::name_of(*format).media_type,
         .body = std::move(bytes),
+        .tag = std::move(tag),
         .headers = {varies}};
 }
 
 }  // namespace
 
 Response simulate(const Request& r, const Service& service, Stopwatch& watch) {
-    const RouteOptions& options = service.options;
-    const ComputeGate::Place place = place_in(service.gate, r, watch);
-    Asked asked = vines::http::asked(r, api::simulate_fields());
-    const std::string tag = tag_of(r, asked, options.answer_limit);
-    api::SimulateRequest request = api::read_simulate_request(asked.fields);
-    if (is_known(r, tag)) return not_modified(tag);
-    watch.lap("parse");
-    const api::Stop stop = end_of_work(options.deadline, r, service.gate);
-    // Only text is written while its lists are made.
-    const std::size_t most_kept =
-        asked.format == api::Format::json ? options.most_kept_impacts : everything;
-    api::SimulateAnswer answer =
-        api::simulate_in_parts(std::move(request), stop, options.answer_limit, most_kept);
-    if (answer.is_fitted) asked.provenance.answer_limit = options.answer_limit;
-    service.metrics.count_simulation(answer.impacts);
-    if (answer.run) {
-        watch.lap("solve");
-        api::thin(answer.json, asked.form.fields);
-        answer.provenance = asked.provenance;
-        Response response = stream_answer(std::move(answer), r.id, service.gate);
-        response.headers.push_back(varies);
-        return response;
-    }
-    Response response =
-        encoded_response(std::move(answer.json), asked, options.answer_limit, watch);
-    if (!stop.asked()) response.tag = tag;  // another time it may get further
-    return response;
+    return answer(r, service, watch, [](const Request& request) {
+        return asked_run(request, api::simulate_fields());
+    });
 }
 
 Response manifold(const Request& r, const Service& service, Stopwatch& watch) {
-    const ComputeGate::Place place = place_in(service.gate, r, watch);
-    const Asked asked = vines::http::asked(r, api::manifold_fields());
-    const std::string tag = tag_of(r, asked, service.options.answer_limit);
-    const api::ManifoldRequest request = api::read_manifold_request(asked.fields);
-    if (is_known(r, tag)) return not_modified(tag);
-    watch.lap("parse");
-    const api::Stop stop = end_of_work(service.options.deadline, r, service.gate);
-    Response response = encoded_response(
-        api::manifold_answer(request, stop), asked, service.options.answer_limit, watch);
-    if (!stop.asked()) response.tag = tag;  // another time it may get further
-    return response;
+    return answer(r, service, watch, [](const Request& request) {
+        return asked_run(request, api::manifold_fields());
+    });
+}
+
+Response identify(const Request& r, const Service& service, Stopwatch& watch) {
+    return answer(r, service, watch, asked_identification);
 }
 
 Response sweep(const Request& r, const Service& service, Stopwatch& watch) {
@@ -167,23 +153,6 @@ Response sweep(const Request& r, const Service& service, Stopwatch& watch) {
     watch.lap("parse");
     return stream_sweep(
         std::move(request), service.options.sweep_deadline, r.id, service.gate, service.metrics);
-}
-
-Response identify(const Request& r, const Service& service, Stopwatch& watch) {
-    const ComputeGate::Place place = place_in(service.gate, r, watch);
-    const api::Stop stop = end_of_work(service.options.deadline, r, service.gate);
-    const api::FieldTable& table = api::identify_fields();
-    const bool csv =
-        r.content_type.starts_with("text/csv") || r.content_type.starts_with("text/plain");
-    Json fields = csv ? api::from_query(table, r.query) : body_of(r);
-    api::Provenance provenance = api::identify_provenance(fields, r.body);
-    const Asked asked = vines::http::asked(r, table, std::move(fields), std::move(provenance));
-    const api::IdentifyRequest request = csv ? api::read_identify_request(asked.fields, r.body)
-                                             : api::read_identify_request(asked.fields);
-    watch.lap("parse");
-    return encoded_response(
-        api::identify_answer(request, {.stop = stop.asked}), asked, service.options.answer_limit,
-        watch);
 }
 
 }  // namespace vines::http

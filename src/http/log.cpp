@@ -7,11 +7,13 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <cmath>
 #include <ctime>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
 
 #include "api/problem.hpp"
 
@@ -19,29 +21,41 @@ namespace vines::http {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 LogFormat format = LogFormat::json;
 std::atomic<std::size_t> all_dropped = 0;
 
-/// In the order in which a reader wants them. Whatever bytes a path has in it.
-std::string line_of(const char* level, Json fields) {
-    const std::string time = fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr)));
-    const auto text = [](const Json& value) {
-        return value.dump(-1, ' ', false, Json::error_handler_t::replace);
-    };
-    if (format == LogFormat::json) {
-        Json line = {{"time", time}, {"level", level}};
-        line.update(fields);
-        return text(line) + "\n";
+/// A line as it is written, its fields in the order in which a reader wants them.
+class Line {
+public:
+    explicit Line(std::string_view level) {
+        const std::string time = fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr)));
+        if (format == LogFormat::text)
+            fmt::format_to(std::back_inserter(text_), "{} {:7}", time, level);
+        else
+            fmt::format_to(std::back_inserter(text_), R"({{"time":"{}","level":"{}")", time, level);
     }
-    std::string line = fmt::format("{} {:7}", time, level);
-    for (const auto& [name, value] : fields.items())
-        line += fmt::format(" {}={}", name, text(value));
-    return line + "\n";
-}
+    void add(std::string_view name, std::string_view text) {
+        // Whatever bytes a path has in it.
+        using Json = nlohmann::json;
+        put(name, Json(text).dump(-1, ' ', false, Json::error_handler_t::replace));
+    }
+    void add(std::string_view name, double ms) { put(name, fmt::format("{:.3f}", ms)); }
+    void add(std::string_view name, std::size_t number) { put(name, std::to_string(number)); }
+    void add_true(std::string_view name) { put(name, "true"); }
+    std::string end() && {
+        text_ += format == LogFormat::text ? "\n" : "}\n";
+        return std::move(text_);
+    }
 
-double rounded(double ms) { return std::round(ms * 1000) / 1000; }
+private:
+    void put(std::string_view name, std::string_view value) {
+        fmt::format_to(
+            std::back_inserter(text_),
+            fmt::runtime(format == LogFormat::text ? " {}={}" : R"(,"{}":{})"), name, value);
+    }
+
+    std::string text_;
+};
 
 const char* level_of(int status) {
     if (status < 400) return "info";
@@ -49,9 +63,12 @@ const char* level_of(int status) {
 }
 
 /// Throws nothing: a line that cannot be written is no reason to fail.
-void log(const char* level, Json fields) {
+template <class Add>
+void log(std::string_view level, Add add) {
     try {
-        spdlog::info(line_of(level, std::move(fields)));
+        Line line(level);
+        add(line);
+        spdlog::info(std::move(line).end());
     } catch (...) {}
 }
 
@@ -65,8 +82,12 @@ protected:
             ++all_dropped;
             return;
         }
-        if (dropped_ > 0)
-            write(line_of("warning", {{"what", "lines were dropped"}, {"lines", dropped_}}));
+        if (dropped_ > 0) {
+            Line line("warning");
+            line.add("what", "lines were dropped");
+            line.add("lines", dropped_);
+            write(std::move(line).end());
+        }
         dropped_ = 0;
         write({message.payload.data(), message.payload.size()});
     }
@@ -100,17 +121,17 @@ void log_served(const Served& served) {
     const bool probe = served.path == "/livez" || served.path == "/readyz" ||
                        served.path == "/healthz" || served.path == "/metrics";
     if (probe && served.status == 200) return;
-    Json line = {
-        {"method", api::shortened(served.method)},
-        {"path", api::shortened(served.path)},
-        {"status", served.status},
-        {"ms", rounded(served.ms)},
-        {"bytes", served.bytes},
-        {"client", served.client},
-        {"request_id", served.id}};
-    for (const auto& [name, ms] : served.timing) line[name + "_ms"] = rounded(ms);
-    if (served.left) line["client_left"] = true;
-    log(level_of(served.status), std::move(line));
+    log(level_of(served.status), [&](Line& line) {
+        line.add("method", api::shortened(served.method));
+        line.add("path", api::shortened(served.path));
+        line.add("status", static_cast<std::size_t>(served.status));
+        line.add("ms", served.ms);
+        line.add("bytes", served.bytes);
+        line.add("client", served.client);
+        line.add("request_id", served.id);
+        for (const auto& [name, ms] : served.timing) line.add(name + "_ms", ms);
+        if (served.left) line.add_true("client_left");
+    });
 }
 
 void log_failure(
@@ -121,11 +142,15 @@ void log_failure(
     } catch (const std::exception& e) {
         what = e.what();
     } catch (...) {}
-    log("error", {{"path", api::shortened(path)},
-                  {"request_id", request_id},
-                  {"what", api::shortened(what)}});
+    log("error", [&](Line& line) {
+        line.add("path", api::shortened(path));
+        line.add("request_id", request_id);
+        line.add("what", api::shortened(what));
+    });
 }
 
-void log_event(const std::string& what) { log("info", {{"what", what}}); }
+void log_event(const std::string& what) {
+    log("info", [&](Line& line) { line.add("what", what); });
+}
 
 }  // namespace vines::http

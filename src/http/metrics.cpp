@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <array>
+#include <mutex>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -68,6 +70,24 @@ void add_process(std::vector<MetricFamily>& all) {
     all.push_back(sampled("process_threads", "Threads.", load.threads));
 }
 
+/// Members of a family by one word: to find them by their labels takes as long as to answer a small
+/// request.
+template <class Member>
+class Members {
+public:
+    template <class Make>
+    Member& at(const std::string& word, Make make) {
+        const std::lock_guard lock(mutex_);
+        Member*& member = known_[word];
+        if (!member) member = &make();
+        return *member;
+    }
+
+private:
+    std::mutex mutex_;
+    std::unordered_map<std::string, Member*> known_;
+};
+
 }  // namespace
 
 struct Metrics::Implementation {
@@ -82,52 +102,39 @@ struct Metrics::Implementation {
     std::function<ConnectionLoad()> connections;
     prometheus::Registry registry;
 
+    prometheus::Family<prometheus::Counter>& counters(const char* name, const char* help) {
+        return prometheus::BuildCounter().Name(name).Help(help).Register(registry);
+    }
+    prometheus::Counter& counter(const char* name, const char* help) {
+        return counters(name, help).Add({});
+    }
+    prometheus::Family<prometheus::Histogram>& histograms(const char* name, const char* help) {
+        return prometheus::BuildHistogram().Name(name).Help(help).Register(registry);
+    }
+
     prometheus::Family<prometheus::Counter>& requests =
-        prometheus::BuildCounter()
-            .Name("vines_http_requests_total")
-            .Help("Requests answered, by route, method and status.")
-            .Register(registry);
-    prometheus::Family<prometheus::Histogram>& taken =
-        prometheus::BuildHistogram()
-            .Name("vines_http_request_duration_seconds")
-            .Help("From a request's last byte to its answer's, by route.")
-            .Register(registry);
-    prometheus::Counter& bytes = prometheus::BuildCounter()
-                                     .Name("vines_http_sent_bytes_total")
-                                     .Help("Bytes of answers.")
-                                     .Register(registry)
-                                     .Add({});
-    prometheus::Counter& left = prometheus::BuildCounter()
-                                    .Name("vines_http_clients_left_total")
-                                    .Help("Answers whose client left before their end.")
-                                    .Register(registry)
-                                    .Add({});
-    prometheus::Family<prometheus::Counter>& unavailable =
-        prometheus::BuildCounter()
-            .Name("vines_http_unavailable_total")
-            .Help("Requests answered with 503, by what the server had no more of.")
-            .Register(registry);
-    prometheus::Histogram& queued = prometheus::BuildHistogram()
-                                        .Name("vines_compute_queue_seconds")
-                                        .Help("Wait of a request for a place to compute in.")
-                                        .Register(registry)
-                                        .Add({}, durations);
+        counters("vines_http_requests_total", "Requests answered, by route, method and status.");
+    Members<prometheus::Counter> of_requests;
+    prometheus::Family<prometheus::Histogram>& taken = histograms(
+        "vines_http_request_duration_seconds",
+        "From a request's last byte to its answer's, by route.");
+    Members<prometheus::Histogram> of_taken;
+    prometheus::Counter& bytes = counter("vines_http_sent_bytes_total", "Bytes of answers.");
+    prometheus::Counter& left =
+        counter("vines_http_clients_left_total", "Answers whose client left before their end.");
+    prometheus::Family<prometheus::Counter>& unavailable = counters(
+        "vines_http_unavailable_total",
+        "Requests answered with 503, by what the server had no more of.");
+    prometheus::Histogram& queued =
+        histograms("vines_compute_queue_seconds", "Wait of a request for a place to compute in.")
+            .Add({}, durations);
     prometheus::Family<prometheus::Counter>& sweeps =
-        prometheus::BuildCounter()
-            .Name("vines_sweeps_total")
-            .Help("Sweeps that had begun, by how they ended.")
-            .Register(registry);
-    prometheus::Counter& runs = prometheus::BuildCounter()
-                                    .Name("vines_sweep_runs_total")
-                                    .Help("Runs of sweeps that have ended.")
-                                    .Register(registry)
-                                    .Add({});
-    prometheus::Counter& impacts =
-        prometheus::BuildCounter()
-            .Name("vines_impacts_total")
-            .Help("Impacts computed: of simulations, and of the measured parts of ended sweeps.")
-            .Register(registry)
-            .Add({});
+        counters("vines_sweeps_total", "Sweeps that had begun, by how they ended.");
+    prometheus::Counter& runs =
+        counter("vines_sweep_runs_total", "Runs of sweeps that have ended.");
+    prometheus::Counter& impacts = counter(
+        "vines_impacts_total",
+        "Impacts computed: of simulations, and of the measured parts of ended sweeps.");
 
     void add_load(std::vector<MetricFamily>& all) const {
         const ComputeLoad load = gate.load();
@@ -158,13 +165,18 @@ Metrics::~Metrics() = default;
 
 void Metrics::count_served(const Served& served) {
     Implementation& all = *implementation_;
-    all.requests
-        .Add(
-            {{"route", served.route},
-             {"method", method_label(served.method)},
-             {"code", std::to_string(served.status)}})
+    const std::string method = method_label(served.method), code = std::to_string(served.status);
+    all.of_requests
+        .at(served.route + ' ' + method + ' ' + code,
+            [&]() -> auto& {
+                return all.requests.Add(
+                    {{"route", served.route}, {"method", method}, {"code", code}});
+            })
         .Increment();
-    all.taken.Add({{"route", served.route}}, durations).Observe(served.ms / 1000);
+    all.of_taken
+        .at(served.route,
+            [&]() -> auto& { return all.taken.Add({{"route", served.route}}, durations); })
+        .Observe(served.ms / 1000);
     all.bytes.Increment(static_cast<double>(served.bytes));
     if (served.left) all.left.Increment();
     if (!served.lacking.empty()) all.unavailable.Add({{"reason", served.lacking}}).Increment();
@@ -172,7 +184,7 @@ void Metrics::count_served(const Served& served) {
         if (name == "queue") all.queued.Observe(ms / 1000);
 }
 
-void Metrics::count_simulation(long impacts) {
+void Metrics::count_impacts(long impacts) {
     implementation_->impacts.Increment(static_cast<double>(impacts));
 }
 

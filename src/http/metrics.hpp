@@ -29,7 +29,7 @@ public:
 
     void count_served(const Served& served);
     /// The impacts of a simulation.
-    void count_simulation(long impacts);
+    void count_impacts(long impacts);
     /// The runs of a sweep, and their measured impacts.
     void count_sweep(SweepEnd end, std::size_t runs, std::size_t impacts);
 

@@ -14,6 +14,11 @@ namespace vines::http {
 
 namespace {
 
+struct Page {
+    const char *path, *file;
+};
+constexpr Page pages[] = {{"/", "index.html"}, {"/docs", "docs.html"}};
+
 /// Everything from this server, nothing inline: the page's scripts and styles are files.
 std::string policy_of(const std::vector<std::string>& embed_origins) {
     std::string policy =
@@ -24,7 +29,7 @@ std::string policy_of(const std::vector<std::string>& embed_origins) {
     return policy;
 }
 
-/// By the file name's ending.
+/// By the file name's ending; the paths of pages have none.
 std::string content_type_of(std::string_view path) {
     const std::string_view ending = path.substr(std::min(path.rfind('.'), path.size()));
     if (ending == ".js" || ending == ".mjs") return "text/javascript; charset=utf-8";
@@ -40,6 +45,11 @@ Response file_response(std::string_view path, std::string body, const std::strin
         .headers = {{"Content-Security-Policy", policy}, {"Referrer-Policy", "no-referrer"}}};
 }
 
+bool is_page(std::string_view path) {
+    return std::any_of(
+        std::begin(pages), std::end(pages), [path](const Page& page) { return path == page.path; });
+}
+
 std::vector<Route> embedded_routes(const std::string& policy) {
     std::vector<Route> routes;
     for (const Asset& asset : assets())
@@ -49,7 +59,7 @@ std::vector<Route> embedded_routes(const std::string& policy) {
              .answer = [asset, policy](const Request&) {
                  Response response = file_response(asset.path, std::string(asset.content), policy);
                  response.gzipped = asset.gzipped;
-                 response.immutable = asset.path != "/";
+                 response.immutable = !is_page(asset.path);
                  return response;
              }});
     return routes;
@@ -71,8 +81,7 @@ Route file_route(
                 if (is_plain(file)) in.open(file, std::ios::binary);
                 if (!in.is_open()) return problem_response(404, "there is no " + path);
                 return file_response(
-                    path == "/" ? "index.html" : path,
-                    std::string(std::istreambuf_iterator<char>(in), {}), policy);
+                    path, std::string(std::istreambuf_iterator<char>(in), {}), policy);
             }};
 }
 
@@ -85,7 +94,9 @@ bool is_of_page(const std::filesystem::path& name) {
 }
 
 std::vector<Route> folder_routes(const std::filesystem::path& folder, const std::string& policy) {
-    std::vector<Route> routes{file_route(folder / "index.html", "/", policy)};
+    std::vector<Route> routes;
+    for (const Page& page : pages)
+        routes.push_back(file_route(folder / page.file, page.path, policy));
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
         const std::filesystem::path name = entry.path().lexically_relative(folder);
         if (is_of_page(name) && is_plain(entry.path()))

@@ -1,4 +1,4 @@
-// The page's files as routes.
+// The files of the page, and of that of the OpenAPI document, as routes.
 #pragma once
 
 #include <string>

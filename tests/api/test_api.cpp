@@ -585,7 +585,7 @@ TEST_CASE("lists that are made while an answer is written have the bytes of kept
     const std::string whole = json_text(simulate_answer(read_simulate_request(request), {})) + "\n";
     // One list at a time, some, all.
     for (const std::size_t list_bytes : {0, 5000, 10000000}) {
-        SimulateAnswer answer = simulate_in_parts(read_simulate_request(request), {}, any_size, 10);
+        Answer answer = simulate_in_parts(read_simulate_request(request), {}, any_size, 10);
         REQUIRE(answer.run);
         struct CountedRuns : Pace {
             void begin() override { ++runs; }

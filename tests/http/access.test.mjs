@@ -33,7 +33,7 @@ test("with --api-key-file all but health and the page asks for one of its keys",
     await answer.arrayBuffer();
     return answer.status;
   };
-  for (const path of ["/", "/livez", "/readyz", "/healthz", "/version"])
+  for (const path of ["/", "/docs", "/livez", "/readyz", "/healthz", "/version"])
     assert.equal(await status(path), 200, path);
   const asking = [
     "/v1/simulate?include=regime",

@@ -1,25 +1,10 @@
 // What axe-core finds on each tab, light and dark: nothing.
 import assert from "node:assert/strict";
-import {readFile} from "node:fs/promises";
-import {createRequire} from "node:module";
 import {test} from "node:test";
 import {measured} from "../record.mjs";
+import {findings} from "./axe.mjs";
 import {drawn, identified, swept} from "./browser.mjs";
 import {browser, service} from "./support.mjs";
-
-const require = createRequire(new URL("../../web/package.json", import.meta.url));
-
-/** What axe-core finds on a page, in words. */
-async function findings(page) {
-  const axe = await readFile(require.resolve("axe-core/axe.min.js"), "utf8");
-  return page.evaluate(async (source) => {
-    new Function(source)();
-    const {violations} = await window.axe.run(document, {resultTypes: ["violations"]});
-    return violations.flatMap(({id, nodes}) =>
-      nodes.map(({target, failureSummary}) => `${id}: ${target.join(" ")}: ${failureSummary}`),
-    );
-  }, axe);
-}
 
 const tabs = {
   "a simulation with its details": async (page) => {

@@ -29,7 +29,7 @@ async function read(response) {
 }
 
 /** The response to a request; if it was broken off, who did so knows. */
-async function reach(path, options = {}) {
+export async function reach(path, options = {}) {
   for (let again = false; ; again = true) {
     const response = await answer(path, options);
     if (response.status !== 401) return response;
@@ -79,6 +79,12 @@ export const whole = (path) => new URL(path, location.href.split("?")[0]).href;
 /** A request for a terminal. */
 export const asCurl = (path, fields, flags = "-s") =>
   `curl ${flags} ${whole(path)} -d ${quoted(JSON.stringify(fields))}`;
+
+export const getAsCurl = (path, flags = "-s") => `curl ${flags} ${quoted(whole(path))}`;
+
+/** A file as the body. */
+export const sendFileAsCurl = (path, type, name, flags = "-s") =>
+  `curl ${flags} ${whole(path)} -H 'Content-Type: ${type}' --data-binary ${quoted(`@${name}`)}`;
 
 export function recordAsCurl(query, name) {
   const address = quoted(`${whole("v1/identify")}?${query}`);

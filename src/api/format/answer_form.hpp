@@ -20,7 +20,7 @@ struct AnswerForm {
 /// fault.
 AnswerForm take_form(Json& fields, const FieldTable& table);
 
-/// What an answer's `fields` name, and always version, status and warnings, among them a sentence
+/// What an answer's `fields` name, and always version, status, warnings, among them a sentence
 /// for each that names nothing.
 void thin(Json& answer, const std::vector<std::string>& fields);
 

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <optional>
 
+#include "api/broken_off.hpp"
 #include "api/format/encode.hpp"
 #include "api/format/list.hpp"
 #include "api/number_text.hpp"
@@ -15,6 +16,9 @@
 namespace vines::api {
 
 namespace {
+
+// Rows.
+constexpr std::size_t between_looks = 4096;
 
 struct ToldColumn {
     std::string name;
@@ -105,7 +109,7 @@ void put_csv_entry(const List& list, std::size_t row, std::string& text) {
 
 }  // namespace
 
-std::string csv_text(const Json& answer) {
+std::string csv_text(const Json& answer, const std::function<bool()>& gives_up) {
     const ToldTable table = only_table(answer);
     std::string text;
     for (const ToldColumn& column : table.columns) {
@@ -114,6 +118,7 @@ std::string csv_text(const Json& answer) {
     }
     text += '\n';
     for (std::size_t row = 0; row < table.columns[0].list.size(); ++row) {
+        if (row % between_looks == 0 && gives_up && gives_up()) throw BrokenOff();
         const std::size_t begins = text.size();
         for (const ToldColumn& column : table.columns) {
             if (&column != table.columns.data()) text += ',';

@@ -2,15 +2,38 @@
 
 #include <utility>
 
+#include "api/broken_off.hpp"
+
 namespace vines::api {
 
 const FormatName& name_of(Format format) {
     return format_names[static_cast<std::size_t>(format)];  // they stand in this order
 }
 
-std::string encoded(Json answer, Format format, const std::optional<Provenance>& provenance) {
-    if (format == Format::json) return sealed_text(std::move(answer), provenance);
-    if (format == Format::csv) return csv_text(answer);
+namespace {
+
+// Of a provenance, about, beside what was asked for.
+constexpr std::size_t room_for_provenance = 1024;
+
+std::string sealed_text(
+    Json answer, const std::optional<Provenance>& provenance,
+    const std::function<bool()>& gives_up) {
+    std::string text;
+    text.reserve(room_for_lists(answer) + room_for_provenance);
+    write_sealed(answer, provenance, [&](std::string_view piece) {
+        if (gives_up && gives_up()) throw BrokenOff();
+        text += piece;
+    });
+    return text;
+}
+
+}  // namespace
+
+std::string encoded(
+    Json answer, Format format, const std::optional<Provenance>& provenance,
+    const std::function<bool()>& gives_up) {
+    if (format == Format::json) return sealed_text(std::move(answer), provenance, gives_up);
+    if (format == Format::csv) return csv_text(answer, gives_up);
     if (provenance) answer["provenance"] = describe(*provenance, nullptr);
     return format == Format::cbor ? cbor_bytes(std::move(answer)) : npz_bytes(std::move(answer));
 }

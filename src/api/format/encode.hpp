@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
 
 #include "api/provenance.hpp"
@@ -25,13 +26,16 @@ inline constexpr std::array<FormatName, 4> format_names = {
 const FormatName& name_of(Format format);
 
 /// All lists are there. With its provenance, which has a sha256 in JSON alone, but for CSV. Problem
-/// 422 where the format cannot hold this answer.
-std::string encoded(Json answer, Format format, const std::optional<Provenance>& provenance);
+/// 422 where the format cannot hold this answer. gives_up(): asked now and then while text is
+/// written; true: BrokenOff.
+std::string encoded(
+    Json answer, Format format, const std::optional<Provenance>& provenance,
+    const std::function<bool()>& gives_up = {});
 
 /// One table: lists of one length in one object, a column each; of four numbers or a matrix
 /// several, with the number of each behind its name. Null is an empty cell. Problem 422 where the
 /// answer has none, or more than one, which it names.
-std::string csv_text(const Json& answer);
+std::string csv_text(const Json& answer, const std::function<bool()>& gives_up = {});
 
 /// Lists of numbers as typed arrays (float64, int32, little-endian), null in them as NaN; of four
 /// numbers or a matrix arrays of such.

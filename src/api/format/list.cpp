@@ -76,13 +76,9 @@ std::size_t List::width() const {
 
 std::vector<std::uint8_t> with_nan(std::span<const std::uint8_t> doubles) {
     std::vector<std::uint8_t> bytes(doubles.begin(), doubles.end());
-    for (std::size_t at = 0; at < bytes.size(); at += sizeof(double)) {
-        double number;
-        std::memcpy(&number, bytes.data() + at, sizeof number);
-        if (std::isfinite(number)) continue;
-        number = std::numeric_limits<double>::quiet_NaN();
-        std::memcpy(bytes.data() + at, &number, sizeof number);
-    }
+    change_numbers(bytes, [](double number) {
+        return std::isfinite(number) ? number : std::numeric_limits<double>::quiet_NaN();
+    });
     return bytes;
 }
 

@@ -1,7 +1,6 @@
 #include "api/openapi/examples.hpp"
 
-#include "api/identify_request.hpp"
-#include "api/provenance.hpp"
+#include "api/answers/asked.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -201,11 +200,8 @@ Json answer_example(const char* schema) {
         [schema](const SealedAnswer& answer) { return answer.schema == std::string_view(schema); });
     if (sealed == std::end(sealed_answers)) return example;
     const Json request = request_example(sealed->operation).begin()->at("value");
-    const Provenance provenance =
-        std::string_view(sealed->operation) == "identify"
-            ? identify_provenance(request, request.dump())
-            : Provenance{.route = sealed->route, .request = canonical(request)};
-    example["provenance"] = describe(provenance, sha256(example.dump()));
+    const Asked asked = read_asked(sealed->route, request, {request.dump(), false});
+    example["provenance"] = describe(asked.provenance, sha256(example.dump()));
     return example;
 }
 

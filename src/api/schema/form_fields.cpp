@@ -16,9 +16,10 @@ const FieldTable& form_fields() {
         {.name = "fields",
          .type = FieldType::choices,
          .group = "answer",
-         .description = "what is kept of the answer: names and paths with points, as in "
-                        "impacts.tau; version, status and warnings always are. What is not kept "
-                        "is not computed, unless include says so",
+         .description =
+             "what is kept of the answer: names and paths with points, as in "
+             "impacts.tau; version, status, warnings and provenance always are. What is not kept "
+             "is not computed, unless include says so",
          .fallback_note = "everything"}};
     return table;
 }

@@ -1,0 +1,316 @@
+// The page of the OpenAPI document: what stands on it, is found, copied and tried.
+import assert from "node:assert/strict";
+import {mkdtemp, rm, writeFile} from "node:fs/promises";
+import {tmpdir} from "node:os";
+import {join} from "node:path";
+import {test} from "node:test";
+import {startService} from "../service.mjs";
+import {findings} from "./axe.mjs";
+import {browser, fits, service} from "./support.mjs";
+
+/** The page at a place, once all of it is there. */
+async function visit(place = "", {url = service.url, viewport, colorScheme} = {}) {
+  const page = await browser.context.newPage();
+  if (viewport) await page.setViewportSize(viewport);
+  if (colorScheme) await page.emulateMedia({colorScheme});
+  await page.goto(`${url}/docs${place}`);
+  await page.waitForSelector("#docs-message[data-done]", {state: "attached"});
+  return page;
+}
+
+const openapi = async () => (await fetch(`${service.url}/v1/openapi.json`)).json();
+const isOpen = (page, id) => page.$eval(`[id="${id}"]`, (details) => details.open);
+const inView = (page, id) =>
+  page.$eval(`[id="${id}"]`, (node) => {
+    const {top, bottom} = node.getBoundingClientRect();
+    return bottom > 0 && top < innerHeight;
+  });
+const narrow = {width: 360, height: 740};
+
+/** Clicks "Try it" of an operation's nth example; the status and the text of the answer. */
+async function tried(page, id, n = 0) {
+  const example = page.locator(`#${id} .example`).nth(n);
+  await example.getByRole("button", {name: "Try it"}).click();
+  const answer = example.locator(".answer");
+  await answer.waitFor();
+  return {
+    status: await example.locator(".message").textContent(),
+    text: await answer.textContent(),
+  };
+}
+
+test("every operation and every schema of the document stands on the page, and in its contents", async () => {
+  const {paths, components, info} = await openapi();
+  const page = await visit();
+  for (const [path, methods] of Object.entries(paths))
+    for (const [method, {operationId, summary}] of Object.entries(methods)) {
+      const title = `${method.toUpperCase()} ${path} ${summary}`;
+      assert.equal(await page.textContent(`[id="${operationId}"] h3`), title);
+      assert.ok(await page.$(`#docs-toc a[href="#${operationId}"]`), operationId);
+    }
+  const operations = Object.values(paths).flatMap((methods) => Object.values(methods));
+  assert.equal(await page.locator("details.operation").count(), operations.length);
+  const names = await page.$$eval("#docs-schemas > details", (all) => all.map(({id}) => id));
+  assert.deepEqual(
+    names,
+    Object.keys(components.schemas).map((name) => `schema-${name}`),
+  );
+  const {commit} = await (await fetch(`${service.url}/version`)).json();
+  const head = await page.textContent("#docs-head");
+  for (const said of [info.version, commit, info.description, `${service.url}/`, "Bearer KEY"])
+    assert.ok(head.includes(said), said);
+  await page.close();
+});
+
+test("an operation shows each field with its type, range, default and meaning, and each status", async () => {
+  const page = await visit("#simulate_by_query");
+  const {paths} = await openapi();
+  const {parameters, responses} = paths["/v1/simulate"].get;
+  const row = await page.$eval('[id="simulate_by_query.b"]', (tr) =>
+    [...tr.cells].map((cell) => cell.textContent),
+  );
+  assert.deepEqual(row.slice(0, 2), ["b", "number, 1e-9 to 1000, default 0.022"]);
+  assert.match(row[2], /^half-width of the cavity/);
+  const fields = await page.$$eval('tr[id^="simulate_by_query."]', (rows) => rows.length);
+  assert.equal(fields, parameters.length);
+  await page.getByText("Other statuses").first().click();
+  await page.getByText("304 ").first().waitFor();
+  const said = await page.$$eval(
+    "#simulate_by_query summary code, #simulate_by_query p > code",
+    (all) => all.map(({textContent}) => textContent),
+  );
+  for (const status of Object.keys(responses)) assert.ok(said.includes(status), status);
+  await page.close();
+});
+
+test("a link to a place opens what is around it and shows it", async () => {
+  for (const place of ["sweep", "schema-Impacts", "identify.fixed"]) {
+    const page = await visit(`#${place}`);
+    assert.ok(await isOpen(page, place.split(".")[0]), place);
+    assert.ok(await inView(page, place), place);
+    await page.close();
+  }
+  const page = await visit();
+  assert.equal(await page.$(".fields"), null, "what is folded is not there yet");
+  await page.click("#docs-toc a[href='#manifold']");
+  await page.waitForSelector("#manifold[open] .fields");
+  assert.ok(await inView(page, "manifold"));
+  await page.click("#manifold > summary");
+  await page.click("#docs-toc a[href='#manifold']");
+  await page.waitForSelector("#manifold[open]");
+  await page.close();
+});
+
+test("a schema in a schema unfolds, however deep", async () => {
+  const page = await visit("#schema-Presets");
+  const inside = page.locator("#schema-Presets");
+  await inside.locator("details > summary", {hasText: "6 fields"}).click();
+  await inside.locator("details > summary", {hasText: "SimulateRequest"}).click();
+  await inside.locator("details > summary", {hasText: "6 fields"}).nth(1).click();
+  await inside.getByRole("rowheader", {name: "seed"}).waitFor();
+  const names = await inside.locator("th code").allTextContents();
+  for (const name of ["presets", "source", "damping_ratio", "seed"])
+    assert.ok(names.includes(name), name);
+  const ids = await page.$$eval("[id]", (all) => all.map(({id}) => id));
+  assert.equal(new Set(ids).size, ids.length, "each place is there once");
+  await page.close();
+});
+
+test("the box finds fields by their name, and leads to each, however deep", async () => {
+  const page = await visit();
+  await page.fill("#docs-filter", "LAMBDA");
+  const names = await page.locator("#docs-found li > code").allTextContents();
+  assert.equal(names[0], "lambda");
+  assert.ok(names.length > 3 && names.every((name) => /lambda/i.test(name)), names.join());
+  assert.equal(await page.textContent("#docs-found-count"), `${names.length} names`);
+  await page.fill("#docs-filter", "amplitude");
+  await page.getByRole("link", {name: "Energy.without_absorber"}).first().click();
+  const place = "schema-Energy.without_absorber.amplitude";
+  await page.waitForSelector(`tr[id="${place}"]:focus`);
+  assert.ok(await inView(page, place));
+  await page.fill("#docs-filter", "no such field");
+  assert.equal(await page.textContent("#docs-found-count"), "0 names");
+  await page.fill("#docs-filter", "");
+  assert.ok(await page.isVisible("#docs-toc"));
+  await page.close();
+});
+
+test("each field that can be found is at its place", async () => {
+  const page = await visit();
+  await page.click("#docs-unfold");
+  await page.waitForSelector("#schema-Problem[open] .fields");
+  for (const letter of ["e", "y"]) {
+    await page.fill("#docs-filter", letter);
+    const links = await page.$$eval("#docs-found a", (all) => all.map((link) => link.hash));
+    assert.ok(links.length > 100);
+    const lost = await page.evaluate(async (links) => {
+      const lost = [];
+      for (const link of links) {
+        location.hash = link;
+        await new Promise((resolve) => addEventListener("hashchange", resolve, {once: true}));
+        if (document.activeElement.id !== link.slice(1)) lost.push(link);
+      }
+      return lost;
+    }, links);
+    assert.deepEqual(lost, []);
+  }
+  await page.close();
+});
+
+test("an example is copied as a line for a terminal", async () => {
+  await browser.context.grantPermissions(["clipboard-read", "clipboard-write"]);
+  const page = await visit("#simulate_by_query");
+  const copied = async (id, n) => {
+    const example = page.locator(`#${id} .example`).nth(n);
+    await example.getByRole("button", {name: "Copy curl"}).click();
+    await example.getByText("copied").waitFor();
+    return page.evaluate(() => navigator.clipboard.readText());
+  };
+  const address = `${service.url}/v1/simulate`;
+  const line = `curl -s '${address}?preset=fig11&include=regime,energy'`;
+  assert.equal(await copied("simulate_by_query", 0), line);
+  await page.goto(`${service.url}/docs#simulate`);
+  const {paths} = await openapi();
+  const {examples} = paths["/v1/simulate"].post.requestBody.content["application/json"];
+  const machine = Object.keys(examples).indexOf("machine");
+  const body = JSON.stringify(examples.machine.value);
+  assert.equal(await copied("simulate", machine), `curl -s ${address} -d '${body}'`);
+  await page.goto(`${service.url}/docs#identify`);
+  const file = `curl -s ${service.url}/v1/identify -H 'Content-Type: text/csv' --data-binary '@FILE'`;
+  assert.equal(await copied("identify", 1), file);
+  await page.close();
+});
+
+test("an example is tried: status, time and the first lines of what this server answers", async () => {
+  const page = await visit("#simulate_by_query");
+  const got = await tried(page, "simulate_by_query");
+  assert.match(got.status, /^200 OK · \d+ ms · \d+\.\d kB · the first of \d+ lines$/);
+  assert.match(got.text, /^\{\n {2}"version": "\d/);
+  assert.ok(got.text.split("\n").length <= 60);
+  await page.goto(`${service.url}/docs#sweep`);
+  const swept = await tried(page, "sweep");
+  assert.match(swept.status, /^200 OK · \d+ ms/);
+  assert.equal(JSON.parse(swept.text.split("\n")[0]).type, "start");
+  await page.goto(`${service.url}/docs#openapi`);
+  const long = await tried(page, "openapi");
+  assert.match(long.text, /"openapi": "3\.1\.0"/);
+  assert.ok(long.text.length < 7000);
+  await page.goto(`${service.url}/docs#healthz`);
+  assert.equal((await tried(page, "healthz")).text, '{\n  "status": "ok"\n}');
+  await page.close();
+});
+
+test("a key is asked for where the server wants one, and then shown", async (t) => {
+  const folder = await mkdtemp(join(tmpdir(), "vines-docs-"));
+  const file = join(folder, "keys");
+  await writeFile(file, "a-key-of-the-tests-0\n");
+  const closed = await startService(["--api-key-file", file]);
+  t.after(async () => {
+    await closed.stop();
+    await rm(folder, {recursive: true});
+  });
+  const page = await browser.context.newPage();
+  await page.goto(`${closed.url}/docs#presets`);
+  await page.fill("dialog input", "a-key-of-the-tests-0");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector("#presets[open]");
+  assert.match((await tried(page, "presets")).status, /^200 OK/);
+  const line = await page.textContent("#presets .example code");
+  assert.equal(line, `curl -s -H "Authorization: Bearer $KEY" '${closed.url}/v1/presets'`);
+  await page.close();
+  // The browser tells of the 401 that the page has asked about.
+  const told = browser.complaints.splice(0);
+  assert.ok(
+    told.every((text) => text.includes("401")),
+    told.join(),
+  );
+});
+
+test("where the service does not answer the page says so", async () => {
+  const page = await browser.context.newPage();
+  await page.route("**/v1/openapi.json", (route) =>
+    route.fulfill({status: 503, json: {detail: "too busy"}}),
+  );
+  await page.goto(`${service.url}/docs`);
+  await page.waitForSelector("#docs-message.fault");
+  assert.equal(
+    await page.textContent("#docs-message"),
+    "The OpenAPI document is not here: too busy.",
+  );
+  await page.unroute("**/v1/openapi.json");
+  await page.reload();
+  await page.waitForSelector("#docs-message[data-done]", {state: "attached"});
+  await page.click("#docs-toc a[href='#version']");
+  await page.route("**/version", (route) => route.abort());
+  const example = page.locator("#version .example");
+  await example.getByRole("button", {name: "Try it"}).click();
+  await example.getByText("the server does not answer").waitFor();
+  await page.close();
+  browser.complaints.splice(0);
+});
+
+test("without JavaScript there is a link to the document", async () => {
+  const html = await (await fetch(`${service.url}/docs`)).text();
+  assert.match(html, /<noscript>.*href="v1\/openapi\.json".*<\/noscript>/);
+  const main = await (await fetch(`${service.url}/`)).text();
+  assert.match(main, /<a href="docs">/, "the page leads here");
+});
+
+test("on a phone of 360 px nothing reaches beyond the screen", async () => {
+  const page = await visit("", {viewport: narrow});
+  assert.ok(await fits(page), "folded");
+  await page.click("#docs-unfold");
+  await page.waitForSelector("#schema-Problem[open] .fields");
+  assert.ok(await fits(page), "unfolded");
+  await tried(page, "sweep", 1);
+  await page.fill("#docs-filter", "eigen");
+  assert.ok(await fits(page), "with an answer, and fields found");
+  await page.close();
+});
+
+test("the keyboard leads through it: the box, the contents, an operation, its example", async () => {
+  const page = await visit();
+  await page.focus("#docs-filter");
+  await page.keyboard.press("Tab");
+  await page.keyboard.press("Tab");
+  assert.equal(await page.evaluate(() => document.activeElement.hash), "#simulate_by_query");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector("#simulate_by_query[open] > summary:focus");
+  await page.keyboard.press("Tab");
+  await page.keyboard.press("Tab");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector("#simulate_by_query .answer:not([hidden])");
+  await page.close();
+});
+
+for (const colorScheme of ["light", "dark"])
+  test(`axe-core finds nothing: ${colorScheme}`, async () => {
+    const page = await visit("#sweep", {colorScheme, viewport: {width: 1440, height: 900}});
+    await page.click("#docs-toc a[href='#identify']");
+    await page.click("#docs-toc a[href='#simulate_by_query']");
+    await tried(page, "simulate_by_query");
+    await page.evaluate(() => {
+      location.hash = "#schema-Energy.without_absorber.rms";
+    });
+    await page.waitForSelector("tr:focus");
+    assert.deepEqual(await findings(page), []);
+    await page.fill("#docs-filter", "tau");
+    assert.deepEqual(await findings(page), []);
+    await page.close();
+  });
+
+test("its files are named by their content, its scripts are its own, the console is silent", async () => {
+  const answer = await fetch(`${service.url}/docs`);
+  assert.match(answer.headers.get("content-type"), /^text\/html/);
+  assert.match(answer.headers.get("content-security-policy"), /script-src 'self'/);
+  const cached = (response) => response.headers.get("cache-control") ?? "";
+  assert.doesNotMatch(cached(answer), /immutable/);
+  const files = (await answer.text()).match(/(?<=(?:src|href)=")[0-9a-f]{12}\/docs\/[^"]+/g);
+  assert.deepEqual(
+    files.map((path) => path.replace(/^.*\//, "")),
+    ["docs.css", "docs.js"],
+  );
+  for (const path of files)
+    assert.match(cached(await fetch(`${service.url}/${path}`)), /immutable/, path);
+  assert.deepEqual(browser.complaints, []);
+});

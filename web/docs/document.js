@@ -1,0 +1,97 @@
+// The OpenAPI document: what stands in it, and at which place of the page. A place is the id of an
+// operation or a schema, then the names on the way: schema-Energy.without_absorber.rms.
+import {get} from "../shared/api.js";
+
+let root;
+
+export async function load() {
+  root = await get("v1/openapi.json");
+  return root;
+}
+
+const unescaped = (name) => name.replaceAll("~1", "/").replaceAll("~0", "~");
+
+/** What a $ref leads to, with what is said beside it; anything else is itself. */
+export function resolved(node) {
+  if (!node.$ref) return node;
+  const {$ref, ...beside} = node;
+  const names = $ref.slice(2).split("/").map(unescaped);
+  const there = names.reduce((inside, name) => inside[name], root);
+  return {...resolved(there), ...beside};
+}
+
+/** Of a $ref: the name of the component. */
+export const nameOf = ($ref) => $ref.slice($ref.lastIndexOf("/") + 1);
+
+export const schemas = () => Object.entries(root.components.schemas);
+export const schemaPlace = (name) => `schema-${name}`;
+
+/**
+ * All operations, in the document's order: what it says of them, path, method, and their body by its
+ * media types.
+ */
+export const operations = () =>
+  Object.entries(root.paths).flatMap(([path, methods]) =>
+    Object.entries(methods).map(([method, operation]) => ({
+      ...operation,
+      path,
+      method: method.toUpperCase(),
+      id: operation.operationId ?? `${method}${path}`,
+      parameters: (operation.parameters ?? []).map(resolved),
+      body: resolved(operation.requestBody ?? {}).content ?? {},
+    })),
+  );
+
+/** [tag, its operations], but for tags without any. */
+export function operationsByTag() {
+  const all = operations();
+  const of = (name) => all.filter(({tags}) => tags?.[0] === name);
+  const listed = (root.tags ?? []).map((tag) => [tag, of(tag.name)]);
+  const rest = all.filter((operation) => !listed.some(([, list]) => list.includes(operation)));
+  return [...listed, [{name: "other"}, rest]].filter(([, list]) => list.length);
+}
+
+/** The objects and the components that a value of a schema may be or hold, not looking into them. */
+function parts(schema) {
+  if (schema.$ref || schema.properties) return [schema];
+  const {items, additionalProperties, anyOf = [], oneOf = [], allOf = []} = schema;
+  return [items, additionalProperties, ...anyOf, ...oneOf, ...allOf]
+    .filter((inner) => typeof inner === "object")
+    .flatMap(parts);
+}
+
+/**
+ * The same, each with the place of its fields: null of a component, whose fields stand at its own.
+ * place: of the schema; null where there is none; taken: whether fields stand there already.
+ */
+export function placedParts(schema, place, taken = false) {
+  let n = Number(taken);
+  const next = () => (n++ ? `${place}/${n}` : place);
+  return parts(schema).map((part) => [part, part.$ref || !place ? null : next()]);
+}
+
+function* fieldsOf({properties = {}, ...rest}, place, of) {
+  for (const [name, field] of Object.entries(properties)) {
+    const at = `${place}.${name}`;
+    yield {name, place: at, of, description: resolved(field).description};
+    yield* fieldsOfParts(placedParts(field, at), `${of}.${name}`);
+  }
+  yield* fieldsOfParts(placedParts(rest, place, true), of);
+}
+
+function* fieldsOfParts(parts, of) {
+  for (const [part, place] of parts) if (place) yield* fieldsOf(part, place, of);
+}
+
+/** Every field of a request or an answer: {name, place, of, description}. */
+export const allFields = () => [
+  ...operations().flatMap(({id, method, path, parameters}) =>
+    parameters.map(({name, description}) => ({
+      name,
+      place: `${id}.${name}`,
+      of: `${method}\u00a0${path}`,
+      description,
+    })),
+  ),
+  ...schemas().flatMap(([name, schema]) => [...fieldsOf(schema, schemaPlace(name), name)]),
+];

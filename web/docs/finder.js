@@ -1,0 +1,57 @@
+// The box that finds fields by their name.
+import {$, element} from "../shared/dom.js";
+import {count} from "../shared/numbers.js";
+import {allFields} from "./document.js";
+
+const most = 40; // names that are listed
+
+/** Those before come first: the name itself, then those that begin with it. */
+function rank(name, wanted) {
+  if (name === wanted) return 0;
+  return name.startsWith(wanted) ? 1 : 2;
+}
+
+/** [name, its fields] of those whose name has a text in it. */
+function find(fields, wanted) {
+  const names = new Map();
+  for (const field of fields) {
+    const name = field.name.toLowerCase();
+    if (name.includes(wanted)) names.set(field.name, [...(names.get(field.name) ?? []), field]);
+  }
+  const ranked = ([name]) => rank(name.toLowerCase(), wanted);
+  return [...names].sort((a, b) => ranked(a) - ranked(b));
+}
+
+/** A path, which may go on in a new line behind its points. */
+const broken = (path) =>
+  path.split(/(?<=\.)/).flatMap((part, i) => (i ? [element("wbr"), part] : [part]));
+
+function foundView([name, fields]) {
+  const links = fields.map(({place, of}) => element("a", {href: `#${place}`}, ...broken(of)));
+  const {description = ""} = fields.find((field) => field.description) ?? {};
+  const spaced = links.flatMap((link) => [link, " "]);
+  return element(
+    "li",
+    {},
+    element("code", {textContent: name}),
+    element("p", {className: "note", textContent: description}),
+    element("p", {}, ...spaced),
+  );
+}
+
+export function startFinder() {
+  const fields = allFields();
+  const box = $("docs-filter");
+  const list = $("docs-found");
+  const look = () => {
+    const wanted = box.value.trim().toLowerCase();
+    const found = wanted ? find(fields, wanted) : [];
+    list.replaceChildren(...found.slice(0, most).map(foundView));
+    list.hidden = !found.length;
+    $("docs-contents").hidden = Boolean(wanted);
+    const listed = found.length > most ? `, ${most} of them here` : "";
+    $("docs-found-count").textContent = wanted ? count(found.length, "name") + listed : "";
+  };
+  box.addEventListener("input", look);
+  look();
+}

@@ -1,0 +1,108 @@
+// Schemas as words and as tables of fields.
+import {element} from "../shared/dom.js";
+import {count} from "../shared/numbers.js";
+import {nameOf, placedParts, resolved, schemaPlace} from "./document.js";
+import {fold} from "./fold.js";
+
+export const code = (text) => element("code", {textContent: text});
+const json = (value) => code(JSON.stringify(value));
+const paragraph = (...children) => element("p", {}, ...children);
+
+const joined = (list, word) => list.flatMap((nodes, i) => (i ? [word, ...nodes] : nodes));
+const alternatives = (list) => joined(list, " or ");
+
+/** A link to where a component stands. */
+const linkTo = ($ref) => {
+  const name = nameOf($ref);
+  return element("a", {href: `#${schemaPlace(name)}`, textContent: name});
+};
+
+function listWords({items = {}, minItems, maxItems}, many) {
+  const number = minItems && minItems === maxItems ? `${minItems} ` : "";
+  return [many ? "lists of " : "list of ", number, ...typeWords(items, true)];
+}
+
+function oneType(type, schema, many) {
+  if (type === "array") return listWords(schema, many);
+  const values = schema.additionalProperties;
+  if (type === "object" && values?.type) return ["names to ", ...typeWords(values, true)];
+  return [many && type !== "null" ? `${type}s` : type];
+}
+
+/** What a value may be, as texts and links. many: several of them. */
+export function typeWords(schema, many = false) {
+  if (schema.$ref) return [linkTo(schema.$ref)];
+  if ("const" in schema) return [json(schema.const)];
+  if (schema.enum) return alternatives(schema.enum.map((value) => [json(value)]));
+  const several = schema.anyOf ?? schema.oneOf;
+  if (several) return alternatives(several.map((one) => typeWords(one, many)));
+  return alternatives([schema.type ?? "any"].flat().map((type) => oneType(type, schema, many)));
+}
+
+function span(least, most, unit = "") {
+  if (least === undefined && most === undefined) return [];
+  if (least === undefined) return [`at most ${most}${unit}`];
+  return [most === undefined ? `at least ${least}${unit}` : `${least} to ${most}${unit}`];
+}
+
+/** What narrows a value down: its range, its default. */
+function limits(schema) {
+  const {minimum, maximum, exclusiveMinimum, minItems, maxItems} = schema;
+  const words = span(minimum, maximum).map((text) => [text]);
+  if (exclusiveMinimum !== undefined) words.push([`above ${exclusiveMinimum}`]);
+  if (minItems !== maxItems) words.push(span(minItems, maxItems, " entries"));
+  if ("default" in schema) words.push(["default ", json(schema.default)]);
+  return words;
+}
+
+const cell = (name, ...children) => element("td", {className: name}, ...children);
+
+/** field: {name, schema, required, description}. Its row, and one for what it holds. */
+function rows({name, schema, required, description}, place) {
+  const at = place && `${place}.${name}`;
+  const head = element("th", {scope: "row"}, code(name));
+  if (required) head.append(" ", element("small", {textContent: "required"}));
+  const words = [typeWords(schema), ...limits(schema)];
+  const meaning = description ?? resolved(schema).description ?? "";
+  const row = element("tr", {}, head, cell("type", ...joined(words, ", ")), cell("", meaning));
+  if (at) row.id = at;
+  const folds = placedParts(schema, at).map(([part, inside]) => partFold(part, inside));
+  if (!folds.length) return [row];
+  return [row, element("tr", {className: "inside"}, element("td", {colSpan: 3}, ...folds))];
+}
+
+/** What a part of a schema holds, folded. */
+function partFold(part, place) {
+  const fields = Object.keys(resolved(part).properties ?? {}).length;
+  const name = part.$ref ? [nameOf(part.$ref), " "] : [];
+  const number = element("small", {
+    textContent: fields ? count(fields, "field") : "one of several",
+  });
+  return fold([...name, number], () => schemaView(part, place), place);
+}
+
+/** A table of fields. place: whose they are; null: of nobody who is looked for. */
+export function fieldTable(fields, place, title) {
+  const heads = ["field", "type", "meaning"].map((textContent) =>
+    element("th", {scope: "col", textContent}),
+  );
+  const body = element("tbody", {}, ...fields.flatMap((field) => rows(field, place)));
+  const table = element("table", {className: "fields"});
+  if (title) table.append(element("caption", {textContent: title}));
+  table.append(element("thead", {}, element("tr", {}, ...heads)), body);
+  return table;
+}
+
+/** A schema, as nodes: its fields, and what else it may be. */
+export function schemaView(schema, place) {
+  const {properties, required = [], ...rest} = resolved(schema);
+  const fields = Object.entries(properties ?? {}).map(([name, field]) => ({
+    name,
+    schema: field,
+    required: required.includes(name),
+  }));
+  const nodes = fields.length ? [fieldTable(fields, place)] : [paragraph(...typeWords(rest))];
+  const others = placedParts(rest, place, true);
+  if (fields.length && others.length) nodes.push(paragraph("and those of one of:"));
+  return [...nodes, ...others.map(([part, inside]) => partFold(part, inside))];
+}
