@@ -12,8 +12,10 @@ Command with_exit_codes(CLI::App* app, std::function<int()> run) {
     app->footer(
         "Exit codes: 0 complete; 1 a file could not be read or written, or files do not fit "
         "together; 2 the request is at fault, a problem document on stderr says where; "
-        "3 stopped by a signal or points are missing, what is there is usable; 130, 143 ended by "
-        "SIGINT, SIGTERM before there was anything to keep; 141 nobody reads the answer any more.");
+        "3 stopped by SIGTERM or points are missing, what is there is usable; 130 ended by Ctrl-C, "
+        "what there is kept, too; 143 ended by SIGTERM before there was anything to keep; 141 "
+        "nobody "
+        "reads the answer any more.");
     return ended_by_signals({app, [run = std::move(run)]() -> int {
                                  try {
                                      return run();

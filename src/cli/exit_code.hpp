@@ -8,12 +8,12 @@
 namespace vines::cli {
 
 /// Beside 1, for what a command throws: a file cannot be read or written, or files do not fit
-/// together; and 128 + its number of a signal that finds nothing to be kept.
+/// together; 130 of Ctrl-C, and 128 + its number of another signal that finds nothing to be kept.
 enum ExitCode : int {
     complete = 0,
     differs = 1,    ///< of verify: it is not what was answered
     refused = 2,    ///< the request is at fault: a problem document on stderr says where
-    incomplete = 3  ///< stopped by a signal, or points are missing: what is there is usable
+    incomplete = 3  ///< stopped by SIGTERM, or points are missing: what is there is usable
 };
 
 /// A command that signals end, that is refused by an api::Problem, and whose help lists the exit

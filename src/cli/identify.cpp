@@ -54,7 +54,7 @@ int identify(const IdentifyOptions& o) {
         line.reset();
         if (!stopped()) throw;
         tell(problem.what());
-        return incomplete;
+        return stopped_code();
     }
     line.reset();
     stoppable.reset();

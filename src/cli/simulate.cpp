@@ -24,7 +24,7 @@ int simulate(const Files& files) {
     std::optional<Stoppable> stoppable(std::in_place);
     api::Answer answer = api::answered(std::move(asked), {.stop = stop});
     stoppable.reset();
-    const int code = stopped() ? incomplete : complete;
+    const int code = stopped() ? stopped_code() : complete;
     if (format != api::Format::json) {
         write_all(files.output, api::encoded(std::move(answer.json), format, answer.provenance));
         return code;

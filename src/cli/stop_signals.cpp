@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <csignal>
 #include <cstdlib>
 #include <mutex>
 #include <thread>
@@ -19,7 +20,7 @@ namespace {
 /// What is stopped ends within a tenth of a second, whatever it waits for.
 constexpr auto patience = std::chrono::milliseconds(80);
 
-std::atomic<bool> asked = false;
+std::atomic<int> asked_by = 0;  // the signal
 
 /// What a signal finds.
 struct Work {
@@ -46,11 +47,11 @@ void end_when_asked() {
     Work& w = work();
     std::unique_lock lock(w.mutex);
     if (!w.stoppable) end(128 + signal);
-    asked = true;
+    asked_by = signal;
     const auto has_left = [&w] { return !w.stoppable; };
     if (w.last_words && !w.left.wait_for(lock, patience, has_left)) {
         w.last_words();
-        end(incomplete);
+        end(stopped_code());
     }
     lock.unlock();
     end(128 + wait_for_end_signal());
@@ -63,7 +64,9 @@ void stop_on_signals() {
     std::thread(end_when_asked).detach();
 }
 
-bool stopped() { return asked; }
+bool stopped() { return asked_by != 0; }
+
+int stopped_code() { return asked_by == SIGINT ? 128 + SIGINT : static_cast<int>(incomplete); }
 
 Stoppable::Stoppable(std::function<void()> last_words) {
     const std::lock_guard lock(work().mutex);

@@ -14,6 +14,10 @@ void stop_on_signals();
 /// Whether a signal has come to a Stoppable. From any thread.
 bool stopped();
 
+/// What a command ends with that such a signal has stopped: after Ctrl-C 130, as shells and make
+/// expect of it; else, when a scheduler ends it, 3: there is something to go on from.
+int stopped_code();
+
 /// While it lives there is something to be kept: the first signal makes stopped() true, and the
 /// work has to come to its end. A second one ends the process as before.
 class Stoppable {
@@ -21,7 +25,7 @@ public:
     /// The work may take its time to make up what it has.
     Stoppable() : Stoppable(nullptr) {}
     /// The work has .08 s. If it is still in scope then, the process says its last words and ends
-    /// with exit code 3. `last_words` is called from another thread.
+    /// with stopped_code(). `last_words` is called from another thread.
     explicit Stoppable(std::function<void()> last_words);
     ~Stoppable();
     Stoppable(const Stoppable&) = delete;

@@ -134,7 +134,7 @@ int sweep_to_file(SweepRun run, const Destination& to, bool resume) {
         fail(reason, growth.done(), run.of);
     }
     tell_stopped(growth.done(), run.of, what_to_do);
-    return incomplete;
+    return stopped_code();
 }
 
 }  // namespace vines::cli

@@ -65,7 +65,7 @@ int sweep_to_stream(SweepRun run, Destination to) {
     if (!warning.empty()) tell(warning);
     if (lines.written() == run.of) return complete;
     tell_stopped(lines.written(), run.of);
-    return incomplete;
+    return stopped_code();
 }
 
 }  // namespace vines::cli

@@ -153,7 +153,7 @@ int verify_answer(const api::Unsealed& told, const VerifyOptions& o) {
     const std::optional<std::string> made = recomputed_to_its_end(provenance, record);
     if (!made) {
         say_stopped();
-        return incomplete;
+        return stopped_code();
     }
     const int code = compared(told.text, *made);
     return untouched ? code : differs;
@@ -183,7 +183,7 @@ int verify_sweep(const SweepFile& file) {
     });
     say(fmt::format("recomputed: {} of {} points are the same", same, file.points.size()));
     if (first) say(*first);
-    if (all < file.points.size()) return incomplete;
+    if (all < file.points.size()) return stopped_code();
     return first ? differs : complete;
 }
 

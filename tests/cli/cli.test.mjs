@@ -219,24 +219,24 @@ test("a request at fault is a problem document on stderr and exit code 2, a file
   assert.equal((await run(["sweep", "--shard", "auto"], {input: sweep})).code, 2);
 });
 
-test("an interrupted simulation answers with what it has and exit code 3", async () => {
+test("an interrupted simulation answers with what it has and exit code 130", async () => {
   const {code, out} = await run(["simulate"], {
     input: '{"b":0.003,"R":1,"tau_end":1e7,"max_impacts":2000000,"include":["exponents"]}',
     signal: "SIGINT",
     until: hasComputed(0.3),
   });
-  assert.equal(code, 3);
+  assert.equal(code, 130);
   assert.equal(JSON.parse(out).status.reason, "interrupted");
 });
 
-test("an interrupted identification says what it was at, with exit code 3", async () => {
+test("an interrupted identification says what it was at, with exit code 130", async () => {
   const sample = (k) => `${k * 1e-9},${Math.sin(k)}`;
   const {code, out, errors} = await run(["identify", "-q", "preset=fig15"], {
     input: ["time_s,a", ...Array.from({length: 200000}, (_, k) => sample(k))].join("\n"),
     signal: "SIGINT",
     until: hasComputed(0.3),
   });
-  assert.equal(code, 3);
+  assert.equal(code, 130);
   assert.equal(out, "");
   assert.match(errors, /^vines: the identification was stopped while looking for spikes/);
 });
@@ -297,7 +297,7 @@ test("a file that is there is not overwritten; --resume completes one that was c
   assert.equal((await resume("whole.ndjson", sweep.replace("60", "61"))).code, 1);
 });
 
-test("a killed sweep loses the points in work at most, and one that is interrupted ends with exit code 3", async () => {
+test("a killed sweep loses the points in work at most, and one that is interrupted ends with exit code 130", async () => {
   const killed = await run(["sweep", "-o", at("killed")], {
     input: long,
     signal: "SIGKILL",
@@ -311,7 +311,7 @@ test("a killed sweep loses the points in work at most, and one that is interrupt
     signal: "SIGINT",
     until: async () => (await lines("killed")) > kept + 3,
   });
-  assert.equal(interrupted.code, 3);
+  assert.equal(interrupted.code, 130);
   assert.match(interrupted.errors, /--resume completes the file/);
   assert.ok((await lines("killed")) > kept + 3);
 });

@@ -58,11 +58,17 @@ test("a report ends at a signal, also one whose parent ignores SIGINT", async ()
   await ends(["reproduce"], {signal: "SIGINT", until, shell}, 130);
 });
 
+// Of what has something to keep: Ctrl-C ends a loop of a shell, a scheduler may go on from there.
+const stops = [
+  ["SIGINT", 130],
+  ["SIGTERM", 3],
+];
+
 test("a run that is stopped answers with what it has, an identification says what it was at", async () => {
   const input = '{"b":0.003,"R":1,"tau_end":1e7,"max_impacts":2000000,"include":["exponents"]}';
   const until = hasComputed(0.3);
-  for (const signal of ["SIGINT", "SIGTERM"]) {
-    const {out} = await ends(["simulate"], {input, signal, until}, 3);
+  for (const [signal, code] of stops) {
+    const {out} = await ends(["simulate"], {input, signal, until}, code);
     assert.equal(JSON.parse(out).status.reason, "interrupted");
   }
 });
@@ -81,23 +87,29 @@ test("an identification of a list of impacts ends at a signal", async () => {
   };
   writeFileSync(at("list.json"), JSON.stringify({b: 0.015, impacts: list}));
   const options = {signal: "SIGINT", until: hasComputed(0.3)};
-  await ends(["identify", at("list.json")], options, 3, /^vines: the identification was stopped/);
+  await ends(["identify", at("list.json")], options, 130, /^vines: the identification was stopped/);
 });
 
 test("a sweep ends at a signal, whatever each point takes", async () => {
-  for (const starts of [[{}], "default set"]) {
+  const cases = [[{}], "default set"].flatMap((starts) => stops.map((stop) => [starts, ...stop]));
+  for (const [starts, signal, code] of cases) {
     const input = JSON.stringify({...JSON.parse(endless), starts});
-    const options = {input, signal: "SIGINT", until: hasComputed(0.3)};
-    const {out} = await ends(["sweep"], options, 3, /^vines: stopped after \d+ of 40 points\n$/m);
+    const options = {input, signal, until: hasComputed(0.3)};
+    const {out} = await ends(
+      ["sweep"],
+      options,
+      code,
+      /^vines: stopped after \d+ of 40 points\n$/m,
+    );
     assert.ok(lines(out) >= 1);
     const shell = 'rm -f "$3"; exec "$VINES" "$@"';
     const said = /^vines: stopped after \d+ of 40 points; --resume completes the file\n$/m;
-    await ends(["sweep", "-o", at("endless")], {...options, shell}, 3, said);
+    await ends(["sweep", "-o", at("endless")], {...options, shell}, code, said);
     assert.match(readFileSync(at("endless"), "utf8"), /^(\{.*\}\n)+$/);
   }
 });
 
-test("verify ends at a signal with exit code 3", async () => {
+test("verify ends at a signal", async () => {
   const {out} = await run(["sweep"], {
     input: long,
     signal: "SIGINT",
@@ -105,7 +117,7 @@ test("verify ends at a signal with exit code 3", async () => {
   });
   writeFileSync(at("some"), out);
   const options = {signal: "SIGINT", until: hasComputed(0.1)};
-  const {out: said} = await ends(["verify", at("some")], options, 3);
+  const {out: said} = await ends(["verify", at("some")], options, 130);
   assert.match(said, /recomputed: \d+ of \d+ points are the same/);
   const request = '{"b":0.015,"tau_end":1e7,"max_impacts":2000000,"include":["exponents"]}';
   const answer = JSON.parse(
@@ -113,7 +125,7 @@ test("verify ends at a signal with exit code 3", async () => {
   );
   answer.provenance.request.max_impacts = 2000000;
   writeFileSync(at("answer"), JSON.stringify(answer));
-  const {out: compared} = await ends(["verify", at("answer")], options, 3, /stopped before all/);
+  const {out: compared} = await ends(["verify", at("answer")], options, 130, /stopped before all/);
   assert.doesNotMatch(compared, /recomputed:/);
 });
 
@@ -140,7 +152,7 @@ test("a sweep writes each line to a pipe as it comes, in order, and what it has 
     },
   });
   assert.equal(lines(first), 0, "it has not waited for all");
-  assert.equal(code, 3);
+  assert.equal(code, 130);
   const [start, ...points] = parsed(out);
   assert.equal(start.type, "start");
   assert.ok(points.length < 40);
@@ -199,7 +211,7 @@ test("a reader that stands still keeps no command from ending", async () => {
   // `read` holds the pipe open, and takes nothing of it.
   const shell = 'mkfifo "$PIPE"; exec 9<>"$PIPE"; exec "$VINES" "$@" >"$PIPE"';
   for (const [k, [args, input, code]] of [
-    [["sweep"], still, 3],
+    [["sweep"], still, 130],
     [["simulate"], large, 130],
   ].entries()) {
     const env = {PIPE: at(`still${k}`)};
