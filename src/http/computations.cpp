@@ -118,8 +118,7 @@ Response answer(
         return response;
     }
     std::string bytes = encoded(
-        std::move(answer), *format, options.answer_limit, provenance.size() + most_hash,
-        [&] { return r.left() || service.gate.ends_all(); });
+        std::move(answer), *format, options.answer_limit, provenance.size() + most_hash, r.left);
     watch.lap("encode");
     if (stop.asked()) tag = {};  // another time it may get further
     return {

@@ -389,7 +389,7 @@ test("clients that do not read hold no thread that others wait for", async (t) =
 
 test("the wait for the next request begins with the end of an answer", {skip: !long}, async () => {
   const {socket, text} = await connect(service.url);
-  const body = '{"axes":[{"parameter":"b","values":[0.02,0.03]}],"cycles":2000000}';
+  const body = '{"axes":[{"parameter":"b","from":0.02,"to":0.03,"count":150}],"cycles":1000000}';
   const length = `Content-Length: ${body.length}`;
   socket.write(`POST /v1/sweep HTTP/1.1\r\nHost: localhost\r\n${length}\r\n\r\n${body}GET /ver`);
   await until(() => /"type":"done"/.test(text()), 120000);
