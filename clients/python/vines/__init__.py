@@ -1,0 +1,96 @@
+"""Exact simulation of a linear oscillator coupled with a vibro-impact nonlinear energy sink.
+
+    import vines
+
+    run = vines.simulate(preset="fig11", include=["regime", "energy"])
+    print(run.regime.type, run.energy.rms_ratio)
+
+    for point in vines.sweep(axes=[{"parameter": "b", "from": 0.01, "to": 0.05, "count": 9}]):
+        print(point.b, point.regime, point.x_rms)
+
+    found = vines.identify("record.csv", preset="fig20", b=0.015)
+    print(found.restitution.plus.R, found.verdict)
+
+The functions ask the service at the address in VINES_URL, with the key in VINES_KEY if there is
+one; without VINES_URL the program `vines` on the PATH, or that in VINES_PROGRAM. `Service` and
+`Program` have the same three functions.
+
+`help(vines.SimulateFields)`, `SweepFields` and `IdentifyFields` have each field with its unit,
+range and default; `help(vines.Answer)` says what answers are.
+"""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Unpack
+
+from ._answer import Answer
+from ._client import Client, Columns
+from ._fields import (
+    Axis,
+    IdentifyFields,
+    Perturbation,
+    SimulateFields,
+    Start,
+    SweepBase,
+    SweepFields,
+)
+from ._problem import FieldError, Incomplete, PartialAnswer, Problem
+from ._program import Program
+from ._service import Service
+from ._sweep import Sweep
+
+if TYPE_CHECKING:
+    import pandas
+
+__all__ = [
+    "Answer",
+    "Axis",
+    "Client",
+    "FieldError",
+    "IdentifyFields",
+    "Incomplete",
+    "PartialAnswer",
+    "Perturbation",
+    "Problem",
+    "Program",
+    "Service",
+    "SimulateFields",
+    "Start",
+    "Sweep",
+    "SweepBase",
+    "SweepFields",
+    "client",
+    "identify",
+    "simulate",
+    "sweep",
+]
+
+
+def client() -> Client:
+    """That of the environment: VINES_URL and VINES_KEY, else VINES_PROGRAM, else `vines` on the
+    PATH."""
+    url = os.environ.get("VINES_URL")
+    if url:
+        return Service(url, os.environ.get("VINES_KEY") or None)
+    return Program(os.environ.get("VINES_PROGRAM") or "vines")
+
+
+def simulate(**fields: Unpack[SimulateFields]) -> Answer:
+    """`Client.simulate` of the environment's client."""
+    return client().simulate(**fields)
+
+
+def sweep(**fields: Unpack[SweepFields]) -> Sweep:
+    """`Client.sweep` of the environment's client."""
+    return client().sweep(**fields)
+
+
+def identify(
+    record: str | os.PathLike[str] | Columns | pandas.DataFrame | None = None,
+    *,
+    impacts: Columns | Answer | pandas.DataFrame | None = None,
+    **fields: Unpack[IdentifyFields],
+) -> Answer:
+    """`Client.identify` of the environment's client."""
+    return client().identify(record, impacts=impacts, **fields)

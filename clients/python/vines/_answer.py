@@ -1,0 +1,184 @@
+"""An answer: its keys as attributes and items, its lists of numbers as arrays."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from ._fields import NUMBER_LISTS
+
+try:
+    import numpy
+except ImportError:
+    numpy = None  # type: ignore[assignment]
+
+if TYPE_CHECKING:
+    import pandas
+
+
+class Answer:
+    """An object of an answer.
+
+    ``answer.status.reason`` is ``answer["status"]["reason"]`` and ``answer["status.reason"]``. A
+    key that Python does not take as a name has an underscore behind it as an attribute:
+    ``point.lambda_``.
+
+    Lists of numbers are NumPy arrays where there is NumPy, else lists; null in them is NaN. Four
+    exponents over time are an array of n x 4, matrices are n x 4 x 4. Null elsewhere is None.
+
+    Lengths are in m, ``tau`` is time over 1/omega0 (dimensionless), velocities are in m per unit of
+    tau, accelerations in m per unit of tau squared; of a system in SI their twins beside them in s,
+    m/s, m/s^2, N s or J. docs/api.md lists each key with its unit.
+    """
+
+    __slots__ = ("_members",)
+
+    def __init__(self, members: Mapping[str, Any]) -> None:
+        self._members = {name: _value(name, value) for name, value in members.items()}
+
+    def __getitem__(self, path: str) -> Any:
+        """The value of a key, or of a path of keys with points; KeyError where there is none."""
+        if path in self._members:
+            return self._members[path]
+        value: Any = self
+        for name in path.split("."):
+            if not isinstance(value, Answer) or name not in value._members:
+                raise KeyError(path)
+            value = value._members[name]
+        return value
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__") or name == "_members":  # what copy and pickle look for
+            raise AttributeError(name)
+        for own in (name, name.removesuffix("_")):
+            if own in self._members:
+                return self._members[own]
+        raise AttributeError(f"the answer has no {name}; it has {', '.join(self._members)}")
+
+    def __contains__(self, path: object) -> bool:
+        try:
+            self[path]  # type: ignore[index]
+        except (KeyError, AttributeError):
+            return False
+        return True
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._members)
+
+    def __len__(self) -> int:
+        return len(self._members)
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._members]
+
+    def __repr__(self) -> str:
+        return f"Answer({', '.join(self._members)})"
+
+    def __getstate__(self) -> dict[str, Any]:
+        return self._members
+
+    def __setstate__(self, members: dict[str, Any]) -> None:
+        self._members = members
+
+    def keys(self) -> list[str]:
+        """The names in it, so that ``dict(answer)`` is a dict of it."""
+        return list(self._members)
+
+    def plain(self) -> dict[str, Any]:
+        """All of it as dicts and lists that ``json.dump`` takes; NaN is None again."""
+        return {name: plain(value) for name, value in self._members.items()}
+
+    def frame(self, path: str = "") -> pandas.DataFrame:
+        """The lists of the object at `path` as columns of a pandas DataFrame.
+
+        Four numbers a row are four columns, ``J1`` to ``J4``; a matrix is 16, by rows, ``T11`` to
+        ``T44``: as the service's CSV has them. ValueError where the object has no lists, or lists
+        of several lengths; ImportError without pandas.
+        """
+        owner = self[path] if path else self
+        if not isinstance(owner, Answer):
+            raise ValueError(f"{path} is no object with lists")
+        lists = {name: v for name, v in owner._members.items() if _is_list(v)}
+        lengths = {len(v) for v in lists.values()}
+        if len(lengths) != 1:
+            told = ", ".join(f"{name}: {len(v)}" for name, v in lists.items())
+            raise ValueError(f"{path or 'the answer'} is not one table of lists ({told})")
+        return frame_of({k: c for name, v in lists.items() for k, c in _columns(name, v)})
+
+
+def frame_of(columns: Any) -> pandas.DataFrame:
+    """A pandas DataFrame. ImportError without pandas."""
+    import pandas
+
+    return pandas.DataFrame(columns)
+
+
+def plain(value: Any) -> Any:
+    """`value` as JSON has it: answers, mappings and data frames as dicts, arrays and series as
+    lists, NaN as None. ValueError for an infinite number."""
+    if isinstance(value, Answer):
+        return value.plain()
+    if isinstance(value, Mapping) or (hasattr(value, "keys") and hasattr(value, "columns")):
+        return {str(name): plain(value[name]) for name in value.keys()}
+    if hasattr(value, "tolist"):
+        return plain(value.tolist())
+    if isinstance(value, float):
+        if math.isinf(value):
+            raise ValueError("an infinite number cannot be sent")
+        return None if math.isnan(value) else value
+    if isinstance(value, (str, int, bool)) or value is None:
+        return value
+    return [plain(v) for v in value]
+
+
+def body_of(fields: Mapping[str, Any]) -> bytes:
+    """The body of a request."""
+    return json.dumps(plain(fields), allow_nan=False).encode()
+
+
+def _value(name: str, value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return Answer(value)
+    if not isinstance(value, list):
+        return value
+    if name in NUMBER_LISTS:
+        return _numbers(value)
+    if value and all(isinstance(v, bool) for v in value):
+        return value if numpy is None else numpy.array(value)
+    return [Answer(v) if isinstance(v, Mapping) else v for v in value]
+
+
+def _numbers(value: list[Any]) -> Any:
+    if numpy is None:
+        return _with_nan(value)
+    try:
+        return numpy.array(value if _is_whole(value) else _with_nan(value))
+    except ValueError:  # rows of several lengths, or null in place of one
+        return [_numbers(v) if isinstance(v, list) else math.nan if v is None else v for v in value]
+
+
+def _is_whole(value: list[Any]) -> bool:
+    """Whether these are integers alone, such as the sides of impacts."""
+    return bool(value) and all(type(v) is int for v in value)
+
+
+def _with_nan(value: list[Any]) -> list[Any]:
+    return [
+        math.nan if v is None else _with_nan(v) if isinstance(v, list) else float(v) for v in value
+    ]
+
+
+def _is_list(value: Any) -> bool:
+    return isinstance(value, list) or (numpy is not None and isinstance(value, numpy.ndarray))
+
+
+def _columns(name: str, rows: Any) -> Iterator[tuple[str, Any]]:
+    """A list as one column, four, or sixteen."""
+    first = rows[0] if len(rows) else None
+    if first is None or not _is_list(first):
+        yield name, rows
+        return
+    for k in range(len(first)):
+        yield from _columns(f"{name}{k + 1}", [row[k] for row in rows])
