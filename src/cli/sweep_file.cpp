@@ -38,7 +38,7 @@ public:
             fail_in_line(name_, number_, "not a line of a sweep");
         if (file_.ended) file_.in_order = false;
         file_.ended = type == "done";
-        if (type == "point") take_point(std::move(line), json);
+        if (type == "point") take_point(line, json);
         else if (!file_.ended) file_.in_order = false;
     }
 
@@ -55,7 +55,7 @@ private:
         return lines_ == Lines::whole ? check_->fault_of(line, json) : check_->fault_of_index(json);
     }
 
-    void take_point(std::string line, const api::Json& json) {
+    void take_point(const std::string& line, const api::Json& json) {
         if (const std::string fault = fault_of(line, json); !fault.empty())
             fail_in_line(name_, number_, fault);
         const std::size_t index = json["index"].get<std::size_t>();

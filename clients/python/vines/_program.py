@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import json
 import os
-import pathlib
 import shutil
 import signal
 import subprocess
 import tempfile
-import time
 from collections.abc import Iterator
 from typing import IO, Any
 
@@ -21,8 +19,10 @@ from ._sweep import Lines
 _COMPLETE = 0
 _USABLE = 3
 
-# Seconds between two looks at a sweep's file, and in which the program ends when it is told to.
-_LOOK = 0.02
+# The last line of a sweep; how it ended is told by the exit code, with what stderr has to say.
+_DONE = b'{"type":"done"'
+
+# Seconds in which the program ends when it is told to.
 _STOP = 5.0
 
 
@@ -56,23 +56,20 @@ class Program(Client):
         raise _problem(ended.returncode, ended.stderr)
 
     def _sweep(self, body: bytes) -> Lines:
-        # On its stdout a sweep stands at the end, in order; in a file each point as it comes.
-        with tempfile.TemporaryDirectory(prefix="vines-") as name:
-            folder = pathlib.Path(name)
-            (folder / "request.json").write_bytes(body)
-            output = folder / "sweep.ndjson"
-            command = [self._found(), "sweep", str(folder / "request.json"), "-o", str(output)]
-            if self._threads:
-                command += ["--threads", str(self._threads)]
-            with (folder / "said").open("w+b") as said:
-                running = subprocess.Popen(
-                    command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=said
-                )
-                try:
-                    yield from _lines(output, running)
-                    yield from _end(running.returncode, said)
-                finally:
-                    _stop(running)
+        command = [self._found(), "sweep", "--threads", str(self._threads)]
+        with tempfile.TemporaryFile() as given, tempfile.TemporaryFile() as said:
+            given.write(body)
+            given.seek(0)
+            running = subprocess.Popen(command, stdin=given, stdout=subprocess.PIPE, stderr=said)
+            assert running.stdout is not None
+            try:
+                for line in running.stdout:
+                    if line.endswith(b"\n") and not line.startswith(_DONE):
+                        yield json.loads(line)
+                yield from _end(running.wait(), said)
+            finally:
+                running.stdout.close()
+                _stop(running)
 
     def _found(self) -> str:
         found = shutil.which(self._path)
@@ -82,42 +79,6 @@ class Program(Client):
                 "or name a service in VINES_URL"
             )
         return found
-
-
-def _lines(output: pathlib.Path, running: subprocess.Popen[bytes]) -> Iterator[dict[str, Any]]:
-    """The lines of the file while it grows, each once, up to the last one."""
-    seen: set[int] = set()
-    started = False
-    growing: IO[bytes] | None = None
-    rest = b""
-    try:
-        while True:
-            ended = running.poll() is not None
-            if ended:
-                # A complete file takes the place of the growing one, which has all but its end.
-                if growing:
-                    growing.close()
-                growing, rest = (output.open("rb") if output.exists() else None), b""
-            elif growing is None and output.exists():
-                growing = output.open("rb")
-            text = rest + (growing.read() if growing else b"")
-            whole, _, rest = text.rpartition(b"\n")
-            for line in map(json.loads, whole.splitlines()):
-                if line["type"] == "start":
-                    if not started:
-                        yield line
-                    started = True
-                elif line["type"] == "point":
-                    if line["index"] not in seen:
-                        seen.add(line["index"])
-                        yield line
-                # The end is for the exit code to tell.
-            if ended:
-                return
-            time.sleep(_LOOK)
-    finally:
-        if growing:
-            growing.close()
 
 
 def _end(code: int, said: IO[bytes]) -> Iterator[dict[str, Any]]:

@@ -16,8 +16,8 @@ Lines = Generator[dict[str, Any], None, None]
 
 
 class Sweep(Iterator[Answer]):
-    """An iterator of a sweep's points, in the order in which they come, coarse to fine over the
-    axes; ``point.index`` says the place. It raises `Incomplete` where not all of them came.
+    """An iterator of a sweep's points, in the order in which they come: from a service coarse to
+    fine over the axes; ``point.index`` says the place. It raises `Incomplete` where not all of them came.
 
     Closing it, by ``close()``, by leaving a ``with`` block or by forgetting it, ends the computing.
     """
