@@ -44,7 +44,8 @@ std::string range_of(const Field& f) {
 
 std::string line_of(const Field& f) {
     return fmt::format(
-        "  {:<22}{:<15}{}\n", f.name, f.unit.empty() ? api::word_of(f.type) : f.unit, f.description);
+        "  {:<22}{:<15}{}\n", f.name, f.unit.empty() ? api::word_of(f.type) : f.unit,
+        f.description);
 }
 
 std::string all_fields() {
@@ -93,7 +94,8 @@ Command add_parameters(CLI::App& app) {
             else print(listing->name.empty() ? all_fields() : text_of_field(listing->name));
             return static_cast<int>(complete);
         },
-        "vines parameters\nvines parameters b\nvines parameters --format json | jq '.fields[].name'");
+        "vines parameters\nvines parameters b\nvines parameters --format json | jq "
+        "'.fields[].name'");
 }
 
 }  // namespace vines::cli

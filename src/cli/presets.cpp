@@ -51,7 +51,8 @@ std::string text_of_preset(const std::string& name) {
 
 Command add_presets(CLI::App& app) {
     const auto listing = std::make_shared<Listing>();
-    CLI::App* command = app.add_subcommand("presets", "the paper's figures and tables, as requests");
+    CLI::App* command =
+        app.add_subcommand("presets", "the paper's figures and tables, as requests");
     add_listing(*command, *listing, "one of them alone, with its parameters");
     return with_exit_codes(
         command,

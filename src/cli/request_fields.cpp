@@ -28,8 +28,8 @@ std::pair<std::string, std::string> split_at_equals(
     const std::size_t equals = text.find('=');
     if (equals == 0 || equals == std::string::npos)
         throw api::Problem(
-            400, flag + " " + api::shortened(text) + ": not NAME=VALUE, as in " + flag + " " +
-                     example);
+            400,
+            flag + " " + api::shortened(text) + ": not NAME=VALUE, as in " + flag + " " + example);
     return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
@@ -44,9 +44,9 @@ api::Query pairs_of(const RequestFields& given) {
 void read_json_in_text(Json& object, const FieldTable& table) {
     for (auto& [name, value] : object.items()) {
         const api::Field* const field = api::find(table, name);
-        const bool may_be = field && (field->type == FieldType::integers ||
-                                      field->type == FieldType::object ||
-                                      field->type == FieldType::objects);
+        const bool may_be =
+            field && (field->type == FieldType::integers || field->type == FieldType::object ||
+                      field->type == FieldType::objects);
         if (!may_be || !value.is_string()) continue;
         Json read = Json::parse(value.get_ref<const std::string&>(), nullptr, false);
         if (read.is_structured()) value = std::move(read);

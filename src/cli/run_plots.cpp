@@ -31,8 +31,7 @@ std::string lambda1_of(const Json& exponents) {
 /// What the run came to, in a line.
 std::string title_of(const Json& answer) {
     std::string title = fmt::format("b = {:.4g} mm", number_at(answer["parameters"], "b") / mm);
-    if (answer.contains("regime"))
-        title += ": regime " + word_at(answer["regime"], "type");
+    if (answer.contains("regime")) title += ": regime " + word_at(answer["regime"], "type");
     if (answer.contains("exponents"))
         title += ", " + word_at(answer["exponents"], "verdict") + lambda1_of(answer["exponents"]);
     return title;

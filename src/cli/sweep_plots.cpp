@@ -122,8 +122,8 @@ std::string given_beside_axes(const Json& request) {
     std::string text;
     for (const auto& [name, value] : request.items()) {
         if (name == "axes" || name == "indices") continue;
-        const std::string told = name == "base" ? given_beside_axes(value)
-                                                : name + " = " + api::json_text(value);
+        const std::string told =
+            name == "base" ? given_beside_axes(value) : name + " = " + api::json_text(value);
         if (!told.empty()) text += (text.empty() ? "" : ", ") + told;
     }
     return text;

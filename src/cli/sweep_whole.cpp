@@ -13,10 +13,9 @@ namespace vines::cli {
 int sweep_whole(SweepRun run, const TakeSweep& take) {
     std::map<std::size_t, api::Json> lines;
     std::optional<Stoppable> stoppable(std::in_place);
-    const std::string warning =
-        compute(run, [&lines](std::size_t index, const std::string& line) {
-            lines[index] = api::Json::parse(line);
-        });
+    const std::string warning = compute(run, [&lines](std::size_t index, const std::string& line) {
+        lines[index] = api::Json::parse(line);
+    });
     stoppable.reset();
     std::vector<api::Json> points;
     for (auto& [index, line] : lines) points.push_back(std::move(line));

@@ -11,8 +11,7 @@
 namespace vines::cli {
 
 /// The first line of a sweep, and those of its points in order.
-using TakeSweep =
-    std::function<void(const api::Json& start, const std::vector<api::Json>& points)>;
+using TakeSweep = std::function<void(const api::Json& start, const std::vector<api::Json>& points)>;
 
 /// Computes all, or what a signal leaves of it, and hands it over. Returns the exit code.
 int sweep_whole(SweepRun run, const TakeSweep& take);

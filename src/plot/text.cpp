@@ -46,8 +46,8 @@ int terminal_colour(const std::string& hex) {
 
 /// Characters of a text in UTF-8.
 int length(const std::string& text) {
-    return static_cast<int>(std::count_if(
-        text.begin(), text.end(), [](char c) { return (c & '\xC0') != '\x80'; }));
+    return static_cast<int>(
+        std::count_if(text.begin(), text.end(), [](char c) { return (c & '\xC0') != '\x80'; }));
 }
 
 class TextPlot {
@@ -74,7 +74,9 @@ public:
             const auto tick = at_ticks.find(row), end = at_ends.find(row);
             out += fmt::format(
                 "{:>{}} {}", tick == at_ticks.end() ? "" : tick->second, left - 2,
-                terminal_.ascii ? "|" : tick == at_ticks.end() ? "│" : "┤");
+                terminal_.ascii          ? "|"
+                : tick == at_ticks.end() ? "│"
+                                         : "┤");
             for (int column = 0; column < width_; ++column) out += shown(cell(column, row));
             if (end != at_ends.end()) out += " " + end->second;
             out.erase(out.find_last_not_of(' ') + 1);
@@ -214,16 +216,15 @@ std::string abscissa(const Range& x, int width, const std::string& label, bool a
     std::string axis, numbers(static_cast<std::size_t>(left + width), ' ');
     std::map<int, std::string> at;
     for (double t : ticks(x, std::max(width / 12, 2)))
-        at[static_cast<int>(
-            std::lround((t - x.first) / (x.second - x.first) * (width - 1)))] = tick_label(t);
+        at[static_cast<int>(std::lround((t - x.first) / (x.second - x.first) * (width - 1)))] =
+            tick_label(t);
     for (int column = 0; column < width; ++column)
         axis += at.contains(column) ? (ascii ? "+" : "┬") : (ascii ? "-" : "─");
     int free = 0;
     for (const auto& [column, number] : at) {
         const int size = length(number), from = left + column - size / 2;
         if (from < free || from + size > left + width) continue;
-        numbers.replace(
-            static_cast<std::size_t>(from), static_cast<std::size_t>(size), number);
+        numbers.replace(static_cast<std::size_t>(from), static_cast<std::size_t>(size), number);
         free = from + size + 1;
     }
     numbers.erase(numbers.find_last_not_of(' ') + 1);
