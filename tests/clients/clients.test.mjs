@@ -1,17 +1,15 @@
-// The clients of other languages, against the running service and the program.
+// The client for Python, against the running service and the program, and what every client knows of
+// the fields.
 import assert from "node:assert/strict";
 import {spawnSync} from "node:child_process";
-import {mkdtempSync, readFileSync, rmSync, writeFileSync} from "node:fs";
-import {tmpdir} from "node:os";
+import {readFileSync, writeFileSync} from "node:fs";
 import {join} from "node:path";
 import {after, before, test} from "node:test";
 import {fileURLToPath} from "node:url";
-import {measured} from "../record.mjs";
-import {program, startService} from "../service.mjs";
+import {program} from "../service.mjs";
+import {key, said, startServices} from "./services.mjs";
 
 const root = fileURLToPath(new URL("../../", import.meta.url));
-const room = mkdtempSync(join(tmpdir(), "vines-clients-"));
-const key = "a-key-of-thirty-two-characters--";
 const python = (args, env = {}, cwd = root) =>
   spawnSync("/usr/bin/python3", args, {
     cwd,
@@ -24,22 +22,14 @@ const python = (args, env = {}, cwd = root) =>
     },
   });
 
-let open;
-let locked;
+let services;
 before(async () => {
-  writeFileSync(join(room, "keys"), `${key}\n`);
-  open = await startService();
-  locked = await startService(["--api-key-file", join(room, "keys"), "--deadline", "0.5"]);
-  writeFileSync(join(room, "record.csv"), await measured(open.url, "fig20", 20));
+  services = await startServices();
 });
-after(async () => {
-  await Promise.all([open.stop(), locked.stop()]);
-  rmSync(room, {recursive: true});
-});
-
-const said = ({status, stdout, stderr}) => `${status}\n${stdout}\n${stderr}`;
+after(() => services.stop());
 
 test("the Python client has the same answers, errors and ends from service and program", () => {
+  const {room, open, locked} = services;
   const suite = ["-W", "error::ResourceWarning", "-m", "unittest", "-v", "test_vines"];
   const ended = python(suite, {
     PYTHONPATH: `${join(root, "clients/python")}:${join(root, "tests/clients")}`,
@@ -69,6 +59,7 @@ test("its version is that of the project", () => {
 });
 
 test("the lines of Python in the documents work as they stand", () => {
+  const {room, open} = services;
   const hasPandas = python(["-c", "import pandas"]).status === 0;
   for (const [file, shown] of [
     ["README.md", /^(\S+ \S+ \S+\n){5}$/],
@@ -82,4 +73,27 @@ test("the lines of Python in the documents work as they stand", () => {
       assert.match(ended.stdout, shown);
     }
   }
+});
+
+test("the fields that are lists are known to the Octave client", () => {
+  const {schemas} = JSON.parse(
+    spawnSync(program, ["openapi"], {encoding: "utf8"}).stdout,
+  ).components;
+  const known = readFileSync(join(root, "clients/octave/+vines/+internal/list_depth.m"), "utf8");
+  const named = [...known.matchAll(/'(\w+)'/g)].map(([, name]) => name);
+  const asked = [
+    "SimulateRequest",
+    "SweepRequest",
+    "SweepBase",
+    "Axis",
+    "Start",
+    "IdentifyRequest",
+  ];
+  const isList = ({type, anyOf = []}) => type === "array" || anyOf.some(isList);
+  const lists = asked.flatMap((name) =>
+    Object.entries(schemas[name].properties).flatMap(([key, field]) =>
+      isList(field) ? [key] : [],
+    ),
+  );
+  assert.deepEqual(new Set(named), new Set(lists));
 });

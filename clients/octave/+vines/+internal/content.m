@@ -1,0 +1,9 @@
+function text = content(path)
+  % The text of a file; '' where there is none.
+  text = '';
+  file = fopen(path, 'r');
+  if file >= 0
+    text = native2unicode(fread(file, [1, Inf], '*uint8'), 'UTF-8');
+    fclose(file);
+  end
+end
