@@ -25,8 +25,10 @@ std::size_t size_of(int descriptor) {
 }  // namespace
 
 void add_files(CLI::App& command, Files& files) {
-    command.add_option("request", files.input, "file with the request; - or nothing: stdin");
-    command.add_option("--output,-o", files.output, "file for the answer; - or nothing: stdout");
+    command.add_option("request", files.input, "file with the request; - or nothing: stdin")
+        ->type_name("FILE");
+    command.add_option("--output,-o", files.output, "file for the answer; - or nothing: stdout")
+        ->type_name("FILE");
 }
 
 bool is_standard(const std::string& path) { return path.empty() || path == "-"; }

@@ -71,8 +71,11 @@ Command add_merge(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
         "merge",
         "put the files of a sweep's shards together: byte for byte the file of the whole sweep");
-    command->add_option("files", options->inputs, "the shards' files")->required();
-    command->add_option("--output,-o", options->output, "file for the whole; - or nothing: stdout");
+    command->add_option("files", options->inputs, "the shards' files")
+        ->required()
+        ->type_name("FILE");
+    command->add_option("--output,-o", options->output, "file for the whole; - or nothing: stdout")
+        ->type_name("FILE");
     return with_exit_codes(command, [options] { return merge(*options); });
 }
 

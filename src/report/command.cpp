@@ -30,9 +30,11 @@ Command add_reproduce(CLI::App& app) {
         "reproduce",
         "recompute the paper's figures and tables and compare: exit code 0 if every verdict is the "
         "known one, else 1");
-    command->add_option(
-        "--output", *folder,
-        "folder for report.md and its SVG plots; without it only the table is printed");
+    command
+        ->add_option(
+            "--output", *folder,
+            "folder for report.md and its SVG plots; without it only the table is printed")
+        ->type_name("DIR");
     return {command, [folder] { return run(*folder); }};
 }
 
