@@ -94,7 +94,8 @@ std::string bash_completion(const ProgramUsage& usage) {
     subcommand.value = ValueKind::choice;
     for (const CommandUsage& command : usage.commands) subcommand.choices.push_back(command.name);
     first.positionals = {subcommand};
-    std::string text = fmt::format("# Completion of {0} in bash: `{0} completion bash`.\n", program);
+    std::string text =
+        fmt::format("# Completion of {0} in bash: `{0} completion bash`.\n", program);
     text += fmt::format(fmt::runtime(before_branches), program);
     text += branch_of_words(first);
     for (const CommandUsage& command : usage.commands)

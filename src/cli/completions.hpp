@@ -1,4 +1,5 @@
-// What completes the program's words in a shell: subcommands, flags, values from a fixed set, files.
+// What completes the program's words in a shell: subcommands, flags, values from a fixed set,
+// files.
 #pragma once
 
 #include <string>

@@ -39,13 +39,11 @@ std::string fish_names(const FlagUsage& flag) {
 std::string fish_lines(const CommandUsage& command, const std::string& begin) {
     std::string text;
     for (const FlagUsage& flag : command.flags)
-        text +=
-            begin + fish_names(flag) + fish_values(flag) + " -d " + fish_quoted(flag.description) + "\n";
+        text += begin + fish_names(flag) + fish_values(flag) + " -d " +
+                fish_quoted(flag.description) + "\n";
     for (const FlagUsage& flag : command.positionals)
-        if (flag.value == ValueKind::file)
-            text += begin + " -F\n";
-        else if (flag.value != ValueKind::text)
-            text += begin + fish_values(flag) + "\n";
+        if (flag.value == ValueKind::file) text += begin + " -F\n";
+        else if (flag.value != ValueKind::text) text += begin + fish_values(flag) + "\n";
     return text;
 }
 

@@ -22,10 +22,8 @@ std::string roff(const std::string& text) {
     for (const char c : text) {
         const bool begins = result.empty() || result.back() == '\n';
         if (begins && (c == '.' || c == '\'')) result += "\\&";
-        if (c == '-' || c == '\\')
-            result += c == '-' ? "\\-" : "\\e";
-        else
-            result += c;
+        if (c == '-' || c == '\\') result += c == '-' ? "\\-" : "\\e";
+        else result += c;
     }
     return result;
 }
@@ -50,18 +48,15 @@ std::string sentence(std::string text) {
 std::string lines_kept(const std::string& text) {
     std::string result;
     for (const char c : roff(text)) {
-        if (c == '\n')
-            result += "\n.br\n";
-        else
-            result += c;
+        if (c == '\n') result += "\n.br\n";
+        else result += c;
     }
     return result;
 }
 
 std::string flag_meaning(const FlagUsage& flag) {
     std::string text = sentence(flag.description);
-    if (!flag.choices.empty())
-        text += fmt::format(" One of: {}.", fmt::join(flag.choices, ", "));
+    if (!flag.choices.empty()) text += fmt::format(" One of: {}.", fmt::join(flag.choices, ", "));
     if (!flag.range.empty()) text += " Range: " + flag.range + ".";
     if (!flag.standard.empty()) text += " Default: " + flag.standard + ".";
     if (!flag.environment.empty()) text += " Environment: " + flag.environment + ".";
@@ -124,9 +119,9 @@ std::string section_of_notes(const ProgramUsage& usage) {
     std::vector<std::pair<std::string, std::vector<std::string>>> notes;
     for (const CommandUsage& command : usage.commands) {
         if (command.footer.empty()) continue;
-        auto same = std::find_if(
-            notes.begin(), notes.end(),
-            [&command](const auto& note) { return note.first == command.footer; });
+        auto same = std::find_if(notes.begin(), notes.end(), [&command](const auto& note) {
+            return note.first == command.footer;
+        });
         if (same == notes.end()) same = notes.insert(same, {command.footer, {}});
         same->second.push_back(command.name);
     }
@@ -153,8 +148,8 @@ std::string manual_page(const ProgramUsage& usage) {
 }  // namespace
 
 Command add_manual(CLI::App& app) {
-    CLI::App* command = app.add_subcommand(
-        "manual", "write the manual page to stdout: vines manual | man -l -");
+    CLI::App* command =
+        app.add_subcommand("manual", "write the manual page to stdout: vines manual | man -l -");
     return ended_by_signals({command, [&app] {
                                  print(manual_page(usage_of(app)));
                                  return 0;

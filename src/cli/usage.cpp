@@ -93,10 +93,8 @@ std::string value_word(const FlagUsage& flag) {
 std::string shell_quoted(const std::string& text) {
     std::string quoted = "'";
     for (const char c : text) {
-        if (c == '\'')
-            quoted += "'\\''";
-        else
-            quoted += c;
+        if (c == '\'') quoted += "'\\''";
+        else quoted += c;
     }
     return quoted + "'";
 }

@@ -35,10 +35,10 @@ std::string specifications(const FlagUsage& flag) {
     for (const std::string& name : flag.names) {
         const bool is_long = name.starts_with("--");
         const char* follows = flag.value == ValueKind::none ? "" : is_long ? "=" : "+";
-        text += " \\\n                " +
-                shell_quoted(fmt::format(
-                    "{}{}{}[{}]{}", others, name, follows, zsh_escaped(flag.description, "[]"),
-                    zsh_action(flag)));
+        text +=
+            " \\\n                " + shell_quoted(fmt::format(
+                                          "{}{}{}[{}]{}", others, name, follows,
+                                          zsh_escaped(flag.description, "[]"), zsh_action(flag)));
     }
     return text;
 }
@@ -87,11 +87,13 @@ fi
 
 std::string zsh_completion(const ProgramUsage& usage) {
     std::string commands;
-    std::string cases = fmt::format("        -*)\n{}            ;;\n", zsh_arguments(usage.program));
+    std::string cases =
+        fmt::format("        -*)\n{}            ;;\n", zsh_arguments(usage.program));
     for (const CommandUsage& command : usage.commands) {
         const std::string entry = command.name + ":" + zsh_escaped(command.description, "");
         commands += "        " + shell_quoted(entry) + "\n";
-        cases += fmt::format("        {})\n{}            ;;\n", command.name, zsh_arguments(command));
+        cases +=
+            fmt::format("        {})\n{}            ;;\n", command.name, zsh_arguments(command));
     }
     return fmt::format(fmt::runtime(zsh_script), usage.program.name, commands, cases);
 }
