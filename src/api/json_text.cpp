@@ -14,14 +14,13 @@ namespace {
 // "-9223372036854775808"
 constexpr std::size_t longest_integer = 20;
 
-/// Whether it stands between quotation marks as it is.
-bool is_plain(const std::string& text) {
+}  // namespace
+
+bool needs_no_escape(std::string_view text) {
     return std::all_of(text.begin(), text.end(), [](char c) {
         return c >= ' ' && c != '"' && c != '\\';  // char is signed: none beyond ASCII
     });
 }
-
-}  // namespace
 
 std::size_t room_for_lists(const Json& json) {
     std::size_t most = 0;
@@ -64,7 +63,7 @@ void JsonText::put(std::string_view text) {
 }
 
 void JsonText::put_quoted(const std::string& text) {
-    if (!is_plain(text)) return put(std::string_view(Json(text).dump()));
+    if (!needs_no_escape(text)) return put(std::string_view(Json(text).dump()));
     put('"');
     put(std::string_view(text));
     put('"');

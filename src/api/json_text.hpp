@@ -71,6 +71,9 @@ private:
 /// No fewer bytes than the packed lists of a value take as text.
 std::size_t room_for_lists(const Json& json);
 
+/// Whether a text stands between quotation marks as it is.
+bool needs_no_escape(std::string_view text);
+
 /// The whole text.
 std::string json_text(Json json);
 

@@ -1,6 +1,5 @@
 #include "api/provenance.hpp"
 
-#include <fmt/format.h>
 #include <openssl/evp.h>
 
 #include <array>
@@ -8,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "api/column.hpp"
@@ -40,9 +40,14 @@ public:
         unsigned int size = 0;
         if (EVP_DigestFinal_ex(context_.get(), bytes.data(), &size) != 1)
             throw std::runtime_error("libcrypto: SHA-256");
-        std::string digits;
-        for (unsigned int k = 0; k < size; ++k) digits += fmt::format("{:02x}", bytes[k]);
-        return digits;
+        constexpr std::string_view digits = "0123456789abcdef";
+        std::string text;
+        text.reserve(2 * size);
+        for (unsigned int k = 0; k < size; ++k) {
+            text += digits[bytes[k] >> 4];
+            text += digits[bytes[k] & 15];
+        }
+        return text;
     }
 
 private:

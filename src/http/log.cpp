@@ -15,6 +15,7 @@
 #include <string_view>
 #include <utility>
 
+#include "api/json_text.hpp"
 #include "api/problem.hpp"
 
 namespace vines::http {
@@ -24,10 +25,14 @@ namespace {
 LogFormat format = LogFormat::json;
 std::atomic<std::size_t> all_dropped = 0;
 
+// Characters, about.
+constexpr std::size_t usual_line = 256;
+
 /// A line as it is written, its fields in the order in which a reader wants them.
 class Line {
 public:
     explicit Line(std::string_view level) {
+        text_.reserve(usual_line);
         const std::string time = fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr)));
         if (format == LogFormat::text)
             fmt::format_to(std::back_inserter(text_), "{} {:7}", time, level);
@@ -35,6 +40,7 @@ public:
             fmt::format_to(std::back_inserter(text_), R"({{"time":"{}","level":"{}")", time, level);
     }
     void add(std::string_view name, std::string_view text) {
+        if (api::needs_no_escape(text)) return put(name, text, "\"");
         // Whatever bytes a path has in it.
         using Json = nlohmann::json;
         put(name, Json(text).dump(-1, ' ', false, Json::error_handler_t::replace));
@@ -48,10 +54,11 @@ public:
     }
 
 private:
-    void put(std::string_view name, std::string_view value) {
-        fmt::format_to(
-            std::back_inserter(text_),
-            fmt::runtime(format == LogFormat::text ? " {}={}" : R"(,"{}":{})"), name, value);
+    void put(std::string_view name, std::string_view value, std::string_view quote = "") {
+        const bool is_text = format == LogFormat::text;
+        const std::string_view before = is_text ? " " : ",\"", between = is_text ? "=" : "\":";
+        for (const std::string_view part : {before, name, between, quote, value, quote})
+            text_ += part;
     }
 
     std::string text_;
