@@ -20,6 +20,13 @@
 
 namespace {
 
+const char* const examples =
+    "Examples:\n"
+    "  vines simulate -p preset=fig3 --plot\n"
+    "  vines sweep -a b=0.01:0.03:41 --plot\n"
+    "  vines identify record.csv -p preset=fig20 | jq .verdict\n"
+    "  vines serve --port 8080";
+
 /// The command that a wrong flag was given to.
 std::string name_of_asked(const CLI::App& app) {
     const auto asked = app.get_subcommands();
@@ -80,20 +87,24 @@ int answer(const CLI::App& app, const CLI::Success& asked) {
 int main(int argc, char** argv) {
     vines::prepare_streams();
     CLI::App app(
-        "Exact simulation of a linear oscillator coupled with a vibro-impact nonlinear energy "
-        "sink.",
-        "vines");
+        "An oscillator with a vibro-impact nonlinear energy sink, simulated exactly.", "vines");
+    app.footer(examples);
     app.set_version_flag("--version", vines::api::version());
     app.require_subcommand(1);
     // In the order of --help.
     const std::vector<vines::Command> commands = {
+        vines::cli::add_simulate(app),
+        vines::cli::add_sweep(app),
+        vines::cli::add_identify(app),
+        vines::cli::add_manifold(app),
+        vines::cli::add_plot(app),
+        vines::cli::add_presets(app),
+        vines::cli::add_parameters(app),
+        vines::cli::add_example(app),
+        vines::cli::add_verify(app),
+        vines::cli::add_merge(app),
         vines::http::add_serve(app),
         vines::http::add_healthcheck(app),
-        vines::cli::add_simulate(app),
-        vines::cli::add_identify(app),
-        vines::cli::add_sweep(app),
-        vines::cli::add_merge(app),
-        vines::cli::add_verify(app),
         vines::cli::add_openapi(app),
         vines::cli::ended_by_signals(vines::report::add_reproduce(app))};
     const std::string first = argc > 1 ? argv[1] : "";

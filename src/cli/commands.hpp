@@ -7,9 +7,9 @@
 namespace vines::cli {
 
 Command add_simulate(CLI::App& app);
+Command add_manifold(CLI::App& app);
 
-/// The input is JSON if it begins with "{", else CSV, for which --query holds the fields as in a
-/// URL.
+/// The input is JSON if it begins with "{", else CSV, for which flags hold the fields.
 Command add_identify(CLI::App& app);
 
 /// Shards, and files that are completed where a run was stopped.
@@ -20,6 +20,16 @@ Command add_merge(CLI::App& app);
 
 /// Recomputes an answer and compares.
 Command add_verify(CLI::App& app);
+
+/// Draws an answer.
+Command add_plot(CLI::App& app);
+
+/// What can be asked for.
+Command add_presets(CLI::App& app);
+Command add_parameters(CLI::App& app);
+
+/// Writes something to begin with.
+Command add_example(CLI::App& app);
 
 /// Writes the OpenAPI document.
 Command add_openapi(CLI::App& app);

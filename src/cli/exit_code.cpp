@@ -8,14 +8,29 @@
 
 namespace vines::cli {
 
-Command with_exit_codes(CLI::App* app, std::function<int()> run) {
-    app->footer(
-        "Exit codes: 0 complete; 1 a file could not be read or written, or files do not fit "
-        "together; 2 the request is at fault, a problem document on stderr says where; "
-        "3 stopped by SIGTERM or points are missing, what is there is usable; 130 ended by Ctrl-C, "
-        "what there is kept, too; 143 ended by SIGTERM before there was anything to keep; 141 "
-        "nobody "
-        "reads the answer any more.");
+namespace {
+
+const char* const exit_codes =
+    "Exit codes:\n"
+    "  0    complete\n"
+    "  1    a file could not be read or written, or files do not fit together\n"
+    "  2    the request is at fault: a problem document on stderr says where\n"
+    "  3    ended by SIGTERM, or points are missing: what is there is usable\n"
+    "  130  ended by Ctrl-C; what is there is kept, too\n"
+    "  141  nobody reads the answer any more\n"
+    "  143  ended by SIGTERM before there was anything to keep";
+
+/// Below a heading, further in.
+std::string indented(const std::string& lines) {
+    std::string text = "  ";
+    for (const char c : lines) text += c == '\n' ? std::string("\n  ") : std::string(1, c);
+    return text;
+}
+
+}  // namespace
+
+Command with_exit_codes(CLI::App* app, std::function<int()> run, const std::string& examples) {
+    app->footer("Examples:\n" + indented(examples) + "\n\n" + exit_codes);
     return ended_by_signals({app, [run = std::move(run)]() -> int {
                                  try {
                                      return run();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 
 #include "program/command.hpp"
 
@@ -16,8 +17,8 @@ enum ExitCode : int {
     incomplete = 3  ///< stopped by SIGTERM, or points are missing: what is there is usable
 };
 
-/// A command that signals end, that is refused by an api::Problem, and whose help lists the exit
-/// codes.
-Command with_exit_codes(CLI::App* app, std::function<int()> run);
+/// A command that signals end, that is refused by an api::Problem, and whose help shows examples,
+/// a line each, and the exit codes.
+Command with_exit_codes(CLI::App* app, std::function<int()> run, const std::string& examples);
 
 }  // namespace vines::cli

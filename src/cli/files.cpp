@@ -3,11 +3,13 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <cerrno>
 
 #include "cli/descriptor.hpp"
 #include "cli/file_error.hpp"
+#include "program/tell.hpp"
 
 namespace vines::cli {
 
@@ -25,8 +27,18 @@ std::size_t size_of(int descriptor) {
 }  // namespace
 
 void add_files(CLI::App& command, Files& files) {
-    command.add_option("request", files.input, "file with the request; - or nothing: stdin");
+    command.add_option(
+        "request", files.input, "file with the request as JSON; - or nothing: stdin");
+    add_output(command, files);
+}
+
+void add_output(CLI::App& command, Files& files) {
     command.add_option("--output,-o", files.output, "file for the answer; - or nothing: stdout");
+}
+
+void add_plot_flag(CLI::App& command, bool& plot) {
+    command.add_flag(
+        "--plot", plot, "draw it here instead, or as SVG into the file that -o FILE.svg names");
 }
 
 bool is_standard(const std::string& path) { return path.empty() || path == "-"; }
@@ -37,7 +49,9 @@ bool is_json(const std::string& text) {
 }
 
 std::string read_all(const std::string& path) {
-    return is_standard(path) ? read_open(STDIN_FILENO, "stdin") : read_file(path);
+    if (!is_standard(path)) return read_file(path);
+    if (::isatty(STDIN_FILENO) == 1) tell("reading from the terminal; Ctrl-D ends it");
+    return read_open(STDIN_FILENO, "stdin");
 }
 
 std::string read_file(const std::string& path) {

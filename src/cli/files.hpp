@@ -11,6 +11,9 @@ struct Files {
     std::string input, output;
 };
 void add_files(CLI::App& command, Files& files);
+void add_output(CLI::App& command, Files& files);
+/// --plot, with the file that add_files() knows.
+void add_plot_flag(CLI::App& command, bool& plot);
 
 /// Whether a path stands for stdin or stdout.
 bool is_standard(const std::string& path);

@@ -1,18 +1,17 @@
 // `vines identify`: a measurement as CSV or JSON.
-#include "api/answers/asked.hpp"
-#include "api/parse_object.hpp"
-
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include "api/answers/asked.hpp"
+#include "api/parse_object.hpp"
 
-#include "api/query.hpp"
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/files.hpp"
 #include "cli/output.hpp"
 #include "cli/progress_bar.hpp"
+#include "cli/request_fields.hpp"
 #include "cli/stop_signals.hpp"
 #include "program/tell.hpp"
 
@@ -22,16 +21,15 @@ namespace {
 
 struct IdentifyOptions {
     Files files;
-    std::string query;  ///< fields for a CSV file, as in a URL
+    RequestFields fields;  ///< of a CSV file all, of JSON those that go before its own
 };
 
-api::Asked read(const std::string& text, const std::string& query) {
-    const bool is_columns = !is_json(text);
-    return api::read_asked(
-        "/v1/identify",
-        is_columns ? api::from_query(api::identify_fields(), api::parse_query(query))
-                   : api::parse_object(text),
-        {text, is_columns});
+api::Asked read(const std::string& text, const RequestFields& given) {
+    api::Json fields = given_fields(given, api::identify_fields());
+    if (!is_json(text)) return api::read_asked("/v1/identify", std::move(fields), {text, true});
+    api::Json request = api::parse_object(text);
+    request.merge_patch(fields);
+    return api::read_asked("/v1/identify", std::move(request), {text, false});
 }
 
 int identify(const IdentifyOptions& o) {
@@ -39,7 +37,7 @@ int identify(const IdentifyOptions& o) {
     // What takes long of a list of impacts does not ask whether it is to stop.
     std::optional<Stoppable> stoppable(
         std::in_place, [] { tell("the identification was stopped"); });
-    api::Asked asked = read(text, o.query);
+    api::Asked asked = read(text, o.fields);
     std::string().swap(text);  // a record may be large
     const api::Format format = asked.form.format.value_or(api::Format::json);
     std::optional<StageLine> line(std::in_place);
@@ -66,13 +64,18 @@ int identify(const IdentifyOptions& o) {
 
 Command add_identify(CLI::App& app) {
     const auto options = std::make_shared<IdentifyOptions>();
-    CLI::App* command = app.add_subcommand(
-        "identify",
-        "exponents from a measurement: a CSV file with --query, or the JSON of POST /v1/identify");
+    CLI::App* command =
+        app.add_subcommand("identify", "impacts, exponents of a record: POST /v1/identify");
     command->add_option(
-        "--query,-q", options->query, "fields for a CSV file, as in a URL: preset=fig20&b=0.015");
-    add_files(*command, options->files);
-    return with_exit_codes(command, [options] { return identify(*options); });
+        "record", options->files.input, "file with columns, or with JSON; - or nothing: stdin");
+    add_output(*command, options->files);
+    add_request_fields(*command, options->fields);
+    add_format(*command, options->fields);
+    return with_exit_codes(
+        command, [options] { return identify(*options); },
+        "vines example record > record.csv\n"
+        "vines identify record.csv -p preset=fig20 | jq '.restitution, .verdict'\n"
+        "vines identify record.csv -q 'preset=fig20&b=0.015&fields=impacts' --format csv");
 }
 
 }  // namespace vines::cli

@@ -68,12 +68,13 @@ int merge(const MergeOptions& o) {
 
 Command add_merge(CLI::App& app) {
     const auto options = std::make_shared<MergeOptions>();
-    CLI::App* command = app.add_subcommand(
-        "merge",
-        "put the files of a sweep's shards together: byte for byte the file of the whole sweep");
+    CLI::App* command =
+        app.add_subcommand("merge", "the files of a sweep's shards as that of the whole");
     command->add_option("files", options->inputs, "the shards' files")->required();
     command->add_option("--output,-o", options->output, "file for the whole; - or nothing: stdout");
-    return with_exit_codes(command, [options] { return merge(*options); });
+    return with_exit_codes(
+        command, [options] { return merge(*options); },
+        "vines merge 0.ndjson 1.ndjson 2.ndjson 3.ndjson -o sweep.ndjson");
 }
 
 }  // namespace vines::cli

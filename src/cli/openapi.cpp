@@ -8,11 +8,10 @@
 namespace vines::cli {
 
 Command add_openapi(CLI::App& app) {
-    return ended_by_signals(
-        {app.add_subcommand("openapi", "write the OpenAPI document to stdout"), [] {
-             print(api::openapi().dump(2) + "\n");
-             return 0;
-         }});
+    return ended_by_signals({app.add_subcommand("openapi", "the OpenAPI document"), [] {
+                                 print(api::openapi().dump(2) + "\n");
+                                 return 0;
+                             }});
 }
 
 }  // namespace vines::cli

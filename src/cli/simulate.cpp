@@ -1,6 +1,5 @@
-// `vines simulate`: one run, without the service's deadline and limits.
+// `vines simulate` and `vines manifold`: one answer, without the service's deadline and limits.
 #include "api/answers/asked.hpp"
-#include "api/parse_object.hpp"
 
 #include <memory>
 #include <optional>
@@ -10,41 +9,98 @@
 #include "cli/exit_code.hpp"
 #include "cli/files.hpp"
 #include "cli/output.hpp"
+#include "cli/pictures.hpp"
+#include "cli/request_fields.hpp"
 #include "cli/stop_signals.hpp"
 
 namespace vines::cli {
 
 namespace {
 
-int simulate(const Files& files) {
+struct RunOptions {
+    Files files;
+    RequestFields fields;
+    bool plot = false;  ///< in place of the answer
+};
+
+/// The answer, also of a run that a signal ends.
+api::Answer computed(api::Asked asked) {
     const api::Stop stop{
         .asked = stopped, .reason = "interrupted", .message = "ended by a signal, before tau_end"};
-    api::Asked asked = api::read_asked("/v1/simulate", api::parse_object(read_all(files.input)));
+    const Stoppable stoppable;
+    return api::answered(std::move(asked), {.stop = stop});
+}
+
+int code() { return stopped() ? stopped_code() : complete; }
+
+int answer(const Files& files, api::Asked asked) {
     const api::Format format = asked.form.format.value_or(api::Format::json);
-    std::optional<Stoppable> stoppable(std::in_place);
-    api::Answer answer = api::answered(std::move(asked), {.stop = stop});
-    stoppable.reset();
-    const int code = stopped() ? stopped_code() : complete;
+    api::Answer answer = computed(std::move(asked));
     if (format != api::Format::json) {
         write_all(files.output, api::encoded(std::move(answer.json), format, answer.provenance));
-        return code;
+        return code();
     }
     Output out(files.output);
     Pace pace;  // a signal that has come lets the answer be written
     api::write_answer(
         std::move(answer), pace, [&out](std::string_view piece) { out.write(piece); });
     out.end();
-    return code;
+    return code();
+}
+
+/// Of what is asked for that which can be drawn.
+int draw_run(const Files& files, api::Json request) {
+    if (!request.contains("include") && !request.contains("fields"))
+        request["include"] = {"series", "impacts", "exponents", "regime"};
+    request["format"] = "json";
+    api::Answer answer = computed(api::read_asked("/v1/simulate", std::move(request)));
+    const std::string text =
+        api::encoded(std::move(answer.json), api::Format::json, answer.provenance);
+    draw(plots_of(text), files.output);
+    return code();
+}
+
+int simulate(const RunOptions& o) {
+    api::Json request = read_request(o.files, o.fields, api::simulate_fields());
+    if (o.plot) return draw_run(o.files, std::move(request));
+    return answer(o.files, api::read_asked("/v1/simulate", std::move(request)));
+}
+
+int manifold(const RunOptions& o) {
+    return answer(
+        o.files,
+        api::read_asked("/v1/manifold", read_request(o.files, o.fields, api::manifold_fields())));
+}
+
+void add_flags(CLI::App& command, RunOptions& options) {
+    add_files(command, options.files);
+    add_request_fields(command, options.fields);
+    add_format(command, options.fields);
 }
 
 }  // namespace
 
 Command add_simulate(CLI::App& app) {
-    const auto files = std::make_shared<Files>();
+    const auto options = std::make_shared<RunOptions>();
+    CLI::App* command = app.add_subcommand("simulate", "one run: POST /v1/simulate");
+    add_flags(*command, *options);
+    add_plot_flag(*command, options->plot);
+    return with_exit_codes(
+        command, [options] { return simulate(*options); },
+        "vines simulate -p preset=fig3 --plot\n"
+        "vines simulate -p b=0.02 -p include=regime | jq .regime.type\n"
+        "vines simulate -p preset=fig3 -p fields=impacts --format csv -o impacts.csv\n"
+        "vines simulate request.json -p tau_end=5000 -o answer.json");
+}
+
+Command add_manifold(CLI::App& app) {
+    const auto options = std::make_shared<RunOptions>();
     CLI::App* command =
-        app.add_subcommand("simulate", "one run: the JSON of POST /v1/simulate in, its answer out");
-    add_files(*command, *files);
-    return with_exit_codes(command, [files] { return simulate(*files); });
+        app.add_subcommand("manifold", "the slow invariant manifold: POST /v1/manifold");
+    add_flags(*command, *options);
+    return with_exit_codes(
+        command, [options] { return manifold(*options); },
+        "vines manifold -p b=0.02 | jq .recommendation");
 }
 
 }  // namespace vines::cli

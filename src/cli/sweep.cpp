@@ -1,19 +1,25 @@
 // `vines sweep`: a sweep or a shard of one into a file, which a later run can complete.
-#include "api/parse_object.hpp"
-
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
 
+#include "api/format/encode.hpp"
+#include "api/format/sweep_table.hpp"
+#include "api/problem.hpp"
 #include "cli/commands.hpp"
 #include "cli/destination.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/files.hpp"
+#include "cli/output.hpp"
+#include "cli/pictures.hpp"
+#include "cli/request_fields.hpp"
 #include "cli/shard.hpp"
 #include "cli/signal_pace.hpp"
 #include "cli/sweep_file.hpp"
 #include "cli/sweep_to_file.hpp"
 #include "cli/sweep_to_stream.hpp"
+#include "cli/sweep_whole.hpp"
 #include "program/within.hpp"
 
 namespace vines::cli {
@@ -22,6 +28,8 @@ namespace {
 
 struct SweepOptions {
     Files files;
+    RequestFields fields;
+    bool plot = false;    ///< in place of the points
     bool resume = false;  ///< complete the output file instead of refusing to overwrite it
     std::string shard;    ///< as read_shard() takes it
     int shards = 0;       ///< N for "auto" where the environment has only i
@@ -30,17 +38,39 @@ struct SweepOptions {
 
 /// The points wanted: those of the shard.
 api::SweepRequest read_request(const SweepOptions& o) {
-    api::SweepRequest request =
-        api::read_sweep_request(api::parse_object(read_all(o.files.input)), most_points);
+    api::SweepRequest request = api::read_sweep_request(read_sweep(o.files, o.fields), most_points);
     const Shard shard = read_shard(o.shard, o.shards);
     request.plan.lines = api::shard_of(request, shard.index, shard.of);
     return request;
 }
 
+/// Other than lines of JSON: they are made once all points are there.
+bool is_whole(const SweepOptions& o) { return o.plot || o.fields.format == "csv"; }
+
+/// Problem 422 for what cannot be done, before anything is computed.
+void check(const SweepOptions& o, const api::SweepRequest& request) {
+    if (is_whole(o) && o.resume)
+        throw api::Problem(422, "--resume completes lines of JSON, not --plot or --format csv");
+    const auto varies = [](const api::Axis& axis) { return axis.values.size() > 1; };
+    const auto axes = std::count_if(request.axes.begin(), request.axes.end(), varies);
+    if (o.plot && axes > (request.plan.grid.reduced ? 2 : 1))
+        throw api::Problem(
+            422, "--plot draws along one axis; of more the page draws a map, or leave it out");
+}
+
+int sweep_as_wanted(SweepRun run, const SweepOptions& o) {
+    return sweep_whole(std::move(run), [&o](const api::Json& start, const auto& points) {
+        if (o.plot) draw(plots_of(start, points), o.files.output);
+        else write_all(o.files.output, api::csv_text(api::sweep_table(points)));
+    });
+}
+
 int sweep(const SweepOptions& o) {
     api::SweepRequest request = read_request(o);
+    check(o, request);
     const std::size_t of = request.plan.lines.size();
     SweepRun run{std::move(request), of, o.threads > 0 ? o.threads : cores()};
+    if (is_whole(o)) return sweep_as_wanted(std::move(run), o);
     Destination to = destination_of(o.files.output);
     return to.is_stream() ? sweep_to_stream(std::move(run), std::move(to))
                           : sweep_to_file(std::move(run), to, o.resume);
@@ -50,9 +80,18 @@ int sweep(const SweepOptions& o) {
 
 Command add_sweep(CLI::App& app) {
     const auto options = std::make_shared<SweepOptions>();
-    CLI::App* command = app.add_subcommand(
-        "sweep", "a sweep: the JSON of POST /v1/sweep in, its points as lines of JSON out");
+    CLI::App* command =
+        app.add_subcommand("sweep", "runs over one to three parameters: POST /v1/sweep");
     add_files(*command, options->files);
+    add_request_fields(*command, options->fields);
+    add_axes(*command, options->fields);
+    command
+        ->add_option(
+            "--format", options->fields.format,
+            "ndjson: a line of JSON for each point, as it comes (default); csv: a table, at the "
+            "end")
+        ->check(CLI::IsMember({"ndjson", "csv"}));
+    add_plot_flag(*command, options->plot);
     command->add_flag(
         "--resume", options->resume,
         "complete the output file of a run that was stopped or killed");
@@ -67,7 +106,12 @@ Command add_sweep(CLI::App& app) {
         ->envname("VINES_COMPUTE_THREADS")
         ->check(within(0, 1024))
         ->capture_default_str();
-    return with_exit_codes(command, [options] { return sweep(*options); });
+    return with_exit_codes(
+        command, [options] { return sweep(*options); },
+        "vines sweep -a b=0.01:0.03:41 -p cycles=500 --plot\n"
+        "vines sweep -a b=0.01:0.03:41 -p preset=fig3 -p section=impact -o sweep.ndjson\n"
+        "vines sweep request.json --shard 0/4 -o 0.ndjson --resume\n"
+        "vines plot sweep.ndjson -o sweep.svg");
 }
 
 }  // namespace vines::cli

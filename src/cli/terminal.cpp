@@ -1,24 +1,16 @@
 #include "cli/terminal.hpp"
 
 #include <sys/ioctl.h>
-#include <unistd.h>
 
 #include <cstdio>
 
 namespace vines::cli {
 
-namespace {
-
-// Of one that does not say.
-constexpr std::size_t usual_width = 80;
-
-}  // namespace
-
-std::size_t terminal_width() {
-    if (::isatty(STDERR_FILENO) != 1) return 0;
+std::size_t terminal_width(int stream) {
+    if (::isatty(stream) != 1) return 0;
     winsize size{};
-    const bool told = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-    return told ? size.ws_col : usual_width;
+    const bool told = ::ioctl(stream, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+    return told ? size.ws_col : usual_terminal_width;
 }
 
 void show_in_place(const std::string& text, std::size_t before) {

@@ -205,12 +205,15 @@ int verify(const VerifyOptions& o) {
 
 Command add_verify(CLI::App& app) {
     const auto options = std::make_shared<VerifyOptions>();
-    CLI::App* command = app.add_subcommand(
-        "verify", "recompute an answer, or the points of a sweep, and compare byte for byte");
+    CLI::App* command =
+        app.add_subcommand("verify", "recompute an answer and compare byte for byte");
     command->add_option("answer", options->answer, "file with the answer; - or nothing: stdin");
     command->add_option(
         "--record", options->record, "of an identification: the file that was sent");
-    return with_exit_codes(command, [options] { return verify(*options); });
+    return with_exit_codes(
+        command, [options] { return verify(*options); },
+        "vines simulate -p preset=fig11 -o answer.json; vines verify answer.json\n"
+        "vines identify record.csv -p preset=fig20 | vines verify --record record.csv");
 }
 
 }  // namespace vines::cli

@@ -28,8 +28,8 @@ bool well(const Target& target) {
 
 Command add_healthcheck(CLI::App& app) {
     const auto target = std::make_shared<Target>();
-    CLI::App* command = app.add_subcommand(
-        "healthcheck", "ask a running service whether it is well: exit code 0 or 1");
+    CLI::App* command =
+        app.add_subcommand("healthcheck", "whether a running service is well (exit code 0)");
     command->add_option("--host", target->host, "its address")->capture_default_str();
     command->add_option("--port", target->port, "its port")
         ->envname("VINES_PORT")

@@ -240,7 +240,7 @@ int serve(const ServeOptions& options) {
 
 Command add_serve(CLI::App& app) {
     const auto options = std::make_shared<ServeOptions>();
-    CLI::App* command = app.add_subcommand("serve", "run the HTTP service and its page");
+    CLI::App* command = app.add_subcommand("serve", "the HTTP service and its page");
     add_server_flags(*command, options->server);
     add_access_flags(*command, options->server.access, options->key_file);
     add_compute_flags(*command, *options);

@@ -228,6 +228,8 @@ int Server::bind() {
     int port = options.port;
     const bool bound = port == 0 ? (port = http.bind_to_any_port(options.host)) > 0
                                  : http.bind_to_port(options.host, port);
+    if (!bound && errno == EADDRINUSE)
+        throw std::runtime_error(fmt::format("port {} is taken", options.port));
     if (!bound)
         throw std::runtime_error(fmt::format(
             "cannot listen on {}:{}{}{}", in_url(options.host), options.port, errno ? ": " : "",

@@ -26,10 +26,8 @@ int run(const std::string& folder) {
 
 Command add_reproduce(CLI::App& app) {
     const auto folder = std::make_shared<std::string>();
-    CLI::App* command = app.add_subcommand(
-        "reproduce",
-        "recompute the paper's figures and tables and compare: exit code 0 if every verdict is the "
-        "known one, else 1");
+    CLI::App* command =
+        app.add_subcommand("reproduce", "recompute the paper and compare (exit code 0)");
     command->add_option(
         "--output", *folder,
         "folder for report.md and its SVG plots; without it only the table is printed");

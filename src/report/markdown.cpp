@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/motion/special_values.hpp"
+#include "plot/svg.hpp"
 
 namespace vines::report {
 
@@ -135,7 +136,8 @@ void write_markdown(const Report& report, const std::string& folder) {
     for (const auto& part : report.body) {
         if (const auto* picture = std::get_if<Picture>(&part))
             write(
-                to / (picture->name + ".svg"), svg(picture->plots, picture_width, picture->height));
+                to / (picture->name + ".svg"),
+                plot::svg(picture->plots, picture_width, picture->height));
         text += std::visit([](const auto& p) { return markdown(p); }, part);
     }
     write(to / "report.md", text);

@@ -3,17 +3,13 @@
 
 #include <vector>
 
-#include "report/runs.hpp"
-#include "report/svg.hpp"
-
 #include "core/motion/special_values.hpp"
+#include "plot/plot.hpp"
+#include "report/runs.hpp"
 
 namespace vines::report {
 
-/// One for each exponent or eigenvalue.
-inline const char* const colours[] = {"#1f6fb2", "#2e8b57", "#b8780b", "#8e44ad"};
-inline const char* const grey = "#8a939b";
-inline const char* const red = "#b3261e";
+using plot::Curve, plot::Plot, plot::colours, plot::grey, plot::red;
 
 /// x in mm up to some moment.
 Plot displacement(const Series& series, double to = infinity);

@@ -8,8 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "plot/plot.hpp"
 #include "report/finding.hpp"
-#include "report/svg.hpp"
 
 namespace vines::report {
 
@@ -27,8 +27,8 @@ struct DataTable {
 struct Picture {
     std::string name;  ///< of its file, without ".svg"
     std::string caption;
-    std::vector<Plot> plots;  ///< over each other, with the same abscissa
-    int height = 210;         ///< of each plot, in pixels
+    std::vector<plot::Plot> plots;  ///< over each other, with the same abscissa
+    int height = 210;               ///< of each plot, in pixels
 };
 
 struct Report {

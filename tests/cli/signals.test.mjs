@@ -74,7 +74,7 @@ test("a run that is stopped answers with what it has, an identification says wha
 });
 
 test("an identification of a list of impacts ends at a signal", async () => {
-  const impacts = 200000;
+  const impacts = 500000; // a second and more to be read and computed
   const column = (value) => Array.from({length: impacts}, (_, k) => value(k));
   const list = {
     tau: column((k) => Math.PI * k),
@@ -86,7 +86,7 @@ test("an identification of a list of impacts ends at a signal", async () => {
     y_dot_after: column((k) => (k % 2 ? -0.01 : 0.01)),
   };
   writeFileSync(at("list.json"), JSON.stringify({b: 0.015, impacts: list}));
-  const options = {signal: "SIGINT", until: hasComputed(0.3)};
+  const options = {signal: "SIGINT", until: hasComputed(0.2)};
   await ends(["identify", at("list.json")], options, 130, /^vines: the identification was stopped/);
 });
 

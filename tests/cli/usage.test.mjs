@@ -12,7 +12,7 @@ const at = (name) => join(folder, name);
 
 test("a wrong use is one line that says what and where to look, with exit code 2", async () => {
   for (const [args, said] of [
-    [[], /a subcommand is missing: serve, healthcheck, simulate, .*; see vines --help/],
+    [[], /a subcommand is missing: simulate, sweep, .*; see vines --help/],
     [["swep"], /unknown subcommand swep; did you mean sweep\?; see vines --help/],
     [["Simulate"], /unknown subcommand Simulate; did you mean simulate\?/],
     [["foo"], /unknown subcommand foo; see vines --help/],
@@ -36,6 +36,21 @@ test("a wrong use is one line that says what and where to look, with exit code 2
     assert.match(errors, /^vines: [^\n]+; see vines( \w+)? --help\n$/);
     assert.match(errors, said);
   }
+});
+
+test("the help of the program is one screen, and that of a subcommand has examples that run", async () => {
+  const {out} = await run(["--help"]);
+  const lines = out.trimEnd().split("\n");
+  assert.ok(lines.length <= 32, `${lines.length} lines`);
+  for (const line of lines) assert.ok(line.length <= 80, line);
+  const examples = out.split("Examples:\n")[1];
+  for (const command of examples.match(/^ {2}vines (?!serve|identify).*$/gm))
+    assert.equal((await run(command.trim().split(" ").slice(1))).code, 0, command);
+});
+
+test("a request that is awaited from a terminal is asked for", async () => {
+  const shell = 'script -qec "$VINES simulate" /dev/null <<<"{"tau_end":5}"$\'\\n\\x04\'';
+  assert.match((await run([], {shell})).out, /vines: reading from the terminal; Ctrl-D ends it/);
 });
 
 test("a variable of one subcommand is no fault of another", async () => {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/analysis/analysis.hpp"
+#include "plot/svg.hpp"
 #include "report/markdown.hpp"
 #include "report/statistics.hpp"
 #include "report/symmetric_motion.hpp"
@@ -193,7 +194,8 @@ TEST_CASE("a curve has a gap where it is not finite") {
     const auto lines = [](const std::vector<double>& y) {
         std::vector<double> x;
         for (std::size_t i = 0; i < y.size(); ++i) x.push_back(static_cast<double>(i));
-        return occurrences(svg({{"x", "y", {{.x = x, .y = y}}}}, 400, 200), "<polyline");
+        return occurrences(
+            vines::plot::svg({{"x", "y", {{.x = x, .y = y}}}}, 400, 200), "<polyline");
     };
     CHECK(lines({1, 2, 3, 4}) == 1);
     CHECK(lines({1, 2, nan, 4, 5}) == 2);

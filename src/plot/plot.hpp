@@ -1,4 +1,4 @@
-// Plots as SVG text.
+// What a plot shows, however it is drawn.
 #pragma once
 
 #include <optional>
@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace vines::report {
+namespace vines::plot {
 
 struct Curve {
     std::vector<double> x{}, y{};  ///< of equal length; what is not finite leaves a gap
@@ -18,17 +18,19 @@ struct Curve {
 };
 
 struct Plot {
-    std::string x_label, y_label;
+    std::string x_label{}, y_label{};
     std::vector<Curve> curves{};
     bool logarithmic = false;  ///< y
     std::optional<std::pair<double, double>> y_range{};
     std::vector<double> levels{};                    ///< thin lines at y
     std::vector<double> moments{};                   ///< broken lines at x
     std::vector<std::pair<double, double>> bands{};  ///< shaded intervals of x
+    std::string title{};                             ///< above it, if any
 };
 
-/// Plots over each other in one picture with the same abscissa, `width` wide and `height` high
-/// each, in pixels.
-std::string svg(const std::vector<Plot>& plots, int width, int height);
+/// One for each exponent or eigenvalue.
+inline const char* const colours[] = {"#1f6fb2", "#2e8b57", "#b8780b", "#8e44ad"};
+inline const char* const grey = "#8a939b";
+inline const char* const red = "#b3261e";
 
-}  // namespace vines::report
+}  // namespace vines::plot

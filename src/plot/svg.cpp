@@ -1,4 +1,4 @@
-#include "report/svg.hpp"
+#include "plot/svg.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,9 @@
 #include <cmath>
 #include <iterator>
 
-namespace vines::report {
+#include "plot/axes.hpp"
+
+namespace vines::plot {
 
 namespace {
 
@@ -21,69 +23,21 @@ std::string escaped(const std::string& text) {
     return out;
 }
 
-using Range = std::pair<double, double>;
-
-/// Steps of 1, 2 or 5 times a power of ten, about `count` of them.
-std::vector<double> ticks(const Range& r, int count) {
-    const double raw = (r.second - r.first) / count,
-                 power = std::pow(10, std::floor(std::log10(raw)));
-    double step = power;
-    for (double m : {2., 5., 10.})
-        if (step < raw) step = m * power;
-    std::vector<double> list;
-    for (double k = std::ceil(r.first / step - 1e-9);
-         k * step <= r.second * (1 + 1e-12) + 1e-12 * step; ++k)
-        list.push_back(k * step);
-    return list;
-}
-
-Range widened(Range r, double share) {
-    const double margin = (r.second - r.first) * share;
-    if (!(r.second > r.first)) return {r.first - 0.5, r.first + 0.5};
-    return {r.first - margin, r.second + margin};
-}
-
-/// Of all curves of all plots: they share their abscissa.
-Range x_range(const std::vector<Plot>& plots) {
-    Range x{1e300, -1e300};
-    bool dots = false;
-    for (const Plot& p : plots) {
-        for (const Curve& c : p.curves) {
-            dots = dots || (c.dots && !c.error.empty());
-            for (double v : c.x) x = {std::min(x.first, v), std::max(x.second, v)};
-        }
-    }
-    if (x.first > x.second) return {0, 1};
-    return widened(x, dots ? 0.03 : 0);
-}
-
-std::string tick_label(double t) { return fmt::format("{:g}", std::abs(t) < 1e-12 ? 0 : t); }
-
 /// The attribute, if any, with a space before it.
 std::string dashed(const Curve& c) {
     return c.dash.empty() ? "" : fmt::format(R"( stroke-dasharray="{}")", c.dash);
 }
 
-class Canvas {
+class SvgPlot {
 public:
-    Canvas(const Plot& plot, const Range& x, int width, int height, int top)
+    SvgPlot(const Plot& plot, const Range& x, int width, int height, int top)
         : plot_(plot),
           left_(62),
           right_(width - 12),
-          top_(top + 10),
-          bottom_(top + height - 38) {
-        Range y{1e300, -1e300};
-        for (const Curve& c : plot.curves) {
-            for (std::size_t i = 0; i < c.x.size(); ++i) {
-                const double v = value(c.y[i]), e = c.error.empty() ? 0 : c.error[i];
-                if (std::isfinite(v)) y = {std::min(y.first, v - e), std::max(y.second, v + e)};
-            }
-        }
-        if (y.first > y.second) y = {0, 1};
-        x_ = x;
-        y_ = plot.y_range ? Range{value(plot.y_range->first), value(plot.y_range->second)}
-                          : widened(y, 0.06);
-    }
+          top_(top + (plot.title.empty() ? 10 : 28)),
+          bottom_(top + height - 38),
+          x_(x),
+          y_(y_range(plot)) {}
 
     std::string draw() {
         shade_bands();
@@ -92,11 +46,12 @@ public:
         frame();
         for (const Curve& c : plot_.curves) c.dots ? dots(c) : line(c);
         legend();
+        if (!plot_.title.empty()) text(left_, top_ - 8, "start", plot_.title);
         return std::move(out_);
     }
 
 private:
-    double value(double y) const { return plot_.logarithmic ? std::log10(y) : y; }
+    double value(double y) const { return on_ordinate(plot_, y); }
     double px(double x) const {
         return left_ + (x - x_.first) / (x_.second - x_.first) * (right_ - left_);
     }
@@ -143,10 +98,9 @@ private:
             rule(px(t), top_, px(t), bottom_, grid);
             text(px(t), bottom_ + 15, "middle", tick_label(t));
         }
-        for (double t : ticks(y_, plot_.logarithmic ? 4 : 5)) {
-            if (plot_.logarithmic && t != std::floor(t)) continue;
+        for (double t : y_ticks(plot_, y_, plot_.logarithmic ? 4 : 5)) {
             rule(left_, py(t), right_, py(t), grid);
-            text(left_ - 6, py(t) + 4, "end", (plot_.logarithmic ? "1e" : "") + tick_label(t));
+            text(left_ - 6, py(t) + 4, "end", y_tick_label(plot_, t));
         }
     }
 
@@ -236,7 +190,7 @@ private:
 
     const Plot& plot_;
     const double left_, right_, top_, bottom_;
-    Range x_, y_;
+    const Range x_, y_;
     std::string out_;
 };
 
@@ -253,8 +207,8 @@ std::string svg(const std::vector<Plot>& plots, int width, int height) {
         "\n",
         width, total);
     for (std::size_t i = 0; i < plots.size(); ++i)
-        out += Canvas(plots[i], x, width, height, height * static_cast<int>(i)).draw();
+        out += SvgPlot(plots[i], x, width, height, height * static_cast<int>(i)).draw();
     return out + "</svg>\n";
 }
 
-}  // namespace vines::report
+}  // namespace vines::plot

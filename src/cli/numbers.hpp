@@ -1,0 +1,34 @@
+// Numbers of an answer that is read again.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "api/schema/json.hpp"
+
+namespace vines::cli {
+
+/// NaN for null and for what is not there.
+inline double number_at(const api::Json& object, const std::string& name) {
+    const auto found = object.find(name);
+    return found != object.end() && found->is_number() ? found->get<double>()
+                                                       : std::numeric_limits<double>::quiet_NaN();
+}
+
+inline std::vector<double> numbers_of(const api::Json& list, double unit = 1) {
+    std::vector<double> numbers;
+    for (const api::Json& entry : list)
+        numbers.push_back(
+            entry.is_number() ? entry.get<double>() / unit
+                              : std::numeric_limits<double>::quiet_NaN());
+    return numbers;
+}
+
+/// Empty where it is not there.
+inline std::string word_at(const api::Json& object, const std::string& name) {
+    const auto found = object.find(name);
+    return found != object.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+}  // namespace vines::cli

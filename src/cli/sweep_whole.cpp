@@ -1,0 +1,29 @@
+#include "cli/sweep_whole.hpp"
+
+#include <map>
+#include <optional>
+
+#include "api/sweep_frame.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/stop_signals.hpp"
+#include "program/tell.hpp"
+
+namespace vines::cli {
+
+int sweep_whole(SweepRun run, const TakeSweep& take) {
+    std::map<std::size_t, api::Json> lines;
+    std::optional<Stoppable> stoppable(std::in_place);
+    const std::string warning = compute(run, [&lines](std::size_t index, const std::string& line) {
+        lines[index] = api::Json::parse(line);
+    });
+    stoppable.reset();
+    std::vector<api::Json> points;
+    for (auto& [index, line] : lines) points.push_back(std::move(line));
+    if (!points.empty()) take(api::sweep_start(run.request), points);
+    if (!warning.empty()) tell(warning);
+    if (points.size() == run.of) return complete;
+    tell_stopped(points.size(), run.of);
+    return stopped_code();
+}
+
+}  // namespace vines::cli

@@ -1,0 +1,81 @@
+#include "plot/axes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vines::plot {
+
+namespace {
+
+// Beyond any value.
+constexpr Range nothing{1e300, -1e300};
+
+Range extended(const Range& r, double from, double to) {
+    return {std::min(r.first, from), std::max(r.second, to)};
+}
+
+Range widened(const Range& r, double share) {
+    const double margin = (r.second - r.first) * share;
+    if (!(r.second > r.first)) return {r.first - 0.5, r.first + 0.5};
+    return {r.first - margin, r.second + margin};
+}
+
+}  // namespace
+
+double on_ordinate(const Plot& plot, double y) { return plot.logarithmic ? std::log10(y) : y; }
+
+Range x_range(const std::vector<Plot>& plots) {
+    Range x = nothing;
+    bool dots = false;
+    for (const Plot& p : plots) {
+        for (const Curve& c : p.curves) {
+            dots = dots || (c.dots && !c.error.empty());
+            for (double v : c.x) x = extended(x, v, v);
+        }
+    }
+    if (x.first > x.second) return {0, 1};
+    return widened(x, dots ? 0.03 : 0);
+}
+
+Range y_range(const Plot& plot) {
+    if (plot.y_range)
+        return {on_ordinate(plot, plot.y_range->first), on_ordinate(plot, plot.y_range->second)};
+    Range y = nothing;
+    for (const Curve& c : plot.curves) {
+        for (std::size_t i = 0; i < c.x.size(); ++i) {
+            const double v = on_ordinate(plot, c.y[i]), e = c.error.empty() ? 0 : c.error[i];
+            if (std::isfinite(v)) y = extended(y, v - e, v + e);
+        }
+    }
+    if (y.first > y.second) y = {0, 1};
+    return widened(y, 0.06);
+}
+
+std::vector<double> ticks(const Range& r, int count) {
+    const double raw = (r.second - r.first) / count,
+                 power = std::pow(10, std::floor(std::log10(raw)));
+    double step = power;
+    for (double m : {2., 5., 10.})
+        if (step < raw) step = m * power;
+    std::vector<double> list;
+    for (double k = std::ceil(r.first / step - 1e-9);
+         k * step <= r.second * (1 + 1e-12) + 1e-12 * step; ++k)
+        list.push_back(k * step);
+    return list;
+}
+
+std::vector<double> y_ticks(const Plot& plot, const Range& range, int count) {
+    std::vector<double> list = ticks(range, count);
+    if (plot.logarithmic) std::erase_if(list, [](double t) { return t != std::floor(t); });
+    return list;
+}
+
+std::string tick_label(double t) { return fmt::format("{:g}", std::abs(t) < 1e-12 ? 0 : t); }
+
+std::string y_tick_label(const Plot& plot, double tick) {
+    return (plot.logarithmic ? "1e" : "") + tick_label(tick);
+}
+
+}  // namespace vines::plot

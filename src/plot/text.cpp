@@ -1,0 +1,248 @@
+#include "plot/text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+
+#include "plot/axes.hpp"
+
+namespace vines::plot {
+
+namespace {
+
+constexpr int left = 9;  // characters of the ordinate's labels
+constexpr int narrowest = 20, least_height = 4;
+
+// Dots in a character of Braille.
+constexpr int dots_across = 2, dots_down = 4;
+
+/// The character of Unicode's Braille patterns with these dots, in UTF-8.
+std::string braille(unsigned dots) {
+    const unsigned code = 0x2800 + dots;
+    return {
+        static_cast<char>(0xE0 | code >> 12), static_cast<char>(0x80 | (code >> 6 & 0x3F)),
+        static_cast<char>(0x80 | (code & 0x3F))};
+}
+
+/// Of a dot in its character, counted from the upper left.
+unsigned braille_dot(int across, int down) {
+    constexpr std::array<std::array<unsigned, dots_down>, dots_across> bits = {
+        {{0x01, 0x02, 0x04, 0x40}, {0x08, 0x10, 0x20, 0x80}}};
+    return bits[static_cast<std::size_t>(across)][static_cast<std::size_t>(down)];
+}
+
+/// "#rrggbb" as one of the 6 x 6 x 6 colours that terminals have.
+int terminal_colour(const std::string& hex) {
+    const auto level = [&hex](std::size_t at) {
+        return static_cast<int>(std::strtol(hex.substr(at, 2).c_str(), nullptr, 16) * 5 + 127) /
+               255;
+    };
+    return 16 + 36 * level(1) + 6 * level(3) + level(5);
+}
+
+/// Characters of a text in UTF-8.
+int length(const std::string& text) {
+    return static_cast<int>(
+        std::count_if(text.begin(), text.end(), [](char c) { return (c & '\xC0') != '\x80'; }));
+}
+
+class TextPlot {
+public:
+    TextPlot(const Plot& plot, const Range& x, int width, const Terminal& terminal)
+        : plot_(plot),
+          terminal_(terminal),
+          x_(x),
+          y_(y_range(plot)),
+          width_(width),
+          height_(std::max(terminal.height, least_height)),
+          cells_(static_cast<std::size_t>(width_ * height_)) {
+        for (double level : plot.levels) rule_across(on_ordinate(plot_, level));
+        for (double moment : plot.moments) rule_down(moment);
+        for (const Curve& c : plot.curves) c.dots ? dots(c) : line(c);
+    }
+
+    std::string draw() const {
+        std::string out;
+        if (!plot_.title.empty()) out += plot_.title + "\n";
+        out += plot_.y_label + "\n";
+        const std::map<int, std::string> at_ticks = tick_labels(), at_ends = end_labels();
+        for (int row = 0; row < height_; ++row) {
+            const auto tick = at_ticks.find(row), end = at_ends.find(row);
+            out += fmt::format(
+                "{:>{}} {}", tick == at_ticks.end() ? "" : tick->second, left - 2,
+                terminal_.ascii          ? "|"
+                : tick == at_ticks.end() ? "│"
+                                         : "┤");
+            for (int column = 0; column < width_; ++column) out += shown(cell(column, row));
+            if (end != at_ends.end()) out += " " + end->second;
+            out.erase(out.find_last_not_of(' ') + 1);
+            out += "\n";
+        }
+        return out;
+    }
+
+private:
+    struct Cell {
+        unsigned dots = 0;
+        const Curve* curve = nullptr;  ///< the last that has a dot there
+        const char* mark = nullptr;    ///< a character in place of dots
+    };
+
+    Cell& cell(int column, int row) {
+        return cells_[static_cast<std::size_t>(row * width_ + column)];
+    }
+    const Cell& cell(int column, int row) const {
+        return cells_[static_cast<std::size_t>(row * width_ + column)];
+    }
+
+    /// Dots from the left and from the top.
+    int across(double x) const {
+        return static_cast<int>(
+            std::lround((x - x_.first) / (x_.second - x_.first) * (width_ * dots_across - 1)));
+    }
+    int down(double v) const {
+        const double bounded = std::clamp(v, y_.first, y_.second);
+        return static_cast<int>(std::lround(
+            (y_.second - bounded) / (y_.second - y_.first) * (height_ * dots_down - 1)));
+    }
+    bool inside(double x, double v) const {
+        return std::isfinite(v) && x >= x_.first && x <= x_.second && v >= y_.first &&
+               v <= y_.second;
+    }
+
+    void dot(int from_left, int from_top, const Curve& curve) {
+        Cell& c = cell(from_left / dots_across, from_top / dots_down);
+        c.dots |= braille_dot(from_left % dots_across, from_top % dots_down);
+        c.curve = &curve;
+    }
+
+    void rule_across(double v) {
+        if (!inside(x_.first, v)) return;
+        for (int column = 0; column < width_; ++column)
+            cell(column, down(v) / dots_down).mark = terminal_.ascii ? "-" : "┄";
+    }
+    void rule_down(double x) {
+        if (!inside(x, y_.first)) return;
+        for (int row = 0; row < height_; ++row)
+            cell(across(x) / dots_across, row).mark = terminal_.ascii ? ":" : "┊";
+    }
+
+    void stroke(double x1, double v1, double x2, double v2, const Curve& curve) {
+        const int a = across(x1), b = across(x2), c = down(v1), d = down(v2),
+                  steps = std::max({std::abs(b - a), std::abs(d - c), 1});
+        for (int k = 0; k <= steps; ++k)
+            dot(static_cast<int>(std::lround(a + (b - a) * (1. * k / steps))),
+                static_cast<int>(std::lround(c + (d - c) * (1. * k / steps))), curve);
+    }
+
+    void line(const Curve& c) {
+        for (std::size_t i = 0; i < c.x.size(); ++i) {
+            const double v = on_ordinate(plot_, c.y[i]);
+            if (!std::isfinite(v)) continue;
+            const double before = i > 0 ? on_ordinate(plot_, c.y[i - 1]) : v;
+            const std::size_t from = i > 0 && std::isfinite(before) ? i - 1 : i;
+            stroke(c.x[from], from == i ? v : before, c.x[i], v, c);
+        }
+    }
+
+    void dots(const Curve& c) {
+        const bool marks = c.x.size() <= static_cast<std::size_t>(width_);
+        for (std::size_t i = 0; i < c.x.size(); ++i) {
+            const double x = c.x[i], v = on_ordinate(plot_, c.y[i]);
+            if (!inside(x, v)) continue;
+            if (!c.error.empty()) stroke(x, v - c.error[i], x, v + c.error[i], c);
+            dot(across(x), down(v), c);
+            if (marks) cell(across(x) / dots_across, down(v) / dots_down).mark = point_mark();
+        }
+    }
+    const char* point_mark() const { return terminal_.ascii ? "o" : "•"; }
+
+    std::string shown(const Cell& c) const {
+        const bool is_point = c.curve && c.mark && c.mark == std::string(point_mark());
+        if (!c.curve) return c.mark ? c.mark : " ";
+        const std::string character = is_point ? c.mark : terminal_.ascii ? "*" : braille(c.dots);
+        return coloured(character, *c.curve);
+    }
+    std::string coloured(const std::string& what, const Curve& curve) const {
+        if (!terminal_.colours) return what;
+        return fmt::format("\x1b[38;5;{}m{}\x1b[0m", terminal_colour(curve.colour), what);
+    }
+
+    std::map<int, std::string> tick_labels() const {
+        std::map<int, std::string> labels;
+        for (double t : y_ticks(plot_, y_, std::max(height_ / 3, 2)))
+            labels[down(t) / dots_down] = y_tick_label(plot_, t);
+        return labels;
+    }
+
+    /// Where each curve is last, or as near below it as there is a free line, or above.
+    std::map<int, std::string> end_labels() const {
+        std::map<int, std::string> labels;
+        for (const Curve& c : plot_.curves) {
+            if (c.label.empty()) continue;
+            int row = height_ - 1;
+            for (std::size_t i = 0; i < c.x.size(); ++i)
+                if (std::isfinite(on_ordinate(plot_, c.y[i])))
+                    row = down(on_ordinate(plot_, c.y[i])) / dots_down;
+            const int wanted = row;
+            while (labels.contains(row) && row < height_) ++row;
+            if (row == height_) row = wanted;
+            while (labels.contains(row) && row > 0) --row;
+            labels[row] = coloured(c.label, c);
+        }
+        return labels;
+    }
+
+    const Plot& plot_;
+    const Terminal& terminal_;
+    const Range x_, y_;
+    const int width_, height_;
+    std::vector<Cell> cells_;
+};
+
+int longest_label(const std::vector<Plot>& plots) {
+    int longest = 0;
+    for (const Plot& p : plots)
+        for (const Curve& c : p.curves) longest = std::max(longest, length(c.label));
+    return longest;
+}
+
+/// The axis with its ticks, the numbers below them, and its label.
+std::string abscissa(const Range& x, int width, const std::string& label, bool ascii) {
+    std::string axis, numbers(static_cast<std::size_t>(left + width), ' ');
+    std::map<int, std::string> at;
+    for (double t : ticks(x, std::max(width / 12, 2)))
+        at[static_cast<int>(std::lround((t - x.first) / (x.second - x.first) * (width - 1)))] =
+            tick_label(t);
+    for (int column = 0; column < width; ++column)
+        axis += at.contains(column) ? (ascii ? "+" : "┬") : (ascii ? "-" : "─");
+    int free = 0;
+    for (const auto& [column, number] : at) {
+        const int size = length(number), from = left + column - size / 2;
+        if (from < free || from + size > left + width) continue;
+        numbers.replace(static_cast<std::size_t>(from), static_cast<std::size_t>(size), number);
+        free = from + size + 1;
+    }
+    numbers.erase(numbers.find_last_not_of(' ') + 1);
+    const int indent = std::max(left + (width - length(label)) / 2, 0);
+    return std::string(left - 1, ' ') + (ascii ? "+" : "└") + axis + "\n" + numbers + "\n" +
+           std::string(static_cast<std::size_t>(indent), ' ') + label + "\n";
+}
+
+}  // namespace
+
+std::string text(const std::vector<Plot>& plots, const Terminal& terminal) {
+    const Range x = x_range(plots);
+    const int label = longest_label(plots),
+              width = std::max(terminal.width - 1 - left - (label > 0 ? label + 1 : 0), narrowest);
+    std::string out;
+    for (const Plot& p : plots) out += TextPlot(p, x, width, terminal).draw();
+    if (!plots.empty()) out += abscissa(x, width, plots.back().x_label, terminal.ascii);
+    return out;
+}
+
+}  // namespace vines::plot
