@@ -15,6 +15,7 @@ RUN cd web && { npm ls --omit=dev >/dev/null 2>&1 || npm ci --omit=dev --no-audi
 
 COPY CMakeLists.txt ./
 COPY src src
+COPY packaging packaging
 # Here is no git to ask for it.
 ARG VINES_COMMIT=
 RUN cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DVINES_TESTS=OFF -DVINES_COMMIT="$VINES_COMMIT" \

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "api/schema/nearest_name.hpp"
@@ -49,12 +50,27 @@ std::string fault_of_first(
     return "unknown subcommand " + first + (meant.empty() ? "" : "; did you mean " + meant + "?");
 }
 
-/// Their variables, which may be meant for another run, are not looked at.
-void forget_others(const std::vector<vines::Command>& commands, const std::string& asked) {
-    for (const vines::Command& command : commands)
-        if (command.app->get_name() != asked)
-            for (CLI::Option* option : command.app->get_options()) option->envname("");
-}
+/// While it lives the variables of other commands than the one that is asked for, which may be
+/// meant for another run, are not looked at.
+class OthersForgotten {
+public:
+    OthersForgotten(const std::vector<vines::Command>& commands, const std::string& asked) {
+        for (const vines::Command& command : commands)
+            if (command.app->get_name() != asked)
+                for (CLI::Option* option : command.app->get_options()) {
+                    variables_.emplace_back(option, option->get_envname());
+                    option->envname("");
+                }
+    }
+    ~OthersForgotten() {
+        for (const auto& [option, name] : variables_) option->envname(name);
+    }
+    OthersForgotten(const OthersForgotten&) = delete;
+    OthersForgotten& operator=(const OthersForgotten&) = delete;
+
+private:
+    std::vector<std::pair<CLI::Option*, std::string>> variables_;
+};
 
 /// A wrong use of the program.
 int refuse(const std::string& fault, const std::string& command) {
@@ -106,12 +122,14 @@ int main(int argc, char** argv) {
         vines::http::add_serve(app),
         vines::http::add_healthcheck(app),
         vines::cli::add_openapi(app),
-        vines::cli::ended_by_signals(vines::report::add_reproduce(app))};
+        vines::cli::ended_by_signals(vines::report::add_reproduce(app)),
+        vines::cli::add_completion(app),
+        vines::cli::add_manual(app)};
     const std::string first = argc > 1 ? argv[1] : "";
     const std::string fault = fault_of_first(app, names_of(commands), first);
     if (!fault.empty()) return refuse(fault, "vines");
-    forget_others(commands, first);
     try {
+        const OthersForgotten forgotten(commands, first);
         app.parse(argc, argv);
     } catch (const CLI::Success& asked) {
         return checked([&] { return answer(app, asked); });

@@ -34,4 +34,11 @@ Command add_example(CLI::App& app);
 /// Writes the OpenAPI document.
 Command add_openapi(CLI::App& app);
 
+/// Writes what completes the program's words in a shell; of the subcommands that `app` has when it
+/// runs.
+Command add_completion(CLI::App& app);
+
+/// Writes the manual page; of the same.
+Command add_manual(CLI::App& app);
+
 }  // namespace vines::cli

@@ -27,13 +27,15 @@ std::size_t size_of(int descriptor) {
 }  // namespace
 
 void add_files(CLI::App& command, Files& files) {
-    command.add_option(
-        "request", files.input, "file with the request as JSON; - or nothing: stdin");
+    command
+        .add_option("request", files.input, "file with the request as JSON; - or nothing: stdin")
+        ->type_name("FILE");
     add_output(command, files);
 }
 
 void add_output(CLI::App& command, Files& files) {
-    command.add_option("--output,-o", files.output, "file for the answer; - or nothing: stdout");
+    command.add_option("--output,-o", files.output, "file for the answer; - or nothing: stdout")
+        ->type_name("FILE");
 }
 
 void add_plot_flag(CLI::App& command, bool& plot) {

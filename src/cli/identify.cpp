@@ -66,8 +66,10 @@ Command add_identify(CLI::App& app) {
     const auto options = std::make_shared<IdentifyOptions>();
     CLI::App* command =
         app.add_subcommand("identify", "impacts, exponents of a record: POST /v1/identify");
-    command->add_option(
-        "record", options->files.input, "file with columns, or with JSON; - or nothing: stdin");
+    command
+        ->add_option(
+            "record", options->files.input, "file with columns, or with JSON; - or nothing: stdin")
+        ->type_name("FILE");
     add_output(*command, options->files);
     add_request_fields(*command, options->fields);
     add_format(*command, options->fields);

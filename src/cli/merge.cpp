@@ -70,8 +70,11 @@ Command add_merge(CLI::App& app) {
     const auto options = std::make_shared<MergeOptions>();
     CLI::App* command =
         app.add_subcommand("merge", "the files of a sweep's shards as that of the whole");
-    command->add_option("files", options->inputs, "the shards' files")->required();
-    command->add_option("--output,-o", options->output, "file for the whole; - or nothing: stdout");
+    command->add_option("files", options->inputs, "the shards' files")
+        ->required()
+        ->type_name("FILE");
+    command->add_option("--output,-o", options->output, "file for the whole; - or nothing: stdout")
+        ->type_name("FILE");
     return with_exit_codes(
         command, [options] { return merge(*options); },
         "vines merge 0.ndjson 1.ndjson 2.ndjson 3.ndjson -o sweep.ndjson");

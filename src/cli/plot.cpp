@@ -11,12 +11,13 @@ namespace vines::cli {
 Command add_plot(CLI::App& app) {
     const auto files = std::make_shared<Files>();
     CLI::App* command = app.add_subcommand("plot", "draw an answer, here or as SVG");
-    command->add_option(
-        "answer", files->input,
-        "file with the answer of a run, or the lines of a sweep; - or "
-        "nothing: stdin");
-    command->add_option(
-        "--output,-o", files->output, "file for SVG, FILE.svg; nothing: the terminal");
+    command
+        ->add_option(
+            "answer", files->input, "a run's answer or a sweep's lines; - or nothing: stdin")
+        ->type_name("FILE");
+    command
+        ->add_option("--output,-o", files->output, "file for SVG, FILE.svg; nothing: the terminal")
+        ->type_name("FILE");
     return with_exit_codes(
         command,
         [files] {

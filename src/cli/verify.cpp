@@ -207,9 +207,10 @@ Command add_verify(CLI::App& app) {
     const auto options = std::make_shared<VerifyOptions>();
     CLI::App* command =
         app.add_subcommand("verify", "recompute an answer and compare byte for byte");
-    command->add_option("answer", options->answer, "file with the answer; - or nothing: stdin");
-    command->add_option(
-        "--record", options->record, "of an identification: the file that was sent");
+    command->add_option("answer", options->answer, "file with the answer; - or nothing: stdin")
+        ->type_name("FILE");
+    command->add_option("--record", options->record, "of an identification: the file that was sent")
+        ->type_name("FILE");
     return with_exit_codes(
         command, [options] { return verify(*options); },
         "vines simulate -p preset=fig11 -o answer.json; vines verify answer.json\n"

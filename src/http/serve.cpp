@@ -74,12 +74,14 @@ void add_access_flags(CLI::App& c, AccessOptions& o, std::string& key_file) {
          "--api-key-file", key_file,
          "file with a key on each line, one of which a request has to show, but for health and "
          "the page")
-        ->envname("VINES_API_KEY_FILE");
+        ->envname("VINES_API_KEY_FILE")
+        ->type_name("FILE");
 }
 
 void add_compute_flags(CLI::App& c, ServeOptions& o) {
     add_flag(
         c, "--compute-threads", "VINES_COMPUTE_THREADS", o.compute.running, "computations at once")
+        ->default_str("the cores")
         ->check(within(1, 1024));
     add_flag(
         c, "--compute-queue", "VINES_COMPUTE_QUEUE", o.compute.waiting,

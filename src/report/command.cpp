@@ -28,9 +28,11 @@ Command add_reproduce(CLI::App& app) {
     const auto folder = std::make_shared<std::string>();
     CLI::App* command =
         app.add_subcommand("reproduce", "recompute the paper and compare (exit code 0)");
-    command->add_option(
-        "--output", *folder,
-        "folder for report.md and its SVG plots; without it only the table is printed");
+    command
+        ->add_option(
+            "--output", *folder,
+            "folder for report.md and its SVG plots; without it only the table is printed")
+        ->type_name("DIR");
     return {command, [folder] { return run(*folder); }};
 }
 

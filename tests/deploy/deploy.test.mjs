@@ -27,6 +27,7 @@ let compose;
 before(async () => {
   for (const name of await readdir(join(root, "deploy")))
     texts[name] = await readFile(join(root, "deploy", name), "utf8");
+  texts["vines.default"] = await readFile(join(root, "packaging/debian/vines.default"), "utf8");
   texts.Dockerfile = await readFile(join(root, "Dockerfile"), "utf8");
   compose = parse(texts["compose.yaml"], {merge: true});
 });

@@ -1,0 +1,166 @@
+// The completions of three shells and the manual page: of every flag that the program has.
+import assert from "node:assert/strict";
+import {spawnSync} from "node:child_process";
+import {mkdirSync, mkdtempSync, rmSync, writeFileSync} from "node:fs";
+import {tmpdir} from "node:os";
+import {join} from "node:path";
+import {after, before, test} from "node:test";
+import {run} from "./run.mjs";
+
+const folder = mkdtempSync(join(tmpdir(), "vines-completion-"));
+after(() => rmSync(folder, {recursive: true}));
+
+/** What a subcommand writes, which has nothing to complain of. */
+async function written(...args) {
+  const {code, out, errors} = await run(args);
+  assert.deepEqual({code, errors}, {code: 0, errors: ""}, args.join(" "));
+  return out;
+}
+
+/** By subcommand, "" for the program: the names of its flags, as its help has them. */
+const flags = {};
+before(async () => {
+  const top = await written("--help");
+  const [list] = top.split("Subcommands:")[1].split("\n\n");
+  const names = [...list.matchAll(/^ {2}(\w+)/gm)].map(([, name]) => name);
+  for (const name of ["", ...names]) {
+    const help = await written(...(name ? [name] : []), "--help");
+    const lines = [...help.matchAll(/^ {2}(-[\w,-]+)/gm)];
+    flags[name] = lines.flatMap(([, list]) => list.split(","));
+  }
+  for (const shell of ["bash", "zsh", "fish"])
+    writeFileSync(join(folder, shell), await written("completion", shell));
+  mkdirSync(join(folder, "files/folder"), {recursive: true});
+  writeFileSync(join(folder, "files/a request.json"), "");
+});
+
+/** Whether a program is there; a test of what is not is skipped. */
+const needs = (program) =>
+  spawnSync("sh", ["-c", `command -v ${program}`]).status === 0
+    ? {}
+    : {skip: `there is no ${program} (scripts/setup test)`};
+
+/** Runs a shell in the folder of files: what it writes. */
+function shell(program, args, input) {
+  const {status, stdout, stderr} = spawnSync(program, args, {
+    cwd: join(folder, "files"),
+    encoding: "utf8",
+    input,
+  });
+  assert.deepEqual({status, stderr}, {status: 0, stderr: ""});
+  return stdout;
+}
+
+const sorted = (words) => [...words].sort();
+
+/** What bash and fish offer for a line, by what is behind its last blank; the same for both. */
+const offers = () => [
+  ["si", ["simulate"]],
+  ["", Object.keys(flags).filter(Boolean)],
+  ["serve --log-format ", ["json", "text"]],
+  ["serve --log-format=t", ["text"]],
+  ["completion z", ["zsh"]],
+  ["simulate a", ["a request.json"]],
+  ["sweep --output a", ["a request.json"]],
+  ["merge -o f", ["folder"]],
+  ["reproduce --output ", ["folder"]],
+  ["serve --port ", []],
+  ["sweep --resume --sh", ["--shard", "--shards"]],
+  ["nonsense ", []],
+  ...Object.entries(flags).map(([name, all]) => [
+    name ? `${name} --` : "--",
+    all.filter((flag) => flag.startsWith("--")),
+  ]),
+];
+
+test("bash completes subcommands, flags, values and files", () => {
+  // A line in words as readline cuts it, where "=" is a word.
+  const script = `source ../bash
+    while IFS= read -r line; do
+      mapfile -t COMP_WORDS < <(sed 's/=/ = /; s/ /\\n/g; s/ $/\\n/' <<<"vines $line")
+      COMP_CWORD=$((\${#COMP_WORDS[@]} - 1))
+      _vines
+      printf '%s\\t' "\${COMPREPLY[@]}"
+      echo
+    done`;
+  const lines = offers();
+  const answers = shell("bash", ["-c", script], lines.map(([line]) => `${line}\n`).join(""));
+  const said = answers.split("\n");
+  for (const [at, [line, expected]] of lines.entries())
+    assert.deepEqual(sorted(said[at].split("\t").filter(Boolean)), sorted(expected), line);
+});
+
+test("fish completes the same", needs("fish"), () => {
+  shell("fish", ["-n", "../fish"]);
+  for (const [line, expected] of offers()) {
+    const out = shell("fish", ["-c", `source ../fish; complete -C "vines ${line}"`]);
+    const words = out.split("\n").filter(Boolean);
+    const names = words.map((word) => word.split("\t")[0].replace(/^.*=|\/$/g, ""));
+    assert.deepEqual(sorted(names), sorted(expected), line);
+  }
+});
+
+test("zsh completes what is typed", needs("zsh"), () => {
+  shell("zsh", ["-n", "../zsh"]);
+  // A zsh at a terminal of its own; what a line becomes it writes into a file.
+  const script = `zmodload zsh/zpty
+    zpty z zsh -f -i
+    type() { zpty -w z "$1"; }
+    type 'PS1=; autoload -U compinit; compinit -u -D; source ../zsh; vines() { print -rl -- "$@" >../typed.new; mv ../typed.new ../typed; }'
+    while IFS= read -r line; do
+      rm -f ../typed
+      zpty -w -n z "vines $line"$'\\t\\n'
+      for ((k = 0; k < 500; ++k)); do [[ -e ../typed ]] && break; sleep .02; done
+      paste -sd'|' ../typed
+    done
+    zpty -d z`;
+  const lines = [
+    ["si", "simulate"],
+    ["--ver", "--version"],
+    ["serve --log-format t", "serve|--log-format|text"],
+    ["serve --log-format=t", "serve|--log-format=text"],
+    ["serve --embed", "serve|--embed-origin"],
+    ["completion f", "completion|fish"],
+    ["simulate a", "simulate|a request.json"],
+    ["sweep -o a", "sweep|-o|a request.json"],
+    ["reproduce --output f", "reproduce|--output|folder"],
+    ["sweep --res", "sweep|--resume"],
+  ];
+  const out = shell("zsh", ["-fc", script], lines.map(([line]) => `${line}\n`).join(""));
+  assert.deepEqual(
+    out.trim().split("\n"),
+    lines.map(([, typed]) => typed),
+  );
+});
+
+test("what is a file or a folder is completed as one", async () => {
+  for (const name of Object.keys(flags).filter(Boolean)) {
+    const help = await written(name, "--help");
+    const entries = help.replace(/\n {10,}/g, "  ").split("\n");
+    for (const entry of entries)
+      if (/ {2}(file|folder) /.test(entry)) assert.match(entry, /\b(FILE|DIR)\b/, entry);
+  }
+});
+
+test("the manual page has every subcommand, flag and variable, and no fault", async () => {
+  // Variables that are no flag's value for this run change nothing.
+  const {out: page} = await run(["manual"], {env: {VINES_PORT: "x", VINES_COMPUTE_THREADS: "1"}});
+  assert.equal(page, await written("manual"));
+  const text = page.replaceAll("\\-", "-");
+  for (const [name, names] of Object.entries(flags)) {
+    const section = name ? text.split(`.SS \\fB${name}\\fR`)[1].split(/^\.S[SH]/m)[0] : text;
+    for (const flag of names) assert.ok(section.includes(`\\fB${flag}\\fR`), `${flag} of ${name}`);
+    if (!name) continue;
+    const help = await written(name, "--help");
+    for (const [variable] of help.matchAll(/(?<=\(Env:)\w+/g)) {
+      assert.ok(section.includes(`Environment: ${variable}.`), variable);
+      assert.ok(text.includes(`.TP\n\\fB${variable}\\fR\n`), variable);
+    }
+  }
+});
+
+test("man shows the manual page without a warning", needs("man"), async () => {
+  writeFileSync(join(folder, "vines.1"), await written("manual"));
+  const out = shell("man", ["--warnings", "-l", "../vines.1"]);
+  assert.match(out, /--compute-threads value\n.*Computations at once/);
+});
