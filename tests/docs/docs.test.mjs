@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import {execFile} from "node:child_process";
 import {access, mkdtemp, readdir, rm} from "node:fs/promises";
 import {tmpdir} from "node:os";
-import {join} from "node:path";
+import {dirname, join} from "node:path";
 import {after, before, test} from "node:test";
 import {program, startService} from "../service.mjs";
 import {answeredKeys} from "./answers.mjs";
@@ -274,10 +274,12 @@ const here = (command) =>
 
 test("the commands that the documents show print what they show", async () => {
   const folder = await mkdtemp(join(tmpdir(), "vines-docs-"));
+  // As a reader has them who has followed the tutorial, with the program on the PATH.
+  const env = {...process.env, PATH: `${dirname(program)}:${process.env.PATH}`, LC_ALL: "C.UTF-8"};
   let count = 0;
   for (const [name, text] of Object.entries(documents))
     for (const {command, output} of transcripts(text).flat()) {
-      const got = await run("bash", ["-o", "pipefail", "-c", here(command)], {cwd: folder});
+      const got = await run("bash", ["-o", "pipefail", "-c", here(command)], {cwd: folder, env});
       sameOutput(output, got, `${name}: ${command}`);
       ++count;
     }

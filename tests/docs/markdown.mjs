@@ -39,14 +39,17 @@ export const tables = (markdown, kind) =>
     return {argument, rows};
   });
 
-/** The marked transcripts: lists of {command, output}. A line behind a blank goes on a command. */
+/**
+ * The marked transcripts: lists of {command, output}. A line behind a blank goes on a command, until
+ * its output has begun.
+ */
 export const transcripts = (markdown) =>
   marked(markdown, "run").map(({lines}) => {
     if (lines[0] !== "```console") throw new Error("no ```console behind <!-- run -->");
     const steps = [];
     for (const line of lines.slice(1, lines.indexOf("```"))) {
       if (line.startsWith("$ ")) steps.push({command: line.slice(2), output: ""});
-      else if (line.startsWith(" ")) steps.at(-1).command += `\n${line}`;
+      else if (line.startsWith(" ") && !steps.at(-1).output) steps.at(-1).command += `\n${line}`;
       else steps.at(-1).output += `${line}\n`;
     }
     return steps;
