@@ -42,7 +42,7 @@ public:
             throw std::runtime_error("libcrypto: SHA-256");
         constexpr std::string_view digits = "0123456789abcdef";
         std::string text;
-        text.reserve(2 * size);
+        text.reserve(2 * std::size_t{size});
         for (unsigned int k = 0; k < size; ++k) {
             text += digits[bytes[k] >> 4];
             text += digits[bytes[k] & 15];

@@ -58,8 +58,8 @@ void check(const SweepOptions& o, const api::SweepRequest& request) {
             422, "--plot draws along one axis; of more the page draws a map, or leave it out");
 }
 
-int sweep_as_wanted(SweepRun run, const SweepOptions& o) {
-    return sweep_whole(std::move(run), [&o](const api::Json& start, const auto& points) {
+int sweep_as_wanted(const SweepRun& run, const SweepOptions& o) {
+    return sweep_whole(run, [&o](const api::Json& start, const auto& points) {
         if (o.plot) draw(plots_of(start, points), o.files.output);
         else write_all(o.files.output, api::csv_text(api::sweep_table(points)));
     });
@@ -70,7 +70,7 @@ int sweep(const SweepOptions& o) {
     check(o, request);
     const std::size_t of = request.plan.lines.size();
     SweepRun run{std::move(request), of, o.threads > 0 ? o.threads : cores()};
-    if (is_whole(o)) return sweep_as_wanted(std::move(run), o);
+    if (is_whole(o)) return sweep_as_wanted(run, o);
     Destination to = destination_of(o.files.output);
     return to.is_stream() ? sweep_to_stream(std::move(run), std::move(to))
                           : sweep_to_file(std::move(run), to, o.resume);

@@ -10,7 +10,7 @@
 
 namespace vines::cli {
 
-int sweep_whole(SweepRun run, const TakeSweep& take) {
+int sweep_whole(const SweepRun& run, const TakeSweep& take) {
     std::map<std::size_t, api::Json> lines;
     std::optional<Stoppable> stoppable(std::in_place);
     const std::string warning = compute(run, [&lines](std::size_t index, const std::string& line) {

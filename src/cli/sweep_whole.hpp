@@ -14,6 +14,6 @@ namespace vines::cli {
 using TakeSweep = std::function<void(const api::Json& start, const std::vector<api::Json>& points)>;
 
 /// Computes all, or what a signal leaves of it, and hands it over. Returns the exit code.
-int sweep_whole(SweepRun run, const TakeSweep& take);
+int sweep_whole(const SweepRun& run, const TakeSweep& take);
 
 }  // namespace vines::cli
