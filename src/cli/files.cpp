@@ -39,8 +39,10 @@ void add_output(CLI::App& command, Files& files) {
 }
 
 void add_plot_flag(CLI::App& command, bool& plot) {
-    command.add_flag(
-        "--plot", plot, "draw it here instead, or as SVG into the file that -o FILE.svg names");
+    command
+        .add_flag(
+            "--plot", plot, "draw it here instead, or as SVG into the file that -o FILE.svg names")
+        ->excludes(command.get_option("--format"));
 }
 
 bool is_standard(const std::string& path) { return path.empty() || path == "-"; }

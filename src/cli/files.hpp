@@ -12,7 +12,7 @@ struct Files {
 };
 void add_files(CLI::App& command, Files& files);
 void add_output(CLI::App& command, Files& files);
-/// --plot, with the file that add_files() knows.
+/// --plot, with the file that add_files() knows, in place of the --format that is there already.
 void add_plot_flag(CLI::App& command, bool& plot);
 
 /// Whether a path stands for stdin or stdout.

@@ -25,6 +25,14 @@ inline std::vector<double> numbers_of(const api::Json& list, double unit = 1) {
     return numbers;
 }
 
+/// The first of a list, as number_at() tells it.
+inline double first_at(const api::Json& object, const std::string& name) {
+    const auto list = object.find(name);
+    return list != object.end() && list->is_array() && !list->empty() && (*list)[0].is_number()
+               ? (*list)[0].get<double>()
+               : std::numeric_limits<double>::quiet_NaN();
+}
+
 /// Empty where it is not there.
 inline std::string word_at(const api::Json& object, const std::string& name) {
     const auto found = object.find(name);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "api/json_text.hpp"
+#include "api/schema/joined.hpp"
 #include "api/schema/nearest_name.hpp"
 #include "api/schema/tables.hpp"
 #include "api/schema/words.hpp"
@@ -39,12 +40,12 @@ std::string fallback_of(const Field& f) {
 
 std::string range_of(const Field& f) {
     if (f.range) return fmt::format("[{:g}, {:g}]", f.range->minimum, f.range->maximum);
-    return fmt::format("{}", fmt::join(f.choices, ", "));
+    return api::joined(f.choices);
 }
 
 std::string line_of(const Field& f) {
     return fmt::format(
-        "  {:<22}{:<15}{}\n", f.name, f.unit.empty() ? api::word_of(f.type) : f.unit,
+        "  {:<21} {:<14} {}\n", f.name, f.unit.empty() ? api::word_of(f.type) : f.unit,
         f.description);
 }
 

@@ -3,11 +3,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
 #include <sstream>
 #include <stdexcept>
 
 #include "api/parse_object.hpp"
+#include "cli/files.hpp"
 #include "cli/numbers.hpp"
 #include "cli/output.hpp"
 #include "cli/run_plots.hpp"
@@ -30,11 +32,14 @@ std::vector<Plot> plots_of_lines(const std::string& text) {
     std::vector<api::Json> points;
     for (std::string line; std::getline(lines, line);) {
         if (line.empty()) continue;
+        // The last one of a run that was killed.
+        if (lines.eof() && !api::Json::accept(line)) break;
         api::Json read = api::parse_object(line);
         if (word_at(read, "type") == "start") start = std::move(read);
         else if (word_at(read, "type") == "point") points.push_back(std::move(read));
     }
-    if (!start.contains("axes")) throw std::runtime_error("a sweep without its first line");
+    if (!start.contains("axes") || !start["axes"].is_array())
+        throw std::runtime_error("a sweep without its first line");
     return plots_of(start, points);
 }
 
@@ -58,15 +63,16 @@ bool has_ascii_alone() {
 /// See no-color.org.
 bool has_colours() {
     const char *const no = std::getenv("NO_COLOR"), *const kind = std::getenv("TERM");
-    return ::isatty(STDOUT_FILENO) == 1 && !(no && *no) && kind && std::string(kind) != "dumb";
+    return !(no && *no) && kind && std::string(kind) != "dumb";
 }
 
-std::string in_characters(const std::vector<Plot>& plots) {
-    const std::size_t width = terminal_width(STDOUT_FILENO);
+/// For a terminal, or for what may be shown in one later.
+std::string in_characters(const std::vector<Plot>& plots, bool is_stdout) {
+    const std::size_t width = is_stdout ? terminal_width(STDOUT_FILENO) : 0;
     return plot::text(
         plots, {.width = static_cast<int>(width > 0 ? width : usual_terminal_width),
                 .height = plots.size() > 2 ? 8 : 12,
-                .colours = has_colours(),
+                .colours = width > 0 && has_colours(),
                 .ascii = has_ascii_alone()});
 }
 
@@ -80,12 +86,7 @@ std::vector<Plot> drawable(std::vector<Plot> plots) {
 }  // namespace
 
 std::vector<Plot> plots_of(const api::Json& start, const std::vector<api::Json>& points) {
-    if (points.empty()) return drawable({});
-    std::vector<Plot> plots = sweep_plots(start, points);
-    if (plots.empty())
-        throw std::runtime_error(
-            "a sweep along one axis can be drawn; one along more is a map, which the page draws");
-    return plots;
+    return drawable(sweep_plots(start, points));
 }
 
 std::vector<Plot> plots_of(const std::string& answer) {
@@ -96,7 +97,7 @@ std::vector<Plot> plots_of(const std::string& answer) {
 void draw(const std::vector<Plot>& plots, const std::string& path) {
     write_all(
         path, path.ends_with(".svg") ? plot::svg(plots, picture_width, plot_height)
-                                     : in_characters(plots));
+                                     : in_characters(plots, is_standard(path)));
 }
 
 }  // namespace vines::cli

@@ -1,5 +1,6 @@
 #include "cli/request_fields.hpp"
 
+#include <array>
 #include <utility>
 
 #include "api/format/encode.hpp"
@@ -40,6 +41,15 @@ api::Query pairs_of(const RequestFields& given) {
     return pairs;
 }
 
+/// What of a name's value is JSON. Its names come once, as in a file.
+Json parsed(const std::string& name, const std::string& text) {
+    try {
+        return api::parse_object("{\"value\":" + text + "}")["value"];
+    } catch (const api::Problem& problem) {
+        throw api::Problem(400, name + ": " + problem.what());
+    }
+}
+
 /// Lists and objects, for which a query has no text, may be told as JSON.
 void read_json_in_text(Json& object, const FieldTable& table) {
     for (auto& [name, value] : object.items()) {
@@ -48,8 +58,8 @@ void read_json_in_text(Json& object, const FieldTable& table) {
             field && (field->type == FieldType::integers || field->type == FieldType::object ||
                       field->type == FieldType::objects);
         if (!may_be || !value.is_string()) continue;
-        Json read = Json::parse(value.get_ref<const std::string&>(), nullptr, false);
-        if (read.is_structured()) value = std::move(read);
+        const std::string text = value.get<std::string>();
+        if (text.starts_with('[') || text.starts_with('{')) value = parsed(name, text);
     }
 }
 
@@ -85,10 +95,16 @@ bool is_of_sweep(const std::string& name) {
            !api::nearest_name(api::sweep_fields(), name).empty();
 }
 
+[[noreturn]] void comes_twice(const std::string& name, const std::string& other) {
+    throw api::Problem(400, name + " holds " + api::shortened(other) + ": not both");
+}
+
 Json given_sweep(const RequestFields& given) {
     api::Query own, base;
     for (auto& pair : pairs_of(given)) (is_of_sweep(pair.first) ? own : base).push_back(pair);
     Json object = fields_of_pairs(own, api::sweep_fields());
+    if (object.contains("base") && !base.empty()) comes_twice("base", base[0].first);
+    if (object.contains("axes") && !given.axes.empty()) comes_twice("axes", "--axis");
     if (!base.empty()) object["base"] = fields_of_pairs(base, api::sweep_base_fields());
     for (const std::string& axis : given.axes) object["axes"].push_back(axis_of(axis));
     return object;

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "api/schema/joined.hpp"
 #include "cli/numbers.hpp"
 
 namespace vines::cli {
@@ -19,22 +20,43 @@ using plot::Plot;
 
 constexpr double mm = 1e-3;  // m
 
+/// What an answer has at a path as "/exponents/qr"; null where it was left out.
+const Json& part(const Json& answer, const std::string& path) {
+    static const Json none;
+    const Json::json_pointer at(path);
+    return answer.contains(at) ? answer[at] : none;
+}
+
+/// Whether there are lists of one length, the first of them without gaps.
+bool has(const Json& object, const std::vector<const char*>& names) {
+    const auto is_list = [&](const char* name) {
+        return object.contains(name) && object[name].is_array() && !object[name].empty() &&
+               object[name].size() == object[names[0]].size();
+    };
+    return std::all_of(names.begin(), names.end(), is_list) &&
+           std::all_of(object[names[0]].begin(), object[names[0]].end(), [](const Json& entry) {
+               return entry.is_number();
+           });
+}
+
 /// lambda1 with its standard error, if any; empty without.
-std::string lambda1_of(const Json& exponents) {
-    const Json& qr = exponents["qr"];
-    if (!qr["final"][0].is_number()) return "";
-    const Json& error = qr["standard_error"][0];
-    return fmt::format(", lambda1 = {:.3g}", qr["final"][0].get<double>()) +
-           (error.is_number() ? fmt::format(" +- {:.2g}", error.get<double>()) : "");
+std::string lambda1_of(const Json& qr) {
+    const double lambda1 = first_at(qr, "final"), error = first_at(qr, "standard_error");
+    if (!std::isfinite(lambda1)) return "";
+    return fmt::format("lambda1 = {:.3g}", lambda1) +
+           (std::isfinite(error) ? fmt::format(" +- {:.2g}", error) : "");
 }
 
 /// What the run came to, in a line.
 std::string title_of(const Json& answer) {
-    std::string title = fmt::format("b = {:.4g} mm", number_at(answer["parameters"], "b") / mm);
-    if (answer.contains("regime")) title += ": regime " + word_at(answer["regime"], "type");
-    if (answer.contains("exponents"))
-        title += ", " + word_at(answer["exponents"], "verdict") + lambda1_of(answer["exponents"]);
-    return title;
+    const double b = number_at(part(answer, "/parameters"), "b") / mm;
+    const std::string regime = word_at(part(answer, "/regime"), "type");
+    std::vector<std::string> told = {
+        regime.empty() ? "" : "regime " + regime, word_at(part(answer, "/exponents"), "verdict"),
+        lambda1_of(part(answer, "/exponents/qr"))};
+    std::erase(told, "");
+    if (!std::isfinite(b)) return api::joined(told);
+    return fmt::format("b = {:.4g} mm", b) + (told.empty() ? "" : ": ") + api::joined(told);
 }
 
 Plot displacement(const Json& series) {
@@ -46,17 +68,18 @@ Plot displacement(const Json& series) {
 
 /// With the contacts between the samples.
 Plot relative_displacement(const Json& answer) {
-    const Json &series = answer["series"], &parameters = answer["parameters"];
-    const double b = number_at(parameters, "b") / mm;
+    const Json &series = answer["series"], &impacts = part(answer, "/impacts");
+    const double b = number_at(part(answer, "/parameters"), "b") / mm;
+    const bool has_walls = std::isfinite(b);
     std::vector<std::pair<double, double>> points;
     const std::vector<double> tau = numbers_of(series["tau"]), x = numbers_of(series["x"], mm),
                               y = numbers_of(series["y"], mm);
     for (std::size_t i = 0; i < tau.size(); ++i) points.emplace_back(tau[i], y[i] - x[i]);
-    if (answer.contains("impacts")) {
-        const std::vector<double> at = numbers_of(answer["impacts"]["tau"]),
-                                  side = numbers_of(answer["impacts"]["side"]);
+    if (has_walls && has(impacts, {"tau", "side"})) {
+        const std::vector<double> at = numbers_of(impacts["tau"]),
+                                  side = numbers_of(impacts["side"]);
         for (std::size_t n = 0; n < at.size(); ++n)
-            if (!tau.empty() && at[n] >= tau.front() && at[n] <= tau.back())
+            if (at[n] >= tau.front() && at[n] <= tau.back())
                 points.emplace_back(at[n], -side[n] * b);
     }
     std::stable_sort(points.begin(), points.end(), [](const auto& a, const auto& c) {
@@ -67,8 +90,12 @@ Plot relative_displacement(const Json& answer) {
         curve.x.push_back(at);
         curve.y.push_back(gap);
     }
-    return {
-        .x_label = "tau", .y_label = "y - x (mm)", .curves = {std::move(curve)}, .levels = {-b, b}};
+    Plot p{.x_label = "tau", .y_label = "y - x (mm)", .curves = {std::move(curve)}};
+    if (has_walls) {  // in sight where none is met, too
+        p.y_range = {-1.12 * b, 1.12 * b};
+        p.levels = {-b, b};
+    }
+    return p;
 }
 
 /// Of the later values of all curves: the first ones swing widely.
@@ -86,6 +113,7 @@ Plot exponents(const Json& history) {
     Plot p{.x_label = "tau", .y_label = "exponents (qr)", .levels = {0}};
     for (int k = 0; k < 4; ++k) {
         const std::string name = fmt::format("lambda{}", k + 1);
+        if (!has(history, {"tau", name.c_str()})) continue;
         p.curves.push_back(
             {.x = numbers_of(history["tau"]),
              .y = numbers_of(history[name]),
@@ -96,23 +124,14 @@ Plot exponents(const Json& history) {
     return p;
 }
 
-bool has(const Json& object, const std::vector<const char*>& names) {
-    return std::all_of(names.begin(), names.end(), [&object](const char* name) {
-        return object.contains(name) && object[name].is_array() && !object[name].empty();
-    });
-}
-
 }  // namespace
 
 std::vector<Plot> run_plots(const Json& answer) {
     std::vector<Plot> plots;
-    if (answer.contains("series") && has(answer["series"], {"tau", "x"}))
-        plots.push_back(displacement(answer["series"]));
-    if (answer.contains("series") && has(answer["series"], {"tau", "x", "y"}))
-        plots.push_back(relative_displacement(answer));
-    const auto history = Json::json_pointer("/exponents/qr/history");
-    if (answer.contains(history) && has(answer[history], {"tau", "lambda1"}))
-        plots.push_back(exponents(answer[history]));
+    const Json &series = part(answer, "/series"), &history = part(answer, "/exponents/qr/history");
+    if (has(series, {"tau", "x"})) plots.push_back(displacement(series));
+    if (has(series, {"tau", "x", "y"})) plots.push_back(relative_displacement(answer));
+    if (has(history, {"tau", "lambda1"})) plots.push_back(exponents(history));
     if (!plots.empty()) plots[0].title = title_of(answer);
     return plots;
 }

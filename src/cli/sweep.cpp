@@ -1,5 +1,4 @@
 // `vines sweep`: a sweep or a shard of one into a file, which a later run can complete.
-#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -51,9 +50,11 @@ bool is_whole(const SweepOptions& o) { return o.plot || o.fields.format == "csv"
 void check(const SweepOptions& o, const api::SweepRequest& request) {
     if (is_whole(o) && o.resume)
         throw api::Problem(422, "--resume completes lines of JSON, not --plot or --format csv");
-    const auto varies = [](const api::Axis& axis) { return axis.values.size() > 1; };
-    const auto axes = std::count_if(request.axes.begin(), request.axes.end(), varies);
-    if (o.plot && axes > (request.plan.grid.reduced ? 2 : 1))
+    std::size_t along = 0;
+    for (std::size_t a = 0; a < request.axes.size(); ++a)
+        along += a != request.plan.grid.reduced && request.axes[a].values.size() > 1;
+    const bool is_point = request.plan.grid.reduced && request.axes.size() == 1;
+    if (o.plot && (along > 1 || is_point))
         throw api::Problem(
             422, "--plot draws along one axis; of more the page draws a map, or leave it out");
 }

@@ -4,9 +4,8 @@
 
 #include <cmath>
 #include <functional>
-#include <limits>
-#include <map>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -32,31 +31,40 @@ struct Abscissa {
     double of(const Json& point) const { return number_at(point, parameter) / unit; }
 };
 
-/// The one axis that has several values; none: there are more, or a line does not name it.
-std::optional<Abscissa> abscissa_of(const Json& start, const std::vector<Json>& points) {
-    std::optional<Abscissa> found;
+/// The one axis along which points differ, the first where they do along none. Throws
+/// std::runtime_error where they do along more.
+Abscissa abscissa_of(const Json& start, const std::vector<Json>& points) {
+    std::optional<std::string> first, found;
     for (const Json& axis : start["axes"]) {
         const std::string parameter = word_at(axis, "parameter");
-        const bool varies = axis["values"].size() > 1 || start["axes"].size() == 1;
-        if (!varies || (word_at(points[0], "reduce").ends_with(" " + parameter))) continue;
-        if (found) return std::nullopt;
-        found = {parameter, parameter == "b" ? mm : 1};
+        if (word_at(points[0], "reduce").ends_with(" " + parameter)) continue;
+        if (!first) first = parameter;
+        if (!axis.contains("values") || axis["values"].size() < 2) continue;
+        if (found)
+            throw std::runtime_error(
+                "a sweep along one axis can be drawn; one along more is a map, which the page "
+                "draws");
+        found = parameter;
     }
-    return found;
+    const std::string parameter = found ? *found : first.value_or("");
+    return {parameter, parameter == "b" ? mm : 1};
 }
 
-void add(Curve& curve, double x, double y) {
+/// What is not told is not drawn.
+void add(Curve& curve, double x, double y, std::optional<double> error = {}) {
+    if (!std::isfinite(x) || !std::isfinite(y)) return;
     curve.x.push_back(x);
     curve.y.push_back(y);
+    if (error) curve.error.push_back(std::isfinite(*error) ? *error : 0);
 }
 
 /// What is drawn of a section's states: at impact, where all have |x - y| = b, as at whole cycles.
 std::optional<Plot> section(const std::vector<Json>& points, const Abscissa& at) {
+    const Json::json_pointer states("/section/x");
     Plot p{.y_label = "x in the section (mm)", .curves = {{.dots = true}}};
     for (const Json& point : points) {
-        if (!point.contains("section")) continue;
-        for (const double x : numbers_of(point["section"]["x"], mm))
-            add(p.curves[0], at.of(point), x);
+        if (!point.contains(states)) continue;
+        for (const double x : numbers_of(point[states], mm)) add(p.curves[0], at.of(point), x);
     }
     if (p.curves[0].x.empty()) return std::nullopt;
     return p;
@@ -72,20 +80,11 @@ std::vector<Curve> by_word(
         Curve curve{.colour = colour, .label = word, .dots = true};
         for (const Json& point : points) {
             const auto [value, error] = value_and_error(point);
-            if (word_at(point, field) != word || !std::isfinite(value)) continue;
-            add(curve, at.of(point), value);
-            curve.error.push_back(std::isfinite(error) ? error : 0);
+            if (word_at(point, field) == word) add(curve, at.of(point), value, error);
         }
         if (!curve.x.empty()) curves.push_back(std::move(curve));
     }
     return curves;
-}
-
-double first_of(const Json& point, const char* field) {
-    const auto list = point.find(field);
-    return list != point.end() && list->is_array() && !list->empty() && (*list)[0].is_number()
-               ? (*list)[0].get<double>()
-               : std::numeric_limits<double>::quiet_NaN();
 }
 
 Plot lambda1(const std::vector<Json>& points, const Abscissa& at) {
@@ -95,7 +94,7 @@ Plot lambda1(const std::vector<Json>& points, const Abscissa& at) {
             points, at, "verdict",
             {{"chaotic", plot::red}, {"regular", plot::colours[0]}, {"not_decided", plot::grey}},
             [](const Json& p) {
-                return std::pair(first_of(p, "lambda"), first_of(p, "standard_error"));
+                return std::pair(first_at(p, "lambda"), first_at(p, "standard_error"));
             }),
         .levels = {0}};
 }
@@ -133,17 +132,16 @@ std::string given_beside_axes(const Json& request) {
 
 std::vector<Plot> sweep_plots(const Json& start, const std::vector<Json>& points) {
     if (points.empty()) return {};
-    const std::optional<Abscissa> at = abscissa_of(start, points);
-    if (!at) return {};
+    const Abscissa at = abscissa_of(start, points);
     std::vector<Plot> plots;
-    if (std::optional<Plot> states = section(points, *at)) plots.push_back(std::move(*states));
-    plots.push_back(lambda1(points, *at));
-    plots.push_back(response(points, *at, "rms ratio of x", "x_rms_ratio", 1));
-    plots.push_back(response(points, *at, "max |x| (mm)", "x_max", mm));
-    plots.push_back(response(points, *at, "peak of |x| (mm)", "x_peak", mm));
+    if (std::optional<Plot> states = section(points, at)) plots.push_back(std::move(*states));
+    plots.push_back(lambda1(points, at));
+    plots.push_back(response(points, at, "rms ratio of x", "x_rms_ratio", 1));
+    plots.push_back(response(points, at, "max |x| (mm)", "x_max", mm));
+    plots.push_back(response(points, at, "peak of |x| (mm)", "x_peak", mm));
     std::erase_if(plots, [](const Plot& p) { return p.curves.empty(); });
-    for (Plot& p : plots) p.x_label = at->label();
-    if (!plots.empty()) plots[0].title = given_beside_axes(start["request"]);
+    for (Plot& p : plots) p.x_label = at.label();
+    if (!plots.empty()) plots[0].title = given_beside_axes(start.value("request", Json::object()));
     return plots;
 }
 

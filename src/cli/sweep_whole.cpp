@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 
+#include "api/json_text.hpp"
 #include "api/sweep_frame.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/stop_signals.hpp"
@@ -19,7 +20,9 @@ int sweep_whole(const SweepRun& run, const TakeSweep& take) {
     stoppable.reset();
     std::vector<api::Json> points;
     for (auto& [index, line] : lines) points.push_back(std::move(line));
-    if (!points.empty()) take(api::sweep_start(run.request), points);
+    // As it is read again: what is made has its lists packed.
+    if (!points.empty())
+        take(api::Json::parse(api::json_text(api::sweep_start(run.request))), points);
     if (!warning.empty()) tell(warning);
     if (points.size() == run.of) return complete;
     tell_stopped(points.size(), run.of);

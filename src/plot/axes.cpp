@@ -4,21 +4,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace vines::plot {
 
 namespace {
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
 // Beyond any value.
-constexpr Range nothing{1e300, -1e300};
+constexpr Range nothing{infinity, -infinity};
+
+// Steps from zero that are still counted one by one.
+constexpr double most_steps = 1e15;
 
 Range extended(const Range& r, double from, double to) {
     return {std::min(r.first, from), std::max(r.second, to)};
 }
 
 Range widened(const Range& r, double share) {
+    if (!(r.second > r.first)) {
+        const double beside = std::max(0.5, 1e-6 * std::abs(r.first));
+        return {r.first - beside, r.first + beside};
+    }
     const double margin = (r.second - r.first) * share;
-    if (!(r.second > r.first)) return {r.first - 0.5, r.first + 0.5};
     return {r.first - margin, r.second + margin};
 }
 
@@ -60,6 +68,7 @@ std::vector<double> ticks(const Range& r, int count) {
     for (double m : {2., 5., 10.})
         if (step < raw) step = m * power;
     std::vector<double> list;
+    if (!(std::max(std::abs(r.first), std::abs(r.second)) < most_steps * step)) return list;
     for (double k = std::ceil(r.first / step - 1e-9);
          k * step <= r.second * (1 + 1e-12) + 1e-12 * step; ++k)
         list.push_back(k * step);
@@ -72,7 +81,7 @@ std::vector<double> y_ticks(const Plot& plot, const Range& range, int count) {
     return list;
 }
 
-std::string tick_label(double t) { return fmt::format("{:g}", std::abs(t) < 1e-12 ? 0 : t); }
+std::string tick_label(double t) { return fmt::format("{:.10g}", t == 0 ? 0 : t); }
 
 std::string y_tick_label(const Plot& plot, double tick) {
     return (plot.logarithmic ? "1e" : "") + tick_label(tick);

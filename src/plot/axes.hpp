@@ -19,7 +19,8 @@ Range y_range(const Plot& plot);
 /// Where a value stands on the ordinate.
 double on_ordinate(const Plot& plot, double y);
 
-/// Steps of 1, 2 or 5 times a power of ten, about `count` of them.
+/// Steps of 1, 2 or 5 times a power of ten, about `count` of them; none where a step is lost in
+/// the digits of the values.
 std::vector<double> ticks(const Range& range, int count);
 /// The same of the ordinate: a logarithmic one has ticks at powers of ten.
 std::vector<double> y_ticks(const Plot& plot, const Range& range, int count);

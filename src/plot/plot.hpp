@@ -9,7 +9,7 @@
 namespace vines::plot {
 
 struct Curve {
-    std::vector<double> x{}, y{};  ///< of equal length; what is not finite leaves a gap
+    std::vector<double> x{}, y{};  ///< of equal length; a y that is not finite leaves a gap
     std::string colour = "#1f6fb2";
     std::string label{};          ///< in the legend, if any
     bool dots = false;            ///< points instead of a line

@@ -14,7 +14,7 @@ namespace vines::plot {
 
 namespace {
 
-constexpr int left = 9;  // characters of the ordinate's labels
+constexpr int least_room = 7;  // characters of the ordinate's labels
 constexpr int narrowest = 20, least_height = 4;
 
 // Dots in a character of Braille.
@@ -50,15 +50,32 @@ int length(const std::string& text) {
         std::count_if(text.begin(), text.end(), [](char c) { return (c & '\xC0') != '\x80'; }));
 }
 
+int lines_of(const Terminal& terminal) { return std::max(terminal.height, least_height); }
+
+std::vector<double> ordinate_ticks(const Plot& plot, const Terminal& terminal) {
+    return y_ticks(plot, y_range(plot), std::max(lines_of(terminal) / 3, 2));
+}
+
+/// Characters of the frames.
+struct Layout {
+    int left;   ///< before them, for the ordinate's labels and the axis
+    int width;  ///< in them
+};
+
+// Of points, curve by curve: they tell them apart where colours do not.
+constexpr std::array unicode_marks = {"•", "×", "+", "◦", "▪", "▵", "◇"};
+constexpr std::array ascii_marks = {"o", "x", "+", "#", "@", "%", "&"};
+
 class TextPlot {
 public:
-    TextPlot(const Plot& plot, const Range& x, int width, const Terminal& terminal)
+    TextPlot(const Plot& plot, const Range& x, const Layout& layout, const Terminal& terminal)
         : plot_(plot),
           terminal_(terminal),
           x_(x),
           y_(y_range(plot)),
-          width_(width),
-          height_(std::max(terminal.height, least_height)),
+          left_(layout.left),
+          width_(layout.width),
+          height_(lines_of(terminal)),
           cells_(static_cast<std::size_t>(width_ * height_)) {
         for (double level : plot.levels) rule_across(on_ordinate(plot_, level));
         for (double moment : plot.moments) rule_down(moment);
@@ -73,7 +90,7 @@ public:
         for (int row = 0; row < height_; ++row) {
             const auto tick = at_ticks.find(row), end = at_ends.find(row);
             out += fmt::format(
-                "{:>{}} {}", tick == at_ticks.end() ? "" : tick->second, left - 2,
+                "{:>{}} {}", tick == at_ticks.end() ? "" : tick->second, left_ - 2,
                 terminal_.ascii          ? "|"
                 : tick == at_ticks.end() ? "│"
                                          : "┤");
@@ -90,6 +107,7 @@ private:
         unsigned dots = 0;
         const Curve* curve = nullptr;  ///< the last that has a dot there
         const char* mark = nullptr;    ///< a character in place of dots
+        bool is_point = false;         ///< the mark is one of the curve
     };
 
     Cell& cell(int column, int row) {
@@ -150,21 +168,30 @@ private:
     }
 
     void dots(const Curve& c) {
-        const bool marks = c.x.size() <= static_cast<std::size_t>(width_);
+        const bool is_marked = has_marks(c);
         for (std::size_t i = 0; i < c.x.size(); ++i) {
             const double x = c.x[i], v = on_ordinate(plot_, c.y[i]);
             if (!inside(x, v)) continue;
             if (!c.error.empty()) stroke(x, v - c.error[i], x, v + c.error[i], c);
             dot(across(x), down(v), c);
-            if (marks) cell(across(x) / dots_across, down(v) / dots_down).mark = point_mark();
+            if (!is_marked) continue;
+            Cell& at = cell(across(x) / dots_across, down(v) / dots_down);
+            at.mark = point_mark(c);
+            at.is_point = true;
         }
     }
-    const char* point_mark() const { return terminal_.ascii ? "o" : "•"; }
+    bool has_marks(const Curve& c) const {
+        return c.dots && c.x.size() <= static_cast<std::size_t>(width_);
+    }
+    const char* point_mark(const Curve& c) const {
+        const auto& marks = terminal_.ascii ? ascii_marks : unicode_marks;
+        const auto k = static_cast<std::size_t>(&c - plot_.curves.data());
+        return marks[terminal_.colours ? 0 : k % marks.size()];
+    }
 
     std::string shown(const Cell& c) const {
-        const bool is_point = c.curve && c.mark && c.mark == std::string(point_mark());
         if (!c.curve) return c.mark ? c.mark : " ";
-        const std::string character = is_point ? c.mark : terminal_.ascii ? "*" : braille(c.dots);
+        const std::string character = c.is_point ? c.mark : terminal_.ascii ? "*" : braille(c.dots);
         return coloured(character, *c.curve);
     }
     std::string coloured(const std::string& what, const Curve& curve) const {
@@ -174,7 +201,7 @@ private:
 
     std::map<int, std::string> tick_labels() const {
         std::map<int, std::string> labels;
-        for (double t : y_ticks(plot_, y_, std::max(height_ / 3, 2)))
+        for (double t : ordinate_ticks(plot_, terminal_))
             labels[down(t) / dots_down] = y_tick_label(plot_, t);
         return labels;
     }
@@ -192,7 +219,7 @@ private:
             while (labels.contains(row) && row < height_) ++row;
             if (row == height_) row = wanted;
             while (labels.contains(row) && row > 0) --row;
-            labels[row] = coloured(c.label, c);
+            labels[row] = coloured(has_marks(c) ? point_mark(c) + (" " + c.label) : c.label, c);
         }
         return labels;
     }
@@ -200,19 +227,30 @@ private:
     const Plot& plot_;
     const Terminal& terminal_;
     const Range x_, y_;
-    const int width_, height_;
+    const int left_, width_, height_;
     std::vector<Cell> cells_;
 };
 
 int longest_label(const std::vector<Plot>& plots) {
     int longest = 0;
     for (const Plot& p : plots)
-        for (const Curve& c : p.curves) longest = std::max(longest, length(c.label));
+        for (const Curve& c : p.curves)
+            longest = std::max(longest, length(c.label) + (c.dots && !c.label.empty() ? 2 : 0));
     return longest;
 }
 
+Layout layout_of(const std::vector<Plot>& plots, const Terminal& terminal) {
+    int room = least_room;
+    for (const Plot& p : plots)
+        for (double t : ordinate_ticks(p, terminal))
+            room = std::max(room, length(y_tick_label(p, t)));
+    const int left = room + 2, label = longest_label(plots);
+    return {left, std::max(terminal.width - 1 - left - (label > 0 ? label + 1 : 0), narrowest)};
+}
+
 /// The axis with its ticks, the numbers below them, and its label.
-std::string abscissa(const Range& x, int width, const std::string& label, bool ascii) {
+std::string abscissa(const Range& x, const Layout& layout, const std::string& label, bool ascii) {
+    const auto [left, width] = layout;
     std::string axis, numbers(static_cast<std::size_t>(left + width), ' ');
     std::map<int, std::string> at;
     for (double t : ticks(x, std::max(width / 12, 2)))
@@ -229,19 +267,19 @@ std::string abscissa(const Range& x, int width, const std::string& label, bool a
     }
     numbers.erase(numbers.find_last_not_of(' ') + 1);
     const int indent = std::max(left + (width - length(label)) / 2, 0);
-    return std::string(left - 1, ' ') + (ascii ? "+" : "└") + axis + "\n" + numbers + "\n" +
-           std::string(static_cast<std::size_t>(indent), ' ') + label + "\n";
+    return std::string(static_cast<std::size_t>(left - 1), ' ') + (ascii ? "+" : "└") + axis +
+           "\n" + numbers + "\n" + std::string(static_cast<std::size_t>(indent), ' ') + label +
+           "\n";
 }
 
 }  // namespace
 
 std::string text(const std::vector<Plot>& plots, const Terminal& terminal) {
     const Range x = x_range(plots);
-    const int label = longest_label(plots),
-              width = std::max(terminal.width - 1 - left - (label > 0 ? label + 1 : 0), narrowest);
+    const Layout layout = layout_of(plots, terminal);
     std::string out;
-    for (const Plot& p : plots) out += TextPlot(p, x, width, terminal).draw();
-    if (!plots.empty()) out += abscissa(x, width, plots.back().x_label, terminal.ascii);
+    for (const Plot& p : plots) out += TextPlot(p, x, layout, terminal).draw();
+    if (!plots.empty()) out += abscissa(x, layout, plots.back().x_label, terminal.ascii);
     return out;
 }
 

@@ -16,7 +16,7 @@ struct Terminal {
 };
 
 /// Plots over each other with the same abscissa, as lines. Labels stand where their curves end;
-/// bands are left out.
+/// points of several curves have their own marks where there are no colours; bands are left out.
 std::string text(const std::vector<Plot>& plots, const Terminal& terminal);
 
 }  // namespace vines::plot

@@ -68,7 +68,7 @@ test("a sweep is drawn by verdict and by regime, as its lines are by vines plot"
     assert.ok(drawn.includes(label), label);
   const points = parsed(lines).filter(({type}) => type === "point");
   for (const word of points.flatMap(({verdict, regime}) => [verdict, regime]))
-    assert.match(drawn, new RegExp(`  +${word}$`, "m"));
+    assert.match(drawn, new RegExp(`  +\\S ${word}$`, "m"));
   assert.match(drawn, / b \(mm\)\n$/);
 });
 
@@ -97,11 +97,151 @@ test("a terminal without UTF-8 is drawn to in ASCII, one with colours in them un
   assert.ok(!(await told([], {shell, env: {NO_COLOR: "1"}})).includes(esc));
 });
 
+test("what was left out of an answer is left out of its plots", async () => {
+  const whole = ["simulate", "-p", "preset=fig11", "-p", "tau_end=60"];
+  const all = "include=series,impacts,exponents,regime";
+  for (const [fields, title, labels] of [
+    ["series", "", ["x (mm)", "y - x (mm)"]],
+    ["series,impacts.tau,regime", "regime I", ["x (mm)", "y - x (mm)"]],
+    ["parameters,series.tau,series.x", "b = 15 mm", ["x (mm)"]],
+    ["series,exponents.verdict", "not_decided", ["x (mm)", "y - x (mm)"]],
+    ["exponents.qr.history.tau,exponents.qr.history.lambda1", "", ["exponents (qr)"]],
+  ]) {
+    const thinned = [...whole, "-p", all, "-p", `fields=${fields}`];
+    const drawn = await told([...thinned, "--plot"]);
+    assert.deepEqual(
+      drawn.split("\n").filter((line) => /\(mm\)|\(qr\)|^b =|^regime|^not_/.test(line)),
+      [...(title ? [title] : []), ...labels],
+      fields,
+    );
+    assert.equal(await told(["plot"], {input: await told(thinned)}), drawn);
+  }
+  const others = ["-p", "include=series,exponents", "-p", "exponents=eigenvalues", "--plot"];
+  assert.match(await told([...whole, ...others]), /^b = 15 mm\nx \(mm\)\n/);
+});
+
+test("what no run answers is not drawn, and ends nothing", async () => {
+  const run_of = (series, more = {}) => JSON.stringify({series, parameters: {b: 1}, ...more});
+  for (const input of [
+    run_of({tau: [1, 2, 3], x: [1]}),
+    run_of({tau: [null, 2], x: [1, 2]}),
+    run_of([1]),
+    '{"type":"start","axes":3}\n{"type":"point"}\n',
+    '{"type":"start","axes":[{"parameter":"b","values":[1]}]}\n{"type":"point","b":"x","lambda":[1]}\n',
+  ]) {
+    const {code, out, errors} = await run(["plot"], {input});
+    assert.deepEqual({code, out}, {code: 1, out: ""}, input);
+    assert.match(errors, /nothing to draw|without its first line/, input);
+  }
+  const sound = {tau: [1, 2], x: [0, 0], y: [0, 0]};
+  for (const impacts of [{}, [], {tau: [1]}, {tau: [1], side: []}])
+    assert.equal(
+      await told(["plot"], {input: run_of(sound, {impacts})}),
+      await told(["plot"], {input: run_of(sound)}),
+    );
+  for (const series of [
+    {tau: [1e16, 10000000000000004], x: [1, 2]},
+    {tau: [1, 2], x: [1e17, 1e17]},
+  ])
+    assert.match(await told(["plot"], {input: run_of(series)}), /^b = 1000 mm\nx \(mm\)\n/);
+});
+
+test("the walls are in sight of a run that meets none", async () => {
+  const free = ["simulate", "-p", "b=0.5", "-p", "y0=0", "-p", "tau_end=30", "--plot"];
+  const rows = (await told(free)).split("\n");
+  const frame = rows.slice(rows.indexOf("y - x (mm)") + 1);
+  for (const wall of [500, -500])
+    assert.ok(
+      frame.some((row) => row.startsWith(`${wall} ┤┄┄┄`.padStart(12))),
+      `${wall}`,
+    );
+});
+
+test("a reduced sweep is drawn over its other axis, one of a single point at it", async () => {
+  const reduced = ["-a", "Omega=0.9:1.1:3", "-p", "cycles=5", "-p", "reduce=max over Omega"];
+  for (const axis of ["b=0.01:0.02:4", "b=0.01"]) {
+    const args = ["sweep", "-a", axis, ...reduced];
+    const drawn = await told([...args, "--plot"]);
+    assert.match(drawn, /\npeak of \|x\| \(mm\), by regime\n(.*\n)+ *b \(mm\)\n$/);
+    assert.equal(await told(["plot"], {input: await told(args)}), drawn);
+  }
+  const point = ["sweep", "-a", "b=0.01", "-a", "R=0.6", "-p", "cycles=5", "--plot"];
+  assert.match(await told(point), / b \(mm\)\n$/);
+  assert.equal((await run(["sweep", ...reduced, "--plot"])).code, 2);
+});
+
+test("points that are no system are left out of a plot, and told where there are no others", async () => {
+  const some = ["sweep", "-a", "x0=0,0.05,0.03", "-p", "y0=0.02", "-p", "cycles=5"];
+  const points = parsed(await told(some)).filter(({type}) => type === "point");
+  assert.deepEqual(
+    points.map((point) => "error" in point),
+    [false, true, false],
+  );
+  assert.match(await told([...some, "--plot"]), /max \|x\| \(mm\), by regime/);
+  const none = await run([...some, "-p", "indices=[1]", "--plot"]);
+  assert.deepEqual({code: none.code, out: none.out}, {code: 1, out: ""});
+  assert.match(none.errors, /nothing to draw/);
+});
+
+test("lines whose last one was cut off are drawn up to it", async () => {
+  const lines = await told(sweep);
+  const whole = lines.trimEnd().split("\n").slice(0, 5).join("\n");
+  const cut = `${whole}\n${lines.split("\n")[5].slice(0, 100)}`;
+  assert.equal(await told(["plot"], {input: cut}), await told(["plot"], {input: whole}));
+});
+
+test("without colours points of different words have different marks", async () => {
+  for (const [env, one] of [
+    [{}, "•"],
+    [{LC_ALL: "C"}, "o"],
+  ]) {
+    const rows = (await told([...sweep, "--plot"], {env})).split("\n");
+    const first = rows.findIndex((row) => row.startsWith("max |x|")) + 1;
+    const frame = rows.slice(first, first + 8);
+    const labels = frame.flatMap((row) => row.match(/(\S) (\w+)$/)?.slice(1, 3) ?? []);
+    const marks = labels.filter((_, k) => k % 2 === 0);
+    assert.ok(marks.length > 2 && marks.includes(one), marks.join());
+    assert.equal(new Set(marks).size, marks.length);
+    const drawn = frame.map((row) => [...row].slice(9, -10).join("")).join("");
+    for (const mark of marks) assert.ok(drawn.includes(mark), mark);
+  }
+});
+
+test("ticks of a narrow range differ, and long ones leave the frame in line", async () => {
+  const narrow = ["sweep", "-a", "Omega=1:1.0000001:3", "-p", "cycles=5", "--plot"];
+  const ticks = (await told(narrow)).trimEnd().split("\n").at(-2).trim().split(/ +/);
+  assert.ok(ticks.length > 1 && new Set(ticks).size === ticks.length, ticks.join());
+  const series = {tau: [1, 2], x: [1e4, 1e4 + 0.5]};
+  const long = await told(["plot"], {input: JSON.stringify({series})});
+  const frame = long.split("\n").filter((row) => /[│┤]/.test(row));
+  assert.equal(new Set(frame.map((row) => row.search(/[│┤]/))).size, 1, long);
+  assert.match(long, /^10000400 ┤/m);
+});
+
+test("a file that a plot goes into has no colours of the terminal", async () => {
+  const file = at("plot.txt");
+  const shell = `script -qec "stty cols 200; $VINES ${orbit.join(" ")} --plot -o ${file}" /dev/null </dev/null`;
+  await told([], {shell});
+  assert.equal(readFileSync(file, "utf8"), await told([...orbit, "--plot"]));
+});
+
 test("what cannot be drawn is said before anything is computed", async () => {
   const map = ["sweep", "-a", "b=0.01:0.03:900", "-a", "R=0.5:0.9:900", "-p", "cycles=1000"];
   for (const [args, input, code, said] of [
     [[...map, "--plot"], "", 2, /one axis; of more the page draws a map/],
     [[...sweep, "--plot", "--resume"], "", 2, /--resume completes lines of JSON/],
+    [
+      [...sweep, "--plot", "--format", "csv"],
+      "",
+      2,
+      /--(format excludes --plot|plot excludes --format)/,
+    ],
+    [
+      [...orbit, "--plot", "--format", "csv"],
+      "",
+      2,
+      /--(format excludes --plot|plot excludes --format)/,
+    ],
     [["plot"], "{}", 1, /nothing to draw/],
     [["plot"], "[]", 2, /object/],
     [["plot"], '{"type":"point","index":0}\n', 1, /without its first line/],

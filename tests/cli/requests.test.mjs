@@ -78,6 +78,10 @@ test("a fault of a flag names the field, or how it is written", async () => {
     [["sweep", "-a", "b=0.01:0.02:3", "-p", "cycels=5"], /did you mean cycles\?/],
     [["sweep", "-a", "b=0.01:x:3"], /number/],
     [["sweep", "-p", "cycles=5"], /axes|required/],
+    [["sweep", "-p", "axes=x", "-a", "b=0.01:0.02:3"], /axes holds --axis: not both/],
+    [["sweep", "-p", 'base={"preset":"fig3"}', "-p", "b=0.02"], /base holds b: not both/],
+    [["sweep", "-a", "b=0.01", "-p", 'starts=[{"y0":0,"y0":1}]'], /^starts: .*"y0" comes twice/],
+    [["sweep", "-a", "b=0.01", "-p", "starts=[{"], /^starts: .*not valid JSON/],
     [["presets", "fig33"], /no preset has the name fig33; did you mean fig3\?/],
     [["parameters", "windo"], /no field has the name windo; did you mean window\?/],
   ])
@@ -187,6 +191,8 @@ test("presets and parameters are those of the service", async () => {
   assert.match(await told(["presets", "fig3"]), /\n {2}b = 0.022\n(.*\n)*vines simulate -p preset/);
   const {fields} = JSON.parse(await told(["parameters", "--format", "json"]));
   const all = await told(["parameters"]);
+  assert.match(all, / {2}y_dot0 +m per unit of tau its velocity\n/);
+  assert.match(all, / {2}base_acceleration_column choice /);
   for (const {name, description} of fields)
     assert.ok(
       all.split("\n").some((line) => line.startsWith(`  ${name} `) && line.endsWith(description)),
