@@ -16,6 +16,7 @@
 #include "http/end_of_work.hpp"
 #include "http/memory.hpp"
 #include "http/sweep_stream.hpp"
+#include "http/turn.hpp"
 
 namespace vines::http {
 
@@ -27,19 +28,24 @@ using api::Problem;
 // From this size on an answer's memory is given back to the system at once.
 constexpr std::size_t large = 16 << 20;
 
+// Bytes of a body that are read in a small part of a turn's moment.
+constexpr std::size_t quickly_read = 16 << 10;
+
 // Bytes of a provenance, beside what was asked for: a hash, the answer's limit.
 constexpr std::size_t most_hash = 256;
 
-/// A place to compute in, once it is free, or Problem 503.
-ComputeGate::Place place_in(ComputeGate& gate, const Request& request, Stopwatch& watch) {
-    ComputeGate::Place place = gate.enter(request.left);
-    if (!place && request.left()) throw Problem(499, "the client has left");  // for the log alone
-    if (!place)
+[[noreturn]] void end_unheard() { throw Problem(499, "the client has left"); }  // for the log alone
+
+/// The request's turn, or Problem 503.
+Turn turn_of(const Request& request, ComputeGate& gate, Stopwatch& watch) {
+    Turn turn(gate, request.left, request.body.size() <= quickly_read);
+    if (!turn && request.left()) end_unheard();
+    if (!turn)
         throw Problem::unavailable(
             "computing",
             "as many requests as the server takes are waiting already; try again in a second");
     watch.lap("queue");
-    return place;
+    return turn;
 }
 
 Json body_of(const Request& r) {
@@ -88,7 +94,7 @@ std::string encoded(
                      "fewer parts (include, fields), points (max_points) or impacts (max_impacts)",
                      bytes.size(), limit));
     } catch (const api::BrokenOff&) {
-        throw Problem(499, "the client has left");
+        end_unheard();
     }
 }
 
@@ -96,9 +102,9 @@ std::string encoded(
 Response answer(
     const Request& r, const Service& service, Stopwatch& watch,
     const std::function<api::Asked(const Request&)>& read) {
-    const ComputeGate::Place place = place_in(service.gate, r, watch);
+    Turn turn = turn_of(r, service.gate, watch);
     const RouteOptions& options = service.options;
-    const api::Stop stop = end_of_work(options.deadline, r, service.gate);
+    const api::Stop stop = end_of_work(options.deadline, r, service.gate, turn);
     api::Asked asked = read(r);
     std::optional<api::Format>& format = asked.form.format;
     if (!format) format = accepted_format(r.accept);
@@ -110,7 +116,10 @@ Response answer(
     api::Answer answer = api::answered(
         std::move(asked),
         {.stop = stop, .most_bytes = options.answer_limit, .most_kept = options.most_kept_impacts});
+    const bool goes_on = turn.goes_on();
     watch.lap("solve");
+    watch.move("solve", "queue", turn.waited());
+    if (!goes_on) end_unheard();
     service.metrics.count_impacts(answer.impacts);
     if (answer.run) {
         Response response = stream_answer(std::move(answer), r.id, service.gate);
@@ -147,7 +156,7 @@ Response identify(const Request& r, const Service& service, Stopwatch& watch) {
 }
 
 Response sweep(const Request& r, const Service& service, Stopwatch& watch) {
-    const ComputeGate::Place place = place_in(service.gate, r, watch);  // to read the request
+    const Turn turn = turn_of(r, service.gate, watch);  // to read the request
     api::SweepRequest request = api::read_sweep_request(body_of(r), service.options.sweep_points);
     watch.lap("parse");
     return stream_sweep(

@@ -9,6 +9,9 @@ namespace {
 // How soon one that has given up its wait makes room in the queue.
 constexpr auto queue_look = std::chrono::milliseconds(50);
 
+// Moments at once, for each place: they share its core.
+constexpr int moments_for_place = 4;
+
 }  // namespace
 
 /// Each place that is free goes to the one whose turn it is, who alone is woken.
@@ -33,9 +36,30 @@ bool ComputeGate::drop_out(Queue& queue, Waiting& waiting) {
     return false;
 }
 
-ComputeGate::Place ComputeGate::enter(const std::function<bool()>& gives_up) {
+bool ComputeGate::is_full() const {
+    return static_cast<int>(urgent_.size()) + moments_ >= limits_.waiting;
+}
+
+ComputeGate::Begin ComputeGate::begin() {
+    const std::lock_guard lock(mutex_);
+    if (free_ > 0) {
+        --free_;
+        return {Place(this), {}};
+    }
+    if (is_full() || moments_ >= moments_for_place * limits_.running) return {};
+    ++moments_;
+    return {{}, Moment(this)};
+}
+
+void ComputeGate::end_moment() {
+    const std::lock_guard lock(mutex_);
+    --moments_;
+}
+
+ComputeGate::Place ComputeGate::enter(const std::function<bool()>& gives_up, Moment moment) {
     std::unique_lock lock(mutex_);
-    if (free_ == 0 && static_cast<int>(urgent_.size()) >= limits_.waiting) return nullptr;
+    if (moment.release()) --moments_;
+    else if (free_ == 0 && is_full()) return nullptr;
     Waiting waiting;
     urgent_.push_back(&waiting);
     hand_out();

@@ -2,7 +2,8 @@
 //
 // Urgent work (one simulation) queues up to a limit and is turned away beyond it. Patient work (the
 // points of a sweep) waits as long as it takes, gives way to urgent work whenever some waits, and
-// so never makes it wait for more than a moment.
+// so never makes it wait for more than a moment. To wait for a place is a change of threads, which
+// takes longer than a small answer: urgent work may begin without one (turn.hpp).
 #pragma once
 
 #include <algorithm>
@@ -38,6 +39,9 @@ class ComputeGate {
     struct LeaveSweep {
         void operator()(ComputeGate* gate) const { gate->leave_sweep(); }
     };
+    struct EndMoment {
+        void operator()(ComputeGate* gate) const { gate->end_moment(); }
+    };
 
 public:
     explicit ComputeGate(const ComputeLimits& limits) : limits_(limits), free_(limits.running) {}
@@ -46,9 +50,18 @@ public:
 
     /// A place to compute in, or none (null). It is given back when it goes.
     using Place = std::unique_ptr<ComputeGate, Leave>;
+    /// A moment in which urgent work computes without a place. To the queue's limit it counts as if
+    /// it waited.
+    using Moment = std::unique_ptr<ComputeGate, EndMoment>;
+    /// For urgent work that does not wait: one of both, or neither.
+    struct Begin {
+        Place place;
+        Moment moment;
+    };
+    Begin begin();
     /// For urgent work: waits for a place, first come, first served; none where the queue is full,
-    /// or once it is given up, which is asked now and then.
-    Place enter(const std::function<bool()>& gives_up = {});
+    /// or once it is given up, which is asked now and then. Who has had a moment finds room in it.
+    Place enter(const std::function<bool()>& gives_up = {}, Moment moment = {});
     /// For patient work: waits for a place behind all urgent work, and behind the patient work that
     /// came before; none once it is stopped or the gate is closed to sweeps.
     Place enter_patiently(const std::stop_token& stop);
@@ -82,12 +95,14 @@ private:
 
     void leave();
     void leave_sweep();
+    void end_moment();
+    bool is_full() const;
     void hand_out();
     bool drop_out(Queue& queue, Waiting& waiting);
 
     const ComputeLimits limits_;
     mutable std::mutex mutex_;
-    int free_, sweeps_ = 0;  // where a place is free, nobody waits
+    int free_, sweeps_ = 0, moments_ = 0;  // where a place is free, nobody waits
     Queue urgent_, patient_;
     // Changed under the mutex; read without it by work that only takes a look.
     std::atomic<bool> wanted_ = false, wanted_patiently_ = false;

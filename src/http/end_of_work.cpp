@@ -34,15 +34,16 @@ private:
 
 }  // namespace
 
-api::Stop end_of_work(double seconds, const Request& request, const ComputeGate& gate) {
+api::Stop end_of_work(double seconds, const Request& request, const ComputeGate& gate, Turn& turn) {
     using Clock = std::chrono::steady_clock;
     const auto now = Clock::now();
     const auto gone = std::make_shared<NotNeeded>(request, gate);
-    const auto beyond = [now, gone, seconds](double share) {
+    const auto beyond = [now, gone, seconds, &turn](double share) {
         const std::chrono::duration<double> time(share * seconds);
-        return [deadline = now + time, gone] {
+        return [deadline = now + time, gone, &turn] {
+            if (!turn.goes_on()) return true;
             const auto at = Clock::now();
-            return at > deadline || (*gone)(at);
+            return at - turn.waited() > deadline || (*gone)(at);
         };
     };
     return {

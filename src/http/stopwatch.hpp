@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,8 @@ using Timing = std::vector<std::pair<std::string, double>>;
 
 class Stopwatch {
 public:
+    using Clock = std::chrono::steady_clock;
+
     /// The part that is over, from the end of the one before.
     void lap(const char* name) {
         const auto now = Clock::now();
@@ -20,10 +23,14 @@ public:
             name,
             std::chrono::duration<double, std::milli>(now - std::exchange(last_, now)).count());
     }
+    /// A part of a lap that belongs to another.
+    void move(std::string_view from, std::string_view to, Clock::duration time) {
+        const double ms = std::chrono::duration<double, std::milli>(time).count();
+        for (auto& [name, lap] : laps_) lap += name == to ? ms : name == from ? -ms : 0;
+    }
     Timing take() { return std::move(laps_); }
 
 private:
-    using Clock = std::chrono::steady_clock;
     Clock::time_point last_ = Clock::now();
     Timing laps_;
 };

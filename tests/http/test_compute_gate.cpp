@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "http/compute_gate.hpp"
+#include "http/turn.hpp"
 
 using namespace vines::http;
 
@@ -208,4 +209,89 @@ TEST_CASE("no wake-up is lost, and no place, where urgent and patient work meet"
     CHECK(urgent_done == 3 * rounds);
     CHECK(most <= places);
     CHECK(!gate.wanted());
+}
+
+TEST_CASE("urgent work begins without a place where none is free, as much of it as may wait") {
+    ComputeGate gate({.running = 1, .waiting = 2});
+    const ComputeGate::Begin first = gate.begin(), second = gate.begin(), third = gate.begin();
+    CHECK(first.place);
+    CHECK(!first.moment);
+    CHECK(second.moment);
+    CHECK(third.moment);
+    CHECK(!second.place);
+    const ComputeGate::Begin fourth = gate.begin();
+    CHECK(!fourth.place);
+    CHECK(!fourth.moment);
+    CHECK(!gate.enter());
+    CHECK(gate.load().running == 1);
+}
+
+TEST_CASE("there are few moments for each place, and one that ended makes room for another") {
+    ComputeGate gate({.running = 1, .waiting = 1000});
+    const ComputeGate::Place place = gate.enter();
+    std::vector<ComputeGate::Begin> begun;
+    for (ComputeGate::Begin begin = gate.begin(); begin.moment; begin = gate.begin())
+        begun.push_back(std::move(begin));
+    CHECK(begun.size() == 4);
+    begun.pop_back();
+    CHECK(gate.begin().moment);
+}
+
+TEST_CASE("work whose moment is over finds room in a queue that is full, behind those in it") {
+    ComputeGate gate({.running = 1, .waiting = 2});
+    ComputeGate::Place place = gate.enter();
+    ComputeGate::Begin begin = gate.begin();
+    REQUIRE(begin.moment);
+    std::atomic<bool> first_entered = false, second_entered = false;
+    std::thread first([&] { first_entered = gate.enter() != nullptr; });
+    wait_until([&] { return gate.load().waiting == 1; });
+    CHECK(!gate.enter());
+    std::thread second([&] {
+        const ComputeGate::Place own = gate.enter({}, std::move(begin.moment));
+        second_entered = own && first_entered;
+    });
+    wait_until([&] { return gate.load().waiting == 2; });
+    CHECK(!gate.enter());
+    place.reset();
+    first.join();
+    second.join();
+    CHECK(second_entered);
+    CHECK(gate.begin().place);
+}
+
+TEST_CASE("a turn goes on without a place for a moment, then waits for one, or gives up") {
+    ComputeGate gate({.running = 1});
+    ComputeGate::Place place = gate.enter();
+    std::atomic<bool> left = false;
+    Turn turn(gate, [&] { return left.load(); }, true);
+    REQUIRE(turn);
+    CHECK(gate.load().waiting == 0);
+    std::atomic<bool> goes_on = false;
+    std::thread work([&] {
+        while (turn.waited().count() == 0 && turn.goes_on()) {}
+        goes_on = turn.goes_on();
+    });
+    wait_until([&] { return gate.load().waiting == 1; });
+    place.reset();
+    work.join();
+    CHECK(goes_on);
+    CHECK(turn.waited().count() > 0);
+    CHECK(gate.load().running == 1);
+
+    Turn other(gate, [&] { return left.load(); }, true);
+    left = true;
+    while (other.goes_on()) {}
+    CHECK(!other);
+    CHECK(gate.load().waiting == 0);
+}
+
+TEST_CASE("a turn that may not begin without a place waits for one") {
+    ComputeGate gate({.running = 1, .waiting = 0});
+    ComputeGate::Place place = gate.enter();
+    CHECK(!Turn(gate, {}, true));
+    CHECK(!Turn(gate, {}, false));
+    place.reset();
+    Turn turn(gate, {}, false);
+    CHECK(turn.goes_on());
+    CHECK(gate.load().running == 1);
 }
