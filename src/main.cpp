@@ -14,6 +14,7 @@
 #include "cli/stop_signals.hpp"
 #include "http/commands.hpp"
 #include "program/command.hpp"
+#include "program/examples.hpp"
 #include "program/print.hpp"
 #include "program/streams.hpp"
 #include "program/tell.hpp"
@@ -22,11 +23,10 @@
 namespace {
 
 const char* const examples =
-    "Examples:\n"
-    "  vines simulate -p preset=fig3 --plot\n"
-    "  vines sweep -a b=0.01:0.03:41 --plot\n"
-    "  vines identify record.csv -p preset=fig20 | jq .verdict\n"
-    "  vines serve --port 8080";
+    "vines simulate -p preset=fig3 --plot\n"
+    "vines sweep -a b=0.01:0.03:41 --plot\n"
+    "vines identify record.csv -p preset=fig20 | jq .verdict\n"
+    "vines serve --port 8080";
 
 /// The command that a wrong flag was given to.
 std::string name_of_asked(const CLI::App& app) {
@@ -104,7 +104,6 @@ int main(int argc, char** argv) {
     vines::prepare_streams();
     CLI::App app(
         "An oscillator with a vibro-impact nonlinear energy sink, simulated exactly.", "vines");
-    app.footer(examples);
     app.set_version_flag("--version", vines::api::version());
     app.require_subcommand(1);
     // In the order of --help.
@@ -125,6 +124,7 @@ int main(int argc, char** argv) {
         vines::cli::ended_by_signals(vines::report::add_reproduce(app)),
         vines::cli::add_completion(app),
         vines::cli::add_manual(app)};
+    vines::add_examples(app, examples);  // after the subcommands, which would inherit them
     const std::string first = argc > 1 ? argv[1] : "";
     const std::string fault = fault_of_first(app, names_of(commands), first);
     if (!fault.empty()) return refuse(fault, "vines");

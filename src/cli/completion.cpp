@@ -6,6 +6,7 @@
 #include "cli/commands.hpp"
 #include "cli/completions.hpp"
 #include "cli/stop_signals.hpp"
+#include "program/examples.hpp"
 #include "program/print.hpp"
 
 namespace vines::cli {
@@ -24,9 +25,11 @@ Command add_completion(CLI::App& app) {
     command->add_option("shell", *shell, "the shell")
         ->required()
         ->check(CLI::IsMember({"bash", "zsh", "fish"}));
-    command->footer(
-        "For this shell alone: source <(vines completion bash), or zsh; vines completion fish | "
-        "source. Debian's package brings them for all.");
+    add_examples(
+        *command,
+        "source <(vines completion bash)    # or zsh: for this shell alone\n"
+        "vines completion fish | source",
+        "Debian's package brings them for all.");
     return ended_by_signals({command, [&app, shell] {
                                  print(makers.at(*shell)(usage_of(app)));
                                  return 0;

@@ -5,6 +5,7 @@
 
 #include "api/problem.hpp"
 #include "cli/stop_signals.hpp"
+#include "program/examples.hpp"
 
 namespace vines::cli {
 
@@ -20,17 +21,10 @@ const char* const exit_codes =
     "  141  nobody reads the answer any more\n"
     "  143  ended by SIGTERM before there was anything to keep";
 
-/// Below a heading, further in.
-std::string indented(const std::string& lines) {
-    std::string text = "  ";
-    for (const char c : lines) text += c == '\n' ? std::string("\n  ") : std::string(1, c);
-    return text;
-}
-
 }  // namespace
 
 Command with_exit_codes(CLI::App* app, std::function<int()> run, const std::string& examples) {
-    app->footer("Examples:\n" + indented(examples) + "\n\n" + exit_codes);
+    add_examples(*app, examples, exit_codes);
     return ended_by_signals({app, [run = std::move(run)]() -> int {
                                  try {
                                      return run();

@@ -10,6 +10,7 @@
 #include "cli/commands.hpp"
 #include "cli/stop_signals.hpp"
 #include "cli/usage.hpp"
+#include "program/examples.hpp"
 #include "program/print.hpp"
 
 namespace vines::cli {
@@ -114,17 +115,28 @@ std::string section_of_variables(const ProgramUsage& usage) {
     return text;
 }
 
+/// Its paragraphs, between empty lines.
+std::vector<std::string> paragraphs_of(const std::string& text) {
+    std::vector<std::string> paragraphs;
+    for (std::size_t from = 0; from < text.size();) {
+        const std::size_t end = std::min(text.find("\n\n", from), text.size());
+        paragraphs.push_back(text.substr(from, end - from));
+        from = end + 2;
+    }
+    return paragraphs;
+}
+
 /// What stands below the help of the subcommands: once where several say the same.
 std::string section_of_notes(const ProgramUsage& usage) {
     std::vector<std::pair<std::string, std::vector<std::string>>> notes;
-    for (const CommandUsage& command : usage.commands) {
-        if (command.footer.empty()) continue;
-        auto same = std::find_if(notes.begin(), notes.end(), [&command](const auto& note) {
-            return note.first == command.footer;
-        });
-        if (same == notes.end()) same = notes.insert(same, {command.footer, {}});
-        same->second.push_back(command.name);
-    }
+    for (const CommandUsage& command : usage.commands)
+        for (const std::string& paragraph : paragraphs_of(command.footer)) {
+            auto same = std::find_if(notes.begin(), notes.end(), [&paragraph](const auto& note) {
+                return note.first == paragraph;
+            });
+            if (same == notes.end()) same = notes.insert(same, {paragraph, {}});
+            same->second.push_back(command.name);
+        }
     std::string text = notes.empty() ? "" : ".SH NOTES\n";
     for (const auto& [note, names] : notes)
         text += fmt::format(
@@ -148,7 +160,8 @@ std::string manual_page(const ProgramUsage& usage) {
 }  // namespace
 
 Command add_manual(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("manual", "the manual page: vines manual | man -l -");
+    CLI::App* command = app.add_subcommand("manual", "the manual page");
+    add_examples(*command, "vines manual | man -l -");
     return ended_by_signals({command, [&app] {
                                  print(manual_page(usage_of(app)));
                                  return 0;

@@ -3,12 +3,15 @@
 
 #include "cli/commands.hpp"
 #include "cli/stop_signals.hpp"
+#include "program/examples.hpp"
 #include "program/print.hpp"
 
 namespace vines::cli {
 
 Command add_openapi(CLI::App& app) {
-    return ended_by_signals({app.add_subcommand("openapi", "the OpenAPI document"), [] {
+    CLI::App* command = app.add_subcommand("openapi", "the OpenAPI document");
+    add_examples(*command, "vines openapi | jq '.paths | keys'");
+    return ended_by_signals({command, [] {
                                  print(api::openapi().dump(2) + "\n");
                                  return 0;
                              }});

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "http/commands.hpp"
+#include "program/examples.hpp"
 
 namespace vines::http {
 
@@ -34,6 +35,7 @@ Command add_healthcheck(CLI::App& app) {
     command->add_option("--port", target->port, "its port")
         ->envname("VINES_PORT")
         ->capture_default_str();
+    add_examples(*command, "vines healthcheck --port 8080 && echo well");
     return {command, [target] { return well(*target) ? 0 : 1; }};
 }
 

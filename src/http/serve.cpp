@@ -16,6 +16,7 @@
 #include "http/routes.hpp"
 #include "http/server.hpp"
 #include "program/end_signals.hpp"
+#include "program/examples.hpp"
 #include "program/print.hpp"
 #include "program/tell.hpp"
 #include "program/within.hpp"
@@ -249,6 +250,11 @@ Command add_serve(CLI::App& app) {
     add_size_flags(*command, *options);
     add_log_flags(*command, options->log);
     add_page_flags(*command, options->routes.page);
+    add_examples(
+        *command,
+        "vines serve\n"
+        "vines serve --host 0.0.0.0 --allow-host vines.example.org --api-key-file keys\n"
+        "VINES_PORT=9000 vines serve --deadline 60 --log-format text");
     return {command, [options] { return serve(*options); }};
 }
 

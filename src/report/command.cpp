@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "program/examples.hpp"
 #include "program/print.hpp"
 #include "program/tell.hpp"
 #include "report/markdown.hpp"
@@ -33,6 +34,7 @@ Command add_reproduce(CLI::App& app) {
             "--output", *folder,
             "folder for report.md and its SVG plots; without it only the table is printed")
         ->type_name("DIR");
+    add_examples(*command, "vines reproduce\nvines reproduce --output report");
     return {command, [folder] { return run(*folder); }};
 }
 

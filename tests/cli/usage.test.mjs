@@ -46,6 +46,11 @@ test("the help of the program is one screen, and that of a subcommand has exampl
   const examples = out.split("Examples:\n")[1];
   for (const command of examples.match(/^ {2}vines (?!serve|identify).*$/gm))
     assert.equal((await run(command.trim().split(" ").slice(1))).code, 0, command);
+  const [list] = out.split("Subcommands:\n")[1].split("\n\n");
+  for (const [, name] of list.matchAll(/^ {2}(\w+)/gm)) {
+    const own = (await run([name, "--help"])).out;
+    assert.match(own, new RegExp(`\nExamples:\n( {2}.*\n)* {2}.*vines ${name}\\b`), name);
+  }
 });
 
 test("a request that is awaited from a terminal is asked for", async () => {
