@@ -1,6 +1,7 @@
 // CBOR (RFC 8949), lists of numbers as typed arrays (RFC 8746).
 #include <bit>
 
+#include "api/broken_off.hpp"
 #include "api/format/encode.hpp"
 #include "api/format/list.hpp"
 
@@ -10,58 +11,99 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);  // as the tags say
 
+// RFC 8949, 3.1: what kind of item it is.
+enum class Major : unsigned { bytes = 2, array = 4, object = 5 };
+
 // RFC 8746, 2.1.
 constexpr std::uint8_t float64_tag = 86, int32_tag = 78;
+constexpr char tag_of_one_byte = '\xd8';
 
-Json typed_doubles(std::span<const std::uint8_t> bytes) {
-    return Json::binary(with_nan(bytes), float64_tag);
-}
+/// Writes one value after the other, and frees each list that is written.
+class CborBytes {
+public:
+    explicit CborBytes(const std::function<bool()>& gives_up) : wanted_(gives_up) {}
 
-/// An array of typed ones: so many bytes each.
-Json typed_rows(std::span<const std::uint8_t> bytes, std::size_t row) {
-    Json rows = Json::array();
-    for (std::size_t at = 0; at < bytes.size(); at += row)
-        rows.push_back(typed_doubles(bytes.subspan(at, row)));
-    return rows;
-}
-
-Json typed(const List& list) {
-    const std::span<const std::uint8_t> bytes = list.bytes();
-    switch (list.packing()) {
-        case Packed::numbers: return typed_doubles(bytes);
-        case Packed::quadruples: return typed_rows(bytes, sizeof(Quadruple));
-        case Packed::matrices: {
-            Json matrices = Json::array();
-            for (std::size_t at = 0; at < bytes.size(); at += sizeof(MatrixByRows))
-                matrices.push_back(
-                    typed_rows(bytes.subspan(at, sizeof(MatrixByRows)), sizeof(Quadruple)));
-            return matrices;
-        }
-        case Packed::integers:
-            return Json::binary(std::vector<std::uint8_t>(bytes.begin(), bytes.end()), int32_tag);
-        default: {
-            Json flags = Json::array();
-            for (const std::uint8_t flag : bytes) flags.push_back(flag != 0);
-            return flags;
+    void put(Json& value) {
+        if (value.is_object()) {
+            put_head(Major::object, value.size());
+            for (auto& [name, part] : value.items()) {
+                Json::to_cbor(name, bytes_);
+                put(part);
+            }
+        } else if (value.is_binary()) {
+            wanted_.look();
+            put_list(*List::of(value));
+            value = nullptr;
+        } else if (value.is_array() && !value.empty() && value[0].is_object()) {
+            put_head(Major::array, value.size());
+            for (Json& part : value) put(part);
+        } else {
+            Json::to_cbor(value, bytes_);
         }
     }
-}
+    std::string end() { return std::move(bytes_); }
 
-void make_typed(Json& value) {
-    if (value.is_object())
-        for (auto& part : value) make_typed(part);
-    else if (value.is_binary()) value = typed(*List::of(value));
-    else if (value.is_array() && !value.empty() && value[0].is_object())
-        for (Json& part : value) make_typed(part);
-}
+private:
+    /// The shortest form (3.1, 4.2.1).
+    void put_head(Major major, std::uint64_t count) {
+        const unsigned kind = static_cast<unsigned>(major) << 5;
+        if (count < 24) {
+            bytes_ += static_cast<char>(kind | count);
+            return;
+        }
+        const int length = count <= 0xff ? 1 : count <= 0xffff ? 2 : count <= 0xffffffff ? 4 : 8;
+        bytes_ += static_cast<char>(kind | (24 + std::countr_zero(static_cast<unsigned>(length))));
+        for (int shift = 8 * length; shift > 0;)
+            bytes_ += static_cast<char>(count >> (shift -= 8) & 0xff);
+    }
+    void put_typed(std::span<const std::uint8_t> numbers, std::uint8_t tag) {
+        bytes_ += tag_of_one_byte;
+        bytes_ += static_cast<char>(tag);
+        put_head(Major::bytes, numbers.size());
+        bytes_.append(reinterpret_cast<const char*>(numbers.data()), numbers.size());
+    }
+    void put_doubles(std::span<const std::uint8_t> numbers) {
+        put_typed(numbers, float64_tag);
+        std::uint8_t* const end = reinterpret_cast<std::uint8_t*>(bytes_.data()) + bytes_.size();
+        nan_for_null({end - numbers.size(), numbers.size()});
+    }
+    /// An array with an item for each so many bytes.
+    template <class PutItem>
+    void put_items(std::span<const std::uint8_t> bytes, std::size_t size, PutItem put_item) {
+        put_head(Major::array, bytes.size() / size);
+        for (std::size_t at = 0; at < bytes.size(); at += size) {
+            wanted_.step();
+            put_item(bytes.subspan(at, size));
+        }
+    }
+    void put_rows(std::span<const std::uint8_t> rows) {
+        put_items(rows, sizeof(Quadruple), [this](auto row) { put_doubles(row); });
+    }
+    void put_list(const List& list) {
+        switch (list.packing()) {
+            case Packed::numbers: return put_doubles(list.bytes());
+            case Packed::quadruples: return put_rows(list.bytes());
+            case Packed::matrices:
+                return put_items(
+                    list.bytes(), sizeof(MatrixByRows), [this](auto rows) { put_rows(rows); });
+            case Packed::integers: return put_typed(list.bytes(), int32_tag);
+            default:
+                return put_items(list.bytes(), sizeof(bool), [this](auto flag) {
+                    Json::to_cbor(flag[0] != 0, bytes_);
+                });
+        }
+    }
+
+    StillWanted wanted_;
+    std::string bytes_;
+};
 
 }  // namespace
 
-std::string cbor_bytes(Json answer) {
-    make_typed(answer);
-    std::string bytes;
-    Json::to_cbor(answer, bytes);
-    return bytes;
+std::string cbor_bytes(Json answer, const std::function<bool()>& gives_up) {
+    CborBytes bytes(gives_up);
+    bytes.put(answer);
+    return bytes.end();
 }
 
 }  // namespace vines::api

@@ -17,9 +17,6 @@ namespace vines::api {
 
 namespace {
 
-// Rows.
-constexpr std::size_t between_looks = 4096;
-
 struct ToldColumn {
     std::string name;
     List list;
@@ -117,8 +114,9 @@ std::string csv_text(const Json& answer, const std::function<bool()>& gives_up) 
         put_csv_names(column, text);
     }
     text += '\n';
+    StillWanted wanted(gives_up);
     for (std::size_t row = 0; row < table.columns[0].list.size(); ++row) {
-        if (row % between_looks == 0 && gives_up && gives_up()) throw BrokenOff();
+        wanted.step();
         const std::size_t begins = text.size();
         for (const ToldColumn& column : table.columns) {
             if (&column != table.columns.data()) text += ',';

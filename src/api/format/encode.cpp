@@ -20,8 +20,9 @@ std::string sealed_text(
     const std::function<bool()>& gives_up) {
     std::string text;
     text.reserve(room_for_lists(answer) + room_for_provenance);
+    const StillWanted wanted(gives_up);
     write_sealed(answer, provenance, [&](std::string_view piece) {
-        if (gives_up && gives_up()) throw BrokenOff();
+        wanted.look();
         text += piece;
     });
     return text;
@@ -35,7 +36,7 @@ std::string encoded(
     if (format == Format::json) return sealed_text(std::move(answer), provenance, gives_up);
     if (format == Format::csv) return csv_text(answer, gives_up);
     if (provenance) answer["provenance"] = describe(*provenance, nullptr);
-    return format == Format::cbor ? cbor_bytes(std::move(answer)) : npz_bytes(std::move(answer));
+    return (format == Format::cbor ? cbor_bytes : npz_bytes)(std::move(answer), gives_up);
 }
 
 }  // namespace vines::api

@@ -26,7 +26,7 @@ inline constexpr std::array<FormatName, 4> format_names = {
 const FormatName& name_of(Format format);
 
 /// All lists are there. With its provenance, which has a sha256 in JSON alone, but for CSV. Problem
-/// 422 where the format cannot hold this answer. gives_up(): asked now and then while text is
+/// 422 where the format cannot hold this answer. gives_up(): asked now and then while it is
 /// written; true: BrokenOff.
 std::string encoded(
     Json answer, Format format, const std::optional<Provenance>& provenance,
@@ -39,10 +39,10 @@ std::string csv_text(const Json& answer, const std::function<bool()>& gives_up =
 
 /// Lists of numbers as typed arrays (float64, int32, little-endian), null in them as NaN; of four
 /// numbers or a matrix arrays of such.
-std::string cbor_bytes(Json answer);
+std::string cbor_bytes(Json answer, const std::function<bool()>& gives_up = {});
 
 /// A ZIP archive: for each list PATH.npy (float64, int32, bool or text), null in it as NaN, and
 /// answer.json with the rest.
-std::string npz_bytes(Json answer);
+std::string npz_bytes(Json answer, const std::function<bool()>& gives_up = {});
 
 }  // namespace vines::api

@@ -74,12 +74,10 @@ std::size_t List::width() const {
     }
 }
 
-std::vector<std::uint8_t> with_nan(std::span<const std::uint8_t> doubles) {
-    std::vector<std::uint8_t> bytes(doubles.begin(), doubles.end());
-    change_numbers(bytes, [](double number) {
+void nan_for_null(std::span<std::uint8_t> doubles) {
+    change_numbers(doubles, [](double number) {
         return std::isfinite(number) ? number : std::numeric_limits<double>::quiet_NaN();
     });
-    return bytes;
 }
 
 void visit_lists(

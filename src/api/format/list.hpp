@@ -41,7 +41,7 @@ private:
 void visit_lists(
     const Json& answer, const std::function<void(const std::string&, const List&)>& visit);
 
-/// Doubles with NaN for all that stands for null.
-std::vector<std::uint8_t> with_nan(std::span<const std::uint8_t> doubles);
+/// Puts NaN into doubles for all that stands for null.
+void nan_for_null(std::span<std::uint8_t> doubles);
 
 }  // namespace vines::api

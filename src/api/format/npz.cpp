@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "api/broken_off.hpp"
 #include "api/format/encode.hpp"
 #include "api/format/list.hpp"
 #include "api/json_text.hpp"
@@ -99,7 +100,11 @@ std::string npy_of(const List& list) {
     switch (list.packing()) {
         case Packed::flags: return file("|b1", list.bytes());
         case Packed::integers: return file("<i4", list.bytes());
-        default: return file("<f8", with_nan(list.bytes()));
+        default: {
+            std::vector<std::uint8_t> doubles(list.bytes().begin(), list.bytes().end());
+            nan_for_null(doubles);
+            return file("<f8", doubles);
+        }
     }
 }
 
@@ -115,9 +120,11 @@ void take_out_lists(Json& object) {
 
 }  // namespace
 
-std::string npz_bytes(Json answer) {
+std::string npz_bytes(Json answer, const std::function<bool()>& gives_up) {
+    const StillWanted wanted(gives_up);
     Archive archive;
-    visit_lists(answer, [&archive](const std::string& path, const List& list) {
+    visit_lists(answer, [&](const std::string& path, const List& list) {
+        wanted.look();
         if (path.find('.') != std::string::npos) archive.add(path + ".npy", npy_of(list));
     });
     take_out_lists(answer);

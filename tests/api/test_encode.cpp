@@ -1,0 +1,102 @@
+// How answers are written as bytes, in each format.
+#include <doctest/doctest.h>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "api/broken_off.hpp"
+#include "api/column.hpp"
+#include "api/format/encode.hpp"
+
+using namespace vines::api;
+
+namespace {
+
+const std::vector<std::size_t> lengths{0, 1, 23, 24, 255, 256, 65535, 65536, 100000};
+
+std::vector<double> numbers_of(std::size_t length) {
+    std::vector<double> numbers(length);
+    for (std::size_t k = 0; k < length; ++k) numbers[k] = 0.1 * static_cast<double>(k);
+    return numbers;
+}
+
+/// An answer of one table.
+Json long_answer() {
+    const std::vector<double> numbers = numbers_of(100000);
+    Json lists;
+    lists["tau"] = column(numbers);
+    lists["lambda"] = column(numbers, [](double x) { return Quadruple{x, 2 * x, 3 * x, 4 * x}; });
+    lists["T"] = column(numbers, [](double x) { return MatrixByRows{Quadruple{x}}; });
+    lists["hit"] = column(numbers, [](double x) { return x > 1; });
+    return {{"impacts", lists}};
+}
+
+/// The same by the JSON library's own writer.
+std::string typed_by_library(const std::vector<double>& numbers) {
+    const auto* const first = reinterpret_cast<const std::uint8_t*>(numbers.data());
+    std::string bytes;
+    Json::to_cbor(Json::binary({first, first + sizeof(double) * numbers.size()}, 86), bytes);
+    return bytes;
+}
+
+}  // namespace
+
+TEST_CASE("what nobody wants any longer is not written to its end, whatever its format") {
+    for (const FormatName& name : format_names) {
+        CAPTURE(name.word);
+        const std::string whole = encoded(long_answer(), name.format, std::nullopt);
+        int asked = 0;
+        CHECK(encoded(long_answer(), name.format, std::nullopt, [&asked] {
+                  ++asked;
+                  return false;
+              }) == whole);
+        CHECK(asked >= 4);
+        for (int stops_at = 1; stops_at <= asked; stops_at += 1 + asked / 7) {
+            int times = 0;
+            CHECK_THROWS_AS(
+                encoded(
+                    long_answer(), name.format, std::nullopt,
+                    [&times, stops_at] { return ++times >= stops_at; }),
+                BrokenOff);
+            CHECK(times == stops_at);
+        }
+    }
+}
+
+TEST_CASE("CBOR has the bytes that the JSON library writes of typed arrays of any length") {
+    for (const std::size_t length : lengths) {
+        CAPTURE(length);
+        const std::vector<double> numbers = numbers_of(length);
+        CHECK(cbor_bytes(column(numbers)) == typed_by_library(numbers));
+        Json flags = Json::array(), rows = Json::array();
+        for (const double x : numbers) {
+            flags.push_back(x > 1);
+            rows.push_back(Json::from_cbor(
+                typed_by_library({x, x, x, x}), true, true, Json::cbor_tag_handler_t::store));
+        }
+        std::string expected;
+        Json::to_cbor(flags, expected);
+        CHECK(cbor_bytes(column(numbers, [](double x) { return x > 1; })) == expected);
+        expected.clear();
+        Json::to_cbor(rows, expected);
+        CHECK(cbor_bytes(column(numbers, [](double x) { return Quadruple{x, x, x, x}; })) == expected);
+    }
+}
+
+TEST_CASE("CBOR without lists of numbers is what the JSON library writes") {
+    const Json answer = Json::parse(
+        R"({"words":["a","b"],"none":null,"nested":{"window":[[1,2],[3,4.5]],"empty":{},"":[]},)"
+        R"("large":18446744073709551615,"objects":[{"a":1},{"b":[{"c":true}]}],"text":"\u03bb"})");
+    std::string expected;
+    Json::to_cbor(answer, expected);
+    CHECK(cbor_bytes(answer) == expected);
+}
+
+TEST_CASE("a number that does not exist is NaN in CBOR") {
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    CHECK(
+        cbor_bytes(column(std::vector{1.0, infinite, -infinite, none})) ==
+        typed_by_library({1.0, none, none, none}));
+}
