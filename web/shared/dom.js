@@ -18,3 +18,17 @@ export const element = (tag, properties = {}, ...children) => {
   node.append(...children);
   return node;
 };
+
+/** One that does something; more: its other properties. */
+export const button = (textContent, onclick, more) =>
+  element("button", {type: "button", textContent, onclick, ...more});
+
+/** Hears of several events of a node: {type: what is called}. */
+export const on = (node, handlers) => {
+  for (const [type, f] of Object.entries(handlers)) node.addEventListener(type, f);
+};
+
+/** Sets what a node says of itself to those who cannot see it, and other attributes. */
+export const attributes = (node, all) => {
+  for (const [name, value] of Object.entries(all)) node.setAttribute(name, value);
+};

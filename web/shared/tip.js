@@ -1,14 +1,9 @@
 // A box beside the pointer that says what is there.
-import {element} from "./dom.js";
+import {button, element} from "./dom.js";
 
 /** It does not take the focus: without it the box would vanish under the click. */
 const buttonFor = ({label, run}) =>
-  element("button", {
-    type: "button",
-    textContent: label,
-    onclick: run,
-    onmousedown: (event) => event.preventDefault(),
-  });
+  button(label, run, {onmousedown: (event) => event.preventDefault()});
 
 export class Tip {
   constructor(container) {
