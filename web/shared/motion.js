@@ -100,7 +100,8 @@ export class Motion {
     const width = (to - from) / columns;
     const samples = Math.max(2, Math.ceil((width / this.cycle) * samplesPerCycle));
     const tau = Float64Array.from({length: 2 * columns}, (_, k) => from + (k * width) / 2);
-    const lines = {dense: samples > 2, tau, x: tau.slice(), gap: tau.slice()};
+    const line = () => tau.map((_, k) => (k % 2 ? -Infinity : Infinity));
+    const lines = {dense: samples > 2, tau, x: line(), gap: line()};
     if (lines.dense) this.extremes(from, width / samples, samples, lines);
     else
       this.sample(from, width / 2, 2 * columns, (k, x, gap) => {
@@ -112,11 +113,6 @@ export class Motion {
 
   /** The extremes of each column of so many samples, and of the impacts, which reach the walls. */
   extremes(from, step, samples, {x, gap}) {
-    for (const line of [x, gap])
-      for (let k = 0; k < line.length; k += 2) {
-        line[k] = Infinity;
-        line[k + 1] = -Infinity;
-      }
     const widen = (line, k, value) => {
       if (value < line[k]) line[k] = value;
       if (value > line[k + 1]) line[k + 1] = value;
