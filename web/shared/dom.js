@@ -28,7 +28,8 @@ export const on = (node, handlers) => {
   for (const [type, f] of Object.entries(handlers)) node.addEventListener(type, f);
 };
 
-/** Sets what a node says of itself to those who cannot see it, and other attributes. */
+/** Those that have a value are set: what a node says of itself to those who cannot see it, and other attributes. */
 export const attributes = (node, all) => {
-  for (const [name, value] of Object.entries(all)) node.setAttribute(name, value);
+  for (const [name, value] of Object.entries(all))
+    if (value != null) node.setAttribute(name, value);
 };

@@ -3,12 +3,7 @@ import {short} from "./numbers.js";
 
 const names = ["lambda1", "lambda2", "lambda3", "lambda4"];
 // Told apart by more than their colour.
-const styles = [
-  {colour: "c1", width: 2},
-  {colour: "c2", width: 1.3},
-  {colour: "c3", width: 1.3, dash: [7, 3]},
-  {colour: "c4", width: 1.3, dash: [2, 3]},
-];
+const styles = [{width: 2}, {}, {dash: [7, 3]}, {dash: [2, 3]}];
 
 const absent = (status) => (status === "minus_infinity" ? "−∞" : "");
 
@@ -18,6 +13,8 @@ const absent = (status) => (status === "minus_infinity" ? "−∞" : "");
  */
 export function exponentSeries(history, status = []) {
   const series = styles.map((style, k) => ({
+    colour: `c${k + 1}`,
+    width: 1.3,
     ...style,
     label: `λ${"₁₂₃₄"[k]}`,
     text: (v) => (v === null ? absent(status[k]) : short(v)),

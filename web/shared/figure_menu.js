@@ -53,8 +53,7 @@ function csv({names, columns}) {
 }
 
 function table({names, columns}) {
-  const row = (tag, cells) =>
-    element("tr", {}, ...cells.map((textContent) => element(tag, {textContent})));
+  const row = (tag, cells) => element("tr", {}, ...cells.map((text) => element(tag, {}, text)));
   const body = rowsOf(columns, rowsShown).map((values) => row("td", values.map(written)));
   const head = element("thead", {}, row("th", names));
   return element("table", {className: "table"}, head, element("tbody", {}, ...body));
@@ -71,9 +70,9 @@ function show(plot, about) {
   const saveText = (text, type, ending) => save(new Blob([text], {type}), `${name}.${ending}`);
   const dialog = $("data");
   dialog.replaceChildren(
-    element("h2", {textContent: title, id: "data-title"}),
-    element("p", {textContent: summary}),
-    element("p", {className: "note", textContent: [caption, said].filter(Boolean).join(" · ")}),
+    element("h2", {id: "data-title"}, title),
+    element("p", {}, summary),
+    element("p", {className: "note"}, [caption, said].filter(Boolean).join(" · ")),
     element(
       "div",
       {className: "buttons"},

@@ -73,8 +73,11 @@ function rounded(value) {
 
 const factorOf = ({unit, type}) => (type === "number" ? unitShown(unit).factor : 1);
 
-/** A number times a factor, without the digits of rounding. */
-const times = (value, factor) => (factor === 1 ? value : Number((value * factor).toPrecision(15)));
+/** A number times a factor, without the digits of rounding; what is no number stays as it is. */
+const times = (value, factor) =>
+  factor === 1 || value === "" || !Number.isFinite(Number(value))
+    ? value
+    : Number((value * factor).toPrecision(15));
 
 // The inputs that are no texts: how they are made, what they hold, undefined for the default, and
 // how a value is set.
@@ -116,7 +119,6 @@ export class Form {
   errors = new Map();
   rows = new Map();
   parts = new Map();
-  origins = new Map();
   exact = new Map(); // of numbers that are shown in other units: {text, value}
   replaced = [];
 
@@ -133,8 +135,8 @@ export class Form {
       const details = element(
         "details",
         {open: open && !folded, id: `${prefix}group-${group}`},
-        element("summary", {textContent: title}),
-        element("p", {className: "note", textContent: note}),
+        element("summary", {}, title),
+        element("p", {className: "note"}, note),
         element("div", {className: "grid"}, ...rows),
       );
       this.parts.set(group, details);
@@ -155,28 +157,23 @@ export class Form {
       : kinds[type].make(field);
     const error = element("p", {className: "error", id: `${this.prefix}error-${name}`});
     input.setAttribute("aria-describedby", error.id);
-    input.addEventListener("input", () => this.forgetOrigin(name));
+    input.addEventListener("input", () => this.sayOrigin(name));
     const {unit} = unitShown(field.unit);
-    const shownUnit = element("span", {className: "unit", textContent: unit && `, ${unit}`});
+    const shownUnit = element("span", {className: "unit"}, unit && `, ${unit}`);
     const named = element("span", {}, symbolOf(name).replaceAll("_", " "), shownUnit);
-    const origin = element("span", {className: "origin"});
     const ends = [minimum, maximum].map((v) => this.shown(name, v));
     const range = minimum === undefined ? "" : ` [${ends.join(" to ")}]`;
     const label = element(
       type === "choices" ? "div" : "label",
       {title: `${name}: ${field.description}${range}`},
-      element("span", {className: "name"}, named, origin),
+      element("span", {className: "name"}, named, element("span", {className: "origin"})),
       input,
     );
     const width = wide.has(type) && !field.narrow ? " wide" : "";
     const row = element("div", {className: `field field-${name}${width}`}, label, error);
-    for (const [part, node] of Object.entries({
-      inputs: input,
-      origins: origin,
-      errors: error,
-      rows: row,
-    }))
-      this[part].set(name, node);
+    this.inputs.set(name, input);
+    this.errors.set(name, error);
+    this.rows.set(name, row);
     return row;
   }
 
@@ -188,9 +185,7 @@ export class Form {
 
   /** A value as it is shown; what is no number stays as it is. */
   shown(name, value) {
-    const factor = this.factors.get(name);
-    const isNumber = value !== "" && Number.isFinite(Number(value));
-    return factor === 1 || !isNumber ? value : times(Number(value), factor);
+    return times(value, this.factors.get(name));
   }
 
   /** A value is written to an input; the last digits that it does not show are kept. */
@@ -205,11 +200,9 @@ export class Form {
     const {value: text} = this.inputs.get(name);
     if (!text.trim()) return undefined;
     if (readers[type]) return readers[type](text);
-    const factor = this.factors.get(name);
     const exact = this.exact.get(name);
-    if (factor !== 1 && exact?.text === text) return number(String(exact.value));
-    const value = number(text);
-    return typeof value === "number" ? times(value, 1 / factor) : value;
+    if (exact?.text === text) return number(String(exact.value));
+    return times(number(text), 1 / this.factors.get(name));
   }
 
   /** The fields that differ from their defaults, typed for JSON. */
@@ -229,7 +222,7 @@ export class Form {
       if (type in kinds) kinds[type].set(this.inputs.get(name), value ?? standard);
       else this.write(name, value ?? "");
       if (value !== undefined && !folded) this.parts.get(group).open = true;
-      this.forgetOrigin(name);
+      this.sayOrigin(name);
     }
     this.greyOut();
     this.showErrors([]);
@@ -251,8 +244,10 @@ export class Form {
     }
   }
 
-  sayOrigin(name, origin = "") {
-    Object.assign(this.origins.get(name), {textContent: originText(origin), title: origin});
+  /** Without an origin: what is there now is not of the last answer. */
+  sayOrigin(name, title = "") {
+    const origin = this.rows.get(name).querySelector(".origin");
+    Object.assign(origin, {textContent: originText(title), title});
   }
 
   /** The fields of these names and only these are set by something else. */
@@ -261,15 +256,10 @@ export class Form {
     this.greyOut();
   }
 
-  /** What is there now is not of the last answer. */
-  forgetOrigin(name) {
-    this.sayOrigin(name);
-  }
-
   /** Another value than the last answer's. */
   replace(name, value) {
     this.write(name, value);
-    this.forgetOrigin(name);
+    this.sayOrigin(name);
   }
 
   filled(name) {

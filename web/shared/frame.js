@@ -2,7 +2,7 @@
 // whatever has the methods of a canvas' context.
 import {colour} from "./colours.js";
 import {ink, stroke, write, writeUpwards} from "./ink.js";
-import {clamp, minus, short} from "./numbers.js";
+import {clamp, minus, shortTo} from "./numbers.js";
 import {logTicks, ticks} from "./ticks.js";
 
 export const font = "11px system-ui, sans-serif";
@@ -18,7 +18,7 @@ function scaleOf({range, log}, from, to) {
 function numberAt(v, step) {
   const near = step > 0 && Math.abs(v) > 2e4 * step;
   const places = clamp(-Math.floor(Math.log10(step)), 0, 15);
-  return near ? minus(v.toFixed(places)) : short(Number(v.toPrecision(12)));
+  return near ? minus(v.toFixed(places)) : shortTo(12, v);
 }
 
 /** {at, text} of the labels, at most so many. */
@@ -30,6 +30,9 @@ function labelsOf({range, log, factor = 1, labels}, most) {
   const step = round ? list[1] - list[0] : 0;
   return list.map((v) => ({at: (v.at ?? v) / factor, text: v.text ?? numberAt(v, step)}));
 }
+
+/** Where a thin line fills a pixel. */
+const sharp = (px) => Math.round(px) + 0.5;
 
 export class Frame {
   /**
@@ -63,22 +66,20 @@ export class Frame {
     c.clip();
   }
 
-  /** A straight line, sharp. */
-  line(c, ...ends) {
-    stroke(
-      c,
-      ends.map((end) => end.map((v) => Math.round(v) + 0.5)),
-    );
-  }
-
   across(c, y) {
     const {left, right} = this.box;
-    this.line(c, [left, this.py(y)], [right, this.py(y)]);
+    stroke(
+      c,
+      [left, right].map((end) => [end, sharp(this.py(y))]),
+    );
   }
 
   upright(c, x) {
     const {top, bottom} = this.box;
-    this.line(c, [this.px(x), top], [this.px(x), bottom]);
+    stroke(
+      c,
+      [top, bottom].map((end) => [sharp(this.px(x)), end]),
+    );
   }
 
   draw(c) {

@@ -36,7 +36,7 @@ export class Job {
     const {running} = this;
     const same = JSON.stringify(request) === running?.text;
     if (same && !this.next && !running.abort.signal.aborted) return;
-    this.next = {request};
+    this.next = request;
     if (!running) this.run();
     else if (!hasty || !running.answers) running.abort.abort();
   }
@@ -48,7 +48,7 @@ export class Job {
 
   async run() {
     while (this.next) {
-      const {request} = this.next;
+      const request = this.next;
       this.next = null;
       await this.one(request);
     }
@@ -56,15 +56,16 @@ export class Job {
 
   async one(request) {
     const abort = new AbortController();
+    const {signal} = abort;
     this.running = {abort, answers: true, text: JSON.stringify(request)};
     const late = setTimeout(() => this.busy(true), patience);
     const began = performance.now();
     let cancelled = false;
     try {
-      const answer = await this.answer(request, abort.signal);
-      if (!abort.signal.aborted) await this.show(answer, request, performance.now() - began);
+      const answer = await this.answer(request, signal);
+      if (!signal.aborted) await this.show(answer, request, performance.now() - began);
     } catch (error) {
-      if (!abort.signal.aborted) this.fail(error, request);
+      if (!signal.aborted) this.fail(error, request);
       else cancelled = !this.next;
     } finally {
       clearTimeout(late);

@@ -28,12 +28,12 @@ async function ask() {
     autocomplete: "current-password",
   });
   const wrong = hasKey() ? "The server does not know this key. " : "";
-  const use = element("button", {textContent: "Use it"});
+  const use = element("button", {}, "Use it");
   const dialog = element(
     "dialog",
     {},
-    element("h2", {textContent: "A key, please"}),
-    element("p", {textContent: `${wrong}This server answers only those who have one.`}),
+    element("h2", {}, "A key, please"),
+    element("p", {}, `${wrong}This server answers only those who have one.`),
     element("form", {method: "dialog"}, element("label", {}, "Key ", input, " ", use)),
   );
   document.body.append(dialog);

@@ -32,13 +32,12 @@ export class Motion {
     const {tau, x, x_dot_after: xDot, y_dot_after: yDot, side, phase} = this.impacts;
     this.add(0, [x0, x_dot0, Math.sin(phi), Math.cos(phi)], y0, y_dot0);
     let stick = 0;
-    for (let i = 0; i <= tau.length; ++i) {
-      for (; from[stick] < (tau[i] ?? Infinity); ++stick)
-        this.stick(stuckTo[stick], from[stick], to[stick]);
-      if (i === tau.length) break;
+    [...tau, Infinity].forEach((moment, i) => {
+      for (; from[stick] < moment; ++stick) this.stick(stuckTo[stick], from[stick], to[stick]);
+      if (i === tau.length) return;
       const state = [x[i], xDot[i], Math.sin(phase[i]), Math.cos(phase[i])];
-      this.add(tau[i], state, x[i] - side[i] * this.b, yDot[i]);
-    }
+      this.add(moment, state, x[i] - side[i] * this.b, yDot[i]);
+    });
   }
 
   /** A stuck phase, and the flight after it. */
@@ -68,15 +67,10 @@ export class Motion {
 
   /** {x, x_dot, x_ddot, y, y_dot, side} at a moment of the run, m per unit of tau, or of its square. */
   at(tau) {
-    const piece = this.pieces[this.pieceAt(tau)];
+    const piece = this.pieces[Math.max(lastUpTo(this.starts, tau), 0)];
     const {state, y, y_dot} = this.stateOf(piece, tau);
     const [x, x_dot] = state;
     return {x, x_dot, x_ddot: this.flowOf(piece).force(state), y, y_dot, side: piece.side};
-  }
-
-  /** The index of the piece at a moment, or of the first one. */
-  pieceAt(tau) {
-    return Math.max(lastUpTo(this.starts, tau), 0);
   }
 
   /** The index of the last impact up to a moment, -1 before the first. */
@@ -134,29 +128,24 @@ export class Motion {
 
   /** Calls use(k, x, y - x) for k = 0 .. count - 1 at from + k step; NaN outside of the run. */
   sample(from, step, count, use) {
-    let k = 0;
-    for (; k < count && from + k * step < 0; ++k) use(k, NaN, NaN);
-    for (let i = this.pieceAt(from); i < this.pieces.length && k < count; ++i)
-      k = this.samplePiece(i, from, step, k, count, use);
-    for (; k < count; ++k) use(k, NaN, NaN);
-  }
-
-  /** The samples from the k-th on that lie in piece i; returns the first that does not. */
-  samplePiece(i, from, step, k, count, use) {
-    const piece = this.pieces[i];
-    const until = this.starts[i + 1];
-    const isWithin = (tau) => (until === undefined ? tau <= this.end : tau < until);
-    if (!isWithin(from + k * step)) return k;
-    const flow = this.flowOf(piece);
-    const state = flow.after(piece.state, from + k * step - piece.tau);
-    const map = flow.over(step);
-    let n = k;
-    for (; n < count && isWithin(from + n * step); ++n) {
-      const s = from + n * step - piece.tau;
-      const gap = piece.side ? -piece.side * this.b : piece.y + piece.y_dot * s - state[0];
-      use(n, state[0], gap);
-      map(state);
+    let i = -1;
+    let piece;
+    let map;
+    let state;
+    for (let k = 0; k < count; ++k) {
+      const tau = from + k * step;
+      if (tau < 0 || tau > this.end) {
+        use(k, NaN, NaN);
+        continue;
+      }
+      if (tau >= this.starts[i + 1]) {
+        i = lastUpTo(this.starts, tau);
+        piece = this.pieces[i];
+        ({state} = this.stateOf(piece, tau));
+        map = this.flowOf(piece).over(step);
+      } else map(state);
+      const y = piece.y + piece.y_dot * (tau - piece.tau);
+      use(k, state[0], piece.side ? -piece.side * this.b : y - state[0]);
     }
-    return n;
   }
 }

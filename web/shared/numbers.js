@@ -20,6 +20,13 @@ export const short = orDash((value) =>
     : String(Number(value.toPrecision(5))),
 );
 
+/** The same with n digits at most. */
+export const shortTo = (n, value) => short(value == null ? value : Number(value.toPrecision(n)));
+
+/** A length in m as one reads it, with n digits. */
+export const inMm = (metres, n = 4) =>
+  metres == null ? short(metres) : `${shortTo(n, metres * 1000)} mm`;
+
 /** n digits behind the point, or three in all where that would show none. */
 export const digits = orDash((value, n = 4) =>
   isSmall(value) ? value.toExponential(2) : value.toFixed(n),

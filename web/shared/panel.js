@@ -37,19 +37,12 @@ export class Panel extends Plot {
   }
 
   /** The canvas, and what lies over it and takes the pointer. */
-  place(width, height) {
-    const {box} = this.frame;
-    const placed = [width, height, box.right, box.bottom, this.head].join();
-    if (this.placed === placed) return;
-    this.placed = placed;
+  place(height) {
+    const {box, width, height: high} = this.frame;
     this.offset = [-box.left, -box.top];
+    const places = {left: box.left, top: box.top + this.head, width, height: high};
+    for (const [name, px] of Object.entries(places)) this.over.style[name] = `${px}px`;
     this.canvas.style.height = `${height}px`;
-    Object.assign(this.over.style, {
-      left: `${box.left}px`,
-      top: `${box.top + this.head}px`,
-      width: `${this.frame.width}px`,
-      height: `${this.frame.height}px`,
-    });
   }
 
   /** The cursor. */

@@ -30,12 +30,12 @@ export class Plot {
     const prepared = this.prepare(width, height);
     if (!prepared) return;
     this.frame = prepared.frame;
-    this.place(width, height);
+    this.place(height);
     this.paint(blank(this.canvas, {width, height}), prepared);
     this.light(...(this.lit ?? []));
   }
 
-  /** What lies over the canvas gets its place. */
+  /** A canvas of so many px, and what lies over it, get their place. */
   place() {}
 
   /** All of it, for a picture of its own. */

@@ -1,6 +1,6 @@
 // What the points of a sweep tell: one table for menus, axes, colours and tooltips. Lengths are
 // drawn in mm.
-import {count, short} from "./numbers.js";
+import {count, inMm, short, shortTo} from "./numbers.js";
 
 export const regimes = {
   VI: "dense, irregular",
@@ -178,7 +178,6 @@ function period({period_cycles: cycles, impacts_per_period: impacts, symmetric})
 export const regimeText = (regime) =>
   `${regime === "none" ? "" : `${regime}, `}${regimes[regime] ?? ""}`;
 
-const inMm = (metres) => (metres == null ? "–" : `${short(Number(mm(metres).toPrecision(4)))} mm`);
 const named = (regime) => (regime === "none" ? regimes.none : `Type ${regime}`);
 
 /** The largest |x| of a motion and where it lies on the axis that is folded, as where() names it. */
@@ -197,9 +196,8 @@ function describeStarts(p, where) {
 /** The largest exponent and its standard error. */
 function exponentText({lambda, status, standard_error: errors}) {
   if (status?.[0] === "minus_infinity") return "−∞";
-  if (lambda[0] == null) return "–";
-  const value = short(Number(lambda[0].toPrecision(4)));
-  return errors?.[0] == null ? value : `${value} ± ${short(Number(errors[0].toPrecision(2)))}`;
+  const value = shortTo(4, lambda[0]);
+  return errors?.[0] == null ? value : `${value} ± ${shortTo(2, errors[0])}`;
 }
 
 const wholePercent = (share) => `${(share * 100).toFixed(0)} %`;

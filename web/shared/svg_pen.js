@@ -5,20 +5,14 @@ const fixed = (v) => Number(v.toFixed(2));
 const anchors = {left: "start", center: "middle", right: "end"};
 const baselines = {top: "hanging", middle: "central", bottom: "text-after-edge"};
 
-/** An element; of its attributes those count that have a value. */
+/** An element; its numbers are rounded. */
 function svg(tag, all, ...children) {
   const node = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  attributes(node, Object.fromEntries(Object.entries(all).filter(([, value]) => value != null)));
+  const written = Object.entries(all).map(([name, v]) => [name, v?.toFixed ? fixed(v) : v]);
+  attributes(node, Object.fromEntries(written));
   node.append(...children);
   return node;
 }
-
-const placeOf = (x, y, width, height) => ({
-  x: fixed(x),
-  y: fixed(y),
-  width: fixed(width),
-  height: fixed(height),
-});
 
 export class SvgPen {
   lineWidth = 1;
@@ -61,11 +55,11 @@ export class SvgPen {
   }
 
   translate(x, y) {
-    this.within({transform: `translate(${fixed(x)} ${fixed(y)})`});
+    this.within({transform: `translate(${x} ${y})`});
   }
 
   rotate(angle) {
-    this.within({transform: `rotate(${fixed((angle * 180) / Math.PI)})`});
+    this.within({transform: `rotate(${(angle * 180) / Math.PI})`});
   }
 
   clip() {
@@ -135,27 +129,23 @@ export class SvgPen {
     if (this.path) this.add("path", {d: this.path, fill: this.fillStyle});
   }
 
-  fillRect(...place) {
-    this.add("rect", {...placeOf(...place), fill: this.fillStyle});
+  fillRect(x, y, width, height) {
+    this.add("rect", {x, y, width, height, fill: this.fillStyle});
   }
 
   /** image: a canvas. */
-  drawImage(image, ...place) {
+  drawImage(image, x, y, width, height) {
     const style = {preserveAspectRatio: "none", "image-rendering": "pixelated"};
-    this.add("image", {...placeOf(...place), ...style, href: image.toDataURL()});
+    this.add("image", {x, y, width, height, ...style, href: image.toDataURL()});
   }
 
   fillText(text, x, y) {
-    const [, slant, weight, size, family] = /^(italic )?(\d+ )?(\d+)px (.*)$/.exec(this.font);
     const style = {
-      "font-family": family,
-      "font-size": size,
-      "font-style": slant?.trim(),
-      "font-weight": weight?.trim(),
+      style: `font: ${this.font}`,
       fill: this.fillStyle,
       "text-anchor": anchors[this.textAlign],
-      "dominant-baseline": baselines[this.textBaseline] ?? "auto",
+      "dominant-baseline": baselines[this.textBaseline],
     };
-    this.add("text", {x: fixed(x), y: fixed(y), ...style}, text);
+    this.add("text", {x, y, ...style}, text);
   }
 }

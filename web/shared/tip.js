@@ -17,12 +17,9 @@ export class Tip {
    * who have no pointer to click with.
    */
   show(left, top, rows, note, act) {
-    const entry = ([term, value]) => [
-      element("dt", {textContent: term}),
-      element("dd", {textContent: value}),
-    ];
+    const entry = ([term, value]) => [element("dt", {}, term), element("dd", {}, value)];
     const list = element("dl", {}, ...rows.flatMap(entry));
-    const last = act ? buttonFor(act) : element("p", {textContent: note});
+    const last = act ? buttonFor(act) : element("p", {}, note);
     this.node.replaceChildren(list, last);
     this.node.hidden = false;
     this.node.classList.toggle("pinned", Boolean(act));
