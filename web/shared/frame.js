@@ -14,21 +14,19 @@ function scaleOf({range, log}, from, to) {
   return (v) => from + ((at(v) - low) / (high - low)) * (to - from);
 }
 
-/** A label, in as many digits as tell it from the next. */
-function numberAt(v, step) {
-  const near = step > 0 && Math.abs(v) > 2e4 * step;
-  const places = clamp(-Math.floor(Math.log10(step)), 0, 15);
-  return near ? minus(v.toFixed(places)) : shortTo(12, v);
-}
-
-/** {at, text} of the labels, at most so many. */
+/** {at, text} of the labels, at most so many; in as many digits as tell one from the next. */
 function labelsOf({range, log, factor = 1, labels}, most) {
+  if (labels) return labels(...range);
   const [min, max] = range.map((v) => v * factor);
-  const powers = log ? logTicks(min, max) : []; // few within a power of ten
-  const list = labels?.(min, max) ?? (powers.length > 2 ? powers : ticks(min, max, most));
-  const round = !labels && powers.length <= 2 && list.length > 1;
-  const step = round ? list[1] - list[0] : 0;
-  return list.map((v) => ({at: (v.at ?? v) / factor, text: v.text ?? numberAt(v, step)}));
+  const powers = log ? logTicks(min, max) : [];
+  const round = powers.length < 3; // few within a power of ten
+  const list = round ? ticks(min, max, most) : powers;
+  const step = list[1] - list[0];
+  const text = (v) =>
+    round && Math.abs(v) > 2e4 * step
+      ? minus(v.toFixed(clamp(-Math.floor(Math.log10(step)), 0, 15)))
+      : shortTo(12, v);
+  return list.map((v) => ({at: v / factor, text: text(v)}));
 }
 
 /** Where a thin line fills a pixel. */
@@ -38,17 +36,15 @@ export class Frame {
   /**
    * A plot of so many pixels. x, y: {range, log, label, factor, bare, labels}: what is in view,
    * whether it is logarithmic, the axis' name, what its numbers are multiplied by, whether they are
-   * left out, and labels(min, max) in place of round ones, as numbers or {at, text}; beside:
-   * px at its right.
+   * left out, and labels(min, max), [{at, text}], in place of round ones; beside: px at its right.
    */
   constructor(width, height, x, y, beside = 10) {
     const [left, top, right] = [50, 5, width - beside];
     const below = x.bare ? 5 : 18 + (x.label ? 14 : 0);
     const bottom = Math.max(height - below, 15);
-    Object.assign(this, {x, y, box: {left, top, right, bottom}});
-    Object.assign(this, {width: right - left, height: bottom - top});
-    this.px = scaleOf(x, left, right);
-    this.py = scaleOf(y, bottom, top);
+    const box = {left, top, right, bottom};
+    Object.assign(this, {x, y, box, width: right - left, height: bottom - top});
+    Object.assign(this, {px: scaleOf(x, left, right), py: scaleOf(y, bottom, top)});
   }
 
   /** Whether a place in pixels lies in the plot. */

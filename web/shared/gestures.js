@@ -17,25 +17,16 @@ class Way {
     Object.assign(this, {over, axis, ...direction});
   }
 
-  /** Pixels of the plot. */
-  get all() {
-    return this.over.getBoundingClientRect()[this.size] || 1;
-  }
-
-  /** Pixels from its start to an event. */
-  place(event) {
-    return event[this.client] - this.over.getBoundingClientRect()[this.start];
-  }
-
-  /** The share of what is in view that lies before an event. */
-  share(event) {
-    const share = this.place(event) / this.all;
-    return this.turned ? 1 - share : share;
-  }
-
-  /** The value of the axis there. */
-  value(event) {
-    return this.axis.view[0] + this.share(event) * this.axis.width;
+  /**
+   * Of an event: its place, px from the start of the plot, which is `all` px long; the share of what
+   * is in view that lies before it; the value of the axis there.
+   */
+  at(event) {
+    const box = this.over.getBoundingClientRect();
+    const all = box[this.size] || 1;
+    const place = event[this.client] - box[this.start];
+    const share = this.turned ? 1 - place / all : place / all;
+    return {all, place, share, value: this.axis.view[0] + share * this.axis.width};
   }
 
   /** Pixels between two events. */
@@ -46,18 +37,18 @@ class Way {
 
 /**
  * click(x, reach, {top, y, touch}): where one clicks; reach: a few pixels in units of the axis; top:
- * px in the plot; y: of the axis across.
+ * px in the plot; y: of the axis across, where there is one.
  */
 export function listen(over, axis, click, across = null) {
   const x = new Way(over, axis, rightwards);
-  const y = new Way(over, across, upwards);
+  const y = new Way(over, across ?? axis, upwards);
   // The axis across is first: who hears of the cursor along x reads where the other one is.
-  const plot = {over, x, ways: across ? [y, x] : [x]};
-  const where = (event, touch) => [
-    x.value(event),
-    (6 / x.all) * axis.width,
-    {top: y.place(event), y: across && y.value(event), touch},
-  ];
+  const plot = {over, axis, across, ways: across ? [y, x] : [x]};
+  const where = (event, touch) => {
+    const {value, all} = x.at(event);
+    const {place: top, value: height} = y.at(event);
+    return [value, (6 / all) * axis.width, {top, y: height, touch}];
+  };
   followMouse(plot, where, click);
   followWheel(plot);
   followFingers(plot);
@@ -68,7 +59,7 @@ export function listen(over, axis, click, across = null) {
 
 /** The cursor to where the pointer is. */
 function pointAt({ways}, event, by) {
-  for (const way of ways) way.axis.point(way.value(event), by);
+  for (const way of ways) way.axis.point(way.at(event).value, by);
 }
 
 const ordered = (a, b) => (a < b ? [a, b] : [b, a]);
@@ -87,8 +78,8 @@ function followMouse(plot, where, click) {
   const select = (event) => {
     selection.hidden = moved(event) < jitter;
     for (const way of ways) {
-      const ends = isAlong(way, event) ? [way.place(from), way.place(event)] : [0, way.all];
-      const [first, last] = ordered(...ends);
+      const {place, all} = way.at(event);
+      const [first, last] = isAlong(way, event) ? ordered(way.at(from).place, place) : [0, all];
       selection.style[way.start] = `${first}px`;
       selection.style[way.size] = `${last - first}px`;
     }
@@ -96,7 +87,7 @@ function followMouse(plot, where, click) {
   on(over, {
     pointerdown(event) {
       from = event;
-      if (isMouse(event) && event.button === 0) over.setPointerCapture(event.pointerId);
+      if (event.button === 0) over.setPointerCapture(event.pointerId); // of fingers, too
     },
     pointermove(event) {
       if (!isMouse(event)) return;
@@ -107,7 +98,7 @@ function followMouse(plot, where, click) {
       if (selection.hidden) return;
       selection.hidden = true;
       for (const way of ways)
-        if (isAlong(way, event)) way.axis.zoom(...ordered(way.value(from), way.value(event)));
+        if (isAlong(way, event)) way.axis.zoom(...ordered(way.at(from).value, way.at(event).value));
     },
     click(event) {
       clearTimeout(waiting);
@@ -121,23 +112,24 @@ function followMouse(plot, where, click) {
 
 /** The wheel zooms; one that would zoom out of the whole scrolls the page. Sideways it pans. */
 function followWheel(plot) {
-  const {over, x, ways} = plot;
+  const {over, axis, ways} = plot;
   const zoom = (event) => {
     const {deltaX, deltaY, deltaMode, shiftKey} = event;
     const sideways = Math.abs(deltaX) > Math.abs(deltaY) || shiftKey;
     if ((sideways || deltaY > 0) && !isZoomed(plot)) return;
     event.preventDefault();
     const lines = deltaMode ? 16 : 1;
-    if (sideways) x.axis.pan(((deltaX || deltaY) * lines) / x.all);
+    if (sideways) axis.pan(((deltaX || deltaY) * lines) / over.clientWidth);
     else
-      for (const way of ways) way.axis.zoomAt(way.value(event), Math.exp(-0.0022 * lines * deltaY));
+      for (const way of ways)
+        way.axis.zoomAt(way.at(event).value, Math.exp(-0.0022 * lines * deltaY));
   };
   over.addEventListener("wheel", zoom, {passive: false});
 }
 
 /** One finger moves what is in view, or the cursor where all is; two zoom. */
 function followFingers(plot) {
-  const {over, x, ways} = plot;
+  const {over, across, ways} = plot;
   const fingers = new Map();
   /** The middle of the fingers, and how far apart they are. */
   const span = () => {
@@ -153,15 +145,13 @@ function followFingers(plot) {
   const ends = (event) => fingers.delete(event.pointerId);
   // What is not zoomed leaves a stroke upwards to the page.
   const leave = () => {
-    over.style.touchAction = ways[0] !== x && ways[0].axis.zoomed ? "none" : "pan-y";
+    over.style.touchAction = across?.zoomed ? "none" : "pan-y";
   };
   leave();
-  ways[0].axis.onView(leave);
+  across?.onView(leave);
   on(over, {
     pointerdown(event) {
-      if (isMouse(event)) return;
-      fingers.set(event.pointerId, event);
-      over.setPointerCapture(event.pointerId);
+      if (!isMouse(event)) fingers.set(event.pointerId, event);
     },
     pointermove(event) {
       if (!fingers.has(event.pointerId)) return;
@@ -170,8 +160,8 @@ function followFingers(plot) {
       const now = span();
       if (fingers.size < 2 && !isZoomed(plot)) return pointAt(plot, event, "pointer");
       for (const way of ways) {
-        way.axis.pan(way.share(old) - way.share(now));
-        way.axis.zoomAt(way.value(now), now.width / old.width);
+        way.axis.pan(way.at(old).share - way.at(now).share);
+        way.axis.zoomAt(way.at(now).value, now.width / old.width);
       }
     },
     pointerup: ends,

@@ -116,7 +116,7 @@ function sameScale(ranges, {width, height}) {
   const pixels = [width, height];
   const unit = Math.min(...ranges.map(([min, max], i) => pixels[i] / (max - min)));
   return ranges.map(([min, max], i) => {
-    const half = pixels[i] / unit / 2;
-    return [(min + max) / 2 - half, (min + max) / 2 + half];
+    const more = (pixels[i] / unit - (max - min)) / 2;
+    return [min - more, max + more];
   });
 }

@@ -40,8 +40,9 @@ function envelope(c, width) {
   let before = null;
   const end = () => {
     if (column === null) return;
-    const top = Math.min(high, before?.low ?? high);
-    const bottom = Math.max(low, before?.high ?? low);
+    before ??= {low, high};
+    const top = Math.min(high, before.low);
+    const bottom = Math.max(low, before.high);
     c.fillRect(column, top - width / 2, 1, bottom - top + width);
     before = {low, high};
   };

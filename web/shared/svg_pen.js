@@ -101,17 +101,17 @@ export class SvgPen {
   }
 
   rect(x, y, width, height) {
-    this.to("M", x, y);
-    this.to("h", width);
-    this.to("v", height);
-    this.to("h", -width);
+    const [right, bottom] = [x + width, y + height];
+    this.to("M", x, y, right, y, right, bottom, x, bottom);
     this.closePath();
   }
 
   /** An element, as opaque as all are for now. */
   add(tag, all, ...children) {
     const opacity = this.globalAlpha < 1 ? this.globalAlpha : null;
-    this.group.append(svg(tag, {...all, opacity}, ...children));
+    const node = svg(tag, {...all, opacity}, ...children);
+    this.group.append(node);
+    return node;
   }
 
   stroke() {
@@ -141,11 +141,10 @@ export class SvgPen {
 
   fillText(text, x, y) {
     const style = {
-      style: `font: ${this.font}`,
       fill: this.fillStyle,
       "text-anchor": anchors[this.textAlign],
       "dominant-baseline": baselines[this.textBaseline],
     };
-    this.add("text", {x, y, ...style}, text);
+    this.add("text", {x, y, ...style}, text).style.font = this.font;
   }
 }
