@@ -18,7 +18,7 @@ export class Axis {
     this.viewers.push(f);
   }
 
-  /** f(by): called when the cursor is elsewhere; by: "pointer", "key", "play", ... */
+  /** f(by): called when the cursor is elsewhere; by: "pointer", "play" or none. */
   onCursor(f) {
     this.pointers.push(f);
   }

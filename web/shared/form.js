@@ -21,8 +21,6 @@ export const groups = {
 };
 // The preset has its own menu; the page needs every part that it draws, and shows no perturbed run.
 const hidden = new Set(["preset", "include", "perturbation"]);
-const wide = new Set(["choice", "choices", "intervals", "states", "text"]);
-const hints = {intervals: "none; as a,b; c,d", states: "one; as x0=0.01; x0=0, y0=0.002"};
 
 const isObject = (value) => typeof value === "object" && value !== null;
 
@@ -50,12 +48,47 @@ const listOf = (read) => (text) =>
     .filter((part) => part.trim())
     .map(read);
 export const defaultSet = "default set"; // of starts, in place of a list
-const readers = {
-  interval,
-  intervals: listOf(interval),
-  states: (text) => (text.trim() === defaultSet ? defaultSet : listOf(state)(text)),
-  text: (text) => text.trim(),
+
+// What fields of a type but a number have of their own. Those that are no texts: how their input is
+// made, what it holds, undefined for the default, and how a value is set. Texts: how they are read,
+// and what stands in an empty one.
+const types = {
+  choice: {
+    wide: true,
+    make: ({choices}) => element("select", {}, ...choices.map((c) => new Option(c))),
+    get: ({value}, standard) => (value === standard ? undefined : value),
+    set(input, value) {
+      input.value = value;
+    },
+  },
+  choices: {
+    wide: true,
+    make({choices}) {
+      const boxOf = (value) => element("input", {type: "checkbox", value});
+      const labels = choices.map((c) => element("label", {}, boxOf(c), c));
+      return element("div", {className: "checks"}, ...labels);
+    },
+    get(input, standard) {
+      const chosen = [...input.querySelectorAll("input:checked")].map((box) => box.value);
+      return chosen.length === standard.length ? undefined : chosen;
+    },
+    set(input, chosen) {
+      for (const box of input.querySelectorAll("input")) box.checked = chosen.includes(box.value);
+    },
+  },
+  interval: {read: interval},
+  intervals: {wide: true, read: listOf(interval), hint: "none; as a,b; c,d"},
+  states: {
+    wide: true,
+    read: (text) => (text.trim() === defaultSet ? defaultSet : listOf(state)(text)),
+    hint: "one; as x0=0.01; x0=0, y0=0.002",
+  },
+  text: {wide: true, read: (text) => text.trim()},
 };
+const typeOf = ({type}) => types[type] ?? {};
+
+const textInput = (field) =>
+  element("input", {type: "text", inputMode: typeOf(field).read ? "text" : "decimal"});
 
 // Two ways to say the same: where one is filled the other follows from it.
 const alternatives = Object.entries({...standing, cycles: "tau_end"});
@@ -78,38 +111,6 @@ const times = (value, factor) =>
   factor === 1 || value === "" || !Number.isFinite(Number(value))
     ? value
     : Number((value * factor).toPrecision(15));
-
-// The inputs that are no texts: how they are made, what they hold, undefined for the default, and
-// how a value is set.
-const kinds = {
-  choice: {
-    make: ({choices, default: standard}) => {
-      const input = element("select", {}, ...choices.map((c) => new Option(c)));
-      input.value = standard;
-      return input;
-    },
-    get: ({value}, standard) => (value === standard ? undefined : value),
-    set(input, value) {
-      input.value = value;
-    },
-  },
-  choices: {
-    make: ({choices, default: standard}) => {
-      const check = (c) => {
-        const box = element("input", {type: "checkbox", value: c, checked: standard.includes(c)});
-        return element("label", {}, box, c);
-      };
-      return element("div", {className: "checks"}, ...choices.map(check));
-    },
-    get(input, standard) {
-      const chosen = [...input.querySelectorAll("input:checked")].map((box) => box.value);
-      return chosen.length === standard.length ? undefined : chosen;
-    },
-    set(input, chosen) {
-      for (const box of input.querySelectorAll("input")) box.checked = chosen.includes(box.value);
-    },
-  },
-};
 
 /** On a small screen the groups are closed at first: what is looked at lies below them. */
 const folded = matchMedia("(max-width: 700px)").matches;
@@ -147,14 +148,10 @@ export class Form {
 
   row(field) {
     const {name, type, minimum, maximum} = field;
-    const isText = !(type in kinds);
-    const input = isText
-      ? element("input", {
-          type: "text",
-          inputMode: readers[type] ? "text" : "decimal",
-          placeholder: this.standardOf(field),
-        })
-      : kinds[type].make(field);
+    const {make = textInput, set, wide} = typeOf(field);
+    const input = make(field);
+    if (set) set(input, field.default);
+    else input.placeholder = this.standardOf(field);
     const error = element("p", {className: "error", id: `${this.prefix}error-${name}`});
     input.setAttribute("aria-describedby", error.id);
     input.addEventListener("input", () => this.sayOrigin(name));
@@ -169,7 +166,7 @@ export class Form {
       element("span", {className: "name"}, named, element("span", {className: "origin"})),
       input,
     );
-    const width = wide.has(type) && !field.narrow ? " wide" : "";
+    const width = wide && !field.narrow ? " wide" : "";
     const row = element("div", {className: `field field-${name}${width}`}, label, error);
     this.inputs.set(name, input);
     this.errors.set(name, error);
@@ -180,7 +177,7 @@ export class Form {
   /** What an empty input stands for, before an answer tells. */
   standardOf(field) {
     const note = (field.default_note ?? "").split(":")[0];
-    return note || textOf(this.shown(field.name, field.default ?? "")) || hints[field.type] || "";
+    return note || textOf(this.shown(field.name, field.default ?? "")) || typeOf(field).hint || "";
   }
 
   /** A value as it is shown; what is no number stays as it is. */
@@ -196,10 +193,12 @@ export class Form {
   }
 
   /** What an input of text holds, typed for JSON; undefined where it is empty. */
-  read({name, type}) {
+  read(field) {
+    const {name} = field;
     const {value: text} = this.inputs.get(name);
+    const {read} = typeOf(field);
     if (!text.trim()) return undefined;
-    if (readers[type]) return readers[type](text);
+    if (read) return read(text);
     const exact = this.exact.get(name);
     if (exact?.text === text) return number(String(exact.value));
     return times(number(text), 1 / this.factors.get(name));
@@ -210,18 +209,20 @@ export class Form {
     const values = this.fields.map((field) => {
       const input = this.inputs.get(field.name);
       if (input.disabled) return [];
-      const kind = kinds[field.type];
-      return [field.name, kind ? kind.get(input, field.default) : this.read(field)];
+      const {get} = typeOf(field);
+      return [field.name, get ? get(input, field.default) : this.read(field)];
     });
     return Object.fromEntries(values.filter(([, value]) => value !== undefined));
   }
 
   set(values) {
-    for (const {name, type, group, default: standard} of this.fields) {
+    for (const field of this.fields) {
+      const {name} = field;
       const value = values[name];
-      if (type in kinds) kinds[type].set(this.inputs.get(name), value ?? standard);
+      const {set} = typeOf(field);
+      if (set) set(this.inputs.get(name), value ?? field.default);
       else this.write(name, value ?? "");
-      if (value !== undefined && !folded) this.parts.get(group).open = true;
+      if (value !== undefined && !folded) this.parts.get(field.group).open = true;
       this.sayOrigin(name);
     }
     this.greyOut();
@@ -237,7 +238,7 @@ export class Form {
     for (const field of this.fields) {
       const {name} = field;
       this.sayOrigin(name, origins[name]);
-      if (field.type in kinds) continue;
+      if (typeOf(field).set) continue;
       const value = values[name];
       this.inputs.get(name).placeholder =
         value == null ? this.standardOf(field) : textOf(rounded(this.shown(name, value)));
@@ -298,18 +299,22 @@ export class Form {
       this.errors.get(name).textContent = "";
       this.inputs.get(name).removeAttribute("aria-invalid");
     }
-    const nameOf = (error) => error.pointer.split("/")[1];
-    const [own, left] = [true, false].map((is) =>
-      errors.filter((error) => this.errors.has(nameOf(error)) === is),
-    );
-    for (const error of own) {
-      const place = this.errors.get(nameOf(error));
+    const left = [];
+    let first = null;
+    for (const error of errors) {
+      const name = error.pointer.split("/")[1];
+      const place = this.errors.get(name);
+      if (!place) {
+        left.push(error);
+        continue;
+      }
       place.append(place.textContent && " ", error.detail);
-      const input = this.inputs.get(nameOf(error));
+      const input = this.inputs.get(name);
       input.setAttribute("aria-invalid", "true");
       input.closest("details").open = true;
+      first ??= input;
     }
-    if (lead && own.length) this.inputs.get(nameOf(own[0])).focus();
+    if (lead) first?.focus();
     return left;
   }
 }

@@ -104,7 +104,7 @@ function followMouse(plot, where, click) {
       clearTimeout(waiting);
       if (event.detail > 1 || (from && moved(event) > jitter)) return;
       const touch = Boolean(from) && !isMouse(from);
-      pointAt(plot, event, "click");
+      pointAt(plot, event);
       waiting = setTimeout(click, patience, ...where(event, touch));
     },
   });
@@ -175,7 +175,7 @@ function followFingers(plot) {
  */
 export function followKeys(node, axis, impacts = () => []) {
   const now = () => axis.cursor ?? axis.view[0];
-  const go = (to) => to !== undefined && axis.point(to, "key");
+  const go = (to) => to !== undefined && axis.point(to);
   const step = (event, way) => go(now() + way * (event.shiftKey ? 0.05 : 0.005) * axis.width);
   const zoom = (factor) => axis.zoomAt(clamp(now(), ...axis.view), factor);
   const acts = {

@@ -1,5 +1,4 @@
 // Lines over an axis. What is drawn is what is in view.
-import {colour} from "./colours.js";
 import {element} from "./dom.js";
 import {Frame, rangeOf} from "./frame.js";
 import {ink, write} from "./ink.js";
@@ -66,16 +65,22 @@ export class LinePlot extends Panel {
   }
 
   paint(c, {frame, data: [x, ...columns], dense}) {
-    const {series, layers = [], calm = [], bands = [], marks = []} = this.last;
+    const {series, layers = [], calm = [], bands = [], marks = [], lines = []} = this.last;
+    const {levels = [], levelColour = "soft"} = this.last;
     frame.draw(c);
     frame.clip(c);
-    for (const {from, to, colour: name} of layers) {
-      c.fillStyle = colour(name);
+    for (const {from, to, colour} of layers) {
+      ink(c, colour);
       c.fillRect(frame.box.left, frame.py(to), frame.width, frame.py(from) - frame.py(to));
     }
     shade(c, frame, calm, "calm");
     shade(c, frame, bands, "shade");
-    this.rule(c, frame);
+    for (const level of levels) {
+      ink(c, level.colour ?? levelColour);
+      frame.across(c, level.y ?? level);
+    }
+    ink(c, "wall", 1, [6, 4]);
+    for (const x of lines) frame.upright(c, x);
     series.forEach((s, k) => {
       if (!s.dots || s.width) line(c, frame, x, columns[k], s, dense);
     });
@@ -92,8 +97,8 @@ export class LinePlot extends Panel {
     const {box} = super.paintAll(c, width, height).frame;
     const {series} = this.last;
     if (series.length < 2) return;
-    series.forEach(({label, colour: name}, k) => {
-      c.fillStyle = colour(name);
+    series.forEach(({label, colour}, k) => {
+      ink(c, colour);
       write(c, label, box.left + 8 + 90 * k, box.top + 4, "left", "top");
     });
   }
@@ -109,16 +114,6 @@ export class LinePlot extends Panel {
       names: [x.label, ...series.map(({label}) => `${label}${unit && ` (${unit})`}`)],
       columns: [part(time).map((t) => t * x.factor), ...columns.map(part)],
     };
-  }
-
-  rule(c, frame) {
-    const {levels = [], levelColour = "soft", lines = []} = this.last;
-    for (const level of levels) {
-      ink(c, level.colour ?? levelColour);
-      frame.across(c, level.y ?? level);
-    }
-    ink(c, "wall", 1, [6, 4]);
-    for (const x of lines) frame.upright(c, x);
   }
 
   /** Other marks and bands, and the zoom stays. */
@@ -145,10 +140,10 @@ export class LinePlot extends Panel {
     if (this.written === written) return;
     this.written = written;
     this.values = series.map(() => element("b"));
-    const keys = series.map(({label, colour: name, dash}, i) => {
+    const keys = series.map(({label, colour, dash}, i) => {
       const className = `key line${dash ? " dashed" : ""}`;
       const key = element("span", {className}, label, " ", this.values[i]);
-      key.style.setProperty("--key", `var(--${name})`);
+      key.style.setProperty("--key", `var(--${colour})`);
       return key;
     });
     this.legend.hidden = keys.length < 2;

@@ -1,6 +1,6 @@
 // What the points of a sweep tell: one table for menus, axes, colours and tooltips. Lengths are
 // drawn in mm.
-import {count, inMm, short, shortTo} from "./numbers.js";
+import {count, inMm, short, withError} from "./numbers.js";
 
 export const regimes = {
   VI: "dense, irregular",
@@ -194,11 +194,8 @@ function describeStarts(p, where) {
 }
 
 /** The largest exponent and its standard error. */
-function exponentText({lambda, status, standard_error: errors}) {
-  if (status?.[0] === "minus_infinity") return "−∞";
-  const value = shortTo(4, lambda[0]);
-  return errors?.[0] == null ? value : `${value} ± ${shortTo(2, errors[0])}`;
-}
+const exponentText = ({lambda, status, standard_error: errors}) =>
+  status?.[0] === "minus_infinity" ? "−∞" : withError(lambda[0], errors?.[0], 4);
 
 const wholePercent = (share) => `${(share * 100).toFixed(0)} %`;
 

@@ -109,9 +109,7 @@ export class SvgPen {
   /** An element, as opaque as all are for now. */
   add(tag, all, ...children) {
     const opacity = this.globalAlpha < 1 ? this.globalAlpha : null;
-    const node = svg(tag, {...all, opacity}, ...children);
-    this.group.append(node);
-    return node;
+    this.group.append(svg(tag, {...all, opacity}, ...children));
   }
 
   stroke() {
@@ -140,11 +138,13 @@ export class SvgPen {
   }
 
   fillText(text, x, y) {
-    const style = {
-      fill: this.fillStyle,
+    // Attributes each: the page's policy lets no picture have styles of its own.
+    const [, weight, size, family] = /^(\d+ )?(\d+)px (.*)$/.exec(this.font);
+    const font = {"font-weight": weight, "font-size": size, "font-family": family};
+    const place = {
       "text-anchor": anchors[this.textAlign],
       "dominant-baseline": baselines[this.textBaseline],
     };
-    this.add("text", {x, y, ...style}, text).style.font = this.font;
+    this.add("text", {x, y, fill: this.fillStyle, ...font, ...place}, text);
   }
 }
