@@ -32,14 +32,10 @@ export function exponentSeries(history, status = []) {
  * leaves it.
  */
 export function exponentRange(histories) {
-  const values = [0];
-  for (const history of histories) {
-    if (!history) continue;
-    const from = Math.floor(history.tau.length / 4);
-    for (const name of names)
-      for (const v of history[name].slice(from)) if (v !== null) values.push(v);
-  }
-  values.sort((a, b) => a - b);
+  const late = ({tau, ...columns}) =>
+    names.flatMap((name) => columns[name].slice(Math.floor(tau.length / 4)));
+  const known = histories.filter(Boolean).flatMap(late);
+  const values = [0, ...known].filter((v) => v !== null).sort((a, b) => a - b);
   const low = values[Math.floor(values.length * 0.01)];
   const high = values[Math.ceil(values.length * 0.99) - 1];
   const margin = (high - low || 0.1) * 0.15;

@@ -4,7 +4,12 @@
 
 const terms = 22; // of the series: 1/22! is below 1e-21
 
-const states = [0, 1, 2, 3].map((i) => [0, 1, 2, 3].map((k) => Number(i === k)));
+const states = [
+  [1, 0, 0, 0],
+  [0, 1, 0, 0],
+  [0, 0, 1, 0],
+  [0, 0, 0, 1],
+];
 
 /**
  * The map of a state over a time, from what it makes of (x, x', sin, cos) alone: a function that

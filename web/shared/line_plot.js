@@ -49,14 +49,16 @@ export class LinePlot extends Panel {
     this.last?.click?.(...where);
   }
 
-  /** What is in view; alone: with the labels of x, whatever is below it. */
+  /**
+   * What is in view; alone: with the labels of x, whatever is below it, and the names of the lines.
+   */
   prepare(width, height, alone = false) {
     if (!this.last) return null;
     const {x, label, log, range, bare, data, trace} = this.last;
     const drawn = data ? {data} : trace(...this.axis.view, columnsOf(width));
     const ofX = {...x, range: this.axis.view, bare: bare && !alone};
     const ofY = {range: range ?? rangeOf(drawn.data.slice(1), log) ?? [0, 1], log, label};
-    return {...drawn, frame: new Frame(width, height, ofX, ofY)};
+    return {...drawn, alone, frame: new Frame(width, height, ofX, ofY)};
   }
 
   /** Of a line whose extremes are drawn, pixel by pixel. */
@@ -64,7 +66,7 @@ export class LinePlot extends Panel {
     return columnsOf(this.size.width);
   }
 
-  paint(c, {frame, data: [x, ...columns], dense}) {
+  paint(c, {frame, data: [x, ...columns], dense, alone}) {
     const {series, layers = [], calm = [], bands = [], marks = [], lines = []} = this.last;
     const {levels = [], levelColour = "soft"} = this.last;
     frame.draw(c);
@@ -80,7 +82,7 @@ export class LinePlot extends Panel {
       frame.across(c, level.y ?? level);
     }
     ink(c, "wall", 1, [6, 4]);
-    for (const x of lines) frame.upright(c, x);
+    for (const moment of lines) frame.upright(c, moment);
     series.forEach((s, k) => {
       if (!s.dots || s.width) line(c, frame, x, columns[k], s, dense);
     });
@@ -90,16 +92,10 @@ export class LinePlot extends Panel {
       if (dots) symbols(c, frame, group, true);
     });
     for (const group of marks) symbols(c, frame, group);
-  }
-
-  /** With the names of the lines. */
-  paintAll(c, width, height) {
-    const {box} = super.paintAll(c, width, height).frame;
-    const {series} = this.last;
-    if (series.length < 2) return;
+    if (!alone || series.length < 2) return;
     series.forEach(({label, colour}, k) => {
       ink(c, colour);
-      write(c, label, box.left + 8 + 90 * k, box.top + 4, "left", "top");
+      write(c, label, frame.box.left + 8 + 90 * k, frame.box.top + 4, "left", "top");
     });
   }
 

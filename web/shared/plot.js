@@ -5,6 +5,10 @@ import {element} from "./dom.js";
 import {blank, Size} from "./frame.js";
 
 export class Plot {
+  frame = null;
+  head = 0;
+  lit = [];
+
   /**
    * sized: the node whose size counts; layer: what the ring lies in. What is drawn is of who extends
    * this: prepare(width, height, alone), {frame, ...}; and paint(c, what was prepared), c: a canvas'
@@ -12,7 +16,7 @@ export class Plot {
    * the ring's layer, px.
    */
   constructor(canvas, sized, layer) {
-    Object.assign(this, {canvas, frame: null, head: 0});
+    this.canvas = canvas;
     this.ring = element("div", {className: "lit", hidden: true});
     layer.append(this.ring);
     this.size = new Size(sized, () => this.resized());
@@ -32,7 +36,7 @@ export class Plot {
     this.frame = prepared.frame;
     this.place(height);
     this.paint(blank(this.canvas, {width, height}), prepared);
-    this.light(...(this.lit ?? []));
+    this.light(...this.lit);
   }
 
   /** A canvas of so many px, and what lies over it, get their place. */
@@ -42,7 +46,6 @@ export class Plot {
   paintAll(c, width, height) {
     const prepared = this.prepare(width, height, true);
     if (prepared) this.paint(c, prepared);
-    return prepared;
   }
 
   /** Rings a point; none without one, or out of view. */
