@@ -23,7 +23,8 @@ export class Motion {
 
   /** A piece, side: of the wall it is stuck to. */
   add(tau, state, y, yDot, side = 0) {
-    this.pieces.push({tau, state, y, y_dot: yDot, side});
+    const flow = side ? this.stuck : this.free;
+    this.pieces.push({tau, state, y, y_dot: yDot, side, flow});
   }
 
   /** Pieces {tau, state: [x, x', sin, cos], y, y_dot, side}. */
@@ -52,14 +53,10 @@ export class Motion {
     this.add(to, left.state, left.y, left.y_dot);
   }
 
-  flowOf(piece) {
-    return piece.side ? this.stuck : this.free;
-  }
-
   /** What a piece leads to at a later moment. */
   stateOf(piece, tau) {
     const s = tau - piece.tau;
-    const state = this.flowOf(piece).after(piece.state, s);
+    const state = piece.flow.after(piece.state, s);
     return piece.side
       ? {state, y: state[0] - piece.side * this.b, y_dot: state[1]}
       : {state, y: piece.y + piece.y_dot * s, y_dot: piece.y_dot};
@@ -70,7 +67,7 @@ export class Motion {
     const piece = this.pieces[Math.max(lastUpTo(this.starts, tau), 0)];
     const {state, y, y_dot} = this.stateOf(piece, tau);
     const [x, x_dot] = state;
-    return {x, x_dot, x_ddot: this.flowOf(piece).force(state), y, y_dot, side: piece.side};
+    return {x, x_dot, x_ddot: piece.flow.force(state), y, y_dot, side: piece.side};
   }
 
   /** The index of the last impact up to a moment, -1 before the first. */
@@ -142,7 +139,7 @@ export class Motion {
         i = lastUpTo(this.starts, tau);
         piece = this.pieces[i];
         ({state} = this.stateOf(piece, tau));
-        map = this.flowOf(piece).over(step);
+        map = piece.flow.over(step);
       } else map(state);
       const y = piece.y + piece.y_dot * (tau - piece.tau);
       use(k, state[0], piece.side ? -piece.side * this.b : y - state[0]);

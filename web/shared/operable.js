@@ -8,8 +8,7 @@ import {short} from "./numbers.js";
  * p go to.
  */
 export function operable(plot, name, moments) {
-  const {container, canvas, axis} = plot;
-  const node = container ?? canvas;
+  const {container: node, axis} = plot;
   attributes(node, {"aria-label": name, role: axis ? "slider" : "img"});
   if (!axis) return;
   node.tabIndex = 0;

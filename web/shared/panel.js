@@ -14,7 +14,7 @@ export class Panel extends Plot {
     const canvas = element("canvas");
     const over = element("div", {className: "over"});
     super(canvas, container, over);
-    Object.assign(this, {container, axis, across, over});
+    Object.assign(this, {axis, across, over});
     this.cursor = element("div", {className: "cursor", hidden: true});
     over.prepend(this.cursor);
     container.append(canvas, over);
@@ -47,11 +47,11 @@ export class Panel extends Plot {
 
   /** The cursor. */
   point() {
-    const {cursor, view} = this.axis;
-    const inView = this.frame && cursor !== null && cursor >= view[0] && cursor <= view[1];
+    const {cursor, view, width} = this.axis;
+    const share = cursor === null ? -1 : (cursor - view[0]) / width;
+    const inView = this.frame && share >= 0 && share <= 1;
     this.cursor.hidden = !inView;
     if (!inView) return;
-    const share = (cursor - view[0]) / this.axis.width;
     this.cursor.style.transform = `translateX(${Math.round(share * this.frame.width)}px)`;
     this.cursor.dataset.at = this.cursorText(cursor);
   }

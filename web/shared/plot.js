@@ -10,16 +10,16 @@ export class Plot {
   lit = [];
 
   /**
-   * sized: the node whose size counts; layer: what the ring lies in. What is drawn is of who extends
+   * container: the node whose size counts; layer: what the ring lies in. What is drawn is of who extends
    * this: prepare(width, height, alone), {frame, ...}; and paint(c, what was prepared), c: a canvas'
    * context, or what draws in its place. head: px above the canvas; offset: of the canvas in
    * the ring's layer, px.
    */
-  constructor(canvas, sized, layer) {
-    this.canvas = canvas;
+  constructor(canvas, container, layer) {
+    Object.assign(this, {canvas, container});
     this.ring = element("div", {className: "lit", hidden: true});
     layer.append(this.ring);
-    this.size = new Size(sized, () => this.resized());
+    this.size = new Size(container, () => this.resized());
   }
 
   resized() {
@@ -52,9 +52,8 @@ export class Plot {
   light(x, y) {
     this.lit = [x, y];
     const {frame, ring} = this;
-    const known = frame && x != null && y != null;
-    const [left, top] = known ? [frame.px(x), frame.py(y)] : [];
-    ring.hidden = !known || !frame.holds(left, top);
+    const [left, top] = frame ? [frame.px(x ?? NaN), frame.py(y ?? NaN)] : [];
+    ring.hidden = !frame?.holds(left, top);
     if (ring.hidden) return;
     const [right, down] = this.offset;
     ring.style.transform = `translate(${left + right}px, ${top + down}px)`;

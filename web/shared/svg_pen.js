@@ -22,7 +22,6 @@ export class SvgPen {
   textBaseline = "alphabetic";
   dash = [];
   path = "";
-  clips = 0;
   saved = [];
 
   /** background: its colour. */
@@ -43,8 +42,7 @@ export class SvgPen {
   }
 
   restore() {
-    const {clips} = this; // each has a number of its own
-    Object.assign(this, this.saved.pop(), {clips});
+    Object.assign(this, this.saved.pop());
   }
 
   /** What is drawn from here on, until what was saved is restored, lies in a group. */
@@ -63,7 +61,7 @@ export class SvgPen {
   }
 
   clip() {
-    const id = `clip${this.clips++}`;
+    const id = `clip${this.root.querySelectorAll("clipPath").length}`;
     this.group.append(svg("clipPath", {id}, svg("path", {d: this.path})));
     this.within({"clip-path": `url(#${id})`});
   }
