@@ -22,9 +22,8 @@ export const verdictColour = ({verdict}) => {
 const mm = (metres) => (metres == null ? null : metres * 1000);
 
 /**
- * of: the value at a point, where it is not the point's own of that name; from0: its axis begins at
- * 0; levels: lines across the plot; free: the same without the absorber; diverging: its colours
- * change sides at 0.
+ * of: the value at a point, where it is not the point's own of that name; levels: lines across the
+ * plot; free: the same without the absorber; diverging: its colours change sides at 0.
  */
 export const quantities = {
   lambda1: {
@@ -49,6 +48,7 @@ export const quantities = {
   share_impacts: {label: "share of the impacts", title: "dissipated by the impacts, share"},
   synchronised: {label: "share synchronised", title: "contacts synchronised, share", levels: [1]},
 };
+// Those of a sweep over one axis; their axis begins at 0.
 const besideLambda = ["z", "x_rms_ratio", "share_impacts", "x_max", "synchronised"];
 for (const name of besideLambda) quantities[name].from0 = true;
 for (const [name, quantity] of Object.entries(quantities)) quantity.of ??= (p) => p[name] ?? null;
@@ -210,10 +210,7 @@ export function describe(p, where) {
     ["z", short(p.z)],
     ["λ₁", p.lambda && exponentText(p)],
     ["", verdicts[p.verdict]],
-    [
-      "rms of x",
-      ratio == null ? `${short(mm(p.x_rms))} mm` : `${wholePercent(ratio)} of that without`,
-    ],
+    ["rms of x", ratio == null ? inMm(p.x_rms, 5) : `${wholePercent(ratio)} of that without`],
     ["largest |x|", peakOf(p, where)],
     ["without", p.x_free != null && inMm(p.x_free)],
     ["by impacts", share != null && `${wholePercent(share)} of the dissipation`],
