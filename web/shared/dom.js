@@ -18,3 +18,18 @@ export const element = (tag, properties = {}, ...children) => {
   node.append(...children);
   return node;
 };
+
+/** Writes a text into the element of an id. */
+export const write = (id, text) => {
+  $(id).textContent = text;
+};
+
+/** What a reader of the screen is told of a node, by names without `aria-`. */
+export const aria = (node, states) => {
+  for (const [name, value] of Object.entries(states)) node.setAttribute(`aria-${name}`, value);
+};
+
+/** Presses that of several buttons which is(button). */
+export const press = (buttons, is) => {
+  for (const button of buttons) aria(button, {pressed: is(button)});
+};

@@ -39,3 +39,12 @@ export function toNumber(text) {
   const value = Number(written.replace("−", "-"));
   return written !== "" && Number.isFinite(value) ? value : null;
 }
+
+export const clamp = (value, least, most) => Math.min(Math.max(value, least), most);
+
+/** In n digits in all. */
+export const significant = (value, n) =>
+  value == null ? "–" : short(Number(value.toPrecision(n)));
+
+/** A length in m as one reads it. */
+export const inMm = (metres, n = 3) => `${significant(metres * 1000, n)} mm`;

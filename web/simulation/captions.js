@@ -1,20 +1,8 @@
 // What each plot says of itself: for which parameters it is, and in words what it shows.
-import {$} from "../shared/dom.js";
-import {count, percent, short, withError} from "../shared/numbers.js";
+import {$, aria} from "../shared/dom.js";
+import {count, inMm, percent, withError} from "../shared/numbers.js";
 import {regimes} from "../shared/quantities.js";
-import {valueText} from "./sentence.js";
-import {sliderOf} from "./sliders.js";
-
-const reduced = ["b", "R", "G", "Omega", "zeta"];
-const si = ["b", "R", "F", "f", "c1"];
-
-/** The parameters that matter, in a line. */
-export const parameterLine = (parameters) =>
-  (parameters.si ? si : reduced)
-    .map((name) => valueText(sliderOf(name, parameters), parameters))
-    .join(", ");
-
-const inMm = (metres) => `${short(Number((metres * 1000).toPrecision(3)))} mm`;
+import {parameterLine} from "./sliders.js";
 
 /** The plots of the first screen in words, by name. */
 function summaries({energy, impacts, regime, exponents, parameters, status}, units) {
@@ -32,25 +20,22 @@ function summaries({energy, impacts, regime, exponents, parameters, status}, uni
   };
 }
 
-let told = {line: "", texts: {}};
+let caption = "";
+let texts = {};
 
 /** What a plot that is taken away says of itself. */
 export function aboutFigure(name) {
-  const caption = $(`figure-${name}`).querySelector("figcaption");
-  const own = [...caption.childNodes].filter((node) => !node.classList?.length);
+  const nodes = [...$(`figure-${name}`).querySelector("figcaption").childNodes];
+  const own = nodes.filter((node) => !node.classList?.length);
   const words = own.map((node) => node.textContent.trim()).filter(Boolean);
-  const [title] = words;
-  const summary = told.texts[name] ?? words.join(" ");
-  return {title, summary, caption: told.line, name: `vines-${name}`};
+  return {title: words[0], summary: texts[name] ?? words.join(" "), caption, name: `vines-${name}`};
 }
 
 /** Writes both to the figures. */
 export function describe(answer, units) {
-  const line = parameterLine(answer.parameters);
-  told = {line, texts: summaries(answer, units)};
-  for (const node of document.querySelectorAll("#instrument .params")) node.textContent = line;
-  for (const [name, text] of Object.entries(told.texts)) {
-    const node = $(`plot-${name}`);
-    node.setAttribute("aria-label", `${text} ${line}`);
-  }
+  caption = parameterLine(answer.parameters);
+  texts = summaries(answer, units);
+  for (const node of document.querySelectorAll("#instrument .params")) node.textContent = caption;
+  for (const [name, text] of Object.entries(texts))
+    aria($(`plot-${name}`), {label: `${text} ${caption}`});
 }

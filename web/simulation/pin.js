@@ -1,8 +1,8 @@
 // A run that is kept beside those that follow, to compare them with it. The address holds its query.
 import {get} from "../shared/api.js";
-import {$} from "../shared/dom.js";
+import {$, write} from "../shared/dom.js";
 import {Motion} from "../shared/motion.js";
-import {parameterLine} from "./captions.js";
+import {parameterLine} from "./sliders.js";
 
 let pinned = null; // {query, answer, motion}
 let compare = () => {};
@@ -12,11 +12,10 @@ export const query = () => pinned?.query ?? null;
 
 function keep(run) {
   pinned = run;
-  for (const id of ["swap", "unpin"]) $(id).hidden = !pinned?.answer;
-  $("pinned-run").textContent = pinned?.answer
-    ? `pinned: ${parameterLine(pinned.answer.parameters)}`
-    : "";
-  compare(pinned?.answer ? pinned : null);
+  const there = run?.answer ? run : null;
+  for (const id of ["swap", "unpin"]) $(id).hidden = !there;
+  write("pinned-run", there ? `pinned: ${parameterLine(there.answer.parameters)}` : "");
+  compare(there);
 }
 
 /** Pins the run of a query, or none; ask: what of it is needed. */
@@ -37,16 +36,11 @@ export async function restore(wanted, ask) {
  */
 export function start(run, draw, show) {
   compare = draw;
-  const swap = () => {
-    const {query: other} = pinned;
-    keep(run());
-    show(other);
-  };
-  const pin = (other) => {
+  const pin = (other, wanted) => {
     keep(other);
-    show();
+    show(wanted);
   };
-  $("pin").addEventListener("click", () => pin(run()));
-  $("unpin").addEventListener("click", () => pin(null));
-  $("swap").addEventListener("click", swap);
+  $("pin").onclick = () => pin(run());
+  $("unpin").onclick = () => pin(null);
+  $("swap").onclick = () => pin(run(), query());
 }

@@ -80,6 +80,13 @@ export class Request {
     return this.preset ? {preset: this.name, ...this.differing(request)} : request;
   }
 
+  /** Of a request what is the system's and its start; not how long it runs, or what is told. */
+  systemOf(request) {
+    const own = ["system", "reduced", "SI", "start"];
+    const is = ([name]) => own.includes(this.fieldOf[name].group);
+    return Object.fromEntries(Object.entries(request).filter(is));
+  }
+
   /** Fills the form with a query; returns the names that are no fields. */
   read(query) {
     const rest = new URLSearchParams(query);

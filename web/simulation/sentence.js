@@ -2,13 +2,7 @@
 import {element} from "../shared/dom.js";
 import {count, percent, withError} from "../shared/numbers.js";
 import {regimes} from "../shared/quantities.js";
-import {textAt} from "./sliders.js";
-
-/** A slider's value in words: b = 22.0 mm. */
-export function valueText(slider, parameters) {
-  const {symbol, unit} = slider;
-  return `${symbol} = ${textAt(slider, parameters)}${unit ? ` ${unit}` : ""}`;
-}
+import {valueText} from "./sliders.js";
 
 /** How the motion goes, and whether it is chaotic; of what both tell, only what they agree on. */
 function motionText({regime, exponents}, units) {

@@ -4,15 +4,14 @@ import {Problem, simulate, wholeMessage} from "../shared/api.js";
 import {Axis} from "../shared/axis.js";
 import {listWarnings} from "../shared/cards.js";
 import {formsOf} from "../shared/copies.js";
-import {$, countUp, element, nextTask} from "../shared/dom.js";
-import {addMenu} from "../shared/figure_menu.js";
+import {$, aria, countUp, element, nextTask, write} from "../shared/dom.js";
 import {Form} from "../shared/form.js";
 import {Job} from "../shared/job.js";
 import {Motion} from "../shared/motion.js";
 import {count} from "../shared/numbers.js";
 import {copy} from "../shared/take_away.js";
 import {onUnits, unitsOf, unitsSwitch} from "../shared/units.js";
-import {aboutFigure, describe} from "./captions.js";
+import {describe} from "./captions.js";
 import * as chips from "./chips.js";
 import {Details} from "./details.js";
 import {Instrument} from "./instrument.js";
@@ -24,8 +23,8 @@ import * as pin from "./pin.js";
 import {Player} from "./player.js";
 import {Request, toQuery} from "./request.js";
 import {sentence, showSentence} from "./sentence.js";
-import {Sliders, sliderOf} from "./sliders.js";
-import {Strip} from "./strip.js";
+import * as sliders from "./sliders.js";
+import * as strip from "./strip.js";
 
 // What every turn of a slider asks for, and what follows once it rests.
 const first = {include: ["impacts", "exponents", "regime", "energy"], exponents: ["qr"]};
@@ -37,10 +36,8 @@ const rest = 100; // ms without an edit before what follows is asked for
 const axis = new Axis();
 const machine = new Machine($("machine"));
 let request;
-let sliders;
 let instrument;
 let player;
-let strip;
 let details;
 let last = null; // {asked, answer, motion, units}
 let touched = "b";
@@ -50,8 +47,16 @@ let remembered = () => {};
 let resting = 0;
 
 function say(text, fault = false) {
-  $("message").textContent = text;
+  write("message", text);
   $("message").classList.toggle("fault", fault);
+}
+
+/** Whether what is shown is of another request. */
+const setStale = (is) => $("results").classList.toggle("stale", is);
+
+/** Whether what a second answer brings is still to come. */
+function setBehind(is) {
+  for (const name of ["largest", "manifold"]) $(`figure-${name}`).classList.toggle("behind", is);
 }
 
 // What is computed.
@@ -61,12 +66,11 @@ const job = new Job({
   show: present,
   fail: refuse,
   busy(is, cancelled) {
-    if (is) $("results").classList.add("stale");
-    $("results").setAttribute("aria-busy", String(is));
+    if (is || cancelled) setStale(true);
+    aria($("results"), {busy: is});
     $("cancel").hidden = !is;
     if (is && !$("message").classList.contains("fault")) say("computing …");
     else if (cancelled) say("cancelled: what is shown is the run before");
-    if (cancelled) $("results").classList.add("stale");
   },
   later: (text) => say(text, true),
 });
@@ -76,8 +80,7 @@ const more = new Job({
   show(answer, asked) {
     if (asked !== last.asked) return;
     instrument.showMore(answer);
-    $("figure-largest").classList.remove("behind");
-    $("figure-manifold").classList.remove("behind");
+    setBehind(false);
     details.follow();
     countUp($("results"));
   },
@@ -90,13 +93,17 @@ function refuse(error) {
   const left = error instanceof Problem ? request.form.showErrors(error.errors, false) : [];
   if (error instanceof Problem && left.length < error.errors.length) $("more").open = true;
   say(wholeMessage(error, left), true);
-  $("results").classList.add("stale");
+  setStale(true);
 }
 
 /** What is first in view: the window, where there is one that ends before the run. */
 function homeOf({parameters, status}) {
   const to = parameters.window?.[1];
   return to && to < 0.9 * status.tau ? [0, to] : [0, status.tau];
+}
+
+function showOrigins() {
+  if ($("more").open) request.form.showOrigins(last.answer.parameters);
 }
 
 /** A run with many impacts is drawn in several tasks, between which the page hears of other things. */
@@ -108,12 +115,12 @@ async function present(answer, asked) {
   const motion = new Motion(answer);
   last = {asked, answer, motion, units};
   say(unknownText(asked));
-  $("results").classList.remove("stale");
+  setStale(false);
   request.form.showErrors([]);
-  if ($("more").open) request.form.showOrigins(answer.parameters);
+  showOrigins();
   listWarnings($("warnings"), answer.warnings);
   $("remarks").hidden = !answer.warnings.length;
-  $("remarks-count").textContent = count(answer.warnings.length, "remark");
+  write("remarks-count", count(answer.warnings.length, "remark"));
   axis.span(0, answer.status.tau, homeOf(answer), fresh);
   if (wantedView) axis.view = wantedView;
   wantedView = null;
@@ -130,20 +137,20 @@ async function present(answer, asked) {
 /** What shows the last answer, in the units that are chosen, step by step. */
 function drawing(fresh = false) {
   const {answer, asked, motion, units} = last;
-  const slider = sliderOf(touched, answer.parameters);
+  const slider = sliders.sliderOf(touched, answer.parameters);
   const tell = () => {
     $("units").hidden = !answer.parameters.si;
     sliders.show(answer.parameters, fresh, slider);
     showSentence($("sentence"), sentence(answer, slider, units));
     machine.show(motion, answer.energy.peak);
-    for (const name of ["largest", "manifold"]) $(`figure-${name}`).classList.add("behind");
+    setBehind(true);
     instrument.set(answer, motion, units, marksOf(answer, units));
   };
   const end = () => {
     player.show(motion, units);
     describe(answer, units);
     mark(request.edited ? null : request.preset);
-    strip.show(asked, answer.parameters, slider);
+    strip.show(request.systemOf(asked), answer.parameters, slider);
   };
   return [tell, ...instrument.drawing(), end];
 }
@@ -177,13 +184,13 @@ function remember(query, soon) {
 }
 
 /** A slider or the strip's marker was turned. */
-function turn(fields, slider, {hasty}) {
+function turn(fields, slider, hasty) {
   touched = slider.name;
   const {form} = request;
   if (slider.name === "zeta") request.dampingChosen = true;
-  for (const [name, value] of Object.entries(fields)) form.replace(name, value ?? "");
-  const names = Object.keys(fields).filter((name) => fields[name] !== null);
-  for (const name of names) note(request.typedOver(name));
+  const entries = Object.entries(fields);
+  for (const [name, value] of entries) form.replace(name, value ?? "");
+  for (const [name, value] of entries) if (value !== null) note(request.typedOver(name));
   form.greyOut();
   run({hasty});
 }
@@ -192,7 +199,7 @@ function turn(fields, slider, {hasty}) {
 function note(text) {
   const {preset, edited} = request;
   const changed = preset && edited ? `${preset.source}, changed` : (preset?.note ?? "");
-  $("preset-note").textContent = text || changed;
+  write("preset-note", text || changed);
 }
 
 function choosePreset(name) {
@@ -238,8 +245,8 @@ export function open(given) {
 }
 
 export function redraw() {
-  instrument.redraw();
-  details.redraw();
+  instrument.plots.refresh();
+  details.plots?.refresh();
   strip.draw();
   if (axis.cursor !== null) machine.draw(axis.cursor);
 }
@@ -253,15 +260,9 @@ export function start({fields, presets: list}, changed, {measure}) {
   const form = new Form($("fields"), fields);
   request = new Request(form, fields, list);
   instrument = new Instrument(axis);
-  for (const [name, plot] of instrument.plots())
-    addMenu($(`figure-${name}`), plot, () => aboutFigure(name));
   player = new Player(axis, (tau) => machine.draw(tau));
-  sliders = new Sliders($("sliders"), {
-    change: turn,
-    refuse: (text, {label}) => say(`${label}: “${text}” is no number`, true),
-  });
-  strip = new Strip(turn);
-  details = new Details(axis, () => last, fields);
+  sliders.start(turn, (text, {label}) => say(`${label}: “${text}” is no number`, true));
+  details = new Details(axis, () => last, request.fieldOf);
   chips.start(list, choosePreset);
   pin.start(
     () => last && {...last, query: toQuery(last.asked)},
@@ -286,9 +287,7 @@ function listen(form, measure) {
     });
   }
   axis.onView(() => remembered({soon: true}));
-  $("more").addEventListener("toggle", () => {
-    if (last && $("more").open) form.showOrigins(last.answer.parameters);
-  });
+  $("more").ontoggle = () => last && showOrigins();
   unitsSwitch($("units"));
   onUnits(() => {
     if (!last) return;
@@ -298,17 +297,21 @@ function listen(form, measure) {
     if (kept) instrument.showMore(kept);
     details.follow();
   });
-  $("form").addEventListener("submit", (event) => {
+  $("form").onsubmit = (event) => {
     event.preventDefault();
-    if (!$("form").querySelector(".slider [aria-invalid]")) run();
-  });
-  $("cancel").addEventListener("click", () => job.cancel());
-  $("measure-this").addEventListener("click", () => last && measure(last.answer));
+    if (!$("form").querySelector(".slider [aria-invalid=true]")) run();
+  };
+  $("cancel").onclick = () => job.cancel();
+  $("measure-this").onclick = () => last && measure(last.answer);
   const forms = formsOf("v1/simulate", () => request.asked());
   for (const [name, text] of Object.entries(forms)) {
-    const button = element("button", {type: "button", className: "small", textContent: name});
-    button.title = `copy this run as ${name}`;
-    button.addEventListener("click", () => copy(text(), say));
+    const button = element("button", {
+      type: "button",
+      className: "small",
+      textContent: name,
+      title: `copy this run as ${name}`,
+      onclick: () => copy(text(), say),
+    });
     $("copies").append(button);
   }
 }
