@@ -1,4 +1,5 @@
 // Columns of an answer on their way into a plot.
+import {run} from "./run.js";
 
 export const mm = (metres) => metres.map((v) => v * 1000);
 
@@ -15,7 +16,8 @@ export const most = (values) => values.reduce((a, v) => Math.max(a, Math.abs(v) 
  * Columns over tau without repeats of tau, as a line over it needs them, from the start of the run
  * to its end: plots over tau lie under each other.
  */
-export function overRun(tau, columns, end) {
+export function overRun(tau, columns) {
+  const {end} = run.motion;
   let last = -Infinity;
   const keep = tau.map((t) => {
     const later = t > last;

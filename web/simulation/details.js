@@ -9,57 +9,63 @@ import {marksOf} from "./marks.js";
 import {showModel} from "./model.js";
 import {listParameters} from "./parameters.js";
 import {Plots} from "./plots.js";
+import {axis, run} from "./run.js";
 
 const include = ["series", "impacts", "exponents", "eigenvalues", "section", "energy", "regime"];
 
-export class Details {
-  /** axis: of time; run(): {asked, answer, units} of what is shown; fieldOf: of /v1/parameters. */
-  constructor(axis, run, fieldOf) {
-    Object.assign(this, {axis, run, fieldOf});
-    const say = (text) => write("details-message", text);
-    this.job = new Job({
-      ask: (asked, signal) => simulate({perturbation: {size: 1e-9}, ...asked, include}, signal),
-      show: (answer, asked) => this.show(answer, asked),
-      fail: (error) => say(error.message),
-      busy: (is) => is && say("computing …"),
-      later: say,
-    });
-    $("details").ontoggle = () => this.follow();
-    axis.onCursor(() => this.light());
-  }
+const details = $("details");
+const say = (text) => write("details-message", text);
+let shown = null; // {asked, answer}
+let plots;
+let fieldOf;
 
-  /** Another run is shown, or the same in other units. */
-  follow() {
-    const run = this.run();
-    if (!$("details").open || !run) return;
-    if (this.shown?.asked === run.asked) this.show(this.shown.answer, run.asked);
-    else this.job.start(run.asked);
-  }
-
+const job = new Job({
+  ask: (asked, signal) => simulate({perturbation: {size: 1e-9}, ...asked, include}, signal),
   show(answer, asked) {
-    const {axis} = this;
-    const {units, asked: newest} = this.run();
-    if (asked !== newest) return;
-    this.shown = {answer, asked};
-    write("details-message", "");
-    this.plots ??= new Plots(axis, overTime, planes, () => this.run().answer.impacts.tau);
-    summarise(answer, units);
-    listParameters(answer.parameters, this.fieldOf);
-    tabulate(answer.windows, units);
-    accountEnergy(answer.energy, units);
-    this.plots.marks = marksOf(answer, units);
-    const all = detailsOptions(answer, units, (tau) => axis.point(tau, "pick"));
-    for (const [name, options] of Object.entries(all)) this.plots.draw(name, options);
-    this.light();
-    countUp($("details"));
-    if (!$("model-sketch").hasChildNodes()) showModel().catch(() => {}); // the equations do without it
-  }
+    if (asked !== run.asked) return;
+    shown = {asked, answer};
+    show();
+  },
+  fail: (error) => say(error.message),
+  busy: (is) => is && say("computing …"),
+  later: say,
+});
 
-  /** Rings the impact nearest to the cursor. */
-  light() {
-    const run = this.run();
-    if (!$("details").open || this.shown?.asked !== run?.asked) return;
-    const i = run.motion.impactNear(this.axis.cursor);
-    for (const name of ["portrait", "velocities"]) this.plots.ring(name, i);
-  }
+/** Another run is shown, or the same in other units. */
+export function follow() {
+  if (!details.open || !run) return;
+  if (shown?.asked === run.asked) show();
+  else job.start(run.asked);
+}
+
+function show() {
+  const {answer} = shown;
+  const {units} = run;
+  say("");
+  plots ??= new Plots(overTime, planes);
+  summarise(answer, units);
+  listParameters(answer.parameters, fieldOf);
+  tabulate(answer.windows, units);
+  accountEnergy(answer.energy, units);
+  plots.marks = marksOf(answer);
+  for (const [name, options] of Object.entries(detailsOptions(answer))) plots.draw(name, options);
+  light();
+  countUp(details);
+  if (!$("model-sketch").hasChildNodes()) showModel().catch(() => {}); // the equations do without it
+}
+
+/** Rings the impact nearest to the cursor. */
+function light() {
+  if (!details.open || shown?.asked !== run?.asked) return;
+  const i = run.motion.impactNear(axis.cursor);
+  for (const name of ["portrait", "velocities"]) plots.ring(name, i);
+}
+
+export const redraw = () => plots?.refresh();
+
+/** table: the fields of /v1/parameters by name. */
+export function start(table) {
+  fieldOf = table;
+  details.ontoggle = follow;
+  axis.onCursor(light);
 }

@@ -5,6 +5,7 @@ import {exponentRange} from "../shared/exponents.js";
 import {digits} from "../shared/numbers.js";
 import {logRange, mm, most, over, overRun, positive} from "./columns.js";
 import {exponentLines, halves} from "./plots.js";
+import {pick, run} from "./run.js";
 
 const estimators = ["qr", "eigenvalues", "raw_product"];
 const matrices = ["J", "M", "T"];
@@ -23,7 +24,8 @@ const each = (names, of) => Object.fromEntries(names.map((name) => [name, of(nam
 
 const soft = {y: 1, colour: "soft"};
 
-function acceleration({tau, x_ddot: values}, {acceleration: {of, unit}}) {
+function acceleration({tau, x_ddot: values}) {
+  const {of, unit} = run.units.acceleration;
   return {
     series: [{label: "x″", colour: "c4"}],
     data: [tau, values.map(of)],
@@ -31,10 +33,10 @@ function acceleration({tau, x_ddot: values}, {acceleration: {of, unit}}) {
   };
 }
 
-function impactsPerCycle({tau, z}, end) {
+function impactsPerCycle({tau, z}) {
   return {
     series: [{label: "z", colour: "c4", width: 1.5}],
-    data: overRun(tau, [z], end),
+    data: overRun(tau, [z]),
     range: [0, Math.max(3.4, most(z) * 1.08)],
     label: "impacts per cycle",
     levels: [1, 2, 3],
@@ -42,27 +44,23 @@ function impactsPerCycle({tau, z}, end) {
 }
 
 /** All over the same range. */
-function exponentPlots(exponents, end) {
+function exponentPlots(exponents) {
   const range = exponentRange(estimators.map((name) => exponents[name]?.history));
-  return each(estimators, (name) => ({...exponentLines(exponents[name], end), range}));
+  return each(estimators, (name) => ({...exponentLines(exponents[name]), range}));
 }
 
 /**
  * Four moduli an impact. Those of a pair coincide: the later ones are smaller, so that the earlier
  * ones show around them.
  */
-function matrixPlot(name, eigenvalues, end) {
+function matrixPlot(name, eigenvalues) {
   const log = name === "T";
   const ks = [0, 1, 2, 3];
   const columns = ks.map((k) => eigenvalues[name].map((moduli) => moduli[k]));
   const least = columns[3].reduce((a, v) => Math.min(a, v), 1);
   return {
     series: ks.map((k) => ({label: `|μ${"₁₂₃₄"[k]}|`, colour: `c${k + 1}`, dots: 5.4 - k})),
-    data: overRun(
-      eigenvalues.tau,
-      log ? columns.map((values) => values.map(positive)) : columns,
-      end,
-    ),
+    data: overRun(eigenvalues.tau, log ? columns.map((one) => one.map(positive)) : columns),
     log,
     range: log ? logRange(columns) : [least - 0.08, 1.06],
     label: `|μ| of ${name}`,
@@ -71,12 +69,13 @@ function matrixPlot(name, eigenvalues, end) {
 }
 
 /** The states at the impacts, before and after them. */
-function impactPlanes(impacts, {velocity}, point) {
+function impactPlanes(impacts) {
+  const {velocity} = run.units;
   const speeds = (name, when) => over(impacts[`${name}_dot_${when}`], velocity);
   const label = (symbol) => `${symbol} (${velocity.unit})`;
   const plane = (of) => ({
     groups: ["before", "after"].map((when) => ({...of(when), colour: when})),
-    pick: {...of("after"), use: (i) => point(impacts.tau[i])},
+    pick: {...of("after"), use: (i) => pick(impacts.tau[i])},
   });
   return {
     portrait: {
@@ -92,23 +91,24 @@ function impactPlanes(impacts, {velocity}, point) {
   };
 }
 
-function stroboscopic({tau, x, x_dot: xDot}, {velocity}, point) {
+function stroboscopic({tau, x, x_dot: xDot}) {
+  const {velocity} = run.units;
   const points = {x: mm(x), y: over(xDot, velocity)};
   return {
     groups: halves(points, [["c1", () => true]]),
     xLabel: "x (mm)",
     yLabel: `x′ (${velocity.unit})`,
     empty: "no whole cycle in the window",
-    pick: {...points, use: (i) => point(tau[i])},
+    pick: {...points, use: (i) => pick(tau[i])},
   };
 }
 
 /** The time between impacts. Chatter falls below the axis. */
-function differences({tau, time_difference: times}, Omega, end) {
+function differences({tau, time_difference: times}, Omega) {
   const inHalfPeriods = times.map((d) => (d === null ? null : (d * Omega) / Math.PI));
   return {
     series: [{label: "time since the last impact", colour: "c1", dots: 3.5}],
-    data: overRun(tau, [inHalfPeriods], end),
+    data: overRun(tau, [inHalfPeriods]),
     log: true,
     range: [0.1, Math.max(most(inHalfPeriods), 2) * 1.3],
     label: "half periods",
@@ -166,20 +166,19 @@ function divergence(perturbation) {
   return plot;
 }
 
-/** What each plot draws, by name; units: as of unitsOf; point(tau): moves the cursor. */
-export function detailsOptions(answer, units, point) {
-  const {series, exponents, regime, status, eigenvalues, section, parameters} = answer;
-  const end = status.tau;
+/** What each plot draws, by name; in the units of the run that is shown. */
+export function detailsOptions(answer) {
+  const {series, exponents, regime, eigenvalues, section, parameters} = answer;
   const orbit = regime.periodic && regime.contacts > 0; // a free flight is one, too
   $("figure-multipliers").hidden = !orbit;
   return {
-    acceleration: acceleration(series, units),
-    z: impactsPerCycle(regime.z_moving, end),
-    ...exponentPlots(exponents, end),
-    ...each(matrices, (name) => matrixPlot(name, eigenvalues, end)),
-    ...impactPlanes(answer.impacts, units, point),
-    stroboscopic: stroboscopic(section.stroboscopic, units, point),
-    differences: differences(section.impact, parameters.Omega, end),
+    acceleration: acceleration(series),
+    z: impactsPerCycle(regime.z_moving),
+    ...exponentPlots(exponents),
+    ...each(matrices, (name) => matrixPlot(name, eigenvalues)),
+    ...impactPlanes(answer.impacts),
+    stroboscopic: stroboscopic(section.stroboscopic),
+    differences: differences(section.impact, parameters.Omega),
     ...(orbit && {multipliers: multiplierPlane(regime.multipliers)}),
     divergence: divergence(answer.perturbation),
   };

@@ -1,10 +1,12 @@
 // The machine itself, to scale, at one moment of the run: spring, oscillator, walls, the free mass
 // and where it just came from; a flash at an impact.
 import {colour} from "../shared/colours.js";
-import {blank, Size} from "../shared/frame.js";
+import {$} from "../shared/dom.js";
+import {blank, font, Size} from "../shared/frame.js";
+import {axis, run} from "./run.js";
 
 const flashes = 0.12; // cycles that a flash lasts
-const ghosts = [0.12, 0.08, 0.04]; // cycles back at which the mass is shown, too
+const ghosts = [0.12, 0.08, 0.04, 0]; // cycles back at which the mass is shown
 
 const anchor = 14; // px
 const top = 30; // px of the cavity
@@ -79,80 +81,68 @@ function label(c, text, x, y, name, align, vertical) {
   c.fillText(text, x, y);
 }
 
-export class Machine {
-  constructor(canvas) {
-    this.canvas = canvas;
-    this.size = new Size(canvas, () => this.draw(this.last));
-  }
+const canvas = $("machine");
+const size = new Size(canvas, redraw);
 
-  /** Of a run: its Motion and the largest |x|, m. */
-  show(motion, peak) {
-    Object.assign(this, {motion, peak});
-  }
+/** At the cursor. */
+export function redraw() {
+  const {cursor} = axis;
+  const {width, height} = size;
+  if (!run || cursor === null || !width) return;
+  const {motion, answer} = run;
+  const c = blank(canvas, size);
+  const length = Math.max(width * 0.16, 60); // of the spring
+  const room = (width - length - 24) / 2;
+  const scale = Math.max(room - rim - ball, 10) / (motion.b + answer.energy.peak);
+  const px = (at) => length + 12 + room + at * scale;
+  const {x, y} = motion.at(cursor);
+  const wall = (side) => px(x - side * motion.b);
+  const floor = height - 16;
+  const bottom = floor - 22;
+  const level = (top + bottom) / 2;
+  const [left, right] = [wall(1) - ball, wall(-1) + ball];
+  ground(c, floor, width);
+  spring(c, left - rim, level);
+  body(c, left - rim, right + rim, floor);
+  cavity(c, left, right, bottom);
+  mass(c, px, level);
+  impact(c, wall, level);
+  c.font = "italic 13px system-ui";
+  label(c, "x", px(x), top - 14, "accent", "center", "bottom");
+  label(c, "y", px(y), top + 1, "mass", "center", "bottom");
+  c.font = font;
+  label(c, "x − y = b", left, bottom + 3, "plus", "left", "top");
+  label(c, "x − y = −b", right, bottom + 3, "minus", "right", "top");
+}
 
-  /** At a moment. */
-  draw(tau) {
-    this.last = tau;
-    const {motion, peak} = this;
-    const {width, height} = this.size;
-    if (!motion || tau == null || !width) return;
-    const c = blank(this.canvas, this.size);
-    const length = Math.max(width * 0.16, 60); // of the spring
-    const room = (width - length - 24) / 2;
-    const scale = Math.max(room - rim - ball, 10) / (motion.b + peak);
-    const px = (at) => length + 12 + room + at * scale;
-    const {x, y} = motion.at(tau);
-    const wall = (side) => px(x - side * motion.b);
-    const floor = height - 16;
-    const bottom = floor - 22;
-    const level = (top + bottom) / 2;
-    const [left, right] = [wall(1) - ball - rim, wall(-1) + ball + rim];
-    ground(c, floor, width);
-    spring(c, left, level);
-    body(c, left, right, floor);
-    this.cavity(c, wall, bottom);
-    this.mass(c, tau, y, px, level);
-    this.impact(c, tau, wall, level);
-    c.font = "italic 13px system-ui";
-    label(c, "x", px(x), top - 14, "accent", "center", "bottom");
-    label(c, "y", px(y), top + 1, "mass", "center", "bottom");
-    c.font = "11px system-ui";
-    label(c, "x − y = b", wall(1) - ball, bottom + 3, "plus", "left", "top");
-    label(c, "x − y = −b", wall(-1) + ball, bottom + 3, "minus", "right", "top");
-  }
+function cavity(c, left, right, bottom) {
+  const fill = (name, from, width) => {
+    c.fillStyle = colour(name);
+    c.fillRect(from, top, width, bottom - top);
+  };
+  fill("panel", left - 3, right - left + 6);
+  fill("plus", left - 6, 3);
+  fill("minus", right + 3, 3);
+}
 
-  cavity(c, wall, bottom) {
-    const [left, right] = [wall(1) - ball, wall(-1) + ball];
-    const fill = (name, from, width) => {
-      c.fillStyle = colour(name);
-      c.fillRect(from, top, width, bottom - top);
-    };
-    fill("panel", left - 3, right - left + 6);
-    fill("plus", left - 6, 3);
-    fill("minus", right + 3, 3);
-  }
+/** Now, and before, where it is paler. */
+function mass(c, px, level) {
+  c.fillStyle = colour("mass");
+  ghosts.forEach((cycles, k) => {
+    const moment = axis.cursor - cycles * run.motion.cycle;
+    if (moment < 0) return;
+    c.globalAlpha = cycles ? 0.1 + 0.08 * k : 1;
+    c.beginPath();
+    c.arc(px(run.motion.at(moment).y), level, ball, 0, 2 * Math.PI);
+    c.fill();
+  });
+}
 
-  mass(c, tau, y, px, level) {
-    const disc = (at, alpha) => {
-      c.globalAlpha = alpha;
-      c.beginPath();
-      c.arc(px(at), level, ball, 0, 2 * Math.PI);
-      c.fill();
-    };
-    c.fillStyle = colour("mass");
-    ghosts.forEach((cycles, k) => {
-      const before = tau - cycles * this.motion.cycle;
-      if (before > 0) disc(this.motion.at(before).y, 0.1 + 0.08 * k);
-    });
-    disc(y, 1);
-  }
-
-  /** The flash of the last impact, while it lasts. */
-  impact(c, tau, wall, level) {
-    const {impacts, cycle} = this.motion;
-    const i = this.motion.impactBefore(tau);
-    const side = impacts.side[i];
-    const share = (tau - impacts.tau[i]) / (flashes * cycle);
-    if (share < 1) flash(c, wall(side) - side * (ball + 2), level, side, share);
-  }
+/** The flash of the last impact, while it lasts. */
+function impact(c, wall, level) {
+  const {impacts, cycle} = run.motion;
+  const i = run.motion.impactBefore(axis.cursor);
+  const side = impacts.side[i];
+  const share = (axis.cursor - impacts.tau[i]) / (flashes * cycle);
+  if (share < 1) flash(c, wall(side) - side * (ball + 2), level, side, share);
 }

@@ -1,12 +1,14 @@
 // The slow invariant manifold with the half cycles of a run on it.
 import {mm, most, over} from "./columns.js";
+import {pick, run} from "./run.js";
 
 /**
  * The branches reach far beyond most runs: the plot shows what lies near the run's points, the fold
- * and the free amplitude. show(tau): called with the half cycle that is pointed at.
+ * and the free amplitude.
  */
-export function manifoldOptions(manifold, {velocity}, show) {
-  const {points, fold, free_amplitude: free, stable, unstable, asymmetric} = manifold;
+export function manifold() {
+  const {points, fold, free_amplitude: free, stable, unstable, asymmetric} = run.more.manifold;
+  const {velocity} = run.units;
   const place = ({V, C}) => ({x: over(V, velocity), y: mm(C)});
   const groups = [{...place(points), colour: "after", size: 2.2, alpha: 0.6}];
   if (fold) groups.push({...place({V: [fold.V], C: [fold.C]}), colour: "wall", size: 8, alpha: 1});
@@ -25,7 +27,7 @@ export function manifoldOptions(manifold, {velocity}, show) {
       V: reach(points.V, 1.4 * (fold?.V ?? 0)),
       C: reach(points.C, 1.6 * (fold?.C ?? 0), free ?? 0),
     }),
-    pick: {...place(points), use: (i) => show(points.tau[i])},
+    pick: {...place(points), use: (i) => pick(points.tau[i])},
     xLabel: `speed of the free mass, V (${velocity.unit})`,
     yLabel: "amplitude of x, C (mm)",
   };

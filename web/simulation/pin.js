@@ -2,20 +2,22 @@
 import {get} from "../shared/api.js";
 import {$, write} from "../shared/dom.js";
 import {Motion} from "../shared/motion.js";
+import * as instrument from "./instrument.js";
+import {toQuery} from "./request.js";
+import {run} from "./run.js";
 import {parameterLine} from "./sliders.js";
 
 let pinned = null; // {query, answer, motion}
-let compare = () => {};
 
 /** The query of the run that is pinned, null where there is none. */
 export const query = () => pinned?.query ?? null;
 
-function keep(run) {
-  pinned = run;
-  const there = run?.answer ? run : null;
+function keep(other) {
+  pinned = other;
+  const there = other?.answer ? other : null;
   for (const id of ["swap", "unpin"]) $(id).hidden = !there;
   write("pinned-run", there ? `pinned: ${parameterLine(there.answer.parameters)}` : "");
-  compare(there);
+  instrument.pin(there);
 }
 
 /** Pins the run of a query, or none; ask: what of it is needed. */
@@ -29,18 +31,20 @@ export async function restore(wanted, ask) {
   if (query() === wanted) keep({query: wanted, answer, motion: new Motion(answer)});
 }
 
-/**
- * run(): {query, answer, motion} of what is shown; draw: shows a run, or none, beside what is shown;
- * show(query): shows the run of another one;
- * show(): another one is pinned.
- */
-export function start(run, draw, show) {
-  compare = draw;
-  const pin = (other, wanted) => {
-    keep(other);
-    show(wanted);
+/** changed(): another run is pinned, or none; show(query): shows the run of a query. */
+export function start(changed, show) {
+  const keepShown = () => keep(run && {...run, query: toQuery(run.asked)});
+  $("pin").onclick = () => {
+    keepShown();
+    changed();
   };
-  $("pin").onclick = () => pin(run());
-  $("unpin").onclick = () => pin(null);
-  $("swap").onclick = () => pin(run(), query());
+  $("unpin").onclick = () => {
+    keep(null);
+    changed();
+  };
+  $("swap").onclick = () => {
+    const other = query();
+    keepShown();
+    show(other);
+  };
 }

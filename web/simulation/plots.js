@@ -7,16 +7,17 @@ import {operable} from "../shared/operable.js";
 import {ScatterPlot} from "../shared/scatter_plot.js";
 import {aboutFigure} from "./captions.js";
 import {overRun} from "./columns.js";
+import {axis, run} from "./run.js";
 
 export class Plots {
-  /** axis: of time; lines, planes: names; moments(): of the impacts. */
-  constructor(axis, lines, planes, moments) {
+  /** The names of those over time, and of the planes. */
+  constructor(lines, planes) {
     this.all = {};
     const add = (name, Kind) => {
       const plot = new Kind($(`plot-${name}`), axis);
       const about = () => aboutFigure(name);
       addMenu($(`figure-${name}`), plot, about);
-      operable(plot, about().title, moments);
+      operable(plot, about().title, () => run?.answer.impacts.tau ?? []);
       this.all[name] = plot;
     };
     for (const name of lines) add(name, LinePlot);
@@ -40,12 +41,12 @@ export class Plots {
   }
 }
 
-/** What draws the exponents of an estimator, up to the end of the run. */
-export function exponentLines(estimator, end) {
+/** What draws the exponents of an estimator. */
+export function exponentLines(estimator) {
   const {history, status} = estimator ?? {};
   const {series, columns} = exponentSeries(history, status);
   const lines = history ? columns : columns.map(() => []);
-  return {series, data: overRun(history?.tau ?? [], lines, end), label: "λ", levels: [0]};
+  return {series, data: overRun(history?.tau ?? [], lines), label: "λ", levels: [0]};
 }
 
 /**

@@ -1,7 +1,6 @@
 // The tab of one simulation: what one turns goes to the service as one request, and what it answers
 // is shown at once. The address is the request, and what is in view.
 import {Problem, simulate, wholeMessage} from "../shared/api.js";
-import {Axis} from "../shared/axis.js";
 import {listWarnings} from "../shared/cards.js";
 import {formsOf} from "../shared/copies.js";
 import {$, aria, countUp, element, nextTask, write} from "../shared/dom.js";
@@ -13,15 +12,15 @@ import {copy} from "../shared/take_away.js";
 import {onUnits, unitsOf, unitsSwitch} from "../shared/units.js";
 import {describe} from "./captions.js";
 import * as chips from "./chips.js";
-import {Details} from "./details.js";
-import {Instrument} from "./instrument.js";
-import {Machine} from "./machine.js";
-import {marksOf} from "./marks.js";
+import * as details from "./details.js";
+import * as instrument from "./instrument.js";
+import * as machine from "./machine.js";
 import {mark} from "./matches.js";
 import * as phone from "./phone.js";
 import * as pin from "./pin.js";
-import {Player} from "./player.js";
+import * as player from "./player.js";
 import {Request, toQuery} from "./request.js";
+import {axis, run, setRun} from "./run.js";
 import {sentence, showSentence} from "./sentence.js";
 import * as sliders from "./sliders.js";
 import * as strip from "./strip.js";
@@ -33,13 +32,7 @@ const second = {include: ["exponents", "eigenvalues", "manifold"], exponents: ["
 const large = 20000; // impacts
 const rest = 100; // ms without an edit before what follows is asked for
 
-const axis = new Axis();
-const machine = new Machine($("machine"));
 let request;
-let instrument;
-let player;
-let details;
-let last = null; // {asked, answer, motion, units}
 let touched = "b";
 let shown = null;
 let wantedView = null;
@@ -53,11 +46,6 @@ function say(text, fault = false) {
 
 /** Whether what is shown is of another request. */
 const setStale = (is) => $("results").classList.toggle("stale", is);
-
-/** Whether what a second answer brings is still to come. */
-function setBehind(is) {
-  for (const name of ["largest", "manifold"]) $(`figure-${name}`).classList.toggle("behind", is);
-}
 
 // What is computed.
 
@@ -78,9 +66,9 @@ const job = new Job({
 const more = new Job({
   ask: (asked, signal) => simulate({...asked, ...second}, signal),
   show(answer, asked) {
-    if (asked !== last.asked) return;
-    instrument.showMore(answer);
-    setBehind(false);
+    if (asked !== run.asked) return;
+    run.more = answer;
+    instrument.showMore();
     details.follow();
     countUp($("results"));
   },
@@ -103,17 +91,15 @@ function homeOf({parameters, status}) {
 }
 
 function showOrigins() {
-  if ($("more").open) request.form.showOrigins(last.answer.parameters);
+  if ($("more").open) request.form.showOrigins(run.answer.parameters);
 }
 
 /** A run with many impacts is drawn in several tasks, between which the page hears of other things. */
 async function present(answer, asked) {
   const pause = answer.impacts.tau.length > large ? nextTask : null;
   if (pause) await pause();
-  const fresh = last === null || asked.fresh;
-  const units = unitsOf(answer.parameters);
-  const motion = new Motion(answer);
-  last = {asked, answer, motion, units};
+  const fresh = run === null || asked.fresh;
+  setRun({asked, answer, motion: new Motion(answer), units: unitsOf(answer.parameters)});
   say(unknownText(asked));
   setStale(false);
   request.form.showErrors([]);
@@ -126,7 +112,7 @@ async function present(answer, asked) {
   wantedView = null;
   for (const step of drawing(fresh)) {
     if (pause) await pause();
-    if (last.answer !== answer) return;
+    if (run.answer !== answer) return;
     step();
   }
   countUp($("results"), "shown");
@@ -134,20 +120,17 @@ async function present(answer, asked) {
   resting = setTimeout(() => more.start(asked), rest);
 }
 
-/** What shows the last answer, in the units that are chosen, step by step. */
+/** What shows the run, in the units that are chosen, step by step. */
 function drawing(fresh = false) {
-  const {answer, asked, motion, units} = last;
+  const {answer, asked, units} = run;
   const slider = sliders.sliderOf(touched, answer.parameters);
   const tell = () => {
     $("units").hidden = !answer.parameters.si;
     sliders.show(answer.parameters, fresh, slider);
     showSentence($("sentence"), sentence(answer, slider, units));
-    machine.show(motion, answer.energy.peak);
-    setBehind(true);
-    instrument.set(answer, motion, units, marksOf(answer, units));
   };
   const end = () => {
-    player.show(motion, units);
+    player.show();
     describe(answer, units);
     mark(request.edited ? null : request.preset);
     strip.show(request.systemOf(asked), answer.parameters, slider);
@@ -158,7 +141,7 @@ function drawing(fresh = false) {
 // What is asked.
 
 /** How the newest request is sent. hasty: while a slider is dragged; fresh: not by turning one. */
-function run({hasty = false, fresh = false, unknown = []} = {}) {
+function send({hasty = false, fresh = false, unknown = []} = {}) {
   const asked = request.asked();
   Object.defineProperties(asked, {fresh: {value: fresh}, unknown: {value: unknown}});
   chips.mark(request.name);
@@ -192,7 +175,7 @@ function turn(fields, slider, hasty) {
   for (const [name, value] of entries) form.replace(name, value ?? "");
   for (const [name, value] of entries) if (value !== null) note(request.typedOver(name));
   form.greyOut();
-  run({hasty});
+  send({hasty});
 }
 
 /** What a preset says of itself holds as long as it is not changed. */
@@ -206,7 +189,7 @@ function choosePreset(name) {
   touched = "b";
   request.choose(name);
   note("");
-  run({fresh: true});
+  send({fresh: true});
 }
 
 /** The query of the run that is asked for, and what of it is in view; null before the first. */
@@ -240,15 +223,12 @@ export function open(given) {
   touched = "b";
   note("");
   shown = toQuery(request.asked());
-  run({fresh: true, unknown});
+  send({fresh: true, unknown});
   remembered(); // as the page itself writes it
 }
 
 export function redraw() {
-  instrument.plots.refresh();
-  details.plots?.refresh();
-  strip.draw();
-  if (axis.cursor !== null) machine.draw(axis.cursor);
+  for (const part of [instrument, details, strip, machine]) part.redraw();
 }
 
 /**
@@ -259,50 +239,42 @@ export function start({fields, presets: list}, changed, {measure}) {
   remembered = changed;
   const form = new Form($("fields"), fields);
   request = new Request(form, fields, list);
-  instrument = new Instrument(axis);
-  player = new Player(axis, (tau) => machine.draw(tau));
+  instrument.start();
+  player.start();
   sliders.start(turn, (text, {label}) => say(`${label}: “${text}” is no number`, true));
-  details = new Details(axis, () => last, request.fieldOf);
+  details.start(request.fieldOf);
   chips.start(list, choosePreset);
-  pin.start(
-    () => last && {...last, query: toQuery(last.asked)},
-    (other) => instrument.pin(other),
-    (query) => {
-      if (query === undefined) return changed();
-      request.read(query);
-      run();
-    },
-  );
+  pin.start(changed, (other) => {
+    request.read(other);
+    send();
+  });
   phone.start();
   listen(form, measure);
-  if (!matchMedia("(prefers-reduced-motion: reduce)").matches) player.play();
 }
 
 function listen(form, measure) {
   for (const [name, input] of form.inputs) {
-    input.addEventListener("input", () => note(request.typedOver(name)));
-    input.addEventListener("change", () => {
+    input.oninput = () => note(request.typedOver(name));
+    input.onchange = () => {
       if (name === "damping") request.dampingChosen = true;
-      run();
-    });
+      send();
+    };
   }
   axis.onView(() => remembered({soon: true}));
-  $("more").ontoggle = () => last && showOrigins();
+  $("more").ontoggle = () => run && showOrigins();
   unitsSwitch($("units"));
   onUnits(() => {
-    if (!last) return;
-    const {more: kept} = instrument;
-    last.units = unitsOf(last.answer.parameters);
+    if (!run) return;
+    run.units = unitsOf(run.answer.parameters);
     for (const step of drawing()) step();
-    if (kept) instrument.showMore(kept);
     details.follow();
   });
   $("form").onsubmit = (event) => {
     event.preventDefault();
-    if (!$("form").querySelector(".slider [aria-invalid=true]")) run();
+    if (!$("form").querySelector(".slider [aria-invalid=true]")) send();
   };
   $("cancel").onclick = () => job.cancel();
-  $("measure-this").onclick = () => last && measure(last.answer);
+  $("measure-this").onclick = () => run && measure(run.answer);
   const forms = formsOf("v1/simulate", () => request.asked());
   for (const [name, text] of Object.entries(forms)) {
     const button = element("button", {

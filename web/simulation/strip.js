@@ -26,7 +26,7 @@ const order = coarseToFine(points);
 
 const canvas = $("strip");
 const marker = element("div", {className: "marker"});
-const size = new Size(canvas, draw);
+const size = new Size(canvas, redraw);
 let parameters;
 let slider; // that was turned last
 let range; // of it
@@ -55,8 +55,9 @@ export function show(system, shown, turned) {
   stale = true;
   waiting = setTimeout(fill, pause, base, parameter);
   write("strip-trouble", "");
-  write("strip-parameter", slider.symbol);
-  draw();
+  const {symbol, unit} = slider;
+  write("strip-parameter", unit ? `${symbol} (${unit})` : symbol);
+  redraw();
 }
 
 /** The place of entry i, in the slider's unit. */
@@ -87,7 +88,7 @@ async function fill(base, parameter) {
       if (signal.aborted) return;
       if (value.type !== "point" || value.error) continue;
       found[sequence[value.index]] = value;
-      if (!drawing) drawing = requestAnimationFrame(draw);
+      if (!drawing) drawing = requestAnimationFrame(redraw);
     }
     countUp(canvas);
   } catch (error) {
@@ -95,10 +96,10 @@ async function fill(base, parameter) {
     found = [];
     write("strip-trouble", error instanceof Problem ? error.message : "no answer from the server");
   }
-  draw();
+  redraw();
 }
 
-export function draw() {
+export function redraw() {
   drawing = 0;
   const {width, height} = size;
   if (!range || !width) return;
