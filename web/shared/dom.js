@@ -19,17 +19,26 @@ export const element = (tag, properties = {}, ...children) => {
   return node;
 };
 
-/** Writes a text into the element of an id. */
-export const write = (id, text) => {
-  $(id).textContent = text;
+/** One that does something; more: its other properties. */
+export const button = (textContent, onclick, more) =>
+  element("button", {type: "button", textContent, onclick, ...more});
+
+/** Sets what a node says of itself to those who cannot see it, and other attributes. */
+export const attributes = (node, all) => {
+  for (const [name, value] of Object.entries(all)) node.setAttribute(name, value);
 };
 
-/** What a reader of the screen is told of a node, by names without `aria-`. */
-export const aria = (node, states) => {
-  for (const [name, value] of Object.entries(states)) node.setAttribute(`aria-${name}`, value);
+/** Shows those elements for which it holds, and hides the others: {id: whether}. */
+export const reveal = (shown) => {
+  for (const [id, is] of Object.entries(shown)) $(id).hidden = !is;
+};
+
+/** Texts of elements: {id: text}. */
+export const write = (texts) => {
+  for (const [id, text] of Object.entries(texts)) $(id).textContent = text;
 };
 
 /** Presses that of several buttons which is(button). */
 export const press = (buttons, is) => {
-  for (const button of buttons) aria(button, {pressed: is(button)});
+  for (const one of buttons) attributes(one, {"aria-pressed": is(one)});
 };

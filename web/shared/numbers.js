@@ -1,5 +1,8 @@
 // Numbers as texts, and texts as numbers.
 
+/** A value, or the end of a range that it is beyond. */
+export const clamp = (value, least, most) => Math.min(Math.max(value, least), most);
+
 export const minus = (text) => text.replace("-", "−");
 
 function plain(value) {
@@ -39,8 +42,6 @@ export function toNumber(text) {
   const value = Number(written.replace("−", "-"));
   return written !== "" && Number.isFinite(value) ? value : null;
 }
-
-export const clamp = (value, least, most) => Math.min(Math.max(value, least), most);
 
 /** In n digits in all. */
 export const significant = (value, n) =>

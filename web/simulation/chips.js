@@ -1,6 +1,6 @@
 // What one can start from: figures and tables of the paper, a handful of them as chips, all in a
 // menu.
-import {$, element, press} from "../shared/dom.js";
+import {$, button, element, press} from "../shared/dom.js";
 
 const groups = {
   Regimes: {
@@ -19,15 +19,9 @@ const groups = {
 export function start(presets, choose) {
   const sourceOf = Object.fromEntries(presets.map((p) => [p.name, `${p.source}: ${p.title}`]));
   const chip = ([name, text]) => {
-    const button = element("button", {
-      type: "button",
-      className: "chip",
-      textContent: text,
-      title: sourceOf[name],
-      onclick: () => choose(name),
-    });
-    button.dataset.preset = name;
-    return button;
+    const one = button(text, () => choose(name), {className: "chip", title: sourceOf[name]});
+    one.dataset.preset = name;
+    return one;
   };
   const group = ([title, chips]) => {
     const names = Object.entries(chips).map(chip);
@@ -45,5 +39,5 @@ export function start(presets, choose) {
 /** Marks the preset that the form stands for. */
 export function mark(name) {
   $("preset").value = name;
-  press(document.querySelectorAll("#chips button"), (button) => button.dataset.preset === name);
+  press(document.querySelectorAll("#chips button"), (one) => one.dataset.preset === name);
 }

@@ -14,7 +14,7 @@ import {axis, run} from "./run.js";
 const include = ["series", "impacts", "exponents", "eigenvalues", "section", "energy", "regime"];
 
 const details = $("details");
-const say = (text) => write("details-message", text);
+const say = (text) => write({"details-message": text});
 let shown = null; // {asked, answer}
 let plots;
 let fieldOf;

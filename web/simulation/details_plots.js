@@ -1,6 +1,6 @@
 // The plots of the details: the rest of what is known of a run, over the same time as the first
 // screen's or as sections.
-import {$} from "../shared/dom.js";
+import {reveal} from "../shared/dom.js";
 import {exponentRange} from "../shared/exponents.js";
 import {digits} from "../shared/numbers.js";
 import {logRange, mm, most, over, overRun, positive} from "./columns.js";
@@ -170,7 +170,7 @@ function divergence(perturbation) {
 export function detailsOptions(answer) {
   const {series, exponents, regime, eigenvalues, section, parameters} = answer;
   const orbit = regime.periodic && regime.contacts > 0; // a free flight is one, too
-  $("figure-multipliers").hidden = !orbit;
+  reveal({"figure-multipliers": orbit});
   return {
     acceleration: acceleration(series),
     z: impactsPerCycle(regime.z_moving),

@@ -1,7 +1,7 @@
 // What a run came to, in words and numbers: cards of the window and of the whole run, the windows'
 // table and where the energy went.
 import {cards} from "../shared/cards.js";
-import {$, element, write} from "../shared/dom.js";
+import {$, element, reveal, write} from "../shared/dom.js";
 import {clamp, count, digits, inMm, minus, percent, significant} from "../shared/numbers.js";
 import {verdicts} from "../shared/quantities.js";
 import {tableOf} from "../shared/table.js";
@@ -64,7 +64,7 @@ function positivesCard({qr, raw_product: product, verdict}) {
 }
 
 function residualCard({qr, sum_rule_residual: residual, impacts}) {
-  if (residual != null) return ["sum rule residual", minus(residual.toExponential(1)), ""];
+  if (residual != null) return ["sum rule residual", minus(residual.toExponential(1))];
   return ["sum rule residual", "–", qr && impacts > 1 ? "not defined after a stick" : ""];
 }
 
@@ -84,9 +84,10 @@ function impactSpeedCard({relative_speed: speed, impulse}, {velocity, impulse: b
   return ["impact speed", inUnit(median(speed), velocity), speed.length ? remark : ""];
 }
 
-function amplitudeCard({without_absorber: {amplitude: free}, peak}) {
+/** Where there is one. */
+function amplitudeCards({without_absorber: {amplitude: free}, peak}) {
   const remark = `with it |x| comes to ${inMm(peak)}`;
-  return ["amplitude without absorber", free == null ? "–" : inMm(free), remark];
+  return free == null ? [] : [["amplitude without absorber", inMm(free), remark]];
 }
 
 /** What a laboratory measures. */
@@ -100,12 +101,6 @@ const engineeringCards = ({impacts, series, parameters}, units) => [
   ],
 ];
 
-function rmsCard({rms_ratio: ratio, without_absorber: {amplitude}}, units) {
-  const told = units.si || amplitude == null; // on a card of its own, or not there
-  const remark = told ? "" : `, whose amplitude is ${inMm(amplitude)}`;
-  return ["rms of x", percent(ratio), `of that without absorber${remark}`];
-}
-
 /** What the cards of the window refer to. */
 function windowTitle({window, impacts}, {at}, asked) {
   if (!window) return "Of the run, which has no impacts";
@@ -116,7 +111,7 @@ function windowTitle({window, impacts}, {at}, asked) {
 export function summarise(answer, units) {
   const {exponents, regime, energy, impacts, sticking, parameters} = answer;
   const stuck = sticking.side.length;
-  write("summary-title", windowTitle(exponents, units, parameters.window));
+  write({"summary-title": windowTitle(exponents, units, parameters.window)});
   cards($("summary"), [
     regimeCard(regime, units),
     ["impacts per cycle, z", digits(regime.z, 3), rhythm(regime)],
@@ -125,8 +120,8 @@ export function summarise(answer, units) {
     positivesCard(exponents),
     residualCard(exponents),
     ["taken by the impacts", percent(energy.share_impacts), "of the energy that is dissipated"],
-    rmsCard(energy, units),
-    ...(units.si ? [amplitudeCard(energy)] : []),
+    ["rms of x", percent(energy.rms_ratio), "of that without absorber"],
+    ...amplitudeCards(energy),
   ]);
   cards($("summary-run"), [
     ["impacts", String(impacts.tau.length), "chatter included"],
@@ -138,7 +133,7 @@ export function summarise(answer, units) {
 
 /** The exponents of each window asked for. */
 export function tabulate(windows = [], {time}) {
-  $("figure-windows").hidden = !windows.length;
+  reveal({"figure-windows": windows.length});
   const span = time.unit ? ["from (s)", "to (s)"] : ["τ from", "to"];
   const names = [...span, "impacts", "λ₁", "λ₂", "λ₃", "λ₄", "verdict"];
   const rows = windows.map((w) => {
@@ -221,7 +216,7 @@ export function accountEnergy(energy, units) {
       element("small", {textContent: inUnit(value, units.energy)}),
     ),
   );
-  $("energy-scale").hidden = units.si;
+  reveal({"energy-scale": !units.si});
   $("energy").replaceChildren(
     element("div", {className: "stack"}, ...bars),
     element("ul", {className: "parts"}, ...keys),

@@ -1,7 +1,7 @@
 // The plots of the first screen: the motion over time, made anew from the impacts for whatever is in
 // view, the largest modulus of T, the exponents, the section and the manifold. One cursor goes
 // through all of them, and the impact nearest to it is ringed in each.
-import {$, aria, write} from "../shared/dom.js";
+import {$, attributes, write} from "../shared/dom.js";
 import {exponentRange} from "../shared/exponents.js";
 import {inMm, short} from "../shared/numbers.js";
 import {firstFrom, lastUpTo} from "../shared/search.js";
@@ -32,24 +32,22 @@ export const redraw = () => plots.refresh();
 const optionsOf = {x: displacement, relative, lambda: exponents, section, largest, manifold};
 const ofMore = ["largest", "manifold"];
 
-function draw(...names) {
-  for (const name of names) plots.draw(name, optionsOf[name]());
-  light();
+/** The steps that draw plots; those of a second answer are marked until it is there. */
+function stepsOf(...names) {
+  for (const name of ofMore) $(`figure-${name}`).classList.toggle("behind", !run.more);
+  return [...names.map((name) => () => plots.draw(name, optionsOf[name]())), light];
 }
 
 /** What shows the run, step by step. */
 export function drawing() {
   traced = null;
   plots.marks = marksOf(run.answer);
-  const names = ["x", "relative", "lambda", "section", ...(run.more ? ofMore : [])];
-  for (const name of ofMore) $(`figure-${name}`).classList.toggle("behind", !run.more);
-  return names.map((name) => () => draw(name));
+  return stepsOf("x", "relative", "lambda", "section", ...(run.more ? ofMore : []));
 }
 
 /** What a second answer of the same run brings: eigenvalues, the raw product, the manifold. */
 export function showMore() {
-  draw("lambda", ...ofMore);
-  for (const name of ofMore) $(`figure-${name}`).classList.remove("behind");
+  for (const step of stepsOf("lambda", ...ofMore)) step();
 }
 
 /** A run to compare with, or none. */
@@ -207,8 +205,10 @@ function tell(modulus, playing) {
     relative: inMm(y - x, 4),
     largest: modulus == null ? "" : short(modulus),
   };
-  for (const [name, text] of Object.entries(values)) write(`value-${name}`, text);
+  for (const [name, text] of Object.entries(values)) write({[`value-${name}`]: text});
   if (playing) return; // a reader of the page is not told sixty times a second
   for (const name of overTime)
-    aria($(`plot-${name}`), {valuetext: `${run.units.at(cursor)} ${values[name] ?? ""}`});
+    attributes($(`plot-${name}`), {
+      "aria-valuetext": `${run.units.at(cursor)} ${values[name] ?? ""}`,
+    });
 }

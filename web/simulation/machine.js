@@ -1,8 +1,8 @@
 // The machine itself, to scale, at one moment of the run: spring, oscillator, walls, the free mass
 // and where it just came from; a flash at an impact.
-import {colour} from "../shared/colours.js";
 import {$} from "../shared/dom.js";
 import {blank, font, Size} from "../shared/frame.js";
+import {ink, stroke, write} from "../shared/ink.js";
 import {axis, run} from "./run.js";
 
 const flashes = 0.12; // cycles that a flash lasts
@@ -13,19 +13,6 @@ const top = 30; // px of the cavity
 const ball = 11; // px
 const rim = 14; // px of the oscillator's body beyond its walls
 
-/** Lines through points, [x, y] each, of which a null begins another one. */
-function stroke(c, name, width, points) {
-  c.strokeStyle = colour(name);
-  c.lineWidth = width;
-  c.beginPath();
-  let begun = false;
-  for (const point of points) {
-    if (point) c[begun ? "lineTo" : "moveTo"](...point);
-    begun = point !== null;
-  }
-  c.stroke();
-}
-
 function spring(c, to, y) {
   const turns = 8;
   const ends = 10;
@@ -34,51 +21,43 @@ function spring(c, to, y) {
     anchor + ends + (k + 0.5) * step,
     y + (k % 2 ? 9 : -9),
   ]);
-  stroke(c, "text", 2, [[anchor, y], [anchor + ends, y], ...coils, [to - ends, y], [to, y]]);
+  ink(c, "text", 2);
+  stroke(c, [[anchor, y], [anchor + ends, y], ...coils, [to - ends, y], [to, y]]);
 }
 
 function ground(c, floor, width) {
-  const lines = [
-    [anchor, floor + 0.5],
-    [width - 8, floor + 0.5],
-  ];
-  for (let x = anchor + 8; x < width - 8; x += 14)
-    lines.push(null, [x, floor + 1], [x - 6, floor + 8]);
-  stroke(c, "soft", 1, lines);
-  stroke(c, "soft", 3, [
-    [anchor, 14],
-    [anchor, floor],
-  ]);
+  const line = (...ends) => stroke(c, ends);
+  ink(c, "soft");
+  line([anchor, floor + 0.5], [width - 8, floor + 0.5]);
+  for (let x = anchor + 8; x < width - 8; x += 14) line([x, floor + 1], [x - 6, floor + 8]);
+  ink(c, "soft", 3);
+  line([anchor, 14], [anchor, floor]);
 }
 
 function body(c, left, right, floor) {
-  c.fillStyle = colour("body");
-  c.strokeStyle = colour("accent");
-  c.lineWidth = 1.2;
   c.beginPath();
   c.roundRect(left, top - 12, right - left, floor + 11 - top, 5);
+  ink(c, "body");
   c.fill();
+  ink(c, "accent", 1.2);
   c.stroke();
 }
 
 /** The wall at which the mass was met last: a few rays. */
 function flash(c, x, y, inwards, share) {
-  const rays = [-0.9, -0.35, 0.35, 0.9].flatMap((angle) => {
-    const [cos, sin] = [Math.cos(angle) * inwards, Math.sin(angle)];
-    const from = [x + 5 * cos, y + 16 * sin];
-    return [null, from, [x + (12 + 6 * share) * cos, y + (26 + 8 * share) * sin]];
-  });
   c.globalAlpha = 1 - share;
-  stroke(c, "flash", 2.5, rays);
+  ink(c, "flash", 2.5);
+  for (const angle of [-0.9, -0.35, 0.35, 0.9]) {
+    const [cos, sin] = [Math.cos(angle) * inwards, Math.sin(angle)];
+    const end = [x + (12 + 6 * share) * cos, y + (26 + 8 * share) * sin];
+    stroke(c, [[x + 5 * cos, y + 16 * sin], end]);
+  }
   c.globalAlpha = 1;
 }
 
-/** A word or two; vertical: what of it lies at y. */
-function label(c, text, x, y, name, align, vertical) {
-  c.fillStyle = colour(name);
-  c.textAlign = align;
-  c.textBaseline = vertical;
-  c.fillText(text, x, y);
+function label(c, name, ...text) {
+  ink(c, name);
+  write(c, ...text);
 }
 
 const canvas = $("machine");
@@ -108,16 +87,16 @@ export function redraw() {
   mass(c, px, level);
   impact(c, wall, level);
   c.font = "italic 13px system-ui";
-  label(c, "x", px(x), top - 14, "accent", "center", "bottom");
-  label(c, "y", px(y), top + 1, "mass", "center", "bottom");
+  label(c, "accent", "x", px(x), top - 14, "center", "bottom");
+  label(c, "mass", "y", px(y), top + 1, "center", "bottom");
   c.font = font;
-  label(c, "x − y = b", left, bottom + 3, "plus", "left", "top");
-  label(c, "x − y = −b", right, bottom + 3, "minus", "right", "top");
+  label(c, "plus", "x − y = b", left, bottom + 3, "left", "top");
+  label(c, "minus", "x − y = −b", right, bottom + 3, "right", "top");
 }
 
 function cavity(c, left, right, bottom) {
   const fill = (name, from, width) => {
-    c.fillStyle = colour(name);
+    ink(c, name);
     c.fillRect(from, top, width, bottom - top);
   };
   fill("panel", left - 3, right - left + 6);
@@ -127,7 +106,7 @@ function cavity(c, left, right, bottom) {
 
 /** Now, and before, where it is paler. */
 function mass(c, px, level) {
-  c.fillStyle = colour("mass");
+  ink(c, "mass");
   ghosts.forEach((cycles, k) => {
     const moment = axis.cursor - cycles * run.motion.cycle;
     if (moment < 0) return;

@@ -42,5 +42,5 @@ export function mark(preset) {
   }
   const alone = names.length && names.every(inDetails);
   $("to-details").href = alone ? `#figure-${names[0]}` : "#details";
-  write("to-details", alone ? `${source} is below ▾` : "details ▾");
+  write({"to-details": alone ? `${source} is below ▾` : "details ▾"});
 }

@@ -1,5 +1,5 @@
 // What a small screen needs: one plot at a time, and a sheet with all that one turns.
-import {$, aria, press, write} from "../shared/dom.js";
+import {$, attributes, press, write} from "../shared/dom.js";
 
 export function start() {
   const buttons = document.querySelectorAll("#switch button");
@@ -11,7 +11,7 @@ export function start() {
   buttons[0].click();
   $("sheet").onclick = () => {
     const open = $("form").classList.toggle("open");
-    aria($("sheet"), {expanded: open});
-    write("sheet", open ? "Fewer ▾" : "All parameters ▴");
+    attributes($("sheet"), {"aria-expanded": open});
+    write({sheet: open ? "Fewer ▾" : "All parameters ▴"});
   };
 }

@@ -1,6 +1,6 @@
 // A run that is kept beside those that follow, to compare them with it. The address holds its query.
 import {get} from "../shared/api.js";
-import {$, write} from "../shared/dom.js";
+import {$, reveal, write} from "../shared/dom.js";
 import {Motion} from "../shared/motion.js";
 import * as instrument from "./instrument.js";
 import {toQuery} from "./request.js";
@@ -15,8 +15,8 @@ export const query = () => pinned?.query ?? null;
 function keep(other) {
   pinned = other;
   const there = other?.answer ? other : null;
-  for (const id of ["swap", "unpin"]) $(id).hidden = !there;
-  write("pinned-run", there ? `pinned: ${parameterLine(there.answer.parameters)}` : "");
+  reveal({swap: there, unpin: there});
+  write({"pinned-run": there ? `pinned: ${parameterLine(there.answer.parameters)}` : ""});
   instrument.pin(there);
 }
 

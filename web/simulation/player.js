@@ -1,6 +1,6 @@
 // Time that goes by: plays what is in view, over and over, at so many cycles a second; a click of
 // each impact if one asks for it.
-import {$, aria, write} from "../shared/dom.js";
+import {$, attributes, write} from "../shared/dom.js";
 import {count, significant} from "../shared/numbers.js";
 import * as machine from "./machine.js";
 import {axis, run} from "./run.js";
@@ -77,14 +77,14 @@ function pause() {
 }
 
 function showButton(text, label) {
-  write("play", text);
-  aria($("play"), {label});
+  write({play: text});
+  attributes($("play"), {"aria-label": label});
 }
 
 function toggleSound() {
   audio?.close();
   audio = audio ? null : new AudioContext();
-  aria($("sound"), {pressed: audio !== null});
+  attributes($("sound"), {"aria-pressed": audio !== null});
 }
 
 /** Stands still for a moment: there is more to do than to play. */
@@ -128,7 +128,7 @@ function showPlace() {
     : `y′ = ${significant(velocity.of(speed), 3)} ${velocity.unit}`;
   const impacts = count(motion.impactBefore(cursor) + 1, "impact");
   const text = `${units.at(cursor)} · ${impacts} so far · ${how}`;
-  if ($("moment").textContent !== text) write("moment", text);
+  if ($("moment").textContent !== text) write({moment: text});
   $("scrub").value = ((cursor - from) / (to - from)) * 1000;
-  if (!frame) aria($("scrub"), {valuetext: text});
+  if (!frame) attributes($("scrub"), {"aria-valuetext": text});
 }

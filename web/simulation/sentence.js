@@ -1,5 +1,5 @@
 // What a run came to, in one sentence.
-import {element} from "../shared/dom.js";
+import {$, element} from "../shared/dom.js";
 import {count, percent, withError} from "../shared/numbers.js";
 import {regimes} from "../shared/quantities.js";
 import {valueText} from "./sliders.js";
@@ -16,8 +16,8 @@ function motionText({regime, exponents}, units) {
     const before = late ? `, after a chaotic transient up to ${units.at(capture.tau)}` : "";
     return `${name}, ${regime.stable ? "" : "un"}stable periodic orbit${period}${before}`;
   }
-  const verdict = {chaotic: ", chaotic", regular: ", regular", not_decided: ""}[exponents.verdict];
-  return `${name}${verdict ?? ""}`;
+  const {verdict} = exponents;
+  return verdict && verdict !== "not_decided" ? `${name}, ${verdict}` : name;
 }
 
 function lambdaText({qr, verdict}, regime) {
@@ -30,18 +30,11 @@ function lambdaText({qr, verdict}, regime) {
 const amplitudeText = ({rms_ratio: ratio}) =>
   ratio == null ? "" : `x at ${percent(ratio)} of that without the absorber`;
 
-/** The parts of the sentence: {subject, motion, rest}. */
-export function sentence(answer, slider, units) {
+/** slider: whose value the sentence begins with. */
+export function showSentence(answer, slider, units) {
   const {exponents, regime, energy, parameters} = answer;
   const rest = [lambdaText(exponents, regime), amplitudeText(energy)].filter(Boolean).join("; ");
-  return {
-    subject: `${valueText(slider, parameters)}:`,
-    motion: motionText(answer, units),
-    rest: rest && `${rest}.`,
-  };
-}
-
-export function showSentence(node, {subject, motion, rest}) {
-  const end = rest ? "." : "";
-  node.replaceChildren(subject, " ", element("b", {textContent: motion + end}), " ", rest);
+  const end = rest && ".";
+  const motion = element("b", {textContent: motionText(answer, units) + end});
+  $("sentence").replaceChildren(`${valueText(slider, parameters)}: `, motion, " ", rest + end);
 }

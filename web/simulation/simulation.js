@@ -3,7 +3,7 @@
 import {Problem, simulate, wholeMessage} from "../shared/api.js";
 import {listWarnings} from "../shared/cards.js";
 import {formsOf} from "../shared/copies.js";
-import {$, aria, countUp, element, nextTask, write} from "../shared/dom.js";
+import {$, attributes, button, countUp, nextTask, reveal, write} from "../shared/dom.js";
 import {Form} from "../shared/form.js";
 import {Job} from "../shared/job.js";
 import {Motion} from "../shared/motion.js";
@@ -21,7 +21,7 @@ import * as pin from "./pin.js";
 import * as player from "./player.js";
 import {Request, toQuery} from "./request.js";
 import {axis, run, setRun} from "./run.js";
-import {sentence, showSentence} from "./sentence.js";
+import {showSentence} from "./sentence.js";
 import * as sliders from "./sliders.js";
 import * as strip from "./strip.js";
 
@@ -40,7 +40,7 @@ let remembered = () => {};
 let resting = 0;
 
 function say(text, fault = false) {
-  write("message", text);
+  write({message: text});
   $("message").classList.toggle("fault", fault);
 }
 
@@ -55,8 +55,8 @@ const job = new Job({
   fail: refuse,
   busy(is, cancelled) {
     if (is || cancelled) setStale(true);
-    aria($("results"), {busy: is});
-    $("cancel").hidden = !is;
+    attributes($("results"), {"aria-busy": is});
+    reveal({cancel: is});
     if (is && !$("message").classList.contains("fault")) say("computing …");
     else if (cancelled) say("cancelled: what is shown is the run before");
   },
@@ -105,8 +105,8 @@ async function present(answer, asked) {
   request.form.showErrors([]);
   showOrigins();
   listWarnings($("warnings"), answer.warnings);
-  $("remarks").hidden = !answer.warnings.length;
-  write("remarks-count", count(answer.warnings.length, "remark"));
+  reveal({remarks: answer.warnings.length, units: answer.parameters.si});
+  write({"remarks-count": count(answer.warnings.length, "remark")});
   axis.span(0, answer.status.tau, homeOf(answer), fresh);
   if (wantedView) axis.view = wantedView;
   wantedView = null;
@@ -125,13 +125,12 @@ function drawing(fresh = false) {
   const {answer, asked, units} = run;
   const slider = sliders.sliderOf(touched, answer.parameters);
   const tell = () => {
-    $("units").hidden = !answer.parameters.si;
     sliders.show(answer.parameters, fresh, slider);
-    showSentence($("sentence"), sentence(answer, slider, units));
+    showSentence(answer, slider, units);
   };
   const end = () => {
     player.show();
-    describe(answer, units);
+    describe(answer);
     mark(request.edited ? null : request.preset);
     strip.show(request.systemOf(asked), answer.parameters, slider);
   };
@@ -182,7 +181,7 @@ function turn(fields, slider, hasty) {
 function note(text) {
   const {preset, edited} = request;
   const changed = preset && edited ? `${preset.source}, changed` : (preset?.note ?? "");
-  write("preset-note", text || changed);
+  write({"preset-note": text || changed});
 }
 
 function choosePreset(name) {
@@ -277,13 +276,7 @@ function listen(form, measure) {
   $("measure-this").onclick = () => run && measure(run.answer);
   const forms = formsOf("v1/simulate", () => request.asked());
   for (const [name, text] of Object.entries(forms)) {
-    const button = element("button", {
-      type: "button",
-      className: "small",
-      textContent: name,
-      title: `copy this run as ${name}`,
-      onclick: () => copy(text(), say),
-    });
-    $("copies").append(button);
+    const title = `copy this run as ${name}`;
+    $("copies").append(button(name, () => copy(text(), say), {className: "small", title}));
   }
 }

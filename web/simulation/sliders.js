@@ -1,6 +1,6 @@
 // The few parameters that one turns: a slider, a number and its unit each. What they set are fields
 // of the form.
-import {$, aria, element} from "../shared/dom.js";
+import {$, attributes, element} from "../shared/dom.js";
 import {toNumber} from "../shared/numbers.js";
 import {symbolOf} from "../shared/quantities.js";
 
@@ -177,8 +177,8 @@ function set(one, row, fresh) {
   };
   Object.assign(range, {min, max, step: (max - min) / 1000});
   put(range, value);
-  aria(range, {valuetext: `${written(value, row.span)} ${one.unit}`});
-  aria(number, {invalid: false});
+  attributes(range, {"aria-valuetext": `${written(value, row.span)} ${one.unit}`});
+  attributes(number, {"aria-invalid": false});
   put(number, textAt(one, shown, row.span));
   row.note.textContent = one.aboutOf?.(shown) || one.about;
 }
@@ -192,7 +192,7 @@ export function turnTo(one, value, hasty) {
 
 function typed(one, input) {
   const value = toNumber(input.value);
-  aria(input, {invalid: value === null});
+  attributes(input, {"aria-invalid": value === null});
   if (value === null) refuse(input.value, one);
   else apply(one, value, false);
 }

@@ -1,9 +1,9 @@
 // Where the regimes lie along the parameter that was turned last: a band of them and lambda1 over
 // it, filled coarse to fine by a sweep in the background. Its marker is the slider.
 import {Problem, sweep} from "../shared/api.js";
-import {colour} from "../shared/colours.js";
-import {$, aria, countUp, element, write} from "../shared/dom.js";
+import {$, attributes, countUp, element, write} from "../shared/dom.js";
 import {blank, Frame, font, Size} from "../shared/frame.js";
+import {ink, stroke, write as writeText} from "../shared/ink.js";
 import {jsonLines} from "../shared/json_lines.js";
 import {clamp, digits, withError} from "../shared/numbers.js";
 import {regimeColour, regimeText, verdictColour, verdicts} from "../shared/quantities.js";
@@ -54,9 +54,9 @@ export function show(system, shown, turned) {
   clearTimeout(waiting);
   stale = true;
   waiting = setTimeout(fill, pause, base, parameter);
-  write("strip-trouble", "");
+  write({"strip-trouble": ""});
   const {symbol, unit} = slider;
-  write("strip-parameter", unit ? `${symbol} (${unit})` : symbol);
+  write({"strip-parameter": unit ? `${symbol} (${unit})` : symbol});
   redraw();
 }
 
@@ -94,7 +94,9 @@ async function fill(base, parameter) {
   } catch (error) {
     if (signal.aborted) return;
     found = [];
-    write("strip-trouble", error instanceof Problem ? error.message : "no answer from the server");
+    write({
+      "strip-trouble": error instanceof Problem ? error.message : "no answer from the server",
+    });
   }
   redraw();
 }
@@ -131,14 +133,12 @@ function stretches() {
 /** With its name under it, where there is room for it. */
 function drawStretch(c, {regime, from, to}) {
   const [left, right] = [from, to].map((i) => frame.px(at(i)));
-  c.fillStyle = colour(regime ? regimeColour(regime) : "nothing");
+  ink(c, regime ? regimeColour(regime) : "nothing");
   c.fillRect(left, frame.box.top - band, Math.max(right - left, 1) + 0.5, band);
   if (!regime || regime === "none" || right - left < 18) return;
-  c.fillStyle = colour("text");
+  ink(c, "text");
   c.font = `600 ${font}`;
-  c.textAlign = "center";
-  c.textBaseline = "top";
-  c.fillText(regime, (left + right) / 2, frame.box.top + 2);
+  writeText(c, regime, (left + right) / 2, frame.box.top + 2, "center", "top");
 }
 
 const lambdaOf = (p) => p?.lambda?.[0];
@@ -155,16 +155,19 @@ function rangeOfExponents() {
 function drawExponents(c) {
   const alpha = c.globalAlpha;
   const py = (v) => frame.py(clamp(v, ...frame.y.range));
-  c.strokeStyle = colour("line");
+  ink(c, "line");
   frame.across(c, 0);
   found.forEach((p, i) => {
     const lambda = lambdaOf(p);
     if (lambda == null) return;
     const x = frame.px(at(i));
     const error = p.standard_error?.[0] ?? 0;
-    c.fillStyle = c.strokeStyle = colour(verdictColour(p));
+    ink(c, verdictColour(p));
     c.globalAlpha = 0.4 * alpha;
-    frame.line(c, x, py(lambda - error), x, py(lambda + error));
+    stroke(
+      c,
+      [-error, error].map((by) => [x, py(lambda + by)]),
+    );
     c.globalAlpha = alpha;
     c.fillRect(x - 1.5, py(lambda) - 1.5, 3, 3);
   });
@@ -174,9 +177,14 @@ function drawExponents(c) {
 function place() {
   if (!frame) return;
   const value = valueAt(slider, parameters);
-  const [valuemin, valuemax] = range;
+  const [least, most] = range;
   marker.style.transform = `translateX(${frame.px(value)}px)`;
-  aria(canvas, {valuemin, valuemax, valuenow: value, valuetext: textAt(value)});
+  attributes(canvas, {
+    "aria-valuemin": least,
+    "aria-valuemax": most,
+    "aria-valuenow": value,
+    "aria-valuetext": textAt(value),
+  });
 }
 
 /** A value and what is there, in words. */
@@ -198,7 +206,11 @@ function textAt(value) {
 // As a slider.
 
 const turn = (value, hasty) => turnTo(slider, clamp(value, at(0), range[1]), hasty);
-const valueUnder = (event) => frame.vx(event.offsetX);
+/** The value under the pointer; a pixel is as long everywhere. */
+function valueUnder({offsetX}) {
+  const [from, to] = range;
+  return from + ((offsetX - frame.box.left) / frame.width) * (to - from);
+}
 const steps = {
   ArrowLeft: -1,
   ArrowDown: -1,
@@ -219,10 +231,10 @@ function listen() {
     onpointermove(event) {
       const value = valueUnder(event);
       if (event.buttons) turn(value, true);
-      write("strip-tip", textAt(value));
+      write({"strip-tip": textAt(value)});
     },
     onpointerup: (event) => turn(valueUnder(event), false),
-    onpointerleave: () => write("strip-tip", ""),
+    onpointerleave: () => write({"strip-tip": ""}),
     onkeydown(event) {
       const step = steps[event.key] * (event.shiftKey ? 10 : 1);
       if (!step) return;
