@@ -13,6 +13,13 @@ function plain(value) {
 /** Five digits at most. */
 export const short = (value) => (value == null ? "–" : minus(plain(value)));
 
+/** The same with n digits at most. */
+export const shortTo = (n, value) => short(value == null ? value : Number(value.toPrecision(n)));
+
+/** A length in m as one reads it, with n digits. */
+export const inMm = (metres, n = 4) =>
+  metres == null ? short(metres) : `${shortTo(n, metres * 1000)} mm`;
+
 /** n digits behind the point, or three in all where that would show none. */
 export function digits(value, n = 4) {
   if (value == null) return "–";
@@ -42,10 +49,3 @@ export function toNumber(text) {
   const value = Number(written.replace("−", "-"));
   return written !== "" && Number.isFinite(value) ? value : null;
 }
-
-/** In n digits in all. */
-export const significant = (value, n) =>
-  value == null ? "–" : short(Number(value.toPrecision(n)));
-
-/** A length in m as one reads it. */
-export const inMm = (metres, n = 3) => `${significant(metres * 1000, n)} mm`;

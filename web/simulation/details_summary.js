@@ -2,7 +2,7 @@
 // table and where the energy went.
 import {cards} from "../shared/cards.js";
 import {$, element, reveal, write} from "../shared/dom.js";
-import {clamp, count, digits, inMm, minus, percent, significant} from "../shared/numbers.js";
+import {clamp, count, digits, inMm, minus, percent, shortTo} from "../shared/numbers.js";
 import {verdicts} from "../shared/quantities.js";
 import {tableOf} from "../shared/table.js";
 import {most} from "./columns.js";
@@ -71,15 +71,15 @@ function residualCard({qr, sum_rule_residual: residual, impacts}) {
 const median = (values) => values.toSorted((a, b) => a - b)[values.length >> 1];
 
 /** A value in a unit of the answer. */
-const inUnit = (value, {of, unit}) => `${significant(of(value), 3)} ${unit}`;
+const inUnit = (value, {of, unit}) => `${shortTo(3, of(value))} ${unit}`;
 
 function forcingCard({si, derived}) {
-  const ratio = significant(si.f / derived.f0, 4);
-  return ["forcing", `${significant(si.f, 3)} Hz`, `${ratio} of f₀; base ± ${inMm(si.F)}`];
+  const ratio = shortTo(4, si.f / derived.f0);
+  return ["forcing", `${shortTo(3, si.f)} Hz`, `${ratio} of f₀; base ± ${inMm(si.F)}`];
 }
 
 function impactSpeedCard({relative_speed: speed, impulse}, {velocity, impulse: blow}) {
-  const highest = significant(velocity.of(most(speed)), 3);
+  const highest = shortTo(3, velocity.of(most(speed)));
   const remark = `median; at most ${highest}; impulse ${inUnit(median(impulse.map(Math.abs)), blow)}`;
   return ["impact speed", inUnit(median(speed), velocity), speed.length ? remark : ""];
 }

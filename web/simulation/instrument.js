@@ -201,8 +201,8 @@ function tell(modulus, playing) {
   const {cursor} = axis;
   const {x, y} = run.motion.at(cursor);
   const values = {
-    x: inMm(x, 4),
-    relative: inMm(y - x, 4),
+    x: inMm(x),
+    relative: inMm(y - x),
     largest: modulus == null ? "" : short(modulus),
   };
   for (const [name, text] of Object.entries(values)) write({[`value-${name}`]: text});

@@ -1,7 +1,7 @@
 // The parameters of a run as a table: each with its symbol, value, unit and where it comes from.
 import {$, element} from "../shared/dom.js";
 import {groups} from "../shared/form.js";
-import {minus} from "../shared/numbers.js";
+import {inMm, minus} from "../shared/numbers.js";
 import {resolved} from "../shared/origins.js";
 import {symbolOf} from "../shared/quantities.js";
 
@@ -28,8 +28,7 @@ function precise(value) {
 function unitText(value, unit) {
   if (!unit || unit === "dimensionless") return "";
   const isLength = unit === "m" && typeof value === "number" && value !== 0;
-  const inMm = isLength ? ` (${precise(Number((value * 1000).toPrecision(5)))} mm)` : "";
-  return ` ${unit.replace("tau", "τ")}${inMm}`;
+  return ` ${unit.replace("tau", "τ")}${isLength ? ` (${inMm(value, 5)})` : ""}`;
 }
 
 /** Nothing where it is but the name again. */

@@ -1,7 +1,7 @@
 // Time that goes by: plays what is in view, over and over, at so many cycles a second; a click of
 // each impact if one asks for it.
 import {$, attributes, write} from "../shared/dom.js";
-import {count, significant} from "../shared/numbers.js";
+import {count, shortTo} from "../shared/numbers.js";
 import * as machine from "./machine.js";
 import {axis, run} from "./run.js";
 
@@ -125,7 +125,7 @@ function showPlace() {
   const {y_dot: speed, side} = motion.at(cursor);
   const how = side
     ? "stuck to the wall"
-    : `y′ = ${significant(velocity.of(speed), 3)} ${velocity.unit}`;
+    : `y′ = ${shortTo(3, velocity.of(speed))} ${velocity.unit}`;
   const impacts = count(motion.impactBefore(cursor) + 1, "impact");
   const text = `${units.at(cursor)} · ${impacts} so far · ${how}`;
   if ($("moment").textContent !== text) write({moment: text});
