@@ -18,3 +18,13 @@ export const element = (tag, properties = {}, ...children) => {
   node.append(...children);
   return node;
 };
+
+/** Shows those elements for which it holds, and hides the others: {id: whether}. */
+export const reveal = (shown) => {
+  for (const [id, is] of Object.entries(shown)) $(id).hidden = !is;
+};
+
+/** Texts of elements: {id: text}. */
+export const write = (texts) => {
+  for (const [id, text] of Object.entries(texts)) $(id).textContent = text;
+};

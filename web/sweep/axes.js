@@ -47,15 +47,11 @@ export class Naming {
 }
 
 /** How a point that is simulated alone differs from that of the sweep. */
-export const afresh = ({request}) =>
-  (request.carry_state ?? "none") === "none" ? "" : ", afresh: not from its neighbour's last state";
+export const afresh = ({carried}) =>
+  carried ? ", afresh: not from its neighbour's last state" : "";
 
 /** Whether what is in view of one axis means the same on the other. */
 export const sameAxis = (one, other) => one.parameter === other?.parameter && one.log === other.log;
-
-/** What can be in view of an Axis is that of a sweep; a zoom stays unless it is fresh. */
-export const span = (axis, {borders}, fresh) =>
-  axis.span(borders[0], borders.at(-1), undefined, fresh);
 
 const turns = ["0", "π/2", "π", "3π/2", "2π"];
 /** Labels of a phase. */

@@ -2,20 +2,21 @@
 import {defaultSet} from "../shared/form.js";
 import {coordinates} from "../shared/quantities.js";
 
-const ascending = (values) => values.map((_, i) => i).sort((a, b) => values[a] - values[b]);
+/** The positions of values in their order. */
+export const ascending = (values) => values.map((_, i) => i).sort((a, b) => values[a] - values[b]);
 
 const same = (v) => v;
 
 /**
- * The borders between ascending values and around them: the middles, of the logarithms where the
- * axis is logarithmic.
+ * The borders between ascending places and around them: the middles between each and the next. An
+ * only one has some room around it.
  */
 function borders(at, log) {
-  const n = at.length;
-  const alone = log ? 0.05 : Math.abs(at[0]) * 0.05 || 0.5; // around the only value
-  const first = n > 1 ? at[0] - (at[1] - at[0]) / 2 : at[0] - alone;
-  const last = n > 1 ? at[n - 1] + (at[n - 1] - at[n - 2]) / 2 : at[0] + alone;
-  return [first, ...at.slice(1).map((v, i) => (v + at[i]) / 2), last];
+  const room = log ? 0.1 : Math.abs(at[0]) * 0.1 || 1;
+  const [first, second = first + room] = at;
+  const [last, before = last - room] = at.toReversed();
+  const all = [2 * first - second, ...at, 2 * last - before];
+  return all.slice(1).map((v, i) => (v + all[i]) / 2);
 }
 
 /**
@@ -52,25 +53,26 @@ const enough = 500; // lines that are kept as texts before they go into a Blob
 
 /** The points of a sweep; as JSON it is its request. */
 export class SweepData {
+  axes = null; // those that are left
+  parameters = null;
+  warnings = new Set();
+  points = [];
+  received = 0;
+  faults = new Map();
+  early = 0;
+  blobs = [];
+  texts = [];
+
   /** halfPeriod(fields): half a forcing period of a point's fields; keep: the lines, for a file. */
   constructor(request, halfPeriod, {keep = true} = {}) {
-    this.keep = keep;
-    this.request = request;
-    this.halfPeriod = halfPeriod;
-    this.section = request.section ?? "none";
-    this.defaultSet = request.starts === defaultSet;
-    this.starts = this.defaultSet ? 1 : Math.max(1, request.starts?.length ?? 0);
+    Object.assign(this, {request, halfPeriod, keep});
+    const {section = "none", starts, reduce = "", carry_state: carried = "none"} = request;
+    this.section = section;
+    this.defaultSet = starts === defaultSet;
+    this.starts = this.defaultSet ? 1 : Math.max(1, starts?.length ?? 0);
     // The parameter of the axis that is folded.
-    this.reduced = /^(?:max|min) over (.+)$/.exec(request.reduce ?? "")?.[1] ?? null;
-    this.axes = null; // those that are left
-    this.parameters = null;
-    this.warnings = new Set();
-    this.points = [];
-    this.received = 0;
-    this.faults = new Map();
-    this.early = 0;
-    this.blobs = [];
-    this.texts = [];
+    this.reduced = /^(?:max|min) over (.+)$/.exec(reduce)?.[1] ?? null;
+    this.carried = carried !== "none"; // each point begins where its neighbour ended
   }
 
   toJSON() {
@@ -148,10 +150,6 @@ export class SweepData {
     const entry = (axis, i) => (axis ? axis.order[i] : 0);
     const before = entry(third, m) * size(second) + entry(second, l);
     return (before * this.starts + start) * size(first) + entry(first, k);
-  }
-
-  at(k, l, start, m) {
-    return this.points[this.index(k, l, start, m)];
   }
 
   /** The fields of /v1/simulate of a point; best: of its best motion, where it has several. */

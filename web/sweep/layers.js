@@ -19,6 +19,7 @@ export class Layers {
   constructor(base) {
     this.base = base;
     this.all = [{data: base, slice: null}];
+    this.ends = {}; // of the colours of a map, by its quantity
   }
 
   /** A finer sweep on top; slice: the one of the third axis that it is of, else null. */
@@ -33,9 +34,9 @@ export class Layers {
     return this.all.filter(({data, slice: mine}) => data.axes && (mine ?? slice) === slice);
   }
 
-  /** All points of all of them. */
-  *points() {
-    for (const {data} of this.all) for (const p of data.points) if (p) yield p;
+  /** All points of all of them that have come and did not fail. */
+  points() {
+    return this.all.flatMap(({data}) => data.points.filter((p) => p && !p.error));
   }
 
   /**
