@@ -49,6 +49,12 @@ function unfold({worst, best, starts, ...line}, parameter) {
   return {...peak(line), ...motions};
 }
 
+/** Half a forcing period, pi/Omega, of a point's fields. */
+function halfPeriod({Omega, f, f0, k1, m1}) {
+  const natural = f0 ?? Math.sqrt(k1 / m1) / (2 * Math.PI); // in Hz
+  return Math.PI / (Omega ?? (f ? f / natural : 1));
+}
+
 const enough = 500; // lines that are kept as texts before they go into a Blob
 
 /** The points of a sweep; as JSON it is its request. */
@@ -63,13 +69,13 @@ export class SweepData {
   blobs = [];
   texts = [];
 
-  /** halfPeriod(fields): half a forcing period of a point's fields; keep: the lines, for a file. */
-  constructor(request, halfPeriod, {keep = true} = {}) {
-    Object.assign(this, {request, halfPeriod, keep});
+  /** keep: the lines, for a file. */
+  constructor(request, {keep = true} = {}) {
+    Object.assign(this, {request, keep});
     const {section = "none", starts, reduce = "", carry_state: carried = "none"} = request;
     this.section = section;
     this.defaultSet = starts === defaultSet;
-    this.starts = this.defaultSet ? 1 : Math.max(1, starts?.length ?? 0);
+    this.states = Array.isArray(starts) && starts.length ? starts : [{}]; // to start from
     // The parameter of the axis that is folded.
     this.reduced = /^(?:max|min) over (.+)$/.exec(reduce)?.[1] ?? null;
     this.carried = carried !== "none"; // each point begins where its neighbour ended
@@ -77,6 +83,10 @@ export class SweepData {
 
   toJSON() {
     return this.request;
+  }
+
+  get starts() {
+    return this.states.length;
   }
 
   get total() {
@@ -125,7 +135,7 @@ export class SweepData {
     if (!point.section) return point;
     const {section, ...rest} = point;
     if (this.axes.length > 1) return rest;
-    const half = this.halfPeriod(this.fields(point.index));
+    const half = halfPeriod(this.fields(point.index));
     rest.section = {};
     for (const [name, {columns, value, seconds}] of Object.entries(coordinates[this.section])) {
       const [first, second] = columns(section);
@@ -156,22 +166,23 @@ export class SweepData {
   fields(index, best = false) {
     const all = this.points[index];
     const point = (best && all?.best) || all;
-    const fields = {...this.request.base, ...(this.defaultSet ? point?.state : {})};
+    const [first, second, third] = this.axes;
     let rest = index;
-    const take = (n) => {
-      const i = rest % n;
-      rest = Math.floor(rest / n);
-      return i;
+    const take = (list) => {
+      const i = rest % list.length;
+      rest = Math.floor(rest / list.length);
+      return list[i];
     };
-    const place = (axis) => {
-      if (axis) fields[axis.parameter] = axis.given[take(axis.given.length)];
+    const place = (axis) => axis && {[axis.parameter]: take(axis.given)};
+    return {
+      ...this.request.base,
+      ...(this.defaultSet && point?.state),
+      ...place(first),
+      ...take(this.states),
+      ...place(second),
+      ...place(third),
+      ...(this.reduced && point?.where != null && {[this.reduced]: point.where}),
     };
-    place(this.axes[0]);
-    const start = this.defaultSet ? {} : this.request.starts?.[take(this.starts)];
-    place(this.axes[1]);
-    place(this.axes[2]);
-    if (this.reduced && point?.where != null) fields[this.reduced] = point.where;
-    return {...fields, ...start};
   }
 
   /** What has come, as lines of JSON. */

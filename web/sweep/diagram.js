@@ -212,39 +212,32 @@ class Diagram extends SweepPanel {
   }
 }
 
+/** A column of a point's section, as seen in SweepData. */
+const section = (p, column) => p.section?.[column] ?? [];
+
 /**
  * How often the section comes to each pixel, as opacity: a periodic orbit is a few full dots, chaos
  * a cloud.
  */
 export class SectionDiagram extends Diagram {
-  coordinate() {
-    return coordinates[this.view.data.section]?.[this.view.choice.coordinate];
-  }
-
-  /** Whether velocities are drawn in mm/s. */
-  seconds() {
-    return this.coordinate()?.seconds && this.view.data.parameters.si && inSeconds();
-  }
-
-  label() {
-    const shown = this.coordinate();
-    return (this.seconds() ? shown.seconds.label : shown?.label) ?? "";
-  }
-
-  /** The coordinate of a point's section. */
-  section(p) {
-    return p.section?.[`${this.view.choice.coordinate}${this.seconds() ? "_SI" : ""}`] ?? [];
+  /** The coordinate that is drawn, and its column; velocities may be in mm/s. */
+  shown() {
+    const {data, choice} = this.view;
+    const name = choice.coordinate;
+    const own = coordinates[data.section]?.[name] ?? {label: "", title: ""};
+    const seconds = data.parameters.si && inSeconds() && own.seconds;
+    return {...own, ...(seconds ? {label: seconds.label, column: `${name}_SI`} : {column: name})};
   }
 
   y() {
-    const {range, log, least = -Infinity, turns} = this.coordinate() ?? {};
-    const large = (p) => this.section(p).filter((v) => !(v <= least));
+    const {column, range, log, least = -Infinity, turns, label} = this.shown();
+    const large = (p) => section(p, column).filter((v) => !(v <= least));
     const held = range ?? rangeOf(this.values(large), {log}) ?? (log ? [0.1, 10] : [-1, 1]);
-    return {range: held, log, label: this.label(), labels: turns && quarters};
+    return {range: held, log, label, labels: turns && quarters};
   }
 
   draw(c, frame) {
-    const {levels = [], log = false} = this.coordinate() ?? {};
+    const {column, levels = [], log = false} = this.shown();
     this.rule(c, frame, levels, "line");
     const {from: value} = this.view.data.axes[0];
     const {left, top} = frame.box;
@@ -252,7 +245,7 @@ export class SectionDiagram extends Diagram {
       const columns = this.view.places[s].map(({p, low, high}) => ({
         from: frame.px(value(low)) - left,
         to: frame.px(value(high)) - left,
-        values: this.section(p),
+        values: section(p, column),
       }));
       const image = density(count(columns, frame, log), this.tint(s, "c1"));
       c.drawImage(image, left, top, frame.width, frame.height);
@@ -260,18 +253,19 @@ export class SectionDiagram extends Diagram {
   }
 
   columns() {
-    return {[this.label()]: (v) => v};
+    return {[this.shown().label]: null};
   }
 
   rows(p) {
-    return Array.from(this.section(p), (v) => [v]);
+    return Array.from(section(p, this.shown().column), (v) => [v]);
   }
 
   about() {
+    const {title, label} = this.shown();
     const n = this.view.places[0].length;
     return {
-      title: `Section: ${this.coordinate()?.title ?? ""}`,
-      summary: `${this.label()} of the section at ${n} points`,
+      title: `Section: ${title}`,
+      summary: `${label} of the section at ${n} points`,
     };
   }
 }

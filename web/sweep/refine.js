@@ -78,7 +78,7 @@ export class Refiner {
       if (axes[i]) return axisOf(given, data.axes[i], axes[i].view, counts[i]);
       return i < 0 ? given : {parameter, values: [values[choice.slice]]};
     });
-    const finer = new SweepData({...data.request, axes: request}, data.halfPeriod, {keep: false});
+    const finer = new SweepData({...data.request, axes: request}, {keep: false});
     finer.slice = data.axes[2] ? choice.slice : null;
     return finer;
   }

@@ -1,6 +1,6 @@
 // The tab of a sweep: form in, a stream of points out, drawn as they come. Its query is the request
 // and what the menus show.
-import {asCurl, Problem, wholeMessage} from "../shared/api.js";
+import {asCurl, wholeMessage} from "../shared/api.js";
 import {listWarnings} from "../shared/cards.js";
 import {$, countUp, element, reveal, write} from "../shared/dom.js";
 import {Job} from "../shared/job.js";
@@ -17,7 +17,7 @@ import {choose, fillMenu} from "./menu.js";
 import {showPeaks} from "./peaks.js";
 import {Refiner} from "./refine.js";
 import {receive} from "./stream.js";
-import {examples, halfPeriod, SweepForm} from "./sweep_form.js";
+import {examples, SweepForm} from "./sweep_form.js";
 
 const cyclesOfPoint = 272; // of the simulation of a point: the paper's tau of 1709
 
@@ -200,8 +200,7 @@ function present(fresh) {
   view = views[data.axes.length];
   form.base.showOrigins(data.parameters);
   offer();
-  const states = data.starts > 1 ? data.request.starts : [];
-  const keys = states.map((state, s) => element("span", startKey(state, s, naming)));
+  const keys = data.states.map((state, s) => element("span", startKey(state, s, naming)));
   $("sweep-starts").replaceChildren(...keys.map((key) => element("li", {}, key)));
   view?.show(new Layers(data));
   refiner.follow(view);
@@ -231,8 +230,7 @@ const job = new Job({
   ask: (into, signal) => receive(into, signal, (line) => hear(into, line)),
   show: finish,
   fail(error) {
-    const left = error instanceof Problem ? form.showErrors(error.errors) : [];
-    stop(wholeMessage(error, left), true);
+    stop(wholeMessage(error, form.showErrors(error.errors ?? [])), true);
   },
   busy(is, cancelled) {
     busy(is);
@@ -282,7 +280,7 @@ function lead() {
 function run(ends) {
   form.showErrors([]);
   compare();
-  complete(Object.assign(new SweepData(form.request(), halfPeriod), {ends}));
+  complete(Object.assign(new SweepData(form.request()), {ends}));
 }
 
 const isSame = (one, other) => String(requestOf(one)) === String(requestOf(other));

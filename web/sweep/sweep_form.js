@@ -83,12 +83,6 @@ function faultOf(axis, value) {
   return ends.find((name) => values[name] === value) ?? "parameter";
 }
 
-/** Half a forcing period, pi/Omega, of a point's fields. */
-export function halfPeriod({Omega, f, f0, k1, m1}) {
-  const natural = f0 ?? Math.sqrt(k1 / m1) / (2 * Math.PI); // in Hz
-  return Math.PI / (Omega ?? (f ? f / natural : 1));
-}
-
 export class SweepForm {
   /** tables: the answer of /v1/parameters; changed: called after each change. */
   constructor(container, tables, changed) {
@@ -177,9 +171,9 @@ export class SweepForm {
 
   /**
    * What depends on the parameters chosen: their ranges, and the fields that they take the place
-   * of.
+   * of; reduce: the reduction to choose, if it is another.
    */
-  adapt() {
+  adapt(reduce) {
     const swept = this.swept();
     for (const [i, axis] of this.axes.entries()) {
       const field = this.parameters.get(swept[i]);
@@ -191,17 +185,18 @@ export class SweepForm {
         axis.inputs.get(name).placeholder = `${name} ${axis.shown(name, range[name])}`;
     }
     this.base.disable([...swept, ...this.base.unmixable(swept)]);
-    this.adaptRun(swept.filter((name) => name !== none));
+    this.adaptRun(swept, reduce);
   }
 
   /**
    * What can be reduced, and what the default set and a reduction leave no place for: they tell of
    * several motions.
    */
-  adaptRun(swept) {
+  adaptRun(swept, reduce) {
     const {inputs} = this.run;
-    const reductions = swept.flatMap((name) => [[`max over ${name}`], [`min over ${name}`]]);
-    fillMenu(inputs.get("reduce"), [[none], ...reductions]);
+    const axes = swept.filter((name) => name !== none);
+    const reductions = axes.flatMap((name) => [[`max over ${name}`], [`min over ${name}`]]);
+    fillMenu(inputs.get("reduce"), [[none], ...reductions], reduce);
     const several = inputs.get("starts").value.trim() === defaultSet;
     this.defaultSet.checked = several;
     const off = [];
@@ -244,15 +239,14 @@ export class SweepForm {
     write({"sweep-note": ""});
     const fields = Object.fromEntries(query);
     this.base.set(fields);
+    this.run.set(fields);
     const given = axisNames.filter((name) => fields[name]).map((name) => fields[name].split(","));
     for (const [i, axis] of this.axes.entries()) {
       const [parameter = i ? undefined : "b", from, to, count, scale] = given[i] ?? [];
       this.scale(i, parameter);
       axis.set({parameter, from, to, count, scale});
     }
-    this.adapt(); // which offers the reductions
-    this.run.set(fields);
-    this.adapt();
+    this.adapt(fields.reduce);
   }
 
   /** Errors of a problem document at their fields; returns those that belong to none. */
