@@ -64,8 +64,8 @@ export class SweepData {
   warnings = new Set();
   points = [];
   received = 0;
-  faults = new Map();
-  early = 0;
+  slice = null; // of the third axis of another sweep, the one that this sweep is a part of
+  views = null; // of its axes, what this sweep is of
   blobs = [];
   texts = [];
 
@@ -129,8 +129,6 @@ export class SweepData {
    * place for them.
    */
   trim(point) {
-    if (point.error) this.faults.set(point.error, (this.faults.get(point.error) ?? 0) + 1);
-    if (point.reason && point.reason !== "complete") ++this.early;
     if (this.reduced) return unfold(point, this.reduced);
     if (!point.section) return point;
     const {section, ...rest} = point;

@@ -15,7 +15,7 @@ import {
 } from "../shared/quantities.js";
 import {inSeconds} from "../shared/units.js";
 import {quarters} from "./axes.js";
-import {inView, SweepPanel, table} from "./view.js";
+import {SweepPanel} from "./view.js";
 
 const startColours = ["c1", "before", "c2", "c4", "c3"];
 const startColour = (s) => startColours[s % startColours.length];
@@ -53,14 +53,11 @@ const ofOther = (of) => (p) => {
 export const countRegimes = (points) =>
   Object.keys(regimes).map((regime) => [regime, points.filter((p) => p?.regime === regime).length]);
 
-/**
- * view: SweepPlots, whose points are drawn. Who extends this has y(), as of a Frame; draw(c, frame);
- * and columns(): the numbers of a point, {name: of(p)}.
- */
+/** view: SweepPlots, whose points are drawn. Who extends this has y(), as of a Frame, and draw(). */
 class Diagram extends SweepPanel {
   prepare(width, height) {
-    const {places, naming, data} = this.view;
-    if (!places) return null;
+    const {byStart, naming, data} = this.view;
+    if (!byStart) return null;
     const x = naming.frameAxis(data.axes[0], this.axis.view);
     return {frame: new Frame(width, height, x, this.y())};
   }
@@ -88,15 +85,11 @@ class Diagram extends SweepPanel {
     return this.view.several ? startColour(start) : alone;
   }
 
-  /** The points of a start that are in view and did not fail. */
-  seen(start) {
-    return this.view.places[start].filter(({at, p}) => inView(this.axis, at) && !p.error);
-  }
-
   /** Of the dots: smaller where there are many. */
   radius(frame) {
-    const room = (frame.width / Math.max(this.seen(0).length, 1)) * 0.62;
-    return Math.max(1.3, Math.min(3.4, room)) * (this.view.several ? 1.15 : 1);
+    const {data, several} = this.view;
+    const room = (frame.width / Math.max(this.view.seen().length / data.starts, 1)) * 0.62;
+    return Math.max(1.3, Math.min(3.4, room)) * (several ? 1.15 : 1);
   }
 
   rule(c, frame, levels, name) {
@@ -108,7 +101,7 @@ class Diagram extends SweepPanel {
 
   /** Where the points of a start lie: {p, v, x, y}, v null where one failed or has no value. */
   spots(frame, start, of) {
-    return this.view.places[start].map(({p, value}) => {
+    return this.view.byStart[start].map(({p, value}) => {
       const v = p.error ? null : (of(p) ?? null);
       return {p, v, x: frame.px(value), y: frame.py(v)};
     });
@@ -171,7 +164,7 @@ class Diagram extends SweepPanel {
     const {left, right} = frame.box;
     const px = (at) => Math.min(Math.max(frame.px(value(at)), left), right);
     const list = [];
-    for (const {p, low, high} of this.view.places[start]) {
+    for (const {p, low, high} of this.view.byStart[start]) {
       const regime = p.regime ?? null;
       const last = list.at(-1);
       if (last?.regime === regime) last.high = high;
@@ -190,25 +183,6 @@ class Diagram extends SweepPanel {
         c.fillStyle = colour(regimeColour(regime));
         c.fillRect(from, frame.box.top + 6 * s, to - from, 5);
       });
-  }
-
-  /** The numbers of a point, a row or more. */
-  rows(p) {
-    return [Object.values(this.columns()).map((of) => of(p))];
-  }
-
-  /** {names, columns}: the numbers of what is in view. */
-  numbers() {
-    const {naming, data, several} = this.view;
-    const {parameter} = data.axes[0];
-    const rows = this.view.starts().flatMap((s) =>
-      this.seen(s).flatMap(({p, value}) => {
-        const place = [naming.number(parameter, value), ...(several ? [s + 1] : [])];
-        return this.rows(p).map((row) => [...place, ...row]);
-      }),
-    );
-    const start = several ? ["start"] : [];
-    return table([naming.label(parameter), ...start, ...Object.keys(this.columns())], rows);
   }
 }
 
@@ -242,7 +216,7 @@ export class SectionDiagram extends Diagram {
     const {from: value} = this.view.data.axes[0];
     const {left, top} = frame.box;
     for (const s of this.view.starts()) {
-      const columns = this.view.places[s].map(({p, low, high}) => ({
+      const columns = this.view.byStart[s].map(({p, low, high}) => ({
         from: frame.px(value(low)) - left,
         to: frame.px(value(high)) - left,
         values: section(p, column),
@@ -262,7 +236,7 @@ export class SectionDiagram extends Diagram {
 
   about() {
     const {title, label} = this.shown();
-    const n = this.view.places[0].length;
+    const n = this.view.byStart[0].length;
     return {
       title: `Section: ${title}`,
       summary: `${label} of the section at ${n} points`,
@@ -309,7 +283,7 @@ export class LambdaDiagram extends Diagram {
   }
 
   about() {
-    const points = this.view.places[0].map(({p}) => p).filter((p) => p.lambda);
+    const points = this.view.byStart[0].map(({p}) => p).filter((p) => p.lambda);
     const chaotic = points.filter((p) => p.verdict === "chaotic").length;
     const values = points.map(lambda(0)).filter((v) => v !== null);
     const ends = values.length
@@ -379,7 +353,7 @@ export class OtherDiagram extends Diagram {
   }
 
   about() {
-    const counts = countRegimes(this.view.places[0].map(({p}) => p)).filter(([, n]) => n);
+    const counts = countRegimes(this.view.byStart[0].map(({p}) => p)).filter(([, n]) => n);
     const told = counts.map(([regime, n]) => `${regime === "none" ? regimes.none : regime}: ${n}`);
     const {title} = this.quantity();
     return {title: `Regimes and ${title}`, summary: `points of each regime: ${told.join(", ")}`};

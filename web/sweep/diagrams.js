@@ -15,12 +15,9 @@ const steps = {
   End: Infinity,
 };
 
-/** The place that lies next to one on the axis. */
-const closest = (places, at) =>
-  places.reduce(
-    (best, place) => (Math.abs(place.at - at) < Math.abs(best.at - at) ? place : best),
-    places[0],
-  );
+/** The first of some places that is next to something, as away(place) has it. */
+const closest = (places, away) =>
+  places.reduce((best, place) => (away(place) < away(best) ? place : best), places[0]);
 
 export class SweepPlots extends SweepView {
   constructor(root, ...rest) {
@@ -33,7 +30,7 @@ export class SweepPlots extends SweepView {
   }
 
   refresh(choice) {
-    this.places = this.starts().map((s) => this.layers.places(s));
+    this.byStart = this.starts().map((s) => this.layers.places(s));
     super.refresh(choice);
   }
 
@@ -45,21 +42,24 @@ export class SweepPlots extends SweepView {
     return this.data.starts > 1;
   }
 
+  places() {
+    return this.byStart.flat().filter(({p}) => !p.error);
+  }
+
   /** The points of all starts at a place; undefined for one that is still to come. */
-  there({at}) {
-    return this.places.map((list) => list.find((place) => place.at === at));
+  there({at: [at]}) {
+    return this.byStart.map((list) => list.find((place) => place.at[0] === at));
   }
 
   /** The point of the first start, or of all starts the one that is drawn next to a height. */
   nearest({panel, at, top}) {
-    const place = closest(this.places[0], at[0]);
+    const place = closest(this.byStart[0], (other) => Math.abs(other.at[0] - at[0]));
     if (!place || top === undefined) return place;
     const away = (other) => {
       const v = other.p.error ? null : panel.drawn(other);
       return v == null ? Infinity : Math.abs(panel.frame.py(v) - panel.frame.box.top - top);
     };
-    const there = this.there(place).filter(Boolean);
-    return there.reduce((best, other) => (away(other) < away(best) ? other : best));
+    return closest(this.there(place).filter(Boolean), away);
   }
 
   /** The rows of each start; of several starts not more than five each. */
@@ -79,10 +79,10 @@ export class SweepPlots extends SweepView {
 
   move(key) {
     if (!(key in steps)) return false;
-    const [list] = this.places;
+    const [list] = this.byStart;
     const i = this.current ? list.indexOf(this.nearest(this.current)) : -1;
     const next = Math.max(0, Math.min(list.length - 1, i + steps[key]));
-    if (list.length) this.goTo(list[next].at);
+    if (list.length) this.goTo(...list[next].at);
     return true;
   }
 }

@@ -8,7 +8,7 @@ import {bestMotion, describe, quantityOf, regimeColour} from "../shared/quantiti
 import {lastUpTo} from "../shared/search.js";
 import {barWidth, drawBar, endsOf, scaleOf} from "./colour_scale.js";
 import {ascending} from "./data.js";
-import {inView, SweepPanel, SweepView, table, toCome} from "./view.js";
+import {SweepPanel, SweepView, toCome} from "./view.js";
 
 /** Moves of the keyboard over the cells. */
 const moves = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
@@ -25,19 +25,30 @@ export class SweepMap extends SweepView {
   }
 
   /** What is at positions of a layer; its point is null before it has come. */
-  cell({data, slice}, k, l) {
-    const {start, best, slice: chosen} = this.choice;
-    const index = data.index(k, l, start, slice === null ? chosen : 0);
-    const [value, height] = [data.axes[0].values[k], data.axes[1].values[l]];
-    return {p: data.points[index], data, index, best, k, l, value, height};
+  cell(data, k, l) {
+    const {start, best, slice} = this.choice;
+    const index = data.index(k, l, start, data.slice === null ? slice : 0);
+    const [x, y] = data.axes;
+    const at = [x.at[k], y.at[l]];
+    return {
+      p: data.points[index],
+      data,
+      index,
+      best,
+      k,
+      l,
+      at,
+      value: x.values[k],
+      height: y.values[l],
+    };
   }
 
   /** The cells of a layer whose points have come. */
-  *cells(layer) {
-    const [first, second] = layer.data.axes;
+  *cells(data) {
+    const [first, second] = data.axes;
     for (let l = 0; l < second.at.length; ++l)
       for (let k = 0; k < first.at.length; ++k) {
-        const cell = this.cell(layer, k, l);
+        const cell = this.cell(data, k, l);
         if (cell.p) yield cell;
       }
   }
@@ -47,13 +58,17 @@ export class SweepMap extends SweepView {
     return this.layers.over(this.choice.slice);
   }
 
+  places() {
+    return this.over().flatMap((data) => [...this.cells(data)]);
+  }
+
   /** The finest cell at a place, one whose point has come if there is any. */
   nearest({at}) {
     let found = null;
-    for (const layer of this.over()) {
-      const [k, l] = layer.data.axes.slice(0, 2).map((axis, i) => positionAt(axis, at[i]));
+    for (const data of this.over()) {
+      const [k, l] = at.map((place, i) => positionAt(data.axes[i], place));
       if (k < 0 || l < 0) continue;
-      const cell = this.cell(layer, k, l);
+      const cell = this.cell(data, k, l);
       if (cell.p || !found) found = cell;
     }
     return found;
@@ -98,8 +113,9 @@ class MapPanel extends SweepPanel {
 
   /** All values of the base that are there. */
   values() {
-    const cells = [...this.view.cells({data: this.view.data, slice: null})];
-    return cells.map(({p}) => this.valueOf(p)).filter((v) => v !== null);
+    return [...this.view.cells(this.view.data)]
+      .map(({p}) => this.valueOf(p))
+      .filter((v) => v !== null);
   }
 
   /**
@@ -130,25 +146,17 @@ class MapPanel extends SweepPanel {
   paint(c, {frame, scale}) {
     frame.draw(c);
     const {left, top} = frame.box;
-    this.beyond = [false, false];
     c.imageSmoothingEnabled = false;
     c.drawImage(this.image(frame, this.colours(scale)), left, top, frame.width, frame.height);
-    if (scale) drawBar(c, frame, scale, this.quantity().label, this.beyond);
+    if (scale) drawBar(c, frame, scale, this.quantity().label);
   }
 
   /** The pixel of a point. */
   colours(scale) {
-    const nothing = opaque(rgb("nothing"));
-    const {categories = []} = this.quantity();
-    const named = new Map(categories.map((name) => [name, opaque(rgb(regimeColour(name)))]));
+    const colourOf = (v) => (scale ? scale.at(v) : rgb(regimeColour(v)));
     return (p) => {
       const v = this.valueOf(p);
-      if (v === null) return nothing;
-      if (!scale) return named.get(v) ?? nothing;
-      const share = scale.share(v);
-      if (share < 0) this.beyond[0] = true;
-      if (share > 1) this.beyond[1] = true;
-      return opaque(scale.at(v));
+      return opaque(v === null ? rgb("nothing") : colourOf(v));
     };
   }
 
@@ -158,11 +166,11 @@ class MapPanel extends SweepPanel {
     const height = Math.round(frame.height * devicePixelRatio);
     const image = new ImageData(width, height);
     const pixels = new Uint32Array(image.data.buffer);
-    for (const layer of this.view.over()) {
-      const [first, second] = layer.data.axes;
+    for (const data of this.view.over()) {
+      const [first, second] = data.axes;
       const columns = positions(first, this.axis.view, width);
       const rows = positions(second, this.across.view, height).reverse();
-      const cells = this.pixels(layer, colourOf);
+      const cells = this.pixels(data, colourOf);
       for (let j = 0; j < height; ++j)
         for (let i = 0; i < width; ++i) {
           const inside = rows[j] >= 0 && columns[i] >= 0;
@@ -176,33 +184,21 @@ class MapPanel extends SweepPanel {
   }
 
   /** A pixel for each cell of a layer, 0 where there is nothing. */
-  pixels(layer, colourOf) {
-    const [first, second] = layer.data.axes;
+  pixels(data, colourOf) {
+    const [first, second] = data.axes;
     const n = first.at.length;
     const pixels = new Uint32Array(n * second.at.length);
-    for (const {p, k, l} of this.view.cells(layer)) pixels[l * n + k] = colourOf(p);
+    for (const {p, k, l} of this.view.cells(data)) pixels[l * n + k] = colourOf(p);
     // Below a finer layer lies a coarser one.
-    if (!layer.data.complete && layer.data === this.view.data)
-      fill(pixels, first.order, second.order);
+    if (!data.complete && data === this.view.data) fill(pixels, first.order, second.order);
     return pixels;
   }
 
-  /** {names, columns}: the numbers of what is in view, of the finest layer there. */
-  numbers() {
-    const {naming, data, axes} = this.view;
-    const rows = this.view.over().flatMap((layer) => {
-      const [x, y] = layer.data.axes;
-      return [...this.view.cells(layer)]
-        .filter(({k, l}) => inView(axes[0], x.at[k]) && inView(axes[1], y.at[l]))
-        .map(({p, value, height}) => [
-          naming.number(x.parameter, value),
-          naming.number(y.parameter, height),
-          this.valueOf(p),
-          this.motion(p).regime ?? "–",
-        ]);
-    });
-    const names = data.axes.slice(0, 2).map(({parameter}) => naming.label(parameter));
-    return table([...names, this.quantity().label || "regime", "regime"], rows);
+  columns() {
+    return {
+      [this.quantity().label || "regime"]: (p) => this.valueOf(p),
+      regime: (p) => this.motion(p).regime ?? "–",
+    };
   }
 
   /** Which slice and start is shown, where there are several. */

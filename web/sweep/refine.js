@@ -6,15 +6,6 @@ import {receive} from "./stream.js";
 const pause = 350; // ms of rest before it begins
 const mostPoints = 20000;
 
-/** Whether the points on an axis are as dense in view as those asked for, as far as the whole has any. */
-const suffices = ({at, borders}, whole, [from, to], count) => {
-  const inside = at.filter((place) => place >= from && place <= to).length;
-  const least = 1e-9 * (to - from);
-  const begins = borders[0] <= Math.max(from, whole.at[0]) + least;
-  const ends = borders.at(-1) >= Math.min(to, whole.at.at(-1)) - least;
-  return begins && ends && inside >= 0.6 * count;
-};
-
 /** An axis of a request, over what is in view: the middles of so many cells, within the whole. */
 function axisOf(given, {from: value, at}, [low, high], count) {
   const half = (high - low) / count / 2;
@@ -62,9 +53,14 @@ export class Refiner {
     const {layers, data, axes, choice} = this.view;
     if (!data.complete || data.carried) return;
     const counts = countsOf(data, axes.length);
-    const covers = (layer) =>
-      axes.every(({view}, i) => suffices(layer.data.axes[i], data.axes[i], view, counts[i]));
-    const there = layers.over(choice.slice).findLast(covers)?.data;
+    // As dense in view as what would be asked for, or almost.
+    const covers = (finer) =>
+      axes.every(({view: [from, to], whole}, i) => {
+        const [first, last] = finer.views?.[i] ?? whole;
+        const inside = (finer.axes[i].at.length * (to - from)) / (last - first);
+        return first <= from && to <= last && inside >= 0.6 * counts[i];
+      });
+    const there = layers.over(choice.slice).findLast(covers);
     if (!axes.some(({zoomed}) => zoomed) || there?.complete) this.stop();
     else this.job.start(there ?? this.finer(counts)); // what is missing, unless it runs already
   }
@@ -79,13 +75,14 @@ export class Refiner {
       return i < 0 ? given : {parameter, values: [values[choice.slice]]};
     });
     const finer = new SweepData({...data.request, axes: request}, {keep: false});
-    finer.slice = data.axes[2] ? choice.slice : null;
+    finer.views = axes.map(({view}) => view);
+    if (data.axes[2]) finer.slice = choice.slice;
     return finer;
   }
 
   async ask(data, signal) {
     await receive(data, signal, ({type}) => {
-      if (type === "start") this.view.layers.add(data, data.slice);
+      if (type === "start") this.view.layers.add(data);
       if (type !== "point") return;
       this.say(`finer where you look: ${data.received} of ${data.total} points`);
       this.drawn();

@@ -27,7 +27,6 @@ let views; // by the number of axes
 let refiner;
 let data = null;
 let view = null; // that of the sweep; null where no axis is left
-let shown = null; // the request of the sweep, as a query
 let wanted = {}; // what the menus are to show of the next sweep, by their name in the query
 let changed = () => {};
 
@@ -36,15 +35,21 @@ function say(text, fault = false) {
   $("sweep-message").classList.toggle("fault", fault);
 }
 
-// The menus, by their name in the query. Their first entry needs no mention there.
-const menus = {coordinate: "sweep-coordinate", beside: "sweep-quantity", map: "sweep-mapped"};
+// The menus that are in the query, by their name there. Their first entry needs no mention.
+const menus = {
+  coordinate: $("sweep-coordinate"),
+  beside: $("sweep-quantity"),
+  map: $("sweep-mapped"),
+};
+const startMenu = $("sweep-start");
+const sliceMenu = $("sweep-slice");
 const choice = () => ({
-  coordinate: $("sweep-coordinate").value,
-  quantity: $("sweep-quantity").value,
-  map: $("sweep-mapped").value,
-  start: Number($("sweep-start").value) || 0,
-  best: $("sweep-start").value === "best",
-  slice: Number($("sweep-slice").value),
+  coordinate: menus.coordinate.value,
+  quantity: menus.beside.value,
+  map: menus.map.value,
+  start: Number(startMenu.value) || 0,
+  best: startMenu.value === "best",
+  slice: Number(sliceMenu.value),
 });
 
 /** What of a query is the request, in an order of its own. */
@@ -55,14 +60,17 @@ function requestOf(query) {
   return request;
 }
 
+/** The request of the sweep that is shown, as a query; null before the first. */
+const shown = () => data && String(SweepForm.toQuery(data.request));
+
 /** The query of the sweep that is shown, or null before the first. */
 export function query() {
-  if (shown === null) return null;
+  if (!data) return null;
   const menu = Object.entries(menus)
-    .filter(([, id]) => $(id).selectedIndex > 0)
-    .map(([name, id]) => `${name}=${$(id).value}`);
+    .filter(([, {selectedIndex}]) => selectedIndex > 0)
+    .map(([name, {value}]) => `${name}=${value}`);
   const ends = view?.ends().join(",");
-  return [shown, ...menu, ...(ends ? [`view=${ends}`] : [])].join("&");
+  return [shown(), ...menu, ...(ends ? [`view=${ends}`] : [])].join("&");
 }
 
 const grouped = (n) => String(n).replace(/\B(?=(\d{3})+$)/g, " ");
@@ -76,7 +84,7 @@ function compare() {
   write({"sweep-size": Number.isFinite(points) ? size : ""});
   const own = SweepForm.toQuery(form.request());
   $("sweep-example").value = exampleOf(own);
-  $("sweep-results").classList.toggle("stale", shown !== null && String(own) !== shown);
+  $("sweep-results").classList.toggle("stale", data && String(own) !== shown());
 }
 
 function time(seconds) {
@@ -138,7 +146,7 @@ function showParts() {
     "figure-sweep-section": section !== "none",
     "figure-sweep-lambda": reduced === null,
     "sweep-units": parameters.si,
-    "sweep-free": choice().quantity === "x_max",
+    "sweep-free": menus.beside.value === "x_max",
     "sweep-start-of": several || defaultSet, // of a map
     "sweep-slice-of": third,
     "sweep-starts": several,
@@ -172,36 +180,31 @@ function showRegimes() {
 
 /** The menus of a sweep that has just begun. */
 function offer() {
-  const {section, defaultSet, starts, axes} = data;
+  const {section, defaultSet, axes} = data;
   const titles = Object.entries(coordinates[section] ?? {}).map(([name, {title}]) => [name, title]);
-  fillMenu($("sweep-coordinate"), titles, wanted.coordinate);
-  fillMenu($("sweep-quantity"), menuOf(data), wanted.beside);
-  fillMenu($("sweep-mapped"), menuOf(data), wanted.map);
+  const entries = {coordinate: titles, beside: menuOf(data), map: menuOf(data)};
+  for (const [name, menu] of Object.entries(menus)) fillMenu(menu, entries[name], wanted[name]);
   wanted = {};
-  const numbered = Array.from({length: starts}, (_, s) => [String(s), String(s + 1)]);
-  const ofDefaultSet = [
-    ["0", "worst"],
-    ["best", "best"],
-  ];
-  fillMenu($("sweep-start"), defaultSet ? ofDefaultSet : numbered);
+  const numbered = data.states.map((_, s) => [s, s + 1]);
+  const ofDefaultSet = [[0, "worst"], ["best"]];
+  fillMenu(startMenu, defaultSet ? ofDefaultSet : numbered);
   const {parameter, values} = axes[2] ?? {values: []};
   fillMenu(
-    $("sweep-slice"),
-    values.map((v, m) => [String(m), naming.value(parameter, v)]),
+    sliceMenu,
+    values.map((v, m) => [m, naming.value(parameter, v)]),
   );
 }
 
 /** The plots of a sweep that has just begun, still empty. */
 function present(fresh) {
-  const edit = shown !== null && !fresh.ends;
+  const edit = data && !fresh.ends;
   data = fresh;
   data.folded = data.reduced && naming.of(data.reduced);
-  shown = String(SweepForm.toQuery(data.request));
   view = views[data.axes.length];
   form.base.showOrigins(data.parameters);
   offer();
-  const keys = data.states.map((state, s) => element("span", startKey(state, s, naming)));
-  $("sweep-starts").replaceChildren(...keys.map((key) => element("li", {}, key)));
+  const key = (state, s) => element("li", {}, element("span", startKey(state, s, naming)));
+  $("sweep-starts").replaceChildren(...data.states.map(key));
   view?.show(new Layers(data));
   refiner.follow(view);
   settle();
@@ -221,9 +224,13 @@ function busy(is) {
 
 /** What is worth saying of a complete sweep. */
 function remarks() {
-  const list = [...data.faults].map(([fault, n]) => `${grouped(n)} points failed: ${fault}`);
-  if (data.early) list.push(`${grouped(data.early)} points ended early, at max_impacts`);
-  return list.join("; ");
+  const found = new Map();
+  for (const {error, reason} of data.points) {
+    const early = reason && reason !== "complete" && "ended early, at max_impacts";
+    const what = error ? `failed: ${error}` : early;
+    if (what) found.set(what, (found.get(what) ?? 0) + 1);
+  }
+  return [...found].map(([what, n]) => `${grouped(n)} points ${what}`).join("; ");
 }
 
 const job = new Job({
@@ -299,15 +306,15 @@ function ask(asked, ends) {
 export function open(given) {
   const numbers = given.get("view")?.split(",").map(Number) ?? [];
   const ends = numbers.every(Number.isFinite) ? numbers : [];
-  if (shown !== null && isSame(given, shown)) {
+  if (data && isSame(given, shown())) {
     // The sweep that is there, as another entry of the history had it.
-    for (const [name, id] of Object.entries(menus)) choose($(id), given.get(name));
+    for (const [name, menu] of Object.entries(menus)) choose(menu, given.get(name));
     view?.zoomTo(ends);
     chooseFromMenu();
   } else ask(given, ends);
 }
 
-export const redraw = () => view?.refresh(choice());
+export const redraw = settle;
 
 function download() {
   const names = data.request.axes.map((a) => a.parameter).join("-");

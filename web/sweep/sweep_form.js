@@ -112,16 +112,15 @@ export class SweepForm {
     });
   }
 
+  /** All of it before the container hears of it, which adapts the rest. */
   listen() {
     for (const [i, axis] of this.axes.entries())
-      axis.inputs.get("parameter").addEventListener("change", () => this.chooseParameter(i));
+      axis.inputs.get("parameter").oninput = () => this.chooseParameter(i);
     for (const [name, input] of this.base.inputs)
-      input.addEventListener("input", () => {
-        if (isOfSystem(name) && this.base.filled(name)) this.makeWay();
-      });
-    this.base.inputs.get("damping").addEventListener("change", () => {
-      this.dampingChosen = true;
-    });
+      input.oninput = () => {
+        if (name === "damping") this.dampingChosen = true;
+        else if (isOfSystem(name) && this.base.filled(name)) this.makeWay();
+      };
   }
 
   /** A box that fills in the default set of starts. */
@@ -134,10 +133,9 @@ export class SweepForm {
     const text = `${defaultSet}: worst and best of several`;
     const label = element("label", {className: "check", title}, box, text);
     this.run.errors.get("starts").before(label);
-    // Before adapt() hears of it.
-    box.addEventListener("input", () => {
+    box.oninput = () => {
       input.value = box.checked ? defaultSet : "";
-    });
+    };
     return box;
   }
 
@@ -166,7 +164,6 @@ export class SweepForm {
     for (const name of ends) this.axes[i].replace(name, "");
     if (i > 0 && parameter !== none) this.run.inputs.get("section").value = none;
     if (isOfSystem(parameter)) this.makeWay();
-    this.adapt();
   }
 
   /**

@@ -10,21 +10,12 @@ import {afresh, sameAxis} from "./axes.js";
 
 const zooms = {"+": 1.5, "=": 1.5, "-": 1 / 1.5};
 
-/** Whether a place of an Axis is in view. */
-export const inView = ({view: [from, to]}, at) => at >= from && at <= to;
-
-/** Rows of numbers as {names, columns}, to be taken away. */
-export const table = (names, rows) => ({
-  names,
-  columns: names.map((_, i) => rows.map((row) => row[i])),
-});
-
 /** What is told of a point that has not come. */
 export const toCome = [["", "still to come"]];
 
 /**
  * A plot of a SweepView; about(): {title, summary}; drawn(place): the height of a place of the view,
- * null where it has many or none.
+ * null where it has many or none; columns(): the numbers of a point, {name: of(p)}.
  */
 export class SweepPanel extends Panel {
   /** name: in the ids of its figure and of its container. */
@@ -59,11 +50,31 @@ export class SweepPanel extends Panel {
   cursorText() {
     return "";
   }
+
+  /** The numbers of a point, a row or more. */
+  rows(p) {
+    return [Object.values(this.columns()).map((of) => of(p))];
+  }
+
+  /** {names, columns}: the numbers of what is in view. */
+  numbers() {
+    const {naming, data, axes, several} = this.view;
+    const shown = data.axes.slice(0, axes.length).map(({parameter}) => parameter);
+    const names = shown.map((parameter) => naming.label(parameter));
+    if (several) names.push("start");
+    names.push(...Object.keys(this.columns()));
+    const rows = this.view.seen().flatMap(({p, value, height, start}) => {
+      const at = shown.map((parameter, i) => naming.number(parameter, i ? height : value));
+      return this.rows(p).map((row) => [...at, ...(several ? [start + 1] : []), ...row]);
+    });
+    return {names, columns: names.map((_, i) => rows.map((row) => row[i]))};
+  }
 }
 
 /**
- * Whoever extends this has panels: [SweepPanel]; nearest({panel, at, top}): the place {data, index,
- * value, p} next to one on the axes, top: the height in px that was clicked on, if it was;
+ * Whoever extends this has panels: [SweepPanel]; places(): those of the points that have come, {at:
+ * where on the axes, value and height: the same as values, p, data, index}; nearest({panel, at,
+ * top}): the one next to a place, top: the height in px that was clicked on, if it was;
  * rowsOf(place): [term, value] each; and move(key): goes to another place, false if the key is none
  * of its own. A place is told of as current: {panel, at, act: with a button that opens it}.
  */
@@ -75,12 +86,12 @@ export class SweepView {
   constructor(root, axes, naming, open) {
     Object.assign(this, {root, axes, naming, open, layers: null, current: null});
     this.tip = new Tip(root);
-    root.addEventListener("pointerleave", (event) => {
+    root.onpointerleave = (event) => {
       if (event.pointerType === "mouse") this.leave();
-    });
-    root.addEventListener("keydown", (event) => {
+    };
+    root.onkeydown = (event) => {
       if (event.target === root && this.key(event.key)) event.preventDefault();
-    });
+    };
     root.addEventListener("focusout", (event) => {
       if (!root.contains(event.relatedTarget)) this.leave();
     });
@@ -111,6 +122,12 @@ export class SweepView {
     for (const panel of this.panels) panel.refresh();
   }
 
+  /** The places that are in view. */
+  seen() {
+    const inside = ({view: [from, to]}, at) => at >= from && at <= to;
+    return this.places().filter(({at}) => this.axes.every((axis, i) => inside(axis, at[i])));
+  }
+
   /** The plots in words, for those who do not see them. */
   describe() {
     for (const panel of this.panels) {
@@ -135,8 +152,8 @@ export class SweepView {
     if (!this.axes.some(({zoomed}) => zoomed)) return [];
     return this.axes.flatMap(({view}, i) => {
       const ends = view.map(this.data.axes[i].from);
-      const digits = 4 - Math.floor(Math.log10(Math.abs(ends[1] - ends[0])));
-      return ends.map((v) => Number(v.toFixed(Math.min(Math.max(digits, 0), 100))));
+      const digits = 4 - Math.floor(Math.log10(ends[1] - ends[0]));
+      return ends.map((v) => Number(v.toFixed(Math.max(digits, 0))));
     });
   }
 
