@@ -65,13 +65,12 @@ export class SweepData {
   points = [];
   received = 0;
   slice = null; // of the third axis of another sweep, the one that this sweep is a part of
-  views = null; // of its axes, what this sweep is of
+  views = null; // of its axes, what this sweep is of; such a part is no file
   blobs = [];
   texts = [];
 
-  /** keep: the lines, for a file. */
-  constructor(request, {keep = true} = {}) {
-    Object.assign(this, {request, keep});
+  constructor(request) {
+    this.request = request;
     const {section = "none", starts, reduce = "", carry_state: carried = "none"} = request;
     this.section = section;
     this.defaultSet = starts === defaultSet;
@@ -110,7 +109,7 @@ export class SweepData {
       if (line.type === "warning") this.warnings.add(line.message);
       return; // progress and the end are not part of the result
     }
-    if (!this.keep) return;
+    if (this.views) return;
     this.texts.push(text, "\n");
     if (this.texts.length > 2 * enough)
       this.blobs = [...this.blobs, new Blob(this.texts.splice(0))];

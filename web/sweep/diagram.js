@@ -1,7 +1,7 @@
 // The diagrams over the axis of a sweep, one class each: what they draw, and of what values.
 import {colour} from "../shared/colours.js";
 import {count, density} from "../shared/density.js";
-import {Frame, rangeOf} from "../shared/frame.js";
+import {rangeOf} from "../shared/frame.js";
 import {short} from "../shared/numbers.js";
 import {
   coordinates,
@@ -56,10 +56,7 @@ export const countRegimes = (points) =>
 /** view: SweepPlots, whose points are drawn. Who extends this has y(), as of a Frame, and draw(). */
 class Diagram extends SweepPanel {
   prepare(width, height) {
-    const {byStart, naming, data} = this.view;
-    if (!byStart) return null;
-    const x = naming.frameAxis(data.axes[0], this.axis.view);
-    return {frame: new Frame(width, height, x, this.y())};
+    return this.view.byStart ? {frame: this.frameOf(width, height)} : null;
   }
 
   paint(c, {frame}) {
@@ -77,7 +74,7 @@ class Diagram extends SweepPanel {
 
   /** The values of all points, a list of each, for a range. */
   values(of) {
-    return this.view.layers.points().map(of);
+    return this.view.places().map(({p}) => of(p));
   }
 
   /** The colour of a start, or what a single one has in its place. */
@@ -363,7 +360,5 @@ export class OtherDiagram extends Diagram {
 /** The keys of the starts: their symbol and state. */
 export const startKey = (state, s, naming) => ({
   className: `key start start${s % startColours.length}`,
-  textContent: `${s + 1}: ${Object.entries(state)
-    .map(([name, v]) => naming.place({parameter: name}, v).join(" = "))
-    .join(", ")}`,
+  textContent: `${s + 1}: ${naming.fields(state)}`,
 });

@@ -5,13 +5,11 @@ const most = 4; // sweeps over each other
 /** Where the points of one axis lie, of one start, in ascending order. */
 function placesOf(data, start) {
   const [axis] = data.axes;
-  const places = [];
-  axis.at.forEach((at, k) => {
+  return axis.at.flatMap((at, k) => {
     const index = data.index(k, 0, start);
     const p = data.points[index];
-    if (p) places.push({at: [at], value: axis.values[k], p, data, index, start});
+    return p ? [{at: [at], value: axis.values[k], p, data, index, start}] : [];
   });
-  return places;
 }
 
 export class Layers {
@@ -34,15 +32,9 @@ export class Layers {
     return this.all.filter((data) => data.axes && (data.slice ?? slice) === slice);
   }
 
-  /** All points of all of them that have come and did not fail. */
-  points() {
-    return this.all.flatMap((data) => data.points.filter((p) => p && !p.error));
-  }
-
   /**
    * Of a single axis: the points of a start that have come, in ascending order, with the borders
-   * between them: {at, low, high, value, p, data, index,
-   * start}.
+   * between them: {at, low, high, value, p, data, index, start}.
    */
   places(start) {
     const list = this.all.flatMap((data) => (data.axes ? placesOf(data, start) : []));

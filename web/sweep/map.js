@@ -2,7 +2,6 @@
 // it. Points that are still to come have the colour of a coarser neighbour.
 import {Axis} from "../shared/axis.js";
 import {rgb} from "../shared/colours.js";
-import {Frame} from "../shared/frame.js";
 import {short} from "../shared/numbers.js";
 import {bestMotion, describe, quantityOf, regimeColour} from "../shared/quantities.js";
 import {lastUpTo} from "../shared/search.js";
@@ -80,14 +79,20 @@ export class SweepMap extends SweepView {
     return [...places, ...(p ? describe(p, this.naming.where(data)) : toCome)];
   }
 
-  /** Tells of the cell beside the one that is told of. */
+  /** Tells of the cell beside the one that is told of, or of the middle one. */
   move(key) {
     const way = moves[key];
     if (!way) return false;
-    const at = this.current?.at ?? this.axes.map(({view: [from, to]}) => (from + to) / 2);
-    const {data, k, l} = this.nearest({at});
-    const ways = this.current ? way : [0, 0];
-    this.goTo(...[k, l].map((i, d) => beside(data.axes[d], i, ways[d], this.data.axes[d])));
+    const middle = ({view: [from, to]}) => (from + to) / 2;
+    const from = this.nearest({at: this.current?.at ?? this.axes.map(middle)});
+    const beyond = (at, i) => {
+      const {borders} = from.data.axes[i];
+      const [first, last] = this.axes[i].whole;
+      const border = borders[lastUpTo(borders, at) + (way[i] > 0 ? 1 : 0)];
+      return way[i] ? border + way[i] * 1e-9 * (last - first) : at;
+    };
+    const next = this.current && this.nearest({at: from.at.map(beyond)});
+    this.goTo(...(next ?? from).at);
     return true;
   }
 }
@@ -136,11 +141,9 @@ class MapPanel extends SweepPanel {
   }
 
   prepare(width, height) {
-    const {naming, layers, axes} = this.view;
-    if (!layers) return null;
+    if (!this.view.layers) return null;
     const scale = this.scale();
-    const [x, y] = axes.map(({view}, i) => naming.frameAxis(layers.base.axes[i], view));
-    return {scale, frame: new Frame(width, height, x, y, scale ? barWidth : 12)};
+    return {scale, frame: this.frameOf(width, height, scale ? barWidth : 12)};
   }
 
   paint(c, {frame, scale}) {
@@ -207,7 +210,7 @@ class MapPanel extends SweepPanel {
     const {axes, defaultSet, starts} = this.view.data;
     const third = axes[2];
     const of = [
-      third && this.view.naming.place(third, third.values[slice]).join(" = "),
+      third && this.view.naming.fields({[third.parameter]: third.values[slice]}),
       defaultSet && `of the start that is ${best ? "best" : "worst"}`,
       starts > 1 && `start ${start + 1}`,
     ];
@@ -228,16 +231,6 @@ class MapPanel extends SweepPanel {
       summary: `${title} over ${first} and ${second}${of}${colours}`,
     };
   }
-}
-
-/** The place of the cell beside one, of a coarser layer where its own has no more. */
-function beside(axis, i, way, whole) {
-  const next = axis.at[i + way];
-  if (next !== undefined) return next;
-  const border = axis.borders[way > 0 ? i + 1 : i];
-  const outside = border + way * 1e-9 * (whole.borders.at(-1) - whole.borders[0]);
-  const k = positionAt(whole, outside);
-  return k < 0 ? axis.at[i] : whole.at[k];
 }
 
 /** The position on an axis whose cell holds a place; -1 beyond them. */

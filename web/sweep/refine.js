@@ -74,7 +74,7 @@ export class Refiner {
       if (axes[i]) return axisOf(given, data.axes[i], axes[i].view, counts[i]);
       return i < 0 ? given : {parameter, values: [values[choice.slice]]};
     });
-    const finer = new SweepData({...data.request, axes: request}, {keep: false});
+    const finer = new SweepData({...data.request, axes: request});
     finer.views = axes.map(({view}) => view);
     if (data.axes[2]) finer.slice = choice.slice;
     return finer;

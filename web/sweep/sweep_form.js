@@ -174,7 +174,7 @@ export class SweepForm {
     const swept = this.swept();
     for (const [i, axis] of this.axes.entries()) {
       const field = this.parameters.get(swept[i]);
-      for (const name of [...ends, "count", "scale"]) axis.rows.get(name).hidden = !field;
+      for (const [name, row] of axis.rows) row.hidden = !field && name !== "parameter";
       this.notes[i].textContent = field ? noteOf(field) : "";
       this.scale(i, swept[i]);
       const range = {from: field?.minimum, to: field?.maximum};

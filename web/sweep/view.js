@@ -2,9 +2,8 @@
 // the sweep is chosen, and a box that tells of a point beside the mouse, a finger or by the keys.
 import {$} from "../shared/dom.js";
 import {addMenu} from "../shared/figure_menu.js";
-import {textOf} from "../shared/form.js";
+import {Frame} from "../shared/frame.js";
 import {Panel} from "../shared/panel.js";
-import {symbolOf} from "../shared/quantities.js";
 import {Tip} from "../shared/tip.js";
 import {afresh, sameAxis} from "./axes.js";
 
@@ -32,6 +31,13 @@ export class SweepPanel extends Panel {
       if (mouse && this.axis.cursor !== null)
         view.tell({panel: this, at: view.axes.map(({cursor}) => cursor)});
     });
+  }
+
+  /** beside: px at its right. */
+  frameOf(width, height, beside) {
+    const {naming, data, axes} = this.view;
+    const [x, y = this.y()] = axes.map(({view}, i) => naming.frameAxis(data.axes[i], view));
+    return new Frame(width, height, x, y, beside);
   }
 
   click(x, _, {y, top, touch}) {
@@ -140,11 +146,7 @@ export class SweepView {
   /** What a picture of a plot says below its title: what all points share. */
   caption() {
     const {base, axes, ...run} = this.data.request;
-    const told = Object.entries({...base, ...run}).map(([name, v]) => {
-      const value = typeof v === "number" ? this.naming.value(name, v) : textOf(v);
-      return `${symbolOf(name)} = ${value}`;
-    });
-    return told.join(", ");
+    return this.naming.fields({...base, ...run});
   }
 
   /** The ends of what is in view, as values in as many digits as that takes; none of the whole. */
