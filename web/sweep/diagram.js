@@ -427,6 +427,7 @@ export class OtherDiagram extends Diagram {
 /** The keys of the starts: their symbol and state. */
 export const startKey = (state, s, naming) => ({
   className: `key start start${s % startColours.length}`,
+  style: `color: var(--${startColour(s)})`,
   textContent: `${s + 1}: ${Object.entries(state)
     .map(([name, v]) => naming.place({parameter: name}, v).join(" = "))
     .join(", ")}`,

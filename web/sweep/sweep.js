@@ -380,11 +380,12 @@ const command = () => asCurl("v1/sweep", form.request(), "-sN");
 
 function legend() {
   const item = ([regime, what]) => {
-    const className = `key regime regime-${regime}`;
+    const className = "key regime";
+    const style = `--key: var(--regime-${regime})`;
     const textContent = regime === "none" ? what : `${regime} ${what}`;
     const number = element("small", {id: `sweep-regime-${regime}`});
     const title = `Type ${regime}`;
-    return element("li", {title}, element("span", {className, textContent}), number);
+    return element("li", {title}, element("span", {className, style, textContent}), number);
   };
   $("sweep-regimes").replaceChildren(...Object.entries(regimes).map(item));
 }
