@@ -11,7 +11,6 @@ import {
 import {$, countUp, element} from "../shared/dom.js";
 import {Form} from "../shared/form.js";
 import {Job} from "../shared/job.js";
-import {Motion} from "../shared/motion.js";
 import {copy, save} from "../shared/take_away.js";
 import {showFit} from "./fit.js";
 import {ImpactList} from "./impact_list.js";
@@ -69,11 +68,11 @@ const changes = {
   k1: {default_note: "required"},
   f: {default_note: "its own"},
 };
-const isColumn = (f) => f.type === "choice" && !f.choices && f.name !== "preset";
+const isColumn = (name) => name.endsWith("_column");
 const fieldsOf = (fields) =>
   fields
     .filter((f) => !["impact_times_s", "F"].includes(f.name))
-    .map((f) => ({...f, ...(isColumn(f) && {type: "text"}), ...changes[f.name]}));
+    .map((f) => ({...f, ...(isColumn(f.name) && {type: "text"}), ...changes[f.name]}));
 
 const preset = () => $("measure-preset").value;
 
@@ -264,8 +263,7 @@ function run(more = {}) {
   job.start({fields: {...form.values(), ...more}, file: [name, size, lastModified]});
 }
 
-const takeRun = (run, name) =>
-  take(new File([recordOfRun(run, new Motion(run))], name, {type: "text/csv"}));
+const takeRun = (run, name) => take(new File([recordOfRun(run)], name, {type: "text/csv"}));
 
 /** A record of a run that was simulated: {parameters, impacts, sticking, status}. */
 export async function measure(run) {
@@ -324,7 +322,7 @@ export function start({identify_fields: fields, presets: all}, changed) {
   startViews(() => ({name: file?.name ?? "", answer}));
   form = new Form($("measure-fields"), fieldsOf(fields), {prefix: "measure-", grouped: groups});
   for (const [name, input] of form.inputs)
-    if (name.endsWith("_column")) input.setAttribute("list", "measure-columns");
+    if (isColumn(name)) input.setAttribute("list", "measure-columns");
   list = new ImpactList(edited);
   $("measure-preset").append(new Option("own oscillator", ""));
   for (const {name, title, ...preset} of all) {
