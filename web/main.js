@@ -4,14 +4,16 @@ import {get} from "./shared/api.js";
 import {$} from "./shared/dom.js";
 import * as tabs from "./shared/tabs.js";
 import * as simulation from "./simulation/simulation.js";
+import * as sweep from "./sweep/sweep.js";
+import * as measurement from "./measurement/measurement.js";
 
 // A tab is a module with start(tables, changed, others), open(query), query() and redraw(); but for
 // the first one it is loaded when one goes there. others: {simulate(fields), measure(answer)}, what
 // one tab asks of another.
 const modules = {
   simulation: () => simulation,
-  sweep: () => import("./sweep/sweep.js"),
-  measurement: () => import("./measurement/measurement.js"),
+  sweep: () => sweep,
+  measurement: () => measurement,
 };
 const panes = {};
 const scrolled = {};

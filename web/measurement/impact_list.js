@@ -1,5 +1,6 @@
 // The impacts as a list to edit: remove one, move one, add one.
-import {element} from "../shared/dom.js";
+import {$, element} from "../shared/dom.js";
+import {digits, toNumber} from "../shared/numbers.js";
 
 const most = 2000; // rows that a browser scrolls without effort
 
@@ -7,55 +8,53 @@ const walls = {1: "+b", "-1": "−b"};
 const taken = ["ok", "R is not known", "hidden"];
 export const isLeftOut = (status) => !taken.includes(status);
 
-/** What is typed in, in s; NaN for what is no number. */
-const moment = (text) => (text.trim() ? Number(text.trim().replace(",", ".")) : NaN);
+/** What an impact is shown as: by what was done to it, else by what it is. */
+export function kindOf(row) {
+  if (row.removed) return "removed";
+  if (row.t !== row.found) return "edited";
+  if (isLeftOut(row.status)) return "left-out";
+  return row.side > 0 ? "plus" : "minus";
+}
 
-const isEdited = (row) => row.removed || row.t !== row.found;
+const isEdited = (row) => ["removed", "edited"].includes(kindOf(row));
 
 function statusOf(row) {
   if (row.removed) return "removed";
-  if (row.found === null) return "added";
-  return row.t === row.found ? row.status : `moved from ${row.found.toFixed(5)}`;
+  const stays = row.t === row.found || row.status === "added";
+  return stays ? row.status : `moved from ${row.found.toFixed(5)}`;
 }
 
-function classOf(row) {
-  if (row.removed) return "removed";
-  if (isEdited(row)) return "edited";
-  return isLeftOut(row.status) ? "left-out" : "";
-}
+const refuse = (input) => input.setAttribute("aria-invalid", true);
 
 export class ImpactList {
-  /** parts: {body, note, adding: a form, doubtful: a box}; changed: called after each change. */
-  constructor(parts, changed) {
-    Object.assign(this, {...parts, changed, rows: []});
-    parts.adding.addEventListener("submit", (event) => {
+  /** changed: called after each change. */
+  constructor(changed) {
+    this.changed = changed;
+    this.rows = [];
+    this.body = $("measure-impacts");
+    const form = $("measure-add");
+    const [input] = form.elements;
+    form.onsubmit = (event) => {
       event.preventDefault();
-      const input = parts.adding.elements[0];
-      if (this.add(moment(input.value))) input.value = "";
-      else input.setAttribute("aria-invalid", "true");
+      if (this.add(toNumber(input.value))) input.value = "";
+      else refuse(input);
       input.focus();
-    });
-    parts.adding.addEventListener("input", (event) => event.target.removeAttribute("aria-invalid"));
-    parts.doubtful.addEventListener("change", () => this.show());
+    };
+    form.oninput = () => input.removeAttribute("aria-invalid");
+    $("measure-doubtful").onchange = () => this.show();
   }
 
   /** The impacts of an answer; span: the record's [start, end] in s. */
-  set(impacts, span) {
+  set({time_s: times, side, R, status}, span) {
     this.span = span;
-    this.rows = impacts.time_s.map((t, i) => ({
-      t,
-      found: t,
-      side: impacts.side[i],
-      R: impacts.R[i],
-      status: impacts.status[i],
-      removed: false,
-    }));
-    this.original = this.rows.map((row) => ({...row}));
-    this.update();
+    this.rows = times.map((found, i) => ({found, side: side[i], R: R[i], status: status[i]}));
+    this.reset();
   }
 
+  /** All as they were found. */
   reset() {
-    this.rows = this.original.map((row) => ({...row}));
+    const found = this.rows.filter((row) => row.status !== "added");
+    this.rows = found.map((row) => ({...row, t: row.found, removed: false}));
     this.update();
   }
 
@@ -63,17 +62,20 @@ export class ImpactList {
     return this.rows.some(isEdited);
   }
 
+  /** The moments to identify with, in s. */
   times() {
-    return this.rows.filter((row) => !row.removed).map((row) => row.t);
+    const kept = this.rows.filter((row) => !row.removed);
+    return kept.map(({t}) => Number(t.toFixed(7)));
   }
 
+  /** Whether a moment, or null, lies in the record. */
   inside(t) {
-    return Number.isFinite(t) && t > this.span[0] && t < this.span[1];
+    return t !== null && t > this.span[0] && t < this.span[1];
   }
 
   add(t) {
     if (!this.inside(t)) return false;
-    const row = {t, found: null, status: "added", removed: false};
+    const row = {t, status: "added"};
     this.rows.push(row);
     this.update(row);
     return true;
@@ -82,20 +84,20 @@ export class ImpactList {
   update(wanted) {
     this.rows.sort((a, b) => a.t - b.t);
     this.show();
-    if (wanted) this.lines.get(wanted)?.scrollIntoView({block: "nearest"});
+    this.lines.get(wanted)?.scrollIntoView({block: "nearest"});
     this.changed();
   }
 
   /** All rows, or those left out, those beside them and those edited. */
   show() {
-    const isDoubtful = (row) => row && (isEdited(row) || isLeftOut(row.status));
-    const isWanted = ({i}) =>
-      !this.doubtful.checked || [i - 1, i, i + 1].some((k) => isDoubtful(this.rows[k]));
-    const wanted = this.rows.map((row, i) => ({row, i})).filter(isWanted);
-    this.lines = new Map(wanted.slice(0, most).map(({row, i}) => [row, this.line(row, i)]));
+    const isDoubtful = (row) => !["plus", "minus"].includes(kindOf(row));
+    const all = !$("measure-doubtful").checked;
+    const isWanted = ([i]) => all || this.rows.slice(Math.max(i - 1, 0), i + 2).some(isDoubtful);
+    const wanted = [...this.rows.entries()].filter(isWanted);
+    this.lines = new Map(wanted.slice(0, most).map(([i, row]) => [row, this.line(row, i)]));
     this.body.replaceChildren(...this.lines.values());
     const first = wanted.length > most ? `the first ${most} of ${wanted.length}` : "";
-    this.note.textContent = wanted.length ? first : "none";
+    $("measure-list-note").textContent = wanted.length ? first : "none";
   }
 
   line(row, i) {
@@ -104,10 +106,10 @@ export class ImpactList {
       this.timeInput(row, i),
       this.removeButton(row, i),
       walls[row.side] ?? "–",
-      row.R == null ? "–" : row.R.toFixed(4).replace("-", "−"),
+      digits(row.R),
       statusOf(row),
     ];
-    const className = classOf(row);
+    const className = kindOf(row);
     return element("tr", {className}, ...cells.map((cell) => element("td", {}, cell)));
   }
 
@@ -118,31 +120,27 @@ export class ImpactList {
       value: row.t.toFixed(5),
       ariaLabel: `time of impact ${i + 1} in s`,
       disabled: row.removed,
-    });
-    input.addEventListener("change", () => {
-      const t = moment(input.value);
-      if (!this.inside(t)) return input.setAttribute("aria-invalid", "true");
-      row.t = row.found !== null && t === Number(row.found.toFixed(5)) ? row.found : t;
-      this.update(row);
-      this.lines.get(row)?.querySelector("input").focus();
+      onchange: () => {
+        const t = toNumber(input.value);
+        if (!this.inside(t)) return refuse(input);
+        row.t = t === Number(row.found?.toFixed(5)) ? row.found : t;
+        this.update(row);
+        this.lines.get(row)?.querySelector("input").focus();
+      },
     });
     return input;
   }
 
   removeButton(row, i) {
-    const button = element("button", {
-      type: "button",
-      textContent: row.removed ? "Restore" : "Remove",
-      ariaLabel: `${row.removed ? "restore" : "remove"} impact ${i + 1} at ${row.t.toFixed(4)} s`,
-    });
-    button.addEventListener("click", () => {
+    const textContent = row.removed ? "Restore" : "Remove";
+    const onclick = () => {
       row.removed = !row.removed;
-      if (row.removed && row.found === null) this.rows.splice(this.rows.indexOf(row), 1);
+      if (row.status === "added") this.rows.splice(i, 1);
       this.update();
-      const last = this.body.rows.length - 1;
-      const line = this.lines.get(row) ?? this.body.rows[Math.min(i, last)];
+      const line = this.lines.get(row) ?? this.body.rows[i] ?? this.body.lastChild;
       line?.querySelector("button").focus();
-    });
-    return button;
+    };
+    const ariaLabel = `${textContent.toLowerCase()} impact ${i + 1} at ${row.t.toFixed(4)} s`;
+    return element("button", {type: "button", textContent, ariaLabel, onclick});
   }
 }

@@ -11,7 +11,6 @@ import {
 import {$, countUp, element} from "../shared/dom.js";
 import {Form} from "../shared/form.js";
 import {Job} from "../shared/job.js";
-import {Motion} from "../shared/motion.js";
 import {copy, save} from "../shared/take_away.js";
 import {showFit} from "./fit.js";
 import {ImpactList} from "./impact_list.js";
@@ -25,7 +24,7 @@ import {
   start as startViews,
 } from "./measurement_views.js";
 import * as picker from "./picker.js";
-import {parse, recordOf, spikeNear, textOf} from "./record.js";
+import {asJson, parse, recordOf, spikeNear} from "./record.js";
 import {oscillatorOf, recordOfRun} from "./sample.js";
 
 const groups = {
@@ -33,26 +32,25 @@ const groups = {
   SI: ["Oscillator", true],
   record: ["Columns and units", false],
 };
-const experiments = ["fig15", "fig20"]; // those of Table 4
-const sampleNames = {fig15: "b = 9 mm, periodic", fig20: "b = 15 mm, chaotic"};
-const estimated = new Set(["R", "F", "cycles"]); // the presets' values are of the simulation
+/** The experiments of Table 4, and a simulated record of each by its name. */
+const samples = {fig15: "b = 9 mm, periodic", fig20: "b = 15 mm, chaotic"};
 const longestQuery = 6000; // servers and proxies take 8 kB of address
 const sampleCycles = 330; // some 40 s
+const presets = {}; // of the experiments, by name
 
 let form;
 let list;
-let presets = [];
 let file = null;
-let text = "";
-let reading = Promise.resolve(null);
-let record = null;
+let parsed = null; // what was read of it
+let record = null; // what the fields make of that
 let answer = null;
-let sent = null;
-let began = 0;
+let sent = null; // the fields that it answers
 let turn = 0; // counts the records that were asked for: the newest one counts
 let ticking = 0;
 let shown = null;
 let remembered = () => {};
+
+const results = $("measure-results");
 
 function say(message, fault = false) {
   $("measure-message").textContent = message;
@@ -70,16 +68,18 @@ const changes = {
   k1: {default_note: "required"},
   f: {default_note: "its own"},
 };
-const isColumn = (f) => f.type === "choice" && !f.choices && f.name !== "preset";
+const isColumn = (name) => name.endsWith("_column");
 const fieldsOf = (fields) =>
   fields
     .filter((f) => !["impact_times_s", "F"].includes(f.name))
-    .map((f) => ({...f, ...(isColumn(f) ? {type: "text"} : {}), ...changes[f.name]}));
+    .map((f) => ({...f, ...(isColumn(f.name) && {type: "text"}), ...changes[f.name]}));
 
-const preset = () => presets.find((p) => p.name === $("measure-preset").value);
+const preset = () => $("measure-preset").value;
+
+/** The oscillator that is chosen; what is estimated is left: the presets have it of a simulation. */
 function base() {
-  const parameters = Object.entries(preset()?.parameters ?? {});
-  return Object.fromEntries(parameters.filter(([name]) => !estimated.has(name)));
+  const {R, F, cycles, ...oscillator} = presets[preset()]?.parameters ?? {};
+  return oscillator;
 }
 
 /** Fields as a query, a list as its values with commas, which stay readable. */
@@ -87,29 +87,33 @@ const asQuery = (fields) => String(new URLSearchParams(fields)).replaceAll("%2C"
 
 export const query = () => shown;
 
+const pick = (fields, isWanted) => Object.fromEntries(Object.entries(fields).filter(isWanted));
+
 /** The form as a query for a link; the file stays with who has it. */
 function remember() {
   const given = base();
-  const values = form.values();
-  const start = preset() ? {preset: preset().name} : {};
-  const differing = Object.entries(values).filter(([name, value]) => value !== given[name]);
-  shown = asQuery({...start, ...Object.fromEntries(differing)});
+  const differing = pick(form.values(), ([name, value]) => value !== given[name]);
+  shown = asQuery({...(preset() && {preset: preset()}), ...differing});
   remembered();
+  compare();
 }
 
-/** Another oscillator; which column of the record is which stays. */
-function choosePreset(name) {
-  $("measure-preset").value = experiments.includes(name) ? name : "";
-  const ofRecord = new Set(form.fields.filter((f) => f.group === "record").map((f) => f.name));
-  const kept = Object.entries(form.values()).filter(([field]) => ofRecord.has(field));
-  form.set({...base(), ...Object.fromEntries(kept)});
+/** Another oscillator; more: other fields. */
+function choosePreset(name, more) {
+  $("measure-preset").value = Object.hasOwn(presets, name) ? name : "";
+  form.set({...base(), ...more});
+}
+/** What the form says of the columns, which stays with another oscillator. */
+function ofColumns() {
+  const names = form.fields.filter((f) => f.group === "record").map((f) => f.name);
+  return pick(form.values(), ([name]) => names.includes(name));
 }
 
 export async function open(given) {
-  if (String(given) === shown || asQuery(Object.fromEntries(given)) === shown) return;
-  const {preset: name = given.size ? "" : "fig20", ...rest} = Object.fromEntries(given);
-  choosePreset(name);
-  form.set({...base(), ...rest});
+  const fields = Object.fromEntries(given);
+  if (asQuery(fields) === shown) return;
+  const {preset: name = given.size ? "" : "fig20", ...rest} = fields;
+  choosePreset(name, rest);
   remember();
 }
 
@@ -117,8 +121,11 @@ export {redraw};
 
 // What is drawn.
 
-function drawFile() {
+/** What the fields make of the file's columns, and what is known of it. */
+function drawFile(fields) {
+  record = parsed && recordOf(parsed, fields);
   for (const id of ["measure-parts", "measure-list", "measure-add-at"]) $(id).hidden = !record;
+  if (parsed) picker.show(parsed, fields);
   if (!record) return;
   drawRecord(record, addAt);
   // A record whose impacts cannot be found has them given by hand.
@@ -134,35 +141,29 @@ function edited() {
  * A click on the acceleration adds the impact whose spike is there, if that is what it is for now.
  */
 function addAt(t, reach) {
-  if ($("measure-add-at").getAttribute("aria-pressed") !== "true") return;
+  if (!$("plot-measured-a").matches(".adding")) return;
   const at = spikeNear(record, t, reach);
   if (at !== null && list.add(record.t[at])) say(`added an impact at ${record.t[at].toFixed(4)} s`);
 }
 
-function present(milliseconds) {
-  for (const node of document.querySelectorAll(".identified")) node.hidden = false;
-  summariseMeasurement(answer, milliseconds);
-  nameFigures(preset()?.name);
-  showFit(answer);
-  if (!record) return;
-  drawFile();
-  draw(record, answer);
+/** What is known of the record; null: nothing yet. */
+function setAnswer(next, fields) {
+  answer = next;
+  sent = fields;
+  results.classList.toggle("known", answer !== null);
+  compare();
 }
 
 /** The lines around one that is at fault. */
-function quoteLine(detail) {
+function quoteLine(detail = "") {
   const line = Number(/^line (\d+)/.exec(detail)?.[1]);
-  const lines = [];
-  for (let n = 1, from = 0; n <= line + 1 && from <= text.length; ++n) {
-    const at = text.indexOf("\n", from);
-    const to = at < 0 ? text.length : at;
-    if (n >= line - 1) {
-      const beginning = text.slice(from, Math.min(to, from + 120)).trimEnd();
-      const textContent = `${String(n).padStart(7)}  ${beginning}\n`;
-      lines.push(element("span", {className: n === line ? "at-fault" : "", textContent}));
-    }
-    from = to + 1;
-  }
+  const first = Math.max(line - 1, 1);
+  const around = parsed?.text.split("\n", line + 1).slice(first - 1) ?? [];
+  const lines = around.map((text, k) => {
+    const n = first + k;
+    const textContent = `${String(n).padStart(7)}  ${text.slice(0, 120).trimEnd()}\n`;
+    return element("span", {className: n === line ? "at-fault" : "", textContent});
+  });
   $("measure-lines").replaceChildren(...lines);
   $("measure-lines").hidden = !lines.length;
 }
@@ -177,23 +178,23 @@ async function take(chosen) {
   const input = $("measure-file");
   if (input.files[0] !== chosen) input.value = ""; // so that the same file can be chosen again
   file = chosen;
-  text = "";
-  answer = record = sent = null;
-  for (const node of document.querySelectorAll(".identified")) node.hidden = true;
+  parsed = null;
+  setAnswer(null, null);
   const megabytes = (chosen.size / 1e6).toFixed(chosen.size < 1e5 ? 3 : 1);
   $("measure-about").textContent = `${chosen.name}, ${megabytes} MB`;
-  quoteLine("");
+  quoteLine();
   say("reading …");
-  reading = read(chosen);
   try {
-    const parsed = await reading;
+    const read = await parse(chosen, (share) => {
+      if (file === chosen) say(`reading … ${(100 * share).toFixed(0)} %`);
+    });
     if (file !== chosen) return;
-    $("measure-columns").replaceChildren(
-      ...parsed.names.map((value) => element("option", {value})),
-    );
-    $("measure-about").textContent += `, ${parsed.columns[0]?.length ?? 0} samples`;
-    showColumns(parsed);
-    if (record || !parsed.names.length) run();
+    parsed = read;
+    const {names, columns} = parsed;
+    $("measure-columns").replaceChildren(...names.map((value) => element("option", {value})));
+    $("measure-about").textContent += `, ${columns[0]?.length ?? 0} samples`;
+    drawFile(form.values());
+    if (record || !names.length) run();
     else say("choose which column is the time, and which the displacement or acceleration", true);
   } catch (error) {
     if (file !== chosen) return;
@@ -203,44 +204,26 @@ async function take(chosen) {
   }
 }
 
-async function read(chosen) {
-  const all = await textOf(chosen);
-  if (file === chosen) text = all;
-  return parse(all, (share) => {
-    if (file === chosen) say(`reading … ${(100 * share).toFixed(0)} %`);
-  });
-}
-
-/** What the fields make of the file's columns, before anything is known of it. */
-function showColumns(parsed) {
-  picker.show(parsed, form.values());
-  record = recordOf(parsed, form.values());
-  drawFile();
-}
-
 /** What is sent: the file as it is, or, where the address would be too long, all as JSON. */
-async function request(fields, signal) {
+function request(fields, signal) {
   const asked = asQuery(fields);
-  if (asked.length <= longestQuery) return identify(asked, file, signal);
-  const {sent, units} = recordOf(await reading, fields);
-  const lists = Object.fromEntries(
-    Object.entries(sent).map(([name, column]) => [name, [...column]]),
-  );
-  return identifyJson({...fields, ...units, record: lists}, signal);
+  return asked.length <= longestQuery
+    ? identify(asked, file, signal)
+    : identifyJson(asJson(parsed, fields), signal);
 }
 
 const job = new Job({
-  ask: async ({fields}, signal) => {
-    const got = await request(fields, signal);
-    return {got, parsed: await reading};
-  },
-  show({got, parsed}, {fields}, milliseconds) {
-    [answer, sent, record] = [got, fields, recordOf(parsed, fields)];
-    picker.show(parsed, fields);
+  ask: ({fields}, signal) => request(fields, signal),
+  show(got, {fields}, milliseconds) {
+    setAnswer(got, fields);
+    summariseMeasurement(answer, milliseconds);
+    nameFigures(preset());
+    showFit(answer);
     remember();
     say("");
-    present(milliseconds);
-    countUp($("measure-results"));
+    drawFile(fields);
+    if (record) draw(answer);
+    countUp(results);
   },
   fail(error) {
     const left = error instanceof Problem ? form.showErrors(error.errors) : [];
@@ -249,22 +232,21 @@ const job = new Job({
   },
   busy(is, cancelled) {
     $("measure-cancel").hidden = !is;
-    if (is) $("measure-results").classList.add("stale");
-    else compare();
-    $("measure-results").setAttribute("aria-busy", String(is));
+    compare(is);
+    results.setAttribute("aria-busy", is);
     clearInterval(ticking);
-    if (is) ticking = setInterval(tick, 1000);
+    let seconds = 0;
+    if (is) ticking = setInterval(() => tick(++seconds), 1000);
     if (cancelled) say("cancelled");
   },
   later: (text) => say(text, true),
 });
 
 /** How long it takes already. */
-function tick() {
-  if ($("measure-message").classList.contains("fault")) return;
-  const samples = record?.t.length;
-  const of = samples ? ` ${samples} samples` : "";
-  say(`identifying${of} … ${((performance.now() - began) / 1000).toFixed(0)} s`);
+function tick(seconds) {
+  if ($("measure-message").matches(".fault")) return;
+  const of = record ? ` ${record.t.length} samples` : "";
+  say(`identifying${of} … ${seconds} s`);
 }
 
 function run(more = {}) {
@@ -273,38 +255,36 @@ function run(more = {}) {
     $("measure-file").focus();
     return;
   }
+  if (!parsed) return; // what is being read is identified then
   form.showErrors([]);
-  quoteLine("");
+  quoteLine();
   say("identifying …");
-  began = performance.now();
   const {name, size, lastModified} = file;
   job.start({fields: {...form.values(), ...more}, file: [name, size, lastModified]});
 }
 
+const takeRun = (run, name) => take(new File([recordOfRun(run)], name, {type: "text/csv"}));
+
 /** A record of a run that was simulated: {parameters, impacts, sticking, status}. */
 export async function measure(run) {
   const {parameters} = run;
-  $("measure-preset").value = "";
-  form.set(oscillatorOf(parameters));
+  choosePreset("", oscillatorOf(parameters));
   remember();
-  const text = recordOfRun(run, new Motion(run));
-  await take(new File([text], `run-b${parameters.b * 1000}mm.csv`, {type: "text/csv"}));
+  await takeRun(run, `run-b${parameters.b * 1000}mm.csv`);
 }
 
 /** The same of one of the experiments. */
 async function takeSample(name) {
   const mine = ++turn;
   job.cancel();
-  choosePreset(name);
+  choosePreset(name, ofColumns());
   remember();
   say("simulating …");
-  const parameters = presets.find((p) => p.name === name).parameters;
+  const {parameters} = presets[name];
   const fields = {...parameters, cycles: sampleCycles, include: ["impacts", "regime"]};
   try {
     const run = await simulate(fields);
-    if (turn !== mine) return;
-    const text = recordOfRun(run, new Motion(run));
-    await take(new File([text], `sample-${name}.csv`, {type: "text/csv"}));
+    if (turn === mine) await takeRun(run, `sample-${name}.csv`);
   } catch (error) {
     if (turn === mine) say(error.message, true);
   }
@@ -313,7 +293,6 @@ async function takeSample(name) {
 /** Where the plots lie below the form, one who asks for them is led there. */
 function lead() {
   const panel = $("measure-form");
-  const results = $("measure-results");
   if (file && results.offsetLeft < panel.offsetLeft + panel.offsetWidth) results.scrollIntoView();
 }
 
@@ -325,98 +304,77 @@ function download() {
 
 const command = () => recordAsCurl(asQuery(sent ?? form.values()), file?.name ?? "record.csv");
 
+/** A file is chosen, or dropped anywhere. */
 function listenToFiles() {
-  const panel = $("panel-measurement");
-  const over = (is) => $("measure-drop").classList.toggle("over", is);
-  $("measure-file").addEventListener("change", () => take($("measure-file").files[0]));
-  panel.addEventListener("dragover", (event) => {
+  const input = $("measure-file");
+  input.onchange = () => take(input.files[0]);
+  const drag = (event) => {
     event.preventDefault();
-    over(true);
-  });
-  panel.addEventListener("dragleave", (event) => {
-    if (!panel.contains(event.relatedTarget)) over(false);
-  });
-  panel.addEventListener("drop", (event) => {
-    event.preventDefault();
-    over(false);
-    take(event.dataTransfer.files[0]);
-  });
+    $("measure-drop").classList.toggle("over", event.type === "dragover");
+    if (event.type === "drop") take(event.dataTransfer.files[0]);
+  };
+  for (const type of ["ondragover", "ondragleave", "ondrop"]) $("panel-measurement")[type] = drag;
 }
 
 /** tables: of /v1/parameters, and presets; changed: called when there is another query. */
 export function start({identify_fields: fields, presets: all}, changed) {
   remembered = changed;
   startViews(() => ({name: file?.name ?? "", answer}));
-  presets = all.filter((p) => experiments.includes(p.name));
   form = new Form($("measure-fields"), fieldsOf(fields), {prefix: "measure-", grouped: groups});
-  for (const name of fields.map((f) => f.name).filter((n) => n.endsWith("_column")))
-    form.inputs.get(name).setAttribute("list", "measure-columns");
-  list = new ImpactList(
-    {
-      body: $("measure-impacts"),
-      note: $("measure-list-note"),
-      adding: $("measure-add"),
-      doubtful: $("measure-doubtful"),
-    },
-    edited,
-  );
-  $("measure-preset").append(
-    new Option("own oscillator", ""),
-    ...presets.map((p) => new Option(`Table 4, ${p.title.replace("experiment, ", "")}`, p.name)),
-  );
+  for (const [name, input] of form.inputs)
+    if (isColumn(name)) input.setAttribute("list", "measure-columns");
+  list = new ImpactList(edited);
+  $("measure-preset").append(new Option("own oscillator", ""));
+  for (const {name, title, ...preset} of all) {
+    if (!(name in samples)) continue;
+    presets[name] = preset;
+    $("measure-preset").append(new Option(`Table 4, ${title.replace("experiment, ", "")}`, name));
+    const button = element("button", {
+      type: "button",
+      className: "small",
+      textContent: samples[name],
+      onclick: () => takeSample(name),
+    });
+    $("measure-samples").append(" ", button);
+  }
   listen();
   listenToFiles();
 }
 
-/** What is shown is of other fields than the form's. */
-function compare() {
+/** Whether what is shown is of other fields than the form's, or will be soon. */
+function compare(isBusy = false) {
   const {impact_times_s: _, ...fields} = sent ?? {};
   const isOld = sent !== null && asQuery(form.values()) !== asQuery(fields);
-  $("measure-results").classList.toggle("stale", isOld);
+  results.classList.toggle("stale", isBusy || isOld);
 }
 
 function listen() {
-  $("measure-preset").addEventListener("change", () => {
-    choosePreset($("measure-preset").value);
+  $("measure-preset").onchange = () => {
+    choosePreset(preset(), ofColumns());
     remember();
-    compare();
-  });
-  $("measure-fields").addEventListener("change", async () => {
+  };
+  $("measure-fields").onchange = () => {
     remember();
-    compare();
-    const parsed = await reading.catch(() => null);
-    if (parsed && !answer) showColumns(parsed);
-  });
-  picker.start(async (field, name) => {
+    if (parsed && !answer) drawFile(form.values());
+  };
+  picker.start((field, name) => {
     form.replace(field, name);
     remember();
-    const parsed = await reading.catch(() => null);
     if (!parsed) return;
-    answer = sent = null;
-    showColumns(parsed);
+    setAnswer(null, null);
+    drawFile(form.values());
     if (record) run();
   });
-  for (const preset of presets) {
-    const button = element("button", {type: "button", className: "small"});
-    button.textContent = sampleNames[preset.name];
-    button.addEventListener("click", () => takeSample(preset.name));
-    $("measure-samples").append(" ", button);
-  }
-  $("measure-form").addEventListener("submit", (event) => {
+  $("measure-form").onsubmit = (event) => {
     event.preventDefault();
     run();
     lead();
-  });
-  $("measure-cancel").addEventListener("click", () => job.cancel());
-  $("measure-again").addEventListener("click", () => {
-    run({impact_times_s: list.times().map((t) => Number(t.toFixed(7)))});
-  });
-  $("measure-reset").addEventListener("click", () => list.reset());
-  $("measure-add-at").addEventListener("click", ({currentTarget: button}) => {
-    const on = button.getAttribute("aria-pressed") !== "true";
-    button.setAttribute("aria-pressed", String(on));
-    $("plot-measured-a").classList.toggle("adding", on);
-  });
-  $("measure-download").addEventListener("click", download);
-  $("measure-copy").addEventListener("click", () => copy(command(), say));
+  };
+  $("measure-cancel").onclick = () => job.cancel();
+  $("measure-again").onclick = () => run({impact_times_s: list.times()});
+  $("measure-reset").onclick = () => list.reset();
+  $("measure-add-at").onclick = ({currentTarget: button}) =>
+    button.setAttribute("aria-pressed", $("plot-measured-a").classList.toggle("adding"));
+  $("measure-download").onclick = download;
+  $("measure-copy").onclick = () => copy(command(), say);
 }

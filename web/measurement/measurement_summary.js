@@ -6,7 +6,7 @@ import {count, digits, withError} from "../shared/numbers.js";
 import {verdicts} from "../shared/quantities.js";
 import {isLeftOut} from "./impact_list.js";
 
-const about = (value, n) => (value == null ? "–" : Number(value.toPrecision(n)).toString());
+export const about = (value, n) => (value == null ? "–" : String(Number(value.toPrecision(n))));
 
 const wall = (name, {R, standard_error: error, impacts}) => [
   `R at ${name}`,
@@ -14,24 +14,31 @@ const wall = (name, {R, standard_error: error, impacts}) => [
   count(impacts, "impact"),
 ];
 
-function exponentCards({parameters, exponents, slope, verdict, verdict_reason: reason, forward}) {
-  const error = exponents.qr?.standard_error[0];
-  const damping = `damping ζ = ${digits(parameters.derived.zeta, 4)}`;
+function exponentCards({
+  parameters,
+  exponents: {qr},
+  slope,
+  verdict,
+  verdict_reason: reason,
+  forward,
+}) {
+  const error = qr?.standard_error[0];
+  const damping = `damping ζ = ${digits(parameters.derived.zeta)}`;
   return [
     ["verdict", verdicts[verdict] ?? "–", reason.replace("damping zeta", damping)],
     [
       "λ₁ (qr)",
-      exponents.qr ? digits(exponents.qr.final[0]) : "–",
+      digits(qr?.final[0]),
       error == null ? "" : `± ${digits(error)}, at the last impact`,
     ],
     [
       "slope of λ₁ τ",
-      slope.lambda1 == null ? "–" : digits(slope.lambda1),
+      digits(slope.lambda1),
       slope.low == null ? "" : `90 %: ${digits(slope.low)} to ${digits(slope.high)}`,
     ],
     [
       "λ₁ of the identified system",
-      forward ? digits(forward.lambda[0]) : "–",
+      digits(forward?.lambda[0]),
       forward ? "run forward from the first known state" : "no state is known",
     ],
   ];
@@ -39,29 +46,30 @@ function exponentCards({parameters, exponents, slope, verdict, verdict_reason: r
 
 function impactsCard({impacts: {status, tau}, sticking}) {
   const of = (text) => status.filter((v) => v === text).length;
-  const left = status.filter(isLeftOut).length;
   const unknown = of("R is not known");
   const hidden = of("hidden");
   const stuck = sticking.side.length;
   const notes = [
-    `${left} left out`,
+    `${status.filter(isLeftOut).length} left out`,
     hidden && `${hidden} hidden`,
     stuck && `${count(stuck, "stuck phase")}, shaded`,
     unknown && `R of ${unknown} not known, at the ends`,
   ];
-  return ["impacts", String(tau.length), notes.filter(Boolean).join("; ")];
+  return ["impacts", tau.length, notes.filter(Boolean).join("; ")];
 }
 
 /** The half clearance that the impacts fit, beside the given one, in mm. */
 function clearanceCard({b, standard_error: error}, parameters) {
-  if (parameters.origin.b === "fitted to the record")
-    return ["b fitted", `${withError(b * 1000, error * 1000, 2)} mm`, "taken, not the given one"];
-  const given = parameters.b * 1000;
-  const remark = `given ${about(given, 5)} mm`;
-  if (b == null) return ["b fitted", "–", remark];
-  const off = ((b * 1000) / given - 1) * 100;
-  const judged = Math.abs(off) < 0.05 ? "agrees" : `off by ${digits(off, 1)} %`;
-  return ["b fitted", `${withError(b * 1000, error * 1000, 2)} mm`, `${remark}, ${judged}`];
+  const card = (remark) => [
+    "b fitted",
+    b == null ? "–" : `${withError(b * 1000, error * 1000, 2)} mm`,
+    remark,
+  ];
+  if (parameters.origin.b === "fitted to the record") return card("taken, not the given one");
+  const given = `given ${about(parameters.b * 1000, 5)} mm`;
+  if (b == null) return card(given);
+  const off = (b / parameters.b - 1) * 100;
+  return card(`${given}, ${Math.abs(off) < 0.05 ? "agrees" : `off by ${digits(off, 1)} %`}`);
 }
 
 function signalCards(signal, milliseconds) {

@@ -4,19 +4,12 @@ import {firstFrom} from "../shared/search.js";
 
 const atOnce = 50000; // lines between two looks at the clock of the page
 
-const trimmed = (cell) => cell.trim();
-
-/** Whether a text is none: it holds characters that no text has. */
-function isBinary(text) {
-  for (let i = 0; i < Math.min(text.length, 100000); ++i) {
-    const code = text.charCodeAt(i);
-    if (code < 9 || (code > 13 && code < 27)) return true;
-  }
-  return false;
-}
+/** What no text holds. */
+// biome-ignore lint/suspicious/noControlCharactersInRegex: it is these that are looked for
+const binary = /[\0-\x08\x0e-\x1a]/;
 
 /** The text of a file, whatever its encoding; its lines end by LF. Throws if it is none. */
-export async function textOf(file) {
+async function textOf(file) {
   const bytes = new Uint8Array(await file.arrayBuffer());
   const begins = (first, second) => bytes[0] === first && bytes[1] === second;
   const hasZeros = (from) => bytes[from] === 0 && bytes[from + 2] === 0;
@@ -29,22 +22,21 @@ export async function textOf(file) {
   } catch {
     text = new TextDecoder("windows-1252").decode(bytes);
   }
-  if (isBinary(text))
+  if (binary.test(text.slice(0, 100000)))
     throw new Error("it is no text; scripts/to-csv makes CSV of .wav, .mat, .tdms and .uff files");
-  return text.includes("\r") ? text.replace(/\r\n?/g, "\n") : text;
+  return text.replace(/\r\n?/g, "\n");
 }
 
-/** The same of a line with quotation marks, where a decimal comma becomes a point. */
+/** The cells of a line with quotation marks, where a decimal comma becomes a point. */
 function quotedCellsOf(line, separator) {
   const cells = [];
   for (let from = 0; from <= line.length; ) {
-    const blanks = /^[ \t]*/.exec(line.slice(from, from + 100))[0].length;
-    const quote = line[from + blanks] === '"' ? line.indexOf('"', from + blanks + 1) : -1;
+    const [opening] = /^[ \t]*"/.exec(line.slice(from)) ?? [];
+    const quote = opening ? line.indexOf('"', from + opening.length) : -1;
     const at = line.indexOf(separator, quote < 0 ? from : quote);
     const end = at < 0 ? line.length : at;
     const cell = line.slice(from, end).trim();
-    const inside = quote < 0 ? null : cell.slice(1, -1);
-    cells.push(inside === null || inside.includes('"') ? cell : asPoint(inside));
+    cells.push(quote < 0 ? cell : cell.replace(/^"([^"]*)"$/, (_, inside) => asPoint(inside)));
     from = end + 1;
   }
   return cells;
@@ -65,15 +57,12 @@ function cellsOf(line, separator) {
 const isCode = /^\s*[+-]?0[xob]/i; // which JavaScript takes for a number
 
 /** A cell as a number, NaN for what is none. A decimal comma needs another separator. */
-function numberOf(text, separator) {
-  const value = Number(text);
-  if (Number.isFinite(value) && value !== 0 && !isCode.test(text)) return value;
-  const cell = trimmed(text); // a zero may be an empty cell
-  if (cell === "" || isCode.test(cell)) return NaN;
+function numberOf(cell, separator) {
+  if (!cell.trim() || isCode.test(cell)) return NaN;
   return Number(separator === "," ? cell : cell.replaceAll(",", "."));
 }
 
-const isComment = (line) => /^\s*(#|%|\/\/)/.test(line);
+const comment = /^\s*(#|%|\/\/)/;
 
 /** That by which the line is numbers, two or more; undefined: none. */
 function separatorOfNumbers(line, said) {
@@ -83,111 +72,119 @@ function separatorOfNumbers(line, said) {
   });
 }
 
-/** Names and units above `count` columns of numbers, from the lines there; null: there are none. */
-function headingOf({last, before, comment}, count, separator) {
-  const cells = (line) => cellsOf(line, separator).map(trimmed);
-  const fits = (row) =>
+/**
+ * Names and, if they are there, units above `count` columns of numbers, from the lines there;
+ * undefined: there are none.
+ */
+function headingOf(above, count, separator) {
+  const cells = (line) => cellsOf(line, separator).map((cell) => cell.trim());
+  const [last, before, aside] = [above.last, above.before, above.comment].map(cells);
+  const areNames = (row) =>
     row.length === count && row.every((cell) => Number.isNaN(numberOf(cell, separator)));
-  const [low, high, aside] = [last, before, comment].map(cells);
-  if (fits(high) && low.length && low.length <= count && low.every(isUnit))
-    return {names: high, units: low};
   const areUnits = (row) => row.length && row.length <= count && row.every(isUnit);
-  if (fits(aside) && !areUnits(aside) && areUnits(low)) return {names: aside, units: low};
-  if (fits(low)) return {names: low, units: [high, aside].find(areUnits) ?? []};
-  return fits(aside) ? {names: aside, units: []} : null;
+  const ways = [
+    [before, last],
+    [areUnits(aside) ? [] : aside, last],
+    [last, before],
+    [last, aside],
+    [last],
+    [aside],
+  ];
+  return ways.find(([names, units]) => areNames(names) && (!units || areUnits(units)));
 }
 
 /**
- * The columns of a CSV text: {names, units, columns}, columns of numbers; lines that the service
+ * A file of CSV: its text and {names, units, columns}, columns of numbers; lines that the service
  * would refuse are left out. heard(share): how much of it is read.
  */
-export async function parse(text, heard = () => {}) {
+export async function parse(file, heard) {
+  const text = await textOf(file);
   const above = {last: "", before: "", comment: ""};
   let said;
   let separator;
-  let heading = null;
+  let heading;
   let columns = [];
   let rows = 0;
-  let from = 0;
-  for (let line = 1; from < text.length; ++line) {
-    const at = text.indexOf("\n", from);
-    const to = at < 0 ? text.length : at;
-    const cells = text.slice(from, to);
-    from = to + 1;
-    if (line % atOnce === 0) {
-      heard(from / text.length);
+  let lines = 0;
+  for (const {0: line, index} of text.matchAll(/[^\n]+/g)) {
+    if (++lines % atOnce === 0) {
+      heard(index / text.length);
       await nextTask();
     }
-    if (!cells.trim()) continue;
-    if (isComment(cells)) {
-      if (!heading) above.comment = cells.replace(/^\s*(#|%|\/\/)/, "");
+    if (!line.trim()) continue;
+    if (comment.test(line)) {
+      above.comment = line.replace(comment, "");
       continue;
     }
     if (!heading) {
-      said ??= /^\s*sep=(.)\s*$/i.exec(cells)?.[1];
-      separator = separatorOfNumbers(cells, said);
-      if (separator) {
-        const count = cellsOf(cells, separator).length;
-        heading = headingOf(above, count, separator);
-        if (!heading) break;
-        // A number takes two characters at least.
-        const most = Math.ceil((text.length - to + cells.length) / (2 * count)) + 1;
-        columns = heading.names.map(() => new Float64Array(most));
-      } else {
+      said ??= /^\s*sep=(.)\s*$/i.exec(line)?.[1];
+      separator = separatorOfNumbers(line, said);
+      if (!separator) {
         above.before = above.last;
-        above.last = cells;
+        above.last = line;
         continue;
       }
+      const count = cellsOf(line, separator).length;
+      heading = headingOf(above, count, separator);
+      if (!heading) break;
+      // A number takes two characters at least.
+      const most = Math.ceil((text.length - index) / (2 * count)) + 1;
+      columns = heading[0].map(() => new Float64Array(most));
     }
-    const parts = cellsOf(cells, separator);
-    if (parts.length !== columns.length) continue;
-    let good = true;
-    for (let k = 0; k < parts.length; ++k) {
-      const value = numberOf(parts[k], separator);
-      columns[k][rows] = value;
-      good &&= Number.isFinite(value);
-    }
-    if (good) ++rows;
+    const values = cellsOf(line, separator).map((cell) => numberOf(cell, separator));
+    if (values.length !== columns.length) continue;
+    for (const [k, column] of columns.entries()) column[rows] = values[k];
+    if (values.every(Number.isFinite)) ++rows;
   }
-  const {names, units} = heading ?? {names: [], units: []};
-  return {names, units, columns: columns.map((column) => column.slice(0, rows))};
+  const [names = [], units = []] = heading ?? [];
+  return {text, names, units, columns: columns.map((column) => column.slice(0, rows))};
 }
 
-function find(names, asked, name, beginnings) {
-  const lower = names.map((n) => n.toLowerCase());
-  if (asked) return lower.indexOf(asked.toLowerCase());
-  const exact = lower.indexOf(name);
-  if (exact >= 0) return exact;
-  for (const b of beginnings) {
-    const starts = (n) => ["_", " ", "(", "["].some((end) => n.startsWith(b + end));
-    const at = lower.findIndex((n) => n === b || starts(n));
-    if (at >= 0) return at;
-  }
-  return -1;
-}
-
-const units = {s: 1, ms: 1e-3, m: 1e3, mm: 1, um: 1e-3, "m/s2": 1, g: 9.80665};
-const spellings = {
-  s: "s",
-  sec: "s",
-  ms: "ms",
-  msec: "ms",
-  m: "m",
-  mm: "mm",
-  um: "um",
-  "m/s2": "m/s2",
-  m_s2: "m/s2",
-  "ms-2": "m/s2",
-  "m/s/s": "m/s2",
-  g: "g",
+/** What is measured: the names of its column, the first of them whole, others as they begin. */
+const quantities = {
+  time: ["time_s", "time", "t"],
+  displacement: ["displacement_m", "displacement", "x"],
+  acceleration: ["acceleration_m_s2", "acceleration", "a"],
+  base_acceleration: ["base_acceleration_m_s2", "base_acceleration"],
+  force: ["force_n", "force"],
 };
+
+/** The column that a field asks for, else that of one of the usual names; -1: none. */
+function find(names, asked, [whole, ...beginnings]) {
+  if (asked) return names.findIndex((name) => name.toLowerCase() === asked.toLowerCase());
+  return [`${whole}$`, ...beginnings.map((text) => `${text}([_ ([]|$)`)]
+    .map((text) => names.findIndex((name) => new RegExp(`^${text}`, "i").test(name)))
+    .reduce((found, at) => (found < 0 ? at : found));
+}
+
+/** The columns that the fields and the names mean, by what is measured: their positions, or -1. */
+export const columnsOf = (names, fields) =>
+  Object.fromEntries(
+    Object.entries(quantities).map(([quantity, usual]) => [
+      quantity,
+      find(names, fields[`${quantity}_column`], usual),
+    ]),
+  );
+
+const scales = new Map([
+  ["s", 1],
+  ["ms", 1e-3],
+  ["m", 1e3],
+  ["mm", 1],
+  ["um", 1e-3],
+  ["m/s2", 1],
+  ["g", 9.80665],
+]);
+/** A unit as the service names it, if it is one. */
 const spelling = (text) =>
   (text.length > 32 ? "?" : text) // no unit is longer
     .toLowerCase()
     .replace(/[\u00b5\u03bc]/g, "u")
     .replace(/\u00b2/g, "2")
     .replace(/\u207b/g, "-")
-    .replace(/[ ^*()[\]\u00b7]/g, "");
+    .replace(/[ ^*()[\]\u00b7]/g, "")
+    .replace(/^(m?s)ec$/, "$1")
+    .replace(/^m(_s2|s-2|\/s\/s)$/, "m/s2");
 const otherUnits = new Set(
   "- 1 n a deg degc \u00b0c k pa bar % rad kn nm cm dm km mil in inch ft us ns min h hz v mv mg gal cm/s2 mm/s2 ft/s2 m/s mm/s".split(
     " ",
@@ -196,83 +193,55 @@ const otherUnits = new Set(
 /** Whether a cell is what stands in a row of units below the names. */
 const isUnit = (cell) => {
   const written = spelling(cell);
-  return !written || Object.hasOwn(spellings, written) || otherUnits.has(written);
+  return !written || scales.has(written) || otherUnits.has(written);
 };
 
-/**
- * The unit that a column's name says, in brackets or behind a blank or underscore; undefined where
- * it says none.
- */
+const unitAmong = (...texts) => texts.map(spelling).find((unit) => scales.has(unit));
+
+/** The unit that a column's name says, in brackets or behind a blank or underscore, or is. */
 function unitIn(name) {
-  if (Object.hasOwn(spellings, spelling(name))) return spellings[spelling(name)];
   const brackets = /[([]([^)\]]*)/.exec(name);
-  if (brackets) return spellings[spelling(brackets[1])];
-  for (const {index} of name.matchAll(/[_ ]/g)) {
-    const unit = spellings[spelling(name.slice(index + 1))];
-    if (unit) return unit;
-  }
+  const behind = [...name.matchAll(/[_ ]/g)].map(({index}) => name.slice(index + 1));
+  return unitAmong(name, ...(brackets ? [brackets[1]] : behind));
 }
 
-/** What leaves those samples of a column out whose time does not lie behind all before it. */
-function whereAscending(t) {
-  let keep = null;
-  let last = t[0];
-  for (let i = 1; i < t.length; ++i) {
-    if (t[i] > last) {
-      last = t[i];
-    } else {
-      keep ??= new Uint8Array(t.length).fill(1);
-      keep[i] = 0;
-    }
-  }
-  return (column) => (keep ? column.filter((_, i) => keep[i]) : column);
-}
-
-const scaled = (column, unit) => (units[unit] === 1 ? column : column.map((v) => v * units[unit]));
-
-/** The columns that the fields and the names mean, by what is measured: their positions, or -1. */
-export function columnsOf(names, fields) {
-  const of = (field, name, ...beginnings) => find(names, fields[field], name, beginnings);
-  return {
-    time: of("time_column", "time_s", "time", "t"),
-    displacement: of("displacement_column", "displacement_m", "displacement", "x"),
-    acceleration: of("acceleration_column", "acceleration_m_s2", "acceleration", "a"),
-    base_acceleration: of(
-      "base_acceleration_column",
-      "base_acceleration_m_s2",
-      "base_acceleration",
-    ),
-    force: of("force_column", "force_n", "force"),
-  };
+/** Of each quantity that is there its column: {name, values, unit}, by what is measured. */
+function partsOf({names, units, columns}, fields) {
+  const found = Object.entries(columnsOf(names, fields)).filter(([, k]) => k >= 0);
+  const part = (quantity, k) => ({
+    name: names[k],
+    values: columns[k],
+    unit: unitIn(names[k]) ?? unitAmong(units[k] ?? "") ?? fields[`${quantity}_unit`],
+  });
+  return Object.fromEntries(found.map(([quantity, k]) => [quantity, part(quantity, k)]));
 }
 
 /**
- * What the fields make of the columns: {t (s), x (mm), a (m/s^2)}, null for one that is not there;
- * sent: those columns by name, in the record's units; units: these as fields.
+ * What the fields make of what was read: {t (s), x (mm), a (m/s^2)}, null for one that is not there.
+ * Samples are left out whose time does not lie behind all before it: the plots need it so.
  */
-export function recordOf({names, units: row = [], columns}, fields) {
-  const columnOf = columnsOf(names, fields);
-  const {time, displacement: x, acceleration: a, base_acceleration: base, force} = columnOf;
-  if (time < 0 || !columns[time].length || (x < 0 && a < 0)) return null;
-  const said = (k, asked) => unitIn(names[k]) ?? spellings[spelling(row[k] ?? "")] ?? asked;
-  const unit = (k, asked, usual) => said(k, asked) ?? usual;
-  const t = scaled(columns[time], unit(time, fields.time_unit, "s"));
-  const kept = whereAscending(t); // as the plots need it
-  const present = [time, x, a, base, force].filter((k) => k >= 0);
-  const sent = Object.fromEntries(present.map((k) => [names[k], columns[k]]));
-  return {
-    units: {
-      time_unit: said(time, fields.time_unit),
-      displacement_unit: x < 0 ? undefined : said(x, fields.displacement_unit),
-      acceleration_unit: a < 0 ? undefined : said(a, fields.acceleration_unit),
-      base_acceleration_unit: base < 0 ? undefined : said(base, fields.base_acceleration_unit),
-      force_unit: force < 0 ? undefined : said(force, fields.force_unit),
-    },
-    t: kept(t),
-    x: x < 0 ? null : kept(scaled(columns[x], unit(x, fields.displacement_unit, "m"))),
-    a: a < 0 ? null : kept(scaled(columns[a], unit(a, fields.acceleration_unit, "m/s2"))),
-    sent,
+export function recordOf(parsed, fields) {
+  const {time, displacement, acceleration} = partsOf(parsed, fields);
+  if (!time?.values.length || !(displacement ?? acceleration)) return null;
+  let last = -Infinity;
+  const isLater = time.values.map((t) => {
+    const is = t > last;
+    if (is) last = t;
+    return is;
+  });
+  const of = (part, usual) => {
+    const scale = scales.get(part?.unit ?? usual);
+    return part ? part.values.filter((_, i) => isLater[i]).map((v) => v * scale) : null;
   };
+  return {t: of(time, "s"), x: of(displacement, "m"), a: of(acceleration, "m/s2")};
+}
+
+/** The same as fields of /v1/identify, with the record in them, in its units. */
+export function asJson(parsed, fields) {
+  const parts = Object.entries(partsOf(parsed, fields));
+  const units = parts.map(([quantity, {unit}]) => [`${quantity}_unit`, unit]);
+  const record = parts.map(([, {name, values}]) => [name, [...values]]);
+  return {...fields, ...Object.fromEntries(units), record: Object.fromEntries(record)};
 }
 
 /**
@@ -283,7 +252,7 @@ export function spikeNear({t, a}, moment, reach) {
   const from = firstFrom(t, moment - reach);
   const to = Math.max(firstFrom(t, moment + reach), from + 1);
   if (!a || from >= t.length) return null;
-  const around = a.slice(Math.max(0, from - 8), Math.min(t.length, to + 8)).sort();
+  const around = a.slice(Math.max(0, from - 8), to + 8).sort();
   const centre = around[around.length >> 1];
   let best = from;
   for (let i = from; i < Math.min(to, t.length); ++i)

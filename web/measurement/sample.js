@@ -1,5 +1,6 @@
 // The record of a run as two sensors see it: a displacement, and an acceleration in which each impact
 // is a half sine, both with a little noise. Its noise is the same each time.
+import {Motion} from "../shared/motion.js";
 import {lastUpTo} from "../shared/search.js";
 
 const perCycle = 245; // samples: some 2 kHz at the paper's 8.35 Hz
@@ -16,9 +17,6 @@ function noiseFrom(seed) {
   };
 }
 
-/** The seconds of a run's tau: of a system without any, omega0 is 1 rad/s. */
-const omega0Of = ({derived}) => derived.omega0 ?? 1;
-
 /** The oscillator of a run as fields of /v1/identify. */
 export function oscillatorOf({si, b, epsilon, Omega, derived}) {
   const own = si ?? {m1: 1, k1: 1, m2: epsilon, f: Omega / (2 * Math.PI)};
@@ -28,9 +26,10 @@ export function oscillatorOf({si, b, epsilon, Omega, derived}) {
 }
 
 /** The samples of a run as CSV: time_s, displacement_m, acceleration_m_s2. */
-export function recordOfRun(answer, motion) {
+export function recordOfRun(answer) {
   const {parameters, impacts} = answer;
-  const omega0 = omega0Of(parameters);
+  const omega0 = parameters.derived.omega0 ?? 1; // rad/s
+  const motion = new Motion(answer);
   const {cycle} = motion;
   const from = motion.end > 3 * settling * cycle ? settling * cycle : 0;
   const count = Math.min(Math.floor(((motion.end - from) / cycle) * perCycle), longest);
@@ -48,8 +47,9 @@ export function recordOfRun(answer, motion) {
       const jump = impacts.x_dot_after[i] - impacts.x_dot_before[i];
       a += ((jump * Math.PI) / 2 / width) * Math.sin(Math.PI * phase);
     }
-    const row = [(tau - from) / omega0, x + ofX * noise(), a * omega0 ** 2 + ofA * noise()];
-    lines.push(`${row[0].toFixed(7)},${row[1].toExponential(7)},${row[2].toExponential(4)}`);
+    const seconds = ((tau - from) / omega0).toFixed(7);
+    const measured = (x + ofX * noise()).toExponential(7);
+    lines.push(`${seconds},${measured},${(a * omega0 ** 2 + ofA * noise()).toExponential(4)}`);
   }
   return `${lines.join("\n")}\n`;
 }

@@ -6,10 +6,9 @@ import {askForKey, hasKey, keyHeaders} from "./key.js";
  * field at fault.
  */
 export class Problem extends Error {
-  constructor(document) {
-    super(document.detail ?? document.title);
-    this.status = document.status;
-    this.errors = document.errors ?? [];
+  constructor({detail, title, status, errors = []}) {
+    super(detail ?? title);
+    Object.assign(this, {status, errors});
   }
 }
 
@@ -30,13 +29,12 @@ async function read(response) {
 
 /** The response to a request; if it was broken off, who did so knows. */
 export async function reach(path, options = {}) {
-  for (let again = false; ; again = true) {
-    const response = await answer(path, options);
-    if (response.status !== 401) return response;
-    // What the browser had loaded before showed no key, nor what was sent while one was typed.
-    if (!again && hasKey()) continue;
-    if (!(await askForKey())) return response;
-  }
+  let response = await answer(path, options);
+  const isRefused = () => response.status === 401;
+  // What the browser had loaded before showed no key, nor what was sent while one was typed.
+  if (isRefused() && hasKey()) response = await answer(path, options);
+  while (isRefused() && (await askForKey())) response = await answer(path, options);
+  return response;
 }
 
 async function answer(path, options) {
@@ -49,26 +47,24 @@ async function answer(path, options) {
 
 export const get = async (path) => read(await reach(path));
 
-const send = (path, type, body, signal) =>
+const post = (path, body, signal, type = "application/json") =>
   reach(path, {method: "POST", headers: {"Content-Type": type}, body, signal});
 
-const post = (path, fields, signal) =>
-  send(path, "application/json", JSON.stringify(fields), signal);
+const computing = (path) => async (fields, signal) =>
+  read(await post(path, JSON.stringify(fields), signal));
 
-export const simulate = async (fields, signal) => read(await post("v1/simulate", fields, signal));
+export const simulate = computing("v1/simulate");
 
 /** query: the fields; record: a file of CSV, sent as it is. */
-export async function identify(query, record, signal) {
-  return read(await send(`v1/identify?${query}`, "text/csv", record, signal));
-}
+export const identify = async (query, record, signal) =>
+  read(await post(`v1/identify?${query}`, record, signal, "text/csv"));
 
 /** The same with all in JSON. */
-export const identifyJson = async (fields, signal) =>
-  read(await post("v1/identify", fields, signal));
+export const identifyJson = computing("v1/identify");
 
 /** A sweep's answer, a stream of lines. */
 export async function sweep(request, signal) {
-  const response = await post("v1/sweep", request, signal);
+  const response = await post("v1/sweep", JSON.stringify(request), signal);
   return response.ok ? response.body : read(response);
 }
 

@@ -1,34 +1,40 @@
 // What plots over the same axis share: how far it reaches, the part that is in view, and one cursor.
+import {clamp} from "./numbers.js";
 
 const closest = 1e-9; // of the whole: as far as one can zoom in
 
+const same = ([from, to], [first, last]) => from === first && to === last;
+
 export class Axis {
-  constructor() {
-    this.whole = [0, 1];
-    this.view = [0, 1];
-    this.home = [0, 1];
-    this.cursor = null;
-    this.viewers = new Set();
-    this.pointers = new Set();
-  }
+  whole = [0, 1];
+  view = [0, 1];
+  home = [0, 1];
+  cursor = null;
+  viewers = [];
+  pointers = [];
 
   /** f(): called when another part is in view. */
   onView(f) {
-    this.viewers.add(f);
+    this.viewers.push(f);
   }
 
-  /** f(by): called when the cursor is elsewhere; by: "pointer", "key", "play", ... */
+  /** f(by): called when the cursor is elsewhere; by: "pointer", "play" or none. */
   onCursor(f) {
-    this.pointers.add(f);
+    this.pointers.push(f);
   }
 
   get zoomed() {
-    return this.view[0] > this.whole[0] || this.view[1] < this.whole[1];
+    return !same(this.view, this.whole);
   }
 
   /** Whether something else is in view than at first. */
   get away() {
-    return this.view[0] !== this.home[0] || this.view[1] !== this.home[1];
+    return !same(this.view, this.home);
+  }
+
+  /** How much is in view. */
+  get width() {
+    return this.view[1] - this.view[0];
   }
 
   /**
@@ -39,47 +45,42 @@ export class Axis {
     const stays = !fresh && this.away && this.view[0] < to && this.view[1] > from;
     this.whole = [from, to];
     this.home = home;
-    this.view = stays ? [Math.max(this.view[0], from), Math.min(this.view[1], to)] : home;
-    if (this.cursor !== null) this.cursor = Math.min(Math.max(this.cursor, from), to);
+    this.view = stays ? this.view.map((v) => clamp(v, from, to)) : home;
+    if (this.cursor !== null) this.cursor = clamp(this.cursor, from, to);
   }
 
   zoom(from, to) {
     const [first, last] = this.whole;
-    const least = closest * (last - first);
-    const width = Math.min(Math.max(to - from, least), last - first);
-    const start = Math.min(Math.max(from, first), last - width);
-    const part = width < (1 - 1e-12) * (last - first);
-    const view = part ? [start, start + width] : [first, last];
-    if (view[0] === this.view[0] && view[1] === this.view[1]) return;
+    const all = last - first;
+    const width = clamp(to - from, closest * all, all);
+    const start = clamp(from, first, last - width);
+    const view = width < (1 - 1e-12) * all ? [start, start + width] : this.whole;
+    if (same(view, this.view)) return;
     this.view = view;
     for (const f of this.viewers) f();
   }
 
   /** About a moment that stays where it is; factor: above 1 to see less. */
   zoomAt(t, factor) {
-    const [from, to] = this.view;
-    this.zoom(t - (t - from) / factor, t + (to - t) / factor);
+    this.zoom(...this.view.map((end) => t + (end - t) / factor));
   }
 
   /** About the cursor, or the middle of what is in view. */
   zoomAbout(factor) {
-    const [from, to] = this.view;
-    this.zoomAt(this.cursor ?? (from + to) / 2, factor);
+    this.zoomAt(this.cursor ?? this.view[0] + this.width / 2, factor);
   }
 
   /** Brings a place into view, in the middle unless it is there already. */
   reveal(at) {
     const [from, to] = this.view;
-    if (at < from || at > to) this.pan((at - (from + to) / 2) / (to - from));
+    if (at < from || at > to) this.pan((at - from) / this.width - 0.5);
   }
 
   /** By a share of what is in view. */
   pan(share) {
     const [from, to] = this.view;
-    const step = share * (to - from);
-    const [first, last] = this.whole;
-    const kept = Math.min(Math.max(step, first - from), last - to);
-    this.zoom(from + kept, to + kept);
+    const step = clamp(share * this.width, this.whole[0] - from, this.whole[1] - to);
+    this.zoom(from + step, to + step);
   }
 
   /** What was in view at first, and then the whole. */
@@ -88,8 +89,7 @@ export class Axis {
   }
 
   point(t, by) {
-    const [first, last] = this.whole;
-    this.cursor = t === null ? null : Math.min(Math.max(t, first), last);
+    this.cursor = t === null ? null : clamp(t, ...this.whole);
     for (const f of this.pointers) f(by);
   }
 }

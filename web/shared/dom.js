@@ -18,3 +18,33 @@ export const element = (tag, properties = {}, ...children) => {
   node.append(...children);
   return node;
 };
+
+/** One that does something; more: its other properties. */
+export const button = (textContent, onclick, more) =>
+  element("button", {type: "button", textContent, onclick, ...more});
+
+/** Hears of several events of a node: {type: what is called}. */
+export const on = (node, handlers) => {
+  for (const [type, f] of Object.entries(handlers)) node.addEventListener(type, f);
+};
+
+/** Those that have a value are set: what a node says of itself to those who cannot see it, and other attributes. */
+export const attributes = (node, all) => {
+  for (const [name, value] of Object.entries(all))
+    if (value != null) node.setAttribute(name, value);
+};
+
+/** Shows those elements for which it holds, and hides the others: {id: whether}. */
+export const reveal = (shown) => {
+  for (const [id, is] of Object.entries(shown)) $(id).hidden = !is;
+};
+
+/** Texts of elements: {id: text}. */
+export const write = (texts) => {
+  for (const [id, text] of Object.entries(texts)) $(id).textContent = text;
+};
+
+/** Presses that of several buttons which is(button). */
+export const press = (buttons, is) => {
+  for (const one of buttons) attributes(one, {"aria-pressed": is(one)});
+};

@@ -3,12 +3,7 @@ import {short} from "./numbers.js";
 
 const names = ["lambda1", "lambda2", "lambda3", "lambda4"];
 // Told apart by more than their colour.
-const styles = [
-  {colour: "c1", width: 2},
-  {colour: "c2", width: 1.3},
-  {colour: "c3", width: 1.3, dash: [7, 3]},
-  {colour: "c4", width: 1.3, dash: [2, 3]},
-];
+const styles = [{width: 2}, {}, {dash: [7, 3]}, {dash: [2, 3]}];
 
 const absent = (status) => (status === "minus_infinity" ? "−∞" : "");
 
@@ -18,6 +13,8 @@ const absent = (status) => (status === "minus_infinity" ? "−∞" : "");
  */
 export function exponentSeries(history, status = []) {
   const series = styles.map((style, k) => ({
+    colour: `c${k + 1}`,
+    width: 1.3,
     ...style,
     label: `λ${"₁₂₃₄"[k]}`,
     text: (v) => (v === null ? absent(status[k]) : short(v)),
@@ -35,14 +32,10 @@ export function exponentSeries(history, status = []) {
  * leaves it.
  */
 export function exponentRange(histories) {
-  const values = [0];
-  for (const history of histories) {
-    if (!history) continue;
-    const from = Math.floor(history.tau.length / 4);
-    for (const name of names)
-      for (const v of history[name].slice(from)) if (v !== null) values.push(v);
-  }
-  values.sort((a, b) => a - b);
+  const late = ({tau, ...columns}) =>
+    names.flatMap((name) => columns[name].slice(Math.floor(tau.length / 4)));
+  const known = histories.filter(Boolean).flatMap(late);
+  const values = [0, ...known].filter((v) => v !== null).sort((a, b) => a - b);
   const low = values[Math.floor(values.length * 0.01)];
   const high = values[Math.ceil(values.length * 0.99) - 1];
   const margin = (high - low || 0.1) * 0.15;

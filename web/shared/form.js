@@ -2,7 +2,7 @@
 // that its placeholder shows.
 import {element} from "./dom.js";
 import {toNumber} from "./numbers.js";
-import {originText, resolved} from "./origins.js";
+import {originText, resolved, standing} from "./origins.js";
 import {symbolOf} from "./quantities.js";
 import {unitShown} from "./units.js";
 
@@ -21,91 +21,108 @@ export const groups = {
 };
 // The preset has its own menu; the page needs every part that it draws, and shows no perturbed run.
 const hidden = new Set(["preset", "include", "perturbation"]);
-const wide = new Set(["choice", "choices", "intervals", "states", "text"]);
-const hints = {intervals: "none; as a,b; c,d", states: "one; as x0=0.01; x0=0, y0=0.002"};
 
 const isObject = (value) => typeof value === "object" && value !== null;
-const assignments = (object) => Object.entries(object).map((pair) => pair.join("="));
 
 /** A value as a text that its input takes. */
 export function textOf(value) {
-  if (Array.isArray(value))
-    return isObject(value[0]) ? value.map(textOf).join("; ") : value.join(", ");
-  return isObject(value) ? assignments(value).join(", ") : String(value);
+  if (Array.isArray(value)) return value.map(textOf).join(isObject(value[0]) ? "; " : ", ");
+  if (!isObject(value)) return String(value);
+  return Object.entries(value)
+    .map((pair) => pair.join("="))
+    .join(", ");
 }
 
 /** A text as JSON wants it; what cannot be a number is sent as text, for the service to refuse. */
 const number = (text) => toNumber(text) ?? text.trim();
-const parts = (text) => text.split(";").filter((part) => part.trim());
 const interval = (text) => text.split(",").map(number);
-const intervals = (text) => parts(text).map(interval);
 function assignment(text) {
   const [name, value = ""] = text.split("=");
   return [name.trim(), number(value)];
 }
 const state = (text) =>
   text.includes("=") ? Object.fromEntries(text.split(",").map(assignment)) : text.trim();
+const listOf = (read) => (text) =>
+  text
+    .split(";")
+    .filter((part) => part.trim())
+    .map(read);
 export const defaultSet = "default set"; // of starts, in place of a list
-const states = (text) => (text.trim() === defaultSet ? defaultSet : parts(text).map(state));
+
+// What fields of a type but a number have of their own. Those that are no texts: how their input is
+// made, what it holds, undefined for the default, and how a value is set. Texts: how they are read,
+// and what stands in an empty one.
+const types = {
+  choice: {
+    wide: true,
+    make: ({choices}) => element("select", {}, ...choices.map((c) => new Option(c))),
+    get: ({value}, standard) => (value === standard ? undefined : value),
+    set(input, value) {
+      input.value = value;
+    },
+  },
+  choices: {
+    wide: true,
+    make({choices}) {
+      const boxOf = (value) => element("input", {type: "checkbox", value});
+      const labels = choices.map((c) => element("label", {}, boxOf(c), c));
+      return element("div", {className: "checks"}, ...labels);
+    },
+    get(input, standard) {
+      const chosen = [...input.querySelectorAll("input:checked")].map((box) => box.value);
+      return chosen.length === standard.length ? undefined : chosen;
+    },
+    set(input, chosen) {
+      for (const box of input.querySelectorAll("input")) box.checked = chosen.includes(box.value);
+    },
+  },
+  interval: {read: interval},
+  intervals: {wide: true, read: listOf(interval), hint: "none; as a,b; c,d"},
+  states: {
+    wide: true,
+    read: (text) => (text.trim() === defaultSet ? defaultSet : listOf(state)(text)),
+    hint: "one; as x0=0.01; x0=0, y0=0.002",
+  },
+  text: {wide: true, read: (text) => text.trim()},
+};
+const typeOf = ({type}) => types[type] ?? {};
+
+const textInput = (field) =>
+  element("input", {type: "text", inputMode: typeOf(field).read ? "text" : "decimal"});
 
 // Two ways to say the same: where one is filled the other follows from it.
-const alternatives = [
-  ["k1", "f0"],
-  ["c1", "damping_ratio"],
-  ["m2", "mass_ratio"],
-  ["x_dot0", "x_velocity0"],
-  ["y_dot0", "y_velocity0"],
-  ["tau_end", "cycles"],
-];
-const swapped = alternatives.map(([one, other]) => [other, one]);
-const others = Object.fromEntries([...alternatives, ...swapped]);
+const alternatives = Object.entries({...standing, cycles: "tau_end"});
+const others = Object.fromEntries(
+  alternatives.flatMap(([a, b]) => [
+    [a, b],
+    [b, a],
+  ]),
+);
 
 function rounded(value) {
   if (Array.isArray(value)) return value.map(rounded);
   return typeof value === "number" ? Number(value.toPrecision(6)) : value;
 }
 
-const readers = {interval, intervals, states, text: (text) => text.trim()};
-
 const factorOf = ({unit, type}) => (type === "number" ? unitShown(unit).factor : 1);
 
-/** A number times a factor, without the digits of rounding. */
-const times = (value, factor) => (factor === 1 ? value : Number((value * factor).toPrecision(15)));
-
-/** The unit behind a field's name. */
-function unitOf(field) {
-  const {unit} = unitShown(field.unit);
-  return unit && `, ${unit}`;
-}
-
-/** A field's name as one reads it. */
-const labelOf = ({name}) => symbolOf(name).replaceAll("_", " ");
-
-function menuInput(field) {
-  const options = field.choices.map((c) => element("option", {value: c, textContent: c}));
-  const input = element("select", {}, ...options);
-  input.value = field.default;
-  return input;
-}
-
-function checksInput(field) {
-  const check = (c) => {
-    const box = element("input", {type: "checkbox", value: c, checked: field.default.includes(c)});
-    return element("label", {}, box, c);
-  };
-  return element("div", {className: "checks"}, ...field.choices.map(check));
-}
-
-function textInput(field) {
-  return element("input", {type: "text", inputMode: readers[field.type] ? "text" : "decimal"});
-}
-
-const inputs = {choice: menuInput, choices: checksInput};
+/** A number times a factor, without the digits of rounding; what is no number stays as it is. */
+const times = (value, factor) =>
+  factor === 1 || value === "" || !Number.isFinite(Number(value))
+    ? value
+    : Number((value * factor).toPrecision(15));
 
 /** On a small screen the groups are closed at first: what is looked at lies below them. */
 const folded = matchMedia("(max-width: 700px)").matches;
 
 export class Form {
+  inputs = new Map();
+  errors = new Map();
+  rows = new Map();
+  parts = new Map();
+  exact = new Map(); // of numbers that are shown in other units: {text, value}
+  replaced = [];
+
   /**
    * prefix: of the ids, where a page has several forms; grouped: the groups to show, as in
    * `groups`.
@@ -113,22 +130,16 @@ export class Form {
   constructor(container, fields, {prefix = "", grouped = groups} = {}) {
     this.prefix = prefix;
     this.fields = fields.filter((f) => !hidden.has(f.name) && f.group in grouped);
-    this.inputs = new Map();
-    this.errors = new Map();
-    this.rows = new Map();
-    this.parts = new Map();
-    this.origins = new Map();
     this.factors = new Map(fields.map((field) => [field.name, factorOf(field)]));
-    this.exact = new Map(); // of numbers that are shown in other units: {text, value}
-    this.replaced = [];
     for (const [group, [title, open, note = ""]] of Object.entries(grouped)) {
-      const grid = element("div", {className: "grid"});
-      for (const field of this.fields.filter((f) => f.group === group))
-        grid.append(this.row(field));
-      const id = `${prefix}group-${group}`;
-      const summary = element("summary", {textContent: title});
-      const remark = element("p", {className: "note", textContent: note});
-      const details = element("details", {open: open && !folded, id}, summary, remark, grid);
+      const rows = this.fields.filter((f) => f.group === group).map((f) => this.row(f));
+      const details = element(
+        "details",
+        {open: open && !folded, id: `${prefix}group-${group}`},
+        element("summary", {}, title),
+        element("p", {className: "note"}, note),
+        element("div", {className: "grid"}, ...rows),
+      );
       this.parts.set(group, details);
       container.append(details);
     }
@@ -136,39 +147,42 @@ export class Form {
   }
 
   row(field) {
-    const error = element("p", {className: "error", id: `${this.prefix}error-${field.name}`});
-    const unit = element("span", {className: "unit", textContent: unitOf(field)});
-    const origin = element("span", {className: "origin"});
-    const named = element("span", {}, labelOf(field), unit);
-    const name = element("span", {className: "name"}, named, origin);
-    const input = (inputs[field.type] ?? textInput)(field);
+    const {name, type, minimum, maximum} = field;
+    const {make = textInput, set, wide} = typeOf(field);
+    const input = make(field);
+    if (set) set(input, field.default);
+    else input.placeholder = this.standardOf(field);
+    const error = element("p", {className: "error", id: `${this.prefix}error-${name}`});
     input.setAttribute("aria-describedby", error.id);
-    input.addEventListener("input", () => this.forgetOrigin(field.name));
-    const ends = [field.minimum, field.maximum].map((v) => this.shown(field.name, v));
-    const range = field.minimum === undefined ? "" : ` [${ends.join(" to ")}]`;
-    const title = `${field.name}: ${field.description}${range}`;
-    const label = element(field.type === "choices" ? "div" : "label", {title}, name, input);
-    const width = wide.has(field.type) && !field.narrow ? " wide" : "";
-    if (input.type === "text") input.placeholder = this.standardOf(field);
-    const row = element("div", {className: `field field-${field.name}${width}`}, label, error);
-    this.inputs.set(field.name, input);
-    this.origins.set(field.name, origin);
-    this.errors.set(field.name, error);
-    this.rows.set(field.name, row);
+    input.addEventListener("input", () => this.sayOrigin(name));
+    const {unit} = unitShown(field.unit);
+    const shownUnit = element("span", {className: "unit"}, unit && `, ${unit}`);
+    const named = element("span", {}, symbolOf(name).replaceAll("_", " "), shownUnit);
+    const ends = [minimum, maximum].map((v) => this.shown(name, v));
+    const range = minimum === undefined ? "" : ` [${ends.join(" to ")}]`;
+    const label = element(
+      type === "choices" ? "div" : "label",
+      {title: `${name}: ${field.description}${range}`},
+      element("span", {className: "name"}, named, element("span", {className: "origin"})),
+      input,
+    );
+    const width = wide && !field.narrow ? " wide" : "";
+    const row = element("div", {className: `field field-${name}${width}`}, label, error);
+    this.inputs.set(name, input);
+    this.errors.set(name, error);
+    this.rows.set(name, row);
     return row;
   }
 
   /** What an empty input stands for, before an answer tells. */
   standardOf(field) {
     const note = (field.default_note ?? "").split(":")[0];
-    return note || textOf(this.shown(field.name, field.default ?? "")) || hints[field.type] || "";
+    return note || textOf(this.shown(field.name, field.default ?? "")) || typeOf(field).hint || "";
   }
 
   /** A value as it is shown; what is no number stays as it is. */
   shown(name, value) {
-    const factor = this.factors.get(name);
-    const isNumber = value !== "" && Number.isFinite(Number(value));
-    return factor === 1 || !isNumber ? value : times(Number(value), factor);
+    return times(value, this.factors.get(name));
   }
 
   /** A value is written to an input; the last digits that it does not show are kept. */
@@ -178,50 +192,39 @@ export class Form {
     this.exact.set(name, {text, value});
   }
 
-  /** What an input of text holds, typed for JSON. */
-  read({name, type}) {
+  /** What an input of text holds, typed for JSON; undefined where it is empty. */
+  read(field) {
+    const {name} = field;
     const {value: text} = this.inputs.get(name);
-    if (readers[type]) return readers[type](text);
-    const factor = this.factors.get(name);
+    const {read} = typeOf(field);
+    if (!text.trim()) return undefined;
+    if (read) return read(text);
     const exact = this.exact.get(name);
-    if (factor !== 1 && exact?.text === text) return number(String(exact.value));
-    const value = number(text);
-    return typeof value === "number" ? times(value, 1 / factor) : value;
+    if (exact?.text === text) return number(String(exact.value));
+    return times(number(text), 1 / this.factors.get(name));
   }
 
   /** The fields that differ from their defaults, typed for JSON. */
   values() {
-    const values = {};
-    for (const field of this.fields) {
+    const values = this.fields.map((field) => {
       const input = this.inputs.get(field.name);
-      if (input.disabled) continue;
-      if (field.type === "choice") {
-        if (input.value !== field.default) values[field.name] = input.value;
-      } else if (field.type === "choices") {
-        const chosen = [...input.querySelectorAll("input:checked")].map((box) => box.value);
-        if (chosen.length !== field.default.length) values[field.name] = chosen;
-      } else if (input.value.trim() !== "") {
-        values[field.name] = this.read(field);
-      }
-    }
-    return values;
+      if (input.disabled) return [];
+      const {get} = typeOf(field);
+      return [field.name, get ? get(input, field.default) : this.read(field)];
+    });
+    return Object.fromEntries(values.filter(([, value]) => value !== undefined));
   }
 
   set(values) {
     for (const field of this.fields) {
-      const input = this.inputs.get(field.name);
-      const value = values[field.name];
-      if (field.type === "choice") {
-        input.value = value ?? field.default;
-      } else if (field.type === "choices") {
-        for (const box of input.querySelectorAll("input"))
-          box.checked = (value ?? field.default).includes(box.value);
-      } else {
-        this.write(field.name, value ?? "");
-      }
+      const {name} = field;
+      const value = values[name];
+      const {set} = typeOf(field);
+      if (set) set(this.inputs.get(name), value ?? field.default);
+      else this.write(name, value ?? "");
       if (value !== undefined && !folded) this.parts.get(field.group).open = true;
+      this.sayOrigin(name);
     }
-    for (const {name} of this.fields) this.forgetOrigin(name);
     this.greyOut();
     this.showErrors([]);
   }
@@ -233,15 +236,19 @@ export class Form {
   showOrigins(parameters) {
     const {values, origins} = resolved(parameters);
     for (const field of this.fields) {
-      const input = this.inputs.get(field.name);
-      const origin = this.origins.get(field.name);
-      const value = values[field.name];
-      origin.textContent = originText(origins[field.name]);
-      origin.title = origins[field.name] ?? "";
-      if (input.type === "text")
-        input.placeholder =
-          value == null ? this.standardOf(field) : textOf(rounded(this.shown(field.name, value)));
+      const {name} = field;
+      this.sayOrigin(name, origins[name]);
+      if (typeOf(field).set) continue;
+      const value = values[name];
+      this.inputs.get(name).placeholder =
+        value == null ? this.standardOf(field) : textOf(rounded(this.shown(name, value)));
     }
+  }
+
+  /** Without an origin: what is there now is not of the last answer. */
+  sayOrigin(name, title = "") {
+    const origin = this.rows.get(name).querySelector(".origin");
+    Object.assign(origin, {textContent: originText(title), title});
   }
 
   /** The fields of these names and only these are set by something else. */
@@ -250,15 +257,10 @@ export class Form {
     this.greyOut();
   }
 
-  /** What is there now is not of the last answer. */
-  forgetOrigin(name) {
-    Object.assign(this.origins.get(name), {textContent: "", title: ""});
-  }
-
   /** Another value than the last answer's. */
   replace(name, value) {
     this.write(name, value);
-    this.forgetOrigin(name);
+    this.sayOrigin(name);
   }
 
   filled(name) {
@@ -281,11 +283,10 @@ export class Form {
   greyOut() {
     for (const {name} of this.fields) {
       const other = others[name];
-      const off =
-        this.replaced.includes(name) ||
-        (other && (this.replaced.includes(other) || (this.filled(other) && !this.filled(name))));
-      this.inputs.get(name).disabled = Boolean(off);
-      this.rows.get(name).classList.toggle("off", Boolean(off));
+      const follows = this.filled(other) && !this.filled(name);
+      const off = follows || [name, other].some((each) => this.replaced.includes(each));
+      this.inputs.get(name).disabled = off;
+      this.rows.get(name).classList.toggle("off", off);
     }
   }
 
@@ -294,9 +295,9 @@ export class Form {
    * first of them.
    */
   showErrors(errors, lead = true) {
-    for (const field of this.fields) {
-      this.errors.get(field.name).textContent = "";
-      this.inputs.get(field.name).removeAttribute("aria-invalid");
+    for (const {name} of this.fields) {
+      this.errors.get(name).textContent = "";
+      this.inputs.get(name).removeAttribute("aria-invalid");
     }
     const left = [];
     let first = null;
@@ -307,13 +308,13 @@ export class Form {
         left.push(error);
         continue;
       }
-      place.textContent += (place.textContent ? " " : "") + error.detail;
+      place.append(place.textContent && " ", error.detail);
       const input = this.inputs.get(name);
       input.setAttribute("aria-invalid", "true");
       input.closest("details").open = true;
       first ??= input;
     }
-    if (lead) first?.focus?.();
+    if (lead) first?.focus();
     return left;
   }
 }

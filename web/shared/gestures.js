@@ -1,129 +1,146 @@
 // Pointing at and zooming into a plot over an Axis, or over one for x and one for y: with a mouse,
 // with fingers, by keys.
-import {element} from "./dom.js";
+import {element, on} from "./dom.js";
+import {clamp} from "./numbers.js";
 
 const patience = 250; // ms in which a second click makes a double-click
 const jitter = 4; // px that a click may move
 const slim = 20; // px: a drag that is no wider zooms along the other axis alone
 
-/** The value of x and of y under a place of the plot, in pixels of the screen. */
-function valuesAt(over, axis, across, {clientX, clientY}) {
-  const box = over.getBoundingClientRect();
-  const at = ({view: [from, to]}, share) => from + share * (to - from);
-  const y = across && at(across, (box.bottom - clientY) / (box.height || 1));
-  return {x: at(axis, (clientX - box.left) / (box.width || 1)), y};
+// How the places of events, boxes and styles name a direction.
+const rightwards = {client: "clientX", start: "left", size: "width"};
+const upwards = {client: "clientY", start: "top", size: "height", turned: true};
+
+/** An axis along a direction of the screen. */
+class Way {
+  constructor(over, axis, direction) {
+    Object.assign(this, {over, axis, ...direction});
+  }
+
+  /**
+   * Of an event: its place, px from the start of the plot, which is `all` px long; the share of what
+   * is in view that lies before it; the value of the axis there.
+   */
+  at(event) {
+    const box = this.over.getBoundingClientRect();
+    const all = box[this.size] || 1;
+    const place = event[this.client] - box[this.start];
+    const share = this.turned ? 1 - place / all : place / all;
+    return {all, place, share, value: this.axis.view[0] + share * this.axis.width};
+  }
+
+  /** Pixels between two events. */
+  between(one, other) {
+    return Math.abs(other[this.client] - one[this.client]);
+  }
 }
 
 /**
- * click(x, reach, {left, top, y, touch}): where one clicks; reach: a few pixels in units of the axis;
- * left, top: px in the plot; y: of the axis across.
+ * click(x, reach, {top, y, touch}): where one clicks; reach: a few pixels in units of the axis; top:
+ * px in the plot; y: of the axis across, where there is one.
  */
 export function listen(over, axis, click, across = null) {
-  const at = (event) => valuesAt(over, axis, across, event);
-  const plot = {over, axis, across, at};
-  followMouse(plot, click);
+  const x = new Way(over, axis, rightwards);
+  const y = new Way(over, across ?? axis, upwards);
+  // The axis across is first: who hears of the cursor along x reads where the other one is.
+  const plot = {over, axis, across, ways: across ? [y, x] : [x]};
+  const where = (event, touch) => {
+    const {value, all} = x.at(event);
+    const {place: top, value: height} = y.at(event);
+    return [value, (6 / all) * axis.width, {top, y: height, touch}];
+  };
+  followMouse(plot, where, click);
   followWheel(plot);
   followFingers(plot);
   over.addEventListener("dblclick", () => {
-    axis.reset();
-    across?.reset();
+    for (const way of plot.ways) way.axis.reset();
   });
 }
 
 /** The cursor to where the pointer is. */
-function pointAt({axis, across, at}, event, by) {
-  const {x, y} = at(event);
-  across?.point(y, by);
-  axis.point(x, by);
+function pointAt({ways}, event, by) {
+  for (const way of ways) way.axis.point(way.at(event).value, by);
 }
 
 const ordered = (a, b) => (a < b ? [a, b] : [b, a]);
+const isMouse = (event) => event.pointerType === "mouse";
+const isZoomed = ({ways}) => ways.some((way) => way.axis.zoomed);
 
 /** A drag zooms; its end is no click, nor is half of a double-click, which shows the whole. */
-function followMouse(plot, click) {
-  const {over, axis, across, at} = plot;
+function followMouse(plot, where, click) {
+  const {over, ways} = plot;
   const selection = element("div", {className: "selection", hidden: true});
   over.append(selection);
   let from = null;
   let waiting = 0;
-  const isMouse = (event) => event.pointerType === "mouse";
-  const place = ({clientX, clientY}) => {
-    const {left, top} = over.getBoundingClientRect();
-    return {left: clientX - left, top: clientY - top};
-  };
-  const width = (event) => Math.abs(event.clientX - from.clientX);
-  const height = (event) => Math.abs(event.clientY - from.clientY);
-  const along = (event) => !across || width(event) >= Math.min(slim, height(event));
-  const upwards = (event) => across && height(event) >= Math.min(slim, width(event));
+  const moved = (event) => Math.max(...ways.map((way) => way.between(from, event)));
+  const isAlong = (way, event) => way.between(from, event) >= Math.min(slim, moved(event));
   const select = (event) => {
-    const [a, b] = [place(from), place(event)];
-    const [left, right] = along(event) ? ordered(a.left, b.left) : [0, over.clientWidth];
-    const [top, bottom] = upwards(event) ? ordered(a.top, b.top) : [0, over.clientHeight];
-    selection.hidden = Math.max(width(event), across ? height(event) : 0) < jitter;
-    const box = {left, top, width: right - left, height: bottom - top};
-    for (const [name, value] of Object.entries(box)) selection.style[name] = `${value}px`;
+    selection.hidden = moved(event) < jitter;
+    for (const way of ways) {
+      const {place, all} = way.at(event);
+      const [first, last] = isAlong(way, event) ? ordered(way.at(from).place, place) : [0, all];
+      selection.style[way.start] = `${first}px`;
+      selection.style[way.size] = `${last - first}px`;
+    }
   };
-  over.addEventListener("pointerdown", (event) => {
-    from = event;
-    if (isMouse(event) && event.button === 0) over.setPointerCapture(event.pointerId);
-  });
-  over.addEventListener("pointermove", (event) => {
-    if (!isMouse(event)) return;
-    if (event.buttons && from) select(event);
-    else pointAt(plot, event, "pointer");
-  });
-  over.addEventListener("pointerup", (event) => {
-    if (selection.hidden) return;
-    selection.hidden = true;
-    const [a, b] = [at(from), at(event)];
-    if (along(event)) axis.zoom(...ordered(a.x, b.x));
-    if (upwards(event)) across.zoom(...ordered(a.y, b.y));
-  });
-  over.addEventListener("click", (event) => {
-    clearTimeout(waiting);
-    const moved = from && Math.max(width(event), across ? height(event) : 0) > jitter;
-    if (event.detail > 1 || moved) return;
-    const {x, y} = at(event);
-    const reach = at({clientX: event.clientX + 6, clientY: event.clientY}).x - x;
-    pointAt(plot, event, "click");
-    const touch = Boolean(from) && !isMouse(from);
-    waiting = setTimeout(() => click(x, reach, {...place(event), y, touch}), patience);
+  on(over, {
+    pointerdown(event) {
+      from = event;
+      if (event.button === 0) over.setPointerCapture(event.pointerId); // of fingers, too
+    },
+    pointermove(event) {
+      if (!isMouse(event)) return;
+      if (event.buttons && from) select(event);
+      else pointAt(plot, event, "pointer");
+    },
+    pointerup(event) {
+      if (selection.hidden) return;
+      selection.hidden = true;
+      for (const way of ways)
+        if (isAlong(way, event)) way.axis.zoom(...ordered(way.at(from).value, way.at(event).value));
+    },
+    click(event) {
+      clearTimeout(waiting);
+      if (event.detail > 1 || (from && moved(event) > jitter)) return;
+      const touch = Boolean(from) && !isMouse(from);
+      pointAt(plot, event);
+      waiting = setTimeout(click, patience, ...where(event, touch));
+    },
   });
 }
 
 /** The wheel zooms; one that would zoom out of the whole scrolls the page. Sideways it pans. */
-function followWheel({over, axis, across, at}) {
+function followWheel(plot) {
+  const {over, axis, ways} = plot;
   const zoom = (event) => {
-    const sideways = Math.abs(event.deltaX) > Math.abs(event.deltaY) || event.shiftKey;
-    const outside = event.deltaY > 0 && !sideways;
-    if ((outside || sideways) && !axis.zoomed && !across?.zoomed) return;
+    const {deltaX, deltaY, deltaMode, shiftKey} = event;
+    const sideways = Math.abs(deltaX) > Math.abs(deltaY) || shiftKey;
+    if ((sideways || deltaY > 0) && !isZoomed(plot)) return;
     event.preventDefault();
-    const lines = event.deltaMode ? 16 : 1;
-    if (sideways) {
-      axis.pan(((event.deltaX || event.deltaY) * lines) / over.clientWidth);
-      return;
-    }
-    const {x, y} = at(event);
-    const factor = Math.exp(-0.0022 * lines * event.deltaY);
-    axis.zoomAt(x, factor);
-    across?.zoomAt(y, factor);
+    const lines = deltaMode ? 16 : 1;
+    if (sideways) axis.pan(((deltaX || deltaY) * lines) / over.clientWidth);
+    else
+      for (const way of ways)
+        way.axis.zoomAt(way.at(event).value, Math.exp(-0.0022 * lines * deltaY));
   };
   over.addEventListener("wheel", zoom, {passive: false});
 }
 
 /** One finger moves what is in view, or the cursor where all is; two zoom. */
 function followFingers(plot) {
-  const {over, axis, across, at} = plot;
+  const {over, across, ways} = plot;
   const fingers = new Map();
+  /** The middle of the fingers, and how far apart they are. */
   const span = () => {
-    const [a, b] = [...fingers.values()];
-    const [width, height] = [a.clientX - b.clientX, a.clientY - b.clientY];
-    const middle = {clientX: (a.clientX + b.clientX) / 2, clientY: (a.clientY + b.clientY) / 2};
-    return {...middle, width: Math.max(across ? Math.hypot(width, height) : Math.abs(width), 8)};
-  };
-  const pan = (by, to) => {
-    axis.pan((by.clientX - to.clientX) / over.clientWidth);
-    across?.pan((to.clientY - by.clientY) / over.clientHeight);
+    const [a, b = a] = fingers.values();
+    const apart = Math.hypot(...ways.map((way) => way.between(a, b)));
+    const middle = (client) => (a[client] + b[client]) / 2;
+    return {
+      clientX: middle("clientX"),
+      clientY: middle("clientY"),
+      width: Math.max(apart, 8),
+    };
   };
   const ends = (event) => fingers.delete(event.pointerId);
   // What is not zoomed leaves a stroke upwards to the page.
@@ -132,27 +149,24 @@ function followFingers(plot) {
   };
   leave();
   across?.onView(leave);
-  over.addEventListener("pointerdown", (event) => {
-    if (event.pointerType === "mouse") return;
-    fingers.set(event.pointerId, event);
-    over.setPointerCapture(event.pointerId);
-  });
-  over.addEventListener("pointermove", (event) => {
-    const before = fingers.get(event.pointerId);
-    if (before === undefined) return;
-    const old = fingers.size === 2 ? span() : null;
-    fingers.set(event.pointerId, event);
-    if (old) {
+  on(over, {
+    pointerdown(event) {
+      if (!isMouse(event)) fingers.set(event.pointerId, event);
+    },
+    pointermove(event) {
+      if (!fingers.has(event.pointerId)) return;
+      const old = span();
+      fingers.set(event.pointerId, event);
       const now = span();
-      pan(old, now);
-      const {x, y} = at(now);
-      axis.zoomAt(x, now.width / old.width);
-      across?.zoomAt(y, now.width / old.width);
-    } else if (axis.zoomed || across?.zoomed) pan(before, event);
-    else pointAt(plot, event, "pointer");
+      if (fingers.size < 2 && !isZoomed(plot)) return pointAt(plot, event, "pointer");
+      for (const way of ways) {
+        way.axis.pan(way.at(old).share - way.at(now).share);
+        way.axis.zoomAt(way.at(now).value, now.width / old.width);
+      }
+    },
+    pointerup: ends,
+    pointercancel: ends,
   });
-  over.addEventListener("pointerup", ends);
-  over.addEventListener("pointercancel", ends);
 }
 
 /**
@@ -160,30 +174,24 @@ function followFingers(plot) {
  * Down pan, 0 and Escape show the whole, n and p go to the next and the last impact.
  */
 export function followKeys(node, axis, impacts = () => []) {
-  const step = (event) => (event.shiftKey ? 0.05 : 0.005) * (axis.view[1] - axis.view[0]);
   const now = () => axis.cursor ?? axis.view[0];
-  const about = () => Math.min(Math.max(now(), axis.view[0]), axis.view[1]);
-  const beside = (way) => {
-    const list = impacts();
-    const found =
-      way > 0 ? list.find((t) => t > now()) : list[list.findIndex((t) => !(t < now())) - 1];
-    if (found !== undefined) axis.point(found, "key");
-  };
+  const go = (to) => to !== undefined && axis.point(to);
+  const step = (event, way) => go(now() + way * (event.shiftKey ? 0.05 : 0.005) * axis.width);
+  const zoom = (factor) => axis.zoomAt(clamp(now(), ...axis.view), factor);
   const acts = {
-    ArrowLeft: (event) => axis.point(now() - step(event), "key"),
-    ArrowRight: (event) => axis.point(now() + step(event), "key"),
-    Home: () => axis.point(axis.view[0], "key"),
-    End: () => axis.point(axis.view[1], "key"),
+    ArrowLeft: (event) => step(event, -1),
+    ArrowRight: (event) => step(event, 1),
+    Home: () => go(axis.view[0]),
+    End: () => go(axis.view[1]),
     PageUp: () => axis.pan(-0.8),
     PageDown: () => axis.pan(0.8),
-    "+": () => axis.zoomAt(about(), 1.5),
-    "=": () => axis.zoomAt(about(), 1.5),
-    "-": () => axis.zoomAt(about(), 1 / 1.5),
+    "+": () => zoom(1.5),
+    "-": () => zoom(1 / 1.5),
     0: () => axis.reset(),
-    Escape: () => axis.reset(),
-    n: () => beside(1),
-    p: () => beside(-1),
+    n: () => go(impacts().find((t) => t > now())),
+    p: () => go(impacts().findLast((t) => t < now())),
   };
+  Object.assign(acts, {"=": acts["+"], Escape: acts[0]});
   node.addEventListener("keydown", (event) => {
     const act = acts[event.key];
     if (!act || event.ctrlKey || event.metaKey || event.altKey) return;

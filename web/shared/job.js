@@ -4,20 +4,20 @@ import {Passing} from "./api.js";
 const patience = 120; // ms after which what is shown is marked as that of another request
 const again = 2; // s after which a server that does not answer, or is busy, is asked again
 
+/** Some seconds, or until one does not want to wait any longer. */
 const sleep = (seconds, signal) =>
-  new Promise((resolve, reject) => {
-    const timer = setTimeout(resolve, seconds * 1000);
-    const stop = () => {
-      clearTimeout(timer);
-      reject(signal.reason);
-    };
-    signal.addEventListener("abort", stop, {once: true});
+  new Promise((resolve) => {
+    setTimeout(resolve, seconds * 1000);
+    signal.onabort = resolve;
   });
 
 /** Whether the same request may be answered later: there was no answer, or half of one. */
 const passes = (error) => error instanceof Passing || error.status === 503;
 
 export class Job {
+  running = null;
+  next = null;
+
   /**
    * ask(request, signal): the answer, as a promise; show(answer, request, ms), which may take
    * its time; fail(error, request);
@@ -26,8 +26,6 @@ export class Job {
    */
   constructor(parts) {
     Object.assign(this, parts);
-    this.running = null;
-    this.next = null;
   }
 
   /**
@@ -35,11 +33,12 @@ export class Job {
    * end, so that something is seen on the way.
    */
   start(request, {hasty = false} = {}) {
-    const same = JSON.stringify(request) === this.running?.text;
-    if (same && !this.next && !this.running.abort.signal.aborted) return;
-    this.next = {request};
-    if (this.running && !(hasty && this.running.answers)) this.running.abort.abort();
-    else if (!this.running) this.run();
+    const {running} = this;
+    const same = JSON.stringify(request) === running?.text;
+    if (same && !this.next && !running.abort.signal.aborted) return;
+    this.next = request;
+    if (!running) this.run();
+    else if (!hasty || !running.answers) running.abort.abort();
   }
 
   cancel() {
@@ -49,7 +48,7 @@ export class Job {
 
   async run() {
     while (this.next) {
-      const {request} = this.next;
+      const request = this.next;
       this.next = null;
       await this.one(request);
     }
@@ -57,15 +56,16 @@ export class Job {
 
   async one(request) {
     const abort = new AbortController();
+    const {signal} = abort;
     this.running = {abort, answers: true, text: JSON.stringify(request)};
     const late = setTimeout(() => this.busy(true), patience);
     const began = performance.now();
     let cancelled = false;
     try {
-      const answer = await this.answer(request, abort.signal);
-      if (!abort.signal.aborted) await this.show(answer, request, performance.now() - began);
+      const answer = await this.answer(request, signal);
+      if (!signal.aborted) await this.show(answer, request, performance.now() - began);
     } catch (error) {
-      if (!abort.signal.aborted) this.fail(error, request);
+      if (!signal.aborted) this.fail(error, request);
       else cancelled = !this.next;
     } finally {
       clearTimeout(late);
@@ -76,7 +76,7 @@ export class Job {
 
   /** As long as there is no answer it is asked again. */
   async answer(request, signal) {
-    for (;;) {
+    for (;;)
       try {
         return await this.ask(request, signal);
       } catch (error) {
@@ -85,6 +85,5 @@ export class Job {
         this.later(`${error.message}; asking again every ${again} s`);
         await sleep(again, signal);
       }
-    }
   }
 }

@@ -6,22 +6,19 @@ import {Passing} from "./api.js";
  * character, too.
  */
 export async function* jsonLines(stream) {
-  const reader = stream.getReader();
-  const decoder = new TextDecoder();
+  const reader = stream.pipeThrough(new TextDecoderStream()).getReader();
   let rest = "";
-  let ended = false;
   try {
-    while (!ended) {
-      const {done, value} = await reader.read().catch(() => {
+    for (;;) {
+      const {done, value = ""} = await reader.read().catch(() => {
         throw new Passing("the answer broke off");
       });
-      const more = done ? decoder.decode() : decoder.decode(value, {stream: true});
-      const texts = `${rest}${more}`.split("\n");
+      const texts = `${rest}${value}`.split("\n");
       rest = texts.pop();
       for (const text of texts) if (text) yield {text, value: JSON.parse(text)};
-      ended = done; // what has no end of line then is half a line
+      if (done) return; // what has no end of line then is half a line
     }
   } finally {
-    if (!ended) reader.cancel().catch(() => {});
+    reader.cancel().catch(() => {});
   }
 }

@@ -18,7 +18,7 @@ export function askForKey() {
   return asking;
 }
 
-function ask() {
+async function ask() {
   const input = element("input", {
     type: "password",
     name: "key",
@@ -28,25 +28,21 @@ function ask() {
     autocomplete: "current-password",
   });
   const wrong = hasKey() ? "The server does not know this key. " : "";
+  const use = element("button", {}, "Use it");
   const dialog = element(
     "dialog",
     {},
-    element("h2", {textContent: "A key, please"}),
-    element("p", {textContent: `${wrong}This server answers only those who have one.`}),
-    element(
-      "form",
-      {method: "dialog"},
-      element("label", {}, "Key ", input, " ", element("button", {textContent: "Use it"})),
-    ),
+    element("h2", {}, "A key, please"),
+    element("p", {}, `${wrong}This server answers only those who have one.`),
+    element("form", {method: "dialog"}, element("label", {}, "Key ", input, " ", use)),
   );
   document.body.append(dialog);
   dialog.showModal();
-  return new Promise((resolve) => {
-    dialog.addEventListener("close", () => {
-      const given = input.value.trim();
-      if (given) sessionStorage.setItem(name, given);
-      dialog.remove();
-      resolve(Boolean(given));
-    });
+  await new Promise((resolve) => {
+    dialog.onclose = resolve;
   });
+  dialog.remove();
+  const given = input.value.trim();
+  if (given) sessionStorage.setItem(name, given);
+  return Boolean(given);
 }

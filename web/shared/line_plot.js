@@ -1,13 +1,15 @@
 // Lines over an axis. What is drawn is what is in view.
-import {colour} from "./colours.js";
 import {element} from "./dom.js";
 import {Frame, rangeOf} from "./frame.js";
+import {ink, write} from "./ink.js";
 import {short} from "./numbers.js";
 import {Panel} from "./panel.js";
-import {firstFrom} from "./search.js";
+import {firstFrom, lastUpTo} from "./search.js";
 import {line, shade, symbols} from "./shapes.js";
 
 const columnsOf = (width) => Math.max(width - 60, 10);
+
+const shortOrNone = (value) => (value === null ? "" : short(value));
 
 const naming = (x = "τ") => (typeof x === "string" ? {label: x, factor: 1} : x);
 
@@ -47,14 +49,16 @@ export class LinePlot extends Panel {
     this.last?.click?.(...where);
   }
 
-  /** What is in view; alone: with the labels of x, whatever is below it. */
+  /**
+   * What is in view; alone: with the labels of x, whatever is below it, and the names of the lines.
+   */
   prepare(width, height, alone = false) {
     if (!this.last) return null;
-    const {x, label, log, range, bare} = this.last;
-    const {data, dense = false} = this.dataFor(width);
-    const y = range ?? rangeOf(data.slice(1), {log}) ?? [0, 1];
+    const {x, label, log, range, bare, data, trace} = this.last;
+    const drawn = data ? {data} : trace(...this.axis.view, columnsOf(width));
     const ofX = {...x, range: this.axis.view, bare: bare && !alone};
-    return {data, dense, frame: new Frame(width, height, ofX, {range: y, log, label})};
+    const ofY = {range: range ?? rangeOf(drawn.data.slice(1), log) ?? [0, 1], log, label};
+    return {...drawn, alone, frame: new Frame(width, height, ofX, ofY)};
   }
 
   /** Of a line whose extremes are drawn, pixel by pixel. */
@@ -62,44 +66,36 @@ export class LinePlot extends Panel {
     return columnsOf(this.size.width);
   }
 
-  dataFor(width) {
-    const {data, trace} = this.last;
-    return data ? {data} : trace(...this.axis.view, columnsOf(width));
-  }
-
-  /** c: a canvas' context, or what draws in its place. */
-  paint(c, {frame, data: [x, ...columns], dense}) {
-    const {series, layers = [], calm = [], bands = [], marks = []} = this.last;
+  paint(c, {frame, data: [x, ...columns], dense, alone}) {
+    const {series, layers = [], calm = [], bands = [], marks = [], lines = []} = this.last;
+    const {levels = [], levelColour = "soft"} = this.last;
     frame.draw(c);
     frame.clip(c);
-    for (const {from, to, colour: name} of layers) {
-      c.fillStyle = colour(name);
+    for (const {from, to, colour} of layers) {
+      ink(c, colour);
       c.fillRect(frame.box.left, frame.py(to), frame.width, frame.py(from) - frame.py(to));
     }
     shade(c, frame, calm, "calm");
     shade(c, frame, bands, "shade");
-    this.rule(c, frame);
+    for (const level of levels) {
+      ink(c, level.colour ?? levelColour);
+      frame.across(c, level.y ?? level);
+    }
+    ink(c, "wall", 1, [6, 4]);
+    for (const moment of lines) frame.upright(c, moment);
     series.forEach((s, k) => {
       if (!s.dots || s.width) line(c, frame, x, columns[k], s, dense);
     });
     c.restore();
-    series.forEach(({dots, colour: name}, k) => {
-      const group = {x, y: columns[k], colour: name, shape: "dot", size: dots / 2};
+    series.forEach(({dots, colour}, k) => {
+      const group = {x, y: columns[k], colour, shape: "dot", size: dots / 2};
       if (dots) symbols(c, frame, group, true);
     });
     for (const group of marks) symbols(c, frame, group);
-  }
-
-  /** With the names of the lines. */
-  paintAll(c, width, height) {
-    const {frame} = super.paintAll(c, width, height);
-    const {series} = this.last;
-    if (series.length < 2) return;
-    c.textAlign = "left";
-    c.textBaseline = "top";
-    series.forEach(({label, colour: name}, k) => {
-      c.fillStyle = colour(name);
-      c.fillText(label, frame.box.left + 8 + 90 * k, frame.box.top + 4);
+    if (!alone || series.length < 2) return;
+    series.forEach(({label, colour}, k) => {
+      ink(c, colour);
+      write(c, label, frame.box.left + 8 + 90 * k, frame.box.top + 4, "left", "top");
     });
   }
 
@@ -108,28 +104,12 @@ export class LinePlot extends Panel {
     const {series, x, data, samples, unit = ""} = this.last;
     const [from, to] = this.axis.view;
     const [time, ...columns] = data ?? samples(from, to);
-    const [first, end] = [firstFrom(time, from), firstFrom(time, to)];
-    const last = time[end] === to ? end + 1 : end;
-    const part = (column) => Array.from(column.slice(first, last));
+    const part = (column) =>
+      Array.from(column.slice(firstFrom(time, from), lastUpTo(time, to) + 1));
     return {
       names: [x.label, ...series.map(({label}) => `${label}${unit && ` (${unit})`}`)],
       columns: [part(time).map((t) => t * x.factor), ...columns.map(part)],
     };
-  }
-
-  rule(c, frame) {
-    const {levels = [], levelColour = "soft", lines = []} = this.last;
-    c.lineWidth = 1;
-    c.setLineDash([]);
-    for (const level of levels) {
-      const {y, colour: name} = typeof level === "number" ? {y: level, colour: levelColour} : level;
-      c.strokeStyle = colour(name);
-      frame.across(c, y);
-    }
-    c.strokeStyle = colour("wall");
-    c.setLineDash([6, 4]);
-    for (const x of lines) frame.upright(c, x);
-    c.setLineDash([]);
   }
 
   /** Other marks and bands, and the zoom stays. */
@@ -156,27 +136,24 @@ export class LinePlot extends Panel {
     if (this.written === written) return;
     this.written = written;
     this.values = series.map(() => element("b"));
-    const keys = series.map(({label, colour: name, dash}, i) => {
-      const key = element("span", {className: `key line${dash ? " dashed" : ""}`}, label, " ");
-      key.style.setProperty("--key", `var(--${name})`);
-      key.append(this.values[i]);
+    const keys = series.map(({label, colour, dash}, i) => {
+      const className = `key line${dash ? " dashed" : ""}`;
+      const key = element("span", {className}, label, " ", this.values[i]);
+      key.style.setProperty("--key", `var(--${colour})`);
       return key;
     });
-    const several = series.length > 1;
-    this.legend.replaceChildren(...(several ? keys : []));
-    this.legend.hidden = !several;
+    this.legend.hidden = keys.length < 2;
+    this.legend.replaceChildren(...(this.legend.hidden ? [] : keys));
     this.head = this.legend.offsetHeight;
   }
 
   /** The values at a moment, of columns that are there. */
   tell(t) {
     const {series, data} = this.last;
-    if (series.length < 2 || !data) return;
-    const at = t === null || !data[0].length ? -1 : firstFrom(data[0], t);
-    const i = Math.min(at, data[0].length - 1);
-    series.forEach((s, k) => {
-      const value = i < 0 ? null : data[k + 1][i];
-      const shown = value == null ? (s.text?.(null) ?? "") : (s.text ?? short)(value);
+    if (!data) return;
+    const i = t === null ? -1 : Math.min(firstFrom(data[0], t), data[0].length - 1);
+    series.forEach(({text = shortOrNone}, k) => {
+      const shown = text(data[k + 1][i] ?? null);
       if (this.values[k].textContent !== shown) this.values[k].textContent = shown;
     });
   }

@@ -1,4 +1,5 @@
 // What makes a plot one for the keyboard and for a reader of the screen.
+import {attributes} from "./dom.js";
 import {followKeys} from "./gestures.js";
 import {short} from "./numbers.js";
 
@@ -7,20 +8,19 @@ import {short} from "./numbers.js";
  * p go to.
  */
 export function operable(plot, name, moments) {
-  const node = plot.container ?? plot.canvas;
-  node.setAttribute("aria-label", name);
-  node.setAttribute("role", plot.axis ? "slider" : "img");
-  if (!plot.axis) return;
-  const {axis} = plot;
+  const {container: node, axis} = plot;
+  attributes(node, {"aria-label": name, role: axis ? "slider" : "img"});
+  if (!axis) return;
   node.tabIndex = 0;
   followKeys(node, axis, moments);
   const tell = () => {
-    const [least, most] = axis.whole;
     const now = axis.cursor ?? axis.view[0];
-    node.setAttribute("aria-valuemin", least);
-    node.setAttribute("aria-valuemax", most);
-    node.setAttribute("aria-valuenow", now);
-    node.setAttribute("aria-valuetext", short(now));
+    attributes(node, {
+      "aria-valuemin": axis.whole[0],
+      "aria-valuemax": axis.whole[1],
+      "aria-valuenow": now,
+      "aria-valuetext": short(now),
+    });
   };
   tell();
   axis.onCursor((by) => by !== "play" && tell()); // nobody is told sixty times a second

@@ -5,7 +5,7 @@
  * A field that stands for another one: which of both was given shows in where the other follows
  * from.
  */
-const standing = {
+export const standing = {
   f0: "k1",
   damping_ratio: "c1",
   mass_ratio: "m2",

@@ -1,6 +1,6 @@
 // What the points of a sweep tell: one table for menus, axes, colours and tooltips. Lengths are
 // drawn in mm.
-import {count, short} from "./numbers.js";
+import {count, inMm, short, withError} from "./numbers.js";
 
 export const regimes = {
   VI: "dense, irregular",
@@ -13,16 +13,17 @@ export const regimes = {
 };
 export const regimeColour = (regime) => `regime-${regime}`;
 export const verdicts = {chaotic: "chaotic", regular: "regular", not_decided: "not decided"};
-const verdictColours = {chaotic: "chaotic", regular: "regular", not_decided: "undecided"};
 /** A ball that touches nothing has no verdict, and a colour of its own. */
-export const verdictColour = (p) =>
-  p.verdict === null ? "untouched" : (verdictColours[p.verdict] ?? "undecided");
+export const verdictColour = ({verdict}) => {
+  if (verdict === null) return "untouched";
+  return verdict === "chaotic" || verdict === "regular" ? verdict : "undecided";
+};
 
 const mm = (metres) => (metres == null ? null : metres * 1000);
 
 /**
- * of: the value at a point, where it is not the point's own of that name; from0: its axis begins at 0; levels: lines across the plot; free: the
- * same without the absorber; diverging: its colours change sides at 0.
+ * of: the value at a point, where it is not the point's own of that name; levels: lines across the
+ * plot; free: the same without the absorber; diverging: its colours change sides at 0.
  */
 export const quantities = {
   lambda1: {
@@ -31,46 +32,27 @@ export const quantities = {
     of: (p) => p.lambda?.[0] ?? null,
     diverging: true,
   },
-  z: {
-    label: "z",
-    title: "impacts per cycle z",
-    from0: true,
-    levels: [1, 2, 3],
-  },
-  regime: {
-    label: "",
-    title: "regime",
-    categories: Object.keys(regimes),
-  },
+  z: {label: "z", title: "impacts per cycle z", levels: [1, 2, 3]},
+  regime: {label: "", title: "regime", categories: Object.keys(regimes)},
   x_rms_ratio: {
     label: "rms of x / without absorber",
     title: "rms of x over that without absorber",
-    from0: true,
     levels: [1],
   },
   x_max: {
     label: "largest |x| (mm)",
     title: "largest |x|",
     of: (p) => mm(p.x_max),
-    from0: true,
     free: (p) => mm(p.x_free),
   },
-  share_impacts: {
-    label: "share of the impacts",
-    title: "dissipated by the impacts, share",
-    from0: true,
-  },
-  synchronised: {
-    label: "share synchronised",
-    title: "contacts synchronised, share",
-    from0: true,
-    levels: [1],
-  },
+  share_impacts: {label: "share of the impacts", title: "dissipated by the impacts, share"},
+  synchronised: {label: "share synchronised", title: "contacts synchronised, share", levels: [1]},
 };
+// Those of a sweep over one axis; their axis begins at 0.
+const besideLambda = ["z", "x_rms_ratio", "share_impacts", "x_max", "synchronised"];
+for (const name of besideLambda) quantities[name].from0 = true;
 for (const [name, quantity] of Object.entries(quantities)) quantity.of ??= (p) => p[name] ?? null;
 
-const besideLambda = ["z", "x_rms_ratio", "share_impacts", "x_max", "synchronised"];
-const overTwoAxes = Object.keys(quantities);
 const reducedTo = ["x_max", "where", "z"];
 
 /** A quantity of a sweep's points; `where` is that of the axis that a reduction folds. */
@@ -84,9 +66,10 @@ export function quantityOf(name, data) {
 
 /** What the menus of a sweep offer: [name, title] each. */
 export function menuOf(data) {
-  const map = data.axes.length > 1;
-  const whole = map ? overTwoAxes : besideLambda;
-  const reduced = map ? [...reducedTo, "regime"] : reducedTo;
+  const [whole, reduced] =
+    data.axes.length > 1
+      ? [Object.keys(quantities), [...reducedTo, "regime"]]
+      : [besideLambda, reducedTo];
   const names = data.reduced ? reduced : whole;
   return names.map((name) => [name, quantityOf(name, data).title]);
 }
@@ -114,11 +97,20 @@ export const startNames = {
   next: "next point",
 };
 
-const columns =
-  (...names) =>
-  (section) =>
-    names.map((name) => section[name]);
-const thousandfold = (name) => ({columns: columns(name), value: (v) => v * 1000});
+/** A coordinate in mm of columns in m. */
+const length = (title, ...names) => ({
+  title,
+  label: `${title} (mm)`,
+  columns: (section) => names.map((name) => section[name]),
+  value: (v) => v * 1000,
+});
+
+/** A velocity, after impacts or at any moment. */
+const velocity = (of, after = "") => ({
+  ...length(`${of}′${after && " after"}`, `${of}_dot${after}`),
+  title: `${of}′${after && " after the impact"}`,
+  seconds: {column: `${of}_velocity${after}`, label: `${of}′${after && " after"} (mm/s)`},
+});
 
 /**
  * The coordinates of a section. columns: what they are computed from, by value, which also gets
@@ -128,30 +120,18 @@ const thousandfold = (name) => ({columns: columns(name), value: (v) => v * 1000}
 export const coordinates = {
   impact: {
     phase: {
+      ...length("phase of the forcing", "phase"),
       label: "phase (rad)",
-      title: "phase of the forcing",
-      columns: columns("phase"),
       value: (v) => v,
       range: [0, 2 * Math.PI],
       turns: true,
     },
-    x: {label: "x (mm)", title: "x", ...thousandfold("x")},
-    x_dot_after: {
-      label: "x′ after (mm)",
-      title: "x′ after the impact",
-      ...thousandfold("x_dot_after"),
-      seconds: {column: "x_velocity_after", label: "x′ after (mm/s)"},
-    },
-    y_dot_after: {
-      label: "y′ after (mm)",
-      title: "y′ after the impact",
-      ...thousandfold("y_dot_after"),
-      seconds: {column: "y_velocity_after", label: "y′ after (mm/s)"},
-    },
+    x: length("x", "x"),
+    x_dot_after: velocity("x", "_after"),
+    y_dot_after: velocity("y", "_after"),
     time_difference: {
+      ...length("time between impacts / half period", "time_difference"),
       label: "half periods",
-      title: "time between impacts / half period",
-      columns: columns("time_difference"),
       value: (v, half) => (v === null ? NaN : v / half),
       log: true,
       least: 0.1,
@@ -159,25 +139,10 @@ export const coordinates = {
     },
   },
   stroboscopic: {
-    x: {label: "x (mm)", title: "x", ...thousandfold("x")},
-    x_dot: {
-      label: "x′ (mm)",
-      title: "x′",
-      ...thousandfold("x_dot"),
-      seconds: {column: "x_velocity", label: "x′ (mm/s)"},
-    },
-    y_dot: {
-      label: "y′ (mm)",
-      title: "y′",
-      ...thousandfold("y_dot"),
-      seconds: {column: "y_velocity", label: "y′ (mm/s)"},
-    },
-    gap: {
-      label: "y − x (mm)",
-      title: "y − x",
-      columns: columns("y", "x"),
-      value: (y, _, x) => (y - x) * 1000,
-    },
+    x: length("x", "x"),
+    x_dot: velocity("x"),
+    y_dot: velocity("y"),
+    gap: {...length("y − x", "y", "x"), value: (y, _, x) => (y - x) * 1000},
   },
 };
 
@@ -213,46 +178,43 @@ function period({period_cycles: cycles, impacts_per_period: impacts, symmetric})
 export const regimeText = (regime) =>
   `${regime === "none" ? "" : `${regime}, `}${regimes[regime] ?? ""}`;
 
-const inMm = (metres) => (metres == null ? "–" : `${short(Number(mm(metres).toPrecision(4)))} mm`);
 const named = (regime) => (regime === "none" ? regimes.none : `Type ${regime}`);
 
-/** Where a peak lies on the axis that is folded, as where() names it. */
-const placeOf = (m, where) => (where && m.where != null ? ` at ${where(m.where)}` : "");
+/** The largest |x| of a motion and where it lies on the axis that is folded, as where() names it. */
+const peakOf = (m, where) =>
+  inMm(m.x_max) + (where && m.where != null ? ` at ${where(m.where)}` : "");
 
 /** The motions from several starts in words; where: names the place of a peak. */
 function describeStarts(p, where) {
-  const peak = (m) => `${inMm(m.x_max)}${placeOf(m, where)}`;
-  const motion = (m) => (m.x_max == null ? "not measured" : `${peak(m)}, ${named(m.regime)}`);
+  const motion = (m) =>
+    m.x_max == null ? "not measured" : `${peakOf(m, where)}, ${named(m.regime)}`;
   if (p.starts) return p.starts.map((m) => [startNames[m.start] ?? m.start, motion(m)]);
   const second = p.depends_on_start ? p.second_start : null;
   return second ? [[`from the ${second.start}`, `elsewhere: ${motion(second)}`]] : [];
 }
 
 /** The largest exponent and its standard error. */
-function exponentText({lambda, status, standard_error: errors}) {
-  if (status?.[0] === "minus_infinity") return "−∞";
-  if (lambda[0] == null) return "–";
-  const value = short(Number(lambda[0].toPrecision(4)));
-  return errors?.[0] == null ? value : `${value} ± ${short(Number(errors[0].toPrecision(2)))}`;
-}
+const exponentText = ({lambda, status, standard_error: errors}) =>
+  status?.[0] === "minus_infinity" ? "−∞" : withError(lambda[0], errors?.[0], 4);
 
-const rmsText = ({x_rms: rms, x_rms_ratio: ratio}) =>
-  ratio == null ? `${short(mm(rms))} mm` : `${(ratio * 100).toFixed(0)} % of that without`;
+const wholePercent = (share) => `${(share * 100).toFixed(0)} %`;
 
 /** A point in words: [term, value] each. */
 export function describe(p, where) {
   if (p.error) return [["failed", p.error]];
   if (p.regime == null) return [["", "not measured: max_impacts ended it"]];
-  const rows = [["regime", regimeText(p.regime)]];
-  if (p.periodic && p.impacts_per_period) rows.push(["", period(p)]);
-  rows.push(["z", short(p.z)]);
-  if (p.lambda) rows.push(["λ₁", exponentText(p)]);
-  rows.push(["", verdicts[p.verdict] ?? ""]);
-  rows.push(["rms of x", rmsText(p)]);
-  rows.push(["largest |x|", `${inMm(p.x_max)}${placeOf(p, where)}`]);
-  if (p.x_free != null) rows.push(["without", inMm(p.x_free)]);
-  if (p.share_impacts != null)
-    rows.push(["by impacts", `${(p.share_impacts * 100).toFixed(0)} % of the dissipation`]);
-  if (p.sticks) rows.push(["sticks", String(p.sticks)]);
-  return [...rows.filter(([term, value]) => term || value), ...describeStarts(p, where)];
+  const {x_rms_ratio: ratio, share_impacts: share} = p;
+  const rows = [
+    ["regime", regimeText(p.regime)],
+    ["", p.periodic && p.impacts_per_period && period(p)],
+    ["z", short(p.z)],
+    ["λ₁", p.lambda && exponentText(p)],
+    ["", verdicts[p.verdict]],
+    ["rms of x", ratio == null ? inMm(p.x_rms, 5) : `${wholePercent(ratio)} of that without`],
+    ["largest |x|", peakOf(p, where)],
+    ["without", p.x_free != null && inMm(p.x_free)],
+    ["by impacts", share != null && `${wholePercent(share)} of the dissipation`],
+    ["sticks", p.sticks && String(p.sticks)],
+  ];
+  return [...rows.filter(([, value]) => value), ...describeStarts(p, where)];
 }

@@ -1,68 +1,69 @@
 // Draws into SVG what a canvas' context would draw: as much of it as the plots use.
+import {attributes} from "./dom.js";
 
-const escaped = (text) =>
-  String(text).replace(
-    /[&<>"]/g,
-    (c) => ({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"})[c],
-  );
-const fixed = (v) => String(Number(v.toFixed(2)));
+const fixed = (v) => Number(v.toFixed(2));
 const anchors = {left: "start", center: "middle", right: "end"};
 const baselines = {top: "hanging", middle: "central", bottom: "text-after-edge"};
 
-/** A font of a canvas as attributes. */
-function fontOf(font) {
-  const [, slant, weight, size, family] = /^(italic )?(\d+ )?(\d+)px (.*)$/.exec(font);
-  return {
-    "font-family": family,
-    "font-size": size,
-    ...(slant ? {"font-style": "italic"} : {}),
-    ...(weight ? {"font-weight": weight.trim()} : {}),
-  };
+/** An element; its numbers are rounded. */
+function svg(tag, all, ...children) {
+  const node = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  const written = Object.entries(all).map(([name, v]) => [name, v?.toFixed ? fixed(v) : v]);
+  attributes(node, Object.fromEntries(written));
+  node.append(...children);
+  return node;
 }
 
 export class SvgPen {
+  lineWidth = 1;
+  globalAlpha = 1;
+  font = "11px sans-serif";
+  textAlign = "left";
+  textBaseline = "alphabetic";
+  dash = [];
+  path = "";
+  saved = [];
+
   /** background: its colour. */
   constructor(width, height, background) {
-    Object.assign(this, {width, height, background});
-    Object.assign(this, {fillStyle: "#000", strokeStyle: "#000", lineWidth: 1, globalAlpha: 1});
-    Object.assign(this, {font: "11px sans-serif", textAlign: "left", textBaseline: "alphabetic"});
-    Object.assign(this, {
-      dash: [],
-      moves: "",
-      clipped: "",
-      path: "",
-      parts: [],
-      clips: [],
-      saved: [],
-    });
+    const viewBox = `0 0 ${width} ${height}`;
+    this.root = this.group = svg("svg", {width, height, viewBox});
+    this.fillStyle = background;
+    this.fillRect(0, 0, width, height);
   }
 
   /** The drawing so far. */
   text() {
-    const {width, height, background, clips, parts} = this;
-    const size = `width="${width}" height="${height}" viewBox="0 0 ${width} ${height}"`;
-    const ground = `<rect width="${width}" height="${height}" fill="${background}"/>`;
-    const defs = `<defs>${clips.join("")}</defs>`;
-    return `<svg xmlns="http://www.w3.org/2000/svg" ${size}>${defs}${ground}${parts.join("")}</svg>`;
+    return new XMLSerializer().serializeToString(this.root);
   }
 
   save() {
-    const {fillStyle, strokeStyle, lineWidth, globalAlpha, font, textAlign, textBaseline} = this;
-    const {dash, moves, clipped} = this;
-    const style = {fillStyle, strokeStyle, lineWidth, globalAlpha, font, textAlign, textBaseline};
-    this.saved.push({...style, dash, moves, clipped});
+    this.saved.push({...this});
   }
 
   restore() {
     Object.assign(this, this.saved.pop());
   }
 
+  /** What is drawn from here on, until what was saved is restored, lies in a group. */
+  within(all) {
+    const group = svg("g", all);
+    this.group.append(group);
+    this.group = group;
+  }
+
   translate(x, y) {
-    this.moves += `translate(${fixed(x)} ${fixed(y)})`;
+    this.within({transform: `translate(${x} ${y})`});
   }
 
   rotate(angle) {
-    this.moves += `rotate(${fixed((angle * 180) / Math.PI)})`;
+    this.within({transform: `rotate(${(angle * 180) / Math.PI})`});
+  }
+
+  clip() {
+    const id = `clip${this.root.querySelectorAll("clipPath").length}`;
+    this.group.append(svg("clipPath", {id}, svg("path", {d: this.path})));
+    this.within({"clip-path": `url(#${id})`});
   }
 
   setLineDash(dash) {
@@ -73,51 +74,51 @@ export class SvgPen {
     this.path = "";
   }
 
+  /** A command of the path. */
+  to(command, ...numbers) {
+    this.path += command + numbers.map(fixed).join(" ");
+  }
+
   moveTo(x, y) {
-    this.path += `M${fixed(x)} ${fixed(y)}`;
+    this.to("M", x, y);
   }
 
   /** From where the path is; the first one begins it. */
   lineTo(x, y) {
-    this.path += `${this.path ? "L" : "M"}${fixed(x)} ${fixed(y)}`;
+    this.to(this.path ? "L" : "M", x, y);
   }
 
   closePath() {
-    this.path += "z";
+    this.to("z");
   }
 
   /** A whole circle. */
   arc(x, y, r) {
-    const half = (to) => `A${fixed(r)} ${fixed(r)} 0 0 1 ${fixed(to)} ${fixed(y)}`;
-    this.path += `M${fixed(x + r)} ${fixed(y)}${half(x - r)}${half(x + r)}`;
+    this.to("M", x + r, y);
+    for (const to of [x - r, x + r]) this.to("A", r, r, 0, 0, 1, to, y);
   }
 
   rect(x, y, width, height) {
-    this.path += `M${fixed(x)} ${fixed(y)}h${fixed(width)}v${fixed(height)}h${fixed(-width)}z`;
+    const [right, bottom] = [x + width, y + height];
+    this.to("M", x, y, right, y, right, bottom, x, bottom);
+    this.closePath();
   }
 
-  clip() {
-    const id = `clip${this.clips.length}`;
-    this.clips.push(`<clipPath id="${id}"><path d="${this.path}"/></clipPath>`);
-    this.clipped = id;
-  }
-
-  /** An element with what holds for all of them. */
-  add(name, attributes, content = "") {
-    const all = {
-      ...attributes,
-      ...(this.globalAlpha < 1 ? {opacity: this.globalAlpha} : {}),
-      ...(this.moves ? {transform: this.moves} : {}),
-      ...(this.clipped ? {"clip-path": `url(#${this.clipped})`} : {}),
-    };
-    const list = Object.entries(all).map(([key, value]) => ` ${key}="${escaped(value)}"`);
-    this.parts.push(`<${name}${list.join("")}>${content}</${name}>`);
+  /** An element, as opaque as all are for now. */
+  add(tag, all, ...children) {
+    const opacity = this.globalAlpha < 1 ? this.globalAlpha : null;
+    this.group.append(svg(tag, {...all, opacity}, ...children));
   }
 
   stroke() {
-    const dash = this.dash.length ? {"stroke-dasharray": this.dash.join(" ")} : {};
-    const line = {stroke: this.strokeStyle, "stroke-width": this.lineWidth, fill: "none"};
-    if (this.path) this.add("path", {d: this.path, ...line, ...dash});
+    if (!this.path) return;
+    this.add("path", {
+      d: this.path,
+      stroke: this.strokeStyle,
+      "stroke-width": this.lineWidth,
+      "stroke-dasharray": this.dash.join(" ") || null,
+      fill: "none",
+    });
   }
 
   fill() {
@@ -125,24 +126,23 @@ export class SvgPen {
   }
 
   fillRect(x, y, width, height) {
-    const place = {x: fixed(x), y: fixed(y), width: fixed(width), height: fixed(height)};
-    this.add("rect", {...place, fill: this.fillStyle});
+    this.add("rect", {x, y, width, height, fill: this.fillStyle});
   }
 
   /** image: a canvas. */
   drawImage(image, x, y, width, height) {
-    const place = {x: fixed(x), y: fixed(y), width: fixed(width), height: fixed(height)};
     const style = {preserveAspectRatio: "none", "image-rendering": "pixelated"};
-    this.add("image", {...place, ...style, href: image.toDataURL()});
+    this.add("image", {x, y, width, height, ...style, href: image.toDataURL()});
   }
 
   fillText(text, x, y) {
-    const style = {
-      ...fontOf(this.font),
-      fill: this.fillStyle,
-      "text-anchor": anchors[this.textAlign] ?? "start",
-      "dominant-baseline": baselines[this.textBaseline] ?? "auto",
+    // Attributes each: the page's policy lets no picture have styles of its own.
+    const [, weight, size, family] = /^(\d+ )?(\d+)px (.*)$/.exec(this.font);
+    const font = {"font-weight": weight, "font-size": size, "font-family": family};
+    const place = {
+      "text-anchor": anchors[this.textAlign],
+      "dominant-baseline": baselines[this.textBaseline],
     };
-    this.add("text", {x: fixed(x), y: fixed(y), ...style}, escaped(text));
+    this.add("text", {x, y, fill: this.fillStyle, ...font, ...place}, text);
   }
 }

@@ -1,14 +1,9 @@
 // A box beside the pointer that says what is there.
-import {element} from "./dom.js";
+import {button, element} from "./dom.js";
 
 /** It does not take the focus: without it the box would vanish under the click. */
 const buttonFor = ({label, run}) =>
-  element("button", {
-    type: "button",
-    textContent: label,
-    onclick: run,
-    onmousedown: (event) => event.preventDefault(),
-  });
+  button(label, run, {onmousedown: (event) => event.preventDefault()});
 
 export class Tip {
   constructor(container) {
@@ -22,12 +17,9 @@ export class Tip {
    * who have no pointer to click with.
    */
   show(left, top, rows, note, act) {
-    const entry = ([term, value]) => [
-      element("dt", {textContent: term}),
-      element("dd", {textContent: value}),
-    ];
+    const entry = ([term, value]) => [element("dt", {}, term), element("dd", {}, value)];
     const list = element("dl", {}, ...rows.flatMap(entry));
-    const last = act ? buttonFor(act) : element("p", {textContent: note});
+    const last = act ? buttonFor(act) : element("p", {}, note);
     this.node.replaceChildren(list, last);
     this.node.hidden = false;
     this.node.classList.toggle("pinned", Boolean(act));

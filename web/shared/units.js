@@ -1,99 +1,88 @@
 // The units in which an answer is shown. Where its system was given in SI: s, mm/s, m/s², N s and
 // J, or as one likes those of tau = omega0 t; else those of tau.
-import {element} from "./dom.js";
+import {attributes, button} from "./dom.js";
 
 const key = "vines-units";
 const tau = "τ";
 const seconds = "s, mm/s";
 
-/** What is remembered, where the browser lets us. */
-function recall() {
+/** What is remembered, where the browser lets us; else it holds for this page alone. */
+function remembered(f) {
   try {
-    return localStorage.getItem(key);
+    return f(localStorage);
   } catch {
     return null;
   }
 }
 
-function remember(value) {
-  try {
-    localStorage.setItem(key, value);
-  } catch {
-    // Then it holds for this page alone.
-  }
-}
-
-let chosen = recall() === tau ? tau : seconds;
-const heard = new Set();
-const buttons = new Set();
+let chosen = remembered((store) => store.getItem(key)) === tau ? tau : seconds;
+const heard = [];
+const buttons = [];
 
 /** Whether seconds are asked for, where there are any. */
 export const inSeconds = () => chosen === seconds;
 
 /** f: called when other units are chosen. */
-export const onUnits = (f) => heard.add(f);
+export const onUnits = (f) => heard.push(f);
 
 function choose(units) {
   if (units === chosen) return;
   chosen = units;
-  remember(units);
+  remembered((store) => store.setItem(key, units));
   showChosen();
   for (const f of heard) f();
 }
 
 function showChosen() {
-  for (const button of buttons)
-    button.setAttribute("aria-pressed", String(button.textContent === chosen));
+  for (const each of buttons) attributes(each, {"aria-pressed": each.textContent === chosen});
 }
+
+const titles = {
+  [seconds]: "as they are in SI",
+  [tau]: "time as τ = ω₀t, velocities per unit of it",
+};
 
 /** Fills a container with the switch. */
 export function unitsSwitch(container) {
-  for (const units of [seconds, tau]) {
-    const button = element("button", {type: "button", className: "small", textContent: units});
-    button.title =
-      units === tau ? "time as τ = ω₀t, velocities per unit of it" : "as they are in SI";
-    button.addEventListener("click", () => choose(units));
-    buttons.add(button);
-    container.append(button);
-  }
+  const own = Object.entries(titles).map(([units, title]) =>
+    button(units, () => choose(units), {className: "small", title}),
+  );
+  container.append(...own);
+  buttons.push(...own);
   showChosen();
 }
 
 /** of(value): the value in `unit`. */
-const quantity = (factor, unit) => ({
-  unit,
-  of: factor === 1 ? (v) => v : (v) => (v == null ? null : v * factor),
-});
+const quantity = (unit, factor) => ({unit, of: (v) => (v == null ? v : v * factor)});
 
 // Velocities per unit of tau are lengths, energies over m1 omega0² are squares of them.
+const length = quantity("mm", 1000);
 const ofTau = {
   si: false,
-  x: {label: "τ", factor: 1},
-  time: quantity(1, ""),
+  x: {label: tau, factor: 1},
+  time: quantity("", 1),
   at: (t) => `τ = ${t.toFixed(1)}`,
-  velocity: quantity(1000, "mm"),
-  acceleration: quantity(1000, "mm"),
-  impulse: quantity(1000, "mm"),
-  energy: quantity(1e6, "mm²"),
+  velocity: length,
+  acceleration: length,
+  impulse: length,
+  energy: quantity("mm²", 1e6),
 };
 
 /**
  * The units for an answer with these parameters. x: the axis of time; at(tau): a moment
  * in words.
  */
-export function unitsOf({si, derived}) {
+export function unitsOf({si, derived: {omega0}}) {
   if (!si || !inSeconds()) return ofTau;
-  const omega0 = derived.omega0;
-  const {m1} = si;
   return {
     si: true,
     x: {label: "t (s)", factor: 1 / omega0},
-    time: quantity(1 / omega0, "s"),
+    time: quantity("s", 1 / omega0),
     at: (t) => `t = ${(t / omega0).toFixed(2)} s`,
-    velocity: quantity(1000 * omega0, "mm/s"),
-    acceleration: quantity(omega0 ** 2, "m/s²"),
-    impulse: quantity(m1 * omega0, "N s"),
-    energy: quantity(m1 * omega0 ** 2, "J"),
+    velocity: quantity("mm/s", 1000 * omega0),
+    acceleration: quantity("m/s²", omega0 ** 2),
+    impulse: quantity("N s", si.m1 * omega0),
+    energy: quantity("J", si.m1 * omega0 ** 2),
   };
 }
 

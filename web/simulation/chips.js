@@ -1,6 +1,6 @@
 // What one can start from: figures and tables of the paper, a handful of them as chips, all in a
 // menu.
-import {$, element} from "../shared/dom.js";
+import {$, button, element, press} from "../shared/dom.js";
 
 const groups = {
   Regimes: {
@@ -19,10 +19,9 @@ const groups = {
 export function start(presets, choose) {
   const sourceOf = Object.fromEntries(presets.map((p) => [p.name, `${p.source}: ${p.title}`]));
   const chip = ([name, text]) => {
-    const button = element("button", {type: "button", className: "chip", textContent: text});
-    Object.assign(button, {title: sourceOf[name], onclick: () => choose(name)});
-    button.dataset.preset = name;
-    return button;
+    const one = button(text, () => choose(name), {className: "chip", title: sourceOf[name]});
+    one.dataset.preset = name;
+    return one;
   };
   const group = ([title, chips]) => {
     const names = Object.entries(chips).map(chip);
@@ -34,12 +33,11 @@ export function start(presets, choose) {
     new Option("parameters of your own", ""),
     ...presets.map((p) => new Option(sourceOf[p.name], p.name)),
   );
-  $("preset").addEventListener("change", () => choose($("preset").value));
+  $("preset").onchange = () => choose($("preset").value);
 }
 
 /** Marks the preset that the form stands for. */
 export function mark(name) {
   $("preset").value = name;
-  for (const button of document.querySelectorAll("#chips [data-preset]"))
-    button.setAttribute("aria-pressed", String(button.dataset.preset === name));
+  press(document.querySelectorAll("#chips button"), (one) => one.dataset.preset === name);
 }

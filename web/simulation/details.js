@@ -1,87 +1,71 @@
 // Everything else that is known of a run: it is asked for once one unfolds it, and follows the run
 // from then on.
 import {simulate} from "../shared/api.js";
-import {$, countUp} from "../shared/dom.js";
-import {addMenu} from "../shared/figure_menu.js";
+import {$, countUp, write} from "../shared/dom.js";
 import {Job} from "../shared/job.js";
-import {operable} from "../shared/operable.js";
-import {aboutFigure} from "./captions.js";
-import {drawDetails, makePlots, placesOf} from "./details_plots.js";
+import {detailsOptions, overTime, planes} from "./details_plots.js";
 import {accountEnergy, summarise, tabulate} from "./details_summary.js";
 import {marksOf} from "./marks.js";
 import {showModel} from "./model.js";
 import {listParameters} from "./parameters.js";
+import {Plots} from "./plots.js";
+import {axis, run} from "./run.js";
 
 const include = ["series", "impacts", "exponents", "eigenvalues", "section", "energy", "regime"];
 
-export class Details {
-  /** axis: of time; run(): {asked, answer, units} of what is shown; fields: of /v1/parameters. */
-  constructor(axis, run, fields) {
-    this.run = run;
-    this.axis = axis;
-    this.fieldOf = Object.fromEntries(fields.map((f) => [f.name, f]));
-    this.plots = null;
-    this.job = new Job({
-      ask: (asked, signal) => simulate({perturbation: {size: 1e-9}, ...asked, include}, signal),
-      show: (answer, asked) => this.show(answer, asked),
-      fail: (error) => this.say(error.message),
-      busy: (is) => {
-        if (is) this.say("computing …");
-      },
-      later: (text) => this.say(text),
-    });
-    $("details").addEventListener("toggle", () => this.follow());
-    axis.onCursor(() => this.light());
-  }
+const details = $("details");
+const say = (text) => write({"details-message": text});
+let shown = null; // {asked, answer}
+let plots;
+let fieldOf;
 
-  say(text) {
-    $("details-message").textContent = text;
-  }
-
-  /** Another run is shown, or the same in other units. */
-  follow() {
-    const run = this.run();
-    if (!$("details").open || !run) return;
-    if (this.shown?.asked === run.asked) this.show(this.shown.answer, run.asked);
-    else this.job.start(run.asked);
-  }
-
+const job = new Job({
+  ask: (asked, signal) => simulate({perturbation: {size: 1e-9}, ...asked, include}, signal),
   show(answer, asked) {
-    const {units, asked: newest} = this.run();
-    if (asked !== newest) return;
-    this.shown = {answer, asked};
-    this.say("");
-    this.plots ??= this.makePlots();
-    summarise(answer, units);
-    listParameters(answer.parameters, this.fieldOf);
-    tabulate(answer.windows, units);
-    accountEnergy(answer.energy, units);
-    const point = (tau) => this.axis.point(tau, "pick");
-    drawDetails(this.plots, answer, marksOf(answer, units), units, point);
-    this.places = placesOf(answer.impacts, units);
-    this.light();
-    countUp($("details"));
-    if (!$("model-sketch").hasChildNodes()) showModel().catch(() => {}); // the equations do without it
-  }
+    if (asked !== run.asked) return;
+    shown = {asked, answer};
+    show();
+  },
+  fail: (error) => say(error.message),
+  busy: (is) => is && say("computing …"),
+  later: say,
+});
 
-  /** Rings the impact nearest to the cursor. */
-  light() {
-    const run = this.run();
-    if (!$("details").open || this.shown?.asked !== run?.asked) return;
-    const i = run.motion.impactNear(this.axis.cursor);
-    for (const [name, {x, y}] of Object.entries(this.places)) this.plots[name].light(x[i], y[i]);
-  }
+/** Another run is shown, or the same in other units. */
+export function follow() {
+  if (!details.open || !run) return;
+  if (shown?.asked === run.asked) show();
+  else job.start(run.asked);
+}
 
-  makePlots() {
-    const plots = makePlots(this.axis);
-    for (const [name, plot] of Object.entries(plots)) {
-      addMenu($(`figure-${name}`), plot, () => aboutFigure(name));
-      operable(plot, aboutFigure(name).title, () => this.run().answer.impacts.tau);
-    }
-    return plots;
-  }
+function show() {
+  const {answer} = shown;
+  const {units} = run;
+  say("");
+  plots ??= new Plots(overTime, planes);
+  summarise(answer, units);
+  listParameters(answer.parameters, fieldOf);
+  tabulate(answer.windows, units);
+  accountEnergy(answer.energy, units);
+  plots.marks = marksOf(answer);
+  for (const [name, options] of Object.entries(detailsOptions(answer))) plots.draw(name, options);
+  light();
+  countUp(details);
+  if (!$("model-sketch").hasChildNodes()) showModel().catch(() => {}); // the equations do without it
+}
 
-  redraw() {
-    for (const plot of Object.values(this.plots ?? {})) plot.refresh();
-  }
+/** Rings the impact nearest to the cursor. */
+function light() {
+  if (!details.open || shown?.asked !== run?.asked) return;
+  const i = run.motion.impactNear(axis.cursor);
+  for (const name of ["portrait", "velocities"]) plots.ring(name, i);
+}
+
+export const redraw = () => plots?.refresh();
+
+/** table: the fields of /v1/parameters by name. */
+export function start(table) {
+  fieldOf = table;
+  details.ontoggle = follow;
+  axis.onCursor(light);
 }

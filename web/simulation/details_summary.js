@@ -1,12 +1,15 @@
 // What a run came to, in words and numbers: cards of the window and of the whole run, the windows'
 // table and where the energy went.
 import {cards} from "../shared/cards.js";
-import {$, element} from "../shared/dom.js";
-import {count, digits, minus, percent} from "../shared/numbers.js";
+import {$, element, reveal, write} from "../shared/dom.js";
+import {clamp, count, digits, inMm, minus, percent, shortTo} from "../shared/numbers.js";
 import {verdicts} from "../shared/quantities.js";
+import {tableOf} from "../shared/table.js";
+import {most} from "./columns.js";
 
+/** How many exponents of an estimator are positive. */
 const positives = (estimator) =>
-  !estimator || estimator.final[0] == null ? null : estimator.final.filter((v) => v > 0).length;
+  estimator?.final[0] == null ? null : estimator.final.filter((v) => v > 0).length;
 
 /** An exponent in a word where it has no value. */
 const exponent = ({final, status}, k) => (status[k] === "minus_infinity" ? "−∞" : digits(final[k]));
@@ -24,13 +27,14 @@ function rhythm(r) {
   if (!r.periodic) return `${percent(r.synchronised.share)} of the contacts synchronised`;
   const chatter = r.chatter_impacts_per_period;
   const sticks = r.sticks_per_period;
-  return [
+  const parts = [
     `period ${count(r.period_cycles, "cycle")}: ${count(r.impacts_per_period, "impact")}`,
-    ...(chatter ? [`${chatter} of chatter`] : []),
-    ...(sticks ? [count(sticks, "stick")] : []),
+    chatter && `${chatter} of chatter`,
+    sticks && count(sticks, "stick"),
     r.symmetric ? "symmetric" : "asymmetric",
-    ...(r.stable ? [] : ["unstable"]),
-  ].join(", ");
+    !r.stable && "unstable",
+  ];
+  return parts.filter(Boolean).join(", ");
 }
 
 function verdictCard({verdict, verdict_reason: given}, r) {
@@ -60,52 +64,42 @@ function positivesCard({qr, raw_product: product, verdict}) {
 }
 
 function residualCard({qr, sum_rule_residual: residual, impacts}) {
-  if (residual != null) return ["sum rule residual", minus(residual.toExponential(1)), ""];
+  if (residual != null) return ["sum rule residual", minus(residual.toExponential(1))];
   return ["sum rule residual", "–", qr && impacts > 1 ? "not defined after a stick" : ""];
 }
 
-const millimetres = (metres, n = 1) => `${digits(metres * 1000, n)} mm`;
-const most = (values) => values.reduce((a, v) => Math.max(a, Math.abs(v)), 0);
-const median = (values) =>
-  values.length ? [...values].sort((a, b) => a - b)[values.length >> 1] : null;
-const rounded = (value) => (value == null ? "–" : minus(Number(value.toPrecision(3)).toString()));
+const median = (values) => values.toSorted((a, b) => a - b)[values.length >> 1];
+
+/** A value in a unit of the answer. */
+const inUnit = (value, {of, unit}) => `${shortTo(3, of(value))} ${unit}`;
 
 function forcingCard({si, derived}) {
-  const ratio = Number((si.f / derived.f0).toPrecision(4));
-  const amplitude = Number((si.F * 1000).toPrecision(3));
-  return ["forcing", `${rounded(si.f)} Hz`, `${ratio} of f₀; base ± ${amplitude} mm`];
+  const ratio = shortTo(4, si.f / derived.f0);
+  return ["forcing", `${shortTo(3, si.f)} Hz`, `${ratio} of f₀; base ± ${inMm(si.F)}`];
 }
 
-function impactSpeedCard({relative_speed: speed, impulse}, units) {
-  const {unit} = units.velocity;
-  if (!speed.length) return ["impact speed", `– ${unit}`, ""];
-  const hit = (of) => rounded(units.velocity.of(of(speed)));
-  const blow = rounded(units.impulse.of(median(impulse.map(Math.abs))));
-  const remark = `median; at most ${hit(most)}; impulse ${blow} ${units.impulse.unit}`;
-  return ["impact speed", `${hit(median)} ${unit}`, remark];
+function impactSpeedCard({relative_speed: speed, impulse}, {velocity, impulse: blow}) {
+  const highest = shortTo(3, velocity.of(most(speed)));
+  const remark = `median; at most ${highest}; impulse ${inUnit(median(impulse.map(Math.abs)), blow)}`;
+  return ["impact speed", inUnit(median(speed), velocity), speed.length ? remark : ""];
 }
 
-function amplitudeCard({without_absorber: {amplitude: free}, peak}) {
-  const remark = `with it |x| comes to ${millimetres(peak)}`;
-  return ["amplitude without absorber", free == null ? "–" : millimetres(free), remark];
+/** Where there is one. */
+function amplitudeCards({without_absorber: {amplitude: free}, peak}) {
+  const remark = `with it |x| comes to ${inMm(peak)}`;
+  return free == null ? [] : [["amplitude without absorber", inMm(free), remark]];
 }
 
 /** What a laboratory measures. */
-function engineeringCards({impacts, series, parameters}, units) {
-  const {of, unit} = units.acceleration;
-  const acceleration = `${rounded(of(most(series.x_ddot)))} ${unit}`;
-  return [
-    forcingCard(parameters),
-    impactSpeedCard(impacts, units),
-    ["peak acceleration", acceleration, "of m₁ between the impacts"],
-  ];
-}
-
-function rmsCard({rms_ratio: ratio, without_absorber: {amplitude}}, units) {
-  const told = units.si || amplitude == null; // on a card of its own, or not there
-  const remark = told ? "" : `, whose amplitude is ${millimetres(amplitude)}`;
-  return ["rms of x", percent(ratio), `of that without absorber${remark}`];
-}
+const engineeringCards = ({impacts, series, parameters}, units) => [
+  forcingCard(parameters),
+  impactSpeedCard(impacts, units),
+  [
+    "peak acceleration",
+    inUnit(most(series.x_ddot), units.acceleration),
+    "of m₁ between the impacts",
+  ],
+];
 
 /** What the cards of the window refer to. */
 function windowTitle({window, impacts}, {at}, asked) {
@@ -117,7 +111,7 @@ function windowTitle({window, impacts}, {at}, asked) {
 export function summarise(answer, units) {
   const {exponents, regime, energy, impacts, sticking, parameters} = answer;
   const stuck = sticking.side.length;
-  $("summary-title").textContent = windowTitle(exponents, units, parameters.window);
+  write({"summary-title": windowTitle(exponents, units, parameters.window)});
   cards($("summary"), [
     regimeCard(regime, units),
     ["impacts per cycle, z", digits(regime.z, 3), rhythm(regime)],
@@ -126,8 +120,8 @@ export function summarise(answer, units) {
     positivesCard(exponents),
     residualCard(exponents),
     ["taken by the impacts", percent(energy.share_impacts), "of the energy that is dissipated"],
-    rmsCard(energy, units),
-    ...(units.si ? [amplitudeCard(energy)] : []),
+    ["rms of x", percent(energy.rms_ratio), "of that without absorber"],
+    ...amplitudeCards(energy),
   ]);
   cards($("summary-run"), [
     ["impacts", String(impacts.tau.length), "chatter included"],
@@ -139,38 +133,23 @@ export function summarise(answer, units) {
 
 /** The exponents of each window asked for. */
 export function tabulate(windows = [], {time}) {
-  $("figure-windows").hidden = !windows.length;
-  const row = (tag, cells) =>
-    element("tr", {}, ...cells.map((textContent) => element(tag, {textContent})));
-  const head = row("th", [
-    time.unit ? "from (s)" : "τ from",
-    time.unit ? "to (s)" : "to",
-    "impacts",
-    "λ₁",
-    "λ₂",
-    "λ₃",
-    "λ₄",
-    "verdict",
-  ]);
+  reveal({"figure-windows": windows.length});
+  const span = time.unit ? ["from (s)", "to (s)"] : ["τ from", "to"];
+  const names = [...span, "impacts", "λ₁", "λ₂", "λ₃", "λ₄", "verdict"];
   const rows = windows.map((w) => {
     const lambda = [0, 1, 2, 3].map((k) => (w.qr ? exponent(w.qr, k) : "–"));
     const error = w.qr?.standard_error[0];
     const asked = w.asked.map((t) => (time.unit ? time.of(t).toFixed(2) : String(t)));
-    return row("td", [
-      ...asked,
-      String(w.impacts),
-      error == null ? lambda[0] : `${lambda[0]} ± ${digits(error)}`,
-      ...lambda.slice(1),
-      verdicts[w.verdict] ?? "–",
-    ]);
+    if (error != null) lambda[0] += ` ± ${digits(error)}`;
+    return [...asked, String(w.impacts), ...lambda, verdicts[w.verdict] ?? "–"];
   });
-  $("windows").replaceChildren(element("thead", {}, head), element("tbody", {}, ...rows));
+  $("windows").replaceChildren(...tableOf(names, rows));
 }
 
 /** A bar as long as its share of the whole. */
 function bar(share, className) {
   const node = element("span", {className});
-  node.style.width = `${Math.min(Math.max(share, 0), 1) * 100}%`;
+  node.style.width = `${clamp(share, 0, 1) * 100}%`;
   return node;
 }
 
@@ -180,7 +159,7 @@ function compare(term, withAbsorber, without) {
   const line = (name, value, className) => [
     element("span", {className: "name", textContent: name}),
     element("span", {className: "track"}, bar(value / whole, className)),
-    element("span", {className: "amount", textContent: `${digits(value * 1000, 2)} mm`}),
+    element("span", {className: "amount", textContent: inMm(value)}),
   ];
   return element(
     "div",
@@ -191,31 +170,28 @@ function compare(term, withAbsorber, without) {
   );
 }
 
-function amount(value, {of, unit}) {
-  const small = value !== 0 && Math.abs(of(value)) < 1e-3;
-  return `${small ? digits(of(value)) : rounded(of(value))} ${unit}`;
-}
-
 /** Where the energy came from, and how a free decay went. */
 function energyNote({input, at_start: start, decay}, units) {
   const supply = [
-    ...(input ? [`${amount(input, units.energy)} from the base`] : []),
-    ...(start ? [`${amount(start, units.energy)} there at the start`] : []),
-  ].join(", ");
-  return [...(supply ? [supply] : []), ...(decay ? decayTimes(decay, units) : [])].join("; ");
+    input && `${inUnit(input, units.energy)} from the base`,
+    start && `${inUnit(start, units.energy)} there at the start`,
+  ];
+  const parts = [supply.filter(Boolean).join(", "), ...(decay ? decayTimes(decay, units) : [])];
+  return parts.filter(Boolean).join("; ");
 }
 
 /** When a half and a tenth of a free decay's energy are left, with the absorber and without it. */
 function decayTimes(decay, {at}) {
-  const moment = (tau) => (tau == null ? "not in this run" : at(tau));
-  const line = (what, name) => {
+  const moment = (tau, before = "") => (tau == null ? "not in this run" : before + at(tau));
+  const line = ([what, name]) => {
     const withIt = decay[name];
     const without = decay.without_absorber[name];
-    if (withIt == null && without == null) return [];
-    const left = `${withIt == null ? "" : "at "}${moment(withIt)}`;
-    return [`${what} is left ${left} (without absorber: ${moment(without)})`];
+    const known = withIt != null || without != null;
+    return (
+      known && `${what} is left ${moment(withIt, "at ")} (without absorber: ${moment(without)})`
+    );
   };
-  return [...line("half", "tau_half"), ...line("a tenth", "tau_tenth")];
+  return Object.entries({half: "tau_half", "a tenth": "tau_tenth"}).map(line);
 }
 
 /**
@@ -226,21 +202,21 @@ export function accountEnergy(energy, units) {
   const {damper, impacts, at_end: left, without_absorber: without} = energy;
   const supplied = damper + impacts + left || 1;
   const parts = [
-    {className: "damper", name: "damper", value: damper},
-    {className: "impacts", name: "impacts", value: impacts},
-    {className: "left", name: "left at the end", value: left},
+    ["damper", "damper", damper],
+    ["impacts", "impacts", impacts],
+    ["left", "left at the end", left],
   ];
-  const bars = parts.map(({className, value}) => bar(value / supplied, className));
-  const keys = parts.map(({className, name, value}) =>
+  const bars = parts.map(([className, , value]) => bar(value / supplied, className));
+  const keys = parts.map(([className, name, value]) =>
     element(
       "li",
       {},
       element("span", {className: `key ${className}`, textContent: name}),
       element("b", {textContent: percent(value / supplied)}),
-      element("small", {textContent: amount(value, units.energy)}),
+      element("small", {textContent: inUnit(value, units.energy)}),
     ),
   );
-  $("energy-scale").hidden = units.si;
+  reveal({"energy-scale": !units.si});
   $("energy").replaceChildren(
     element("div", {className: "stack"}, ...bars),
     element("ul", {className: "parts"}, ...keys),

@@ -1,296 +1,214 @@
 // The plots of the first screen: the motion over time, made anew from the impacts for whatever is in
 // view, the largest modulus of T, the exponents, the section and the manifold. One cursor goes
 // through all of them, and the impact nearest to it is ringed in each.
-import {$} from "../shared/dom.js";
-import {exponentRange, exponentSeries} from "../shared/exponents.js";
-import {LinePlot} from "../shared/line_plot.js";
-import {short} from "../shared/numbers.js";
-import {operable} from "../shared/operable.js";
-import {ScatterPlot} from "../shared/scatter_plot.js";
+import {$, attributes, write} from "../shared/dom.js";
+import {exponentRange} from "../shared/exponents.js";
+import {inMm, short} from "../shared/numbers.js";
 import {firstFrom, lastUpTo} from "../shared/search.js";
-import {logRange, mm, over, overRun, positive, scaled} from "./columns.js";
-import {drawManifold} from "./manifold.js";
+import {logRange, mm, most, over, overRun, positive} from "./columns.js";
+import {manifold} from "./manifold.js";
+import {marksOf} from "./marks.js";
+import {exponentLines, halves, Plots} from "./plots.js";
+import {axis, pick, run} from "./run.js";
 
 const mostSamples = 100000; // of the motion, as numbers
 const alone = matchMedia("(max-width: 700px)"); // one plot at a time is on the screen
-const wallColours = {1: "plus", [-1]: "minus"};
+const walls = {plus: 1, minus: -1}; // by their colours
+const overTime = ["x", "relative", "largest", "lambda"];
 
-/** The range of x: the same on both sides of 0, and a margin. */
-function around(lines) {
-  const most = lines.reduce((a, v) => Math.max(a, Math.abs(v) || 0), 0) || 1;
-  return [-1.08 * most, 1.08 * most];
+let plots;
+let pinned = null; // {answer, motion} of a run to compare with
+let traced = null; // what of the motion is in view
+
+export function start() {
+  plots = new Plots(overTime, ["section", "manifold"]);
+  axis.onCursor(light);
+  axis.onView(light);
 }
 
-/** The moments and the values of the impacts of each wall. */
-function byWall({tau, side}, value) {
-  return [1, -1].map((wall) => {
-    const mine = [];
-    for (let i = 0; i < tau.length; ++i) if (side[i] === wall) mine.push(i);
-    return {
-      x: mine.map((i) => tau[i]),
-      y: mine.map(value),
-      colour: wallColours[wall],
-      shape: "dot",
-      size: 2.2,
-    };
+export const redraw = () => plots.refresh();
+
+// What each plot draws.
+const optionsOf = {x: displacement, relative, lambda: exponents, section, largest, manifold};
+const ofMore = ["largest", "manifold"];
+
+/** The steps that draw plots; those of a second answer are marked until it is there. */
+function stepsOf(...names) {
+  for (const name of ofMore) $(`figure-${name}`).classList.toggle("behind", !run.more);
+  return [...names.map((name) => () => plots.draw(name, optionsOf[name]())), light];
+}
+
+/** What shows the run, step by step. */
+export function drawing() {
+  traced = null;
+  plots.marks = marksOf(run.answer);
+  return stepsOf("x", "relative", "lambda", "section", ...(run.more ? ofMore : []));
+}
+
+/** What a second answer of the same run brings: eigenvalues, the raw product, the manifold. */
+export function showMore() {
+  for (const step of stepsOf("lambda", ...ofMore)) step();
+}
+
+/** A run to compare with, or none. */
+export function pin(other) {
+  pinned = other;
+  if (run) for (const step of drawing()) step();
+}
+
+/** The motions from..to in mm, that of the pinned run first. */
+function traces(from, to, columns) {
+  const motions = [pinned?.motion, run.motion].filter(Boolean);
+  return motions.map((motion) => {
+    const {x, gap, ...rest} = motion.trace(from, to, columns);
+    return {...rest, x: mm(x), gap: mm(gap)};
   });
 }
 
-export class Instrument {
-  constructor(axis) {
-    this.axis = axis;
-    const line = (name) => new LinePlot($(`plot-${name}`), axis);
-    this.lines = {
-      x: line("x"),
-      relative: line("relative"),
-      largest: line("largest"),
-      lambda: line("lambda"),
-    };
-    this.section = new ScatterPlot($("plot-section"));
-    this.manifold = new ScatterPlot($("plot-manifold"));
-    this.answer = null;
-    this.more = null;
-    this.pinned = null; // {answer, motion} of a run to compare with
-    for (const [name, plot] of this.plots())
-      operable(plot, name, () => this.answer?.impacts.tau ?? []);
-    axis.onCursor((by) => this.light(by));
-    axis.onView(() => this.light());
-  }
+/** The same of what is in view, of which two plots draw a part each. */
+function inView(...part) {
+  const key = part.join();
+  if (traced?.key !== key) traced = {key, lines: traces(...part)};
+  return traced.lines;
+}
 
-  /** Of a run: its motion, impacts and exponents. marks: bands and lines over time. */
-  set(answer, motion, units, marks) {
-    Object.assign(this, {answer, motion, units, marks, more: null});
-  }
+/**
+ * A part of the motion, x or gap, as both plots over time draw it; at(i): where the i-th impact
+ * lies.
+ */
+function partOf(name, label, at) {
+  const data = (lines) => [lines[0].tau, ...lines.map((line) => line[name])];
+  const trace = (...part) => {
+    const lines = inView(...part);
+    return {data: data(lines), dense: lines.at(-1).dense};
+  };
+  const samples = (from, to) => {
+    const columns = Math.ceil((8 * (to - from)) / run.motion.cycle) + 200;
+    return data(traces(from, to, Math.min(columns, mostSamples)));
+  };
+  const series = [{label, colour: "motion"}];
+  if (pinned) series.unshift({label: `${label}, pinned`, colour: "pinned"});
+  const {tau, side} = run.answer.impacts;
+  const marks = Object.entries(walls).map(([colour, wall]) => {
+    const mine = [...tau.keys()].filter((i) => side[i] === wall);
+    return {x: mine.map((i) => tau[i]), y: mine.map(at), colour, shape: "dot", size: 2.2};
+  });
+  const bare = !alone.matches;
+  return {bare, unit: "mm", label: `${label} (mm)`, trace, samples, series, marks};
+}
 
-  /** What shows it, step by step. */
-  drawing() {
-    return [
-      () => this.ranges(),
-      () => this.drawDisplacement(),
-      () => this.drawRelative(),
-      () => this.drawExponents(),
-      () => this.drawSection(),
-      () => this.light(),
-    ];
-  }
+/** Over a range that a zoom does not change. */
+function displacement() {
+  const {x} = run.answer.impacts;
+  const whole = inView(0, run.motion.end, plots.all.x.columns);
+  const reach = 1.08 * Math.max(...whole.map((line) => most(line.x) || 1));
+  return {...partOf("x", "x", (i) => x[i] * 1000), range: [-reach, reach]};
+}
 
-  /** What a second answer of the same run brings: eigenvalues, the raw product, the manifold. */
-  showMore(more) {
-    this.more = more;
-    this.drawExponents();
-    this.drawLargest();
-    drawManifold(this.manifold, more.manifold, this.units, (tau) => this.axis.point(tau, "pick"));
-    this.light();
-  }
+function relative() {
+  const b = run.motion.b * 1000;
+  const {side} = run.answer.impacts;
+  return {
+    ...partOf("gap", "y − x", (i) => -side[i] * b),
+    range: [-1.14 * b, 1.14 * b],
+    levels: [-b, b],
+  };
+}
 
-  /** Each with its name. */
-  plots() {
-    const {lines, section, manifold} = this;
-    return Object.entries({...lines, section, manifold});
-  }
+function largest() {
+  const {tau, T} = run.more.eigenvalues;
+  const moduli = T.map(([first]) => positive(first));
+  return {
+    bare: !alone.matches,
+    series: [{label: "|μ₁|", colour: "c3", width: 0.8, dots: 4}],
+    data: overRun(tau, [moduli]),
+    label: "|μ| of T",
+    log: true,
+    range: logRange([moduli]),
+    levels: [1],
+  };
+}
 
-  redraw() {
-    for (const plot of Object.values(this.lines)) plot.refresh();
-    this.section.refresh();
-    this.manifold.refresh();
-  }
+/** And beside them the largest as rounding makes it, and that of the pinned run. */
+function exponents() {
+  const {qr} = run.answer.exponents;
+  const lines = exponentLines(qr);
+  const beside = (history, style) => {
+    if (!history?.tau.length) return;
+    const {tau, lambda1} = history;
+    const at = (t) => (t <= tau.at(-1) ? lambda1[lastUpTo(tau, t)] : null) ?? null;
+    lines.series.push(style);
+    lines.data.push(lines.data[0].map(at));
+  };
+  beside(run.more?.exponents.raw_product?.history, {
+    label: "λ₁ raw product",
+    colour: "soft",
+    width: 1.2,
+    dash: [5, 4],
+  });
+  const other = pinned?.answer.exponents.qr?.history;
+  beside(other, {label: "λ₁ pinned", colour: "pinned", width: 1.6});
+  return {...lines, range: exponentRange([qr?.history, other])};
+}
 
-  /** x over the whole run, which a zoom does not change. */
-  ranges() {
-    const {x, other} = this.trace(0, this.motion.end, this.lines.x.columns);
-    const most = Math.max(around(x)[1], other ? around(other.x)[1] : 0);
-    this.rangeOfX = [-most, most];
-  }
+/** After each impact, by wall. */
+function section() {
+  const {impacts} = run.answer;
+  const {velocity} = run.units;
+  const place = (of) => ({x: mm(of.x), y: over(of.x_dot_after, velocity)});
+  const kinds = Object.entries(walls).map(([name, wall]) => [
+    name,
+    (i) => impacts.side[i] === wall,
+  ]);
+  const points = place(impacts);
+  const groups = halves(points, kinds);
+  const style = {colour: "pinned", label: "pinned", size: 3, alpha: 1};
+  if (pinned) groups.unshift({...place(pinned.answer.impacts), ...style});
+  return {
+    groups,
+    xLabel: "x (mm)",
+    yLabel: `x′ after (${velocity.unit})`,
+    pick: {...points, use: (i) => pick(impacts.tau[i])},
+  };
+}
 
-  /** A run to compare with, or none. */
-  pin(run) {
-    this.pinned = run;
-    this.traced = null;
-    if (this.answer) for (const step of this.drawing()) step();
-  }
+/** Rings the impact nearest to the cursor, and the half cycle that it lies in; by: who moved it. */
+function light(by) {
+  const {cursor} = axis;
+  if (!plots.all.section.last || cursor === null) return;
+  const {motion, more} = run;
+  const {tau, x, side} = motion.impacts;
+  const i = motion.impactNear(cursor);
+  const modulus = modulusAt(tau[i]);
+  plots.all.x.light(tau[i], x[i] * 1000);
+  plots.all.relative.light(tau[i], -side[i] * motion.b * 1000);
+  plots.ring("section", i);
+  tell(modulus, by === "play");
+  if (!more) return;
+  plots.all.largest.light(tau[i], modulus);
+  plots.ring("manifold", firstFrom(more.manifold.points.tau, cursor));
+}
 
-  /** The motion in view, of which two plots draw a part each. */
-  trace(from, to, columns) {
-    const key = [from, to, columns].join();
-    if (this.traced?.key !== key || this.traced.motion !== this.motion) {
-      const of = (motion) => {
-        const {x, gap, ...rest} = motion.trace(from, to, columns);
-        return {...rest, x: scaled(x, 1000), gap: scaled(gap, 1000)};
-      };
-      const other = this.pinned && of(this.pinned.motion);
-      this.traced = {key, motion: this.motion, ...of(this.motion), other};
-    }
-    return this.traced;
-  }
+/** The largest modulus of T at an impact, where it is known. */
+function modulusAt(tau) {
+  const {tau: moments, T} = run.more?.eigenvalues ?? {tau: []};
+  const k = firstFrom(moments, tau);
+  return moments[k] === tau ? (T?.[k]?.[0] ?? null) : null;
+}
 
-  /** A line, and before it that of the pinned run. */
-  withPinned(line) {
-    const pinned = {label: `${line.label}, pinned`, colour: "pinned"};
-    return this.pinned ? [pinned, line] : [line];
-  }
-
-  /** A part of the motion, x or gap, as both plots over time draw it. */
-  partOf(name) {
-    const trace = (from, to, columns) => {
-      const lines = this.trace(from, to, columns);
-      const pinned = lines.other ? [lines.other[name]] : [];
-      return {data: [lines.tau, ...pinned, lines[name]], dense: lines.dense};
-    };
-    const samples = (from, to) => {
-      const {motion} = this;
-      const columns = Math.min(Math.ceil((8 * (to - from)) / motion.cycle) + 200, mostSamples);
-      const runs = [...(this.pinned ? [this.pinned.motion] : []), motion];
-      const lines = runs.map((run) => run.trace(from, to, columns));
-      return [lines[0].tau, ...lines.map((line) => scaled(line[name], 1000))];
-    };
-    return {...this.marks, bare: !alone.matches, unit: "mm", trace, samples};
-  }
-
-  drawDisplacement() {
-    const {impacts} = this.answer;
-    this.lines.x.draw({
-      ...this.partOf("x"),
-      series: this.withPinned({label: "x", colour: "motion"}),
-      range: this.rangeOfX,
-      label: "x (mm)",
-      marks: byWall(impacts, (i) => impacts.x[i] * 1000),
+/** The values at the cursor, beside the title of each plot. */
+function tell(modulus, playing) {
+  const {cursor} = axis;
+  const {x, y} = run.motion.at(cursor);
+  const values = {
+    x: inMm(x),
+    relative: inMm(y - x),
+    largest: modulus == null ? "" : short(modulus),
+  };
+  for (const [name, text] of Object.entries(values)) write({[`value-${name}`]: text});
+  if (playing) return; // a reader of the page is not told sixty times a second
+  for (const name of overTime)
+    attributes($(`plot-${name}`), {
+      "aria-valuetext": `${run.units.at(cursor)} ${values[name] ?? ""}`,
     });
-  }
-
-  drawRelative() {
-    const {impacts, parameters} = this.answer;
-    const b = parameters.b * 1000;
-    this.lines.relative.draw({
-      ...this.partOf("gap"),
-      series: this.withPinned({label: "y − x", colour: "motion"}),
-      range: [-1.14 * b, 1.14 * b],
-      label: "y − x (mm)",
-      levels: [-b, b],
-      levelColour: "line",
-      marks: byWall(impacts, (i) => -impacts.side[i] * b),
-    });
-  }
-
-  drawLargest() {
-    const {eigenvalues} = this.more;
-    const largest = eigenvalues.T.map((moduli) => positive(moduli[0]));
-    this.lines.largest.draw({
-      ...this.marks,
-      bare: !alone.matches,
-      series: [{label: "|μ₁|", colour: "c3", width: 0.8, dots: 4}],
-      data: overRun(eigenvalues.tau, [largest], this.motion.end),
-      label: "|μ| of T",
-      log: true,
-      range: logRange([largest]),
-      levels: [1],
-      levelColour: "line",
-    });
-  }
-
-  drawExponents() {
-    const {history, status} = this.answer.exponents.qr ?? {};
-    const {series, columns} = exponentSeries(history, status);
-    const tau = history?.tau ?? [];
-    const lines = history ? columns : columns.map(() => []);
-    const raw = this.more?.exponents.raw_product?.history;
-    if (raw && raw.tau.length === tau.length) {
-      series.push({label: "λ₁ raw product", colour: "soft", width: 1.2, dash: [5, 4]});
-      lines.push(raw.lambda1);
-    }
-    const data = overRun(tau, lines, this.motion.end);
-    const pinned = this.pinned?.answer.exponents.qr?.history;
-    if (pinned?.tau.length) {
-      series.push({label: "λ₁ pinned", colour: "pinned", width: 1.6});
-      data.push(data[0].map((t) => pinned.lambda1[lastUpTo(pinned.tau, t)] ?? null));
-    }
-    this.lines.lambda.draw({
-      ...this.marks,
-      series,
-      data,
-      range: exponentRange([history, pinned]),
-      label: "λ",
-      levels: [0],
-      levelColour: "line",
-    });
-  }
-
-  /** After each impact, by wall; the first half of the run paler: what lasts stands out. */
-  drawSection() {
-    const {impacts} = this.answer;
-    const {velocity} = this.units;
-    const x = mm(impacts.x);
-    const y = over(impacts.x_dot_after, velocity);
-    const middle = x.length / 2;
-    const part = (side, late) => {
-      const keep = (_, i) => impacts.side[i] === side && i >= middle === late;
-      const style = late ? {alpha: 0.75, size: 3} : {alpha: 0.3, size: 2.4};
-      return {...style, colour: wallColours[side], x: x.filter(keep), y: y.filter(keep)};
-    };
-    const other = this.pinned?.answer.impacts;
-    const pinned = other && {
-      x: mm(other.x),
-      y: over(other.x_dot_after, velocity),
-      colour: "pinned",
-      label: "pinned",
-      size: 3,
-      alpha: 1,
-    };
-    this.section.draw({
-      groups: [
-        ...(pinned ? [pinned] : []),
-        part(1, false),
-        part(-1, false),
-        part(1, true),
-        part(-1, true),
-      ],
-      xLabel: "x (mm)",
-      yLabel: `x′ after (${velocity.unit})`,
-      pick: {x, y, use: (i) => this.axis.point(impacts.tau[i], "pick")},
-    });
-    this.sectionPoints = {x, y};
-  }
-
-  /** Rings the impact nearest to the cursor, and the half cycle that it lies in. */
-  light(by) {
-    if (!this.answer || this.axis.cursor === null) return;
-    const {impacts, parameters} = this.answer;
-    const i = this.motion.impactNear(this.axis.cursor);
-    const tau = impacts.tau[i];
-    this.lines.x.light(tau, impacts.x[i] * 1000);
-    this.lines.relative.light(tau, -impacts.side[i] * parameters.b * 1000);
-    this.section.light(this.sectionPoints.x[i], this.sectionPoints.y[i]);
-    this.tell(i, by === "play");
-    if (!this.more) return;
-    this.lines.largest.light(tau, this.modulusAt(tau));
-    const {points} = this.more.manifold;
-    const half = firstFrom(points.tau, this.axis.cursor);
-    const {velocity} = this.units;
-    this.manifold.light(velocity.of(points.V[half]), points.C[half] * 1000);
-  }
-
-  /** The largest modulus of T at an impact, where it is known. */
-  modulusAt(tau) {
-    const {tau: moments, T} = this.more?.eigenvalues ?? {tau: []};
-    const k = firstFrom(moments, tau);
-    return k < moments.length && moments[k] === tau ? T[k][0] : null;
-  }
-
-  /** The values at the cursor, beside the title of each plot. */
-  tell(i, playing) {
-    const {cursor} = this.axis;
-    const {x, y} = this.motion.at(cursor);
-    const inMm = (v) => `${short(Number((v * 1000).toPrecision(4)))} mm`;
-    const modulus = this.modulusAt(this.answer.impacts.tau[i]);
-    const values = {
-      x: inMm(x),
-      relative: inMm(y - x),
-      largest: modulus == null ? "" : short(modulus),
-    };
-    for (const [name, text] of Object.entries(values)) $(`value-${name}`).textContent = text;
-    if (playing) return; // a reader of the page is not told sixty times a second
-    for (const name of Object.keys(this.lines)) {
-      const text = `${this.units.at(cursor)} ${values[name] ?? ""}`;
-      $(`plot-${name}`).setAttribute("aria-valuetext", text);
-    }
-  }
 }

@@ -1,24 +1,28 @@
 // Which plots show what a figure or table of the paper shows.
-import {$, element} from "../shared/dom.js";
-
-const each = (presets, plots) => Object.fromEntries(presets.map((p) => [p, plots]));
+import {$, element, write} from "../shared/dom.js";
 
 const plotsOf = {
-  fig3: ["x"],
+  "fig3 fig15 fig16 fig20 fig21": ["x"],
   fig4: ["relative"],
   fig5: ["lambda", "raw_product"],
   fig6: ["J"],
   fig7: ["M"],
   fig8: ["T"],
   fig9: ["x", "largest"],
-  ...each(["fig10", "fig11", "fig12", "fig13", "fig14"], ["relative", "lambda", "raw_product"]),
-  ...each(["fig15", "fig16", "fig20", "fig21"], ["x"]),
-  ...each(["fig17", "fig22"], ["portrait"]),
-  ...each(["fig18", "fig23"], ["section"]),
-  ...each(["fig19", "fig24", "table3"], ["lambda"]),
+  "fig10 fig11 fig12 fig13 fig14": ["relative", "lambda", "raw_product"],
+  "fig17 fig22": ["portrait"],
+  "fig18 fig23": ["section"],
+  "fig19 fig24 table3": ["lambda"],
   table2: ["lambda", "windows"],
-  ...each(["table1", "table4"], ["parameters"]),
+  "table1 table4": ["parameters"],
 };
+
+/** The names of the plots; the rows of a table show the same. */
+function plotsFor(preset) {
+  const figure = preset?.name.split("_")[0];
+  const entries = Object.entries(plotsOf);
+  return entries.find(([figures]) => figures.split(" ").includes(figure))?.[1] ?? [];
+}
 
 /** Marks the plots that a preset is about, and says where one of them lies in the details. */
 export function mark(preset) {
@@ -26,15 +30,17 @@ export function mark(preset) {
     old.classList.remove("about");
     old.querySelector(".tag").remove();
   }
-  const names = plotsOf[preset?.name.split("_")[0]] ?? []; // the rows of a table show the same
+  const names = plotsFor(preset);
+  const source = preset?.source.split(",")[0];
+  const inDetails = (name) => $(`figure-${name}`).closest("#details");
   for (const name of names) {
     const figure = $(`figure-${name}`);
-    const tag = element("span", {className: "tag", textContent: preset.source.split(",")[0]});
     figure.classList.add("about");
-    figure.querySelector("figcaption").append(tag);
+    figure
+      .querySelector("figcaption")
+      .append(element("span", {className: "tag", textContent: source}));
   }
-  const below = names.find((name) => $(`figure-${name}`).closest("#details"));
-  const alone = below && names.every((name) => $(`figure-${name}`).closest("#details"));
-  $("to-details").href = alone ? `#figure-${below}` : "#details";
-  $("to-details").textContent = alone ? `${preset.source.split(",")[0]} is below ▾` : "details ▾";
+  const alone = names.length && names.every(inDetails);
+  $("to-details").href = alone ? `#figure-${names[0]}` : "#details";
+  write({"to-details": alone ? `${source} is below ▾` : "details ▾"});
 }

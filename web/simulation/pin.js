@@ -1,22 +1,23 @@
 // A run that is kept beside those that follow, to compare them with it. The address holds its query.
 import {get} from "../shared/api.js";
-import {$} from "../shared/dom.js";
+import {$, reveal, write} from "../shared/dom.js";
 import {Motion} from "../shared/motion.js";
-import {parameterLine} from "./captions.js";
+import * as instrument from "./instrument.js";
+import {toQuery} from "./request.js";
+import {run} from "./run.js";
+import {parameterLine} from "./sliders.js";
 
 let pinned = null; // {query, answer, motion}
-let compare = () => {};
 
 /** The query of the run that is pinned, null where there is none. */
 export const query = () => pinned?.query ?? null;
 
-function keep(run) {
-  pinned = run;
-  for (const id of ["swap", "unpin"]) $(id).hidden = !pinned?.answer;
-  $("pinned-run").textContent = pinned?.answer
-    ? `pinned: ${parameterLine(pinned.answer.parameters)}`
-    : "";
-  compare(pinned?.answer ? pinned : null);
+function keep(other) {
+  pinned = other;
+  const there = other?.answer ? other : null;
+  reveal({swap: there, unpin: there});
+  write({"pinned-run": there ? `pinned: ${parameterLine(there.answer.parameters)}` : ""});
+  instrument.pin(there);
 }
 
 /** Pins the run of a query, or none; ask: what of it is needed. */
@@ -30,23 +31,20 @@ export async function restore(wanted, ask) {
   if (query() === wanted) keep({query: wanted, answer, motion: new Motion(answer)});
 }
 
-/**
- * run(): {query, answer, motion} of what is shown; draw: shows a run, or none, beside what is shown;
- * show(query): shows the run of another one;
- * show(): another one is pinned.
- */
-export function start(run, draw, show) {
-  compare = draw;
-  const swap = () => {
-    const {query: other} = pinned;
-    keep(run());
+/** changed(): another run is pinned, or none; show(query): shows the run of a query. */
+export function start(changed, show) {
+  const keepShown = () => keep(run && {...run, query: toQuery(run.asked)});
+  $("pin").onclick = () => {
+    keepShown();
+    changed();
+  };
+  $("unpin").onclick = () => {
+    keep(null);
+    changed();
+  };
+  $("swap").onclick = () => {
+    const other = query();
+    keepShown();
     show(other);
   };
-  const pin = (other) => {
-    keep(other);
-    show();
-  };
-  $("pin").addEventListener("click", () => pin(run()));
-  $("unpin").addEventListener("click", () => pin(null));
-  $("swap").addEventListener("click", swap);
 }

@@ -12,6 +12,9 @@ function queryValue(text) {
   return text.includes(",") ? text.split(",") : text;
 }
 
+/** The entries of an object for which it holds. */
+const only = (object, is) => Object.fromEntries(Object.entries(object).filter(is));
+
 export class Request {
   /** form: the Form; fields: of /v1/parameters; presets: of /v1/presets. */
   constructor(form, fields, presets) {
@@ -23,11 +26,14 @@ export class Request {
     return this.presets.find((p) => p.name === this.name);
   }
 
-  /** The preset of a name, or none; the form shows its values. */
-  choose(name) {
+  /**
+   * The preset of a name, or none, and the fields given beside it; without both the form keeps what
+   * it shows.
+   */
+  choose(name, fields) {
     this.name = this.presets.some((p) => p.name === name) ? name : "";
-    this.dampingChosen = false;
-    if (this.preset) this.form.set(this.preset.parameters);
+    this.dampingChosen = "damping" in {...fields};
+    if (this.preset || fields) this.form.set({...this.held({...fields}), ...fields});
     this.greyOut();
   }
 
@@ -51,7 +57,7 @@ export class Request {
     const base = this.held(request);
     const differs = ([name, value]) =>
       !(name in base) || queryText(value) !== queryText(base[name]);
-    return Object.fromEntries(Object.entries(request).filter(differs));
+    return only(request, differs);
   }
 
   /** Whether the motion is no more the preset's. */
@@ -80,18 +86,21 @@ export class Request {
     return this.preset ? {preset: this.name, ...this.differing(request)} : request;
   }
 
+  /** Of a request what is the system's and its start; not how long it runs, or what is told. */
+  systemOf(request) {
+    const is = (field) => isOfMotion(field) && field.group !== "run";
+    return only(request, ([name]) => is(this.fieldOf[name]));
+  }
+
   /** Fills the form with a query; returns the names that are no fields. */
   read(query) {
     const rest = new URLSearchParams(query);
-    const named = rest.get("preset");
-    this.choose(named ?? (rest.size ? "" : "fig3"));
+    const named = rest.get("preset") ?? (rest.size ? "" : "fig3");
     rest.delete("preset");
-    const known = [...rest].filter(([name]) => name in this.fieldOf);
+    const isKnown = ([name]) => name in this.fieldOf;
+    const known = [...rest].filter(isKnown).map(([name, text]) => [name, queryValue(text)]);
     const unknown = [...rest.keys()].filter((name) => !(name in this.fieldOf));
-    const fields = Object.fromEntries(known.map(([name, text]) => [name, queryValue(text)]));
-    this.dampingChosen = "damping" in fields;
-    this.form.set({...this.held(fields), ...fields});
-    this.greyOut();
+    this.choose(named, Object.fromEntries(known));
     return named && !this.name ? [`preset=${named}`, ...unknown] : unknown;
   }
 
@@ -109,8 +118,7 @@ export class Request {
       gone.push(`damping is ${standard}`);
     }
     for (const name of ["window", "windows"]) {
-      const ofPreset = name in base && input(name).value === textOf(base[name]);
-      if (!ofPreset) continue;
+      if (!(name in base) || input(name).value !== textOf(base[name])) continue;
       form.replace(name, "");
       gone.push(`${name} is empty`);
     }
@@ -122,24 +130,17 @@ export class Request {
    * cannot be mixed. Returns what became of it, in words.
    */
   typedOver(name) {
-    const chosen = this.preset;
-    const base = chosen?.parameters;
-    if (!base) {
-      this.greyOut();
-      return "";
-    }
-    if (name in base && !this.form.filled(name)) {
-      this.leave();
-      return "";
-    }
-    if (!isOfSystem(name) || !this.form.filled(name)) return "";
-    if ("m1" in base && this.fieldOf[name].group === "reduced") {
-      this.makeWay(base);
-      return "";
-    }
-    const gone = this.makeWay(base);
-    this.leave();
-    return [`A system of your own, in place of ${chosen.source}`, ...gone].join("; ");
+    const {preset, form} = this;
+    const base = preset?.parameters ?? {};
+    const filled = form.filled(name);
+    const own = preset && filled && isOfSystem(name);
+    const gone = own ? this.makeWay(base) : [];
+    const replaced = own && !("m1" in base && this.fieldOf[name].group === "reduced");
+    if (replaced || (name in base && !filled)) this.name = "";
+    this.greyOut();
+    return replaced
+      ? [`A system of your own, in place of ${preset.source}`, ...gone].join("; ")
+      : "";
   }
 }
 

@@ -1,14 +1,8 @@
 // What a run came to, in one sentence.
-import {element} from "../shared/dom.js";
+import {$, element} from "../shared/dom.js";
 import {count, percent, withError} from "../shared/numbers.js";
 import {regimes} from "../shared/quantities.js";
-import {textAt} from "./sliders.js";
-
-/** A slider's value in words: b = 22.0 mm. */
-export function valueText(slider, parameters) {
-  const {symbol, unit} = slider;
-  return `${symbol} = ${textAt(slider, parameters)}${unit ? ` ${unit}` : ""}`;
-}
+import {valueText} from "./sliders.js";
 
 /** How the motion goes, and whether it is chaotic; of what both tell, only what they agree on. */
 function motionText({regime, exponents}, units) {
@@ -22,8 +16,8 @@ function motionText({regime, exponents}, units) {
     const before = late ? `, after a chaotic transient up to ${units.at(capture.tau)}` : "";
     return `${name}, ${regime.stable ? "" : "un"}stable periodic orbit${period}${before}`;
   }
-  const verdict = {chaotic: ", chaotic", regular: ", regular", not_decided: ""}[exponents.verdict];
-  return `${name}${verdict ?? ""}`;
+  const {verdict} = exponents;
+  return verdict && verdict !== "not_decided" ? `${name}, ${verdict}` : name;
 }
 
 function lambdaText({qr, verdict}, regime) {
@@ -36,18 +30,11 @@ function lambdaText({qr, verdict}, regime) {
 const amplitudeText = ({rms_ratio: ratio}) =>
   ratio == null ? "" : `x at ${percent(ratio)} of that without the absorber`;
 
-/** The parts of the sentence: {subject, motion, rest}. */
-export function sentence(answer, slider, units) {
+/** slider: whose value the sentence begins with. */
+export function showSentence(answer, slider, units) {
   const {exponents, regime, energy, parameters} = answer;
   const rest = [lambdaText(exponents, regime), amplitudeText(energy)].filter(Boolean).join("; ");
-  return {
-    subject: `${valueText(slider, parameters)}:`,
-    motion: motionText(answer, units),
-    rest: rest && `${rest}.`,
-  };
-}
-
-export function showSentence(node, {subject, motion, rest}) {
-  const end = rest ? "." : "";
-  node.replaceChildren(subject, " ", element("b", {textContent: motion + end}), " ", rest);
+  const end = rest && ".";
+  const motion = element("b", {textContent: motionText(answer, units) + end});
+  $("sentence").replaceChildren(`${valueText(slider, parameters)}: `, motion, " ", rest + end);
 }

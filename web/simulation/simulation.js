@@ -1,31 +1,29 @@
 // The tab of one simulation: what one turns goes to the service as one request, and what it answers
 // is shown at once. The address is the request, and what is in view.
 import {Problem, simulate, wholeMessage} from "../shared/api.js";
-import {Axis} from "../shared/axis.js";
 import {listWarnings} from "../shared/cards.js";
 import {formsOf} from "../shared/copies.js";
-import {$, countUp, element, nextTask} from "../shared/dom.js";
-import {addMenu} from "../shared/figure_menu.js";
+import {$, attributes, button, countUp, nextTask, reveal, write} from "../shared/dom.js";
 import {Form} from "../shared/form.js";
 import {Job} from "../shared/job.js";
 import {Motion} from "../shared/motion.js";
 import {count} from "../shared/numbers.js";
 import {copy} from "../shared/take_away.js";
 import {onUnits, unitsOf, unitsSwitch} from "../shared/units.js";
-import {aboutFigure, describe} from "./captions.js";
+import {describe} from "./captions.js";
 import * as chips from "./chips.js";
-import {Details} from "./details.js";
-import {Instrument} from "./instrument.js";
-import {Machine} from "./machine.js";
-import {marksOf} from "./marks.js";
+import * as details from "./details.js";
+import * as instrument from "./instrument.js";
+import * as machine from "./machine.js";
 import {mark} from "./matches.js";
 import * as phone from "./phone.js";
 import * as pin from "./pin.js";
-import {Player} from "./player.js";
+import * as player from "./player.js";
 import {Request, toQuery} from "./request.js";
-import {sentence, showSentence} from "./sentence.js";
-import {Sliders, sliderOf} from "./sliders.js";
-import {Strip} from "./strip.js";
+import {axis, run, setRun} from "./run.js";
+import {showSentence} from "./sentence.js";
+import * as sliders from "./sliders.js";
+import * as strip from "./strip.js";
 
 // What every turn of a slider asks for, and what follows once it rests.
 const first = {include: ["impacts", "exponents", "regime", "energy"], exponents: ["qr"]};
@@ -34,15 +32,7 @@ const second = {include: ["exponents", "eigenvalues", "manifold"], exponents: ["
 const large = 20000; // impacts
 const rest = 100; // ms without an edit before what follows is asked for
 
-const axis = new Axis();
-const machine = new Machine($("machine"));
 let request;
-let sliders;
-let instrument;
-let player;
-let strip;
-let details;
-let last = null; // {asked, answer, motion, units}
 let touched = "b";
 let shown = null;
 let wantedView = null;
@@ -50,9 +40,12 @@ let remembered = () => {};
 let resting = 0;
 
 function say(text, fault = false) {
-  $("message").textContent = text;
+  write({message: text});
   $("message").classList.toggle("fault", fault);
 }
+
+/** Whether what is shown is of another request. */
+const setStale = (is) => $("results").classList.toggle("stale", is);
 
 // What is computed.
 
@@ -61,12 +54,11 @@ const job = new Job({
   show: present,
   fail: refuse,
   busy(is, cancelled) {
-    if (is) $("results").classList.add("stale");
-    $("results").setAttribute("aria-busy", String(is));
-    $("cancel").hidden = !is;
+    if (is || cancelled) setStale(true);
+    attributes($("results"), {"aria-busy": is});
+    reveal({cancel: is});
     if (is && !$("message").classList.contains("fault")) say("computing …");
     else if (cancelled) say("cancelled: what is shown is the run before");
-    if (cancelled) $("results").classList.add("stale");
   },
   later: (text) => say(text, true),
 });
@@ -74,10 +66,9 @@ const job = new Job({
 const more = new Job({
   ask: (asked, signal) => simulate({...asked, ...second}, signal),
   show(answer, asked) {
-    if (asked !== last.asked) return;
-    instrument.showMore(answer);
-    $("figure-largest").classList.remove("behind");
-    $("figure-manifold").classList.remove("behind");
+    if (asked !== run.asked) return;
+    run.more = answer;
+    instrument.showMore();
     details.follow();
     countUp($("results"));
   },
@@ -90,7 +81,7 @@ function refuse(error) {
   const left = error instanceof Problem ? request.form.showErrors(error.errors, false) : [];
   if (error instanceof Problem && left.length < error.errors.length) $("more").open = true;
   say(wholeMessage(error, left), true);
-  $("results").classList.add("stale");
+  setStale(true);
 }
 
 /** What is first in view: the window, where there is one that ends before the run. */
@@ -99,27 +90,29 @@ function homeOf({parameters, status}) {
   return to && to < 0.9 * status.tau ? [0, to] : [0, status.tau];
 }
 
+function showOrigins() {
+  if ($("more").open) request.form.showOrigins(run.answer.parameters);
+}
+
 /** A run with many impacts is drawn in several tasks, between which the page hears of other things. */
 async function present(answer, asked) {
   const pause = answer.impacts.tau.length > large ? nextTask : null;
   if (pause) await pause();
-  const fresh = last === null || asked.fresh;
-  const units = unitsOf(answer.parameters);
-  const motion = new Motion(answer);
-  last = {asked, answer, motion, units};
+  const fresh = run === null || asked.fresh;
+  setRun({asked, answer, motion: new Motion(answer), units: unitsOf(answer.parameters)});
   say(unknownText(asked));
-  $("results").classList.remove("stale");
+  setStale(false);
   request.form.showErrors([]);
-  if ($("more").open) request.form.showOrigins(answer.parameters);
+  showOrigins();
   listWarnings($("warnings"), answer.warnings);
-  $("remarks").hidden = !answer.warnings.length;
-  $("remarks-count").textContent = count(answer.warnings.length, "remark");
+  reveal({remarks: answer.warnings.length, units: answer.parameters.si});
+  write({"remarks-count": count(answer.warnings.length, "remark")});
   axis.span(0, answer.status.tau, homeOf(answer), fresh);
   if (wantedView) axis.view = wantedView;
   wantedView = null;
   for (const step of drawing(fresh)) {
     if (pause) await pause();
-    if (last.answer !== answer) return;
+    if (run.answer !== answer) return;
     step();
   }
   countUp($("results"), "shown");
@@ -127,23 +120,19 @@ async function present(answer, asked) {
   resting = setTimeout(() => more.start(asked), rest);
 }
 
-/** What shows the last answer, in the units that are chosen, step by step. */
+/** What shows the run, in the units that are chosen, step by step. */
 function drawing(fresh = false) {
-  const {answer, asked, motion, units} = last;
-  const slider = sliderOf(touched, answer.parameters);
+  const {answer, asked, units} = run;
+  const slider = sliders.sliderOf(touched, answer.parameters);
   const tell = () => {
-    $("units").hidden = !answer.parameters.si;
     sliders.show(answer.parameters, fresh, slider);
-    showSentence($("sentence"), sentence(answer, slider, units));
-    machine.show(motion, answer.energy.peak);
-    for (const name of ["largest", "manifold"]) $(`figure-${name}`).classList.add("behind");
-    instrument.set(answer, motion, units, marksOf(answer, units));
+    showSentence(answer, slider, units);
   };
   const end = () => {
-    player.show(motion, units);
-    describe(answer, units);
+    player.show();
+    describe(answer);
     mark(request.edited ? null : request.preset);
-    strip.show(asked, answer.parameters, slider);
+    strip.show(request.systemOf(asked), answer.parameters, slider);
   };
   return [tell, ...instrument.drawing(), end];
 }
@@ -151,7 +140,7 @@ function drawing(fresh = false) {
 // What is asked.
 
 /** How the newest request is sent. hasty: while a slider is dragged; fresh: not by turning one. */
-function run({hasty = false, fresh = false, unknown = []} = {}) {
+function send({hasty = false, fresh = false, unknown = []} = {}) {
   const asked = request.asked();
   Object.defineProperties(asked, {fresh: {value: fresh}, unknown: {value: unknown}});
   chips.mark(request.name);
@@ -177,29 +166,29 @@ function remember(query, soon) {
 }
 
 /** A slider or the strip's marker was turned. */
-function turn(fields, slider, {hasty}) {
+function turn(fields, slider, hasty) {
   touched = slider.name;
   const {form} = request;
   if (slider.name === "zeta") request.dampingChosen = true;
-  for (const [name, value] of Object.entries(fields)) form.replace(name, value ?? "");
-  const names = Object.keys(fields).filter((name) => fields[name] !== null);
-  for (const name of names) note(request.typedOver(name));
+  const entries = Object.entries(fields);
+  for (const [name, value] of entries) form.replace(name, value ?? "");
+  for (const [name, value] of entries) if (value !== null) note(request.typedOver(name));
   form.greyOut();
-  run({hasty});
+  send({hasty});
 }
 
 /** What a preset says of itself holds as long as it is not changed. */
 function note(text) {
   const {preset, edited} = request;
   const changed = preset && edited ? `${preset.source}, changed` : (preset?.note ?? "");
-  $("preset-note").textContent = text || changed;
+  write({"preset-note": text || changed});
 }
 
 function choosePreset(name) {
   touched = "b";
   request.choose(name);
   note("");
-  run({fresh: true});
+  send({fresh: true});
 }
 
 /** The query of the run that is asked for, and what of it is in view; null before the first. */
@@ -233,15 +222,12 @@ export function open(given) {
   touched = "b";
   note("");
   shown = toQuery(request.asked());
-  run({fresh: true, unknown});
+  send({fresh: true, unknown});
   remembered(); // as the page itself writes it
 }
 
 export function redraw() {
-  instrument.redraw();
-  details.redraw();
-  strip.draw();
-  if (axis.cursor !== null) machine.draw(axis.cursor);
+  for (const part of [instrument, details, strip, machine]) part.redraw();
 }
 
 /**
@@ -252,63 +238,45 @@ export function start({fields, presets: list}, changed, {measure}) {
   remembered = changed;
   const form = new Form($("fields"), fields);
   request = new Request(form, fields, list);
-  instrument = new Instrument(axis);
-  for (const [name, plot] of instrument.plots())
-    addMenu($(`figure-${name}`), plot, () => aboutFigure(name));
-  player = new Player(axis, (tau) => machine.draw(tau));
-  sliders = new Sliders($("sliders"), {
-    change: turn,
-    refuse: (text, {label}) => say(`${label}: “${text}” is no number`, true),
-  });
-  strip = new Strip(turn);
-  details = new Details(axis, () => last, fields);
+  instrument.start();
+  player.start();
+  sliders.start(turn, (text, {label}) => say(`${label}: “${text}” is no number`, true));
+  details.start(request.fieldOf);
   chips.start(list, choosePreset);
-  pin.start(
-    () => last && {...last, query: toQuery(last.asked)},
-    (other) => instrument.pin(other),
-    (query) => {
-      if (query === undefined) return changed();
-      request.read(query);
-      run();
-    },
-  );
+  pin.start(changed, (other) => {
+    request.read(other);
+    send();
+  });
   phone.start();
   listen(form, measure);
-  if (!matchMedia("(prefers-reduced-motion: reduce)").matches) player.play();
 }
 
 function listen(form, measure) {
   for (const [name, input] of form.inputs) {
-    input.addEventListener("input", () => note(request.typedOver(name)));
-    input.addEventListener("change", () => {
+    input.oninput = () => note(request.typedOver(name));
+    input.onchange = () => {
       if (name === "damping") request.dampingChosen = true;
-      run();
-    });
+      send();
+    };
   }
   axis.onView(() => remembered({soon: true}));
-  $("more").addEventListener("toggle", () => {
-    if (last && $("more").open) form.showOrigins(last.answer.parameters);
-  });
+  $("more").ontoggle = () => run && showOrigins();
   unitsSwitch($("units"));
   onUnits(() => {
-    if (!last) return;
-    const {more: kept} = instrument;
-    last.units = unitsOf(last.answer.parameters);
+    if (!run) return;
+    run.units = unitsOf(run.answer.parameters);
     for (const step of drawing()) step();
-    if (kept) instrument.showMore(kept);
     details.follow();
   });
-  $("form").addEventListener("submit", (event) => {
+  $("form").onsubmit = (event) => {
     event.preventDefault();
-    if (!$("form").querySelector(".slider [aria-invalid]")) run();
-  });
-  $("cancel").addEventListener("click", () => job.cancel());
-  $("measure-this").addEventListener("click", () => last && measure(last.answer));
+    if (!$("form").querySelector(".slider [aria-invalid=true]")) send();
+  };
+  $("cancel").onclick = () => job.cancel();
+  $("measure-this").onclick = () => run && measure(run.answer);
   const forms = formsOf("v1/simulate", () => request.asked());
   for (const [name, text] of Object.entries(forms)) {
-    const button = element("button", {type: "button", className: "small", textContent: name});
-    button.title = `copy this run as ${name}`;
-    button.addEventListener("click", () => copy(text(), say));
-    $("copies").append(button);
+    const title = `copy this run as ${name}`;
+    $("copies").append(button(name, () => copy(text(), say), {className: "small", title}));
   }
 }

@@ -1,205 +1,202 @@
 // The few parameters that one turns: a slider, a number and its unit each. What they set are fields
 // of the form.
-import {element} from "../shared/dom.js";
+import {$, attributes, element} from "../shared/dom.js";
 import {toNumber} from "../shared/numbers.js";
+import {symbolOf} from "../shared/quantities.js";
+
+/**
+ * of(parameters): the value in the field's unit; fields(value, parameters): what it sets, and null
+ * for what makes way; rangeOf(parameters): of the slider, in its unit; about: what it is, where it
+ * depends on the system aboutOf(parameters).
+ */
+const slider = (name, label, about, more) => ({
+  name,
+  label,
+  about,
+  symbol: symbolOf(name),
+  unit: "",
+  factor: 1,
+  of: (p) => p[name] ?? p.si[name],
+  fields: (value) => ({[name]: value}),
+  ...more,
+});
 
 const mm = {unit: "mm", factor: 1000};
 const zetaField = ({lambda, derived}, zeta) => (derived.zeta ? (lambda * zeta) / derived.zeta : 0);
 
-// of(parameters): the value in the field's unit; fields(value, parameters): what it sets, null for
-// what makes way; range: of the slider, in its unit, and where it depends on the system
-// rangeOf(parameters); about: what it is.
-const clearance = {name: "b", label: "Clearance", symbol: "b", ...mm, range: [1, 45]};
-clearance.about = "half the free path of the mass";
-const restitution = {
-  name: "R",
-  label: "Restitution",
-  symbol: "R",
-  range: [0, 1],
-  about: "of both walls",
+const clearance = slider("b", "Clearance", "half the free path of the mass", {
+  ...mm,
+  rangeOf: () => [1, 45],
+});
+const restitution = slider("R", "Restitution", "of both walls", {
+  rangeOf: () => [0, 1],
   of: ({R_plus: plus, R_minus: minus}) => (plus + minus) / 2,
   fields: (value) => ({R: value, R_plus: null, R_minus: null}),
-};
+  aboutOf: ({R_plus: plus, R_minus: minus}) =>
+    plus !== minus && `mean of ${plus} at +b and ${minus} at −b`,
+});
 const reduced = [
   clearance,
   restitution,
-  {
-    name: "G",
-    label: "Forcing",
-    symbol: "G",
-    ...mm,
-    range: [0, 40],
-    about: "amplitude of the base over ε",
-  },
-  {
-    name: "Omega",
-    label: "Frequency",
-    symbol: "Ω",
-    range: [0.9, 1.1],
-    about: "over the oscillator's own",
-  },
-  {
-    name: "zeta",
-    label: "Damping",
+  slider("G", "Forcing", "amplitude of the base over ε", {...mm, rangeOf: () => [0, 40]}),
+  slider("Omega", "Frequency", "over the oscillator's own", {rangeOf: () => [0.9, 1.1]}),
+  slider("zeta", "Damping", "ratio of the oscillator's damping", {
     symbol: "ζ",
-    range: [0, 0.04],
-    about: "ratio of the oscillator's damping",
+    rangeOf: () => [0, 0.04],
     of: ({derived}) => derived.zeta,
     fields: (zeta, parameters) => ({lambda: zetaField(parameters, zeta)}),
-    sets: "lambda",
-  },
+  }),
 ];
 const si = [
   clearance,
   restitution,
-  {
-    name: "F",
-    label: "Forcing",
-    symbol: "F",
+  slider("F", "Forcing", "amplitude of the base", {
     ...mm,
     rangeOf: ({si: {F}}) => [0, 2500 * F || 1],
-    about: "amplitude of the base",
-    of: (p) => p.si.F,
-  },
-  {
-    name: "f",
-    label: "Frequency",
-    symbol: "f",
+  }),
+  slider("f", "Frequency", "of the base", {
     unit: "Hz",
     rangeOf: ({derived: {f0}}) => [0.9 * f0, 1.1 * f0],
-    about: "of the base",
-    of: (p) => p.si.f,
-  },
-  {
-    name: "c1",
-    label: "Damping",
-    symbol: "c₁",
+  }),
+  slider("c1", "Damping", "of the oscillator", {
     unit: "N s/m",
     rangeOf: ({si: {c1}}) => [0, 3 * c1 || 1],
-    about: "of the oscillator",
-    of: (p) => p.si.c1,
     fields: (value) => ({c1: value, damping_ratio: null}),
-  },
+  }),
 ];
 const slidersOf = (parameters) => (parameters.si ? si : reduced);
 
 /** The slider of a name for a system. */
 export const sliderOf = (name, parameters) =>
-  slidersOf(parameters).find((slider) => slider.name === name) ?? clearance;
+  slidersOf(parameters).find((s) => s.name === name) ?? clearance;
 /** Its value in a system, in the slider's unit. */
-export const valueAt = ({name, of, factor = 1}, parameters) =>
-  factor * (of ? of(parameters) : parameters[name]);
+export const valueAt = ({of, factor}, parameters) => factor * of(parameters);
 /** The fields that it sets for a value in its unit. */
-export function fieldsOf({name, fields, factor = 1}, value, parameters) {
-  const inField = Number((value / factor).toPrecision(12));
-  return fields ? fields(inField, parameters) : {[name]: inField};
-}
+export const fieldsOf = ({fields, factor}, value, parameters) =>
+  fields(Number((value / factor).toPrecision(12)), parameters);
 
-/** A value in its unit: as its number shows it, or in more digits where that is not all of it. */
-export function textAt(slider, parameters, range = rangeOf(slider, parameters)) {
-  const value = valueAt(slider, parameters);
-  const short = written(value, range);
-  const exact = Math.abs(Number(short) - value) <= 1e-6 * Math.abs(value);
-  return exact ? short : String(Number(value.toPrecision(4)));
-}
+const holds = ([least, most], value) => value >= least && value <= most;
 
 /** [least, most] in the slider's unit; it holds the value. */
-export function rangeOf(slider, parameters) {
-  const value = valueAt(slider, parameters);
-  const [least, most] = slider.rangeOf?.(parameters) ?? slider.range;
-  if (value >= least && value <= most) return [least, most];
-  if (slider.name === "R") return [0, 1];
+function rangeOf({rangeOf: usual, ...rest}, parameters) {
+  const value = valueAt(rest, parameters);
+  const range = usual(parameters);
+  if (holds(range, value)) return range;
   const power = 10 ** Math.floor(Math.log10(value || 1));
   return [0, Math.ceil((2 * value) / power) * power];
 }
 
 /** A value in the slider's unit as its number shows it: as many digits as its steps have. */
 export function written(value, [least, most]) {
-  const places = Math.max(0, 3 - Math.floor(Math.log10(most - least || 1)) - 1);
-  return value.toFixed(Math.min(places, 8));
+  const places = 2 - Math.floor(Math.log10(most - least || 1));
+  return value.toFixed(Math.min(Math.max(places, 0), 8));
 }
 
-export class Sliders {
-  /**
-   * change(fields, slider, {hasty}): fields to set, null to empty one; hasty: more are to come.
-   * refuse(text, slider): of what is no number.
-   */
-  constructor(container, {change, refuse}) {
-    Object.assign(this, {container, change, refuse});
-    this.kind = null;
-    this.rows = new Map();
-  }
+/** A value in its unit: as its number shows it, or in more digits where that is not all of it. */
+function textAt(one, parameters, range = rangeOf(one, parameters)) {
+  const value = valueAt(one, parameters);
+  const short = written(value, range);
+  const exact = Math.abs(Number(short) - value) <= 1e-6 * Math.abs(value);
+  return exact ? short : String(Number(value.toPrecision(4)));
+}
 
-  /** fresh: another system or run than one that was turned to; last: the slider turned last. */
-  show(parameters, fresh, last) {
-    this.parameters = parameters;
-    const kind = slidersOf(parameters);
-    if (this.kind !== kind) this.build(kind);
-    for (const [slider, row] of this.rows) {
-      this.set(slider, row, fresh);
-      row.node.classList.toggle("last", slider === last);
-    }
-  }
+/** A slider's value in words: b = 22.0 mm. */
+export const valueText = (one, parameters) =>
+  `${one.symbol} = ${textAt(one, parameters)} ${one.unit}`.trim();
 
-  build(kind) {
-    this.kind = kind;
-    this.rows.clear();
-    this.container.replaceChildren(...kind.map((slider) => this.row(slider)));
-  }
+/** The parameters that matter, in a line. */
+export const parameterLine = (parameters) =>
+  slidersOf(parameters)
+    .map((one) => valueText(one, parameters))
+    .join(", ");
 
-  row(slider) {
-    const {name, label, symbol, unit = "", about} = slider;
-    const id = `slider-${name}`;
-    const title = element("label", {htmlFor: id}, `${label} `, element("i", {textContent: symbol}));
-    const number = element("input", {type: "text", inputMode: "decimal", id, autocomplete: "off"});
-    const range = element("input", {type: "range", ariaLabel: `${label} ${symbol}`});
-    const note = element("small", {textContent: about});
-    const shownUnit = element("span", {className: "unit", textContent: unit});
-    range.addEventListener("input", () => this.turned(slider, Number(range.value), true));
-    range.addEventListener("change", () => this.turned(slider, Number(range.value), false));
-    number.addEventListener("change", () => this.typed(slider, number));
-    const node = element("div", {className: "slider"}, title, number, shownUnit, range, note);
-    this.rows.set(slider, {node, number, range, note, span: null});
-    return node;
-  }
+// What is shown.
 
-  set(slider, row, fresh) {
-    const value = valueAt(slider, this.parameters);
-    const inside = row.span && value >= row.span[0] && value <= row.span[1];
-    if (fresh || !inside) row.span = rangeOf(slider, this.parameters);
-    const [min, max] = row.span;
-    Object.assign(row.range, {min, max, step: (max - min) / 1000});
-    if (document.activeElement !== row.range || fresh) row.range.value = value;
-    row.range.setAttribute("aria-valuetext", `${written(value, row.span)} ${slider.unit ?? ""}`);
-    row.number.removeAttribute("aria-invalid");
-    if (document.activeElement !== row.number || fresh)
-      row.number.value = textAt(slider, this.parameters, row.span);
-    if (slider === restitution) {
-      const {R_plus: plus, R_minus: minus} = this.parameters;
-      row.note.textContent =
-        plus === minus ? slider.about : `mean of ${plus} at +b and ${minus} at −b`;
-    }
-  }
+const rows = new Map(); // {node, number, range, note, span} of each slider
+let shown; // parameters
+let change;
+let refuse;
 
-  turned(slider, value, hasty) {
-    const row = this.rows.get(slider);
-    const rounded = Number(written(value, row.span));
-    row.number.value = written(value, row.span);
-    this.apply(slider, rounded, hasty);
-  }
+/** The range that a slider has now. */
+export const spanOf = (one) => rows.get(one).span;
 
-  typed(slider, input) {
-    const value = toNumber(input.value);
-    input.toggleAttribute("aria-invalid", false);
-    if (value === null) {
-      input.setAttribute("aria-invalid", "true");
-      return this.refuse(input.value, slider);
-    }
-    this.apply(slider, value, false);
-  }
+/**
+ * changed(fields, slider, hasty): fields to set, null to empty one; hasty: more are to come.
+ * refused(text, slider): of what is no number.
+ */
+export function start(changed, refused) {
+  change = changed;
+  refuse = refused;
+}
 
-  /** value: in the slider's unit. */
-  apply(slider, value, hasty) {
-    this.change(fieldsOf(slider, value, this.parameters), slider, {hasty});
+/** fresh: another system or run than one that was turned to; last: the slider turned last. */
+export function show(parameters, fresh, last) {
+  shown = parameters;
+  const kind = slidersOf(parameters);
+  if (!kind.every((one) => rows.has(one))) {
+    rows.clear();
+    $("sliders").replaceChildren(...kind.map(rowOf));
   }
+  for (const [one, row] of rows) {
+    set(one, row, fresh);
+    row.node.classList.toggle("last", one === last);
+  }
+}
+
+function rowOf(one) {
+  const {label, symbol} = one;
+  const id = `slider-${one.name}`;
+  const title = element("label", {htmlFor: id}, `${label} `, element("i", {textContent: symbol}));
+  const number = element("input", {
+    type: "text",
+    inputMode: "decimal",
+    id,
+    autocomplete: "off",
+    onchange: () => typed(one, number),
+  });
+  const range = element("input", {
+    type: "range",
+    ariaLabel: `${label} ${symbol}`,
+    oninput: () => turnTo(one, Number(range.value), true),
+    onchange: () => turnTo(one, Number(range.value), false),
+  });
+  const note = element("small");
+  const unit = element("span", {className: "unit", textContent: one.unit});
+  const node = element("div", {className: "slider"}, title, number, unit, range, note);
+  rows.set(one, {node, number, range, note, span: null});
+  return node;
+}
+
+function set(one, row, fresh) {
+  const {number, range} = row;
+  const value = valueAt(one, shown);
+  if (fresh || !row.span || !holds(row.span, value)) row.span = rangeOf(one, shown);
+  const [min, max] = row.span;
+  const put = (input, text) => {
+    if (fresh || document.activeElement !== input) input.value = text;
+  };
+  Object.assign(range, {min, max, step: (max - min) / 1000});
+  put(range, value);
+  attributes(range, {"aria-valuetext": `${written(value, row.span)} ${one.unit}`});
+  attributes(number, {"aria-invalid": false});
+  put(number, textAt(one, shown, row.span));
+  row.note.textContent = one.aboutOf?.(shown) || one.about;
+}
+
+/** value: in the slider's unit, to be rounded as its number shows it. */
+export function turnTo(one, value, hasty) {
+  const {number, span} = rows.get(one);
+  number.value = written(value, span);
+  apply(one, Number(number.value), hasty);
+}
+
+function typed(one, input) {
+  const value = toNumber(input.value);
+  attributes(input, {"aria-invalid": value === null});
+  if (value === null) refuse(input.value, one);
+  else apply(one, value, false);
+}
+
+function apply(one, value, hasty) {
+  change(fieldsOf(one, value, shown), one, hasty);
 }

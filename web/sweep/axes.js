@@ -1,4 +1,5 @@
 // How the axes of a sweep, and the places on them, are named. Lengths are in mm.
+import {textOf} from "../shared/form.js";
 import {symbolOf} from "../shared/quantities.js";
 import {unitShown} from "../shared/units.js";
 
@@ -24,7 +25,9 @@ export class Naming {
     return String(Number(this.number(parameter, value).toPrecision(6)));
   }
 
+  /** With its unit; what is no number as it is. */
   value(parameter, value) {
+    if (typeof value !== "number") return textOf(value);
     const {unit} = this.of(parameter);
     return `${this.text(parameter, value)}${unit && ` ${unit}`}`;
   }
@@ -34,9 +37,16 @@ export class Naming {
     return [symbolOf(parameter), this.value(parameter, value)];
   }
 
+  /** Fields in words, as in "b = 15 mm, R = 0.6". */
+  fields(values) {
+    return Object.entries(values)
+      .map(([parameter, value]) => `${symbolOf(parameter)} = ${this.value(parameter, value)}`)
+      .join(", ");
+  }
+
   /** What names a value of the axis that is folded; null where none is. */
   where({reduced}) {
-    return reduced && ((value) => `${symbolOf(reduced)} = ${this.value(reduced, value)}`);
+    return reduced && ((value) => this.fields({[reduced]: value}));
   }
 
   /** The x or y of a Frame over an axis, of which `view` is to be seen. */
@@ -47,15 +57,11 @@ export class Naming {
 }
 
 /** How a point that is simulated alone differs from that of the sweep. */
-export const afresh = ({request}) =>
-  (request.carry_state ?? "none") === "none" ? "" : ", afresh: not from its neighbour's last state";
+export const afresh = ({carried}) =>
+  carried ? ", afresh: not from its neighbour's last state" : "";
 
 /** Whether what is in view of one axis means the same on the other. */
 export const sameAxis = (one, other) => one.parameter === other?.parameter && one.log === other.log;
-
-/** What can be in view of an Axis is that of a sweep; a zoom stays unless it is fresh. */
-export const span = (axis, {borders}, fresh) =>
-  axis.span(borders[0], borders.at(-1), undefined, fresh);
 
 const turns = ["0", "π/2", "π", "3π/2", "2π"];
 /** Labels of a phase. */

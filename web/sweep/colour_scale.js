@@ -43,23 +43,32 @@ export function endsOf({diverging, from0}, values) {
 }
 
 /**
- * {at(value): its colour as bytes, share(value): its place in [0, 1] or beyond, ends, stops}. A
- * diverging one has 0 in its middle, and its sides have scales of their own.
+ * {at(value): its colour as bytes, share(value): its place in [0, 1] or beyond, ends, stops, beyond:
+ * [whether values were asked for that lie below it, above it]}. A diverging one has 0 in its middle,
+ * and its sides have scales of their own.
  */
-export function scaleOf(quantity, [low, high]) {
-  const stops = colour(quantity.diverging ? "diverging" : "sequential")
+export function scaleOf({diverging}, ends) {
+  const [low, high] = ends;
+  const stops = colour(diverging ? "diverging" : "sequential")
     .split(/\s+/)
     .map(hex);
-  const share = quantity.diverging
-    ? (v) => (v < 0 ? 0.5 - (0.5 * v) / low : 0.5 + (0.5 * v) / high)
+  const share = diverging
+    ? (v) => 0.5 + (0.5 * v) / (v < 0 ? -low : high)
     : (v) => (v - low) / (high - low);
-  return {stops, share, ends: [low, high], at: (v) => between(stops, share(v))};
+  const beyond = [false, false];
+  const at = (v) => {
+    const t = share(v);
+    beyond[0] ||= t < 0;
+    beyond[1] ||= t > 1;
+    return between(stops, t);
+  };
+  return {stops, share, ends, beyond, at};
 }
 
 export const barWidth = 86; // px beside the map
 
-/** The bar, its numbers and title. beyond: [whether values lie below it, above it]. */
-export function drawBar(c, {box, height}, {stops, share, ends: [low, high]}, title, beyond) {
+/** The bar, its numbers and title. */
+export function drawBar(c, {box, height}, {stops, share, ends: [low, high], beyond}, title) {
   const left = box.right + 12;
   const width = 12;
   const rows = Math.min(Math.round(height), 256);

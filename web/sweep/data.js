@@ -2,20 +2,21 @@
 import {defaultSet} from "../shared/form.js";
 import {coordinates} from "../shared/quantities.js";
 
-const ascending = (values) => values.map((_, i) => i).sort((a, b) => values[a] - values[b]);
+/** The positions of values in their order. */
+export const ascending = (values) => values.map((_, i) => i).sort((a, b) => values[a] - values[b]);
 
 const same = (v) => v;
 
 /**
- * The borders between ascending values and around them: the middles, of the logarithms where the
- * axis is logarithmic.
+ * The borders between ascending places and around them: the middles between each and the next. An
+ * only one has some room around it.
  */
 function borders(at, log) {
-  const n = at.length;
-  const alone = log ? 0.05 : Math.abs(at[0]) * 0.05 || 0.5; // around the only value
-  const first = n > 1 ? at[0] - (at[1] - at[0]) / 2 : at[0] - alone;
-  const last = n > 1 ? at[n - 1] + (at[n - 1] - at[n - 2]) / 2 : at[0] + alone;
-  return [first, ...at.slice(1).map((v, i) => (v + at[i]) / 2), last];
+  const room = log ? 0.1 : Math.abs(at[0]) * 0.1 || 1;
+  const [first, second = first + room] = at;
+  const [last, before = last - room] = at.toReversed();
+  const all = [2 * first - second, ...at, 2 * last - before];
+  return all.slice(1).map((v, i) => (v + all[i]) / 2);
 }
 
 /**
@@ -48,33 +49,43 @@ function unfold({worst, best, starts, ...line}, parameter) {
   return {...peak(line), ...motions};
 }
 
+/** Half a forcing period, pi/Omega, of a point's fields. */
+function halfPeriod({Omega, f, f0, k1, m1}) {
+  const natural = f0 ?? Math.sqrt(k1 / m1) / (2 * Math.PI); // in Hz
+  return Math.PI / (Omega ?? (f ? f / natural : 1));
+}
+
 const enough = 500; // lines that are kept as texts before they go into a Blob
 
 /** The points of a sweep; as JSON it is its request. */
 export class SweepData {
-  /** halfPeriod(fields): half a forcing period of a point's fields; keep: the lines, for a file. */
-  constructor(request, halfPeriod, {keep = true} = {}) {
-    this.keep = keep;
+  axes = null; // those that are left
+  parameters = null;
+  warnings = new Set();
+  points = [];
+  received = 0;
+  slice = null; // of the third axis of another sweep, the one that this sweep is a part of
+  views = null; // of its axes, what this sweep is of; such a part is no file
+  blobs = [];
+  texts = [];
+
+  constructor(request) {
     this.request = request;
-    this.halfPeriod = halfPeriod;
-    this.section = request.section ?? "none";
-    this.defaultSet = request.starts === defaultSet;
-    this.starts = this.defaultSet ? 1 : Math.max(1, request.starts?.length ?? 0);
+    const {section = "none", starts, reduce = "", carry_state: carried = "none"} = request;
+    this.section = section;
+    this.defaultSet = starts === defaultSet;
+    this.states = Array.isArray(starts) && starts.length ? starts : [{}]; // to start from
     // The parameter of the axis that is folded.
-    this.reduced = /^(?:max|min) over (.+)$/.exec(request.reduce ?? "")?.[1] ?? null;
-    this.axes = null; // those that are left
-    this.parameters = null;
-    this.warnings = new Set();
-    this.points = [];
-    this.received = 0;
-    this.faults = new Map();
-    this.early = 0;
-    this.blobs = [];
-    this.texts = [];
+    this.reduced = /^(?:max|min) over (.+)$/.exec(reduce)?.[1] ?? null;
+    this.carried = carried !== "none"; // each point begins where its neighbour ended
   }
 
   toJSON() {
     return this.request;
+  }
+
+  get starts() {
+    return this.states.length;
   }
 
   get total() {
@@ -98,7 +109,7 @@ export class SweepData {
       if (line.type === "warning") this.warnings.add(line.message);
       return; // progress and the end are not part of the result
     }
-    if (!this.keep) return;
+    if (this.views) return;
     this.texts.push(text, "\n");
     if (this.texts.length > 2 * enough)
       this.blobs = [...this.blobs, new Blob(this.texts.splice(0))];
@@ -117,13 +128,11 @@ export class SweepData {
    * place for them.
    */
   trim(point) {
-    if (point.error) this.faults.set(point.error, (this.faults.get(point.error) ?? 0) + 1);
-    if (point.reason && point.reason !== "complete") ++this.early;
     if (this.reduced) return unfold(point, this.reduced);
     if (!point.section) return point;
     const {section, ...rest} = point;
     if (this.axes.length > 1) return rest;
-    const half = this.halfPeriod(this.fields(point.index));
+    const half = halfPeriod(this.fields(point.index));
     rest.section = {};
     for (const [name, {columns, value, seconds}] of Object.entries(coordinates[this.section])) {
       const [first, second] = columns(section);
@@ -150,30 +159,27 @@ export class SweepData {
     return (before * this.starts + start) * size(first) + entry(first, k);
   }
 
-  at(k, l, start, m) {
-    return this.points[this.index(k, l, start, m)];
-  }
-
   /** The fields of /v1/simulate of a point; best: of its best motion, where it has several. */
   fields(index, best = false) {
     const all = this.points[index];
     const point = (best && all?.best) || all;
-    const fields = {...this.request.base, ...(this.defaultSet ? point?.state : {})};
+    const [first, second, third] = this.axes;
     let rest = index;
-    const take = (n) => {
-      const i = rest % n;
-      rest = Math.floor(rest / n);
-      return i;
+    const take = (list) => {
+      const i = rest % list.length;
+      rest = Math.floor(rest / list.length);
+      return list[i];
     };
-    const place = (axis) => {
-      if (axis) fields[axis.parameter] = axis.given[take(axis.given.length)];
+    const place = (axis) => axis && {[axis.parameter]: take(axis.given)};
+    return {
+      ...this.request.base,
+      ...(this.defaultSet && point?.state),
+      ...place(first),
+      ...take(this.states),
+      ...place(second),
+      ...place(third),
+      ...(this.reduced && point?.where != null && {[this.reduced]: point.where}),
     };
-    place(this.axes[0]);
-    const start = this.defaultSet ? {} : this.request.starts?.[take(this.starts)];
-    place(this.axes[1]);
-    place(this.axes[2]);
-    if (this.reduced && point?.where != null) fields[this.reduced] = point.where;
-    return {...fields, ...start};
   }
 
   /** What has come, as lines of JSON. */

@@ -1,74 +1,47 @@
 // The diagrams over the axis of a sweep, one class each: what they draw, and of what values.
 import {colour} from "../shared/colours.js";
 import {count, density} from "../shared/density.js";
-import {Frame} from "../shared/frame.js";
+import {rangeOf} from "../shared/frame.js";
 import {short} from "../shared/numbers.js";
-import {Panel} from "../shared/panel.js";
 import {
+  coordinates,
   otherMotion,
   quantities,
+  quantityOf,
   regimeColour,
   regimes,
   verdictColour,
   verdicts,
 } from "../shared/quantities.js";
+import {inSeconds} from "../shared/units.js";
 import {quarters} from "./axes.js";
+import {SweepPanel} from "./view.js";
 
 const startColours = ["c1", "before", "c2", "c4", "c3"];
 const startColour = (s) => startColours[s % startColours.length];
 
-/** Corners of the symbols of the starts but for the first, a disc, in units of its radius. */
-const corners = [
-  [],
-  [
-    [-0.9, -0.9],
-    [0.9, -0.9],
-    [0.9, 0.9],
-    [-0.9, 0.9],
-  ],
-  [
-    [0, -1.25],
-    [1.15, 1],
-    [-1.15, 1],
-  ],
-  [
-    [0, -1.3],
-    [1.3, 0],
-    [0, 1.3],
-    [-1.3, 0],
-  ],
-  [
-    [0, 1.25],
-    [1.15, -1],
-    [-1.15, -1],
-  ],
+/** Corners of the symbols of the starts but for the first, a disc: how many, and where they begin. */
+const polygons = [
+  [0, 0],
+  [4, Math.PI / 4],
+  [3, -Math.PI / 2],
+  [4, 0],
+  [3, Math.PI / 2],
 ];
 
-function symbol(c, start, x, y, r) {
-  const list = corners[start % corners.length];
+/** The symbol of a start as a path. */
+function trace(c, start, x, y, r) {
+  const [n, turn] = polygons[start % polygons.length];
   c.beginPath();
-  for (const [dx, dy] of list) c.lineTo(x + dx * r, y + dy * r);
-  if (!list.length) c.arc(x, y, r, 0, 2 * Math.PI);
+  for (let i = 0; i < n; ++i) {
+    const angle = turn + (2 * Math.PI * i) / n;
+    c.lineTo(x + 1.3 * r * Math.cos(angle), y + 1.3 * r * Math.sin(angle));
+  }
+  if (!n) c.arc(x, y, r, 0, 2 * Math.PI);
   c.closePath();
-  c.fill();
 }
 
 const untouched = (p) => p.verdict === null && p.regime === "none";
-
-/** The extent of values and a margin; a logarithmic one keeps above `least`. */
-function extent(values, {log = false, from0 = false, least = 0} = {}) {
-  let min = from0 ? 0 : Infinity;
-  let max = -Infinity;
-  for (const v of values) {
-    if (!Number.isFinite(v) || (log && v <= least)) continue;
-    if (v < min) min = v;
-    if (v > max) max = v;
-  }
-  if (!(min <= max) || (from0 && max <= 0)) return log ? [0.1, 10] : [from0 ? 0 : -1, 1];
-  if (log) return [min / 1.3, max * 1.3];
-  const margin = (max - min) * 0.06 || Math.abs(max) * 0.06 || 1;
-  return [from0 ? 0 : min - margin, max + margin];
-}
 
 /** The values of another motion of a point, of those of the point. */
 const ofOther = (of) => (p) => {
@@ -76,26 +49,14 @@ const ofOther = (of) => (p) => {
   return m && of(m);
 };
 
-class Diagram extends Panel {
-  /** plots: SweepPlots, whose points are drawn. */
-  constructor(container, plots) {
-    super(container, plots.axis);
-    this.plots = plots;
-  }
+/** How many of some points are of each regime: [regime, number]. */
+export const countRegimes = (points) =>
+  Object.keys(regimes).map((regime) => [regime, points.filter((p) => p?.regime === regime).length]);
 
-  click(at, _, place) {
-    this.plots.click(this, at, place);
-  }
-
-  cursorText() {
-    return "";
-  }
-
+/** view: SweepPlots, whose points are drawn. Who extends this has y(), as of a Frame, and draw(). */
+class Diagram extends SweepPanel {
   prepare(width, height) {
-    const {plots} = this;
-    if (!plots.places) return null;
-    const x = plots.naming.frameAxis(plots.data.axes[0], plots.axis.view);
-    return {frame: new Frame(width, height, x, this.y())};
+    return this.view.byStart ? {frame: this.frameOf(width, height)} : null;
   }
 
   paint(c, {frame}) {
@@ -111,12 +72,21 @@ class Diagram extends Panel {
     return null;
   }
 
+  /** The values of all points, a list of each, for a range. */
+  values(of) {
+    return this.view.places().map(({p}) => of(p));
+  }
+
+  /** The colour of a start, or what a single one has in its place. */
+  tint(start, alone) {
+    return this.view.several ? startColour(start) : alone;
+  }
+
   /** Of the dots: smaller where there are many. */
   radius(frame) {
-    const [from, to] = this.axis.view;
-    const shown = this.plots.places[0].filter(({at}) => at >= from && at <= to).length;
-    const room = (frame.width / Math.max(shown, 1)) * 0.62;
-    return Math.max(1.3, Math.min(3.4, room)) * (this.plots.several ? 1.15 : 1);
+    const {data, several} = this.view;
+    const room = (frame.width / Math.max(this.view.seen().length / data.starts, 1)) * 0.62;
+    return Math.max(1.3, Math.min(3.4, room)) * (several ? 1.15 : 1);
   }
 
   rule(c, frame, levels, name) {
@@ -126,15 +96,22 @@ class Diagram extends Panel {
     for (const level of levels) frame.across(c, level);
   }
 
-  /** A line through the points of a start; a failed one, or one without the value, breaks it. */
+  /** Where the points of a start lie: {p, v, x, y}, v null where one failed or has no value. */
+  spots(frame, start, of) {
+    return this.view.byStart[start].map(({p, value}) => {
+      const v = p.error ? null : (of(p) ?? null);
+      return {p, v, x: frame.px(value), y: frame.py(v)};
+    });
+  }
+
+  /** A line through the points of a start; one without the value breaks it. */
   line(c, frame, start, of, name, {width = 1, alpha = 1, dash = []} = {}) {
     c.setLineDash(dash);
     Object.assign(c, {strokeStyle: colour(name), lineWidth: width, globalAlpha: alpha});
     c.beginPath();
     let broken = true;
-    for (const {p, value} of this.plots.places[start]) {
-      const v = p.error ? null : (of(p) ?? null);
-      if (v !== null) c[broken ? "moveTo" : "lineTo"](frame.px(value), frame.py(v));
+    for (const {v, x, y} of this.spots(frame, start, of)) {
+      if (v !== null) c[broken ? "moveTo" : "lineTo"](x, y);
       broken = v === null;
     }
     c.stroke();
@@ -144,31 +121,27 @@ class Diagram extends Panel {
 
   /**
    * The best of a point's motions, or one from another start that ends elsewhere, as rings on a
-   * thin line.
+   * thin line; several starts have none.
    */
   rings(c, frame, of) {
+    if (this.view.several) return;
     const r = this.radius(frame);
     this.line(c, frame, 0, ofOther(of), "best", {alpha: 0.6});
-    c.strokeStyle = colour("best");
     c.lineWidth = 1.5;
-    this.plots.each(0, (p, {value}) => {
-      const v = ofOther(of)(p);
-      if (v === null || v === undefined) return;
-      c.beginPath();
-      c.arc(frame.px(value), frame.py(v), r, 0, 2 * Math.PI);
+    for (const {v, x, y} of this.spots(frame, 0, ofOther(of))) {
+      if (v === null) continue;
+      trace(c, 0, x, y, r);
       c.stroke();
-    });
+    }
   }
 
-  dots(c, frame, start, of, nameOfPoint, errorOf = () => null) {
+  dots(c, frame, start, nameOf, errorOf = () => null) {
     const r = this.radius(frame);
     c.lineWidth = Math.max(1, r / 2);
-    this.plots.each(start, (p, {value}) => {
-      const v = of(p) ?? null;
-      if (v === null) return;
-      const [x, y] = [frame.px(value), frame.py(v)];
+    for (const {p, v, x, y} of this.spots(frame, start, (point) => this.drawn({p: point}))) {
+      if (v === null) continue;
       const error = errorOf(p);
-      c.fillStyle = c.strokeStyle = colour(nameOfPoint(p));
+      c.fillStyle = c.strokeStyle = colour(nameOf(p));
       if (error) {
         c.globalAlpha = 0.45;
         c.beginPath();
@@ -177,179 +150,139 @@ class Diagram extends Panel {
         c.stroke();
         c.globalAlpha = 1;
       }
-      symbol(c, start, x, y, r);
-    });
+      trace(c, start, x, y, r);
+      c.fill();
+    }
   }
 
   /** Neighbours of the same regime as one stretch: f(regime, from, to) in pixels. */
   stretches(frame, start, f) {
-    const {from: value} = this.plots.data.axes[0];
+    const {from: value} = this.view.data.axes[0];
     const {left, right} = frame.box;
     const px = (at) => Math.min(Math.max(frame.px(value(at)), left), right);
-    let open = null;
-    const close = () => {
-      if (open?.regime && px(open.high) > px(open.low)) f(open.regime, px(open.low), px(open.high));
-    };
-    for (const {p, low, high} of this.plots.places[start]) {
-      const regime = p.error ? null : p.regime;
-      if (open?.regime === regime) open.high = high;
-      else {
-        close();
-        open = {regime, low, high};
-      }
+    const list = [];
+    for (const {p, low, high} of this.view.byStart[start]) {
+      const regime = p.regime ?? null;
+      const last = list.at(-1);
+      if (last?.regime === regime) last.high = high;
+      else list.push({regime, low, high});
     }
-    close();
+    for (const {regime, low, high} of list) {
+      const [from, to] = [px(low), px(high)];
+      if (regime && to > from) f(regime, from, to);
+    }
   }
 
   /** The regimes as a narrow strip along the top, a lane for each start. */
   strip(c, frame) {
-    for (const s of this.plots.starts())
+    for (const s of this.view.starts())
       this.stretches(frame, s, (regime, from, to) => {
         c.fillStyle = colour(regimeColour(regime));
         c.fillRect(from, frame.box.top + 6 * s, to - from, 5);
       });
   }
-
-  /** {names, columns}: the numbers of what is in view. */
-  numbers() {
-    const {plots} = this;
-    const {parameter} = plots.data.axes[0];
-    const [from, to] = this.axis.view;
-    const rows = plots
-      .starts()
-      .flatMap((s) =>
-        plots.places[s]
-          .filter(({at, p}) => at >= from && at <= to && !p.error)
-          .flatMap((place) =>
-            this.rows(place).map((row) => [
-              plots.naming.number(parameter, place.value),
-              s + 1,
-              ...row,
-            ]),
-          ),
-      );
-    const names = [plots.naming.label(parameter), "start", ...this.names()];
-    const kept = names.map((_, i) => i).filter((i) => i !== 1 || plots.several);
-    return {
-      names: kept.map((i) => names[i]),
-      columns: kept.map((i) => rows.map((row) => row[i])),
-    };
-  }
 }
+
+/** A column of a point's section, as seen in SweepData. */
+const section = (p, column) => p.section?.[column] ?? [];
 
 /**
  * How often the section comes to each pixel, as opacity: a periodic orbit is a few full dots, chaos
  * a cloud.
  */
 export class SectionDiagram extends Diagram {
-  label() {
-    const shown = this.plots.coordinate();
-    return (this.plots.seconds() ? shown.seconds.label : shown?.label) ?? "";
-  }
-
-  /** The coordinate of a point's section. */
-  section(p) {
-    const {plots} = this;
-    return p.section?.[`${plots.choice.coordinate}${plots.seconds() ? "_SI" : ""}`] ?? [];
-  }
-
-  *all() {
-    for (const p of this.plots.layers.points()) yield* this.section(p);
+  /** The coordinate that is drawn, and its column; velocities may be in mm/s. */
+  shown() {
+    const {data, choice} = this.view;
+    const name = choice.coordinate;
+    const own = coordinates[data.section]?.[name] ?? {label: "", title: ""};
+    const seconds = data.parameters.si && inSeconds() && own.seconds;
+    return {...own, ...(seconds ? {label: seconds.label, column: `${name}_SI`} : {column: name})};
   }
 
   y() {
-    const shown = this.plots.coordinate();
-    const range = shown?.range ?? (shown ? extent(this.all(), shown) : [0, 1]);
-    return {range, log: shown?.log, label: this.label(), labels: shown?.turns && quarters};
+    const {column, range, log, least = -Infinity, turns, label} = this.shown();
+    const large = (p) => section(p, column).filter((v) => !(v <= least));
+    const held = range ?? rangeOf(this.values(large), {log}) ?? (log ? [0.1, 10] : [-1, 1]);
+    return {range: held, log, label, labels: turns && quarters};
   }
 
   draw(c, frame) {
-    const shown = this.plots.coordinate();
-    if (!shown) return;
-    this.rule(c, frame, shown.levels ?? [], "line");
-    const {from: value} = this.plots.data.axes[0];
+    const {column, levels = [], log = false} = this.shown();
+    this.rule(c, frame, levels, "line");
+    const {from: value} = this.view.data.axes[0];
     const {left, top} = frame.box;
-    for (const s of this.plots.starts()) {
-      const columns = this.plots.places[s]
-        .filter(({p}) => !p.error)
-        .map(({p, low, high}) => ({
-          from: frame.px(value(low)) - left,
-          to: frame.px(value(high)) - left,
-          values: this.section(p),
-        }));
-      const counts = count(columns, frame, Boolean(shown.log));
-      const image = density(counts, this.plots.several ? startColour(s) : "c1");
+    for (const s of this.view.starts()) {
+      const columns = this.view.byStart[s].map(({p, low, high}) => ({
+        from: frame.px(value(low)) - left,
+        to: frame.px(value(high)) - left,
+        values: section(p, column),
+      }));
+      const image = density(count(columns, frame, log), this.tint(s, "c1"));
       c.drawImage(image, left, top, frame.width, frame.height);
     }
   }
 
-  names() {
-    return [this.label()];
+  columns() {
+    return {[this.shown().label]: null};
   }
 
-  rows({p}) {
-    return Array.from(this.section(p), (v) => [v]);
+  rows(p) {
+    return Array.from(section(p, this.shown().column), (v) => [v]);
   }
 
   about() {
-    const {plots} = this;
-    const n = plots.places[0].length;
+    const {title, label} = this.shown();
+    const n = this.view.byStart[0].length;
     return {
-      title: `Section: ${plots.coordinate()?.title ?? ""}`,
-      summary: `${this.label()} of the section at ${n} points`,
+      title: `Section: ${title}`,
+      summary: `${label} of the section at ${n} points`,
     };
   }
 }
 
 const lambda = (i) => (p) => p.lambda?.[i] ?? null;
+const errorOf = (p) => p.standard_error?.[0] ?? null;
 
 export class LambdaDiagram extends Diagram {
-  drawn(p) {
+  drawn({p}) {
     return untouched(p) ? 0 : quantities.lambda1.of(p);
   }
 
-  /** What the axis has to hold of a point. */
-  held(p) {
-    const [first = null, second] = p.lambda ?? [];
-    const error = p.standard_error?.[0] ?? 0;
-    if (first === null) return [];
-    return [first - error, first + error, second, otherMotion(p)?.lambda?.[0]];
-  }
-
   y() {
-    const range = extent([0, ...this.plots.values((p) => this.held(p))]);
-    return {range, label: "λ"};
+    const held = (p) => {
+      const first = lambda(0)(p);
+      const error = errorOf(p);
+      return first === null
+        ? []
+        : [first - error, first + error, lambda(1)(p), ofOther(lambda(0))(p)];
+    };
+    return {range: rangeOf([[0], ...this.values(held)]), label: "λ"};
   }
 
   draw(c, frame) {
-    const {several} = this.plots;
     this.rule(c, frame, [0], "soft");
-    const errorOf = (p) => p.standard_error?.[0];
-    const ofUntouched = (p) => (untouched(p) ? 0 : null);
-    for (const s of this.plots.starts()) {
-      const name = several ? () => startColour(s) : verdictColour;
-      const second = several ? startColour(s) : "second";
-      this.line(c, frame, s, lambda(1), second, {alpha: several ? 0.5 : 1});
-      this.dots(c, frame, s, lambda(0), name, errorOf);
-      this.dots(c, frame, s, ofUntouched, name);
+    const alpha = this.view.several ? 0.5 : 1;
+    for (const s of this.view.starts()) {
+      this.line(c, frame, s, lambda(1), this.tint(s, "second"), {alpha});
+      this.dots(c, frame, s, (p) => this.tint(s, verdictColour(p)), errorOf);
     }
-    if (!several) this.rings(c, frame, lambda(0));
+    this.rings(c, frame, lambda(0));
   }
 
-  names() {
-    return ["λ₁", "standard error", "λ₂", "verdict"];
-  }
-
-  rows({p}) {
-    const [first, second] = p.lambda ?? [];
-    const [error] = p.standard_error ?? [];
-    return [[first ?? null, error ?? null, second ?? null, verdicts[p.verdict] ?? "–"]];
+  columns() {
+    return {
+      "λ₁": lambda(0),
+      "standard error": errorOf,
+      "λ₂": lambda(1),
+      verdict: (p) => verdicts[p.verdict] ?? "–",
+    };
   }
 
   about() {
-    const points = this.plots.places[0].map(({p}) => p).filter((p) => p.lambda);
+    const points = this.view.byStart[0].map(({p}) => p).filter((p) => p.lambda);
     const chaotic = points.filter((p) => p.verdict === "chaotic").length;
-    const values = points.map((p) => p.lambda[0]).filter((v) => v != null);
+    const values = points.map(lambda(0)).filter((v) => v !== null);
     const ends = values.length
       ? `λ₁ from ${short(Math.min(...values))} to ${short(Math.max(...values))}; `
       : "";
@@ -361,22 +294,26 @@ export class LambdaDiagram extends Diagram {
 }
 
 export class OtherDiagram extends Diagram {
-  drawn(p) {
-    return this.plots.quantity().of(p);
+  quantity() {
+    return quantityOf(this.view.choice.quantity, this.view.data);
+  }
+
+  drawn({p}) {
+    return this.quantity().of(p);
   }
 
   y() {
-    const {of, levels = [], free = () => null, from0 = false, label} = this.plots.quantity();
+    const {of, levels = [], free = () => null, from0, label} = this.quantity();
     const held = (p) => [of(p), free(p), ofOther(of)(p)];
-    const [min, max] = extent(this.plots.values(held), {from0});
+    const [min, max] = rangeOf([from0 ? [0] : [], ...this.values(held)]) ?? [-1, 1];
     if (!from0) return {range: [min, max], label};
     const most = Math.max(max, Math.min(levels[0] ?? 0, max * 1.5)) * 1.02;
-    return {range: [min, most], label};
+    return {range: [0, most], label};
   }
 
   /** Pale bands with the regimes' numbers; several starts have none: theirs may differ. */
   bands(c, frame) {
-    if (this.plots.several) return;
+    if (this.view.several) return;
     const {top} = frame.box;
     c.font = "600 12px system-ui, sans-serif";
     Object.assign(c, {textAlign: "center", textBaseline: "top"});
@@ -391,35 +328,31 @@ export class OtherDiagram extends Diagram {
   }
 
   draw(c, frame) {
-    const {of, levels = [], free} = this.plots.quantity();
-    const {several} = this.plots;
+    const {of, levels = [], free} = this.quantity();
     this.bands(c, frame);
     this.rule(c, frame, levels, "line");
-    for (const s of this.plots.starts()) {
-      const name = several ? startColour(s) : "text";
+    for (const s of this.view.starts()) {
+      const name = this.tint(s, "text");
       this.line(c, frame, s, of, name, {alpha: 0.35});
-      this.dots(c, frame, s, of, () => name);
+      this.dots(c, frame, s, () => name);
       if (free) this.line(c, frame, s, free, "wall", {width: 1.4, dash: [6, 4]});
     }
-    if (!several) this.rings(c, frame, of);
+    this.rings(c, frame, of);
   }
 
-  names() {
-    const {label, free} = this.plots.quantity();
-    return [label, ...(free ? ["without the absorber"] : []), "regime"];
-  }
-
-  rows({p}) {
-    const {of, free} = this.plots.quantity();
-    return [[of(p), ...(free ? [free(p)] : []), p.regime ?? "–"]];
+  columns() {
+    const {label, of, free} = this.quantity();
+    return {
+      [label]: of,
+      ...(free && {"without the absorber": free}),
+      regime: (p) => p.regime ?? "–",
+    };
   }
 
   about() {
-    const {title} = this.plots.quantity();
-    const counts = Object.keys(regimes)
-      .map((regime) => [regime, this.plots.places[0].filter(({p}) => p.regime === regime).length])
-      .filter(([, n]) => n);
-    const told = counts.map(([regime, n]) => `${regime === "none" ? "no impacts" : regime}: ${n}`);
+    const counts = countRegimes(this.view.byStart[0].map(({p}) => p)).filter(([, n]) => n);
+    const told = counts.map(([regime, n]) => `${regime === "none" ? regimes.none : regime}: ${n}`);
+    const {title} = this.quantity();
     return {title: `Regimes and ${title}`, summary: `points of each regime: ${told.join(", ")}`};
   }
 }
@@ -427,7 +360,6 @@ export class OtherDiagram extends Diagram {
 /** The keys of the starts: their symbol and state. */
 export const startKey = (state, s, naming) => ({
   className: `key start start${s % startColours.length}`,
-  textContent: `${s + 1}: ${Object.entries(state)
-    .map(([name, v]) => naming.place({parameter: name}, v).join(" = "))
-    .join(", ")}`,
+  style: `color: var(--${startColour(s)})`,
+  textContent: `${s + 1}: ${naming.fields(state)}`,
 });

@@ -5,50 +5,44 @@ const most = 4; // sweeps over each other
 /** Where the points of one axis lie, of one start, in ascending order. */
 function placesOf(data, start) {
   const [axis] = data.axes;
-  const places = [];
-  axis.at.forEach((at, k) => {
+  return axis.at.flatMap((at, k) => {
     const index = data.index(k, 0, start);
     const p = data.points[index];
-    if (p) places.push({at, value: axis.values[k], p, data, index});
+    return p ? [{at: [at], value: axis.values[k], p, data, index, start}] : [];
   });
-  return places;
 }
 
 export class Layers {
   /** base: a SweepData. */
   constructor(base) {
     this.base = base;
-    this.all = [{data: base, slice: null}];
+    this.all = [base];
+    this.ends = {}; // of the colours of a map, by its quantity
   }
 
-  /** A finer sweep on top; slice: the one of the third axis that it is of, else null. */
-  add(data, slice) {
-    if (this.all.some((layer) => layer.data === data)) return; // a stream that brings the rest
-    this.all.push({data, slice});
+  /** A finer sweep on top. */
+  add(data) {
+    if (this.all.includes(data)) return; // a stream that brings the rest
+    this.all.push(data);
     if (this.all.length > most) this.all.splice(1, 1);
   }
 
   /** Those whose points lie over a slice of the third axis, the coarsest first. */
   over(slice) {
-    return this.all.filter(({data, slice: mine}) => data.axes && (mine ?? slice) === slice);
-  }
-
-  /** All points of all of them. */
-  *points() {
-    for (const {data} of this.all) for (const p of data.points) if (p) yield p;
+    return this.all.filter((data) => data.axes && (data.slice ?? slice) === slice);
   }
 
   /**
    * Of a single axis: the points of a start that have come, in ascending order, with the borders
-   * between them: {at, low, high, value, p, data, index}.
+   * between them: {at, low, high, value, p, data, index, start}.
    */
   places(start) {
-    const list = this.all.flatMap(({data}) => (data.axes ? placesOf(data, start) : []));
-    if (this.all.length > 1) list.sort((a, b) => a.at - b.at);
+    const list = this.all.flatMap((data) => (data.axes ? placesOf(data, start) : []));
+    if (this.all.length > 1) list.sort((a, b) => a.at[0] - b.at[0]);
     const {borders} = this.base.axes[0];
     list.forEach((place, i) => {
       place.low = i ? list[i - 1].high : borders[0];
-      place.high = i + 1 < list.length ? (place.at + list[i + 1].at) / 2 : borders.at(-1);
+      place.high = i + 1 < list.length ? (place.at[0] + list[i + 1].at[0]) / 2 : borders.at(-1);
     });
     return list;
   }

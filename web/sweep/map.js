@@ -2,14 +2,12 @@
 // it. Points that are still to come have the colour of a coarser neighbour.
 import {Axis} from "../shared/axis.js";
 import {rgb} from "../shared/colours.js";
-import {Frame} from "../shared/frame.js";
 import {short} from "../shared/numbers.js";
-import {Panel} from "../shared/panel.js";
 import {bestMotion, describe, quantityOf, regimeColour} from "../shared/quantities.js";
 import {lastUpTo} from "../shared/search.js";
-import {afresh, sameAxis, span} from "./axes.js";
 import {barWidth, drawBar, endsOf, scaleOf} from "./colour_scale.js";
-import {Telling} from "./telling.js";
+import {ascending} from "./data.js";
+import {SweepPanel, SweepView, toCome} from "./view.js";
 
 /** Moves of the keyboard over the cells. */
 const moves = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
@@ -19,61 +17,98 @@ const firstPass = 1 / 40; // of the points: by them the colours are chosen, and 
 /** A colour as a pixel. */
 const opaque = ([r, g, b]) => ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0;
 
-export class SweepMap extends Panel {
-  /** naming: of axes; open({data, index}): a cell was chosen. */
-  constructor(root, container, naming, open) {
-    super(container, new Axis(), new Axis());
-    Object.assign(this, {naming, open, layers: null, current: null, ends: new Map()});
-    this.axes = [this.axis, this.across];
-    this.telling = new Telling(root, this);
-    this.telling.follow(this, () => this.tell(this.axis.cursor, this.across.cursor));
+export class SweepMap extends SweepView {
+  constructor(root, ...rest) {
+    super(root, [new Axis(), new Axis()], ...rest);
+    this.panels = [new MapPanel(this, "map")];
   }
 
-  /**
-   * Another sweep, as Layers; choice: {map: the quantity, start, best: the best motion in place of
-   * the worst, slice: along the third axis}.
-   */
-  show(layers, choice) {
-    const {axes} = layers.base;
-    const fresh = axes.slice(0, 2).some((axis, i) => !sameAxis(axis, this.data?.axes[i]));
-    Object.assign(this, {layers, choice});
-    this.ends.clear();
-    this.leave();
-    span(this.axis, axes[0], fresh);
-    span(this.across, axes[1], fresh);
-    this.refresh();
+  /** What is at positions of a layer; its point is null before it has come. */
+  cell(data, k, l) {
+    const {start, best, slice} = this.choice;
+    const index = data.index(k, l, start, data.slice === null ? slice : 0);
+    const [x, y] = data.axes;
+    const at = [x.at[k], y.at[l]];
+    return {
+      p: data.points[index],
+      data,
+      index,
+      best,
+      k,
+      l,
+      at,
+      value: x.values[k],
+      height: y.values[l],
+    };
   }
 
-  /** The same sweep by another choice. */
-  showAs(choice) {
-    this.choice = choice;
-    this.refresh();
+  /** The cells of a layer whose points have come. */
+  *cells(data) {
+    const [first, second] = data.axes;
+    for (let l = 0; l < second.at.length; ++l)
+      for (let k = 0; k < first.at.length; ++k) {
+        const cell = this.cell(data, k, l);
+        if (cell.p) yield cell;
+      }
   }
 
-  /** What is in view, and what is told of it. */
-  refresh() {
-    super.refresh();
-    if (this.current && !this.current[2]) this.tell(...this.current); // a button stays where it is
+  /** The layers of what is shown, the coarsest first. */
+  over() {
+    return this.layers.over(this.choice.slice);
   }
 
-  get data() {
-    return this.layers?.base;
+  places() {
+    return this.over().flatMap((data) => [...this.cells(data)]);
+  }
+
+  /** The finest cell at a place, one whose point has come if there is any. */
+  nearest({at}) {
+    let found = null;
+    for (const data of this.over()) {
+      const [k, l] = at.map((place, i) => positionAt(data.axes[i], place));
+      if (k < 0 || l < 0) continue;
+      const cell = this.cell(data, k, l);
+      if (cell.p || !found) found = cell;
+    }
+    return found;
+  }
+
+  rowsOf({p, data, value, height}) {
+    const [first, second] = data.axes;
+    const places = [this.naming.place(first, value), this.naming.place(second, height)];
+    return [...places, ...(p ? describe(p, this.naming.where(data)) : toCome)];
+  }
+
+  /** Tells of the cell beside the one that is told of, or of the middle one. */
+  move(key) {
+    const way = moves[key];
+    if (!way) return false;
+    const middle = ({view: [from, to]}) => (from + to) / 2;
+    const from = this.nearest({at: this.current?.at ?? this.axes.map(middle)});
+    const beyond = (at, i) => {
+      const {borders} = from.data.axes[i];
+      const [first, last] = this.axes[i].whole;
+      const border = borders[lastUpTo(borders, at) + (way[i] > 0 ? 1 : 0)];
+      return way[i] ? border + way[i] * 1e-9 * (last - first) : at;
+    };
+    const next = this.current && this.nearest({at: from.at.map(beyond)});
+    this.goTo(...(next ?? from).at);
+    return true;
+  }
+}
+
+class MapPanel extends SweepPanel {
+  drawn({height}) {
+    return height;
   }
 
   quantity() {
-    return quantityOf(this.choice.map, this.data);
-  }
-
-  /** The point at positions of a layer, null before it has come, and its index. */
-  pointAt({data, slice}, k, l) {
-    const {start, slice: chosen} = this.choice;
-    const index = data.index(k, l, start, slice === null ? chosen : 0);
-    return {p: data.points[index], data, index, best: this.choice.best};
+    return quantityOf(this.view.choice.map, this.view.data);
   }
 
   /** The motion of a point that is shown: of several starts the worst or the best. */
   motion(p) {
-    return this.choice.best ? bestMotion(p) : p;
+    return this.view.choice.best ? bestMotion(p) : p;
   }
 
   /** The value of a point that is drawn; null where it has none. */
@@ -83,16 +118,9 @@ export class SweepMap extends Panel {
 
   /** All values of the base that are there. */
   values() {
-    const layer = {data: this.data, slice: null};
-    const [first, second] = this.data.axes;
-    const list = [];
-    for (let l = 0; l < second.at.length; ++l)
-      for (let k = 0; k < first.at.length; ++k) {
-        const {p} = this.pointAt(layer, k, l);
-        const v = p ? this.valueOf(p) : null;
-        if (v !== null) list.push(v);
-      }
-    return list;
+    return [...this.view.cells(this.view.data)]
+      .map(({p}) => this.valueOf(p))
+      .filter((v) => v !== null);
   }
 
   /**
@@ -102,46 +130,36 @@ export class SweepMap extends Panel {
   scale() {
     const quantity = this.quantity();
     if (quantity.categories) return null;
-    const {map} = this.choice;
-    const values = this.ends.has(map) ? [] : this.values();
-    const ends = this.ends.get(map) ?? endsOf(quantity, values);
-    const {received, total, complete} = this.data;
-    const seen = complete || received > Math.max(firstPass * total, 50);
-    if (seen && values.length) this.ends.set(map, ends);
+    const {layers, data, choice} = this.view;
+    const chosen = layers.ends[choice.map];
+    if (chosen) return scaleOf(quantity, chosen);
+    const values = this.values();
+    const ends = endsOf(quantity, values);
+    const seen = data.complete || data.received > Math.max(firstPass * data.total, 50);
+    if (seen && values.length) layers.ends[choice.map] = ends;
     return scaleOf(quantity, ends);
   }
 
   prepare(width, height) {
-    if (!(this.data?.axes?.length > 1)) return null;
+    if (!this.view.layers) return null;
     const scale = this.scale();
-    const [first, second] = this.data.axes;
-    const x = this.naming.frameAxis(first, this.axis.view);
-    const y = this.naming.frameAxis(second, this.across.view);
-    return {scale, frame: new Frame(width, height, x, y, scale ? barWidth : 12)};
+    return {scale, frame: this.frameOf(width, height, scale ? barWidth : 12)};
   }
 
   paint(c, {frame, scale}) {
     frame.draw(c);
     const {left, top} = frame.box;
-    this.beyond = [false, false];
     c.imageSmoothingEnabled = false;
     c.drawImage(this.image(frame, this.colours(scale)), left, top, frame.width, frame.height);
-    if (scale) drawBar(c, frame, scale, this.quantity().label, this.beyond);
+    if (scale) drawBar(c, frame, scale, this.quantity().label);
   }
 
   /** The pixel of a point. */
   colours(scale) {
-    const nothing = opaque(rgb("nothing"));
-    const {categories = []} = this.quantity();
-    const named = new Map(categories.map((name) => [name, opaque(rgb(regimeColour(name)))]));
+    const colourOf = (v) => (scale ? scale.at(v) : rgb(regimeColour(v)));
     return (p) => {
       const v = this.valueOf(p);
-      if (v === null) return nothing;
-      if (!scale) return named.get(v) ?? nothing;
-      const share = scale.share(v);
-      if (share < 0) this.beyond[0] = true;
-      if (share > 1) this.beyond[1] = true;
-      return opaque(scale.at(v));
+      return opaque(v === null ? rgb("nothing") : colourOf(v));
     };
   }
 
@@ -151,19 +169,17 @@ export class SweepMap extends Panel {
     const height = Math.round(frame.height * devicePixelRatio);
     const image = new ImageData(width, height);
     const pixels = new Uint32Array(image.data.buffer);
-    for (const layer of this.layers.over(this.choice.slice)) {
-      const [first, second] = layer.data.axes;
+    for (const data of this.view.over()) {
+      const [first, second] = data.axes;
       const columns = positions(first, this.axis.view, width);
       const rows = positions(second, this.across.view, height).reverse();
-      const cells = this.cells(layer, colourOf);
-      const n = first.at.length;
-      for (let j = 0; j < height; ++j) {
-        if (rows[j] < 0) continue;
+      const cells = this.pixels(data, colourOf);
+      for (let j = 0; j < height; ++j)
         for (let i = 0; i < width; ++i) {
-          const pixel = columns[i] < 0 ? 0 : cells[rows[j] * n + columns[i]];
+          const inside = rows[j] >= 0 && columns[i] >= 0;
+          const pixel = inside && cells[rows[j] * first.at.length + columns[i]];
           if (pixel) pixels[j * width + i] = pixel;
         }
-      }
     }
     const canvas = Object.assign(document.createElement("canvas"), {width, height});
     canvas.getContext("2d").putImageData(image, 0, 0);
@@ -171,156 +187,51 @@ export class SweepMap extends Panel {
   }
 
   /** A pixel for each cell of a layer, 0 where there is nothing. */
-  cells(layer, colourOf) {
-    const [first, second] = layer.data.axes;
-    const [n, m] = [first.at.length, second.at.length];
-    const cells = new Uint32Array(n * m);
-    for (let l = 0; l < m; ++l)
-      for (let k = 0; k < n; ++k) {
-        const {p} = this.pointAt(layer, k, l);
-        if (p) cells[l * n + k] = colourOf(p);
-      }
-    // Below a finer layer lies a coarser one.
-    if (!layer.data.complete && layer.data === this.data) fill(cells, first.order, second.order);
-    return cells;
-  }
-
-  cursorText() {
-    return "";
-  }
-
-  /** The finest point at a place: {p, data, index, k, l}, p null where it is still to come. */
-  nearest(at, height) {
-    let found = null;
-    for (const layer of this.layers.over(this.choice.slice)) {
-      const [first, second] = layer.data.axes;
-      const [k, l] = [positionAt(first, at), positionAt(second, height)];
-      if (k < 0 || l < 0) continue;
-      const there = this.pointAt(layer, k, l);
-      if (there.p || !found) found = {...there, k, l};
-    }
-    return found;
-  }
-
-  click(at, _, {y, touch}) {
-    if (touch) this.tell(at, y, true);
-    else this.choosePoint(at, y);
-  }
-
-  choosePoint(at, height) {
-    const there = this.nearest(at, height);
-    if (there) this.open(there);
-  }
-
-  leave() {
-    this.current = null;
-    this.telling.hide();
-    this.light();
-  }
-
-  tell(at, height, act = false) {
-    const there = this.nearest(at, height);
-    if (!there || !this.frame) return;
-    this.current = [at, height, act];
-    const {p, data, k, l} = there;
-    const {naming} = this;
-    const [x, y] = [data.axes[0].values[k], data.axes[1].values[l]];
-    this.light(x, y);
-    const rows = [
-      naming.place(data.axes[0], x),
-      naming.place(data.axes[1], y),
-      ...(p ? describe(p, naming.where(data)) : [["", "still to come"]]),
-    ];
-    const open = act ? () => this.open(there) : null;
-    this.telling.show(this, x, y, rows, `simulate it${afresh(data)}`, open);
-  }
-
-  choose() {
-    if (this.current) this.choosePoint(...this.current);
-  }
-
-  move(key) {
-    const way = moves[key];
-    if (way && this.data?.axes) this.moveBy(way);
-    return Boolean(way);
-  }
-
-  /** Tells of the cell beside the one that is told of, which is brought into view. */
-  moveBy([right, up]) {
-    const middle = ({view: [from, to]}) => (from + to) / 2;
-    const [at, height] = this.current ?? [middle(this.axis), middle(this.across)];
-    const {data, k, l} = this.nearest(at, height);
-    const ways = this.current ? [right, up] : [0, 0];
-    const [x, y] = [k, l].map((i, d) => beside(data.axes[d], i, ways[d], this.data.axes[d]));
-    this.axis.reveal(x);
-    this.across.reveal(y);
-    this.across.point(y, "key");
-    this.axis.point(x, "key");
-    this.tell(x, y, true);
-  }
-
-  /** {names, columns}: the numbers of what is in view, of the finest layer there. */
-  numbers() {
-    const {naming, data} = this;
+  pixels(data, colourOf) {
     const [first, second] = data.axes;
-    const rows = [];
-    for (const layer of this.layers.over(this.choice.slice)) {
-      const [x, y] = layer.data.axes;
-      for (let l = 0; l < y.at.length; ++l)
-        for (let k = 0; k < x.at.length; ++k) {
-          const {p} = this.pointAt(layer, k, l);
-          if (!p || !within(this.axis, x.at[k]) || !within(this.across, y.at[l])) continue;
-          const place = [
-            naming.number(x.parameter, x.values[k]),
-            naming.number(y.parameter, y.values[l]),
-          ];
-          rows.push([...place, this.valueOf(p), this.motion(p).regime ?? "–"]);
-        }
-    }
-    const names = [naming.label(first.parameter), naming.label(second.parameter)];
+    const n = first.at.length;
+    const pixels = new Uint32Array(n * second.at.length);
+    for (const {p, k, l} of this.view.cells(data)) pixels[l * n + k] = colourOf(p);
+    // Below a finer layer lies a coarser one.
+    if (!data.complete && data === this.view.data) fill(pixels, first.order, second.order);
+    return pixels;
+  }
+
+  columns() {
     return {
-      names: [...names, this.quantity().label || "regime", "regime"],
-      columns: [0, 1, 2, 3].map((i) => rows.map((row) => row[i])),
+      [this.quantity().label || "regime"]: (p) => this.valueOf(p),
+      regime: (p) => this.motion(p).regime ?? "–",
     };
   }
 
   /** Which slice and start is shown, where there are several. */
   shown() {
-    const {slice, start, best} = this.choice;
-    const {axes, defaultSet, starts} = this.data;
+    const {slice, start, best} = this.view.choice;
+    const {axes, defaultSet, starts} = this.view.data;
     const third = axes[2];
     const of = [
-      third && this.naming.place(third, third.values[slice]).join(" = "),
+      third && this.view.naming.fields({[third.parameter]: third.values[slice]}),
       defaultSet && `of the start that is ${best ? "best" : "worst"}`,
-      !defaultSet && starts > 1 && `start ${start + 1}`,
-    ].filter(Boolean);
-    return of.length ? `, ${of.join(", ")}` : "";
+      starts > 1 && `start ${start + 1}`,
+    ];
+    return of
+      .filter(Boolean)
+      .map((text) => `, ${text}`)
+      .join("");
   }
 
   about() {
     const {title} = this.quantity();
     const scale = this.scale();
-    const [first, second] = this.data.axes.map(({parameter}) => this.naming.label(parameter));
-    const colours = scale ? `, colours from ${scale.ends.map(short).join(" to ")}` : "";
     const of = this.shown();
+    const [first, second] = this.view.data.axes.map((a) => this.view.naming.label(a.parameter));
+    const colours = scale ? `, colours from ${scale.ends.map(short).join(" to ")}` : "";
     return {
       title: `Map of ${title}${of}`,
       summary: `${title} over ${first} and ${second}${of}${colours}`,
     };
   }
 }
-
-/** The place of the cell beside one, of a coarser layer where its own has no more. */
-function beside(axis, i, way, whole) {
-  const next = axis.at[i + way];
-  if (next !== undefined) return next;
-  const border = way > 0 ? axis.borders.at(-1) : axis.borders[0];
-  const outside = border + way * 1e-9 * (whole.borders.at(-1) - whole.borders[0]);
-  const k = positionAt(whole, outside);
-  return k < 0 ? axis.at[i] : whole.at[k];
-}
-
-const within = ({view: [from, to]}, at) => at >= from && at <= to;
 
 /** The position on an axis whose cell holds a place; -1 beyond them. */
 function positionAt({borders}, at) {
@@ -344,7 +255,7 @@ const coarsest = (n) => 2 ** Math.floor(Math.log2(Math.max(Math.floor(n / 8), 1)
  */
 function fill(cells, columns, rows) {
   const n = columns.length;
-  const [column, row] = [inverse(columns), inverse(rows)];
+  const [column, row] = [ascending(columns), ascending(rows)]; // where each entry is
   const [widest, highest] = [coarsest(n), coarsest(rows.length)];
   const known = cells.slice();
   for (let l = 0; l < rows.length; ++l)
@@ -354,12 +265,4 @@ function fill(cells, columns, rows) {
         const from = row[rows[l] - (rows[l] % up)] * n + column[columns[k] - (columns[k] % across)];
         cells[l * n + k] = known[from];
       }
-}
-
-function inverse(order) {
-  const list = new Int32Array(order.length);
-  order.forEach((given, k) => {
-    list[given] = k;
-  });
-  return list;
 }

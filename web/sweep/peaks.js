@@ -1,33 +1,28 @@
 // The largest |x| of each motion over a whole axis, as a table: of a reduction that leaves no axis,
 // and of the default set over one.
-import {$, element} from "../shared/dom.js";
+import {$, element, reveal} from "../shared/dom.js";
 import {regimeText, startNames, symbolOf, verdicts} from "../shared/quantities.js";
 
 const names = {...startNames, free: "without the absorber"};
 
-/** The highest (or lowest) of each start along the axis of a sweep. */
-function alongAxis(data) {
-  const [axis] = data.axes;
-  const peaks = new Map();
-  let free = null;
-  axis.values.forEach((where, k) => {
-    const p = data.at(k);
-    if (p?.x_free != null && !(free?.x_max >= p.x_free))
-      free = {start: "free", x_max: p.x_free, where};
-    for (const m of p?.starts ?? [])
-      if (m.x_max != null && !(peaks.get(m.start)?.x_max >= m.x_max))
-        peaks.set(m.start, {...m, where});
-  });
-  return [...peaks.values(), ...(free ? [free] : [])];
-}
+/** The motions of a point from each start of the default set, and that without the absorber. */
+const motionsOf = (p) => [
+  ...(p?.starts ?? []),
+  ...(p?.x_free == null ? [] : [{start: "free", x_max: p.x_free}]),
+];
+
+/** Those of all points along the axis of a sweep. */
+const alongAxis = (data) =>
+  data.axes[0].values
+    .flatMap((where, k) => motionsOf(data.points[data.index(k)]).map((m) => ({...m, where})))
+    .filter((m) => m.x_max != null);
 
 /** Of a sweep that is reduced to nothing but its starts. */
 function ofStarts(data) {
   const points = data.points.filter((p) => p && !p.error);
-  const free = points[0]?.x_free;
   const nameOf = (p) => (data.starts > 1 ? `start ${p.start + 1}` : "this start");
-  const motions = points[0]?.starts ?? points.map((p) => ({...p, start: nameOf(p)}));
-  return [...motions, ...(free == null ? [] : [{start: "free", x_max: free}])];
+  const own = points[0]?.starts ? [] : points.map((p) => ({...p, start: nameOf(p)}));
+  return [...own, ...motionsOf(points[0])];
 }
 
 const row = (tag, texts) =>
@@ -44,29 +39,22 @@ const cellsOf = (m, numberOf) => [
 
 /** Shows the peaks, where a sweep has them. naming: of its axes. */
 export function showPeaks(data, naming) {
-  const parameter = data.reduced ?? data.axes[0]?.parameter;
-  const bare = data.reduced && !data.axes.length;
-  const overOne = data.defaultSet && data.axes.length === 1 && !data.reduced;
-  $("figure-sweep-peaks").hidden = !bare && !overOne;
-  if (!bare && !overOne) return;
-  const least = data.request.reduce?.startsWith("min");
-  $("sweep-peaks-title").textContent =
-    `${least ? "Smallest" : "Largest"} |x| over ${symbolOf(parameter)}, from each start`;
-  const place = `at ${naming.label(parameter)}`;
-  const head = row("th", ["start", "largest |x| (mm)", place, "regime", "verdict"]);
+  const {reduced, axes, defaultSet, request} = data;
+  const bare = reduced && !axes.length;
+  const shown = bare || (defaultSet && axes.length === 1 && !reduced);
+  reveal({"figure-sweep-peaks": shown});
+  if (!shown) return;
+  const parameter = reduced ?? axes[0].parameter;
+  const which = request.reduce?.startsWith("min") ? "Smallest" : "Largest";
+  $("sweep-peaks-title").textContent = `${which} |x| over ${symbolOf(parameter)}, from each start`;
+  const peaks = new Map(); // the highest of each start, the highest of all first
   const motions = bare ? ofStarts(data) : alongAxis(data);
-  motions.sort((a, b) => (b.x_max ?? -1) - (a.x_max ?? -1));
+  for (const m of motions.sort((a, b) => (b.x_max ?? -1) - (a.x_max ?? -1)))
+    if (!peaks.has(m.start)) peaks.set(m.start, m);
+  const head = ["start", "largest |x| (mm)", `at ${naming.label(parameter)}`, "regime", "verdict"];
+  const rows = [...peaks.values()].map((m) => cellsOf(m, (v) => naming.text(parameter, v)));
   $("sweep-peaks").replaceChildren(
-    element("thead", {}, head),
-    element(
-      "tbody",
-      {},
-      ...motions.map((m) =>
-        row(
-          "td",
-          cellsOf(m, (v) => naming.text(parameter, v)),
-        ),
-      ),
-    ),
+    element("thead", {}, row("th", head)),
+    element("tbody", {}, ...rows.map((texts) => row("td", texts))),
   );
 }

@@ -1,107 +1,90 @@
 // The tab of a sweep: form in, a stream of points out, drawn as they come. Its query is the request
 // and what the menus show.
-import {asCurl, Problem, wholeMessage} from "../shared/api.js";
+import {asCurl, wholeMessage} from "../shared/api.js";
 import {listWarnings} from "../shared/cards.js";
-import {$, countUp, element} from "../shared/dom.js";
-import {addMenu} from "../shared/figure_menu.js";
-import {textOf} from "../shared/form.js";
+import {$, countUp, element, reveal, write} from "../shared/dom.js";
 import {Job} from "../shared/job.js";
 import {coordinates, menuOf, otherMotion, regimes, symbolOf} from "../shared/quantities.js";
 import {copy, save} from "../shared/take_away.js";
 import {onUnits, unitsSwitch} from "../shared/units.js";
 import {Naming} from "./axes.js";
 import {SweepData} from "./data.js";
-import {startKey} from "./diagram.js";
+import {countRegimes, startKey} from "./diagram.js";
 import {SweepPlots} from "./diagrams.js";
 import {Layers} from "./layers.js";
 import {SweepMap} from "./map.js";
+import {choose, fillMenu} from "./menu.js";
 import {showPeaks} from "./peaks.js";
 import {Refiner} from "./refine.js";
 import {receive} from "./stream.js";
-import {examples, halfPeriod, SweepForm} from "./sweep_form.js";
+import {examples, SweepForm} from "./sweep_form.js";
 
 const cyclesOfPoint = 272; // of the simulation of a point: the paper's tau of 1709
 
 let form;
 let naming;
-let plots;
-let map;
+let views; // by the number of axes
 let refiner;
 let data = null;
-let shown = null;
-let wantedView = null;
-let opened = false; // what is asked for comes from the address
+let view = null; // that of the sweep; null where no axis is left
+let wanted = {}; // what the menus are to show of the next sweep, by their name in the query
 let changed = () => {};
 
 function say(text, fault = false) {
-  $("sweep-message").textContent = text;
+  write({"sweep-message": text});
   $("sweep-message").classList.toggle("fault", fault);
 }
 
-// The menus, by their name in the query. Their first entry needs no mention there.
-const menus = {coordinate: "sweep-coordinate", beside: "sweep-quantity", map: "sweep-mapped"};
+// The menus that are in the query, by their name there. Their first entry needs no mention.
+const menus = {
+  coordinate: $("sweep-coordinate"),
+  beside: $("sweep-quantity"),
+  map: $("sweep-mapped"),
+};
+const startMenu = $("sweep-start");
+const sliceMenu = $("sweep-slice");
 const choice = () => ({
-  coordinate: $("sweep-coordinate").value,
-  quantity: $("sweep-quantity").value,
-  map: $("sweep-mapped").value,
-  start: Number($("sweep-start").value) || 0,
-  best: $("sweep-start").value === "best",
-  slice: Number($("sweep-slice").value),
+  coordinate: menus.coordinate.value,
+  quantity: menus.beside.value,
+  map: menus.map.value,
+  start: Number(startMenu.value) || 0,
+  best: startMenu.value === "best",
+  slice: Number(sliceMenu.value),
 });
 
-function fillMenu(id, entries, wanted) {
-  $(id).replaceChildren(...entries.map(([value, text]) => new Option(text, value)));
-  if (entries.some(([value]) => value === wanted)) $(id).value = wanted;
+/** What of a query is the request, in an order of its own. */
+function requestOf(query) {
+  const request = new URLSearchParams(query);
+  for (const name of [...Object.keys(menus), "view"]) request.delete(name);
+  request.sort();
+  return request;
 }
 
-/** What a menu is to show: what the query asked for, once, else what it shows. */
-function wish(id) {
-  const {wanted} = $(id).dataset;
-  $(id).dataset.wanted = "";
-  return wanted || $(id).value;
-}
+/** The request of the sweep that is shown, as a query; null before the first. */
+const shown = () => data && String(SweepForm.toQuery(data.request));
 
 /** The query of the sweep that is shown, or null before the first. */
 export function query() {
-  if (shown === null) return null;
+  if (!data) return null;
   const menu = Object.entries(menus)
-    .filter(([, id]) => $(id).selectedIndex > 0)
-    .map(([name, id]) => `${name}=${$(id).value}`);
-  const zoomed = data?.axes?.length && axesOf(data).some((axis) => axis.zoomed);
-  const view = wantedView ?? (zoomed ? viewOf(data) : []);
-  return [shown, ...menu, ...(view.length ? [`view=${view.join(",")}`] : [])].join("&");
-}
-
-/** Those of the plots that show a sweep. */
-const axesOf = ({axes}) => [[], [plots.axis]][axes.length] ?? [map.axis, map.across];
-
-/** The ends of what is in view, as values. */
-const viewOf = (of) =>
-  axesOf(of).flatMap(({view}, i) => {
-    const ends = view.map(of.axes[i].from);
-    const step = Math.abs(ends[1] - ends[0]) / 1e4; // as many digits as that takes
-    return ends.map((v) => Number(v.toPrecision(digitsFor(v, step))));
-  });
-const digitsFor = (v, step) =>
-  Math.min(Math.max(Math.ceil(Math.log10(Math.abs(v) / step)) + 1, 2), 15);
-
-/** Zooms to such ends; without any the whole is shown. */
-function zoomTo(view) {
-  axesOf(data).forEach((axis, i) => {
-    if (!view.length && axis.away) axis.reset();
-    const [from, to] = view.slice(2 * i, 2 * i + 2).map(data.axes[i].to);
-    if (from < to) axis.zoom(from, to);
-  });
+    .filter(([, {selectedIndex}]) => selectedIndex > 0)
+    .map(([name, {value}]) => `${name}=${value}`);
+  const ends = view?.ends().join(",");
+  return [shown(), ...menu, ...(ends ? [`view=${ends}`] : [])].join("&");
 }
 
 const grouped = (n) => String(n).replace(/\B(?=(\d{3})+$)/g, " ");
 
-function showSize() {
+/** What the form says is another request: how large it is, which example, and what it is not. */
+function compare() {
   const {counts, starts, points, cycles} = form.size();
   const factors = [...counts, ...(starts > 1 ? [`${starts} starts`] : [])];
   const product = factors.length > 1 ? `${factors.join(" × ")} = ` : "";
   const size = `${product}${grouped(points)} points, ${grouped(cycles)} cycles`;
-  $("sweep-size").textContent = Number.isFinite(points) ? size : "";
+  write({"sweep-size": Number.isFinite(points) ? size : ""});
+  const own = SweepForm.toQuery(form.request());
+  $("sweep-example").value = exampleOf(own);
+  $("sweep-results").classList.toggle("stale", data && String(own) !== shown());
 }
 
 function time(seconds) {
@@ -118,9 +101,8 @@ function progress({per_second: rate, seconds_left: left}) {
 }
 
 function showCount(more = "") {
-  $("sweep-bar").max = data.total || 1;
-  $("sweep-bar").value = data.received;
-  $("sweep-rate").textContent = `${grouped(data.received)} of ${grouped(data.total)} points${more}`;
+  Object.assign($("sweep-bar"), {max: data.total || 1, value: data.received});
+  write({"sweep-rate": `${grouped(data.received)} of ${grouped(data.total)} points${more}`});
 }
 
 // At most ten drawings a second, and no more than a fifth of the time.
@@ -133,153 +115,134 @@ function drawSoon() {
 function draw() {
   clearTimeout(waiting);
   waiting = 0;
-  if (!data?.axes) return;
   const began = performance.now();
-  drawPlots();
+  view?.refresh(choice());
   showPeaks(data, naming);
-  showMotions();
-  countRegimes();
+  showParts();
+  showRegimes();
   cost = performance.now() - began;
 }
 
-/** No more points come for now. */
+/** No more points come for now, or others are shown. */
 function settle() {
+  if (!data) return;
   draw();
-  if (data?.axes) namePlots();
+  view?.describe();
+  listWarnings($("sweep-warnings"), [...data.warnings]);
 }
 
-function drawPlots() {
-  if (data.axes.length > 1) map.refresh();
-  else plots.refresh();
+/** What of the results is there, and its words. */
+function showParts() {
+  const {axes, section, defaultSet, starts, parameters, reduced} = data;
+  const third = axes[2];
+  const overOne = axes.length === 1;
+  const several = starts > 1;
+  const apart = defaultSet || (!several && data.points.some(otherMotion));
+  reveal({
+    "sweep-download": true,
+    "sweep-keys": true,
+    "sweep-stack": overOne,
+    "sweep-map": axes.length > 1,
+    "figure-sweep-section": section !== "none",
+    "figure-sweep-lambda": reduced === null,
+    "sweep-units": parameters.si,
+    "sweep-free": menus.beside.value === "x_max",
+    "sweep-start-of": several || defaultSet, // of a map
+    "sweep-slice-of": third,
+    "sweep-starts": several,
+    "sweep-verdicts": !several, // the colours are those of the starts, then
+    "sweep-motions": overOne && apart,
+    "sweep-worst": defaultSet,
+  });
+  write({
+    "sweep-where": section === "impact" ? "at impact:" : "once a cycle:",
+    "sweep-start-word": defaultSet ? "of the start that is" : "from start",
+    "sweep-slice-word": third ? `where ${symbolOf(third.parameter)} =` : "",
+    "sweep-other": defaultSet
+      ? "the best, where they end apart"
+      : "from another start, where it was tried and ends elsewhere",
+  });
 }
 
-/** The keys of the worst and the best motion, or of one from another start, where there are any. */
-function showMotions() {
-  const {defaultSet} = data;
-  const several = defaultSet || (data.starts === 1 && data.points.some(otherMotion));
-  $("sweep-motions").hidden = data.axes.length !== 1 || !several;
-  $("sweep-worst").hidden = !defaultSet;
-  $("sweep-other").textContent = defaultSet
-    ? "the best, where they end apart"
-    : "from another start, where it was tried and ends elsewhere";
+/** The regimes, and how many points are of each. */
+function showRegimes() {
+  const item = ([regime, n]) => {
+    const none = regime === "none";
+    const className = "key regime";
+    const style = `--key: var(--regime-${regime})`;
+    const textContent = none ? regimes.none : `${regime} ${regimes[regime]}`;
+    const key = element("span", {className, style, textContent});
+    const number = element("small", {id: `sweep-regime-${regime}`, textContent: n || ""});
+    const about = {title: `Type ${regime}`, className: n ? "" : "absent", hidden: none && !n};
+    return element("li", about, key, number);
+  };
+  $("sweep-regimes").replaceChildren(...countRegimes(data.points).map(item));
 }
 
-function countRegimes() {
-  const counts = {};
-  for (const p of data.points) if (p?.regime) counts[p.regime] = (counts[p.regime] ?? 0) + 1;
-  for (const regime of Object.keys(regimes)) {
-    const node = $(`sweep-regime-${regime}`);
-    const item = node.closest("li");
-    node.textContent = counts[regime] ?? "";
-    item.classList.toggle("absent", !counts[regime]);
-    item.hidden = regime === "none" && !counts.none;
-  }
-}
-
-/** Which of the starts a map shows; of the default set, the worst or the best. */
-const ofDefaultSet = [
-  ["0", "worst"],
-  ["best", "best"],
-];
-function offerStarts(n) {
-  const {defaultSet} = data;
-  const numbered = Array.from({length: Math.max(n, 1)}, (_, s) => [String(s), String(s + 1)]);
-  fillMenu("sweep-start", defaultSet ? ofDefaultSet : numbered, $("sweep-start").value);
-  $("sweep-start-of").hidden = n < 2 && !defaultSet;
-  $("sweep-start-word").textContent = defaultSet ? "of the start that is" : "from start";
-}
-
-/** Which value of the third axis a map shows. */
-function offerSlices() {
-  const third = data.axes[2];
-  const text = (v) => naming.value(third.parameter, v);
-  const slices = third ? third.values.map((v, m) => [String(m), text(v)]) : [["0", ""]];
-  fillMenu("sweep-slice", slices, $("sweep-slice").value);
-  $("sweep-slice-of").hidden = !third;
-  $("sweep-slice-word").textContent = third ? `where ${symbolOf(third.parameter)} =` : "";
+/** The menus of a sweep that has just begun. */
+function offer() {
+  const {section, defaultSet, axes} = data;
+  const titles = Object.entries(coordinates[section] ?? {}).map(([name, {title}]) => [name, title]);
+  const entries = {coordinate: titles, beside: menuOf(data), map: menuOf(data)};
+  for (const [name, menu] of Object.entries(menus)) fillMenu(menu, entries[name], wanted[name]);
+  wanted = {};
+  const numbered = data.states.map((_, s) => [s, s + 1]);
+  const ofDefaultSet = [[0, "worst"], ["best"]];
+  fillMenu(startMenu, defaultSet ? ofDefaultSet : numbered);
+  const {parameter, values} = axes[2] ?? {values: []};
+  fillMenu(
+    sliceMenu,
+    values.map((v, m) => [m, naming.value(parameter, v)]),
+  );
 }
 
 /** The plots of a sweep that has just begun, still empty. */
 function present(fresh) {
-  const edit = shown !== null && !opened;
-  opened = false;
+  const edit = data && !fresh.ends;
   data = fresh;
   data.folded = data.reduced && naming.of(data.reduced);
-  shown = String(SweepForm.toQuery(data.request));
-  const {section, defaultSet, reduced} = data;
-  const starts = defaultSet ? [] : (data.request.starts ?? []);
-  $("sweep-stack").hidden = data.axes.length !== 1;
-  $("sweep-map").hidden = data.axes.length < 2;
-  $("figure-sweep-section").hidden = section === "none";
-  $("figure-sweep-lambda").hidden = reduced !== null;
-  $("sweep-units").hidden = !data.parameters.si;
+  view = views[data.axes.length];
   form.base.showOrigins(data.parameters);
-  $("sweep-where").textContent = section === "impact" ? "at impact:" : "once a cycle:";
-  const titles = Object.entries(coordinates[section] ?? {}).map(([name, {title}]) => [name, title]);
-  fillMenu("sweep-coordinate", titles, wish("sweep-coordinate"));
-  for (const id of ["sweep-quantity", "sweep-mapped"]) fillMenu(id, menuOf(data), wish(id));
-  offerStarts(starts.length);
-  offerSlices();
-  $("sweep-starts").hidden = starts.length < 2;
-  listWarnings($("sweep-warnings"), [...data.warnings]);
-  $("sweep-verdicts").hidden = starts.length > 1; // the colours are those of the starts, then
-  const keys = starts.map((state, s) => element("span", startKey(state, s, naming)));
-  $("sweep-starts").replaceChildren(...keys.map((key) => element("li", {}, key)));
-  $("sweep-keys").hidden = false;
-  $("sweep-download").hidden = false;
-  const layers = new Layers(data);
-  if (data.axes.length === 1) plots.show(layers, choice());
-  if (data.axes.length > 1) map.show(layers, choice());
-  refiner.follow(layers);
-  if (wantedView) zoomTo(wantedView);
-  wantedView = null;
-  showFreeKey();
+  offer();
+  const key = (state, s) => element("li", {}, element("span", startKey(state, s, naming)));
+  $("sweep-starts").replaceChildren(...data.states.map(key));
+  view?.show(new Layers(data));
+  refiner.follow(view);
+  settle();
+  if (fresh.ends) view?.zoomTo(fresh.ends);
   compare();
   changed({edit});
 }
 
-function showFreeKey() {
-  $("sweep-free").hidden = $("sweep-quantity").value !== "x_max";
-}
-
-/** What is shown is of another request than the form's. */
-function compare() {
-  const own = String(SweepForm.toQuery(form.request()));
-  $("sweep-results").classList.toggle("stale", shown !== null && own !== shown);
-}
-
 function busy(is) {
-  $("sweep-cancel").hidden = !is;
-  $("sweep-resume").hidden = is || !data?.axes || data.complete;
-  $("sweep-bar").hidden = !is && (!data || data.complete);
+  const lacking = data && !data.complete;
+  reveal({
+    "sweep-cancel": is,
+    "sweep-resume": !is && lacking,
+    "sweep-bar": is || lacking,
+  });
 }
 
 /** What is worth saying of a complete sweep. */
 function remarks() {
-  const list = [...data.faults].map(([fault, n]) => `${grouped(n)} points failed: ${fault}`);
-  if (data.early) list.push(`${grouped(data.early)} points ended early, at max_impacts`);
-  return list.join("; ");
+  const found = new Map();
+  for (const {error, reason} of data.points) {
+    const early = reason && reason !== "complete" && "ended early, at max_impacts";
+    const what = error ? `failed: ${error}` : early;
+    if (what) found.set(what, (found.get(what) ?? 0) + 1);
+  }
+  return [...found].map(([what, n]) => `${grouped(n)} points ${what}`).join("; ");
 }
 
 const job = new Job({
-  ask: (into, signal) =>
-    receive(into, signal, (line) => {
-      if (!signal.aborted) hear(into, line);
-    }),
+  ask: (into, signal) => receive(into, signal, (line) => hear(into, line)),
   show: finish,
   fail(error) {
-    const left = error instanceof Problem ? form.showErrors(error.errors) : [];
-    say(wholeMessage(error, left), true);
-    if (data) showCount();
-    settle();
+    stop(wholeMessage(error, form.showErrors(error.errors ?? [])), true);
   },
   busy(is, cancelled) {
     busy(is);
-    if (cancelled) {
-      say("cancelled");
-      if (data) showCount();
-      settle();
-    }
+    if (cancelled) stop("cancelled");
   },
   later: (text) => say(text, true),
 });
@@ -300,11 +263,17 @@ function hear(into, line) {
   else drawSoon();
 }
 
+/** Some points do not come. */
+function stop(why, fault) {
+  say(why, fault);
+  if (data) showCount();
+  settle();
+}
+
 function finish() {
   say(remarks());
-  listWarnings($("sweep-warnings"), [...data.warnings]);
   settle();
-  refine();
+  refiner.look();
   countUp($("sweep-results"));
 }
 
@@ -315,109 +284,42 @@ function lead() {
   if (results.offsetLeft < panel.offsetLeft + panel.offsetWidth) results.scrollIntoView();
 }
 
-function run() {
+/** ends: what is to be in view, of a sweep that comes from the address. */
+function run(ends) {
   form.showErrors([]);
   compare();
-  complete(new SweepData(form.request(), halfPeriod));
+  complete(Object.assign(new SweepData(form.request()), {ends}));
 }
 
-const refine = () => refiner.look(choice().slice);
+const isSame = (one, other) => String(requestOf(one)) === String(requestOf(other));
+const exampleOf = (asked) => examples.findIndex(([, example]) => isSame(example, asked));
 
-const sorted = (text) => {
-  const q = new URLSearchParams(text);
-  q.sort();
-  return String(q);
-};
-const exampleOf = (query) => examples.findIndex(([, q]) => sorted(q) === sorted(query));
-const markExample = () => {
-  $("sweep-example").value = String(exampleOf(SweepForm.toQuery(form.request())));
-};
-
-/** The sweep that is there, as another entry of the history had it. */
-function showAgain(view) {
-  for (const id of Object.values(menus)) {
-    const {wanted} = $(id).dataset;
-    $(id).value = wanted;
-    if (!wanted || $(id).selectedIndex < 0) $(id).selectedIndex = 0;
-    $(id).dataset.wanted = "";
-  }
-  zoomTo(view);
-  chooseFromMenu();
+/** Runs what a query asks for, or the first example where it names no sweep. */
+function ask(asked, ends) {
+  const named = requestOf(asked);
+  const request = String(named) ? named : requestOf(examples[0][1]);
+  wanted = Object.fromEntries(asked);
+  form.setQuery(request, exampleOf(request) >= 0);
+  run(ends);
 }
 
-/** Shows what a query asks for; without one the first example. */
+/** Shows what a query asks for. */
 export function open(given) {
-  const rest = new URLSearchParams(given);
-  for (const [name, id] of Object.entries(menus)) {
-    $(id).dataset.wanted = rest.get(name) ?? "";
-    rest.delete(name);
-  }
-  const view = rest.get("view")?.split(",").map(Number) ?? [];
-  rest.delete("view");
-  const wantedNow = view.every(Number.isFinite) ? view : [];
-  if (String(rest) === shown) return showAgain(wantedNow);
-  wantedView = wantedNow;
-  opened = true;
-  const first = new URLSearchParams(examples[0][1]);
-  const wanted = rest.size ? rest : first;
-  form.setQuery(wanted, exampleOf(wanted) >= 0);
-  markExample();
-  showSize();
-  run();
+  const numbers = given.get("view")?.split(",").map(Number) ?? [];
+  const ends = numbers.every(Number.isFinite) ? numbers : [];
+  if (data && isSame(given, shown())) {
+    // The sweep that is there, as another entry of the history had it.
+    for (const [name, menu] of Object.entries(menus)) choose(menu, given.get(name));
+    view?.zoomTo(ends);
+    chooseFromMenu();
+  } else ask(given, ends);
 }
 
-export function redraw() {
-  plots.refresh();
-  map.refresh();
-}
+export const redraw = settle;
 
 function download() {
   const names = data.request.axes.map((a) => a.parameter).join("-");
   save(data.file(), `sweep-${names}.ndjson`);
-}
-
-const command = () => asCurl("v1/sweep", form.request(), "-sN");
-
-function legend() {
-  const item = ([regime, what]) => {
-    const className = `key regime regime-${regime}`;
-    const textContent = regime === "none" ? what : `${regime} ${what}`;
-    const number = element("small", {id: `sweep-regime-${regime}`});
-    const title = `Type ${regime}`;
-    return element("li", {title}, element("span", {className, textContent}), number);
-  };
-  $("sweep-regimes").replaceChildren(...Object.entries(regimes).map(item));
-}
-
-/** What a picture of a plot says below its title: what all points share. */
-function captionOf() {
-  const {base, axes, ...run} = data.request;
-  const told = Object.entries({...base, ...run}).map(([name, v]) => {
-    const value = typeof v === "number" ? naming.value(name, v) : textOf(v);
-    return `${symbolOf(name)} = ${value}`;
-  });
-  return told.join(", ");
-}
-
-const allPlots = () => Object.entries({...plots.panels, map});
-
-function namePlots() {
-  const {axes} = data;
-  const shownPlots = [[], Object.values(plots.panels)][axes.length] ?? [map];
-  for (const plot of shownPlots) {
-    const {title, summary} = plot.about();
-    plot.container.setAttribute("role", "img");
-    plot.container.setAttribute("aria-label", `${title}: ${summary}`);
-  }
-}
-
-function addMenus() {
-  for (const [name, plot] of allPlots())
-    addMenu($(`figure-sweep-${name}`), plot, () => ({
-      ...plot.about(),
-      caption: captionOf(),
-      name: `sweep-${name}`,
-    }));
 }
 
 /**
@@ -426,89 +328,56 @@ function addMenus() {
  */
 export function start(tables, tell, {simulate}) {
   changed = tell;
-  form = new SweepForm($("sweep-fields"), tables, () => {
-    showSize();
-    markExample();
-    compare();
-  });
+  form = new SweepForm($("sweep-fields"), tables, compare);
+  naming = new Naming((parameter) => form.parameters.get(parameter)?.unit);
   const openPoint = ({data: of, index, best}) =>
     simulate({...of.fields(index, best), cycles: cyclesOfPoint});
-  naming = new Naming((parameter) => form.parameters.get(parameter)?.unit);
-  const panels = {
-    section: $("plot-sweep-section"),
-    lambda: $("plot-sweep-lambda"),
-    other: $("plot-sweep-other"),
-  };
-  plots = new SweepPlots($("sweep-stack"), panels, naming, openPoint);
-  map = new SweepMap($("sweep-map"), $("plot-sweep-map"), naming, openPoint);
+  const plots = new SweepPlots($("sweep-stack"), naming, openPoint);
+  const map = new SweepMap($("sweep-map"), naming, openPoint);
+  views = [null, plots, map, map];
   refiner = new Refiner({
-    axes: axesOf,
     drawn: drawSoon,
     settled: () => {
       settle();
       countUp($("sweep-results"), "refined");
     },
-    say: (text) => {
-      $("sweep-refined").textContent = text;
-    },
+    say: (text) => write({"sweep-refined": text}),
   });
-  for (const axis of [plots.axis, map.axis, map.across]) axis.onView(viewed);
-  addMenus();
-  legend();
-  $("sweep-keys").hidden = true;
-  $("sweep-example").append(
-    new Option("own sweep", "-1"),
-    ...examples.map(([title], i) => new Option(title, String(i))),
-  );
+  for (const axis of [...plots.axes, ...map.axes])
+    axis.onView(() => {
+      changed({soon: true});
+      refiner.look();
+    });
+  reveal({"sweep-keys": false});
+  fillMenu($("sweep-example"), [["-1", "own sweep"], ...examples.map(([title], i) => [i, title])]);
   unitsSwitch($("sweep-units"));
-  onUnits(() => {
-    if (!data?.axes) return;
-    plots.refresh();
-    namePlots();
-  });
+  onUnits(settle);
   listen();
 }
 
-function viewed() {
-  changed({soon: true});
-  refine();
-}
-
-/** Runs the example that the menu shows. */
-function runExample() {
-  const example = examples[$("sweep-example").value];
-  if (!example) return;
-  const [, given, wishes = {}] = example;
-  for (const [name, wanted] of Object.entries(wishes)) $(menus[name]).dataset.wanted = wanted;
-  form.setQuery(new URLSearchParams(given), true);
-  showSize();
-  run();
-  lead();
-}
-
 function chooseFromMenu() {
-  if (!data) return;
-  (data.axes.length > 1 ? map : plots).showAs(choice());
-  namePlots();
-  refine();
-  showFreeKey();
+  settle();
+  refiner.look();
   changed();
 }
 
 function listen() {
-  for (const id of [...Object.values(menus), "sweep-start", "sweep-slice"])
-    $(id).addEventListener("change", chooseFromMenu);
-  $("sweep-example").addEventListener("change", runExample);
-  $("sweep-form").addEventListener("submit", (event) => {
+  $("sweep-results").onchange = chooseFromMenu; // its menus
+  $("sweep-example").onchange = ({target}) => {
+    if (!examples[target.value]) return;
+    ask(new URLSearchParams(examples[target.value][1]));
+    lead();
+  };
+  $("sweep-form").onsubmit = (event) => {
     event.preventDefault();
     run();
     lead();
-  });
-  $("sweep-cancel").addEventListener("click", () => job.cancel());
-  $("sweep-resume").addEventListener("click", () => complete(data));
-  $("sweep-download").addEventListener("click", (event) => {
+  };
+  $("sweep-cancel").onclick = () => job.cancel();
+  $("sweep-resume").onclick = () => complete(data);
+  $("sweep-download").onclick = (event) => {
     event.preventDefault();
     download();
-  });
-  $("sweep-copy").addEventListener("click", () => copy(command(), say));
+  };
+  $("sweep-copy").onclick = () => copy(asCurl("v1/sweep", form.request(), "-sN"), say);
 }

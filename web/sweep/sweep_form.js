@@ -1,15 +1,16 @@
 // The form of a sweep: its axes, how each point is run, and what all points share; and the same as
 // a query.
-import {$, element} from "../shared/dom.js";
-import {defaultSet, Form, groups} from "../shared/form.js";
+import {element, write} from "../shared/dom.js";
+import {defaultSet, Form, groups, textOf} from "../shared/form.js";
 import {isOfSystem} from "../shared/presets.js";
 import {unitShown} from "../shared/units.js";
+import {fillMenu} from "./menu.js";
 
 const none = "none";
 const axisNames = ["axis1", "axis2", "axis3"];
+const ends = ["from", "to"];
 
-// Sweeps to begin with: title, form, and what a menu beside the plots shows. The first is shown
-// when nothing is asked for.
+// Sweeps to begin with: title and query. The first is shown when nothing is asked for.
 export const examples = [
   [
     "Regimes over b, the range of Table 3",
@@ -17,8 +18,7 @@ export const examples = [
   ],
   [
     "Frequency response, with and without the absorber",
-    "axis1=Omega,0.94,1.06,241&cycles=300&b=0.015&damping=closed_form",
-    {beside: "x_max"},
+    "axis1=Omega,0.94,1.06,241&cycles=300&b=0.015&damping=closed_form&beside=x_max",
   ],
   [
     "Map over b and R",
@@ -42,8 +42,7 @@ export const examples = [
   [
     "A platform's resonance, worst of several starts",
     "axis1=f,13,15,81&starts=default set" +
-      "&m1=12&f0=14&damping_ratio=0.006&mass_ratio=0.01&F=0.0004&R=0.4&b=0.03",
-    {beside: "x_max"},
+      "&m1=12&f0=14&damping_ratio=0.006&mass_ratio=0.01&F=0.0004&R=0.4&b=0.03&beside=x_max",
   ],
 ];
 
@@ -76,21 +75,12 @@ function noteOf({description, unit: own}) {
   return unit ? `${description}, in ${unit}` : description;
 }
 
-const textOfState = (state) =>
-  Object.entries(state)
-    .map((pair) => pair.join("="))
-    .join(",");
+const standardOf = (form, name) => form.fields.find((f) => f.name === name).default;
 
-/** Half a forcing period, pi/Omega, of a point's fields. */
-export function halfPeriod({Omega, f, f0, k1, m1}) {
-  const natural = f0 ?? Math.sqrt(k1 / m1) / (2 * Math.PI); // in Hz
-  return Math.PI / (Omega ?? (f ? f / natural : 1));
-}
-
-/** The starts as the address has them: the default set's name, or a list of texts or of states. */
-function textOfStarts(starts) {
-  if (typeof starts === "string") return starts;
-  return starts.map((s) => (typeof s === "string" ? s : textOfState(s))).join(";");
+/** Where an axis is at fault as a whole: an end that is no such parameter has this value. */
+function faultOf(axis, value) {
+  const values = axis.values();
+  return ends.find((name) => values[name] === value) ?? "parameter";
 }
 
 export class SweepForm {
@@ -98,8 +88,8 @@ export class SweepForm {
   constructor(container, tables, changed) {
     const {start, system, reduced, SI} = groups;
     const grouped = {system, reduced, SI, start};
-    this.shared = tables.fields.filter((f) => f.group in grouped);
-    const swept = this.shared.filter((f) => f.type === "number");
+    const shared = tables.fields.filter((f) => f.group in grouped);
+    const swept = shared.filter((f) => f.type === "number");
     this.parameters = new Map(swept.map((f) => [f.name, f]));
     this.axes = ["First axis", "Second axis", "Third axis"].map((title, i) => {
       const fields = axisFields(tables.axis_fields, [...this.parameters.keys()], i > 0);
@@ -110,7 +100,7 @@ export class SweepForm {
       prefix: "sweep-",
       grouped: {sweep: ["Each point", true]},
     });
-    this.base = new Form(container, this.shared, {prefix: "sweep-base-", grouped});
+    this.base = new Form(container, shared, {prefix: "sweep-base-", grouped});
     this.notes = this.axes.map((axis) =>
       axis.parts.get("axis").appendChild(element("p", {className: "note"})),
     );
@@ -122,16 +112,15 @@ export class SweepForm {
     });
   }
 
+  /** All of it before the container hears of it, which adapts the rest. */
   listen() {
     for (const [i, axis] of this.axes.entries())
-      axis.inputs.get("parameter").addEventListener("change", () => this.chooseParameter(i));
+      axis.inputs.get("parameter").oninput = () => this.chooseParameter(i);
     for (const [name, input] of this.base.inputs)
-      input.addEventListener("input", () => {
-        if (isOfSystem(name) && this.base.filled(name)) this.makeWay();
-      });
-    this.base.inputs.get("damping").addEventListener("change", () => {
-      this.dampingChosen = true;
-    });
+      input.oninput = () => {
+        if (name === "damping") this.dampingChosen = true;
+        else if (isOfSystem(name) && this.base.filled(name)) this.makeWay();
+      };
   }
 
   /** A box that fills in the default set of starts. */
@@ -143,11 +132,10 @@ export class SweepForm {
       "the worst and the best of them are told";
     const text = `${defaultSet}: worst and best of several`;
     const label = element("label", {className: "check", title}, box, text);
-    this.run.rows.get("starts").insertBefore(label, this.run.errors.get("starts"));
-    // Before adapt() hears of it.
-    box.addEventListener("input", () => {
+    this.run.errors.get("starts").before(label);
+    box.oninput = () => {
       input.value = box.checked ? defaultSet : "";
-    });
+    };
     return box;
   }
 
@@ -156,15 +144,15 @@ export class SweepForm {
    * it was chosen.
    */
   makeWay() {
-    const input = this.base.inputs.get("damping");
-    const standard = this.base.fields.find((f) => f.name === "damping").default;
-    if (this.dampingChosen || input.value === standard) return;
+    const standard = standardOf(this.base, "damping");
+    if (this.dampingChosen || this.base.inputs.get("damping").value === standard) return;
     this.base.replace("damping", standard);
-    $("sweep-note").textContent = `A system of your own: damping is ${standard}`;
+    write({"sweep-note": `A system of your own: damping is ${standard}`});
   }
 
-  parameter(i) {
-    return this.axes[i].inputs.get("parameter").value;
+  /** The parameters of the axes, none for one that is absent. */
+  swept() {
+    return this.axes.map((axis) => axis.inputs.get("parameter").value);
   }
 
   /**
@@ -172,51 +160,45 @@ export class SweepForm {
    * would be most of the answer.
    */
   chooseParameter(i) {
-    for (const name of ["from", "to"]) this.axes[i].replace(name, "");
-    if (i > 0 && this.parameter(i) !== none) this.run.inputs.get("section").value = none;
-    if (isOfSystem(this.parameter(i))) this.makeWay();
-    this.adapt();
+    const parameter = this.swept()[i];
+    for (const name of ends) this.axes[i].replace(name, "");
+    if (i > 0 && parameter !== none) this.run.inputs.get("section").value = none;
+    if (isOfSystem(parameter)) this.makeWay();
   }
 
   /**
    * What depends on the parameters chosen: their ranges, and the fields that they take the place
-   * of.
+   * of; reduce: the reduction to choose, if it is another.
    */
-  adapt() {
+  adapt(reduce) {
+    const swept = this.swept();
     for (const [i, axis] of this.axes.entries()) {
-      const field = this.parameters.get(this.parameter(i));
-      for (const name of ["from", "to", "count", "scale"]) axis.rows.get(name).hidden = !field;
+      const field = this.parameters.get(swept[i]);
+      for (const [name, row] of axis.rows) row.hidden = !field && name !== "parameter";
       this.notes[i].textContent = field ? noteOf(field) : "";
-      this.scale(i, this.parameter(i));
-      for (const [name, end] of [
-        ["from", field?.minimum],
-        ["to", field?.maximum],
-      ])
-        axis.inputs.get(name).placeholder = field ? `${name} ${axis.shown(name, end)}` : "";
+      this.scale(i, swept[i]);
+      const range = {from: field?.minimum, to: field?.maximum};
+      for (const name of ends)
+        axis.inputs.get(name).placeholder = `${name} ${axis.shown(name, range[name])}`;
     }
-    const swept = this.axes.map((_, i) => this.parameter(i));
     this.base.disable([...swept, ...this.base.unmixable(swept)]);
-    this.adaptRun();
+    this.adaptRun(swept, reduce);
   }
 
   /**
    * What can be reduced, and what the default set and a reduction leave no place for: they tell of
    * several motions.
    */
-  adaptRun() {
+  adaptRun(swept, reduce) {
     const {inputs} = this.run;
-    const reduce = inputs.get("reduce");
-    const chosen = reduce.value;
-    const swept = this.axes.map((_, i) => this.parameter(i)).filter((name) => name !== none);
-    const choices = [none, ...swept.flatMap((name) => [`max over ${name}`, `min over ${name}`])];
-    reduce.replaceChildren(...choices.map((c) => new Option(c)));
-    reduce.value = choices.includes(chosen) ? chosen : none;
+    const axes = swept.filter((name) => name !== none);
+    const reductions = axes.flatMap((name) => [[`max over ${name}`], [`min over ${name}`]]);
+    fillMenu(inputs.get("reduce"), [[none], ...reductions], reduce);
     const several = inputs.get("starts").value.trim() === defaultSet;
     this.defaultSet.checked = several;
-    const off = [
-      ...(several ? ["carry_state"] : []),
-      ...(several || reduce.value !== none ? ["section"] : []),
-    ];
+    const off = [];
+    if (several) off.push("carry_state");
+    if (several || inputs.get("reduce").value !== none) off.push("section");
     for (const name of off) inputs.get(name).value = none;
     this.run.disable(off);
   }
@@ -224,7 +206,7 @@ export class SweepForm {
   /** The ends of an axis are typed in the unit of its parameter. */
   scale(i, parameter) {
     const {factor} = unitShown(this.parameters.get(parameter)?.unit);
-    for (const name of ["from", "to"]) this.axes[i].factors.set(name, factor);
+    for (const name of ends) this.axes[i].factors.set(name, factor);
   }
 
   request() {
@@ -234,84 +216,69 @@ export class SweepForm {
     return {base: {...this.base.values(), ...limit}, axes, ...run};
   }
 
-  set({base = {}, axes = [], ...run}) {
-    this.base.set(base);
-    const given = [axes[0] ?? {parameter: "b"}, axes[1] ?? {}, axes[2] ?? {}];
-    for (const [i, axis] of given.entries()) {
-      this.scale(i, axis.parameter);
-      this.axes[i].set(axis);
-    }
-    this.adapt();
-    this.run.set({...run, max_impacts: base.max_impacts});
-    this.adapt();
-  }
-
   /**
    * A request as the address has it: an axis is parameter,from,to,count and its scale unless it is
    * linear; all else as in a form.
    */
-  static toQuery({base, axes, starts, ...run}) {
+  static toQuery({base, axes, ...run}) {
     const query = new URLSearchParams();
-    for (const [i, {parameter, from = "", to = "", count = "", scale}] of axes.entries()) {
+    for (const [i, {parameter, from, to, count, scale}] of axes.entries()) {
       const parts = [parameter, from, to, count, ...(scale ? [scale] : [])];
       query.set(axisNames[i], parts.join(","));
     }
-    for (const [name, value] of Object.entries({...run, ...base})) query.set(name, value);
-    if (starts) query.set("starts", textOfStarts(starts));
+    for (const [name, value] of Object.entries({...run, ...base})) query.set(name, textOf(value));
     return query;
   }
 
   /** Sets what a query asks for. example: it is one of the examples, whose damping nobody chose. */
   setQuery(query, example) {
     this.dampingChosen = !example && query.has("damping");
-    $("sweep-note").textContent = "";
-    const {starts, ...rest} = Object.fromEntries(query);
-    const axes = axisNames
-      .filter((name) => rest[name])
-      .map((name) => rest[name].split(","))
-      .map(([parameter, from, to, count, scale]) => ({parameter, from, to, count, scale}));
-    this.set({base: rest, axes, ...rest, ...(starts ? {starts: [starts]} : {})});
+    write({"sweep-note": ""});
+    const fields = Object.fromEntries(query);
+    this.base.set(fields);
+    this.run.set(fields);
+    const given = axisNames.filter((name) => fields[name]).map((name) => fields[name].split(","));
+    for (const [i, axis] of this.axes.entries()) {
+      const [parameter = i ? undefined : "b", from, to, count, scale] = given[i] ?? [];
+      this.scale(i, parameter);
+      axis.set({parameter, from, to, count, scale});
+    }
+    this.adapt(fields.reduce);
   }
 
   /** Errors of a problem document at their fields; returns those that belong to none. */
   showErrors(errors) {
-    const within = (prefix, other) =>
-      errors
-        .filter((e) => e.pointer.startsWith(prefix))
-        .map((e) => ({...e, pointer: e.pointer.slice(prefix.length) || other(e.value)}));
-    const ofBase = within("/base", () => "/").filter((e) => e.pointer !== "/max_impacts");
-    const ofRun = errors
-      .filter((e) => !/^\/(base|axes)\b/.test(e.pointer) || e.pointer === "/base/max_impacts")
-      .map((e) => ({...e, pointer: e.pointer.replace("/base", "")}));
-    const ofAxis = (i) => within(`/axes/${i}`, (value) => this.faultOf(i, value));
-    const ofAllAxes = errors
-      .filter((e) => e.pointer === "/axes")
-      .map((e) => ({...e, pointer: "/count"}));
-    return [
-      ...this.base.showErrors(ofBase),
-      ...this.run.showErrors(ofRun),
-      ...[2, 1].flatMap((i) => this.axes[i].showErrors(ofAxis(i))),
-      ...this.axes[0].showErrors([...ofAxis(0), ...ofAllAxes]),
-    ];
+    const placed = errors.map((error) => [error, ...this.placeOf(error)]);
+    // The last one leads to its first fault.
+    return [this.base, this.run, ...this.axes.toReversed()].flatMap((form) =>
+      form.showErrors(
+        placed
+          .filter(([, own]) => own === form)
+          .map(([error, , name]) => ({...error, pointer: `/${name}`})),
+      ),
+    );
   }
 
-  /** Where an axis is at fault as a whole: an end that is no such parameter has this value. */
-  faultOf(i, value) {
-    const {from, to} = this.axes[i].values();
-    if (value === from) return "/from";
-    return value === to ? "/to" : "/parameter";
+  /** The form and the field of an error. */
+  placeOf({pointer, value}) {
+    const [, part, name, field] = pointer.split("/");
+    if (part === "axes") {
+      const axis = this.axes[name ?? 0];
+      return [axis, field ?? (name ? faultOf(axis, value) : "count")];
+    }
+    if (part !== "base") return [this.run, part];
+    return name === "max_impacts" ? [this.run, name] : [this.base, name];
   }
 
   /** How many points there will be, as far as the fields tell. */
   size() {
-    const {axes, starts: asked, cycles, transient_cycles} = this.request();
+    const {axes, starts: asked, ...run} = this.request();
     const several = asked === defaultSet;
     const starts = several ? 1 : asked?.length || 1;
-    const standard = (name) => this.run.fields.find((f) => f.name === name).default;
     const counts = axes.map((axis) => axis.count ?? NaN);
     const points = counts.reduce((a, n) => a * n, starts);
-    const transient = transient_cycles ?? standard("transient_cycles");
-    const cyclesOfRun = transient + (cycles ?? standard("cycles"));
-    return {counts, starts, points, cycles: points * (several ? 5 : 1) * cyclesOfRun};
+    const cyclesOf = (name) => run[name] ?? standardOf(this.run, name);
+    const cycles = cyclesOf("transient_cycles") + cyclesOf("cycles");
+    return {counts, starts, points, cycles: points * (several ? 5 : 1) * cycles};
   }
 }
