@@ -2,6 +2,7 @@
 // scripts/page-speed.mjs: how fast the page is, in Chromium on this machine: medians, and the worst.
 // Run it on a machine that does nothing else: Chromium and the service share its processors.
 import {startBrowser} from "../tests/page/browser.mjs";
+import {sum, weigh} from "../tests/page/weight.mjs";
 import {startService} from "../tests/service.mjs";
 
 const repeats = 7;
@@ -133,26 +134,11 @@ async function many(context, url) {
   await page.close();
 }
 
-/** What travels for the whole page. */
-async function size(url) {
-  const index = await (await fetch(url)).text();
-  const folder = /src="([0-9a-f]+)\//.exec(index)[1];
-  const files = new Set(["", ...index.match(/(?<=(?:src|href)=")[0-9a-f]{12}\/[^"]+/g)]);
-  let bytes = 0;
-  for (const path of files) {
-    const headers = {"Accept-Encoding": "gzip"};
-    const {headers: got} = await fetch(`${url}/${path}`, {headers, method: "HEAD"});
-    bytes += Number(got.get("content-length"));
-    const text = await (await fetch(`${url}/${path}`)).text();
-    for (const [, name] of text.matchAll(/"\.\/([\w-]+\.js)"/g)) files.add(`${folder}/${name}`);
-  }
-  row("the whole page, gzipped", `${(bytes / 1000).toFixed(1)} kB`, "70 kB");
-}
-
 const service = await startService();
 const browser = await startBrowser();
 try {
-  await size(service.url);
+  const bytes = sum(await weigh(service.url));
+  row("the whole page, gzipped", `${(bytes / 1000).toFixed(1)} kB`, "70 kB");
   await navigation(browser.context, service.url);
   await slider(browser.context, service.url);
   await many(browser.context, service.url);

@@ -1,21 +1,19 @@
 // The page: its tabs, and the address, which names the tab and holds its request. So a link shows
 // the same, and Back leads back.
+
+import * as measurement from "./measurement/measurement.js";
 import {get} from "./shared/api.js";
 import {$} from "./shared/dom.js";
 import * as tabs from "./shared/tabs.js";
 import * as simulation from "./simulation/simulation.js";
 import * as sweep from "./sweep/sweep.js";
-import * as measurement from "./measurement/measurement.js";
 
-// A tab is a module with start(tables, changed, others), open(query), query() and redraw(); but for
-// the first one it is loaded when one goes there. others: {simulate(fields), measure(answer)}, what
-// one tab asks of another.
-const modules = {
-  simulation: () => simulation,
-  sweep: () => sweep,
-  measurement: () => measurement,
-};
-const panes = {};
+// A tab is a module with start(tables, changed, others), open(query), query() and redraw(); it is
+// started when one goes there first. others: {simulate(fields), measure(answer)}, what one tab asks
+// of another.
+const modules = {simulation, sweep, measurement};
+const started = new Set();
+const queryOf = (name) => (started.has(name) ? modules[name].query() : "");
 const scrolled = {};
 let tables;
 let current = null;
@@ -37,26 +35,18 @@ function show(name) {
   scrollTo(0, scrolled[name] ?? 0);
 }
 
-/** A tab, once it is there. */
-async function pane(name) {
-  if (!panes[name]) {
-    const module = await modules[name]();
-    if (!panes[name])
-      module.start(tables, keep(name), {simulate: simulatePoint, measure: measureRun});
-    panes[name] = module;
-  }
-  return panes[name];
-}
-
 /** Follows the address. */
-async function follow() {
+function follow() {
   const query = new URLSearchParams(location.search);
   query.delete("embed");
   const named = query.get("tab");
   const name = Object.hasOwn(modules, named) ? named : "simulation";
   if (name === named) query.delete("tab"); // another is said to be unknown
   show(name);
-  return (await pane(name)).open(query);
+  if (!started.has(name))
+    modules[name].start(tables, keep(name), {simulate: simulatePoint, measure: measureRun});
+  started.add(name);
+  return modules[name].open(query);
 }
 
 function go(name, query) {
@@ -77,7 +67,7 @@ const keep =
   ({edit = false, soon = false} = {}) => {
     if (current !== name) return;
     clearTimeout(writing);
-    const write = (way) => history[way](null, "", address(name, panes[name].query()));
+    const write = (way) => history[way](null, "", address(name, queryOf(name)));
     const now = performance.now();
     const apart = edit && now - edited > together;
     if (edit) edited = now;
@@ -95,19 +85,19 @@ function simulatePoint(fields) {
 
 /** A run as a record to be identified. answer: of /v1/simulate, with its impacts. */
 async function measureRun(answer) {
-  await go("measurement", panes.measurement?.query() ?? "");
-  return panes.measurement.measure(answer);
+  await go("measurement", queryOf("measurement"));
+  return measurement.measure(answer);
 }
 
 async function start() {
   const [fields, {presets}] = await Promise.all([get("v1/parameters"), get("v1/presets")]);
   tables = {...fields, presets};
   tabs.listen((name) => {
-    if (name !== current) go(name, panes[name]?.query() ?? "");
+    if (name !== current) go(name, queryOf(name));
   });
   addEventListener("popstate", follow);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
-    for (const module of Object.values(panes)) module.redraw();
+    for (const name of started) modules[name].redraw();
   });
   await follow();
   const {version} = await get("version");

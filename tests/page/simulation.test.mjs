@@ -28,6 +28,7 @@ import {
   unfold,
   visit,
 } from "./support.mjs";
+import {sum, weigh} from "./weight.mjs";
 
 const overTime = ["x", "relative", "largest", "lambda"];
 const planes = ["section", "manifold"];
@@ -120,6 +121,15 @@ test("the page's files are compressed, and kept by a browser as long as they are
   const script = await fetch(`${service.url}/${path}`);
   assert.match(script.headers.get("cache-control"), /immutable/);
   assert.equal(script.headers.get("content-encoding"), "gzip");
+});
+
+test("the whole page, all tabs of it, weighs 70 kB compressed at most", async () => {
+  const bytes = await weigh(service.url);
+  assert.deepEqual(
+    Object.keys(bytes).map((path) => path.replace(/^[0-9a-f]{12}\//, "")),
+    ["", "icon.svg", "style.css", "main.js", "system.svg"],
+  );
+  assert.ok(sum(bytes) <= 70000, JSON.stringify(bytes));
 });
 
 test("each of the presets stays in the address and marks what it is about", async () => {

@@ -4,11 +4,11 @@ import {
   identify,
   identifyJson,
   Problem,
-  recordAsCurl,
+  sendFileAsCurl,
   simulate,
   wholeMessage,
 } from "../shared/api.js";
-import {$, countUp, element} from "../shared/dom.js";
+import {$, countUp, element, sayIn} from "../shared/dom.js";
 import {Form} from "../shared/form.js";
 import {Job} from "../shared/job.js";
 import {copy, save} from "../shared/take_away.js";
@@ -52,10 +52,7 @@ let remembered = () => {};
 
 const results = $("measure-results");
 
-function say(message, fault = false) {
-  $("measure-message").textContent = message;
-  $("measure-message").classList.toggle("fault", fault);
-}
+const say = sayIn("measure-message");
 
 /**
  * The service's fields as this form shows them: names of columns are typed in or taken from the
@@ -302,7 +299,10 @@ function download() {
   save(new Blob([text], {type: "application/json"}), `${name}-identified.json`);
 }
 
-const command = () => recordAsCurl(asQuery(sent ?? form.values()), file?.name ?? "record.csv");
+function command() {
+  const path = `v1/identify?${asQuery(sent ?? form.values())}`;
+  return sendFileAsCurl(path, "text/csv", file?.name ?? "record.csv");
+}
 
 /** A file is chosen, or dropped anywhere. */
 function listenToFiles() {

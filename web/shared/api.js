@@ -80,9 +80,4 @@ export const getAsCurl = (path, flags = "-s") => `curl ${flags} ${quoted(whole(p
 
 /** A file as the body. */
 export const sendFileAsCurl = (path, type, name, flags = "-s") =>
-  `curl ${flags} ${whole(path)} -H 'Content-Type: ${type}' --data-binary ${quoted(`@${name}`)}`;
-
-export function recordAsCurl(query, name) {
-  const address = quoted(`${whole("v1/identify")}?${query}`);
-  return `curl -s ${address} -H 'Content-Type: text/csv' --data-binary ${quoted(`@${name}`)}`;
-}
+  `curl ${flags} ${quoted(whole(path))} -H 'Content-Type: ${type}' --data-binary ${quoted(`@${name}`)}`;

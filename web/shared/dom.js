@@ -48,3 +48,11 @@ export const write = (texts) => {
 export const press = (buttons, is) => {
   for (const one of buttons) attributes(one, {"aria-pressed": is(one)});
 };
+
+/** What says something in a place: say(text, whether it is a fault). */
+export const sayIn =
+  (id) =>
+  (text, fault = false) => {
+    $(id).textContent = text;
+    $(id).classList.toggle("fault", fault);
+  };

@@ -6,6 +6,7 @@ import {font} from "./frame.js";
 import {ink} from "./ink.js";
 import {short} from "./numbers.js";
 import {SvgPen} from "./svg_pen.js";
+import {tableOf} from "./table.js";
 import {save} from "./take_away.js";
 
 const size = {width: 900, height: 424};
@@ -53,10 +54,8 @@ function csv({names, columns}) {
 }
 
 function table({names, columns}) {
-  const row = (tag, cells) => element("tr", {}, ...cells.map((text) => element(tag, {}, text)));
-  const body = rowsOf(columns, rowsShown).map((values) => row("td", values.map(written)));
-  const head = element("thead", {}, row("th", names));
-  return element("table", {className: "table"}, head, element("tbody", {}, ...body));
+  const rows = rowsOf(columns, rowsShown).map((values) => values.map(written));
+  return element("table", {className: "table"}, ...tableOf(names, rows));
 }
 
 /** Shows the numbers of a plot, and in what forms they can be taken away. */

@@ -22,7 +22,8 @@ export class Job {
    * ask(request, signal): the answer, as a promise; show(answer, request, ms), which may take
    * its time; fail(error, request);
    * busy(is, cancelled): it computes for longer than a moment, or no longer; later(text): there is
-   * no answer for now, as the text says. A request that is there already is not begun again.
+   * no answer for now, as the text says; both may be left out. A request that is there already is
+   * not begun again.
    */
   constructor(parts) {
     Object.assign(this, parts);
@@ -40,6 +41,10 @@ export class Job {
     if (!running) this.run();
     else if (!hasty || !running.answers) running.abort.abort();
   }
+
+  busy() {}
+
+  later() {}
 
   cancel() {
     this.next = null;

@@ -1,7 +1,7 @@
 // Everything else that is known of a run: it is asked for once one unfolds it, and follows the run
 // from then on.
 import {simulate} from "../shared/api.js";
-import {$, countUp, write} from "../shared/dom.js";
+import {$, countUp, sayIn} from "../shared/dom.js";
 import {Job} from "../shared/job.js";
 import {detailsOptions, overTime, planes} from "./details_plots.js";
 import {accountEnergy, summarise, tabulate} from "./details_summary.js";
@@ -14,7 +14,7 @@ import {axis, run} from "./run.js";
 const include = ["series", "impacts", "exponents", "eigenvalues", "section", "energy", "regime"];
 
 const details = $("details");
-const say = (text) => write({"details-message": text});
+const say = sayIn("details-message");
 let shown = null; // {asked, answer}
 let plots;
 let fieldOf;

@@ -3,7 +3,7 @@
 import {Problem, simulate, wholeMessage} from "../shared/api.js";
 import {listWarnings} from "../shared/cards.js";
 import {formsOf} from "../shared/copies.js";
-import {$, attributes, button, countUp, nextTask, reveal, write} from "../shared/dom.js";
+import {$, attributes, button, countUp, nextTask, reveal, sayIn, write} from "../shared/dom.js";
 import {Form} from "../shared/form.js";
 import {Job} from "../shared/job.js";
 import {Motion} from "../shared/motion.js";
@@ -39,10 +39,7 @@ let wantedView = null;
 let remembered = () => {};
 let resting = 0;
 
-function say(text, fault = false) {
-  write({message: text});
-  $("message").classList.toggle("fault", fault);
-}
+const say = sayIn("message");
 
 /** Whether what is shown is of another request. */
 const setStale = (is) => $("results").classList.toggle("stale", is);
@@ -73,8 +70,6 @@ const more = new Job({
     countUp($("results"));
   },
   fail: (error) => say(`T, the raw product and the manifold are missing: ${error.message}`, true),
-  busy() {},
-  later() {},
 });
 
 function refuse(error) {

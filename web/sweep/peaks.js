@@ -1,7 +1,8 @@
 // The largest |x| of each motion over a whole axis, as a table: of a reduction that leaves no axis,
 // and of the default set over one.
-import {$, element, reveal} from "../shared/dom.js";
+import {$, reveal} from "../shared/dom.js";
 import {regimeText, startNames, symbolOf, verdicts} from "../shared/quantities.js";
+import {tableOf} from "../shared/table.js";
 
 const names = {...startNames, free: "without the absorber"};
 
@@ -24,9 +25,6 @@ function ofStarts(data) {
   const own = points[0]?.starts ? [] : points.map((p) => ({...p, start: nameOf(p)}));
   return [...own, ...motionsOf(points[0])];
 }
-
-const row = (tag, texts) =>
-  element("tr", {}, ...texts.map((textContent) => element(tag, {textContent})));
 
 /** A motion in words. */
 const cellsOf = (m, numberOf) => [
@@ -53,8 +51,5 @@ export function showPeaks(data, naming) {
     if (!peaks.has(m.start)) peaks.set(m.start, m);
   const head = ["start", "largest |x| (mm)", `at ${naming.label(parameter)}`, "regime", "verdict"];
   const rows = [...peaks.values()].map((m) => cellsOf(m, (v) => naming.text(parameter, v)));
-  $("sweep-peaks").replaceChildren(
-    element("thead", {}, row("th", head)),
-    element("tbody", {}, ...rows.map((texts) => row("td", texts))),
-  );
+  $("sweep-peaks").replaceChildren(...tableOf(head, rows));
 }

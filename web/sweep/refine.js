@@ -25,7 +25,6 @@ export class Refiner {
         settled();
       },
       fail: (error) => this.say(`not refined: ${error.message}`),
-      busy() {},
       later: say,
     });
   }

@@ -2,7 +2,7 @@
 // and what the menus show.
 import {asCurl, wholeMessage} from "../shared/api.js";
 import {listWarnings} from "../shared/cards.js";
-import {$, countUp, element, reveal, write} from "../shared/dom.js";
+import {$, countUp, element, reveal, sayIn, write} from "../shared/dom.js";
 import {Job} from "../shared/job.js";
 import {coordinates, menuOf, otherMotion, regimes, symbolOf} from "../shared/quantities.js";
 import {copy, save} from "../shared/take_away.js";
@@ -30,10 +30,7 @@ let view = null; // that of the sweep; null where no axis is left
 let wanted = {}; // what the menus are to show of the next sweep, by their name in the query
 let changed = () => {};
 
-function say(text, fault = false) {
-  write({"sweep-message": text});
-  $("sweep-message").classList.toggle("fault", fault);
-}
+const say = sayIn("sweep-message");
 
 // The menus that are in the query, by their name there. Their first entry needs no mention.
 const menus = {
