@@ -79,5 +79,7 @@ export const asCurl = (path, fields, flags = "-s") =>
 export const getAsCurl = (path, flags = "-s") => `curl ${flags} ${quoted(whole(path))}`;
 
 /** A file as the body. */
-export const sendFileAsCurl = (path, type, name, flags = "-s") =>
-  `curl ${flags} ${quoted(whole(path))} -H 'Content-Type: ${type}' --data-binary ${quoted(`@${name}`)}`;
+export function sendFileAsCurl(path, type, name, flags = "-s") {
+  const address = path.includes("?") ? quoted(whole(path)) : whole(path);
+  return `curl ${flags} ${address} -H 'Content-Type: ${type}' --data-binary ${quoted(`@${name}`)}`;
+}
