@@ -740,6 +740,25 @@ test("Back between two sweeps leads forward again, and its menus are those of th
   await page.close();
 });
 
+test("a map after diagrams begins with lambda1, and diagrams after a map with the first of theirs", async () => {
+  const page = await visit(`?${small}`);
+  const beside = await page.inputValue("#sweep-quantity");
+  await page.selectOption(field("sweep-axis2-error-parameter"), "R");
+  for (const [name, text] of Object.entries({from: "0.5", to: "0.6", count: "3"}))
+    await page.fill(field(`sweep-axis2-error-${name}`), text);
+  await page.click("#sweep-run");
+  await swept(page, 2);
+  assert.equal(await page.inputValue("#sweep-mapped"), "lambda1");
+  assert.doesNotMatch(page.url(), /map=|beside=/);
+  await page.selectOption("#sweep-mapped", "z");
+  await page.selectOption(field("sweep-axis2-error-parameter"), "none");
+  await page.click("#sweep-run");
+  await swept(page, 3);
+  assert.equal(await page.inputValue("#sweep-quantity"), beside);
+  assert.doesNotMatch(page.url(), /map=|beside=/);
+  await page.close();
+});
+
 test("a reduction that leaves no axis is opened by its link", async () => {
   const page = await visit(`?${platformSweep}&reduce=max+over+f`);
   const requests = asked(page, "/v1/sweep");

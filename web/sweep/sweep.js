@@ -176,12 +176,13 @@ function showRegimes() {
   $("sweep-regimes").replaceChildren(...countRegimes(data.points).map(item));
 }
 
-/** The menus of a sweep that has just begun. */
+/** The menus of a sweep that has just begun; those that it does not show are empty. */
 function offer() {
   const {section, defaultSet, axes} = data;
   const titles = Object.entries(coordinates[section] ?? {}).map(([name, {title}]) => [name, title]);
-  const entries = {coordinate: titles, beside: menuOf(data), map: menuOf(data)};
-  for (const [name, menu] of Object.entries(menus)) fillMenu(menu, entries[name], wanted[name]);
+  const entries = {coordinate: titles, [axes.length > 1 ? "map" : "beside"]: menuOf(data)};
+  for (const [name, menu] of Object.entries(menus))
+    fillMenu(menu, entries[name] ?? [], wanted[name]);
   wanted = {};
   const numbered = data.states.map((_, s) => [s, s + 1]);
   const ofDefaultSet = [[0, "worst"], ["best"]];
