@@ -16,12 +16,16 @@ const states = [
  * applies it to a state in place, thousands of times for a plot.
  */
 function mapOf(after) {
-  const [ofX, ofV, ofSin, ofCos] = states.map((state) => Float64Array.from(after([...state])));
-  const [, , cos, minusSin] = ofSin;
+  const [[xx, vx], [xv, vv], [xs, vs, cos, minusSin], [xc, vc]] = states.map((state) =>
+    after([...state]),
+  );
   return (state) => {
-    const [x, v, s, c] = state;
-    state[0] = ofX[0] * x + ofV[0] * v + ofSin[0] * s + ofCos[0] * c;
-    state[1] = ofX[1] * x + ofV[1] * v + ofSin[1] * s + ofCos[1] * c;
+    const x = state[0]; // by its index: much faster than to take it apart
+    const v = state[1];
+    const s = state[2];
+    const c = state[3];
+    state[0] = xx * x + xv * v + xs * s + xc * c;
+    state[1] = vx * x + vv * v + vs * s + vc * c;
     state[2] = s * cos - c * minusSin;
     state[3] = c * cos + s * minusSin;
     return state;
@@ -43,11 +47,15 @@ export class Flow {
   }
 
   /** A state a time 0 <= s <= cell later. */
-  near([first, v0, sin0, cos0], s) {
+  near(state, s) {
+    const v0 = state[1];
+    const sin0 = state[2];
+    const cos0 = state[3];
     const {stiffness, damping, forcing, Omega} = this;
     const turn = Omega * s;
     const phase = [sin0 * forcing, cos0 * forcing];
-    let [a, b] = [first, v0 * s]; // the last two terms of x
+    let a = state[0];
+    let b = v0 * s; // the last two terms of x
     let x = a + b;
     let v = v0;
     // f sin(theta + Omega s) by its terms: sin, cos, -sin, -cos, ...
@@ -62,14 +70,15 @@ export class Flow {
       b = next;
       forced *= turn / (n - 1);
     }
-    const [cos, sin] = [Math.cos(turn), Math.sin(turn)];
+    const cos = Math.cos(turn);
+    const sin = Math.sin(turn);
     return [x, v, sin0 * cos + cos0 * sin, cos0 * cos - sin0 * sin];
   }
 
   /** A state any time s >= 0 later. */
   after(state, s) {
     const cells = Math.floor(s / this.cell);
-    const now = [...state];
+    const now = cells ? [...state] : state;
     for (let k = 0, left = cells; left > 0; ++k, left = Math.floor(left / 2))
       if (left % 2) this.doubled(k)(now);
     return this.near(now, s - cells * this.cell);

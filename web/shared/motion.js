@@ -125,7 +125,8 @@ export class Motion {
 
   /** Calls use(k, x, y - x) for k = 0 .. count - 1 at from + k step; NaN outside of the run. */
   sample(from, step, count, use) {
-    let i = -1;
+    let i = Math.max(lastUpTo(this.starts, from), 0) - 1;
+    let next = -Infinity; // the moment at which the piece ends
     let piece;
     let map;
     let state;
@@ -135,10 +136,11 @@ export class Motion {
         use(k, NaN, NaN);
         continue;
       }
-      if (tau >= this.starts[i + 1]) {
-        i = lastUpTo(this.starts, tau);
+      if (tau >= next) {
+        while (this.starts[i + 1] <= tau) ++i;
+        next = this.starts[i + 1] ?? Infinity;
         piece = this.pieces[i];
-        ({state} = this.stateOf(piece, tau));
+        state = piece.flow.after(piece.state, tau - piece.tau);
         map = piece.flow.over(step);
       } else map(state);
       const y = piece.y + piece.y_dot * (tau - piece.tau);

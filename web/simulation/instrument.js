@@ -19,6 +19,7 @@ const overTime = ["x", "relative", "largest", "lambda"];
 let plots;
 let pinned = null; // {answer, motion} of a run to compare with
 let traced = null; // what of the motion is in view
+let byWall = []; // the impacts at each wall: {mine: their indices, x: their moments, ...: their look}
 
 export function start() {
   plots = new Plots(overTime, ["section", "manifold"]);
@@ -41,6 +42,11 @@ function stepsOf(...names) {
 /** What shows the run, step by step. */
 export function drawing() {
   traced = null;
+  const {tau, side} = run.answer.impacts;
+  byWall = Object.entries(walls).map(([colour, wall]) => {
+    const mine = [...tau.keys()].filter((i) => side[i] === wall);
+    return {mine, x: mine.map((i) => tau[i]), colour, shape: "dot", size: 2.2};
+  });
   plots.marks = marksOf(run.answer);
   return stepsOf("x", "relative", "lambda", "section", ...(run.more ? ofMore : []));
 }
@@ -88,11 +94,7 @@ function partOf(name, label, at) {
   };
   const series = [{label, colour: "motion"}];
   if (pinned) series.unshift({label: `${label}, pinned`, colour: "pinned"});
-  const {tau, side} = run.answer.impacts;
-  const marks = Object.entries(walls).map(([colour, wall]) => {
-    const mine = [...tau.keys()].filter((i) => side[i] === wall);
-    return {x: mine.map((i) => tau[i]), y: mine.map(at), colour, shape: "dot", size: 2.2};
-  });
+  const marks = byWall.map(({mine, ...wall}) => ({...wall, y: mine.map(at)}));
   const bare = !alone.matches;
   return {bare, unit: "mm", label: `${label} (mm)`, trace, samples, series, marks};
 }
