@@ -208,6 +208,7 @@ function tell(modulus, playing) {
     largest: modulus == null ? "" : short(modulus),
   };
   for (const [name, text] of Object.entries(values)) write({[`value-${name}`]: text});
+  write({"value-lambda": `at ${run.units.at(cursor)}`}); // which its legend tells
   if (playing) return; // a reader of the page is not told sixty times a second
   for (const name of overTime)
     attributes($(`plot-${name}`), {
