@@ -2,7 +2,7 @@
 // LONG=1: as long, and as many, as an operator would try once.
 import assert from "node:assert/strict";
 import {execFileSync, spawn} from "node:child_process";
-import {chmod, copyFile, mkdtemp, rm, symlink, writeFile} from "node:fs/promises";
+import {chmod, copyFile, mkdir, mkdtemp, rename, rm, symlink, writeFile} from "node:fs/promises";
 import {tmpdir} from "node:os";
 import {join} from "node:path";
 import {after, before, test} from "node:test";
@@ -797,15 +797,33 @@ test("a page's folder gives no more than its own files", async (t) => {
   await writeFile(join(folder, "own.js"), "1;");
   await symlink("/etc/hostname", join(folder, "link.js"));
   execFileSync("mkfifo", [join(folder, "pipe.js")]);
-  const one = await startService(["--web-dir", folder]);
-  t.after(() => one.stop());
+  await mkdir(join(folder, "tab"));
+  await writeFile(join(folder, "tab", "plot.js"), "2;");
+  const outside = await mkdtemp(join(tmpdir(), "vines-outside-"));
+  await writeFile(join(outside, "plot.js"), "of others;");
+  const way = join(outside, "way"); // the folder itself may be named by a link
+  await symlink(folder, way);
+  const one = await startService(["--web-dir", way]);
+  t.after(async () => {
+    await one.stop();
+    await rm(folder, {recursive: true});
+    await rm(outside, {recursive: true});
+  });
   const status = async (path) => (await fetch(one.url + path)).status;
+  assert.equal(await status("/"), 200);
   assert.equal(await status("/own.js"), 200);
+  assert.equal(await status("/tab/plot.js"), 200);
   assert.equal(await status("/link.js"), 404);
   assert.equal(await status("/pipe.js"), 404);
   await rm(join(folder, "own.js"));
   await symlink("/etc/hostname", join(folder, "own.js"));
   assert.equal(await status("/own.js"), 404);
+  await rename(join(folder, "tab"), join(folder, "kept"));
+  await symlink(outside, join(folder, "tab"));
+  assert.equal(await status("/tab/plot.js"), 404, "a link in place of a folder");
+  await rm(join(folder, "tab"));
+  await rename(join(folder, "kept"), join(folder, "tab"));
+  assert.equal(await status("/tab/plot.js"), 200);
 });
 
 test("a request has a name, in its answer, its faults and the log, and says where its time went", async (t) => {
