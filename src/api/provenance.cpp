@@ -11,6 +11,8 @@
 #include <utility>
 
 #include "api/column.hpp"
+#include "api/parse_object.hpp"
+#include "api/problem.hpp"
 #include "api/version.hpp"
 
 namespace vines::api {
@@ -134,14 +136,18 @@ void write_sealed(
 
 std::optional<Unsealed> unsealed(std::string_view sealed) {
     const std::size_t at = sealed.rfind(before_provenance);
-    const std::size_t end = sealed.rfind('}');
-    if (at == std::string_view::npos || end == std::string_view::npos || end < at)
-        return std::nullopt;
+    const std::size_t end = sealed.find_last_not_of(" \t\r\n");
+    if (at == std::string_view::npos || sealed[end] != '}') return std::nullopt;
     const std::size_t from = at + before_provenance.size();
-    Json provenance = Json::parse(sealed.substr(from, end - from), nullptr, false);
-    const bool is_one = provenance.is_object() && provenance.contains("route") &&
-                        provenance["route"].is_string() && provenance.contains("request") &&
-                        provenance["request"].is_object() && provenance.contains("sha256");
+    Json provenance;
+    try {
+        provenance = parse_object(sealed.substr(from, end - from));
+    } catch (const Problem&) {
+        return std::nullopt;
+    }
+    const bool is_one = provenance.contains("route") && provenance["route"].is_string() &&
+                        provenance.contains("request") && provenance["request"].is_object() &&
+                        provenance.contains("sha256");
     if (!is_one) return std::nullopt;
     return Unsealed{std::string(sealed.substr(0, at)) + "}", std::move(provenance)};
 }

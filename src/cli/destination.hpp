@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "cli/descriptor.hpp"
+#include "program/descriptor.hpp"
 
 namespace vines::cli {
 

@@ -7,8 +7,8 @@
 
 #include <cerrno>
 
-#include "cli/descriptor.hpp"
 #include "cli/file_error.hpp"
+#include "program/descriptor.hpp"
 #include "program/tell.hpp"
 
 namespace vines::cli {

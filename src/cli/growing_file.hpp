@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include "cli/descriptor.hpp"
 #include "cli/destination.hpp"
+#include "program/descriptor.hpp"
 
 namespace vines::cli {
 

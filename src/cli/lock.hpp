@@ -1,8 +1,8 @@
 // One writer of a file at a time.
 #pragma once
 
-#include "cli/descriptor.hpp"
 #include "cli/destination.hpp"
+#include "program/descriptor.hpp"
 
 namespace vines::cli {
 

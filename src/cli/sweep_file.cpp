@@ -8,6 +8,7 @@
 #include "api/problem.hpp"
 #include "api/sweep_frame.hpp"
 #include "api/sweep_line_check.hpp"
+#include "cli/read_back.hpp"
 
 namespace vines::cli {
 
@@ -31,7 +32,7 @@ public:
     void take(std::string line) {
         ++number_;
         file_.whole += line.size() + 1;
-        const api::Json json = api::Json::parse(line, nullptr, false);
+        const api::Json json = read_back(line);
         const std::string type = type_of(json);
         if (number_ == 1 && type == "start") return take_start(std::move(line));
         if (number_ == 1 || (type != "point" && !is_between_points(type)))
@@ -98,7 +99,7 @@ SweepFile parse_sweep_file(const std::string& text, const std::string& name, Lin
 }
 
 api::SweepRequest request_of(const SweepFile& file, const std::string& name) {
-    const api::Json start = api::Json::parse(file.start, nullptr, false);
+    const api::Json start = read_back(file.start);
     const auto request = start.find("request");
     if (request == start.end() || !request->is_object())
         fail_in_line(name, 1, "it does not say which request it answers");

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "cli/descriptor.hpp"
+#include "program/descriptor.hpp"
 
 namespace vines::cli {
 

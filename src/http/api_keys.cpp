@@ -4,16 +4,18 @@
 #include <openssl/crypto.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
+#include <sstream>
 #include <stdexcept>
 
 #include "http/header_text.hpp"
+#include "http/plain_file.hpp"
 
 namespace vines::http {
 
 namespace {
+
+// Some ten thousand keys.
+constexpr std::size_t most_bytes_of_keys = 1 << 20;
 
 /// RFC 6750's b64token: what a client's library sends as it is.
 bool is_key(std::string_view key) {
@@ -26,9 +28,7 @@ bool is_key(std::string_view key) {
 }  // namespace
 
 ApiKeys ApiKeys::read(const std::string& path) {
-    std::ifstream in(path);
-    if (!in)
-        throw std::runtime_error(fmt::format("cannot read {}: {}", path, std::strerror(errno)));
+    std::istringstream in(read_plain_file(path, most_bytes_of_keys));
     ApiKeys keys;
     std::size_t number = 0;
     for (std::string line; std::getline(in, line);) {
@@ -41,8 +41,7 @@ ApiKeys ApiKeys::read(const std::string& path) {
                 shortest));
         keys.keys_.push_back(line);
     }
-    if (in.bad() || keys.keys_.empty())
-        throw std::runtime_error(fmt::format("there is no key in {}", path));
+    if (keys.keys_.empty()) throw std::runtime_error(fmt::format("there is no key in {}", path));
     return keys;
 }
 

@@ -12,8 +12,8 @@ public:
     /// None: everyone may.
     ApiKeys() = default;
     /// One on each line of a file; empty lines and those that begin with # are left out. Throws
-    /// std::runtime_error where the file cannot be read, has none, or one that could be guessed or
-    /// that no header can hold.
+    /// std::runtime_error where the file cannot be read, is no regular one or larger than 1 MiB,
+    /// has none, or one that could be guessed or that no header can hold.
     static ApiKeys read(const std::string& path);
 
     bool are_asked_for() const { return !keys_.empty(); }

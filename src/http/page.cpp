@@ -1,13 +1,16 @@
 #include "http/page.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
+#include <limits>
+#include <stdexcept>
 #include <string_view>
 #include <utility>
 
 #include "http/assets.hpp"
+#include "http/plain_file.hpp"
 #include "http/problem_response.hpp"
 
 namespace vines::http {
@@ -65,23 +68,18 @@ std::vector<Route> embedded_routes(const std::string& policy) {
     return routes;
 }
 
-/// Neither a link nor anything but a file.
-bool is_plain(const std::filesystem::path& file) {
-    std::error_code ignored;
-    return std::filesystem::symlink_status(file, ignored).type() ==
-           std::filesystem::file_type::regular;
-}
-
-/// Of a file as it is whenever it is asked for.
+/// Of a file as it is whenever it is asked for, by its real path: a link that takes the place of
+/// it, or of a folder on the way to it, could lead anywhere.
 Route file_route(
     const std::filesystem::path& file, const std::string& path, const std::string& policy) {
     return {.method = "GET", .path = path, .answer = [=](const Request&) {
-                // A link could lead out of the folder, and a pipe would be waited for.
-                std::ifstream in;
-                if (is_plain(file)) in.open(file, std::ios::binary);
-                if (!in.is_open()) return problem_response(404, "there is no " + path);
-                return file_response(
-                    path, std::string(std::istreambuf_iterator<char>(in), {}), policy);
+                try {
+                    return file_response(
+                        path, read_without_links(file, std::numeric_limits<std::size_t>::max()),
+                        policy);
+                } catch (const std::runtime_error&) {
+                    return problem_response(404, "there is no " + path);
+                }
             }};
 }
 
@@ -93,14 +91,20 @@ bool is_of_page(const std::filesystem::path& name) {
     return path.rfind("node_modules/", 0) != 0;
 }
 
-std::vector<Route> folder_routes(const std::filesystem::path& folder, const std::string& policy) {
+std::vector<Route> folder_routes(const std::filesystem::path& given, const std::string& policy) {
     std::vector<Route> routes;
-    for (const Page& page : pages)
-        routes.push_back(file_route(folder / page.file, page.path, policy));
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-        const std::filesystem::path name = entry.path().lexically_relative(folder);
-        if (is_of_page(name) && is_plain(entry.path()))
-            routes.push_back(file_route(entry.path(), "/" + name.generic_string(), policy));
+    try {
+        const std::filesystem::path folder = std::filesystem::canonical(given);
+        for (const Page& page : pages)
+            routes.push_back(file_route(folder / page.file, page.path, policy));
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+            const std::filesystem::path name = entry.path().lexically_relative(folder);
+            if (is_of_page(name) && std::filesystem::is_regular_file(entry.symlink_status()))
+                routes.push_back(file_route(entry.path(), "/" + name.generic_string(), policy));
+        }
+    } catch (const std::filesystem::filesystem_error& e) {
+        throw std::runtime_error(
+            fmt::format("cannot read {}: {}", given.string(), e.code().message()));
     }
     return routes;
 }

@@ -19,6 +19,7 @@ struct PageOptions {
 /// Whether a text is an origin: a scheme, http or https, a host and perhaps a port, no more.
 bool is_origin(const std::string& text);
 
+/// Throws std::runtime_error where the folder cannot be read.
 std::vector<Route> page_routes(const PageOptions& options);
 
 }  // namespace vines::http

@@ -23,7 +23,8 @@ struct RouteOptions {
     PageOptions page = {};
 };
 
-/// All routes. `gate` and `metrics` outlive them.
+/// All routes. `gate` and `metrics` outlive them. Throws std::runtime_error where the page's folder
+/// cannot be read.
 std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate, Metrics& metrics);
 
 }  // namespace vines::http

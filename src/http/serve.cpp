@@ -8,6 +8,8 @@
 #include <memory>
 #include <stdexcept>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "api/version.hpp"
 #include "http/commands.hpp"
@@ -208,18 +210,20 @@ int serve(const ServeOptions& options) {
 #ifdef __GLIBC__
     keep_memory_small(options.compute.running);
 #endif
-    block_end_signals();
-    start_log(options.log == "text" ? LogFormat::text : LogFormat::json);
+    ComputeGate gate(options.compute);
+    Metrics metrics(gate);
     ServerOptions chosen;
-    try {
+    std::vector<Route> routes;
+    try {  // while a signal ends the program at once: a disk may be slow, and a folder large
         chosen = server_options(options);
+        routes = make_routes(options.routes, gate, metrics);
     } catch (const std::runtime_error& e) {
         tell(e.what());
         end(2);
     }
-    ComputeGate gate(options.compute);
-    Metrics metrics(gate);
-    Server server(chosen, make_routes(options.routes, gate, metrics), metrics);
+    block_end_signals();
+    start_log(options.log == "text" ? LogFormat::text : LogFormat::json);
+    Server server(chosen, std::move(routes), metrics);
     int port = 0;
     try {
         port = server.bind();

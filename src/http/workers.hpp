@@ -1,7 +1,9 @@
 // Threads that take jobs from a queue, first come, first served.
 #pragma once
 
-#include <condition_variable>
+#include <semaphore.h>
+
+#include <cerrno>
 #include <deque>
 #include <functional>
 #include <mutex>
@@ -22,16 +24,14 @@ public:
         : most_threads_(static_cast<std::size_t>(threads)),
           most_(waiting),
           work_(std::move(work)) {
+        ::sem_init(&calls_, 0, 0);
         start_one();
     }
     /// After the jobs that wait.
     ~Workers() {
-        {
-            const std::lock_guard lock(mutex_);
-            ended_ = true;
-        }
-        changed_.notify_all();
+        for (std::size_t n = 0; n < threads_.size(); ++n) ::sem_post(&calls_);
         for (std::thread& thread : threads_) thread.join();
+        ::sem_destroy(&calls_);
     }
     Workers(const Workers&) = delete;
     Workers& operator=(const Workers&) = delete;
@@ -44,7 +44,7 @@ public:
             if (jobs_.size() >= free_ + most_) return false;
             jobs_.push_back(std::move(job));
         }
-        changed_.notify_one();
+        ::sem_post(&calls_);
         return true;
     }
     /// Whether a job waits for one.
@@ -66,9 +66,9 @@ private:
     }
 
     void run() {
-        std::unique_lock lock(mutex_);
         for (;;) {
-            changed_.wait(lock, [this] { return ended_ || !jobs_.empty(); });
+            wait_for_call();
+            std::unique_lock lock(mutex_);
             if (jobs_.empty()) return;
             Job job = std::move(jobs_.front());
             jobs_.pop_front();
@@ -80,13 +80,19 @@ private:
         }
     }
 
+    void wait_for_call() {
+        while (::sem_wait(&calls_) != 0 && errno == EINTR) {}
+    }
+
     const std::size_t most_threads_, most_;
     const std::function<void(Job)> work_;
     std::mutex mutex_;
-    std::condition_variable changed_;
+    /// One for each job, and for each thread once there will be no more. To call waits for nobody:
+    /// who notifies a condition may wait until those that it woke before have had a processor, and
+    /// the thread that adds jobs answers health, too.
+    sem_t calls_{};
     std::deque<Job> jobs_;
     std::size_t free_ = 0;  // of the threads
-    bool ended_ = false;
     std::vector<std::thread> threads_;
 };
 

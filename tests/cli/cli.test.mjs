@@ -44,6 +44,72 @@ test("an answer says what it was made of, and verify makes the same of it", asyn
   assert.match(again.out, /sha256: as told\nrecomputed: regime\.z: 9 became /);
 });
 
+test("verify compares what an answer was made of, too, and says whether another build made it", async () => {
+  const answer = await simulated({preset: "fig3", tau_end: 40, include: ["regime"]});
+  const altered = (alter) => {
+    const fields = JSON.parse(answer);
+    alter(fields.provenance);
+    const at = answer.lastIndexOf(',"provenance":');
+    return verified(`${answer.slice(0, at)},"provenance":${JSON.stringify(fields.provenance)}}\n`);
+  };
+  const cases = [
+    [(p) => Object.assign(p, {extra: 1}), /^provenance: extra is no more$/m],
+    [
+      (p) => Object.assign(p, {answer_limit: 1e9}),
+      /^provenance: answer_limit: 1000000000 became null/m,
+    ],
+    [(p) => Object.assign(p, {commit: 7}), /^provenance: commit: 7 became "/m],
+    [(p) => delete p.commit, /^provenance: commit is new$/m],
+    [(p) => Object.assign(p.request, {b: 0.019}), /^recomputed: parameters/m],
+    [
+      (p) => Object.assign(p, {request: {tau_end: 40, preset: "fig3", include: ["regime"]}}),
+      /^provenance: the same, written in another way$/m,
+    ],
+  ];
+  for (const [alter, said] of cases) {
+    const {code, out, errors} = await altered(alter);
+    assert.equal(code, 1, out + errors);
+    assert.match(out, said);
+    assert.match(out, /^sha256: as told$/m, "which covers the answer alone");
+  }
+  const other = await altered((p) => Object.assign(p, {commit: "another"}));
+  assert.equal(other.code, 0, other.out + other.errors);
+  assert.match(other.out, /^answered by \S+ \(another\), .*\ncommit: another build's /);
+  assert.doesNotMatch((await verified(answer)).out, /^commit|^provenance/m);
+});
+
+test("what is not one answer, or has words where numbers stand, is refused in words of its own", async () => {
+  const answer = await simulated({tau_end: 40, include: ["regime"]});
+  const whole = (alter) => {
+    const fields = JSON.parse(answer);
+    alter(fields);
+    return `${JSON.stringify(fields)}\n`;
+  };
+  const cases = [
+    [answer + answer, 2, /not one answer/],
+    [answer.replace('{"', '{"a":[,"'), 2, /not one answer/],
+    [`${answer}}`, 2, /no provenance at the end/],
+    [`${answer}and more`, 2, /no provenance at the end/],
+    [answer.replace('"provenance":{', '"provenance":{"route":"/x",'), 2, /no provenance/],
+    [whole((a) => Object.assign(a, {version: 7})), 1, /the answer was changed/],
+    [whole((a) => Object.assign(a, {status: []})), 1, /the answer was changed/],
+    [whole((a) => Object.assign(a.status, {reason: 7})), 1, /the answer was changed/],
+    [`{"a":${"[".repeat(100000)}${"]".repeat(100000)},${answer.slice(1)}`, 2, /not one answer/],
+    [`{"a":[[["]\\"["]]],${answer.slice(1)}`, 1, /recomputed: a is no more/],
+    [
+      answer.replace('"request":{', `"request":{"b":${"[".repeat(100000)}${"]".repeat(100000)},`),
+      2,
+      /no provenance at the end/,
+    ],
+  ];
+  for (const [text, code, said] of cases) {
+    const result = await verified(text);
+    assert.equal(result.code, code, result.out + result.errors);
+    assert.match(result.out + result.errors, said);
+    assert.doesNotMatch(result.errors, /exception/);
+  }
+});
+
 test("verify takes what the service answers: runs, manifolds, identifications, sweeps", async () => {
   const service = await startService(["--answer-limit", "300000"]);
   const post = async (path, body, type = "application/json") =>

@@ -431,6 +431,11 @@ const faults = () => [
     /point 5 differs from the same in line 7/,
   ],
   [changed(5, () => "\0\0\0"), 7, /not a line of a sweep/],
+  [
+    changed(5, (line) => line.replace("{", `{"a":${"[".repeat(1e5)}${"]".repeat(1e5)},`)),
+    7,
+    /not a line of a sweep/,
+  ],
   [whole.replace('"request":', '"asked":'), 1, /./],
   [whole.replace(/"count":40/, '"count":0'), 1, /./],
 ];

@@ -1,7 +1,7 @@
 // Who may use the service: those who have a key, and pages of other origins that are allowed to.
 import assert from "node:assert/strict";
-import {spawnSync} from "node:child_process";
-import {mkdtemp, rm, writeFile} from "node:fs/promises";
+import {execFileSync, spawnSync} from "node:child_process";
+import {mkdtemp, rm, symlink, writeFile} from "node:fs/promises";
 import {tmpdir} from "node:os";
 import {join} from "node:path";
 import {after, before, test} from "node:test";
@@ -95,13 +95,33 @@ test("a key file that keeps nobody out, or cannot be read, is refused at the sta
     assert.match(stderr, message);
     assert.doesNotMatch(stderr, /short|blanks in it/, "a key is not told");
   }
-  const missing = spawnSync(
-    program,
-    ["serve", "--port", "0", "--api-key-file", join(folder, "none")],
-    {encoding: "utf8", timeout: 5000},
-  );
-  assert.equal(missing.status, 2);
-  assert.match(missing.stderr, /cannot read .*none: No such file/);
+});
+
+test("a key file that is none, or far too large, is refused at once in one line", async () => {
+  const at = (name) => join(folder, name);
+  execFileSync("mkfifo", [at("pipe")]);
+  await writeFile(at("large"), `${keys[0]}\n`.repeat(100000));
+  const cases = [
+    [at("none"), /cannot read .*none: No such file/],
+    [at("pipe"), /pipe: it is no regular file/], // nobody writes to it
+    ["/dev/zero", /zero: it is no regular file/],
+    [folder, /it is no regular file/],
+    [at("large"), /large: it has more than 1048576 bytes/],
+  ];
+  for (const [path, message] of cases) {
+    const {status, stderr} = spawnSync(program, ["serve", "--port", "0", "--api-key-file", path], {
+      encoding: "utf8",
+      timeout: 5000,
+      killSignal: "SIGKILL",
+    });
+    assert.equal(status, 2, path);
+    assert.match(stderr, message);
+    assert.match(stderr, /^vines: .*\n$/, "one line");
+  }
+  await symlink(at("keys"), at("way"));
+  await keyFile(`${keys[0]}\n`);
+  const linked = await startService(["--api-key-file", at("way")]); // as of a mounted secret
+  assert.equal(await linked.stop(), 0);
 });
 
 test("a page of an origin that is allowed may use the service, and hears its headers; others may not", async (t) => {

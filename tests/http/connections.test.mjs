@@ -1,11 +1,12 @@
 // What clients that are slow, careless or hostile do to the others: nothing. Over raw sockets.
 // LONG=1: as long, and as many, as an operator would try once.
 import assert from "node:assert/strict";
-import {execFileSync, spawn} from "node:child_process";
-import {chmod, copyFile, mkdtemp, rm, symlink, writeFile} from "node:fs/promises";
+import {execFile, execFileSync, spawn} from "node:child_process";
+import {chmod, copyFile, mkdir, mkdtemp, rename, rm, symlink, writeFile} from "node:fs/promises";
 import {tmpdir} from "node:os";
 import {join} from "node:path";
 import {after, before, test} from "node:test";
+import {promisify} from "node:util";
 import {program, startService} from "../service.mjs";
 import {connect, exchange, memory, sleep, statuses, until} from "./raw.mjs";
 
@@ -37,6 +38,12 @@ async function health(url = service.url) {
   const began = performance.now();
   assert.equal((await fetch(`${url}/livez`)).status, 200);
   return performance.now() - began;
+}
+
+/** The times to answers of /livez, ms, measured for so many ms by a process that does nothing else. */
+async function probed(url, ms) {
+  const prober = new URL("prober.mjs", import.meta.url).pathname;
+  return JSON.parse((await promisify(execFile)(process.execPath, [prober, url, ms])).stdout);
 }
 
 test("requests that are sent without waiting for the answers are answered one after the other", async () => {
@@ -467,7 +474,8 @@ test("under three times the load that it takes each answer is 200 or 503 with Re
   const one = await startService(["--compute-threads", "1", "--compute-queue", "8"]);
   t.after(() => one.stop());
   const body = '{"damping": "closed_form", "tau_end": 60000, "include": ["regime"]}';
-  const until = performance.now() + (long ? 60000 : 4000);
+  const ms = long ? 60000 : 4000;
+  const until = performance.now() + ms;
   const counts = {};
   const client = async () => {
     while (performance.now() < until) {
@@ -480,14 +488,7 @@ test("under three times the load that it takes each answer is 200 or 503 with Re
       }
     }
   };
-  const times = [];
-  const watch = async () => {
-    while (performance.now() < until) {
-      times.push(await health(one.url));
-      await sleep(10);
-    }
-  };
-  await Promise.all([...Array.from({length: 64}, client), watch()]);
+  const [times] = await Promise.all([probed(one.url, ms), ...Array.from({length: 64}, client)]);
   assert.deepEqual(Object.keys(counts), ["200", "503"]); // in the order of numbers
   times.sort((a, b) => a - b);
   // Of the few of a short run the slowest are the machine's.
@@ -797,15 +798,33 @@ test("a page's folder gives no more than its own files", async (t) => {
   await writeFile(join(folder, "own.js"), "1;");
   await symlink("/etc/hostname", join(folder, "link.js"));
   execFileSync("mkfifo", [join(folder, "pipe.js")]);
-  const one = await startService(["--web-dir", folder]);
-  t.after(() => one.stop());
+  await mkdir(join(folder, "tab"));
+  await writeFile(join(folder, "tab", "plot.js"), "2;");
+  const outside = await mkdtemp(join(tmpdir(), "vines-outside-"));
+  await writeFile(join(outside, "plot.js"), "of others;");
+  const way = join(outside, "way"); // the folder itself may be named by a link
+  await symlink(folder, way);
+  const one = await startService(["--web-dir", way]);
+  t.after(async () => {
+    await one.stop();
+    await rm(folder, {recursive: true});
+    await rm(outside, {recursive: true});
+  });
   const status = async (path) => (await fetch(one.url + path)).status;
+  assert.equal(await status("/"), 200);
   assert.equal(await status("/own.js"), 200);
+  assert.equal(await status("/tab/plot.js"), 200);
   assert.equal(await status("/link.js"), 404);
   assert.equal(await status("/pipe.js"), 404);
   await rm(join(folder, "own.js"));
   await symlink("/etc/hostname", join(folder, "own.js"));
   assert.equal(await status("/own.js"), 404);
+  await rename(join(folder, "tab"), join(folder, "kept"));
+  await symlink(outside, join(folder, "tab"));
+  assert.equal(await status("/tab/plot.js"), 404, "a link in place of a folder");
+  await rm(join(folder, "tab"));
+  await rename(join(folder, "kept"), join(folder, "tab"));
+  assert.equal(await status("/tab/plot.js"), 200);
 });
 
 test("a request has a name, in its answer, its faults and the log, and says where its time went", async (t) => {

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-namespace vines::cli {
+namespace vines {
 
 /// Closed when it goes; -1: none.
 class Descriptor {
@@ -27,4 +27,4 @@ private:
     int number_;
 };
 
-}  // namespace vines::cli
+}  // namespace vines
