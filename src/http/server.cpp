@@ -76,7 +76,7 @@ struct Server::Implementation {
     struct InWork {
         Connection* connection = nullptr;
         Exchange exchange;
-        const SocketStream* stream = nullptr;
+        SocketStream* stream = nullptr;
         std::string id = {};
         int status = 0;
         std::string lacking = {};
@@ -109,11 +109,6 @@ struct Server::Implementation {
         if (!work.keeps) const_cast<httplib::Request&>(in).set_header("Connection", "close");
     }
 
-    /// An interim answer before the answer, which HTTP/1.0 does not know.
-    static bool may_ask(const InWork& work) {
-        return work.exchange.head.takes_chunks && !work.stream->has_begun();
-    }
-
     Response response_to(InWork& work) const {
         Exchange& exchange = work.exchange;
         if (exchange.refused) return std::move(*exchange.refused);
@@ -128,7 +123,7 @@ struct Server::Implementation {
                  .accept = std::string(head.header("accept")),
                  .known_tags = std::string(head.header("if-none-match")),
                  .id = work.id,
-                 .left = [&work] { return work.connection->has_left(may_ask(work)); }});
+                 .left = [&work] { return work.stream->has_left(); }});
         } catch (...) {
             log_failure(std::string(head.path()), work.id, std::current_exception());
             return problem_response(500, "the server failed at this request; its log says why");

@@ -463,6 +463,55 @@ test("a run ends when its client leaves, whether it runs or waits", async (t) =>
   assert.ok(performance.now() - began < 1000 * slower, "they would have taken some ten seconds");
 });
 
+/** Of the metric, at the moment. */
+const running = async (url) =>
+  Number(/^vines_compute_running (\d+)/m.exec(await (await fetch(`${url}/metrics`)).text())[1]);
+
+// Half a minute, which its deadline ends.
+const endless = JSON.stringify({
+  ...JSON.parse(longest),
+  windows: Array.from({length: 900}, (_, i) => [i, 1e7]),
+});
+
+test("a run ends when its client leaves, also one of HTTP/1.0, or one that had closed its own side before", async (t) => {
+  const one = await startService(["--compute-threads", "1"]);
+  t.after(() => one.stop());
+  for (const version of ["1.0", "1.1"]) {
+    const request = post(endless).replace("HTTP/1.1", `HTTP/${version}`);
+    const {socket} = await connect(one.url);
+    socket.write(request);
+    await until(async () => (await running(one.url)) === 1);
+    socket.destroy();
+    await until(async () => (await running(one.url)) === 0, 3000 * slower);
+    const half = await connect(one.url, {allowHalfOpen: true});
+    half.socket.end(request);
+    await until(() => half.text().length > 0);
+    half.socket.destroy();
+    await until(async () => (await running(one.url)) === 0, 5000 * slower);
+  }
+});
+
+test("a client that has closed its own side gets the same bytes, also where it was asked whether it is there", async () => {
+  const run = '{"tau_end": 3000000, "max_impacts": 2000000, "include": ["regime"]}';
+  const request = post(run, "X-Request-ID: half\r\n");
+  for (const version of ["1.0", "1.1"]) {
+    const bytes = request.replace("HTTP/1.1", `HTTP/${version}`);
+    const {socket, text, ended} = await connect(service.url, {allowHalfOpen: true});
+    socket.end(bytes);
+    await until(() => text().length > 0, 5000 * slower);
+    assert.equal("HTTP/1.1 ".slice(0, text().length), text(), "it was asked");
+    await ended;
+    const whole = await exchange(service.url, bytes.replace("\r\n", "\r\nConnection: close\r\n"));
+    const head = (answer) =>
+      answer
+        .slice(0, answer.indexOf("\r\n\r\n"))
+        .replace(/^(Server-Timing|Connection|Keep-Alive): .*\r\n/gm, "");
+    const body = (answer) => answer.slice(answer.indexOf("\r\n\r\n"));
+    assert.equal(head(text()), head(whole));
+    assert.equal(body(text()), body(whole));
+  }
+});
+
 test("under three times the load that it takes each answer is 200 or 503 with Retry-After, and health is quick", async (t) => {
   const one = await startService(["--compute-threads", "1", "--compute-queue", "8"]);
   t.after(() => one.stop());
