@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <list>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -83,6 +85,29 @@ struct Server::Implementation {
         Timing timing = {};
         bool keeps = false;  ///< the connection, for another request
     };
+    /// Those of all threads. Of each, what is read of it by others stays as it is until it is out.
+    std::mutex mutex;
+    std::list<const InWork*> in_work;
+
+    /// Keeps one among them.
+    class Entry {
+    public:
+        Entry(Implementation& server, const InWork& work) : server_(server) {
+            const std::lock_guard lock(server_.mutex);
+            at_ = server_.in_work.insert(server_.in_work.end(), &work);
+        }
+        ~Entry() {
+            const std::lock_guard lock(server_.mutex);
+            server_.in_work.erase(at_);
+        }
+        Entry(const Entry&) = delete;
+        Entry& operator=(const Entry&) = delete;
+
+    private:
+        Implementation& server_;
+        std::list<const InWork*>::iterator at_;
+    };
+
     static InWork& current() {
         thread_local InWork work;
         return work;
@@ -130,7 +155,24 @@ struct Server::Implementation {
         }
     }
 
+    /// What is known of it before its answer.
+    static Served served_so_far(const InWork& work) {
+        const Exchange& exchange = work.exchange;
+        const std::chrono::duration<double, std::milli> taken = Clock::now() - exchange.since;
+        return {
+            .id = work.id,
+            .client = work.connection->client(),
+            .method = exchange.head.method,
+            .path = std::string(exchange.head.path()),
+            .route = exchange.route ? exchange.route->name : "none",
+            .ms = taken.count()};
+    }
+
     /// False where the answer was broken off.
+    bool write_among_others(const InWork& work) {
+        const Entry entry(*this, work);
+        return write(*work.stream) && work.stream->finish();
+    }
     bool write(SocketStream& stream) {
         try {
             return http.answer(stream);
@@ -151,22 +193,15 @@ struct Server::Implementation {
         InWork& work = current();
         std::string id = request_id(exchange.head);
         work = {&connection, std::move(exchange), &stream, std::move(id)};
-        const bool sent = write(stream) && stream.finish();
+        const bool sent = write_among_others(work);
         const bool keeps = sent && work.keeps;
         if (!sent) connection.break_off();
-        const std::chrono::duration<double, std::milli> taken = Clock::now() - work.exchange.since;
-        const Served served{
-            .id = work.id,
-            .client = connection.client(),
-            .method = work.exchange.head.method,
-            .path = std::string(work.exchange.head.path()),
-            .route = work.exchange.route ? work.exchange.route->name : "none",
-            .lacking = work.lacking,
-            .status = work.status,
-            .ms = taken.count(),
-            .timing = work.timing,
-            .bytes = stream.written(),
-            .left = !sent};
+        Served served = served_so_far(work);
+        served.lacking = work.lacking;
+        served.status = work.status;
+        served.timing = work.timing;
+        served.bytes = stream.written();
+        served.left = !sent;
         log_served(served);
         metrics.count_served(served);
         work = {};
@@ -249,6 +284,14 @@ void Server::close_connections() { implementation_->closing = true; }
 void Server::stop() {
     close_connections();
     implementation_->connections->stop();
+}
+
+std::size_t Server::log_cut_off() {
+    const std::size_t number = implementation_->connections->load().in_flight;
+    const std::lock_guard lock(implementation_->mutex);
+    for (const auto* work : implementation_->in_work)
+        http::log_cut_off(Implementation::served_so_far(*work));
+    return number;
 }
 
 }  // namespace vines::http

@@ -607,6 +607,81 @@ test("a stop under load loses no request; its answers are the last ones of their
   assert.deepEqual(lost, []);
 });
 
+test("what comes with a stop before its end is told so, and not cut off while it is sent", async () => {
+  const one = await startService();
+  const halves = await Promise.all(
+    [post(small).slice(0, -3), "GET /version HTTP/1.1\r\nHost: x\r\nX-"].map(async (bytes) => {
+      const connection = await connect(one.url);
+      connection.socket.write(bytes);
+      return connection;
+    }),
+  );
+  const idle = await connect(one.url);
+  await health(one.url); // they have been read before it was answered
+  const ended = one.stop();
+  for (const {socket, text} of halves) {
+    await until(() => statuses(text()).length === 1);
+    socket.write("more");
+    assert.deepEqual(statuses(text()), [503]);
+    assert.match(text(), /^Retry-After: 1\r$/m);
+    assert.match(text(), /^Connection: close\r$/m);
+    assert.equal(JSON.parse(text().slice(text().indexOf("\r\n\r\n"))).lacking, "stopping");
+    socket.end();
+  }
+  assert.equal(await idle.ended, "");
+  assert.equal(await ended, 0);
+});
+
+/** A service with its log, and a client that has asked for a large answer and does not read. */
+async function heldByItsClient() {
+  const child = spawn(program, ["serve", "--port", "0"]);
+  let log = "";
+  child.stderr.on("data", (data) => {
+    log += data;
+  });
+  const ended = new Promise((resolve) => child.on("close", resolve));
+  const url = await new Promise((resolve) =>
+    child.stdout.once("data", (data) => resolve(/http:\S+/.exec(data)[0])),
+  );
+  const {socket, text} = await connect(url);
+  const large =
+    '{"damping": "closed_form", "tau_end": 8000, "max_points": 300000, "samples_per_cycle": 200}';
+  socket.write(post(large, "X-Request-ID: unread\r\n"));
+  await until(() => text().length > 0, 10000 * slower);
+  socket.pause();
+  return {child, socket, ended, lines: () => log.trim().split("\n").map(JSON.parse)};
+}
+
+/** Of both, what the log says at the end. */
+function assertCutOff(lines) {
+  const [request, last] = lines.slice(-2);
+  assert.deepEqual(
+    [request.level, request.method, request.path, request.request_id],
+    ["warning", "POST", "/v1/simulate", "unread"],
+  );
+  assert.match(request.what, /cut it off/);
+  assert.equal(last.level, "warning");
+  assert.equal(last.what, "stopped; requests that were cut off: 1");
+}
+
+test("a stop that a second signal forces says which requests it has cut off", async (t) => {
+  const {child, socket, ended, lines} = await heldByItsClient();
+  t.after(() => socket.destroy());
+  child.kill("SIGTERM");
+  await until(() => lines().some(({what}) => what === "stopping"));
+  child.kill("SIGTERM");
+  assert.equal(await ended, 128 + 15);
+  assertCutOff(lines());
+});
+
+test("so does one that its time forces, and ends with 3", {skip: !long}, async (t) => {
+  const {child, socket, ended, lines} = await heldByItsClient();
+  t.after(() => socket.destroy());
+  child.kill("SIGTERM");
+  assert.equal(await ended, 3);
+  assertCutOff(lines());
+});
+
 test("a second signal ends the service at once", async () => {
   const one = await startService(["--drain", "30"]);
   await health(one.url);
