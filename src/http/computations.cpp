@@ -12,6 +12,7 @@
 #include "api/version.hpp"
 #include "http/accept.hpp"
 #include "http/answer_stream.hpp"
+#include "http/compress.hpp"
 #include "http/encoding.hpp"
 #include "http/end_of_work.hpp"
 #include "http/memory.hpp"
@@ -128,13 +129,17 @@ Response answer(
     }
     std::string bytes = encoded(
         std::move(answer), *format, options.answer_limit, provenance.size() + most_hash, r.left);
-    watch.lap("encode");
     if (stop.asked()) tag = {};  // another time it may get further
-    return {
+    Response response{
         .content_type = api::name_of(*format).media_type,
         .body = std::move(bytes),
         .tag = std::move(tag),
         .headers = {varies}};
+    const auto waited = turn.waited();
+    if (!compress(response, r, [&] { return !turn.goes_on() || r.left(); })) end_unheard();
+    watch.lap("encode");
+    watch.move("encode", "queue", turn.waited() - waited);
+    return response;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <httplib.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
@@ -118,11 +119,12 @@ struct Server::Implementation {
         InWork& work = current();
         work.keeps = work.exchange.head.keep_alive && !work.exchange.refused;
         Response response = response_to(work);
-        const std::size_t size = response.body.size() + response.held;
-        if (size > small_answer && connections->memory().is_full()) response = memory_refusal();
+        const std::size_t size = std::max(response.body.size(), response.gzipped_from);
+        if (size + response.held > small_answer && connections->memory().is_full())
+            response = memory_refusal();
         for (auto& header : sharing_headers(work.exchange.head, options.access))
             response.headers.push_back(std::move(header));
-        work.connection->hold(size);
+        work.connection->hold(response.body.size() + response.held);
         // Of a stream that comes in no chunks the end is that of its connection.
         if (response.stream && !work.exchange.head.takes_chunks) work.keeps = false;
         work.timing = response.timing;
@@ -146,6 +148,7 @@ struct Server::Implementation {
                  .content_type = std::string(head.header("content-type")),
                  .body = std::move(exchange.body),
                  .accept = std::string(head.header("accept")),
+                 .accept_encoding = std::string(head.header("accept-encoding")),
                  .known_tags = std::string(head.header("if-none-match")),
                  .id = work.id,
                  .left = [&work] { return work.stream->has_left(); }});
