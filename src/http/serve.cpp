@@ -239,7 +239,7 @@ int serve(const ServeOptions& options) {
     try {
         port = server.bind();
     } catch (const std::runtime_error& e) {
-        tell(fmt::format("{}; use --port, or --port 0 for any free one", e.what()));
+        tell(e.what());
         end(2);
     }
     const std::string greeting = fmt::format(

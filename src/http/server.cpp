@@ -54,6 +54,19 @@ private:
     }
 };
 
+/// With what may help. error: errno, 0 where the system does not say.
+std::string why_not_bound(const ServerOptions& options, int error) {
+    constexpr const char* other_port = "use --port, or --port 0 for any free one";
+    if (error == EADDRINUSE) return fmt::format("port {} is taken; {}", options.port, other_port);
+    if (error == EACCES)
+        return fmt::format("port {} is not for everyone; {}", options.port, other_port);
+    if (error == 0 || error == EADDRNOTAVAIL)
+        return fmt::format(
+            "cannot listen on {}; use --host with an address of this machine", options.host);
+    return fmt::format(
+        "cannot listen on {}:{}: {}", in_url(options.host), options.port, std::strerror(error));
+}
+
 }  // namespace
 
 struct Server::Implementation {
@@ -261,12 +274,7 @@ int Server::bind() {
     int port = options.port;
     const bool bound = port == 0 ? (port = http.bind_to_any_port(options.host)) > 0
                                  : http.bind_to_port(options.host, port);
-    if (!bound && errno == EADDRINUSE)
-        throw std::runtime_error(fmt::format("port {} is taken", options.port));
-    if (!bound)
-        throw std::runtime_error(fmt::format(
-            "cannot listen on {}:{}{}{}", in_url(options.host), options.port, errno ? ": " : "",
-            errno ? std::strerror(errno) : ""));
+    if (!bound) throw std::runtime_error(why_not_bound(options, errno));
     http.widen_backlog();
     implementation_->connections.emplace(
         http.listening(),

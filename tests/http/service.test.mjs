@@ -522,6 +522,11 @@ test("a flag beats the environment, which beats the default; bad ones are refuse
   const [code, text] = await run(["serve", "--port", port]); // taken
   assert.equal(code, 2);
   assert.match(text, new RegExp(`^vines: port ${port} is taken; use --port, .*\n$`));
+  for (const nowhere of ["999.1.1.1", "192.0.2.7"])
+    assert.deepEqual(await run(["serve", "--port", "0", "--host", nowhere]), [
+      2,
+      `vines: cannot listen on ${nowhere}; use --host with an address of this machine\n`,
+    ]);
   const bad = [
     [["serve", "--port", "99999"], {}, /--port.*99999/],
     [["serve", "--deadline", "nan"], {}, /--deadline.*nan/],
