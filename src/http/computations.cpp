@@ -15,6 +15,7 @@
 #include "http/compress.hpp"
 #include "http/encoding.hpp"
 #include "http/end_of_work.hpp"
+#include "http/header_text.hpp"
 #include "http/memory.hpp"
 #include "http/sweep_stream.hpp"
 #include "http/turn.hpp"
@@ -61,8 +62,8 @@ api::Asked asked_run(const Request& r, const api::FieldTable& table) {
 }
 
 api::Asked asked_identification(const Request& r) {
-    const bool is_columns =
-        r.content_type.starts_with("text/csv") || r.content_type.starts_with("text/plain");
+    const std::string type = media_type(r.content_type);
+    const bool is_columns = type == "text/csv" || type == "text/plain";
     return api::read_asked(
         r.path, is_columns ? api::from_query(api::identify_fields(), r.query) : body_of(r),
         {r.body, is_columns});

@@ -116,6 +116,7 @@ std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate, M
     for (Route& file : page_routes(options.page)) {
         file.name = "page";
         file.open = true;
+        file.knows_its_frames = true;
         routes.push_back(std::move(file));
     }
     return routes;

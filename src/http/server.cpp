@@ -257,6 +257,10 @@ Server::Server(const ServerOptions& options, std::vector<Route> routes, Metrics&
         implementation_->respond(in, out);
         return Handled::Handled;
     });
+    // It would say that the body has no bytes, which is not that of the answer which is known.
+    http.set_post_routing_handler([](const auto&, auto& out) {
+        if (out.status == 304) out.headers.erase("Content-Length");
+    });
     // Not the library's SO_REUSEPORT: with that a second server on the same port starts without
     // a word and takes half of the requests.
     http.set_socket_options([](auto socket) {

@@ -108,6 +108,19 @@ test("a head is taken only in the form that all readers agree on", async () => {
     [get("/", "X: a\r\n".repeat(200)), 431],
     [get("/", "Range: items=1\r\n"), 416],
     [get("/", "Expect: a miracle\r\n"), 417],
+    [get("/", "Expect: 100-continue\r\nExpect: a miracle\r\n"), 417],
+    [get("/", "Expect: 100-continue, a miracle\r\n"), 417],
+    ...[
+      "local host",
+      "localhost/x",
+      "localhost:evil",
+      "a@localhost",
+      "[::1",
+      "[::1]x",
+      "a:1:2",
+    ].map((host) => [get("/").replace("localhost", host), 400]),
+    ["GET http://a@localhost/ HTTP/1.1\r\nHost: localhost\r\n\r\n", 400],
+    [post(small, "Content-Type: Multipart/Form-Data\r\n"), 415],
     ["BREW / HTTP/1.1\r\nHost: localhost\r\n\r\n", 405],
     [`${get("/", "Content-Length: 3\r\n")}abc`, 400],
     [post(small, "Content-Length: 3\r\n"), 400],
@@ -268,6 +281,8 @@ test("requests that are meant for another host, or come from a page of another s
     "vines",
     "[::1]:9",
     "localhost.",
+    "",
+    "localhost:",
   ])
     assert.equal(await status(to(host)), 200, host);
   for (const host of [
@@ -290,7 +305,20 @@ test("requests that are meant for another host, or come from a page of another s
     assert.equal(await status(from(headers)), 403, headers);
   const cross = "Sec-Fetch-Site: cross-site\r\n";
   assert.equal(await status(to("localhost", `${cross}Sec-Fetch-Mode: no-cors\r\n`)), 403);
-  assert.equal(await status(to("localhost", `${cross}Sec-Fetch-Mode: navigate\r\n`)), 200);
+  const link = `${cross}Sec-Fetch-Mode: navigate\r\n`;
+  assert.equal(await status(to("localhost", link)), 200);
+  assert.equal(await status(to("localhost", `${link}Sec-Fetch-Dest: document\r\n`)), 200);
+  const page = (more) => to("localhost", more).replace("/version", "/");
+  for (const frame of ["iframe", "frame", "embed", "object"]) {
+    const framed = `${link}Sec-Fetch-Dest: ${frame}\r\n`;
+    assert.equal(await status(to("localhost", framed)), 403, frame);
+    const shown = await exchange(service.url, page(framed));
+    assert.match(
+      shown,
+      /^HTTP\/1.1 200(.|\s)*frame-ancestors 'none'\r$/m,
+      "which the page refuses",
+    );
+  }
   const open = await startService(["--host", "0.0.0.0", "--allow-host", "vines.example.org"]);
   t.after(() => open.stop());
   const local = open.url.replace("0.0.0.0", "127.0.0.1");
@@ -854,6 +882,7 @@ test("what a client has already is not computed again", async (t) => {
     headers: {"If-None-Match": manifold.headers.get("etag")},
   });
   assert.equal(known.status, 304);
+  assert.equal(known.headers.get("content-length"), null);
   assert.doesNotMatch(known.headers.get("server-timing"), /solve/);
 });
 
@@ -949,6 +978,19 @@ test("a request has a name, in its answer, its faults and the log, and says wher
   assert.equal((await named({"X-Request-ID": "run-17.b"})).id, "run-17.b");
   const trace = "4bf92f3577b34da6a3ce929d0e0e4736";
   assert.equal((await named({traceparent: `00-${trace}-00f067aa0ba902b7-01`})).id, trace);
+  assert.equal((await named({traceparent: `01-${trace}-00f067aa0ba902b7-01-more`})).id, trace);
+  for (const bad of [
+    `ff-${trace}-00f067aa0ba902b7-01`,
+    `0g-${trace}-00f067aa0ba902b7-01`,
+    `00-${trace}-00f067aa0ba902bg-01`,
+    `00-${trace}-0000000000000000-01`,
+    `00-${trace}-00f067aa0ba902b7-0x`,
+    `00-${trace}-00f067aa0ba902b7-01-more`,
+    `00-${trace}-00f067aa0ba902b7`,
+    `01-${trace}-00f067aa0ba902b7-01more`,
+    `00-${"0".repeat(32)}-00f067aa0ba902b7-01`,
+  ])
+    assert.match((await named({traceparent: bad})).id, /^[0-9a-f]{16}$/, bad);
   for (const bad of ["", "a b", '"', "x".repeat(65)])
     assert.match((await named({"X-Request-ID": bad})).id, /^[0-9a-f]{16}$/);
   const {answer} = await named({});

@@ -108,6 +108,11 @@ test("a measurement is sent as CSV with its fields in the query, and may be larg
   assert.match(quiet.detail, /nothing in the record looks like impacts/);
   const noNumber = await problem(await send(csv(200).replace("0.000488", "oops")), 422);
   assert.equal(noNumber.detail, 'line 3, column time_s: "oops" is no number');
+  headers["Content-Type"] = "Text/CSV ; header=present";
+  assert.deepEqual(
+    (await problem(await send(csv(200).replace("0.000488", "oops")), 422)).detail,
+    noNumber.detail,
+  );
   const unknown = await problem(await send(csv(200), "preset=fig15&q=1"), 422);
   assert.equal(unknown.errors[0].pointer, "/q");
   const small = await startService(["--record-limit", "10000", "--payload-limit", "10000"]);
