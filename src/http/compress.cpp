@@ -8,8 +8,7 @@
 
 namespace vines::http {
 
-bool compress(
-    Response& response, const Request& request, const std::function<bool()>& gives_up) {
+bool compress(Response& response, const Request& request, const std::function<bool()>& gives_up) {
     if (response.body.size() < compress_from || !accepts_gzip(request.accept_encoding)) return true;
     // It is told of the body as it was.
     if (response.tag.empty() && request.method != "POST") response.tag = entity_tag(response.body);

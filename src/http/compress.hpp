@@ -13,7 +13,6 @@ inline constexpr std::size_t compress_from = 65536;
 
 /// Where that is worth it and the client takes it. False: it was given up, which is asked before
 /// each MB.
-bool compress(
-    Response& response, const Request& request, const std::function<bool()>& gives_up);
+bool compress(Response& response, const Request& request, const std::function<bool()>& gives_up);
 
 }  // namespace vines::http
