@@ -64,6 +64,14 @@ bool is_foreign(const Head& head) {
     return !origin.empty() && authority_of(origin) != authority_of(head.host);
 }
 
+/// Whether it is for a tab of its own that somebody is led to a place here. In a frame of another
+/// page only what says itself who may show it belongs.
+bool follows_link(const Head& head, const Route* route) {
+    if (head.method == "POST" || head.header("sec-fetch-mode") != "navigate") return false;
+    const std::string_view destination = head.header("sec-fetch-dest");
+    return destination.empty() || destination == "document" || (route && route->knows_its_frames);
+}
+
 /// Whether a request comes from a page that may use the service.
 bool shares(const Head& head, const AccessOptions& options) {
     const std::string origin = lower_case(head.header("origin"));
@@ -100,8 +108,7 @@ std::optional<Response> access_refusal(
             421, fmt::format(
                      "this server is not {}: if that is its name, start it with --allow-host {}",
                      host, host));
-    const bool follows_link = head.method != "POST" && head.header("sec-fetch-mode") == "navigate";
-    if (is_foreign(head) && !follows_link && !shares(head, options))
+    if (is_foreign(head) && !follows_link(head, route) && !shares(head, options))
         return problem_response(403, "a page of another origin may not use this server");
     if (route && !route->open && options.keys.are_asked_for() &&
         !options.keys.open(head.header("authorization")))

@@ -26,8 +26,8 @@ struct AccessOptions {
 
 /// Problem 421 for a request that is meant for another host, as one of a page that has had its own
 /// name resolved to this server's address; 403 for what a page of another origin asks for, unless
-/// it may or somebody follows a link there; 401 where a route is not for everyone and no key is
-/// shown. route: null where there is none.
+/// it may or somebody follows a link there, not in a frame; 401 where a route is not for everyone
+/// and no key is shown. route: null where there is none.
 std::optional<Response> access_refusal(
     const Head& head, const Route* route, const AccessOptions& options);
 

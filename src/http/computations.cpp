@@ -12,8 +12,10 @@
 #include "api/version.hpp"
 #include "http/accept.hpp"
 #include "http/answer_stream.hpp"
+#include "http/compress.hpp"
 #include "http/encoding.hpp"
 #include "http/end_of_work.hpp"
+#include "http/header_text.hpp"
 #include "http/memory.hpp"
 #include "http/sweep_stream.hpp"
 #include "http/turn.hpp"
@@ -60,8 +62,8 @@ api::Asked asked_run(const Request& r, const api::FieldTable& table) {
 }
 
 api::Asked asked_identification(const Request& r) {
-    const bool is_columns =
-        r.content_type.starts_with("text/csv") || r.content_type.starts_with("text/plain");
+    const std::string type = media_type(r.content_type);
+    const bool is_columns = type == "text/csv" || type == "text/plain";
     return api::read_asked(
         r.path, is_columns ? api::from_query(api::identify_fields(), r.query) : body_of(r),
         {r.body, is_columns});
@@ -128,13 +130,17 @@ Response answer(
     }
     std::string bytes = encoded(
         std::move(answer), *format, options.answer_limit, provenance.size() + most_hash, r.left);
-    watch.lap("encode");
     if (stop.asked()) tag = {};  // another time it may get further
-    return {
+    Response response{
         .content_type = api::name_of(*format).media_type,
         .body = std::move(bytes),
         .tag = std::move(tag),
         .headers = {varies}};
+    const auto waited = turn.waited();
+    if (!compress(response, r, [&] { return !turn.goes_on() || r.left(); })) end_unheard();
+    watch.lap("encode");
+    watch.move("encode", "queue", turn.waited() - waited);
+    return response;
 }
 
 }  // namespace

@@ -160,7 +160,6 @@ Exchange Connection::take() {
     bytes_.resize(length);
     exchange.body = std::exchange(bytes_, std::move(rest));
     reader_ = HeadReader();
-    asked_ = false;
     served_ = true;
     return exchange;
 }
@@ -191,15 +190,11 @@ bool Connection::has_ended() {
     return false;
 }
 
-bool Connection::has_left(bool may_ask) {
+Connection::Presence Connection::presence() const {
     pollfd state{socket_, POLLIN | POLLRDHUP, 0};
-    if (::poll(&state, 1, 0) <= 0) return false;
-    if (state.revents & (POLLERR | POLLHUP | POLLNVAL)) return true;
-    if ((state.revents & POLLRDHUP) && may_ask && !asked_) {
-        asked_ = true;
-        send_continue(socket_);
-    }
-    return false;
+    if (::poll(&state, 1, 0) <= 0) return Presence::there;
+    if (state.revents & (POLLERR | POLLHUP | POLLNVAL)) return Presence::left;
+    return state.revents & POLLRDHUP ? Presence::in_doubt : Presence::there;
 }
 
 }  // namespace vines::http

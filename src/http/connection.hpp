@@ -82,10 +82,12 @@ public:
     /// Reads and drops; true once the client is done, too, or has sent too much.
     bool has_ended();
 
-    /// Whether the client has left: it has reset the connection. One that only has closed its own
-    /// side still hears; where may_ask, nothing of the answer having been sent, it is sent an
-    /// interim answer (100), which one that is gone answers by a reset.
-    bool has_left(bool may_ask);
+    enum class Presence {
+        there,
+        in_doubt,  ///< the client has closed its own side: it may still read, or have left
+        left       ///< it has reset the connection
+    };
+    Presence presence() const;
 
     int socket() const { return socket_; }
     const std::string& client() const { return client_; }
@@ -113,7 +115,6 @@ private:
     std::size_t expected_ = 0;  // bytes of it, before the deadline
     std::optional<Response> refused_;
     bool half_closed_ = false;  // the client sends no more
-    bool asked_ = false;        // whether it is there
     bool ending_ = false, broken_ = false, served_ = false;
     std::size_t dropped_ = 0;
     Clock::time_point since_, deadline_;

@@ -244,11 +244,13 @@ void Connections::expire() {
 }
 
 void Connections::give_up(Connection& connection) {
-    if (connection.is_idle() || connection.is_ending() || stopping_) {
+    if (connection.is_idle() || connection.is_ending()) {
         release(connection.socket());
         return;
     }
-    connection.refuse(problem_response(408, "the request did not come to its end in time"));
+    connection.refuse(
+        stopping_ ? stopping_refusal()
+                  : problem_response(408, "the request did not come to its end in time"));
     answer_here(connection, connection.take());
 }
 

@@ -88,7 +88,8 @@ private:
     std::atomic<bool> stopping_ = false;
     bool listens_ = false, closing_ = false;
     Clock::time_point looked_ = Clock::now();
-    Clock::time_point idle_until_ = Clock::time_point::max();  // they are closed then
+    Clock::time_point idle_until_ =
+        Clock::time_point::max();  // who has sent no whole request ends then
     std::mutex mutex_;
     std::vector<Owned> returned_;  // by workers
     Workers<Owned> workers_;       // goes first

@@ -1,7 +1,9 @@
 // How the bytes of a body travel: compressed, or not at all where the client has them already.
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -10,6 +12,8 @@ namespace vines::http {
 /// gzip, level 1: a third of the size in a tenth of level 6's time, for columns of numbers. Throws
 /// std::runtime_error where zlib fails.
 std::string gzip(const std::string& text);
+/// Nothing once it is given up, which is asked before each MB.
+std::optional<std::string> gzip(std::string_view text, const std::function<bool()>& gives_up);
 
 /// The same of a text that comes in pieces.
 class Gzip {

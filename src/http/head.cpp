@@ -19,10 +19,14 @@ using api::Problem;
     throw Problem(400, "the request could not be read: " + what);
 }
 
+bool is_letter_or_digit(char c) {
+    return (c >= '0' && c <= '9') || (lower_case(c) >= 'a' && lower_case(c) <= 'z');
+}
+
 /// RFC 9110, 5.6.2.
 bool is_token(std::string_view text) {
     const auto allowed = [](char c) {
-        return (c >= '0' && c <= '9') || (lower_case(c) >= 'a' && lower_case(c) <= 'z') ||
+        return is_letter_or_digit(c) ||
                std::string_view("!#$%&'*+-.^_`|~").find(c) != std::string_view::npos;
     };
     return !text.empty() && std::all_of(text.begin(), text.end(), allowed);
@@ -30,6 +34,22 @@ bool is_token(std::string_view text) {
 
 bool is_printable(std::string_view text) {
     return std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c < 0x7f; });
+}
+
+/// HOST or HOST:PORT (RFC 3986, 3.2.2), or nothing at all.
+bool is_authority(std::string_view text) {
+    const bool in_brackets = text.starts_with('[');
+    if (in_brackets && text.find(']') == std::string_view::npos) return false;
+    const std::size_t end =
+        std::min(text.size(), in_brackets ? text.find(']') + 1 : text.find(':'));
+    const std::string_view port = text.substr(end);
+    const std::string_view host = in_brackets ? text.substr(1, end - 2) : text.substr(0, end);
+    const auto allowed = [in_brackets](char c) {
+        return is_letter_or_digit(c) || (in_brackets && c == ':') ||
+               std::string_view("-._~!$&'()*+,;=%").find(c) != std::string_view::npos;
+    };
+    return std::all_of(host.begin(), host.end(), allowed) && (port.empty() || port[0] == ':') &&
+           port.find_first_not_of("0123456789", 1) == std::string_view::npos;
 }
 
 /// Of a header's value, which may hold blanks and bytes of any other character set.
@@ -64,14 +84,20 @@ bool is_list(std::string_view name) {
            name == "if-none-match";
 }
 
-/// Whether a word stands in the comma-separated lists of a header, in lower case.
-bool lists(const Head& head, std::string_view header, std::string_view word) {
+/// The elements of all comma-separated lists of a header, in lower case.
+std::vector<std::string> listed(const Head& head, std::string_view header) {
+    std::vector<std::string> elements;
     for (const auto& [name, value] : head.headers) {
         if (name != header) continue;
         for (std::string_view rest = value; !rest.empty();)
-            if (lower_case(next_part(rest, ',')) == word) return true;
+            elements.push_back(lower_case(next_part(rest, ',')));
     }
-    return false;
+    return elements;
+}
+
+bool lists(const Head& head, std::string_view header, std::string_view word) {
+    const std::vector<std::string> elements = listed(head, header);
+    return std::find(elements.begin(), elements.end(), word) != elements.end();
 }
 
 }  // namespace
@@ -181,6 +207,8 @@ void HeadReader::finish() {
     const bool is_old = version_ == "HTTP/1.0";
     if (times("host") > 1 || (times("host") == 0 && !is_old))
         malformed("it must have one header Host");
+    if (!is_authority(head_.host) || !is_authority(head_.header("host")))
+        malformed("it must be meant for a HOST or a HOST:PORT");
     if (head_.host.empty()) head_.host = head_.header("host");
     if (times("content-length") > 1)
         throw Problem(400, "the Content-Length must be one whole number");
@@ -195,7 +223,11 @@ void HeadReader::finish() {
     const bool ends = lists(head_, "connection", "close");
     head_.keep_alive = !ends && (!is_old || lists(head_, "connection", "keep-alive"));
     if (head_.has("expect") && !is_old) {
-        if (lower_case(head_.header("expect")) != "100-continue")
+        const std::vector<std::string> expected = listed(head_, "expect");
+        const auto others = std::count_if(expected.begin(), expected.end(), [](const auto& one) {
+            return one != "100-continue";
+        });
+        if (others > 0 || expected.empty())
             throw Problem(417, "this service can meet no expectation but 100-continue");
         head_.expects_continue = true;
     }

@@ -32,6 +32,11 @@ inline std::string lower_case(std::string_view text) {
     return lower;
 }
 
+/// What a header Content-Type names, in lower case and without its parameters.
+inline std::string media_type(std::string_view content_type) {
+    return lower_case(next_part(content_type, ';'));
+}
+
 /// An element of a header that lists what a client takes: "gzip;q=0.5". RFC 9110, 12.4.2: a weight
 /// of 0 refuses, and so does one that is no number.
 struct Preference {

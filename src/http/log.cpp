@@ -141,6 +141,17 @@ void log_served(const Served& served) {
     });
 }
 
+void log_cut_off(const Served& unanswered) {
+    log("warning", [&](Line& line) {
+        line.add("method", api::shortened(unanswered.method));
+        line.add("path", api::shortened(unanswered.path));
+        line.add("ms", unanswered.ms);
+        line.add("client", unanswered.client);
+        line.add("request_id", unanswered.id);
+        line.add("what", "the end of the service cut it off");
+    });
+}
+
 void log_failure(
     const std::string& path, const std::string& request_id, const std::exception_ptr& thrown) {
     std::string what = "no std::exception";
@@ -158,6 +169,10 @@ void log_failure(
 
 void log_event(const std::string& what) {
     log("info", [&](Line& line) { line.add("what", what); });
+}
+
+void log_warning(const std::string& what) {
+    log("warning", [&](Line& line) { line.add("what", what); });
 }
 
 }  // namespace vines::http

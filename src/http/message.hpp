@@ -23,9 +23,10 @@ struct Request {
     api::Query query;
     std::string content_type;
     std::string body;
-    std::string accept = {};      ///< the header Accept
-    std::string known_tags = {};  ///< the header If-None-Match
-    std::string id = {};          ///< by which the log names it
+    std::string accept = {};           ///< the header Accept
+    std::string accept_encoding = {};  ///< the header Accept-Encoding
+    std::string known_tags = {};       ///< the header If-None-Match
+    std::string id = {};               ///< by which the log names it
     /// Whether the client has left and nobody waits for the answer.
     std::function<bool()> left = [] { return false; };
 };
@@ -43,6 +44,7 @@ struct Response {
     std::string content_type = "application/json";
     std::string body = {};
     std::string_view gzipped = {};  ///< the body compressed, where that is there already
+    std::size_t gzipped_from = 0;   ///< bytes of the body before it was compressed; 0: it is not
     bool immutable = false;         ///< whether what its path names never changes
     std::string tag = {};           ///< the header ETag; without one it is that of the body
     std::vector<std::pair<std::string, std::string>> headers = {};

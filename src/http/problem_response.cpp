@@ -18,4 +18,8 @@ Response memory_refusal() {
         api::Problem::unavailable("memory", "the server holds as much as it may for its clients"));
 }
 
+Response stopping_refusal() {
+    return problem_response(api::Problem::unavailable("stopping", "the server is stopping"));
+}
+
 }  // namespace vines::http

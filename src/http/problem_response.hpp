@@ -12,5 +12,7 @@ Response problem_response(int status, const std::string& detail);
 
 /// 503: nothing large is taken on for now.
 Response memory_refusal();
+/// 503: another server, or this one once it is started again, answers.
+Response stopping_refusal();
 
 }  // namespace vines::http

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "http/header_text.hpp"
 #include "http/problem_response.hpp"
 
 namespace vines::http {
@@ -13,7 +14,7 @@ namespace {
 /// Its encoding, its type or its length.
 std::optional<Response> body_refusal(const Head& head, std::size_t limit) {
     if (head.has("content-encoding")) return problem_response(415, "send the body uncompressed");
-    if (head.header("content-type").rfind("multipart/", 0) == 0)
+    if (media_type(head.header("content-type")).starts_with("multipart/"))
         return problem_response(
             415, "send the JSON object as the body itself, not as multipart/form-data");
     if (head.method == "POST" && !head.has("content-length"))

@@ -26,14 +26,30 @@ bool is_word(std::string_view text) {
            std::all_of(text.begin(), text.end(), allowed);
 }
 
-/// Of VERSION-TRACE-PARENT-FLAGS, in 2, 32, 16 and 2 digits; empty if it is none.
+bool is_zero(std::string_view digits) {
+    return digits.find_first_not_of('0') == std::string_view::npos;
+}
+
+/// So many hexadecimal digits from the front of a text, with the dash behind them; nothing where
+/// they are not there.
+std::string_view next_digits(std::string_view& text, std::size_t number) {
+    const std::string_view digits = text.substr(0, number);
+    const bool ends = text.size() <= number || text[number] == '-';
+    text.remove_prefix(std::min(text.size(), number + 1));
+    return digits.size() == number && ends && is_hexadecimal(digits) ? digits : std::string_view();
+}
+
+/// Of VERSION-TRACE-PARENT-FLAGS, in 2, 32, 16 and 2 digits, and more in versions that are to come;
+/// empty if it is none.
 std::string_view trace_of(std::string_view traceparent) {
-    constexpr std::size_t size = 55, begin = 3, length = 32;
-    if (traceparent.size() < size || traceparent[2] != '-' || traceparent[begin + length] != '-')
-        return {};
-    const std::string_view trace = traceparent.substr(begin, length);
-    const bool is_zero = trace.find_first_not_of('0') == std::string_view::npos;
-    return is_hexadecimal(trace) && !is_zero ? trace : std::string_view();
+    constexpr std::size_t whole = 55;
+    std::string_view rest = traceparent;
+    const std::string_view version = next_digits(rest, 2), trace = next_digits(rest, 32),
+                           parent = next_digits(rest, 16), flags = next_digits(rest, 2);
+    const bool is_known =
+        version == "00" ? traceparent.size() == whole : !version.empty() && version != "ff";
+    return is_known && !is_zero(trace) && !is_zero(parent) && !flags.empty() ? trace
+                                                                             : std::string_view();
 }
 
 }  // namespace

@@ -18,7 +18,8 @@ struct Route {
     std::size_t body_limit = 0;  ///< bytes, where it is larger than the server's own
     /// Small and without any computing: answered however busy the server is.
     bool light = false;
-    bool open = false;  ///< to everyone, also where the service asks for a key
+    bool knows_its_frames = false;  ///< says to browsers on whose pages it may be shown in a frame
+    bool open = false;              ///< to everyone, also where the service asks for a key
 };
 
 /// The route that takes this method at this path; null where none does.

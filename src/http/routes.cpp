@@ -98,8 +98,7 @@ std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate, M
         routes.push_back(
             health(path, [](const Request&) { return json_response({{"status", "ok"}}); }));
     routes.push_back(health("/readyz", [&gate](const Request&) {
-        if (gate.closed_to_sweeps())
-            throw Problem::unavailable("stopping", "the server is stopping");
+        if (gate.closed_to_sweeps()) return stopping_refusal();
         return json_response({{"status", "ok"}});
     }));
     routes.push_back(health("/version", [](const Request&) {
@@ -117,6 +116,7 @@ std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate, M
     for (Route& file : page_routes(options.page)) {
         file.name = "page";
         file.open = true;
+        file.knows_its_frames = true;
         routes.push_back(std::move(file));
     }
     return routes;

@@ -4,14 +4,12 @@
 
 #include <memory>
 
+#include "http/compress.hpp"
 #include "http/encoding.hpp"
 
 namespace vines::http {
 
 namespace {
-
-// Below this the time to compress costs more than the bytes.
-constexpr std::size_t compress_from = 65536;
 
 void set_head(httplib::Response& out, const Response& response) {
     out.status = response.status;
@@ -82,7 +80,9 @@ void send(
     out.set_header("X-Content-Type-Options", "nosniff");
     if (response.stream) return send_stream(head, out, std::move(response));
     const bool known = response.status == 304;
-    const bool zips = response.body.size() >= compress_from || !response.gzipped.empty();
+    const bool is_zipped = response.gzipped_from > 0;
+    const bool zips =
+        is_zipped || !response.gzipped.empty() || response.body.size() >= compress_from;
     if (zips || known) out.set_header("Vary", "Accept-Encoding");
     const bool reads = head.method == "GET" || head.method == "HEAD";
     // Else the library would promise parts of answers.
@@ -100,8 +100,9 @@ void send(
         }
     }
     if (zips && accepts_gzip(head.header("accept-encoding"))) {
-        response.body =
-            response.gzipped.empty() ? gzip(response.body) : std::string(response.gzipped);
+        if (!is_zipped)
+            response.body =
+                response.gzipped.empty() ? gzip(response.body) : std::string(response.gzipped);
         out.set_header("Content-Encoding", "gzip");
     }
     // Through a content provider, which keeps the library from compressing by itself: brotli at its

@@ -156,14 +156,29 @@ void add_page_flags(CLI::App& c, PageOptions& o) {
 constexpr auto work_time = std::chrono::seconds(10);
 constexpr auto last_time = std::chrono::seconds(5);
 
+// The exit code where requests were cut off.
+constexpr int not_all = 3;
+
 /// Whatever the other threads do: none of them has anything that is not yet written.
 [[noreturn]] void end(int code) { std::_Exit(code); }
+
+/// Without the answers that are still to come, which the log tells; returns how many they are.
+std::size_t give_up_the_rest(Server& server) {
+    const std::size_t number = server.log_cut_off();
+    if (number == 0) log_event("stopped");
+    else log_warning(fmt::format("stopped; requests that were cut off: {}", number));
+    return number;
+}
 
 /// Stops the service once it is asked to: sweeps end at once, other requests are taken until the
 /// drain is over, and those in work are finished. Asked a second time it ends at once.
 [[noreturn]] void stop_when_asked(double drain, ComputeGate& gate, Server& server) {
     wait_for_end_signal();
-    std::thread([] { end(128 + wait_for_end_signal()); }).detach();
+    std::thread([&server] {
+        const int signal = wait_for_end_signal();
+        give_up_the_rest(server);
+        end(128 + signal);
+    }).detach();
     log_event("stopping");
     gate.close_to_sweeps();
     server.close_connections();
@@ -172,7 +187,7 @@ constexpr auto last_time = std::chrono::seconds(5);
     std::this_thread::sleep_for(work_time);
     gate.end_all();
     std::this_thread::sleep_for(last_time);
-    end(0);
+    end(give_up_the_rest(server) == 0 ? 0 : not_all);
 }
 
 #ifdef __GLIBC__
@@ -228,7 +243,7 @@ int serve(const ServeOptions& options) {
     try {
         port = server.bind();
     } catch (const std::runtime_error& e) {
-        tell(fmt::format("{}; use --port, or --port 0 for any free one", e.what()));
+        tell(e.what());
         end(2);
     }
     const std::string greeting = fmt::format(

@@ -4,10 +4,13 @@
 #include <httplib.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <list>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -51,6 +54,19 @@ private:
     }
 };
 
+/// With what may help. error: errno, 0 where the system does not say.
+std::string why_not_bound(const ServerOptions& options, int error) {
+    constexpr const char* other_port = "use --port, or --port 0 for any free one";
+    if (error == EADDRINUSE) return fmt::format("port {} is taken; {}", options.port, other_port);
+    if (error == EACCES)
+        return fmt::format("port {} is not for everyone; {}", options.port, other_port);
+    if (error == 0 || error == EADDRNOTAVAIL)
+        return fmt::format(
+            "cannot listen on {}; use --host with an address of this machine", options.host);
+    return fmt::format(
+        "cannot listen on {}:{}: {}", in_url(options.host), options.port, std::strerror(error));
+}
+
 }  // namespace
 
 struct Server::Implementation {
@@ -76,13 +92,36 @@ struct Server::Implementation {
     struct InWork {
         Connection* connection = nullptr;
         Exchange exchange;
-        const SocketStream* stream = nullptr;
+        SocketStream* stream = nullptr;
         std::string id = {};
         int status = 0;
         std::string lacking = {};
         Timing timing = {};
         bool keeps = false;  ///< the connection, for another request
     };
+    /// Those of all threads. Of each, what is read of it by others stays as it is until it is out.
+    std::mutex mutex;
+    std::list<const InWork*> in_work;
+
+    /// Keeps one among them.
+    class Entry {
+    public:
+        Entry(Implementation& server, const InWork& work) : server_(server) {
+            const std::lock_guard lock(server_.mutex);
+            at_ = server_.in_work.insert(server_.in_work.end(), &work);
+        }
+        ~Entry() {
+            const std::lock_guard lock(server_.mutex);
+            server_.in_work.erase(at_);
+        }
+        Entry(const Entry&) = delete;
+        Entry& operator=(const Entry&) = delete;
+
+    private:
+        Implementation& server_;
+        std::list<const InWork*>::iterator at_;
+    };
+
     static InWork& current() {
         thread_local InWork work;
         return work;
@@ -93,11 +132,12 @@ struct Server::Implementation {
         InWork& work = current();
         work.keeps = work.exchange.head.keep_alive && !work.exchange.refused;
         Response response = response_to(work);
-        const std::size_t size = response.body.size() + response.held;
-        if (size > small_answer && connections->memory().is_full()) response = memory_refusal();
+        const std::size_t size = std::max(response.body.size(), response.gzipped_from);
+        if (size + response.held > small_answer && connections->memory().is_full())
+            response = memory_refusal();
         for (auto& header : sharing_headers(work.exchange.head, options.access))
             response.headers.push_back(std::move(header));
-        work.connection->hold(size);
+        work.connection->hold(response.body.size() + response.held);
         // Of a stream that comes in no chunks the end is that of its connection.
         if (response.stream && !work.exchange.head.takes_chunks) work.keeps = false;
         work.timing = response.timing;
@@ -107,11 +147,6 @@ struct Server::Implementation {
         // A client must hear that its connection ends, and the library says so to who asks for it.
         if (closing) work.keeps = false;
         if (!work.keeps) const_cast<httplib::Request&>(in).set_header("Connection", "close");
-    }
-
-    /// An interim answer before the answer, which HTTP/1.0 does not know.
-    static bool may_ask(const InWork& work) {
-        return work.exchange.head.takes_chunks && !work.stream->has_begun();
     }
 
     Response response_to(InWork& work) const {
@@ -126,16 +161,34 @@ struct Server::Implementation {
                  .content_type = std::string(head.header("content-type")),
                  .body = std::move(exchange.body),
                  .accept = std::string(head.header("accept")),
+                 .accept_encoding = std::string(head.header("accept-encoding")),
                  .known_tags = std::string(head.header("if-none-match")),
                  .id = work.id,
-                 .left = [&work] { return work.connection->has_left(may_ask(work)); }});
+                 .left = [&work] { return work.stream->has_left(); }});
         } catch (...) {
             log_failure(std::string(head.path()), work.id, std::current_exception());
             return problem_response(500, "the server failed at this request; its log says why");
         }
     }
 
+    /// What is known of it before its answer.
+    static Served served_so_far(const InWork& work) {
+        const Exchange& exchange = work.exchange;
+        const std::chrono::duration<double, std::milli> taken = Clock::now() - exchange.since;
+        return {
+            .id = work.id,
+            .client = work.connection->client(),
+            .method = exchange.head.method,
+            .path = std::string(exchange.head.path()),
+            .route = exchange.route ? exchange.route->name : "none",
+            .ms = taken.count()};
+    }
+
     /// False where the answer was broken off.
+    bool write_among_others(const InWork& work) {
+        const Entry entry(*this, work);
+        return write(*work.stream) && work.stream->finish();
+    }
     bool write(SocketStream& stream) {
         try {
             return http.answer(stream);
@@ -156,22 +209,15 @@ struct Server::Implementation {
         InWork& work = current();
         std::string id = request_id(exchange.head);
         work = {&connection, std::move(exchange), &stream, std::move(id)};
-        const bool sent = write(stream) && stream.finish();
+        const bool sent = write_among_others(work);
         const bool keeps = sent && work.keeps;
         if (!sent) connection.break_off();
-        const std::chrono::duration<double, std::milli> taken = Clock::now() - work.exchange.since;
-        const Served served{
-            .id = work.id,
-            .client = connection.client(),
-            .method = work.exchange.head.method,
-            .path = std::string(work.exchange.head.path()),
-            .route = work.exchange.route ? work.exchange.route->name : "none",
-            .lacking = work.lacking,
-            .status = work.status,
-            .ms = taken.count(),
-            .timing = work.timing,
-            .bytes = stream.written(),
-            .left = !sent};
+        Served served = served_so_far(work);
+        served.lacking = work.lacking;
+        served.status = work.status;
+        served.timing = work.timing;
+        served.bytes = stream.written();
+        served.left = !sent;
         log_served(served);
         metrics.count_served(served);
         work = {};
@@ -211,6 +257,10 @@ Server::Server(const ServerOptions& options, std::vector<Route> routes, Metrics&
         implementation_->respond(in, out);
         return Handled::Handled;
     });
+    // It would say that the body has no bytes, which is not that of the answer which is known.
+    http.set_post_routing_handler([](const auto&, auto& out) {
+        if (out.status == 304) out.headers.erase("Content-Length");
+    });
     // Not the library's SO_REUSEPORT: with that a second server on the same port starts without
     // a word and takes half of the requests.
     http.set_socket_options([](auto socket) {
@@ -228,12 +278,7 @@ int Server::bind() {
     int port = options.port;
     const bool bound = port == 0 ? (port = http.bind_to_any_port(options.host)) > 0
                                  : http.bind_to_port(options.host, port);
-    if (!bound && errno == EADDRINUSE)
-        throw std::runtime_error(fmt::format("port {} is taken", options.port));
-    if (!bound)
-        throw std::runtime_error(fmt::format(
-            "cannot listen on {}:{}{}{}", in_url(options.host), options.port, errno ? ": " : "",
-            errno ? std::strerror(errno) : ""));
+    if (!bound) throw std::runtime_error(why_not_bound(options, errno));
     http.widen_backlog();
     implementation_->connections.emplace(
         http.listening(),
@@ -254,6 +299,14 @@ void Server::close_connections() { implementation_->closing = true; }
 void Server::stop() {
     close_connections();
     implementation_->connections->stop();
+}
+
+std::size_t Server::log_cut_off() {
+    const std::size_t number = implementation_->connections->load().in_flight;
+    const std::lock_guard lock(implementation_->mutex);
+    for (const auto* work : implementation_->in_work)
+        http::log_cut_off(Implementation::served_so_far(*work));
+    return number;
 }
 
 }  // namespace vines::http

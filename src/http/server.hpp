@@ -35,6 +35,9 @@ public:
     void close_connections();
     /// Takes nothing new, and makes run() return once all is answered. From any thread, once.
     void stop();
+    /// Says in the log which requests are not answered yet, for who ends the process without that;
+    /// returns how many. From any thread.
+    std::size_t log_cut_off();
 
 private:
     struct Implementation;

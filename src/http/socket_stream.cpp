@@ -20,6 +20,9 @@ constexpr double slowest_reader = 8192, slowest_of_many = 65536;  // bytes per s
 // Then the patience is shorter, too. That is looked for so often.
 constexpr std::chrono::milliseconds hurried_time(2000), look(500);
 
+// Of every answer, whatever it will be.
+constexpr std::string_view begin_of_answer = "HTTP/1.1 ";
+
 }  // namespace
 
 ssize_t SocketStream::read(char* data, std::size_t size) {
@@ -33,6 +36,7 @@ ssize_t SocketStream::write(const char* data, std::size_t size) {
     if (!began_) {
         began_ = true;
         kept_.assign(data, size);
+        kept_.erase(0, written_);  // has been sent to ask
         return static_cast<ssize_t>(size);
     }
     const bool sent = send(kept_, {data, size});
@@ -44,6 +48,23 @@ bool SocketStream::finish() {
     const bool sent = send(kept_, {});
     kept_.clear();
     return sent;
+}
+
+bool SocketStream::has_left() {
+    const Connection::Presence presence = connection_.presence();
+    if (presence == Connection::Presence::in_doubt) ask();
+    return presence == Connection::Presence::left;
+}
+
+/// After twice the time each time: of what is computed for a client that leaves late a half is for
+/// nothing at most, and the bytes that there are last for minutes.
+void SocketStream::ask() {
+    const auto now = std::chrono::steady_clock::now();
+    if (began_ || written_ == begin_of_answer.size() || now < asks_at_) return;
+    const char* const byte = begin_of_answer.data() + written_;
+    if (::send(connection_.socket(), byte, 1, MSG_DONTWAIT | MSG_NOSIGNAL) == 1) ++written_;
+    asks_at_ = now + until_next_;
+    until_next_ *= 2;
 }
 
 bool SocketStream::send(std::string_view first, std::string_view second) {

@@ -194,12 +194,12 @@ Response stream_sweep(
     // whether or not it was ever sent.
     const std::shared_ptr<ComputeGate> room = gate.enter_sweep();
     if (!room)
-        return problem_response(
-            gate.closed_to_sweeps()
-                ? api::Problem::unavailable("stopping", "the server is stopping")
-                : api::Problem::unavailable(
-                      "sweeps",
-                      "as many sweeps as the server takes are running already; try again later"));
+        return gate.closed_to_sweeps()
+                   ? stopping_refusal()
+                   : problem_response(api::Problem::unavailable(
+                         "sweeps",
+                         "as many sweeps as the server takes are running already; try again "
+                         "later"));
     return {
         .content_type = "application/x-ndjson",
         .headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}},

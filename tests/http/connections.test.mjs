@@ -115,6 +115,19 @@ test("a head is taken only in the form that all readers agree on", async () => {
     [get("/", "X: a\r\n".repeat(200)), 431],
     [get("/", "Range: items=1\r\n"), 416],
     [get("/", "Expect: a miracle\r\n"), 417],
+    [get("/", "Expect: 100-continue\r\nExpect: a miracle\r\n"), 417],
+    [get("/", "Expect: 100-continue, a miracle\r\n"), 417],
+    ...[
+      "local host",
+      "localhost/x",
+      "localhost:evil",
+      "a@localhost",
+      "[::1",
+      "[::1]x",
+      "a:1:2",
+    ].map((host) => [get("/").replace("localhost", host), 400]),
+    ["GET http://a@localhost/ HTTP/1.1\r\nHost: localhost\r\n\r\n", 400],
+    [post(small, "Content-Type: Multipart/Form-Data\r\n"), 415],
     ["BREW / HTTP/1.1\r\nHost: localhost\r\n\r\n", 405],
     [`${get("/", "Content-Length: 3\r\n")}abc`, 400],
     [post(small, "Content-Length: 3\r\n"), 400],
@@ -275,6 +288,8 @@ test("requests that are meant for another host, or come from a page of another s
     "vines",
     "[::1]:9",
     "localhost.",
+    "",
+    "localhost:",
   ])
     assert.equal(await status(to(host)), 200, host);
   for (const host of [
@@ -297,7 +312,20 @@ test("requests that are meant for another host, or come from a page of another s
     assert.equal(await status(from(headers)), 403, headers);
   const cross = "Sec-Fetch-Site: cross-site\r\n";
   assert.equal(await status(to("localhost", `${cross}Sec-Fetch-Mode: no-cors\r\n`)), 403);
-  assert.equal(await status(to("localhost", `${cross}Sec-Fetch-Mode: navigate\r\n`)), 200);
+  const link = `${cross}Sec-Fetch-Mode: navigate\r\n`;
+  assert.equal(await status(to("localhost", link)), 200);
+  assert.equal(await status(to("localhost", `${link}Sec-Fetch-Dest: document\r\n`)), 200);
+  const page = (more) => to("localhost", more).replace("/version", "/");
+  for (const frame of ["iframe", "frame", "embed", "object"]) {
+    const framed = `${link}Sec-Fetch-Dest: ${frame}\r\n`;
+    assert.equal(await status(to("localhost", framed)), 403, frame);
+    const shown = await exchange(service.url, page(framed));
+    assert.match(
+      shown,
+      /^HTTP\/1.1 200(.|\s)*frame-ancestors 'none'\r$/m,
+      "which the page refuses",
+    );
+  }
   const open = await startService(["--host", "0.0.0.0", "--allow-host", "vines.example.org"]);
   t.after(() => open.stop());
   const local = open.url.replace("0.0.0.0", "127.0.0.1");
@@ -470,6 +498,55 @@ test("a run ends when its client leaves, whether it runs or waits", async (t) =>
   assert.ok(performance.now() - began < 1000 * slower, "they would have taken some ten seconds");
 });
 
+/** Of the metric, at the moment. */
+const running = async (url) =>
+  Number(/^vines_compute_running (\d+)/m.exec(await (await fetch(`${url}/metrics`)).text())[1]);
+
+// Half a minute, which its deadline ends.
+const endless = JSON.stringify({
+  ...JSON.parse(longest),
+  windows: Array.from({length: 900}, (_, i) => [i, 1e7]),
+});
+
+test("a run ends when its client leaves, also one of HTTP/1.0, or one that had closed its own side before", async (t) => {
+  const one = await startService(["--compute-threads", "1"]);
+  t.after(() => one.stop());
+  for (const version of ["1.0", "1.1"]) {
+    const request = post(endless).replace("HTTP/1.1", `HTTP/${version}`);
+    const {socket} = await connect(one.url);
+    socket.write(request);
+    await until(async () => (await running(one.url)) === 1);
+    socket.destroy();
+    await until(async () => (await running(one.url)) === 0, 3000 * slower);
+    const half = await connect(one.url, {allowHalfOpen: true});
+    half.socket.end(request);
+    await until(() => half.text().length > 0);
+    half.socket.destroy();
+    await until(async () => (await running(one.url)) === 0, 5000 * slower);
+  }
+});
+
+test("a client that has closed its own side gets the same bytes, also where it was asked whether it is there", async () => {
+  const run = '{"tau_end": 3000000, "max_impacts": 2000000, "include": ["regime"]}';
+  const request = post(run, "X-Request-ID: half\r\n");
+  for (const version of ["1.0", "1.1"]) {
+    const bytes = request.replace("HTTP/1.1", `HTTP/${version}`);
+    const {socket, text, ended} = await connect(service.url, {allowHalfOpen: true});
+    socket.end(bytes);
+    await until(() => text().length > 0, 5000 * slower);
+    assert.equal("HTTP/1.1 ".slice(0, text().length), text(), "it was asked");
+    await ended;
+    const whole = await exchange(service.url, bytes.replace("\r\n", "\r\nConnection: close\r\n"));
+    const head = (answer) =>
+      answer
+        .slice(0, answer.indexOf("\r\n\r\n"))
+        .replace(/^(Server-Timing|Connection|Keep-Alive): .*\r\n/gm, "");
+    const body = (answer) => answer.slice(answer.indexOf("\r\n\r\n"));
+    assert.equal(head(text()), head(whole));
+    assert.equal(body(text()), body(whole));
+  }
+});
+
 test("under three times the load that it takes each answer is 200 or 503 with Retry-After, and health is quick", async (t) => {
   const one = await startService(["--compute-threads", "1", "--compute-queue", "8"]);
   t.after(() => one.stop());
@@ -557,6 +634,81 @@ test("a stop under load loses no request; its answers are the last ones of their
   await Promise.all(clients);
   assert.ok(served > 50);
   assert.deepEqual(lost, []);
+});
+
+test("what comes with a stop before its end is told so, and not cut off while it is sent", async () => {
+  const one = await startService();
+  const halves = await Promise.all(
+    [post(small).slice(0, -3), "GET /version HTTP/1.1\r\nHost: x\r\nX-"].map(async (bytes) => {
+      const connection = await connect(one.url);
+      connection.socket.write(bytes);
+      return connection;
+    }),
+  );
+  const idle = await connect(one.url);
+  await health(one.url); // they have been read before it was answered
+  const ended = one.stop();
+  for (const {socket, text} of halves) {
+    await until(() => statuses(text()).length === 1);
+    socket.write("more");
+    assert.deepEqual(statuses(text()), [503]);
+    assert.match(text(), /^Retry-After: 1\r$/m);
+    assert.match(text(), /^Connection: close\r$/m);
+    assert.equal(JSON.parse(text().slice(text().indexOf("\r\n\r\n"))).lacking, "stopping");
+    socket.end();
+  }
+  assert.equal(await idle.ended, "");
+  assert.equal(await ended, 0);
+});
+
+/** A service with its log, and a client that has asked for a large answer and does not read. */
+async function heldByItsClient() {
+  const child = spawn(program, ["serve", "--port", "0"]);
+  let log = "";
+  child.stderr.on("data", (data) => {
+    log += data;
+  });
+  const ended = new Promise((resolve) => child.on("close", resolve));
+  const url = await new Promise((resolve) =>
+    child.stdout.once("data", (data) => resolve(/http:\S+/.exec(data)[0])),
+  );
+  const {socket, text} = await connect(url);
+  const large =
+    '{"damping": "closed_form", "tau_end": 8000, "max_points": 300000, "samples_per_cycle": 200}';
+  socket.write(post(large, "X-Request-ID: unread\r\n"));
+  await until(() => text().length > 0, 10000 * slower);
+  socket.pause();
+  return {child, socket, ended, lines: () => log.trim().split("\n").map(JSON.parse)};
+}
+
+/** Of both, what the log says at the end. */
+function assertCutOff(lines) {
+  const [request, last] = lines.slice(-2);
+  assert.deepEqual(
+    [request.level, request.method, request.path, request.request_id],
+    ["warning", "POST", "/v1/simulate", "unread"],
+  );
+  assert.match(request.what, /cut it off/);
+  assert.equal(last.level, "warning");
+  assert.equal(last.what, "stopped; requests that were cut off: 1");
+}
+
+test("a stop that a second signal forces says which requests it has cut off", async (t) => {
+  const {child, socket, ended, lines} = await heldByItsClient();
+  t.after(() => socket.destroy());
+  child.kill("SIGTERM");
+  await until(() => lines().some(({what}) => what === "stopping"));
+  child.kill("SIGTERM");
+  assert.equal(await ended, 128 + 15);
+  assertCutOff(lines());
+});
+
+test("so does one that its time forces, and ends with 3", {skip: !long}, async (t) => {
+  const {child, socket, ended, lines} = await heldByItsClient();
+  t.after(() => socket.destroy());
+  child.kill("SIGTERM");
+  assert.equal(await ended, 3);
+  assertCutOff(lines());
 });
 
 test("a second signal ends the service at once", async () => {
@@ -731,6 +883,7 @@ test("what a client has already is not computed again", async (t) => {
     headers: {"If-None-Match": manifold.headers.get("etag")},
   });
   assert.equal(known.status, 304);
+  assert.equal(known.headers.get("content-length"), null);
   assert.doesNotMatch(known.headers.get("server-timing"), /solve/);
 });
 
@@ -844,6 +997,19 @@ test("a request has a name, in its answer, its faults and the log, and says wher
   assert.equal((await named({"X-Request-ID": "run-17.b"})).id, "run-17.b");
   const trace = "4bf92f3577b34da6a3ce929d0e0e4736";
   assert.equal((await named({traceparent: `00-${trace}-00f067aa0ba902b7-01`})).id, trace);
+  assert.equal((await named({traceparent: `01-${trace}-00f067aa0ba902b7-01-more`})).id, trace);
+  for (const bad of [
+    `ff-${trace}-00f067aa0ba902b7-01`,
+    `0g-${trace}-00f067aa0ba902b7-01`,
+    `00-${trace}-00f067aa0ba902bg-01`,
+    `00-${trace}-0000000000000000-01`,
+    `00-${trace}-00f067aa0ba902b7-0x`,
+    `00-${trace}-00f067aa0ba902b7-01-more`,
+    `00-${trace}-00f067aa0ba902b7`,
+    `01-${trace}-00f067aa0ba902b7-01more`,
+    `00-${"0".repeat(32)}-00f067aa0ba902b7-01`,
+  ])
+    assert.match((await named({traceparent: bad})).id, /^[0-9a-f]{16}$/, bad);
   for (const bad of ["", "a b", '"', "x".repeat(65)])
     assert.match((await named({"X-Request-ID": bad})).id, /^[0-9a-f]{16}$/);
   const {answer} = await named({});

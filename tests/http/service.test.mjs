@@ -108,6 +108,11 @@ test("a measurement is sent as CSV with its fields in the query, and may be larg
   assert.match(quiet.detail, /nothing in the record looks like impacts/);
   const noNumber = await problem(await send(csv(200).replace("0.000488", "oops")), 422);
   assert.equal(noNumber.detail, 'line 3, column time_s: "oops" is no number');
+  headers["Content-Type"] = "Text/CSV ; header=present";
+  assert.deepEqual(
+    (await problem(await send(csv(200).replace("0.000488", "oops")), 422)).detail,
+    noNumber.detail,
+  );
   const unknown = await problem(await send(csv(200), "preset=fig15&q=1"), 422);
   assert.equal(unknown.errors[0].pointer, "/q");
   const small = await startService(["--record-limit", "10000", "--payload-limit", "10000"]);
@@ -522,6 +527,11 @@ test("a flag beats the environment, which beats the default; bad ones are refuse
   const [code, text] = await run(["serve", "--port", port]); // taken
   assert.equal(code, 2);
   assert.match(text, new RegExp(`^vines: port ${port} is taken; use --port, .*\n$`));
+  for (const nowhere of ["999.1.1.1", "192.0.2.7"])
+    assert.deepEqual(await run(["serve", "--port", "0", "--host", nowhere]), [
+      2,
+      `vines: cannot listen on ${nowhere}; use --host with an address of this machine\n`,
+    ]);
   const bad = [
     [["serve", "--port", "99999"], {}, /--port.*99999/],
     [["serve", "--deadline", "nan"], {}, /--deadline.*nan/],

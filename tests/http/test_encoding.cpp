@@ -20,6 +20,18 @@ TEST_CASE("a tag tells a body from others of its length, and from longer ones") 
     CHECK(entity_tag(body) == entity_tag(std::string(body)));
 }
 
+TEST_CASE("a long text is compressed in pieces, and no further once that is given up") {
+    std::string text;
+    for (int k = 0; text.size() < 3 << 20; ++k) text += std::to_string(k * 31 % 7919) + ",";
+    text += "and a little more";
+    int asked = 0;
+    const auto never = [&asked] { return ++asked < 0; };
+    CHECK(gzip(text, never) == gzip(text));
+    CHECK(asked == 4);
+    CHECK_FALSE(gzip(text, [&asked] { return ++asked == 7; }));
+    CHECK(asked == 7);
+}
+
 TEST_CASE("gzip is taken by whoever names it, with any weight but 0, or takes all") {
     for (const char* header :
          {"gzip", "GZIP", "x-gzip", "br, gzip", "gzip;q=0.5", "gzip ; q=0.001", "gzip;Q=1.000",

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "api/schema/json.hpp"
+#include "http/encoding.hpp"
 #include "http/routes.hpp"
 
 using namespace vines::http;
@@ -85,6 +86,33 @@ TEST_CASE("an identification that its deadline ends says what it was at") {
             "the identification was stopped while looking for spikes (a record of 200 samples)") ==
         0);
     CHECK(answer_of(gate, {}, "POST", "/v1/identify", record).status == 422);
+}
+
+TEST_CASE("a large answer is compressed where it is computed, and not for a client that has left") {
+    ComputeGate gate({.running = 1});
+    static const ComputeGate idle({});
+    Metrics metrics(idle);
+    const std::vector<Route> routes = make_routes({}, gate, metrics);
+    const auto ask = [&](const std::string& encoding, std::function<bool()> left) {
+        return find_route(routes, "GET", "/v1/simulate")
+            ->answer(
+                {.method = "GET",
+                 .path = "/v1/simulate",
+                 .query = vines::api::parse_query("preset=fig3"),
+                 .content_type = {},
+                 .body = {},
+                 .accept_encoding = encoding,
+                 .left = std::move(left)});
+    };
+    const auto never = [] { return false; };
+    const Response plain = ask("", never), packed = ask("gzip", never);
+    CHECK(plain.gzipped_from == 0);
+    REQUIRE(packed.gzipped_from == plain.body.size());
+    CHECK(packed.body == gzip(plain.body));
+    CHECK(packed.tag == plain.tag);
+    CHECK(packed.timing.back().first == "encode");
+    const Response unheard = ask("gzip", [] { return true; });
+    CHECK(unheard.status == 499);
 }
 
 TEST_CASE("an answer that leaves as a stream has the bytes of the same one in one piece") {
