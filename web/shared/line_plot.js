@@ -151,7 +151,7 @@ export class LinePlot extends Panel {
   tell(t) {
     const {series, data} = this.last;
     if (!data) return;
-    const i = t === null ? -1 : Math.min(firstFrom(data[0], t), data[0].length - 1);
+    const i = t === null ? -1 : lastUpTo(data[0], t);
     series.forEach(({text = shortOrNone}, k) => {
       const shown = text(data[k + 1][i] ?? null);
       if (this.values[k].textContent !== shown) this.values[k].textContent = shown;
