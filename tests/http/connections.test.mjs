@@ -278,6 +278,9 @@ test("requests that are meant for another host, or come from a page of another s
     "[::2]",
   ])
     assert.equal(await status(to(host)), 421, host);
+  const long = await exchange(service.url, to(`${"e".repeat(8000)}.example`));
+  assert.deepEqual(statuses(long), [421]);
+  assert.ok(long.length < 1500, "a long name is not told in full");
   const from = (headers) => post(small, `${headers}Connection: close\r\n`);
   assert.equal(await status(from("Origin: http://localhost\r\n")), 200);
   assert.equal(await status(from("Sec-Fetch-Site: same-origin\r\n")), 200);
