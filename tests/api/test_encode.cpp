@@ -80,7 +80,9 @@ TEST_CASE("CBOR has the bytes that the JSON library writes of typed arrays of an
         CHECK(cbor_bytes(column(numbers, [](double x) { return x > 1; })) == expected);
         expected.clear();
         Json::to_cbor(rows, expected);
-        CHECK(cbor_bytes(column(numbers, [](double x) { return Quadruple{x, x, x, x}; })) == expected);
+        CHECK(cbor_bytes(column(numbers, [](double x) {
+                  return Quadruple{x, x, x, x};
+              })) == expected);
     }
 }
 
