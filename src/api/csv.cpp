@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "api/broken_off.hpp"
 #include "api/text_encoding.hpp"
 #include "api/units.hpp"
 
@@ -116,11 +117,11 @@ std::optional<double> number_of(const Cell& cell, char separator) {
 [[noreturn]] void fault(
     std::size_t line, const std::string& column, std::string_view value, const std::string& what) {
     const std::string shown(value.substr(0, 40)),
-        where = "line " + std::to_string(line) + (column.empty() ? "" : ", column " + column);
+        name = shortened(column),
+        where = "line " + std::to_string(line) + (name.empty() ? "" : ", column " + name);
     throw Problem(
         422, where + ": " + what,
-        {{"/record/" +
-              (column.empty() ? std::to_string(line) : column + "/" + std::to_string(line)),
+        {{"/record/" + (name.empty() ? std::to_string(line) : name + "/" + std::to_string(line)),
           shown, nullptr, where + ": " + what}});
 }
 
@@ -148,8 +149,18 @@ bool has_number(const std::vector<Cell>& cells, char separator) {
     });
 }
 
+/// Told by its first character, and by whether anything separates: most lines that are none of
+/// numbers need not be split.
+bool may_be_numbers(std::string_view line, std::optional<char> said) {
+    line = trimmed(line);
+    constexpr std::string_view of_a_first_cell = "0123456789+-.,\"iInN";  // inf and nan, too
+    return !line.empty() && of_a_first_cell.find(line[0]) != line.npos &&
+           (said || line.find_first_of(";\t, ") != line.npos);
+}
+
 /// That by which the line is numbers, two or more.
 std::optional<char> separator_of_numbers(std::string_view line, std::optional<char> said) {
+    if (!may_be_numbers(line, said)) return std::nullopt;
     std::vector<Cell> cells;
     std::string separators = said ? std::string(1, *said) : ";\t,";
     if (!said) separators += by_blanks;
@@ -251,7 +262,9 @@ std::optional<char> said_separator(std::string_view line) {
 
 }  // namespace
 
-Csv parse_csv(std::string_view bytes) {
+Csv parse_csv(std::string_view bytes, const Reading& reading) {
+    StillWanted wanted = reading.wanted();
+    std::size_t numbers = 0;
     std::string room;
     Lines lines(as_utf8(bytes, room));
     Csv csv;
@@ -260,11 +273,12 @@ Csv parse_csv(std::string_view bytes) {
     std::vector<Cell> cells;
     DecimalSigns signs;
     while (const auto line = lines.next()) {
+        wanted.step();
         if (trimmed(line->text).empty()) continue;
         if (csv.columns.empty()) {
             if (!said && (said = said_separator(line->text))) continue;
-            separator = separator_of_numbers(line->text, said);
-            if (is_comment(line->text) || !separator) {
+            if (!is_comment(line->text)) separator = separator_of_numbers(line->text, said);
+            if (!separator) {
                 heading.take(*line);
                 continue;
             }
@@ -281,7 +295,12 @@ Csv parse_csv(std::string_view bytes) {
                 cells.push_back({});
             else fault_of_length(*line, cells.size(), csv.columns.size());
         }
+        if ((numbers += cells.size()) > reading.most_numbers)
+            throw Problem(
+                413, "the record has more than " + std::to_string(reading.most_numbers) +
+                         " numbers: fewer samples, or fewer columns, tell as much");
         for (std::size_t k = 0; k < cells.size(); ++k) {
+            wanted.step();
             csv.columns[k].values.push_back(
                 number_in(cells[k], *separator, line->number, csv.columns[k].name));
             signs.see(cells[k].text, line->number, csv.columns[k].name);

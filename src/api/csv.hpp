@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "api/problem.hpp"
+#include "api/reading.hpp"
 
 namespace vines::api {
 
@@ -28,7 +29,7 @@ struct Csv {
 /// or what a first line "sep=;" says. Decimal commas where commas separate nothing, and in
 /// quotation marks. Empty cells at the end of the lines are dropped. Lines end by LF, CR LF or CR;
 /// text in any encoding of text_encoding.hpp. Problem 422 that names line and column for what is no
-/// number, NaN, or a line of another length.
-Csv parse_csv(std::string_view text);
+/// number, NaN, or a line of another length; 413 and BrokenOff as `reading` says.
+Csv parse_csv(std::string_view text, const Reading& reading = {});
 
 }  // namespace vines::api

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "api/broken_off.hpp"
 #include "api/fitted_unknowns.hpp"
 #include "api/impact_list.hpp"
 #include "api/record_columns.hpp"
 #include "api/schema/check.hpp"
+#include "api/schema/echo.hpp"
 
 namespace vines::api {
 
@@ -123,32 +125,51 @@ void read_known_forcing(IdentifyRequest& r, const Json& given) {
     }
 }
 
-void read_record(IdentifyRequest& r, const Json& fields, const Csv& csv) {
+std::vector<std::string> names_of(const std::vector<CsvColumn>& columns) {
+    std::vector<std::string> names;
+    for (const CsvColumn& c : columns) names.push_back(shortened(c.name));
+    return names;
+}
+
+/// What becomes of each number.
+template <class Change>
+std::vector<double> changed(
+    const std::vector<double>& values, StillWanted& wanted, const Change& change) {
+    std::vector<double> all;
+    all.reserve(values.size());
+    for (const double v : values) {
+        wanted.step();
+        all.push_back(change(v));
+    }
+    return all;
+}
+
+void read_record(IdentifyRequest& r, const Json& fields, const Csv& csv, StillWanted& wanted) {
     const std::vector<CsvColumn>& columns = csv.columns;
     const RecordColumn time = find_column(columns, fields, time_quantity),
                        x = find_column(columns, fields, displacement_quantity),
                        a = find_column(columns, fields, acceleration_quantity);
-    std::vector<std::string> names;
-    for (const CsvColumn& c : columns) names.push_back(c.name);
     if (!time.column)
         refuse(
-            {{"/record", names, nullptr,
+            {{"/record", names_of(columns), nullptr,
               "the record has no column time_s; name it in time_column"}});
     if (!x.column && !a.column)
         refuse(
-            {{"/record", names, nullptr,
+            {{"/record", names_of(columns), nullptr,
               "the record has neither a displacement nor an acceleration; name them in "
               "displacement_column and acceleration_column"}});
     const double omega0 = r.system.si->omega0();
     MeasuredRecord& record = r.measurement.record;
-    std::vector<double> seconds;
-    for (double t : time.column->values) seconds.push_back(t * time.factor);
-    for (double t : seconds) record.tau.push_back(t * omega0);
+    const std::vector<double> seconds =
+        changed(time.column->values, wanted, [&](double t) { return t * time.factor; });
+    record.tau = changed(seconds, wanted, [&](double t) { return t * omega0; });
     if (x.column)
-        for (double v : x.column->values) record.x.push_back(v * x.factor);
+        record.x = changed(x.column->values, wanted, [&](double v) { return v * x.factor; });
     if (a.column)
-        for (double v : a.column->values) record.x_ddot.push_back(v * a.factor / (omega0 * omega0));
+        record.x_ddot = changed(
+            a.column->values, wanted, [&](double v) { return v * a.factor / (omega0 * omega0); });
     check_record(seconds, csv.lines, record, omega0, r.notes);
+    wanted.step(seconds.size());
     if (!x.column)
         r.notes.push_back(
             "without a displacement, x at the impacts rests on the acceleration alone, whose "
@@ -164,37 +185,47 @@ void read_record(IdentifyRequest& r, const Json& fields, const Csv& csv) {
                   "an impact lies outside the record"}});
 }
 
-/// The columns of a record in JSON, all of one length.
-std::vector<CsvColumn> read_record_columns(const Json& record) {
+/// The columns of a record in JSON, all of one length. The JSON of each goes when it is read.
+std::vector<CsvColumn> read_record_columns(Json record, StillWanted& wanted) {
     std::vector<CsvColumn> columns;
     if (!record.is_object())
         refuse({{"/record", nullptr, nullptr, "record is an object of columns"}});
-    for (const auto& [name, values] : record.items()) {
+    for (auto& [name, values] : record.get_ref<Json::object_t&>()) {
         CsvColumn column{name, {}, {}};
         if (!values.is_array())
             refuse({{"/record/" + name, nullptr, nullptr, "a column is an array of numbers"}});
+        column.values.reserve(values.size());
         for (std::size_t i = 0; i < values.size(); ++i) {
+            wanted.step();
             if (!values[i].is_number())
                 refuse(
-                    {{"/record/" + name + "/" + std::to_string(i), values[i], nullptr,
+                    {{"/record/" + name + "/" + std::to_string(i), beginning_of(values[i]), nullptr,
                       "must be a number"}});
             column.values.push_back(values[i].get<double>());
         }
         if (!columns.empty() && column.values.size() != columns[0].values.size())
             refuse(
                 {{"/record/" + name, column.values.size(), nullptr,
-                  "has another length than " + columns[0].name + " (" +
+                  "has another length than " + shortened(columns[0].name) + " (" +
                       std::to_string(columns[0].values.size()) + ")"}});
+        values = nullptr;
         columns.push_back(std::move(column));
     }
     return columns;
 }
 
+/// Out of an object, in which it is no more; null where it was not.
+Json taken(Json& object, const char* name) {
+    Json value = object.contains(name) ? std::move(object[name]) : Json();
+    object.erase(name);
+    return value;
+}
+
 /// A channel of the forcing tells its frequency, if the request does not.
-IdentifyRequest read_request_of_record(const Json& given, const Csv& csv) {
+IdentifyRequest read_request_of_record(const Json& given, const Csv& csv, StillWanted& wanted) {
     // The columns are looked up by fields that nobody has checked yet.
     if (auto errors = check(identify_fields(), given); !errors.empty()) refuse(std::move(errors));
-    const std::optional<MeasuredForcing> forcing = measured_forcing(csv.columns, given);
+    const std::optional<MeasuredForcing> forcing = measured_forcing(csv.columns, given, wanted);
     Json fields = given;
     const bool f_is_given = fields.contains("f") || fields.contains("Omega");
     if (forcing && !f_is_given) fields["f"] = forcing->f;
@@ -203,33 +234,34 @@ IdentifyRequest read_request_of_record(const Json& given, const Csv& csv) {
     read_known_forcing(r, fields);
     if (forcing && !f_is_given)
         r.system.origin["f"] = r.system.origin["Omega"] = "measured with the record";
-    read_record(r, fields, csv);
+    read_record(r, fields, csv, wanted);
     return r;
 }
 
 }  // namespace
 
-IdentifyRequest read_identify_request(const Json& object) {
-    Json fields = object;
-    const bool has_record = object.contains("record"), has_impacts = object.contains("impacts");
-    fields.erase("record");
-    fields.erase("impacts");
+IdentifyRequest read_identify_request(Json fields, const Reading& reading) {
+    StillWanted wanted = reading.wanted();
+    const bool has_record = fields.contains("record"), has_impacts = fields.contains("impacts");
+    Json record = taken(fields, "record"), impacts = taken(fields, "impacts");
     if (has_record == has_impacts)
         refuse(
             {{"/record", nullptr, nullptr,
               "give either record: {time_s, displacement_m, acceleration_m_s2} or impacts, with "
               "their states"}});
     if (has_impacts) {
-        const Json& impacts = object["impacts"];
         IdentifyRequest r = read_fields(fields, false, !says_forcing(impacts));
-        read_impact_list(r, impacts);
+        read_impact_list(r, std::move(impacts), wanted);
         return r;
     }
-    return read_request_of_record(fields, {read_record_columns(object["record"]), {}});
+    const Csv columns{read_record_columns(std::move(record), wanted), {}};
+    return read_request_of_record(fields, columns, wanted);
 }
 
-IdentifyRequest read_identify_request(const Json& fields, std::string_view csv) {
-    return read_request_of_record(fields, parse_csv(csv));
+IdentifyRequest read_identify_request(
+    const Json& fields, std::string_view csv, const Reading& reading) {
+    StillWanted wanted = reading.wanted();
+    return read_request_of_record(fields, parse_csv(csv, reading), wanted);
 }
 
 }  // namespace vines::api

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "api/measured_forcing.hpp"
+#include "api/reading.hpp"
 #include "api/request.hpp"
 #include "core/measurement/measurement.hpp"
 
@@ -23,9 +24,10 @@ struct IdentifyRequest {
 };
 
 /// From JSON {fields..., record: {time_s, displacement_m, acceleration_m_s2}} or {fields...,
-/// impacts: {...}}. Problem 422 with what is at fault.
-IdentifyRequest read_identify_request(const Json& object);
-/// From the text of a CSV file and the fields beside it.
-IdentifyRequest read_identify_request(const Json& fields, std::string_view csv);
+/// impacts: {...}}. Problem 422 with what is at fault; BrokenOff where `reading` gives up.
+IdentifyRequest read_identify_request(Json object, const Reading& reading = {});
+/// From the text of a CSV file and the fields beside it. 413 beyond what `reading` lets it hold.
+IdentifyRequest read_identify_request(
+    const Json& fields, std::string_view csv, const Reading& reading = {});
 
 }  // namespace vines::api

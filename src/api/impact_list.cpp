@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "api/schema/echo.hpp"
 #include "core/measurement/listed_impacts.hpp"
 #include "core/motion/elementary.hpp"
 
@@ -40,8 +41,9 @@ bool has(const Json& list, const ListColumn& c) {
 
 class List {
 public:
-    List(const IdentifyRequest& r, const Json& given)
+    List(const IdentifyRequest& r, const Json& given, StillWanted& wanted)
         : given_(given),
+          wanted_(wanted),
           omega0_(r.system.si ? std::optional(r.system.si->omega0()) : std::nullopt) {}
 
     /// Empty, with a fault, where it is missing. `may_be_null`: what is null is NaN.
@@ -91,15 +93,18 @@ private:
         if (!first_.empty() && given.size() != size_)
             fail(name, given.size(), name + " has another length than " + first_);
         if (first_.empty()) first_ = name, size_ = given.size();
+        values.reserve(given.size());
         for (std::size_t i = 0; i < given.size(); ++i) {
+            wanted_.step();
             if (given[i].is_number()) values.push_back(factor * given[i].get<double>());
             else if (may_be_null && given[i].is_null()) values.push_back(nan);
-            else fail(name + "/" + std::to_string(i), given[i], "must be a number");
+            else fail(name + "/" + std::to_string(i), beginning_of(given[i]), "must be a number");
         }
         return values;
     }
 
     const Json& given_;
+    StillWanted& wanted_;
     const std::optional<double> omega0_;
     std::string first_;  // name of the first column, and its length
     std::size_t size_ = 0;
@@ -145,10 +150,10 @@ int side_of(const Columns& c, std::size_t i) {
 }
 
 /// What the list itself says: of the forcing, and of impacts that it misses.
-void take_motion(IdentifyRequest& r) {
+void take_motion(IdentifyRequest& r, StillWanted& wanted) {
     Parameters& p = r.measurement.parameters;
     std::vector<IdentifiedImpact>& impacts = r.measurement.impacts;
-    const ListedForcing forcing = take_forcing(p, impacts);
+    const ListedForcing forcing = take_forcing(p, impacts, [&wanted] { wanted.step(); });
     if (r.forcing_fitted) p.G = G_of(p, forcing.sin, forcing.cos);
     if (!(forcing.misfit < most_misfit)) {
         r.notes.push_back(fmt::format(
@@ -159,24 +164,27 @@ void take_motion(IdentifyRequest& r) {
         r.measurement.doubts.push_back(Doubt::no_forcing);
         return;
     }
-    restore_impacts(p, forcing, impacts);
+    restore_impacts(p, forcing, impacts, [&wanted] { wanted.step(); });
 }
 
 }  // namespace
 
 bool says_forcing(const Json& impacts) { return impacts.is_object() && has(impacts, phase_column); }
 
-void read_impact_list(IdentifyRequest& r, const Json& given) {
+void read_impact_list(IdentifyRequest& r, Json given, StillWanted& wanted) {
     if (!given.is_object())
         refuse(
             {{"/impacts", nullptr, nullptr,
               "impacts is an object of columns, as in the answer of /v1/simulate"}});
-    List list(r, given);
+    List list(r, given, wanted);
     const Columns c = columns_of(list);
+    given = nullptr;
     const Parameters& p = r.system.parameters;
     const auto flow = Flow::shared_free(p);
     std::vector<IdentifiedImpact>& impacts = r.measurement.impacts;
+    impacts.reserve(c.tau.size());
     for (std::size_t i = 0; i < c.tau.size(); ++i) {
+        wanted.step();
         IdentifiedImpact impact{
             .tau = c.tau[i],
             .side = side_of(c, i),
@@ -191,7 +199,7 @@ void read_impact_list(IdentifyRequest& r, const Json& given) {
         if (!c.y_after.empty()) impact.y_dot_after = c.y_after[i];
         impacts.push_back(impact);
     }
-    take_motion(r);
+    take_motion(r, wanted);
     take_flights(p, impacts);
     complete_impacts(p, impacts, 0);
 }

@@ -2,6 +2,7 @@
 // a laboratory knows of them.
 #pragma once
 
+#include "api/broken_off.hpp"
 #include "api/identify_request.hpp"
 
 namespace vines::api {
@@ -10,7 +11,7 @@ namespace vines::api {
 bool says_forcing(const Json& impacts);
 
 /// Columns of impacts into the request's measurement; notes say what was fitted. Problem 422 with
-/// what is at fault.
-void read_impact_list(IdentifyRequest& request, const Json& impacts);
+/// what is at fault; BrokenOff.
+void read_impact_list(IdentifyRequest& request, Json impacts, StillWanted& wanted);
 
 }  // namespace vines::api

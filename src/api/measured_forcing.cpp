@@ -22,7 +22,7 @@ double angular(double f) { return 2 * std::numbers::pi * f; }
 }  // namespace
 
 std::optional<MeasuredForcing> measured_forcing(
-    const std::vector<CsvColumn>& columns, const Json& fields) {
+    const std::vector<CsvColumn>& columns, const Json& fields, StillWanted& wanted) {
     const RecordColumn time = find_column(columns, fields, time_quantity),
                        base = find_column(columns, fields, base_quantity),
                        force = find_column(columns, fields, force_quantity);
@@ -30,16 +30,17 @@ std::optional<MeasuredForcing> measured_forcing(
     if (!time.column || !channel.column) return std::nullopt;
     if (base.column && force.column)
         refuse(
-            {{"/record/" + force.column->name, nullptr, nullptr,
-              "the record has a channel of the base, " + base.column->name +
+            {{"/record/" + shortened(force.column->name), nullptr, nullptr,
+              "the record has a channel of the base, " + shortened(base.column->name) +
                   ", and one of a force: the model has one forcing"}});
     std::vector<double> seconds;
     for (const double t : time.column->values) seconds.push_back(t * time.factor);
-    const std::optional<Harmonic> h = harmonic_of(seconds, channel.column->values);
+    const std::optional<Harmonic> h =
+        harmonic_of(seconds, channel.column->values, [&] { wanted.step(seconds.size()); });
     if (!h)
         refuse(
-            {{"/record/" + channel.column->name, nullptr, nullptr,
-              "column " + channel.column->name +
+            {{"/record/" + shortened(channel.column->name), nullptr, nullptr,
+              "column " + shortened(channel.column->name) +
                   " is no harmonic: one sine must explain three quarters of it, over five cycles "
                   "or more"}});
     return MeasuredForcing{

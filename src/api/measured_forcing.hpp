@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "api/broken_off.hpp"
 #include "api/csv.hpp"
 #include "api/system.hpp"
 #include "core/measurement/joint_fit.hpp"
@@ -18,9 +19,9 @@ struct MeasuredForcing {
     double sin, cos;
 };
 
-/// Of the channel's column; none without one. Problem 422 where it has no one harmonic.
+/// Of the channel's column; none without one. Problem 422 where it has no one harmonic; BrokenOff.
 std::optional<MeasuredForcing> measured_forcing(
-    const std::vector<CsvColumn>& columns, const Json& fields);
+    const std::vector<CsvColumn>& columns, const Json& fields, StillWanted& wanted);
 
 /// As that channel has it: the forcing's amplitude, m, and its phase at the time 0.
 struct ChannelForcing {

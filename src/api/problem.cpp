@@ -1,26 +1,45 @@
 #include "api/problem.hpp"
 
+#include "api/schema/echo.hpp"
+
 namespace vines::api {
 
 namespace {
 
-constexpr std::size_t longest_echo = 200;
+// Several times as long as the longest sentence of the program, in which what it tells of a request
+// is shortened by itself.
+constexpr std::size_t longest_detail = 2000;
+// Of a range: more than there are fields or presets to choose from.
+constexpr std::size_t most_choices = 200;
+
+/// Up to `most` bytes, and no part of a character of UTF-8.
+std::string cut(std::string_view text, std::size_t most) {
+    if (text.size() <= most) return std::string(text);
+    std::size_t end = most;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;
+    return std::string(text.substr(0, end)) + "...";
+}
 
 Json shortened_value(const Json& value) {
-    if (value.is_string()) return shortened(value.get<std::string>());
+    if (value.is_string()) return shortened(value.get_ref<const std::string&>());
     if (!value.is_structured()) return value;
-    const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    const std::string text =
+        beginning_of(value).dump(-1, ' ', false, Json::error_handler_t::replace);
     return text.size() <= longest_echo ? value : Json(shortened(text));
+}
+
+Json shortened_range(const Json& range) {
+    if (!range.is_array()) return shortened_value(range);
+    Json entries = Json::array();
+    for (std::size_t k = 0; k < range.size() && k < most_choices; ++k)
+        entries.push_back(shortened_value(range[k]));
+    if (range.size() > most_choices) entries.push_back("...");
+    return entries;
 }
 
 }  // namespace
 
-std::string shortened(const std::string& text) {
-    if (text.size() <= longest_echo) return text;
-    std::size_t end = longest_echo;  // of a character of UTF-8, not within one
-    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;
-    return text.substr(0, end) + "...";
-}
+std::string shortened(std::string_view text) { return cut(text, longest_echo); }
 
 Problem::Problem(int status_, const std::string& detail, std::vector<FieldError> errors_)
     : std::runtime_error(detail),
@@ -38,7 +57,7 @@ std::string Problem::body(const std::string& request_id) const {
         {"type", "about:blank"},
         {"title", reason_phrase(status)},
         {"status", status},
-        {"detail", what()}};
+        {"detail", cut(what(), longest_detail)}};
     if (!request_id.empty()) document["request_id"] = request_id;
     if (!lacking.empty()) document["lacking"] = lacking;
     if (!errors.empty()) {
@@ -47,8 +66,8 @@ std::string Problem::body(const std::string& request_id) const {
             list.push_back(
                 {{"pointer", shortened(e.pointer)},
                  {"value", shortened_value(e.value)},
-                 {"range", e.range},
-                 {"detail", e.detail}});
+                 {"range", shortened_range(e.range)},
+                 {"detail", cut(e.detail, longest_detail)}});
     }
     return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -26,7 +26,7 @@ public:
 };
 
 /// So much of a text that it can be told in a message.
-std::string shortened(const std::string& text);
+std::string shortened(std::string_view text);
 
 /// "Unprocessable Content" for 422, and so on.
 std::string_view reason_phrase(int status);

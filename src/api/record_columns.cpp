@@ -35,10 +35,15 @@ const Quantity force_quantity{
 
 namespace {
 
-std::string lower(std::string text) {
-    std::transform(
-        text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-    return text;
+bool is_same_letter(unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); }
+
+/// Without regard to case, and without a copy: a name may be as long as a record.
+bool is_same_name(std::string_view a, std::string_view b) {
+    return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), is_same_letter);
+}
+
+bool begins_with(std::string_view name, std::string_view beginning) {
+    return is_same_name(name.substr(0, beginning.size()), beginning);
 }
 
 const Unit* known(const Quantity& q, std::string_view text) {
@@ -63,13 +68,14 @@ std::optional<Suffix> suffix_of(const Quantity& q, const std::string& name) {
     }
     // A column called by a unit alone.
     if (known(q, name)) return Suffix{name, false};
-    std::size_t last = std::string::npos;
-    for (std::size_t at = name.find_first_of("_ "); at != std::string::npos;
+    std::size_t last = name.find_last_of("_ ");
+    // Of more characters no unit is known.
+    const std::size_t from = name.size() > longest_unit ? name.size() - longest_unit - 1 : 0;
+    for (std::size_t at = name.find_first_of("_ ", from); at != std::string::npos;
          at = name.find_first_of("_ ", at + 1)) {
         // m_s2 before s2.
         if (known(q, std::string_view(name).substr(at + 1)))
             return Suffix{name.substr(at + 1), false};
-        last = at;
     }
     if (last == std::string::npos) return {};
     const std::string text = name.substr(last + 1);
@@ -84,14 +90,19 @@ std::vector<std::string> unit_names(const Quantity& q) {
     return names;
 }
 
+std::string pointer_to(const CsvColumn& column) {
+    return (Json::json_pointer("/record") / shortened(column.name)).to_string();
+}
+
 /// `remark`: behind the list of the units that are.
 [[noreturn]] void refuse_unit(
     const Quantity& q, const CsvColumn& column, const std::string& unit,
     const std::string& remark) {
+    const std::string shown = shortened(unit);
     refuse(
-        {{(Json::json_pointer("/record") / column.name).to_string(), unit, unit_names(q),
-          "column " + column.name + ": the unit \"" + unit + "\" is not known; known are " +
-              joined(unit_names(q)) + remark}});
+        {{pointer_to(column), shown, unit_names(q),
+          "column " + shortened(column.name) + ": the unit \"" + shown +
+              "\" is not known; known are " + joined(unit_names(q)) + remark}});
 }
 
 /// The unit that the row of units says; null: none.
@@ -125,16 +136,15 @@ double unit_factor(const Quantity& q, const Json& fields, const CsvColumn& colum
     const Unit* below = unit_of_row(q, column);
     if (said && below && said != below)
         refuse(
-            {{(Json::json_pointer("/record") / column.name).to_string(), column.unit,
-              Json::array({said->name}),
-              "column " + column.name + " says " + said->name + ", but the row of units " +
-                  below->name}});
+            {{pointer_to(column), shortened(column.unit), Json::array({said->name}),
+              "column " + shortened(column.name) + " says " + said->name +
+                  ", but the row of units " + below->name}});
     if (!said) said = below;
     if (said && asked && said != asked)
         refuse(
             {{"/" + field, fields[field], Json::array({said->name}),
-              field + " is " + asked->name + ", but the column " + column.name + " says " +
-                  said->name}});
+              field + " is " + asked->name + ", but the column " + shortened(column.name) +
+                  " says " + said->name}});
     return (said ? said : asked ? asked : &q.units[0])->factor;
 }
 
@@ -144,7 +154,7 @@ RecordColumn find_column(
     const std::vector<CsvColumn>& columns, const Json& fields, const Quantity& q) {
     const auto found = [&](auto fits) {
         const auto it = std::find_if(columns.begin(), columns.end(), [&](const CsvColumn& c) {
-            return fits(lower(c.name));
+            return fits(std::string_view(c.name));
         });
         return it == columns.end() ? RecordColumn{nullptr, 1}
                                    : RecordColumn{&*it, unit_factor(q, fields, *it)};
@@ -153,21 +163,21 @@ RecordColumn find_column(
     if (fields.contains(field)) {
         const std::string wanted = fields[field];
         const RecordColumn column =
-            found([&](const std::string& name) { return name == lower(wanted); });
+            found([&](std::string_view name) { return is_same_name(name, wanted); });
         if (column.column) return column;
         std::vector<std::string> names;
-        for (const CsvColumn& c : columns) names.push_back(c.name);
+        for (const CsvColumn& c : columns) names.push_back(shortened(c.name));
         refuse({{"/" + field, wanted, names, "the record has no column of this name"}});
     }
     if (const RecordColumn column =
-            found([&](const std::string& name) { return name == q.column; });
+            found([&](std::string_view name) { return is_same_name(name, q.column); });
         column.column)
         return column;
     for (const std::string& beginning : q.beginnings) {
-        const RecordColumn column = found([&](const std::string& name) {
-            return name.rfind(beginning, 0) == 0 &&
-                   (name == beginning ||
-                    std::string("_ ([").find(name[beginning.size()]) != std::string::npos);
+        const RecordColumn column = found([&](std::string_view name) {
+            return begins_with(name, beginning) &&
+                   (name.size() == beginning.size() ||
+                    std::string_view("_ ([").find(name[beginning.size()]) != std::string::npos);
         });
         if (column.column) return column;
     }

@@ -61,7 +61,7 @@ std::string_view as_utf8(std::string_view bytes, std::string& room) {
         if (is_utf8(bytes)) return bytes;
     }
     const auto text = converted(bytes, encoding.data());
-    room = text ? *text : converted(bytes, "ISO-8859-1").value_or(std::string());
+    room = text ? std::move(*text) : converted(bytes, "ISO-8859-1").value_or(std::string());
     return room;
 }
 

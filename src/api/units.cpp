@@ -8,9 +8,7 @@
 namespace vines::api {
 
 std::string unit_spelling(std::string_view text) {
-    // No unit is longer.
-    constexpr std::size_t longest = 32;
-    if (text.size() > longest) return "?";
+    if (text.size() > longest_unit) return "?";
     std::string spelling(text);
     for (const auto& [written, plain] :
          {std::pair("\u00b5", "u"), std::pair("\u03bc", "u"), std::pair("\u00b2", "2"),

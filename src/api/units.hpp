@@ -1,10 +1,14 @@
 // Units as records write them.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
 namespace vines::api {
+
+/// No unit has more bytes.
+inline constexpr std::size_t longest_unit = 32;
 
 /// In one way of writing: lower case, without blanks, brackets, ^ and *, u for the Greek mu, digits
 /// in place of superscripts.

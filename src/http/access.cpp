@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "api/problem.hpp"
 #include "http/header_text.hpp"
 #include "http/problem_response.hpp"
 
@@ -103,11 +104,13 @@ std::string in_url(const std::string& address) {
 std::optional<Response> access_refusal(
     const Head& head, const Route* route, const AccessOptions& options) {
     const std::string host = host_of(head.host);
-    if (!host.empty() && !is_meant(host, options))
+    if (!host.empty() && !is_meant(host, options)) {
+        const std::string shown = api::shortened(host);
         return problem_response(
             421, fmt::format(
                      "this server is not {}: if that is its name, start it with --allow-host {}",
-                     host, host));
+                     shown, shown));
+    }
     if (is_foreign(head) && !follows_link(head, route) && !shares(head, options))
         return problem_response(403, "a page of another origin may not use this server");
     if (route && !route->open && options.keys.are_asked_for() &&

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
 #include <utility>
 
 #include "api/answers/asked.hpp"
 #include "api/broken_off.hpp"
 #include "api/parse_object.hpp"
+#include "api/reading.hpp"
 #include "api/schema/tables.hpp"
 #include "api/version.hpp"
 #include "http/accept.hpp"
@@ -33,6 +35,17 @@ constexpr std::size_t large = 16 << 20;
 // Bytes of a body that are read in a small part of a turn's moment.
 constexpr std::size_t quickly_read = 16 << 10;
 
+// Of the largest body by default, one in four characters: a record that is a measurement has eight
+// characters a number or more. They take 300 MB at most while they are read.
+constexpr std::size_t most_numbers = 16'000'000;
+
+// In the fields beside the record: impact_times_s may tell each impact in it.
+constexpr std::size_t most_beside = 1'000'000;
+
+// Arrays, objects and names: a start of a sweep is one with up to six names, and there are no more
+// starts than points. All other fields together have some thousand.
+constexpr std::size_t parts_of_a_point = 10, least_parts = 100'000;
+
 // Bytes of a provenance, beside what was asked for: a hash, the answer's limit.
 constexpr std::size_t most_hash = 256;
 
@@ -50,23 +63,50 @@ Turn turn_of(const Request& request, ComputeGate& gate, Stopwatch& watch) {
     return turn;
 }
 
-Json body_of(const Request& r) {
+/// What a body may hold for a request that gives up with `stop`.
+api::Reading reading_of(const RouteOptions& options, const api::Stop& stop) {
+    return {
+        .gives_up = stop.asked,
+        .most_numbers = most_numbers,
+        .most_beside = most_beside,
+        .most_parts = std::max(least_parts, parts_of_a_point * options.sweep_points)};
+}
+
+/// What read() returns. A Problem where that took too long, or is not needed any more: nothing is
+/// computed yet that could be told instead.
+template <class Read>
+auto read_in_time(const Request& r, const Service& service, const Read& read) {
+    try {
+        return read();
+    } catch (const api::BrokenOff&) {
+        if (r.left()) end_unheard();
+        if (service.gate.ends_all())
+            throw Problem::unavailable("stopping", "the server is stopping");
+        throw Problem(
+            413, fmt::format(
+                     "this server computes no longer than {} s for one request, and has not read "
+                     "all of its body in them: a smaller one takes less time",
+                     service.options.deadline));
+    }
+}
+
+Json body_of(const Request& r, const api::Reading& reading) {
     if (!r.query.empty())
         throw Problem(400, "a POST takes its fields from the body; the query must be empty");
-    return api::parse_object(r.body);
+    return api::parse_object(r.body, reading);
 }
 
-api::Asked asked_run(const Request& r, const api::FieldTable& table) {
+api::Asked asked_run(const Request& r, const api::FieldTable& table, const api::Reading& reading) {
     return api::read_asked(
-        r.path, r.method == "POST" ? body_of(r) : api::from_query(table, r.query));
+        r.path, r.method == "POST" ? body_of(r, reading) : api::from_query(table, r.query));
 }
 
-api::Asked asked_identification(const Request& r) {
+api::Asked asked_identification(const Request& r, const api::Reading& reading) {
     const std::string type = media_type(r.content_type);
     const bool is_columns = type == "text/csv" || type == "text/plain";
     return api::read_asked(
-        r.path, is_columns ? api::from_query(api::identify_fields(), r.query) : body_of(r),
-        {r.body, is_columns});
+        r.path, is_columns ? api::from_query(api::identify_fields(), r.query) : body_of(r, reading),
+        {r.body, is_columns}, reading);
 }
 
 /// What is said of formats is said by each of them.
@@ -100,27 +140,44 @@ std::string encoded(
     }
 }
 
+/// Ends parts of the work, each without what it waited for its place.
+class Laps {
+public:
+    Laps(Stopwatch& watch, const Turn& turn) : watch_(watch), turn_(turn) {}
+    void lap(const char* part) {
+        watch_.lap(part);
+        const auto waited = turn_.waited();
+        watch_.move(part, "queue", waited - waited_);
+        waited_ = waited;
+    }
+
+private:
+    Stopwatch& watch_;
+    const Turn& turn_;
+    decltype(std::declval<const Turn>().waited()) waited_{};
+};
+
 /// The answer to what is read(request), in a place to compute in.
 Response answer(
     const Request& r, const Service& service, Stopwatch& watch,
-    const std::function<api::Asked(const Request&)>& read) {
+    const std::function<api::Asked(const Request&, const api::Reading&)>& read) {
     Turn turn = turn_of(r, service.gate, watch);
     const RouteOptions& options = service.options;
     const api::Stop stop = end_of_work(options.deadline, r, service.gate, turn);
-    api::Asked asked = read(r);
+    Laps laps(watch, turn);
+    api::Asked asked = read_in_time(r, service, [&] { return read(r, reading_of(options, stop)); });
     std::optional<api::Format>& format = asked.form.format;
     if (!format) format = accepted_format(r.accept);
     const std::string provenance = api::describe(asked.provenance, nullptr).dump();
     std::string tag = tag_of(r, *format, options.answer_limit, provenance);
     if (!tag.empty() && names_tag(r.known_tags, tag))
         return {.status = 304, .tag = tag, .headers = {varies}};
-    watch.lap("parse");
+    laps.lap("parse");
     api::Answer answer = api::answered(
         std::move(asked),
         {.stop = stop, .most_bytes = options.answer_limit, .most_kept = options.most_kept_impacts});
     const bool goes_on = turn.goes_on();
-    watch.lap("solve");
-    watch.move("solve", "queue", turn.waited());
+    laps.lap("solve");
     if (!goes_on) end_unheard();
     service.metrics.count_impacts(answer.impacts);
     if (answer.run) {
@@ -136,24 +193,22 @@ Response answer(
         .body = std::move(bytes),
         .tag = std::move(tag),
         .headers = {varies}};
-    const auto waited = turn.waited();
     if (!compress(response, r, [&] { return !turn.goes_on() || r.left(); })) end_unheard();
-    watch.lap("encode");
-    watch.move("encode", "queue", turn.waited() - waited);
+    laps.lap("encode");
     return response;
 }
 
 }  // namespace
 
 Response simulate(const Request& r, const Service& service, Stopwatch& watch) {
-    return answer(r, service, watch, [](const Request& request) {
-        return asked_run(request, api::simulate_fields());
+    return answer(r, service, watch, [](const Request& request, const api::Reading& reading) {
+        return asked_run(request, api::simulate_fields(), reading);
     });
 }
 
 Response manifold(const Request& r, const Service& service, Stopwatch& watch) {
-    return answer(r, service, watch, [](const Request& request) {
-        return asked_run(request, api::manifold_fields());
+    return answer(r, service, watch, [](const Request& request, const api::Reading& reading) {
+        return asked_run(request, api::manifold_fields(), reading);
     });
 }
 
@@ -162,9 +217,13 @@ Response identify(const Request& r, const Service& service, Stopwatch& watch) {
 }
 
 Response sweep(const Request& r, const Service& service, Stopwatch& watch) {
-    const Turn turn = turn_of(r, service.gate, watch);  // to read the request
-    api::SweepRequest request = api::read_sweep_request(body_of(r), service.options.sweep_points);
-    watch.lap("parse");
+    Turn turn = turn_of(r, service.gate, watch);  // to read the request
+    const RouteOptions& options = service.options;
+    const api::Stop stop = end_of_work(options.deadline, r, service.gate, turn);
+    api::SweepRequest request = read_in_time(r, service, [&] {
+        return api::read_sweep_request(body_of(r, reading_of(options, stop)), options.sweep_points);
+    });
+    Laps(watch, turn).lap("parse");
     return stream_sweep(
         std::move(request), service.options.sweep_deadline, r.id, service.gate, service.metrics);
 }

@@ -59,8 +59,8 @@ std::string read_without_links(const std::filesystem::path& path, std::size_t mo
     Descriptor folder(::open(path.root_path().c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
     for (const std::filesystem::path& name : path.relative_path().parent_path()) {
         if (!folder) cannot_read(path);
-        folder = Descriptor(::openat(
-            folder.number(), name.c_str(), O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+        folder = Descriptor(
+            ::openat(folder.number(), name.c_str(), O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
     }
     if (!folder) cannot_read(path);
     return contents(

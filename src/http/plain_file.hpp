@@ -1,5 +1,5 @@
-// Files that a server is told to read. What is no regular file might keep it waiting, as a pipe does
-// until somebody writes, or have no end.
+// Files that a server is told to read. What is no regular file might keep it waiting, as a pipe
+// does until somebody writes, or have no end.
 #pragma once
 
 #include <cstddef>

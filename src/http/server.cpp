@@ -18,6 +18,7 @@
 
 #include "http/connections.hpp"
 #include "http/log.hpp"
+#include "http/memory.hpp"
 #include "http/problem_response.hpp"
 #include "http/refusal.hpp"
 #include "http/request_id.hpp"
@@ -35,6 +36,10 @@ constexpr int backlog = 512;  // httplib's own is 5: of 400 clients at once some
 
 // Is always sent: there are no more than threads.
 constexpr std::size_t small_answer = 1 << 20;
+
+// From this size on the memory that a body took, some times as much as itself, is given back to the
+// system at once: that takes as long as to read some of it.
+constexpr std::size_t large_body = 1 << 20;
 
 /// What httplib is here for: it makes the listening socket, and writes answers.
 class Engine : public httplib::Server {
@@ -152,6 +157,14 @@ struct Server::Implementation {
     Response response_to(InWork& work) const {
         Exchange& exchange = work.exchange;
         if (exchange.refused) return std::move(*exchange.refused);
+        const std::size_t size = exchange.body.size();
+        Response response = answer_of_route(work);
+        if (size >= large_body) give_memory_back();
+        return response;
+    }
+
+    Response answer_of_route(InWork& work) const {
+        Exchange& exchange = work.exchange;
         const Head& head = exchange.head;
         try {
             return exchange.route->answer(

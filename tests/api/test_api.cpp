@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "api/broken_off.hpp"
 #include "api/presets.hpp"
 #include "api/query.hpp"
 #include "api/schema/check.hpp"
@@ -849,4 +850,69 @@ TEST_CASE("a perturbed run for which no time is left is null, and named") {
         stop);
     CHECK(a["perturbation"].is_null());
     CHECK(warns(a, "null: perturbation"));
+}
+
+TEST_CASE("a body is read no further than somebody waits for it, whatever it is made of") {
+    const auto list = [](const std::string& entry) {
+        std::string text = R"({"q":[)";
+        while (text.size() < 200000) text += entry + ",";
+        return text + "0]}";
+    };
+    for (const std::string& text :
+         {list("0"), list("{}"), list("[0]"), list("null"), list(std::string(1000, ' ') + "0"),
+          "{\"" + std::string(200000, 'q') + "\":0}"}) {
+        CAPTURE(text.substr(0, 20));
+        int asked = 0;
+        CHECK_THROWS_AS(parse_object(text, {.gives_up = [&] { return ++asked == 3; }}), BrokenOff);
+        CHECK(asked == 3);
+        CHECK(parse_object(text, {.gives_up = [] { return false; }}) == Json::parse(text));
+    }
+}
+
+TEST_CASE("a body holds as many numbers, and arrays, objects and names, as its reader takes") {
+    const auto refused_by = [](const std::string& text, const Reading& reading) {
+        const Problem problem = problem_of([&] { parse_object(text, reading); });
+        CHECK(problem.status == 413);
+        return std::string(problem.what());
+    };
+    const Reading numbers{.most_numbers = 4}, parts{.most_parts = 4};
+    CHECK(parse_object(R"({"a":[1,2,3,null]})", numbers).size() == 1);
+    CHECK(
+        refused_by(R"({"a":[1,2,3],"b":4,"c":true})", numbers) ==
+        "the JSON text holds more than 4 numbers");
+    CHECK(parse_object(R"({"a":[[],{}]})", {.most_parts = 5}).size() == 1);
+    for (const char* text : {R"({"a":[[],{}]})", R"({"a":0,"b":0,"c":0,"d":0})"})
+        CHECK(
+            refused_by(text, parts) == "the JSON text holds more than 4 arrays, objects and names");
+}
+
+TEST_CASE("a long list is the same as it stands in the text, beside others and in them") {
+    std::string list = "[0";
+    for (int k = 1; k < 600000; ++k) list += "," + std::to_string(k % 10);
+    list += "]";
+    const std::string text = R"({"a":)" + list + R"(,"b":[)" + list + R"(,[1],{"c":2}],"d":3})";
+    CHECK(parse_object(text) == Json::parse(text));
+}
+
+TEST_CASE("what a problem tells of a value is the beginning of its text, however large it is") {
+    Json large = Json::array(), names = Json::array();
+    for (int k = 0; k < 1000; ++k) {
+        large.push_back({{"name", k}, {"list", {1.5, nullptr, "\u00e4\u00f6"}}});
+        names.push_back(std::string(1000, 'n'));
+    }
+    const std::string whole = large.dump();
+    const Json told = Json::parse(
+        Problem(422, std::string(100000, 'd'), {{"/q", large, names, std::string(100000, 'e')}})
+            .body());
+    CHECK(told["detail"].get<std::string>().size() < 2100);
+    const Json& error = told["errors"][0];
+    CHECK(error["value"] == shortened(whole));
+    CHECK(error["range"].size() == 201);
+    CHECK(error["range"][0] == std::string(200, 'n') + "...");
+    CHECK(error["detail"].get<std::string>().size() < 2100);
+    // Small ones as they are.
+    const Json small = {{"a", {1, 2}}, {"b", "c"}};
+    const Json same = Json::parse(Problem(422, "d", {{"/q", small, {0, 1}, "e"}}).body());
+    CHECK(same["errors"][0]["value"] == small);
+    CHECK(same["errors"][0]["range"] == Json({0, 1}));
 }

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "api/broken_off.hpp"
 #include "api/csv.hpp"
 #include "support.hpp"
 
@@ -124,4 +125,56 @@ TEST_CASE("what is no record is refused with the line and the reason") {
     CHECK(problem("t,x\n0,1\n1,\"2\"5\n") == "line 3, column x: \"\"2\"5\" is no number");
     // A decimal comma beside separating ones.
     CHECK(problem("time_s,x\n0,001,1,5\n") == "line 2: has 4 columns, the header has 2");
+}
+
+TEST_CASE("a record is read no further than somebody waits for it, and than it may have numbers") {
+    std::string rows = "time_s,x\n", preamble;
+    for (int k = 0; k < 50000; ++k) rows += "1,1\n", preamble += "1\n";
+    for (const std::string& text : {rows, preamble}) {
+        int asked = 0;
+        CHECK_THROWS_AS(parse_csv(text, {.gives_up = [&] { return ++asked == 3; }}), BrokenOff);
+        CHECK(asked == 3);
+    }
+    CHECK(parse_csv(rows, {.most_numbers = 100000}).lines.size() == 50000);
+    const Problem many = problem_of([&] { parse_csv(rows, {.most_numbers = 99999}); });
+    CHECK(many.status == 413);
+    CHECK(std::string(many.what()).find("more than 99999 numbers") != std::string::npos);
+}
+
+TEST_CASE("a line above the numbers is one of numbers by whatever may begin one") {
+    for (const auto& [first, separator] :
+         {std::pair("0;1", ";"), std::pair("+1\t2", "\t"), std::pair("-1 2", " "),
+          std::pair(".5,1", ","), std::pair("\"0,5\",1", ","), std::pair(",5;1", ";"),
+          std::pair("  1 2", " "), std::pair("\"1\";2", ";")})
+        CHECK_MESSAGE(
+            parse_csv("1\n\"names, of something\"\na"s + separator + "b\n" + first + "\n")
+                    .lines.size() == 1,
+            first);
+}
+
+TEST_CASE("a fault of a record is told in a few lines, however long its names and units are") {
+    const std::string word(1000000, 'u');
+    std::string rows;
+    for (int k = 0; k < 200; ++k) rows += std::to_string(k) + "," + std::to_string(k % 3) + "\n";
+    std::string names = "n0";
+    for (int k = 1; k < 900; ++k) names += "," + word.substr(0, 1000) + std::to_string(k);
+    std::string wide = "0";
+    for (int k = 1; k < 900; ++k) wide += ",1";
+    for (const std::string& text :
+         {"time_s,displacement(" + word + ")\n" + rows,
+          "time_s,displacement\ns," + word + "\n" + rows,
+          "time_s,displacement_" + word + "\n" + rows, "time_s," + word + "\n" + rows,
+          "time_s," + word + "\n1,2\n3,x\n", names + "\n" + wide + "\n"}) {
+        const Problem told =
+            problem_of([&] { read_identify_request({{"preset", "fig15"}}, text); });
+        CAPTURE(text.substr(0, 40));
+        CHECK(told.status == 422);
+        CHECK(std::string(told.what()).size() < 1500);
+        CHECK(told.body().size() < 4000);
+    }
+    const Problem among = problem_of([&] {
+        read_identify_request(
+            {{"preset", "fig15"}, {"time_column", "q"}}, names + "\n" + wide + "\n");
+    });
+    CHECK(among.body().size() < 100000);
 }

@@ -8,7 +8,7 @@ import {join} from "node:path";
 import {after, before, test} from "node:test";
 import {promisify} from "node:util";
 import {program, startService} from "../service.mjs";
-import {connect, exchange, memory, sleep, statuses, until} from "./raw.mjs";
+import {computed, connect, exchange, memory, sleep, statuses, until} from "./raw.mjs";
 
 const long = Boolean(process.env.LONG);
 // A program with sanitizers is some times slower, and keeps memory for a while to watch it.
@@ -300,6 +300,9 @@ test("requests that are meant for another host, or come from a page of another s
     "[::2]",
   ])
     assert.equal(await status(to(host)), 421, host);
+  const long = await exchange(service.url, to(`${"e".repeat(8000)}.example`));
+  assert.deepEqual(statuses(long), [421]);
+  assert.ok(long.length < 1500, "a long name is not told in full");
   const from = (headers) => post(small, `${headers}Connection: close\r\n`);
   assert.equal(await status(from("Origin: http://localhost\r\n")), 200);
   assert.equal(await status(from("Sec-Fetch-Site: same-origin\r\n")), 200);
@@ -768,6 +771,53 @@ test("a body is read in a time that grows as it does, and its faults are told in
   const query = `${service.url}/v1/simulate?${"q".repeat(5000)}=1`;
   const {detail, errors} = await (await fetch(query)).json();
   assert.ok(detail.length < 300 && errors[0].pointer.length < 250);
+});
+
+test("a large body is read no longer than the deadline lets it, in a few times its size, which go back", async (t) => {
+  const one = await startService(["--deadline", "1"]);
+  t.after(() => one.stop());
+  const size = 60_000_000;
+  const list = (entry) => `{"q":[${entry.repeat(size / entry.length)}0]}`;
+  const query = "/v1/identify?preset=fig20&b=0.015";
+  const bodies = [
+    ["/v1/identify", list("[0],"), "application/json"],
+    ["/v1/identify", list("0,"), "application/json"],
+    ["/v1/identify", list('{"":0},'), "application/json"],
+    [query, "a\n".repeat(size / 2), "text/csv"],
+    [query, `t,x\n${"1,1\n".repeat(size / 4)}`, "text/csv"],
+  ];
+  const before = await memory(one.pid);
+  for (const [path, body, type] of bodies) {
+    const began = await computed(one.pid);
+    const {status} = await fetch(one.url + path, {
+      method: "POST",
+      headers: {"Content-Type": type},
+      body,
+    });
+    const what = body.slice(0, 20);
+    assert.ok(status === 413 || status === 422, `${what}: ${status}`);
+    const seconds = (await computed(one.pid)) - began;
+    assert.ok(seconds < 2 * slower, `${what}: ${seconds} s`);
+    assert.ok((await memory(one.pid)) - before < 60 + watched, what);
+  }
+  if (!watched) assert.ok((await memory(one.pid, "VmHWM")) < 600);
+});
+
+test("a large body is read no further once its client has left", async (t) => {
+  const one = await startService(["--compute-threads", "1"]);
+  t.after(() => one.stop());
+  const body = `{"q":[${"0,".repeat(15_000_000)}0]}`;
+  const {socket} = await connect(one.url);
+  socket.write(
+    `POST /v1/identify HTTP/1.1\r\nHost: localhost\r\nContent-Length: ${body.length}\r\n\r\n${body}`,
+  );
+  const running = async () =>
+    /^vines_compute_running (\d+)/m.exec(await (await fetch(`${one.url}/metrics`)).text())[1];
+  await until(async () => (await running()) === "1", 20000);
+  const began = await computed(one.pid);
+  socket.destroy();
+  await until(async () => (await running()) === "0", 20000);
+  assert.ok((await computed(one.pid)) - began < 1 * slower);
 });
 
 test("what clients have sent and do not read is bounded over all of them", async (t) => {

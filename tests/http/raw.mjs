@@ -48,9 +48,16 @@ export async function exchange(url, bytes, ms = 4000) {
   return text;
 }
 
-/** The memory that a process holds, in MB. */
-export async function memory(pid) {
+/** The memory that a process holds, or with VmHWM has held at most, in MB. */
+export async function memory(pid, what = "VmRSS") {
   const {readFile} = await import("node:fs/promises");
   const status = await readFile(`/proc/${pid}/status`, "utf8");
-  return Number(/VmRSS:\s+(\d+)/.exec(status)[1]) / 1024;
+  return Number(new RegExp(`${what}:\\s+(\\d+)`).exec(status)[1]) / 1024;
+}
+
+/** The seconds that a process has computed. */
+export async function computed(pid) {
+  const {readFile} = await import("node:fs/promises");
+  const fields = (await readFile(`/proc/${pid}/stat`, "utf8")).split(") ")[1].split(" ");
+  return (Number(fields[11]) + Number(fields[12])) / 100;
 }

@@ -14,14 +14,19 @@ namespace {
 
 Response answer_of(
     ComputeGate& gate, const RouteOptions& options, const std::string& method,
-    const std::string& path, const std::string& body = "{}") {
+    const std::string& path, const std::string& body = "{}", bool has_left = false) {
     static const ComputeGate idle({});
     static Metrics metrics(idle);  // outlives what is streamed
     const std::vector<Route> routes = make_routes(options, gate, metrics);
     const Route* route = find_route(routes, method, path);
     REQUIRE(route);
     return route->answer(
-        {.method = method, .path = path, .query = {}, .content_type = {}, .body = body});
+        {.method = method,
+         .path = path,
+         .query = {},
+         .content_type = {},
+         .body = body,
+         .left = [has_left] { return has_left; }});
 }
 
 /// Takes so many bytes, then it is gone.
@@ -113,6 +118,46 @@ TEST_CASE("a large answer is compressed where it is computed, and not for a clie
     CHECK(packed.timing.back().first == "encode");
     const Response unheard = ask("gzip", [] { return true; });
     CHECK(unheard.status == 499);
+}
+
+TEST_CASE("a body is not read to its end beyond a deadline, for a client that left, or in a stop") {
+    std::string zeros = "0";
+    for (int k = 0; k < 20000; ++k) zeros += ",0";
+    for (const char* path : {"/v1/simulate", "/v1/manifold", "/v1/sweep", "/v1/identify"}) {
+        CAPTURE(path);
+        ComputeGate gate({.running = 1});
+        const std::string body = "{\"q\":[" + zeros + "]}";
+        const Response late = answer_of(gate, {.deadline = 0}, "POST", path, body);
+        CHECK(late.status == 413);
+        CHECK(
+            std::string(late.problem.value().what())
+                .find("no longer than 0 s for one request, and has not read all of its body") !=
+            std::string::npos);
+        CHECK(answer_of(gate, {}, "POST", path, body).status == 422);
+        CHECK(answer_of(gate, {.deadline = 0}, "POST", path, body, true).status == 499);
+        gate.end_all();
+        const Response ended = answer_of(gate, {.deadline = 0}, "POST", path, body);
+        CHECK(ended.status == 503);
+        CHECK(ended.problem.value().lacking == "stopping");
+    }
+}
+
+TEST_CASE(
+    "a body of more parts than any request has is refused, one of a large sweep's starts not") {
+    ComputeGate gate({.running = 1});
+    const RouteOptions few{.sweep_points = 10};
+    const auto sweep = [](int starts) {
+        std::string text = R"({"axes":[{"parameter":"b","values":[0.02]}],"starts":[{})";
+        for (int k = 1; k < starts; ++k) text += ",{}";
+        return text + "]}";
+    };
+    const Response many = answer_of(gate, few, "POST", "/v1/sweep", sweep(100000));
+    CHECK(many.status == 413);
+    CHECK(
+        std::string(many.problem.value().what()) ==
+        "the JSON text holds more than 100000 arrays, objects and names");
+    CHECK(answer_of(gate, few, "POST", "/v1/sweep", sweep(10)).status == 200);
+    CHECK(answer_of(gate, few, "POST", "/v1/sweep", sweep(11)).status == 422);
 }
 
 TEST_CASE("an answer that leaves as a stream has the bytes of the same one in one piece") {

@@ -18,12 +18,32 @@ Json without_record(const Json& fields) {
     return others;
 }
 
-Asked read_identification(Json fields, const Sent& sent) {
+/// How many numbers and texts are in a value.
+std::size_t count(const Json& value) {
+    if (!value.is_structured()) return 1;
+    std::size_t all = 0;
+    for (const Json& entry : value) all += count(entry);
+    return all;
+}
+
+/// Each of them is copied and checked some times, which a record's are not.
+void check_beside_record(const Json& fields, std::size_t most) {
+    std::size_t all = 0;
+    for (const auto& [name, value] : fields.items())
+        if (name != "record" && name != "impacts") all += count(value);
+    if (all > most)
+        throw Problem(
+            413, "the fields beside the record hold more than " + std::to_string(most) +
+                     " numbers and texts");
+}
+
+Asked read_identification(Json fields, const Sent& sent, const Reading& reading) {
+    check_beside_record(fields, reading.most_beside);
     Provenance provenance{
         .route = "/v1/identify", .request = canonical(without_record(fields)), .record = {}};
     AnswerForm form = take_form(fields, identify_fields());
-    IdentifyRequest request =
-        sent.is_columns ? read_identify_request(fields, sent.text) : read_identify_request(fields);
+    IdentifyRequest request = sent.is_columns ? read_identify_request(fields, sent.text, reading)
+                                              : read_identify_request(std::move(fields), reading);
     provenance.record = sha256(sent.text);  // of what has no fault
     return {std::move(request), std::move(form), std::move(provenance)};
 }
@@ -54,12 +74,12 @@ Answer computed(const IdentifyRequest& request, const AnswerForm&, const Means& 
 
 }  // namespace
 
-Asked read_asked(const std::string& route, Json fields, const Sent& sent) {
+Asked read_asked(const std::string& route, Json fields, const Sent& sent, const Reading& reading) {
     if (route == "/v1/simulate")
         return read_run(route, std::move(fields), simulate_fields(), read_simulate_request);
     if (route == "/v1/manifold")
         return read_run(route, std::move(fields), manifold_fields(), read_manifold_request);
-    if (route == "/v1/identify") return read_identification(std::move(fields), sent);
+    if (route == "/v1/identify") return read_identification(std::move(fields), sent, reading);
     throw Problem(422, "no answer of this program has the route " + shortened(route));
 }
 

@@ -28,8 +28,9 @@ struct Sent {
 };
 
 /// Of /v1/simulate, /v1/manifold or /v1/identify. Problem 422 where a field, or the record, is at
-/// fault, or the route is another one.
-Asked read_asked(const std::string& route, Json fields, const Sent& sent = {});
+/// fault, or the route is another one; BrokenOff and 413 where a record goes beyond `reading`.
+Asked read_asked(
+    const std::string& route, Json fields, const Sent& sent = {}, const Reading& reading = {});
 
 /// What an answer is made with.
 struct Means {

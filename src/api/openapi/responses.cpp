@@ -33,8 +33,8 @@ constexpr Refusal refusals[] = {
     {411, true, "a body in chunks, or without a Content-Length",
      "send a body with its Content-Length"},
     {413, false,
-     "the body, or the answer, is larger than the server takes, or a record more work than its "
-     "deadline allows",
+     "the body, or the answer, is larger than the server takes, or holds more than it takes; or a "
+     "record, or to read a body, is more work than its deadline allows",
      "the body is larger than 1048576 bytes"},
     {414, true, "its target is too long", "the request's target is longer than 8192 bytes"},
     {415, true, "a compressed body, or multipart/", "send the body uncompressed"},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "api/schema/echo.hpp"
 #include "api/schema/joined.hpp"
 #include "api/schema/nearest_name.hpp"
 #include "api/schema/tables.hpp"
@@ -39,7 +40,8 @@ struct Checked {
     /// `where`: below the field, as a JSON Pointer.
     void fault(const std::string& where, const Json& value, const std::string& detail) const {
         errors.push_back(
-            {pointer(field.name) + where, value, range_of(field), field.name + " " + detail});
+            {pointer(field.name) + where, beginning_of(value), range_of(field),
+             field.name + " " + detail});
     }
     bool is_choice(const Json& value) const {
         return value.is_string() &&
@@ -162,7 +164,9 @@ std::vector<FieldError> check(const FieldTable& table, const Json& object) {
     for (const auto& [name, value] : object.items()) {
         if (errors.size() >= most_errors) break;
         if (const Field* f = find(table, name)) check_field({*f, errors}, value);
-        else errors.push_back({pointer(name), value, nullptr, unknown_field(table, name)});
+        else
+            errors.push_back(
+                {pointer(name), beginning_of(value), nullptr, unknown_field(table, name)});
     }
     return errors;
 }

@@ -91,7 +91,8 @@ double omega_off(
 }  // namespace
 
 std::optional<Harmonic> harmonic_of(
-    const std::vector<double>& time, const std::vector<double>& values) {
+    const std::vector<double>& time, const std::vector<double>& values,
+    const std::function<void()>& look) {
     const double n = static_cast<double>(values.size()),
                  mean = std::accumulate(values.begin(), values.end(), 0.0) / n,
                  deviation = deviation_of(values, mean);
@@ -102,6 +103,7 @@ std::optional<Harmonic> harmonic_of(
     const double duration = time.back() - time.front();
     double piece = cycles_of_piece * 2 * std::numbers::pi / omega;
     for (int k = 0; k < refinements; ++k) {
+        if (look) look();
         omega += omega_off(time, about, omega, piece);
         if (piece * longer < duration / longer) piece *= longer;
     }

@@ -58,12 +58,13 @@ public:
           impacts_(impacts),
           doubtful_(doubtful) {}
 
-    std::vector<HiddenContacts> find() const {
+    std::vector<HiddenContacts> find(const std::function<void()>& look) const {
         std::vector<HiddenContacts> all;
         // The run that leads to an impact knows better than the flight what comes to it.
         double comes = nan;
         int led = 0, failed = 0;
         for (std::size_t i = 0; i + 1 < impacts_.size() && failed < many_runs + led;) {
+            if (look) look();
             std::size_t next = i + 1;
             if (std::isnan(comes) && i > 0)
                 comes = flight_velocity(system_.own().b, impacts_[i - 1], impacts_[i]);
@@ -256,8 +257,9 @@ IdentifiedImpact as_identified(const RunImpact& r) {
 
 std::vector<HiddenContacts> hidden_contacts(
     const IdentifiedSystem& system, const HidingPlaces& places,
-    const std::vector<IdentifiedImpact>& impacts, const std::vector<char>& doubtful) {
-    return Finder(system, places, impacts, doubtful).find();
+    const std::vector<IdentifiedImpact>& impacts, const std::vector<char>& doubtful,
+    const std::function<void()>& look) {
+    return Finder(system, places, impacts, doubtful).find(look);
 }
 
 long put_in(const std::vector<HiddenContacts>& hidden, std::vector<IdentifiedImpact>& impacts) {

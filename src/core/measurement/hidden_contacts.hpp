@@ -4,6 +4,7 @@
 // that leads to the second, what came between is what was hidden.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -39,10 +40,12 @@ struct HidingPlaces {
 };
 /// In order. The velocity with which the mass leaves an impact is that of the flight before, eq.
 /// (43), or of the impact's own jump, eqs. (4), (36). `doubtful`: of each impact, that it may be
-/// none, but stand for what is hidden beside it; empty: of none.
+/// none, but stand for what is hidden beside it; empty: of none. look(): called for each impact;
+/// what it throws ends this.
 std::vector<HiddenContacts> hidden_contacts(
     const IdentifiedSystem& system, const HidingPlaces& places,
-    const std::vector<IdentifiedImpact>& impacts, const std::vector<char>& doubtful = {});
+    const std::vector<IdentifiedImpact>& impacts, const std::vector<char>& doubtful = {},
+    const std::function<void()>& look = {});
 
 /// Puts them in, where none was doubtful, and has all velocities of the mass there from the
 /// run. Returns how many were hidden.

@@ -29,11 +29,14 @@ struct Row {
     double value;
 };
 
-std::vector<Row> rows_of(const Parameters& p, const std::vector<IdentifiedImpact>& impacts) {
+std::vector<Row> rows_of(
+    const Parameters& p, const std::vector<IdentifiedImpact>& impacts,
+    const std::function<void()>& look) {
     const UnknownValues given = given_unknowns(p);
     const OscillatorFlows flows(given, false);
     std::vector<Row> rows;
     for (std::size_t i = 1; i < impacts.size(); ++i) {
+        look();
         const IdentifiedImpact &from = impacts[i - 1], &to = impacts[i];
         IntervalMotion motion(flows, given, 0, {from.tau, from.x, from.x_dot_after});
         const auto parts = motion.at(to.tau - from.tau, false).parts;
@@ -58,8 +61,11 @@ void take_flights(const Parameters& p, std::vector<IdentifiedImpact>& impacts) {
     }
 }
 
-ListedForcing take_forcing(const Parameters& p, std::vector<IdentifiedImpact>& impacts) {
-    const std::vector<Row> rows = rows_of(p, impacts);
+ListedForcing take_forcing(
+    const Parameters& p, std::vector<IdentifiedImpact>& impacts,
+    const std::function<void()>& asked) {
+    const std::function<void()> look = asked ? asked : [] {};
+    const std::vector<Row> rows = rows_of(p, impacts, look);
     Eigen::Vector2d f = Eigen::Vector2d::Zero();
     std::vector<double> off(rows.size(), 0);
     double scale = 0;
@@ -67,6 +73,7 @@ ListedForcing take_forcing(const Parameters& p, std::vector<IdentifiedImpact>& i
         Eigen::Matrix2d N = Eigen::Matrix2d::Zero();
         Eigen::Vector2d right = Eigen::Vector2d::Zero();
         for (std::size_t k = 0; k < rows.size(); ++k) {
+            look();
             const double sigmas = scale > 0 ? std::abs(off[k]) / scale : 0;
             if (round >= rounds_with_all && sigmas > ignored) continue;
             const double weight = sigmas > counted_in_full ? counted_in_full / sigmas : 1;
@@ -122,11 +129,13 @@ HidingPlaces hiding_places(
 }  // namespace
 
 long restore_impacts(
-    const Parameters& p, const ListedForcing& forcing, std::vector<IdentifiedImpact>& impacts) {
+    const Parameters& p, const ListedForcing& forcing, std::vector<IdentifiedImpact>& impacts,
+    const std::function<void()>& look) {
     UnknownValues values = given_unknowns(p);
     values[Unknown::force_sin] = forcing.sin, values[Unknown::force_cos] = forcing.cos;
     const IdentifiedSystem system(listed_system(p, impacts), values, 0);
-    return put_in(hidden_contacts(system, hiding_places(forcing, impacts), impacts), impacts);
+    return put_in(
+        hidden_contacts(system, hiding_places(forcing, impacts), impacts, {}, look), impacts);
 }
 
 }  // namespace vines

@@ -2,6 +2,7 @@
 // its contacts, and the oscillator moves from impact to impact by one forcing.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "core/measurement/identified_impact.hpp"
@@ -21,12 +22,15 @@ struct ListedForcing {
 };
 /// The forcing that leads from each impact to the next, by least squares; x'' before an impact,
 /// where it is NaN, is set to what follows from it, eq. (2). At least two impacts with x and x'.
-ListedForcing take_forcing(const Parameters& parameters, std::vector<IdentifiedImpact>& impacts);
+/// look(): called for each impact, some times; what it throws ends this.
+ListedForcing take_forcing(
+    const Parameters& parameters, std::vector<IdentifiedImpact>& impacts,
+    const std::function<void()>& look = {});
 
 /// Puts in what a list misses (hidden_contacts.hpp), with R of each wall as its impacts have it.
-/// Returns how many impacts.
+/// Returns how many impacts. look() as above.
 long restore_impacts(
     const Parameters& parameters, const ListedForcing& forcing,
-    std::vector<IdentifiedImpact>& impacts);
+    std::vector<IdentifiedImpact>& impacts, const std::function<void()>& look = {});
 
 }  // namespace vines
