@@ -18,10 +18,15 @@ enum class Major : unsigned { bytes = 2, array = 4, object = 5 };
 constexpr std::uint8_t float64_tag = 86, int32_tag = 78;
 constexpr char tag_of_one_byte = '\xd8';
 
+// What an answer takes without its lists, about.
+constexpr std::size_t room_beside_lists = 8192;
+
 /// Writes one value after the other, and frees each list that is written.
 class CborBytes {
 public:
-    explicit CborBytes(const std::function<bool()>& gives_up) : wanted_(gives_up) {}
+    CborBytes(const std::function<bool()>& gives_up, std::size_t room) : wanted_(gives_up) {
+        bytes_.reserve(room);
+    }
 
     void put(Json& value) {
         if (value.is_object()) {
@@ -101,7 +106,12 @@ private:
 }  // namespace
 
 std::string cbor_bytes(Json answer, const std::function<bool()>& gives_up) {
-    CborBytes bytes(gives_up);
+    // Four bytes stand before each row of a list, beside its 32.
+    std::size_t room = room_beside_lists;
+    visit_lists(answer, [&room](const std::string&, const List& list) {
+        room += list.bytes().size() / 8 * 9;
+    });
+    CborBytes bytes(gives_up, room);
     bytes.put(answer);
     return bytes.end();
 }
