@@ -798,7 +798,8 @@ test("a large body is read no longer than the deadline lets it, in a few times i
     assert.ok(status === 413 || status === 422, `${what}: ${status}`);
     const seconds = (await computed(one.pid)) - began;
     assert.ok(seconds < 2 * slower, `${what}: ${seconds} s`);
-    assert.ok((await memory(one.pid)) - before < 60 + watched, what);
+    // A sanitizer keeps what is freed, to watch it.
+    if (!watched) assert.ok((await memory(one.pid)) - before < 60, what);
   }
   if (!watched) assert.ok((await memory(one.pid, "VmHWM")) < 600);
 });
