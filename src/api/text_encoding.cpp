@@ -60,7 +60,7 @@ std::string_view as_utf8(std::string_view bytes, std::string& room) {
         if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
         if (is_utf8(bytes)) return bytes;
     }
-    const auto text = converted(bytes, encoding.data());
+    auto text = converted(bytes, encoding.data());
     room = text ? std::move(*text) : converted(bytes, "ISO-8859-1").value_or(std::string());
     return room;
 }
