@@ -33,12 +33,15 @@ export class Motion {
     const {tau, x, x_dot_after: xDot, y_dot_after: yDot, side, phase} = this.impacts;
     this.add(0, [x0, x_dot0, Math.sin(phi), Math.cos(phi)], y0, y_dot0);
     let stick = 0;
-    [...tau, Infinity].forEach((moment, i) => {
+    const stickBefore = (moment) => {
       for (; from[stick] < moment; ++stick) this.stick(stuckTo[stick], from[stick], to[stick]);
-      if (i === tau.length) return;
+    };
+    for (let i = 0; i < tau.length; ++i) {
+      stickBefore(tau[i]);
       const state = [x[i], xDot[i], Math.sin(phase[i]), Math.cos(phase[i])];
-      this.add(moment, state, x[i] - side[i] * this.b, yDot[i]);
-    });
+      this.add(tau[i], state, x[i] - side[i] * this.b, yDot[i]);
+    }
+    stickBefore(Infinity);
   }
 
   /** A stuck phase, and the flight after it. */

@@ -19,7 +19,7 @@ const overTime = ["x", "relative", "largest", "lambda"];
 let plots;
 let pinned = null; // {answer, motion} of a run to compare with
 let traced = null; // what of the motion is in view
-let byWall = []; // the impacts at each wall: {mine: their indices, x: their moments, ...: their look}
+let byWall = null; // the impacts at each wall, once they are drawn
 
 export function start() {
   plots = new Plots(overTime, ["section", "manifold"]);
@@ -42,11 +42,7 @@ function stepsOf(...names) {
 /** What shows the run, step by step. */
 export function drawing() {
   traced = null;
-  const {tau, side} = run.answer.impacts;
-  byWall = Object.entries(walls).map(([colour, wall]) => {
-    const mine = [...tau.keys()].filter((i) => side[i] === wall);
-    return {mine, x: mine.map((i) => tau[i]), colour, shape: "dot", size: 2.2};
-  });
+  byWall = null;
   plots.marks = marksOf(run.answer);
   return stepsOf("x", "relative", "lambda", "section", ...(run.more ? ofMore : []));
 }
@@ -78,6 +74,13 @@ function inView(...part) {
   return traced.lines;
 }
 
+/** {mine: their indices, x: their moments, and how they look} for each wall. */
+const impactsByWall = ({tau, side}) =>
+  Object.entries(walls).map(([colour, wall]) => {
+    const mine = [...tau.keys()].filter((i) => side[i] === wall);
+    return {mine, x: mine.map((i) => tau[i]), colour, shape: "dot", size: 2.2};
+  });
+
 /**
  * A part of the motion, x or gap, as both plots over time draw it; at(i): where the i-th impact
  * lies.
@@ -94,6 +97,7 @@ function partOf(name, label, at) {
   };
   const series = [{label, colour: "motion"}];
   if (pinned) series.unshift({label: `${label}, pinned`, colour: "pinned"});
+  byWall ??= impactsByWall(run.answer.impacts);
   const marks = byWall.map(({mine, ...wall}) => ({...wall, y: mine.map(at)}));
   const bare = !alone.matches;
   return {bare, unit: "mm", label: `${label} (mm)`, trace, samples, series, marks};
