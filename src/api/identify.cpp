@@ -104,6 +104,10 @@ const char* reason_of(const IdentifiedExponents& e) {
         case Verdict::regular:
             return "the slope's 90 % interval lies below the oscillator's own damping zeta";
         case Verdict::not_decided:
+            if (e.weakens)
+                return "the impacts grow weaker, to less than half from the first quarter to the "
+                       "last, though the motion is forced: a transient, or the falling part of a "
+                       "modulation, of which a longer record tells";
             return "the record is too short to say: the slope's 90 % interval holds the "
                    "oscillator's own damping zeta, or there are too few impacts (24 for chaotic; "
                    "for regular 200, or 80 whose jumps are alike: a chaotic motion may be in step "

@@ -289,9 +289,13 @@ TEST_CASE("impacts that die out get no verdict") {
         answer(R"({"G":0,"x0":0.05,"y0":0.05,"b":0.004,"tau_end":3000,"include":["impacts"]})");
     REQUIRE(run["impacts"]["tau"].size() > 40);
     const Json found =
-        identified(read_identify_request({{"b", 0.004}, {"impacts", run["impacts"]}}));
+        identified(read_identify_request({{"b", 0.004}, {"G", 0}, {"impacts", run["impacts"]}}));
     CHECK(found["verdict"].is_null());
     CHECK(found["verdict_reason"].get<std::string>().find("dies out") != std::string::npos);
+    const Json forced =
+        identified(read_identify_request({{"b", 0.004}, {"impacts", run["impacts"]}}));
+    CHECK(forced["verdict"] == "not_decided");
+    CHECK(forced["verdict_reason"].get<std::string>().find("grow weaker") != std::string::npos);
 }
 
 TEST_CASE("the untouched ball is a motion of its own") {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/measurement/robust.hpp"
+#include "core/measures/energy.hpp"
 #include "core/motion/special_values.hpp"
 
 namespace vines {
@@ -20,10 +21,13 @@ constexpr std::size_t enough_impacts = 200, enough_if_alike = 80;
 constexpr double alike = 0.02, alike_per_impact = 0.001;
 constexpr double nine_in_ten = 0.9;
 
-// Fewer impacts do not show whether a motion dies out; one that does loses this factor from the
+// Fewer impacts do not show whether a motion weakens; one that does loses this factor from the
 // first quarter to the last.
 constexpr std::size_t fewest_of_decay = 20;
 constexpr double least_fall = 2;
+// A forcing that alone would move the oscillator by less than this share of what it still moves is
+// as good as none: a stopped shaker hums, and a fit always finds a little.
+constexpr double negligible_forcing = 0.05;
 // So many of a quarter may be.
 constexpr std::size_t false_ones = 1;
 
@@ -184,7 +188,7 @@ bool is_representative(const std::vector<IdentifiedImpact>& impacts) {
            alike + alike_per_impact * static_cast<double>(known - enough_if_alike);
 }
 
-bool dies_out(const std::vector<IdentifiedImpact>& impacts) {
+bool weakens(const std::vector<IdentifiedImpact>& impacts) {
     if (impacts.size() < fewest_of_decay) return false;
     // Of a chatter only the first impact tells how strong it was; and one may be false.
     std::array<std::vector<double>, 4> jumps;
@@ -202,6 +206,16 @@ bool dies_out(const std::vector<IdentifiedImpact>& impacts) {
     }
     return std::is_sorted(largest.rbegin(), largest.rend()) && largest[3] > 0 &&
            largest[3] * least_fall < largest[0];
+}
+
+bool is_unforced(const Parameters& p, const std::vector<IdentifiedImpact>& impacts) {
+    if (p.G == 0) return true;
+    const double quarter = 0.25 * (impacts.back().tau - impacts.front().tau);
+    double last = 0;
+    for (const IdentifiedImpact& i : impacts)
+        if (!i.is_left_out() && i.tau >= impacts.back().tau - quarter)
+            last = std::max(last, std::hypot(i.x, i.x_dot_after));
+    return free_amplitude(p).value_or(infinity) < negligible_forcing * last;
 }
 
 IdentifiedExponents judge_exponents(

@@ -146,7 +146,10 @@ MeasurementResult conclude(const Measurement& m, const IdentificationWatch& watc
         judge_exponents(oscillator, exponents, is_representative(found.impacts));
     if (!doubts.empty() || continuity.share > Continuity::most)
         judged.verdict = Verdict::not_decided;
-    else if (p.G == 0 || dies_out(found.impacts)) judged.verdict = Verdict::none;
+    else if (p.G == 0 || weakens(found.impacts)) {
+        judged.weakens = !is_unforced(p, found.impacts);
+        judged.verdict = judged.weakens ? Verdict::not_decided : Verdict::none;
+    }
 
     progress.look();
     auto direct = refined

@@ -494,6 +494,38 @@ TEST_CASE("a chaotic motion that is in step for a while is not called regular") 
     }
 }
 
+TEST_CASE("a forced motion whose impacts grow weaker for a while is not said to die out") {
+    for (const double b : {0.015, 0.018, 0.022}) {
+        const TrueMotion motion = settled_motion(b, 0.85, 0.85, 200);
+        const std::vector<IdentifiedImpact> all = listed(motion.impacts);
+        std::size_t weakening = 0;
+        for (std::size_t from = 0; from + 30 < all.size(); from += 10) {
+            const auto first = all.begin() + static_cast<std::ptrdiff_t>(from);
+            Measurement m{.parameters = motion.parameters, .impacts = {first, first + 30}};
+            complete_impacts(m.parameters, m.impacts, 0);
+            const IdentifiedExponents judged = conclude(m).judged;
+            CHECK(judged.verdict != Verdict::none);
+            CHECK((!judged.weakens || judged.verdict == Verdict::not_decided));
+            weakening += judged.weakens;
+        }
+        CHECK(weakening > 0);
+    }
+}
+
+TEST_CASE("impacts that die out have no exponents of a long run, and a trace of forcing is none") {
+    for (const double G : {0.0, 1e-6}) {
+        CAPTURE(G);
+        Parameters p;
+        p.G = G, p.b = 0.004;
+        ImpactRecord record;
+        Observer* const observers[] = {&record};
+        simulate(p, {.x = 0.05, .y = 0.05}, {.tau_end = 1500}, observers);
+        Measurement m{.parameters = p, .impacts = listed(record.entries)};
+        complete_impacts(p, m.impacts, 0);
+        CHECK(conclude(m).judged.verdict == Verdict::none);
+    }
+}
+
 TEST_CASE("a gap of the record breaks the product where an impact could hide in it") {
     const TrueMotion motion = settled_motion(0.009, 0.85, 0.85, 20);
     std::vector<IdentifiedImpact> impacts = listed(motion.impacts);
