@@ -6,6 +6,7 @@
 
 #include "core/measurement/robust.hpp"
 #include "core/measures/energy.hpp"
+#include "core/motion/elementary.hpp"
 #include "core/motion/special_values.hpp"
 
 namespace vines {
@@ -214,7 +215,7 @@ bool is_unforced(const Parameters& p, const std::vector<IdentifiedImpact>& impac
     double last = 0;
     for (const IdentifiedImpact& i : impacts)
         if (!i.is_left_out() && i.tau >= impacts.back().tau - quarter)
-            last = std::max(last, std::hypot(i.x, i.x_dot_after));
+            last = std::max(last, elementary::hypot(i.x, i.x_dot_after));
     return free_amplitude(p).value_or(infinity) < negligible_forcing * last;
 }
 
