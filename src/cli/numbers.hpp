@@ -9,6 +9,8 @@
 
 namespace vines::cli {
 
+inline constexpr double mm = 1e-3;  ///< m, as plots have lengths
+
 /// NaN for null and for what is not there.
 inline double number_at(const api::Json& object, const std::string& name) {
     const auto found = object.find(name);

@@ -18,8 +18,6 @@ using api::Json;
 using plot::Curve;
 using plot::Plot;
 
-constexpr double mm = 1e-3;  // m
-
 /// What an answer has at a path as "/exponents/qr"; null where it was left out.
 const Json& part(const Json& answer, const std::string& path) {
     static const Json none;

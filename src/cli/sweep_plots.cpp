@@ -20,8 +20,6 @@ using api::Json;
 using plot::Curve;
 using plot::Plot;
 
-constexpr double mm = 1e-3;  // m
-
 /// An axis, and the numbers of a line's quantity along it.
 struct Abscissa {
     std::string parameter;
