@@ -3,12 +3,12 @@ import assert from "node:assert/strict";
 import {spawn} from "node:child_process";
 import {mkdtemp, readFile, rm, writeFile} from "node:fs/promises";
 import {request as httpRequest} from "node:http";
-import net from "node:net";
 import {tmpdir} from "node:os";
 import {join} from "node:path";
 import {after, before, test} from "node:test";
 import {gunzipSync} from "node:zlib";
 import {program, startService} from "../service.mjs";
+import {connect, exchange} from "./raw.mjs";
 
 let service;
 let host;
@@ -22,19 +22,8 @@ after(() => service.stop());
 const post = (body, headers = {}) =>
   fetch(`${service.url}/v1/simulate`, {method: "POST", body, headers});
 
-/**
- * Sends bytes as they are and returns all that comes back until the server or the deadline ends it.
- */
-const raw = (text, milliseconds = 15000) =>
-  new Promise((resolve) => {
-    const socket = net.connect(Number(port), host);
-    let answer = "";
-    socket.on("data", (data) => (answer += data));
-    socket.on("close", () => resolve(answer));
-    socket.on("error", () => resolve(answer));
-    socket.write(text);
-    setTimeout(() => socket.destroy(), milliseconds);
-  });
+/** Sends bytes as they are: all that comes back until the server or the time ends it. */
+const raw = (text, milliseconds = 15000) => exchange(service.url, text, milliseconds);
 
 /** Runs the program to its end: [exit code, what it wrote]. */
 const run = (args, env = {}) =>
@@ -265,7 +254,9 @@ test("the OpenAPI document names every route and every field", async () => {
   for (const [path, methods] of Object.entries(document.paths)) {
     for (const method of Object.keys(methods)) {
       const body = method === "post" ? "{}" : undefined;
-      const {status} = await fetch(`${service.url}${path}`, {method: method.toUpperCase(), body});
+      const answer = await fetch(`${service.url}${path}`, {method: method.toUpperCase(), body});
+      await answer.text();
+      const {status} = answer;
       const hasRequired = ["/v1/sweep", "/v1/identify"].includes(path);
       assert.ok(status === 200 || (hasRequired && status === 422), `${method} ${path}: ${status}`);
     }
@@ -510,8 +501,7 @@ test("an answer beyond the server's limit is thinned, or refused with both numbe
 
 test("SIGTERM ends the service with 0, at once, with an idle connection open", async () => {
   const other = await startService();
-  const idle = net.connect(Number(new URL(other.url).port), host);
-  idle.on("error", () => {});
+  const {socket: idle} = await connect(other.url);
   idle.write("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n");
   await new Promise((resolve) => idle.once("data", resolve));
   const started = Date.now();
