@@ -156,7 +156,8 @@ Json identification() {
                   {"high", or_null(number()), "of its 90 % interval"}}),
              "how lambda1(tau) tau grows"},
             {"verdict", word_of_any<Verdict>(),
-             "chaotic, regular, not_decided; null where the impacts die out, for no forcing keeps them up"},
+             "chaotic, regular, not_decided; null where the impacts die out, for no forcing keeps "
+             "them up"},
             {"verdict_reason", text(), "a sentence"}});
 }
 

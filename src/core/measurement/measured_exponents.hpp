@@ -96,10 +96,10 @@ struct IdentifiedExponents {
 /// ten of them, against the typical jump at their wall. (Six b from 10.8 to 13 mm, some 30,000
 /// windows of 80 to 200 impacts.)
 bool is_representative(const std::vector<IdentifiedImpact>& impacts);
-/// Whether from quarter to quarter of the impacts' time the largest jump falls, to less than half in
-/// all. Without forcing the motion dies out then; a forced one may be in a transient, or in the
-/// falling part of a modulation. Of windows of 30 impacts of Table 4's system at b = 15, 18 and 22 mm
-/// 80 of 677 weaken.
+/// Whether from quarter to quarter of the impacts' time the largest jump falls, to less than half
+/// in all. Without forcing the motion dies out then; a forced one may be in a transient, or in the
+/// falling part of a modulation. Of windows of 30 impacts of Table 4's system at b = 15, 18 and 22
+/// mm 80 of 677 weaken.
 bool weakens(const std::vector<IdentifiedImpact>& impacts);
 /// Whether the forcing is none, or too weak to keep up the motion that the last quarter of the
 /// impacts shows.
