@@ -298,8 +298,9 @@ test("wheel, drag and keys zoom all plots together; an edit keeps the zoom, the 
   await page.mouse.move(box.x + box.width * 0.4, y);
   await page.mouse.down();
   await page.mouse.move(box.x + box.width * 0.6, y, {steps: 4});
+  const before = new URL(page.url()).search;
   await page.mouse.up();
-  await page.waitForTimeout(400);
+  await page.waitForFunction((search) => location.search !== search, before);
   const [left, right] = view(page);
   assert.ok(Math.abs((right - left) / (to - from) - 0.2) < 0.02, "a fifth of it");
   await page.focus("#plot-x");
