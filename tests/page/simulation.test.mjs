@@ -327,6 +327,30 @@ test("a window that ends before the run is what is in view at first; Escape twic
   await page.close();
 });
 
+test("a dense motion that is the same from cycle to cycle is drawn alike in each pixel, without gaps", async () => {
+  const page = await still("?preset=fig11&cycles=900");
+  for (const name of ["x", "relative"]) {
+    const heights = await page.$eval(`#plot-${name} canvas`, (canvas) => {
+      const {width, height} = canvas;
+      const copy = new OffscreenCanvas(width, height).getContext("2d", {willReadFrequently: true});
+      copy.drawImage(canvas, 0, 0);
+      const beside = 10; // px right of the plot
+      const [from, to] = [width / 2, width - beside - 2];
+      const inkIn = (column) => {
+        const {data} = copy.getImageData(column, 0, 1, height);
+        return data.filter((value, i) => i % 4 === 3 && value === 255).length; // opaque
+      };
+      const all = Array.from({length: Math.floor(to - from)}, (_, k) => inkIn(Math.ceil(from) + k));
+      const grid = Math.max(...all); // its lines go from the top to the bottom
+      return all.filter((height) => height < grid - 5);
+    });
+    assert.ok(heights.length > 200);
+    const [least, most] = [Math.min(...heights), Math.max(...heights)];
+    assert.ok(least > 30 && most - least < 4, `${name}: ${least} to ${most} px`);
+  }
+  await page.close();
+});
+
 test("one cursor goes through all plots and the machine, and the nearest impact is ringed in each", async () => {
   const page = await still("?preset=fig11");
   const [x, y] = await middle(page, "relative");

@@ -1,5 +1,5 @@
 // The exponents of an estimator as lines of a plot.
-import {short} from "./numbers.js";
+import {shortTo} from "./numbers.js";
 
 const names = ["lambda1", "lambda2", "lambda3", "lambda4"];
 // Told apart by more than their colour.
@@ -17,7 +17,7 @@ export function exponentSeries(history, status = []) {
     width: 1.3,
     ...style,
     label: `λ${"₁₂₃₄"[k]}`,
-    text: (v) => (v === null ? absent(status[k]) : short(v)),
+    text: (v) => (v === null ? absent(status[k]) : shortTo(4, v)),
   }));
   const columns = names.map((name) => history?.[name]);
   if (history?.rounding_floor) {

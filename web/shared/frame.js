@@ -19,7 +19,7 @@ function labelsOf({range, log, factor = 1, labels}, most) {
   if (labels) return labels(...range);
   const [min, max] = range.map((v) => v * factor);
   const powers = log ? logTicks(min, max) : [];
-  const round = powers.length < 3; // few within a power of ten
+  const round = powers.length < 2; // all within a step of those
   const list = round ? ticks(min, max, most) : powers;
   const step = list[1] - list[0];
   const text = (v) =>

@@ -93,10 +93,14 @@ export class Motion {
   trace(from, to, columns) {
     const width = (to - from) / columns;
     const samples = Math.max(2, Math.ceil((width / this.cycle) * samplesPerCycle));
-    const tau = Float64Array.from({length: 2 * columns}, (_, k) => from + (k * width) / 2);
+    const dense = samples > 2;
+    // The extremes lie well within their column: on its edge they would fall into the one before.
+    const within = dense ? 0.5 : 0;
+    const place = (_, k) => from + ((k + within) * width) / 2;
+    const tau = Float64Array.from({length: 2 * columns}, place);
     const line = () => tau.map((_, k) => (k % 2 ? -Infinity : Infinity));
-    const lines = {dense: samples > 2, tau, x: line(), gap: line()};
-    if (lines.dense) this.extremes(from, width / samples, samples, lines);
+    const lines = {dense, tau, x: line(), gap: line()};
+    if (dense) this.extremes(from, width / samples, samples, lines);
     else
       this.sample(from, width / 2, 2 * columns, (k, x, gap) => {
         lines.x[k] = x;

@@ -1,13 +1,22 @@
 // Where an axis has its labels.
 
-/** Round steps: 1, 2 or 5 times a power of ten, about `count` of them. */
-export function ticks(min, max, count) {
-  const raw = (max - min) / count;
-  const power = 10 ** Math.floor(Math.log10(raw));
-  const step = power * [1, 2, 5, 10].find((m) => m * power >= raw);
+function multiples(step, min, max) {
   const list = [];
   for (let k = Math.ceil(min / step); k * step <= max; ++k) list.push(k * step);
   return list;
+}
+
+/**
+ * Round steps: 1, 2 or 5 times a power of ten, about `count` of them; smaller ones where those would
+ * leave a single label, which tells no scale.
+ */
+export function ticks(min, max, count) {
+  const raw = (max - min) / count;
+  const power = 10 ** Math.floor(Math.log10(raw));
+  const round = [1, 2, 5, 10].find((m) => m * power >= raw);
+  const steps = [round, ...[5, 4, 2, 1, 0.5].filter((m) => m < round)];
+  const lists = steps.map((m) => multiples(m * power, min, max));
+  return lists.find((list) => list.length > 1) ?? lists[0];
 }
 
 /**

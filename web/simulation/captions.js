@@ -1,5 +1,5 @@
 // What each plot says of itself: for which parameters it is, and in words what it shows.
-import {$, attributes} from "../shared/dom.js";
+import {$, attributes, write} from "../shared/dom.js";
 import {count, inMm, percent, withError} from "../shared/numbers.js";
 import {regimes} from "../shared/quantities.js";
 import {run} from "./run.js";
@@ -25,20 +25,22 @@ let facts = {};
 
 /** What a plot that is taken away says of itself. */
 export function aboutFigure(name) {
-  const nodes = [...$(`figure-${name}`).querySelector("figcaption").childNodes];
-  const own = nodes.filter((node) => !node.classList?.length);
-  const words = own.map((node) => node.textContent.trim()).filter(Boolean);
+  const own = $(`figure-${name}`).querySelectorAll("figcaption :is(b, small:not(.params))");
+  const words = [...own].map((node) => node.textContent);
   const summary = [words.join(" "), facts[name]].filter(Boolean).join(": ");
   return {title: words[0], summary, caption, name: `vines-${name}`};
 }
 
-/** Writes both to the figures of the first screen. */
-export function describe(answer) {
+/** Writes both to the figures of the first screen; system: what was computed, in a few words. */
+export function describe(answer, system) {
   caption = parameterLine(answer.parameters);
   facts = factsOf(answer);
+  write({"key-stuck": answer.sticking.tau_start.length ? ", orange: stuck" : ""});
   for (const figure of document.querySelectorAll("#instrument figure")) {
     const name = figure.id.replace("figure-", "");
-    figure.querySelector(".params").textContent = caption;
+    const params = figure.querySelector(".params");
+    Object.assign(params, {textContent: system, title: caption});
+    params.dataset.all = system === caption ? "" : `: ${caption}`;
     attributes($(`plot-${name}`), {"aria-label": `${aboutFigure(name).summary}. ${caption}`});
   }
 }

@@ -147,7 +147,7 @@ function exponents() {
     lines.data.push(lines.data[0].map(at));
   };
   beside(run.more?.exponents.raw_product?.history, {
-    label: "λ₁ raw product",
+    label: "λ₁ raw",
     colour: "soft",
     width: 1.2,
     dash: [5, 4],

@@ -3,6 +3,7 @@
 import {$} from "../shared/dom.js";
 import {blank, font, Size} from "../shared/frame.js";
 import {ink, stroke, write} from "../shared/ink.js";
+import {clamp} from "../shared/numbers.js";
 import {axis, run} from "./run.js";
 
 const flashes = 0.12; // cycles that a flash lasts
@@ -11,6 +12,7 @@ const ghosts = [0.12, 0.08, 0.04, 0]; // cycles back at which the mass is shown
 const anchor = 14; // px
 const top = 30; // px of the cavity
 const ball = 11; // px
+const words = 76; // px of the mass' name, which stays over the cavity
 const rim = 14; // px of the oscillator's body beyond its walls
 
 function spring(c, to, y) {
@@ -87,8 +89,10 @@ export function redraw() {
   mass(c, px, level);
   impact(c, wall, level);
   c.font = "italic 13px system-ui";
-  label(c, "accent", "x", px(x), top - 14, "center", "bottom");
-  label(c, "mass", "y", px(y), top + 1, "center", "bottom");
+  label(c, "accent", "oscillator x", px(x), top - 14, "center", "bottom");
+  const reach = Math.min(words / 2, (right - left) / 2);
+  const middle = clamp(px(y), left + reach, right - reach);
+  label(c, "mass", "free mass y", middle, top + 1, "center", "bottom");
   c.font = font;
   label(c, "plus", "x − y = b", left, bottom + 3, "left", "top");
   label(c, "minus", "x − y = −b", right, bottom + 3, "right", "top");

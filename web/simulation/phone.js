@@ -12,6 +12,6 @@ export function start() {
   $("sheet").onclick = () => {
     const open = $("form").classList.toggle("open");
     attributes($("sheet"), {"aria-expanded": open});
-    write({sheet: open ? "Fewer ▾" : "All parameters ▴"});
+    write({sheet: `All ${open ? "▾" : "▴"}`});
   };
 }

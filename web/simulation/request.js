@@ -2,6 +2,7 @@
 // it.
 import {textOf} from "../shared/form.js";
 import {holding, isOfMotion, isOfSystem, queryText} from "../shared/presets.js";
+import {differenceText, parameterLine} from "./sliders.js";
 
 /** What a text of a query stands for: a list of lists, a list, or a text. */
 function queryValue(text) {
@@ -64,6 +65,15 @@ export class Request {
   get edited() {
     const changed = this.differing(this.form.values());
     return Object.keys(changed).some((name) => isOfMotion(this.fieldOf[name]));
+  }
+
+  /** What a request that was asked stands on, and what of the motion differs from that, in words. */
+  textOf({preset: name, ...differing}, parameters) {
+    const preset = this.presets.find((p) => p.name === name);
+    const names = Object.keys(differing).filter((field) => isOfMotion(this.fieldOf[field]));
+    if (!preset) return parameterLine(parameters);
+    const source = preset.source.split(",")[0];
+    return names.length ? `${source} with ${differenceText(names, parameters)}` : source;
   }
 
   /**

@@ -125,7 +125,7 @@ function drawing(fresh = false) {
   };
   const end = () => {
     player.show();
-    describe(answer);
+    describe(answer, request.textOf(asked, answer.parameters));
     mark(request.edited ? null : request.preset);
     strip.show(request.systemOf(asked), answer.parameters, slider);
   };

@@ -104,6 +104,17 @@ function textAt(one, parameters, range = rangeOf(one, parameters)) {
 export const valueText = (one, parameters) =>
   `${one.symbol} = ${textAt(one, parameters)} ${one.unit}`.trim();
 
+/** What of the fields differs from elsewhere, in words: the sliders' with their values. */
+export function differenceText(names, parameters) {
+  const setBy = (name) => {
+    const one = slidersOf(parameters).find((s) => s.name === (name === "lambda" ? "zeta" : name));
+    return one && !(one === restitution && parameters.R_plus !== parameters.R_minus) ? one : null;
+  };
+  const values = names.filter(setBy).map((name) => valueText(setBy(name), parameters));
+  const others = names.filter((name) => !setBy(name)).map(symbolOf);
+  return [...values, others.length ? `other ${others.join(", ")}` : ""].filter(Boolean).join(", ");
+}
+
 /** The parameters that matter, in a line. */
 export const parameterLine = (parameters) =>
   slidersOf(parameters)
