@@ -70,10 +70,14 @@ export class Axis {
     this.zoomAt(this.cursor ?? this.view[0] + this.width / 2, factor);
   }
 
+  /** Whether a place is in view. */
+  holds(at) {
+    return at >= this.view[0] && at <= this.view[1];
+  }
+
   /** Brings a place into view, in the middle unless it is there already. */
   reveal(at) {
-    const [from, to] = this.view;
-    if (at < from || at > to) this.pan((at - from) / this.width - 0.5);
+    if (!this.holds(at)) this.pan((at - this.view[0]) / this.width - 0.5);
   }
 
   /** By a share of what is in view. */

@@ -5,11 +5,11 @@ const names = ["lambda1", "lambda2", "lambda3", "lambda4"];
 // Told apart by more than their colour.
 const styles = [{width: 2}, {}, {dash: [7, 3]}, {dash: [2, 3]}];
 
-const absent = (status) => (status === "minus_infinity" ? "−∞" : "");
+const absent = (status, ended) => (ended && status === "minus_infinity" ? "−∞" : "");
 
 /**
  * {series, columns} of a history: the four exponents and, where it has one, its rounding floor. An
- * exponent that is minus infinity has no line, but a word.
+ * exponent that is minus infinity has no line any more, but a word.
  */
 export function exponentSeries(history, status = []) {
   const series = styles.map((style, k) => ({
@@ -17,7 +17,7 @@ export function exponentSeries(history, status = []) {
     width: 1.3,
     ...style,
     label: `λ${"₁₂₃₄"[k]}`,
-    text: (v) => (v === null ? absent(status[k]) : shortTo(4, v)),
+    text: (v, ended) => (v === null ? absent(status[k], ended) : shortTo(4, v)),
   }));
   const columns = names.map((name) => history?.[name]);
   if (history?.rounding_floor) {

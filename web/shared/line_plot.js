@@ -23,7 +23,7 @@ export class LinePlot extends Panel {
 
   /**
    * series: [{label, colour, dash, width, dots, text}], dots: their size, and no line unless there
-   * is a width; text(value): its legend in words; data: columns, or trace(from, to, columns): {data,
+   * is a width; text(value, whether its line has ended): its legend in words; data: columns, or trace(from, to, columns): {data,
    * dense} of what is in view, dense: the extremes of each pixel, and samples(from, to): the same as
    * numbers to take away; unit: of them; span: [from, to] of the whole axis, if this plot is to say
    * so; range: of y; log: of y; levels: of y, each in the colour levelColour or as {y, colour};
@@ -153,7 +153,8 @@ export class LinePlot extends Panel {
     if (!data) return;
     const i = t === null ? -1 : lastUpTo(data[0], t);
     series.forEach(({text = shortOrNone}, k) => {
-      const shown = text(data[k + 1][i] ?? null);
+      const column = data[k + 1];
+      const shown = text(column[i] ?? null, column.findLastIndex((v) => v !== null) < i);
       if (this.values[k].textContent !== shown) this.values[k].textContent = shown;
     });
   }

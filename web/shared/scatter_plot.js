@@ -27,7 +27,7 @@ export class ScatterPlot extends Plot {
    * groups: [{x, y, colour, size, alpha, shape}], shape: ring, cross or else a dot; curves: [{x, y,
    * colour, dash}]; levels: [{y, colour, label}]; extent: {x, y}, else that of the groups; equal:
    * the same scale on both axes; xLabel, yLabel; empty: what to say if there are no points; pick:
-   * {x, y, use(i)}, the points that can be pointed at, and what is called then.
+   * {x, y, use(i, clicked)}, the points that can be pointed at, and what is called then.
    */
   draw(options) {
     this.last = options;
@@ -81,7 +81,7 @@ export class ScatterPlot extends Plot {
   }
 
   /** The point nearest to the pointer, if it is near. */
-  hover({offsetX, offsetY}) {
+  hover({offsetX, offsetY, type}) {
     const {pick} = this.last ?? {};
     if (!pick || !this.frame) return;
     const {px, py} = this.frame;
@@ -91,7 +91,9 @@ export class ScatterPlot extends Plot {
       const distance = Math.hypot(px(x) - offsetX, py(pick.y[i]) - offsetY);
       if (distance < best) [best, found] = [distance, i];
     });
-    if (found >= 0) pick.use(found);
+    if (found < 0) return;
+    this.light(pick.x[found], pick.y[found]);
+    pick.use(found, type === "click");
   }
 
   dots(c, {x, y, colour, size = 2.4, alpha = 0.75, shape}, frame) {

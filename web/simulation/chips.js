@@ -36,8 +36,10 @@ export function start(presets, choose) {
   $("preset").onchange = () => choose($("preset").value);
 }
 
-/** Marks the preset that the form stands for. */
-export function mark(name) {
+/** Marks the preset that the form stands for, or stands on, where it is changed. */
+export function mark(name, changed) {
   $("preset").value = name;
-  press(document.querySelectorAll("#chips button"), (one) => one.dataset.preset === name);
+  const all = document.querySelectorAll("#chips button");
+  press(all, (one) => one.dataset.preset === name && !changed);
+  for (const one of all) one.classList.toggle("changed", one.dataset.preset === name && changed);
 }

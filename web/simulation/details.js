@@ -67,5 +67,8 @@ export const redraw = () => plots?.refresh();
 export function start(table) {
   fieldOf = table;
   details.ontoggle = follow;
+  $("to-details").onclick = () => {
+    details.open = true;
+  };
   axis.onCursor(light);
 }

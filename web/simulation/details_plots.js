@@ -75,7 +75,7 @@ function impactPlanes(impacts) {
   const label = (symbol) => `${symbol} (${velocity.unit})`;
   const plane = (of) => ({
     groups: ["before", "after"].map((when) => ({...of(when), colour: when})),
-    pick: {...of("after"), use: (i) => pick(impacts.tau[i])},
+    pick: {...of("after"), use: (i, clicked) => pick(impacts.tau[i], clicked)},
   });
   return {
     portrait: {
@@ -99,7 +99,7 @@ function stroboscopic({tau, x, x_dot: xDot}) {
     xLabel: "x (mm)",
     yLabel: `x′ (${velocity.unit})`,
     empty: "no whole cycle in the window",
-    pick: {...points, use: (i) => pick(tau[i])},
+    pick: {...points, use: (i, clicked) => pick(tau[i], clicked)},
   };
 }
 

@@ -174,7 +174,7 @@ function section() {
     groups,
     xLabel: "x (mm)",
     yLabel: `x′ after (${velocity.unit})`,
-    pick: {...points, use: (i) => pick(impacts.tau[i])},
+    pick: {...points, use: (i, clicked) => pick(impacts.tau[i], clicked)},
   };
 }
 

@@ -1,4 +1,4 @@
-// The machine itself, to scale, at one moment of the run: spring, oscillator, walls, the free mass
+// The machine itself, to scale, at one moment of the run: spring and damper, oscillator, walls, the free mass
 // and where it just came from; a flash at an impact.
 import {$} from "../shared/dom.js";
 import {blank, font, Size} from "../shared/frame.js";
@@ -21,10 +21,35 @@ function spring(c, to, y) {
   const step = (to - anchor - 2 * ends) / turns;
   const coils = Array.from({length: turns}, (_, k) => [
     anchor + ends + (k + 0.5) * step,
-    y + (k % 2 ? 9 : -9),
+    y + (k % 2 ? 7 : -7),
   ]);
   ink(c, "text", 2);
   stroke(c, [[anchor, y], [anchor + ends, y], ...coils, [to - ends, y], [to, y]]);
+}
+
+/** A piston in its cylinder. */
+function damper(c, to, y) {
+  const piston = anchor + 0.55 * (to - anchor);
+  const [from, end] = [piston - 14, piston + 10];
+  ink(c, "text", 1.5);
+  stroke(c, [
+    [anchor, y],
+    [from, y],
+  ]);
+  stroke(c, [
+    [end, y - 6],
+    [from, y - 6],
+    [from, y + 6],
+    [end, y + 6],
+  ]);
+  stroke(c, [
+    [piston, y - 4],
+    [piston, y + 4],
+  ]);
+  stroke(c, [
+    [piston, y],
+    [to, y],
+  ]);
 }
 
 function ground(c, floor, width) {
@@ -83,19 +108,23 @@ export function redraw() {
   const level = (top + bottom) / 2;
   const [left, right] = [wall(1) - ball, wall(-1) + ball];
   ground(c, floor, width);
-  spring(c, left - rim, level);
+  spring(c, left - rim, level - 9);
+  damper(c, left - rim, level + 13);
   body(c, left - rim, right + rim, floor);
   cavity(c, left, right, bottom);
-  mass(c, px, level);
+  mass(c, px, x, level);
   impact(c, wall, level);
+  c.font = font;
+  if (motion.parameters.G) label(c, "soft", "↔ base", 4, 8, "left", "middle");
   c.font = "italic 13px system-ui";
   label(c, "accent", "oscillator x", px(x), top - 14, "center", "bottom");
   const reach = Math.min(words / 2, (right - left) / 2);
   const middle = clamp(px(y), left + reach, right - reach);
   label(c, "mass", "free mass y", middle, top + 1, "center", "bottom");
   c.font = font;
-  label(c, "plus", "x − y = b", left, bottom + 3, "left", "top");
-  label(c, "minus", "x − y = −b", right, bottom + 3, "right", "top");
+  const [at, opposite] = right - left > 2 * words ? ["y − x = −b", "y − x = b"] : ["−b", "b"];
+  label(c, "plus", at, left, bottom + 3, "left", "top");
+  label(c, "minus", opposite, right, bottom + 3, "right", "top");
 }
 
 function cavity(c, left, right, bottom) {
@@ -108,15 +137,16 @@ function cavity(c, left, right, bottom) {
   fill("minus", right + 3, 3);
 }
 
-/** Now, and before, where it is paler. */
-function mass(c, px, level) {
+/** Now, and before, where it is paler: as it came through the cavity, which is at x now. */
+function mass(c, px, x, level) {
   ink(c, "mass");
   ghosts.forEach((cycles, k) => {
     const moment = axis.cursor - cycles * run.motion.cycle;
     if (moment < 0) return;
     c.globalAlpha = cycles ? 0.1 + 0.08 * k : 1;
     c.beginPath();
-    c.arc(px(run.motion.at(moment).y), level, ball, 0, 2 * Math.PI);
+    const then = run.motion.at(moment);
+    c.arc(px(x + then.y - then.x), level, ball, 0, 2 * Math.PI);
     c.fill();
   });
 }

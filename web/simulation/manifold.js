@@ -27,7 +27,7 @@ export function manifold() {
       V: reach(points.V, 1.4 * (fold?.V ?? 0)),
       C: reach(points.C, 1.6 * (fold?.C ?? 0), free ?? 0),
     }),
-    pick: {...place(points), use: (i) => pick(points.tau[i])},
+    pick: {...place(points), use: (i, clicked) => pick(points.tau[i], clicked)},
     xLabel: `speed of the free mass, V (${velocity.unit})`,
     yLabel: "amplitude of x, C (mm)",
   };

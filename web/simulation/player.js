@@ -45,10 +45,7 @@ export function show() {
   else restart("show");
 }
 
-function inView(moment) {
-  const [from, to] = axis.view;
-  return moment !== null && moment >= from && moment <= to;
-}
+const inView = (moment) => moment !== null && axis.holds(moment);
 
 /** To where something is about to happen: just before the first impact in view. */
 function restart(by) {

@@ -10,5 +10,8 @@ export function setRun(newest) {
   run = newest;
 }
 
-/** The cursor goes to a moment that was chosen in a plot. */
-export const pick = (tau) => axis.point(tau, "pick");
+/** The cursor goes to a moment that is pointed at in a plane; to one out of view by a click alone. */
+export function pick(tau, clicked) {
+  if (clicked) axis.reveal(tau);
+  if (axis.holds(tau)) axis.point(tau, "pick");
+}

@@ -1,17 +1,19 @@
 // What a run came to, in one sentence.
 import {$, element} from "../shared/dom.js";
-import {count, percent, withError} from "../shared/numbers.js";
+import {count, digits, percent, withError} from "../shared/numbers.js";
 import {regimes} from "../shared/quantities.js";
 import {valueText} from "./sliders.js";
 
 /** How the motion goes, and whether it is chaotic; of what both tell, only what they agree on. */
-function motionText({regime, exponents}, units) {
-  const {type, periodic, capture, period_cycles: cycles} = regime;
+function motionText({regime, exponents, energy}, units) {
+  const {type, periodic, capture, period_cycles: cycles, impacts_per_period: impacts} = regime;
+  if (energy.peak === 0) return "x rests: no forcing, no impact";
   if (type === "none")
     return regime.description === "no impacts" ? "the mass meets no wall" : regime.description;
   const name = `${regimes[type] ?? regime.description} (${type})`;
   if (periodic) {
-    const period = cycles > 1 ? ` of ${count(cycles, "cycle")}` : "";
+    const hits = type === "V" ? `, ${count(impacts, "impact")}` : "";
+    const period = cycles > 1 || hits ? ` of ${count(cycles, "cycle")}${hits}` : "";
     const late = capture?.chaotic_before && capture.tau !== null;
     const before = late ? `, after a chaotic transient up to ${units.at(capture.tau)}` : "";
     return `${name}, ${regime.stable ? "" : "un"}stable periodic orbit${period}${before}`;
@@ -20,20 +22,30 @@ function motionText({regime, exponents}, units) {
   return verdict && verdict !== "not_decided" ? `${name}, ${verdict}` : name;
 }
 
-function lambdaText({qr, verdict}, regime) {
+/** Of an orbit, from its largest multiplier: what the exponent of the run tends to. */
+function orbitText({multipliers, period_cycles: cycles}, {Omega}) {
+  const [largest] = multipliers?.modulus ?? [];
+  if (largest === undefined) return "";
+  const lambda = (Math.log(largest) * Omega) / (2 * Math.PI * cycles);
+  return `λ₁ = ${largest ? digits(lambda, 4) : "−∞"} on it`;
+}
+
+function lambdaText({qr, verdict}, regime, parameters) {
+  if (regime.periodic) return orbitText(regime, parameters);
   if (!qr || regime.type === "none" || qr.final[0] == null) return "";
   const value = `λ₁ = ${withError(qr.final[0], qr.standard_error[0], 3)}`;
-  const open = verdict === "not_decided" && !regime.periodic;
-  return open ? `${value}, too close to zero to decide` : value;
+  return verdict === "not_decided" ? `${value}, too close to zero to decide` : value;
 }
 
 const amplitudeText = ({rms_ratio: ratio}) =>
-  ratio == null ? "" : `x at ${percent(ratio)} of that without the absorber`;
+  ratio == null ? "" : `rms x ${percent(ratio)} of that without the absorber`;
 
 /** slider: whose value the sentence begins with. */
 export function showSentence(answer, slider, units) {
   const {exponents, regime, energy, parameters} = answer;
-  const rest = [lambdaText(exponents, regime), amplitudeText(energy)].filter(Boolean).join("; ");
+  const rest = [lambdaText(exponents, regime, parameters), amplitudeText(energy)]
+    .filter(Boolean)
+    .join("; ");
   const end = rest && ".";
   const motion = element("b", {textContent: motionText(answer, units) + end});
   $("sentence").replaceChildren(`${valueText(slider, parameters)}: `, motion, " ", rest + end);

@@ -73,10 +73,12 @@ const more = new Job({
 });
 
 function refuse(error) {
-  const left = error instanceof Problem ? request.form.showErrors(error.errors, false) : [];
-  if (error instanceof Problem && left.length < error.errors.length) $("more").open = true;
-  say(wholeMessage(error, left), true);
   setStale(true);
+  if (!(error instanceof Problem)) return say(wholeMessage(error, []), true);
+  const left = request.form.showErrors(error.errors, false);
+  const turned = sliders.showErrors(error.errors);
+  if (left.length + turned.length < error.errors.length) $("more").open = true;
+  say(turned.length ? turned.join("; ") : wholeMessage(error, left), true);
 }
 
 /** What is first in view: the window, where there is one that ends before the run. */
@@ -105,6 +107,7 @@ async function present(answer, asked) {
   axis.span(0, answer.status.tau, homeOf(answer), fresh);
   if (wantedView) axis.view = wantedView;
   wantedView = null;
+  reveal({whole: axis.away});
   for (const step of drawing(fresh)) {
     if (pause) await pause();
     if (run.answer !== answer) return;
@@ -138,7 +141,7 @@ function drawing(fresh = false) {
 function send({hasty = false, fresh = false, unknown = []} = {}) {
   const asked = request.asked();
   Object.defineProperties(asked, {fresh: {value: fresh}, unknown: {value: unknown}});
-  chips.mark(request.name);
+  chips.mark(request.name, request.edited);
   if (hasty) player.hold();
   remember(toQuery(asked), hasty);
   job.start(asked, {hasty});
@@ -167,8 +170,8 @@ function turn(fields, slider, hasty) {
   if (slider.name === "zeta") request.dampingChosen = true;
   const entries = Object.entries(fields);
   for (const [name, value] of entries) form.replace(name, value ?? "");
-  for (const [name, value] of entries) if (value !== null) note(request.typedOver(name));
-  form.greyOut();
+  request.greyOut();
+  note("");
   send({hasty});
 }
 
@@ -254,8 +257,15 @@ function listen(form, measure) {
       send();
     };
   }
-  axis.onView(() => remembered({soon: true}));
-  $("more").ontoggle = () => run && showOrigins();
+  axis.onView(() => {
+    reveal({whole: axis.away});
+    remembered({soon: true});
+  });
+  $("whole").onclick = () => axis.reset();
+  $("more").ontoggle = () => {
+    if (run) showOrigins();
+    if ($("more").open) $("more").scrollIntoView({block: "nearest"});
+  };
   unitsSwitch($("units"));
   onUnits(() => {
     if (!run) return;

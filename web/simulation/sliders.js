@@ -1,7 +1,7 @@
 // The few parameters that one turns: a slider, a number and its unit each. What they set are fields
 // of the form.
 import {$, attributes, element} from "../shared/dom.js";
-import {toNumber} from "../shared/numbers.js";
+import {short, toNumber} from "../shared/numbers.js";
 import {symbolOf} from "../shared/quantities.js";
 
 /**
@@ -22,7 +22,8 @@ const slider = (name, label, about, more) => ({
 });
 
 const mm = {unit: "mm", factor: 1000};
-const zetaField = ({lambda, derived}, zeta) => (derived.zeta ? (lambda * zeta) / derived.zeta : 0);
+/** What the damping ratio is over lambda, eq. (3) or as the paper's closed form has it. */
+const zetaOver = ({epsilon, damping}) => (damping === "closed_form" ? epsilon : epsilon / 2);
 
 const clearance = slider("b", "Clearance", "half the free path of the mass", {
   ...mm,
@@ -33,7 +34,7 @@ const restitution = slider("R", "Restitution", "of both walls", {
   of: ({R_plus: plus, R_minus: minus}) => (plus + minus) / 2,
   fields: (value) => ({R: value, R_plus: null, R_minus: null}),
   aboutOf: ({R_plus: plus, R_minus: minus}) =>
-    plus !== minus && `mean of ${plus} at +b and ${minus} at −b`,
+    plus !== minus && `mean of R₊ = ${plus} and R₋ = ${minus}`,
 });
 const reduced = [
   clearance,
@@ -44,7 +45,7 @@ const reduced = [
     symbol: "ζ",
     rangeOf: () => [0, 0.04],
     of: ({derived}) => derived.zeta,
-    fields: (zeta, parameters) => ({lambda: zetaField(parameters, zeta)}),
+    fields: (zeta, parameters) => ({lambda: zeta / zetaOver(parameters)}),
   }),
 ];
 const si = [
@@ -172,6 +173,7 @@ function rowOf(one) {
     onchange: () => turnTo(one, Number(range.value), false),
   });
   const note = element("small");
+  title.title = one.about;
   const unit = element("span", {className: "unit", textContent: one.unit});
   const node = element("div", {className: "slider"}, title, number, unit, range, note);
   rows.set(one, {node, number, range, note, span: null});
@@ -192,6 +194,18 @@ function set(one, row, fresh) {
   attributes(number, {"aria-invalid": false});
   put(number, textAt(one, shown, row.span));
   row.note.textContent = one.aboutOf?.(shown) || one.about;
+}
+
+/** Marks the sliders whose values are refused; what is said of them, in their units. */
+export function showErrors(errors) {
+  const of = ({pointer}) => [...rows].find(([one]) => one.name === pointer.slice(1));
+  return errors.filter(of).map((error) => {
+    const [{label, name, unit, factor}, {number}] = of(error);
+    attributes(number, {"aria-invalid": true});
+    const ends = error.range?.map((v) => short(v * factor)).join(" to ");
+    const range = ends ? `${name} must lie in ${ends} ${unit}`.trim() : error.detail;
+    return `${label} “${number.value}”: ${range}`;
+  });
 }
 
 /** value: in the slider's unit, to be rounded as its number shows it. */

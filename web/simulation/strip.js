@@ -7,6 +7,7 @@ import {ink, stroke, write as writeText} from "../shared/ink.js";
 import {jsonLines} from "../shared/json_lines.js";
 import {clamp, digits, withError} from "../shared/numbers.js";
 import {regimeColour, regimeText, verdictColour, verdicts} from "../shared/quantities.js";
+import {run} from "./run.js";
 import {fieldsOf, spanOf, turnTo, valueAt, written} from "./sliders.js";
 
 const cycles = 300; // measured at each point, after
@@ -37,6 +38,7 @@ let abort;
 let waiting = 0;
 let drawing = 0;
 let frame = null;
+let pointed = false;
 
 /** A run that is shown: what of its request is the system's, its parameters, and the slider. */
 export function show(system, shown, turned) {
@@ -185,6 +187,27 @@ function place() {
     "aria-valuenow": value,
     "aria-valuetext": textAt(value),
   });
+  if (!pointed) tell();
+}
+
+/**
+ * Beside the title: what is under the pointer, or else how the point at the marker, which has left
+ * its first cycles behind, differs from the run above.
+ */
+function tell(event) {
+  pointed = Boolean(event);
+  write({"strip-tip": event ? textAt(valueUnder(event)) : differenceText()});
+}
+
+function differenceText() {
+  const p = found[nearest(valueAt(slider, parameters))];
+  if (stale || !p?.regime) return "";
+  const {regime, exponents} = run.answer;
+  const own = [regime.type, regime.periodic ? "regular" : exponents.verdict];
+  const there = [p.regime, p.periodic ? "regular" : p.verdict];
+  if (own.join() === there.join()) return "";
+  const words = ([type, verdict]) => [type, verdicts[verdict]].filter(Boolean).join(", ");
+  return `at the marker, after ${transient} cycles: ${words(there)}; the run above: ${words(own)}`;
 }
 
 /** A value and what is there, in words. */
@@ -231,10 +254,10 @@ function listen() {
     onpointermove(event) {
       const value = valueUnder(event);
       if (event.buttons) turn(value, true);
-      write({"strip-tip": textAt(value)});
+      tell(event);
     },
     onpointerup: (event) => turn(valueUnder(event), false),
-    onpointerleave: () => write({"strip-tip": ""}),
+    onpointerleave: () => tell(),
     onkeydown(event) {
       const step = steps[event.key] * (event.shiftKey ? 10 : 1);
       if (!step) return;

@@ -200,13 +200,14 @@ bool weakens(const std::vector<IdentifiedImpact>& impacts) {
             jumps[static_cast<std::size_t>(quarter)].push_back(
                 std::abs(i.x_dot_after - i.x_dot_before));
     }
-    std::array<double, 4> largest{};
-    for (std::size_t q = 0; q < largest.size(); ++q) {
-        std::sort(jumps[q].rbegin(), jumps[q].rend());
-        if (!jumps[q].empty()) largest[q] = jumps[q][std::min(false_ones, jumps[q].size() - 1)];
+    // The weaker, the longer the flights: a quarter without an impact says nothing against it.
+    std::vector<double> largest;
+    for (std::vector<double>& quarter : jumps) {
+        std::sort(quarter.rbegin(), quarter.rend());
+        if (!quarter.empty()) largest.push_back(quarter[std::min(false_ones, quarter.size() - 1)]);
     }
-    return std::is_sorted(largest.rbegin(), largest.rend()) && largest[3] > 0 &&
-           largest[3] * least_fall < largest[0];
+    return std::is_sorted(largest.rbegin(), largest.rend()) && largest.size() > 1 &&
+           largest.back() > 0 && largest.back() * least_fall < largest.front();
 }
 
 bool is_unforced(const Parameters& p, const std::vector<IdentifiedImpact>& impacts) {

@@ -175,6 +175,7 @@ void Decay::on_stretch(const Stretch& stretch) {
     if (from > stretch.duration) return;
     auto energy_at = [&](double s) { return energy_of(parameters_, stretch.at(s)); };
     if (!at_start_) at_start_ = energy_at(std::max(0.0, from));
+    if (*at_start_ == 0) return;  // a system at rest has no share to lose
     const double end = energy_at(stretch.duration);
     for (std::size_t k = 0; k < shares_.size(); ++k) {
         const double level = shares_[k] * *at_start_;

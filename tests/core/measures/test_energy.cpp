@@ -114,6 +114,15 @@ TEST_CASE("without the absorber the oscillator comes to its steady amplitude") {
     CHECK_FALSE(unattached(undamped, {}, 0, 10).amplitude);
 }
 
+TEST_CASE("a system at rest has no moment at which half of its energy is left") {
+    Parameters p = table1(0.022, Damping::equation_of_motion);
+    p.G = 0;
+    Decay decay(p, 0, {0.5, 0.1});
+    record(p, {0, 0, 0, 0}, 100, 1000, {&decay});
+    CHECK_FALSE(decay.tau[0]);
+    CHECK_FALSE(decay.tau[1]);
+}
+
 TEST_CASE("a free decay passes half and a tenth of its energy at the moments reported") {
     Parameters p = table1(0.022, Damping::equation_of_motion);
     p.G = 0;
