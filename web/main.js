@@ -3,6 +3,7 @@
 
 import * as measurement from "./measurement/measurement.js";
 import {get} from "./shared/api.js";
+import {onColours} from "./shared/colours.js";
 import {$} from "./shared/dom.js";
 import * as tabs from "./shared/tabs.js";
 import * as simulation from "./simulation/simulation.js";
@@ -96,7 +97,7 @@ async function start() {
     if (name !== current) go(name, queryOf(name));
   });
   addEventListener("popstate", follow);
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+  onColours(() => {
     for (const name of started) modules[name].redraw();
   });
   await follow();

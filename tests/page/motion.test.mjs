@@ -75,8 +75,21 @@ test("a close look follows the motion, a wide one holds all of it, and the impac
     );
 });
 
+test("an oscillator that is faster than its forcing shows no beat that is not there", async () => {
+  const query = "Omega=0.05&b=0.1&x0=0.002&y0=0.002&tau_end=8000&lambda=0";
+  const motion = new Motion(await answerTo(query));
+  const {x, dense} = motion.trace(0, motion.end, 600);
+  assert.ok(dense);
+  const heights = Array.from({length: 600}, (_, k) => x[2 * k + 1] - x[2 * k]);
+  const least = Math.min(...heights);
+  assert.ok(least > 0.0037, `${least} of 0.004 m between the extremes of a pixel`);
+});
+
 test("beyond the run there is nothing", async () => {
   const motion = new Motion(await answerTo("tau_end=100"));
   const {x, tau} = motion.trace(90, 110, 100);
   for (const [i, t] of tau.entries()) assert.equal(Number.isNaN(x[i]), t > 100, `${t}`);
+  const wide = motion.trace(0, 1000, 10);
+  assert.ok(wide.dense);
+  assert.ok(wide.x.slice(0, 2).every(Number.isFinite) && wide.x.slice(4).every(Number.isNaN));
 });

@@ -6,6 +6,7 @@ import {addMenu} from "../shared/figure_menu.js";
 import {rangeOf} from "../shared/frame.js";
 import {LinePlot} from "../shared/line_plot.js";
 import {operable} from "../shared/operable.js";
+import {verdicts} from "../shared/quantities.js";
 import {ScatterPlot} from "../shared/scatter_plot.js";
 import {firstFrom, lastUpTo} from "../shared/search.js";
 import {isLeftOut, kindOf} from "./impact_list.js";
@@ -57,7 +58,7 @@ function summaryOf({answer}) {
   if (!answer) return "A record of which nothing is identified yet.";
   const {impacts, verdict, slope} = answer;
   const lambda = slope.lambda1 == null ? "" : `, slope of λ₁τ ${slope.lambda1.toFixed(4)}`;
-  return `${impacts.tau.length} impacts, ${verdict.replace("_", " ")}${lambda}`;
+  return `${impacts.tau.length} impacts, ${verdicts[verdict] ?? "no verdict"}${lambda}`;
 }
 
 /** Tags the plots of an experiment of the paper with its figures. */
@@ -77,7 +78,8 @@ function light(answer) {
   const {time_s: t, x, x_dot_after: xDot, R} = answer.impacts;
   const before = Math.max(lastUpTo(t, cursor), 0);
   const i = t[before + 1] - cursor < cursor - t[before] ? before + 1 : before;
-  for (const name of planes) plots[name].light(x[i] * 1000, xDot[i] * 1000);
+  const {omega0} = answer.parameters.derived;
+  for (const name of planes) plots[name].light(x[i] * 1000, xDot[i] * 1000 * omega0);
   plots.x.light(t[i], x[i] * 1000);
   plots.R.light(t[i], R[i]);
 }
@@ -212,9 +214,10 @@ function drawSteps({impacts: {tau, time_s: t}, parameters}) {
   });
 }
 
-function drawSections({impacts}) {
+function drawSections({impacts, parameters}) {
   const x = mm(impacts.x);
-  const points = (velocity) => ({x, y: mm(velocity)});
+  const inSeconds = 1000 * parameters.derived.omega0; // mm/s of m per unit of tau
+  const points = (velocity) => ({x, y: velocity.map((v) => v * inSeconds)});
   const after = points(impacts.x_dot_after);
   const draw = (name, yLabel, groups) =>
     plots[name].draw({
@@ -223,7 +226,7 @@ function drawSections({impacts}) {
       xLabel: "x (mm)",
       yLabel,
     });
-  draw("portrait", "x′ (mm)", [
+  draw("portrait", "x′ (mm/s)", [
     {...points(impacts.x_dot_before), colour: "before", shape: "ring", size: 3.4},
     {...after, colour: "after", shape: "cross", size: 2.8},
   ]);
@@ -231,7 +234,7 @@ function drawSections({impacts}) {
     const of = (column) => column.filter((_, i) => impacts.side[i] === sign);
     return {x: of(x), y: of(after.y), colour, size: 3.6, alpha: 1};
   };
-  draw("section", "x′ after (mm)", [atWall(1, "plus"), atWall(-1, "minus")]);
+  draw("section", "x′ after (mm/s)", [atWall(1, "plus"), atWall(-1, "minus")]);
 }
 
 export function draw(answer) {

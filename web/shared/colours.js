@@ -1,7 +1,13 @@
 // Colours by their names in the style sheet, so that they follow the colour scheme.
 
 const known = new Map();
-matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => known.clear());
+
+/** f: called when they are others: on a dark screen, a light one, on paper. */
+export function onColours(f) {
+  for (const scheme of ["(prefers-color-scheme: dark)", "print"])
+    matchMedia(scheme).addEventListener("change", f);
+}
+onColours(() => known.clear());
 
 export function colour(name) {
   if (!known.has(name)) {

@@ -33,6 +33,12 @@ export function textOf(value) {
     .join(", ");
 }
 
+/** What is said of names in the address that no field has. */
+export const unknownText = (names) =>
+  names.length
+    ? `the address names what this page does not know: ${names.map((n) => `"${n}"`).join(", ")}`
+    : "";
+
 /** A text as JSON wants it; what cannot be a number is sent as text, for the service to refuse. */
 const number = (text) => toNumber(text) ?? text.trim();
 const interval = (text) => text.split(",").map(number);

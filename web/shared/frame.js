@@ -6,6 +6,7 @@ import {clamp, minus, shortTo} from "./numbers.js";
 import {logTicks, ticks} from "./ticks.js";
 
 export const font = "11px system-ui, sans-serif";
+const letter = 3.4; // px of half a digit of it
 
 /** Pixels of a value between two places. */
 function scaleOf({range, log}, from, to) {
@@ -43,7 +44,7 @@ export class Frame {
     const below = x.bare ? 5 : 18 + (x.label ? 14 : 0);
     const bottom = Math.max(height - below, 15);
     const box = {left, top, right, bottom};
-    Object.assign(this, {x, y, box, width: right - left, height: bottom - top});
+    Object.assign(this, {x, y, box, beside, width: right - left, height: bottom - top});
     Object.assign(this, {px: scaleOf(x, left, right), py: scaleOf(y, bottom, top)});
   }
 
@@ -84,7 +85,11 @@ export class Frame {
     c.font = font;
     ink(c, "grid");
     c.fillStyle = colour("soft");
-    const below = (text, at, down) => x.bare || write(c, text, at, bottom + down, "center", "top");
+    const end = right + this.beside; // what is written about the last place stays within it
+    const below = (text, at, down) => {
+      const half = letter * text.length;
+      if (!x.bare) write(c, text, Math.min(at, end - half), bottom + down, "center", "top");
+    };
     for (const {at, text} of labelsOf(x, clamp(Math.floor(this.width / 70), 2, 10))) {
       this.upright(c, at);
       below(text, px(at), 4);

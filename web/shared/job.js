@@ -2,7 +2,7 @@
 import {Passing} from "./api.js";
 
 const patience = 120; // ms after which what is shown is marked as that of another request
-const again = 2; // s after which a server that does not answer, or is busy, is asked again
+export const again = 2; // s after which a server that does not answer, or is busy, is asked again
 
 /** Some seconds, or until one does not want to wait any longer. */
 const sleep = (seconds, signal) =>
@@ -12,7 +12,7 @@ const sleep = (seconds, signal) =>
   });
 
 /** Whether the same request may be answered later: there was no answer, or half of one. */
-const passes = (error) => error instanceof Passing || error.status === 503;
+export const passes = (error) => error instanceof Passing || error.status === 503;
 
 export class Job {
   running = null;

@@ -4,7 +4,7 @@
 import {Flow} from "./flow.js";
 import {lastUpTo} from "./search.js";
 
-const samplesPerCycle = 16; // at least, so that no beat shows that is not there
+const samplesPerCycle = 16; // at least, of the faster of forcing and oscillator, so that no beat shows that is not there
 
 export class Motion {
   /** Of an answer of /v1/simulate with its impacts. */
@@ -12,6 +12,8 @@ export class Motion {
     const {epsilon, Omega, b, derived} = parameters;
     const {zeta, A, phi} = derived;
     Object.assign(this, {parameters, impacts, b, end: status.tau, cycle: (2 * Math.PI) / Omega});
+    /** Of forcing and oscillator the faster one's cycle. */
+    this.shortest = Math.min(this.cycle, 2 * Math.PI);
     [this.free, this.stuck] = [1, 1 + epsilon].map(
       (mass) => new Flow(1 / mass, (2 * zeta) / mass, (epsilon * A) / mass, Omega),
     );
@@ -73,6 +75,15 @@ export class Motion {
     return {x, x_dot, x_ddot: piece.flow.force(state), y, y_dot, side: piece.side};
   }
 
+  /** The largest |x| of the run. */
+  get reach() {
+    this.farthest ??= this.trace(0, this.end, 400).x.reduce(
+      (a, x) => Math.max(a, Math.abs(x) || 0),
+      0,
+    );
+    return this.farthest;
+  }
+
   /** The index of the last impact up to a moment, -1 before the first. */
   impactBefore(tau) {
     return lastUpTo(this.impacts.tau, tau);
@@ -92,7 +103,7 @@ export class Motion {
    */
   trace(from, to, columns) {
     const width = (to - from) / columns;
-    const samples = Math.max(2, Math.ceil((width / this.cycle) * samplesPerCycle));
+    const samples = Math.max(2, Math.ceil((width / this.shortest) * samplesPerCycle));
     const dense = samples > 2;
     // The extremes lie well within their column: on its edge they would fall into the one before.
     const within = dense ? 0.5 : 0;
@@ -100,8 +111,13 @@ export class Motion {
     const tau = Float64Array.from({length: 2 * columns}, place);
     const line = () => tau.map((_, k) => (k % 2 ? -Infinity : Infinity));
     const lines = {dense, tau, x: line(), gap: line()};
-    if (dense) this.extremes(from, width / samples, samples, lines);
-    else
+    if (dense) {
+      this.extremes(from, width / samples, samples, lines);
+      for (const line of [lines.x, lines.gap])
+        line.forEach((value, k) => {
+          if (!Number.isFinite(value)) line[k] = NaN; // beyond the run
+        });
+    } else
       this.sample(from, width / 2, 2 * columns, (k, x, gap) => {
         lines.x[k] = x;
         lines.gap[k] = gap;

@@ -35,8 +35,8 @@ export const digits = orDash((value, n = 4) =>
 /** Of a value and its error, to two digits of the error. */
 export const withError = orDash((value, error, n) => {
   if (!error) return digits(value, n);
-  const places = clamp(1 - Math.floor(Math.log10(error)), 0, 8);
-  return `${value.toFixed(places)} ± ${error.toFixed(places)}`;
+  const places = clamp(1 - Math.floor(Math.log10(error)), 0, 12);
+  return `${value.toFixed(places).replace(/^-(0\.?0*)$/, "$1")} ± ${error.toFixed(places)}`;
 });
 
 export const percent = orDash(

@@ -4,11 +4,11 @@ import {followKeys} from "./gestures.js";
 import {short} from "./numbers.js";
 
 /**
- * Names a plot. One over an Axis takes the keys that move its cursor and zoom; moments(): what n and
- * p go to.
+ * Names a plot. One over an Axis, or beside plots over one, takes the keys that move its cursor and
+ * zoom; moments(): what n and p go to.
  */
-export function operable(plot, name, moments) {
-  const {container: node, axis} = plot;
+export function operable(plot, name, moments, axis = plot.axis) {
+  const {container: node} = plot;
   attributes(node, {"aria-label": name, role: axis ? "slider" : "img"});
   if (!axis) return;
   node.tabIndex = 0;

@@ -9,13 +9,16 @@ export const regimes = {
   III: "two symmetric",
   II: "strongly modulated",
   I: "sparse, irregular",
-  none: "no impacts",
+  none: "no impacts, or no forcing",
 };
 export const regimeColour = (regime) => `regime-${regime}`;
 export const verdicts = {chaotic: "chaotic", regular: "regular", not_decided: "not decided"};
-/** A ball that touches nothing has no verdict, and a colour of its own. */
-export const verdictColour = ({verdict}) => {
-  if (verdict === null) return "untouched";
+/** Where the ball touches nothing there is no verdict; nor of a free decay, which has impacts. */
+export const untouched = ({verdict, z}) => verdict === null && !z;
+/** A ball that touches nothing has a colour of its own. */
+export const verdictColour = (p) => {
+  const {verdict} = p;
+  if (untouched(p)) return "untouched";
   return verdict === "chaotic" || verdict === "regular" ? verdict : "undecided";
 };
 
@@ -197,6 +200,12 @@ function describeStarts(p, where) {
 const exponentText = ({lambda, status, standard_error: errors}) =>
   status?.[0] === "minus_infinity" ? "−∞" : withError(lambda[0], errors?.[0], 4);
 
+/** A motion that ends on an orbit is regular whatever it was on the way, which lambda1 still holds. */
+function verdictText({verdict, periodic, lambda, standard_error: errors}) {
+  const way = periodic && lambda?.[0] > 2 * (errors?.[0] ?? 0);
+  return way ? "regular in the end; λ₁ holds the way there" : verdicts[verdict];
+}
+
 const wholePercent = (share) => `${(share * 100).toFixed(0)} %`;
 
 /** A point in words: [term, value] each. */
@@ -209,7 +218,7 @@ export function describe(p, where) {
     ["", p.periodic && p.impacts_per_period && period(p)],
     ["z", short(p.z)],
     ["λ₁", p.lambda && exponentText(p)],
-    ["", verdicts[p.verdict]],
+    ["", verdictText(p)],
     ["rms of x", ratio == null ? inMm(p.x_rms, 5) : `${wholePercent(ratio)} of that without`],
     ["largest |x|", peakOf(p, where)],
     ["without", p.x_free != null && inMm(p.x_free)],

@@ -24,8 +24,8 @@ export class ScatterPlot extends Plot {
   }
 
   /**
-   * groups: [{x, y, colour, size, alpha, shape}], shape: ring, cross or else a dot; curves: [{x, y,
-   * colour, dash}]; levels: [{y, colour, label}]; extent: {x, y}, else that of the groups; equal:
+   * groups: [{x, y, colour, size, alpha, shape, label}], shape: ring, cross or else a dot; label: in
+   * its table; curves: [{x, y, colour, dash, label}]; levels: [{y, colour, label}]; extent: {x, y}, else that of the groups; equal:
    * the same scale on both axes; xLabel, yLabel; empty: what to say if there are no points; pick:
    * {x, y, use(i, clicked)}, the points that can be pointed at, and what is called then.
    */
@@ -72,11 +72,12 @@ export class ScatterPlot extends Plot {
     c.restore();
   }
 
-  /** {names, columns}: the numbers of its points, by group. */
+  /** {names, columns}: the numbers of its points and curves, by group. */
   numbers() {
-    const {groups, xLabel, yLabel} = this.last;
-    const all = (key) => groups.flatMap((group) => group[key]);
-    const names = groups.flatMap(({x, label, colour}) => x.map(() => label ?? colour));
+    const {groups, curves = [], xLabel, yLabel} = this.last;
+    const parts = [...groups, ...curves];
+    const all = (key) => parts.flatMap((part) => part[key]);
+    const names = parts.flatMap(({x, label, colour}) => x.map(() => label ?? colour));
     return {names: [xLabel, yLabel, "group"], columns: [all("x"), all("y"), names]};
   }
 

@@ -8,14 +8,15 @@ import {parameterLine} from "./sliders.js";
 /** What the plots of the first screen came to, by name. */
 function factsOf({energy, impacts, regime, exponents, parameters, status}) {
   const {qr, verdict} = exponents;
-  const end = run.units.at(status.tau);
+  const part = energy.window[1] < status.tau || energy.window[0] > 0;
+  const end = part ? "in the window" : `up to ${run.units.at(status.tau)}`;
   const hits = count(impacts.tau.length, "impact");
   const lambda = qr?.final[0] == null ? "none" : withError(qr.final[0], qr.standard_error[0], 4);
   return {
-    x: `up to ${end} at most ${inMm(energy.peak)}, rms ${inMm(energy.rms)}, ${hits}`,
+    x: `${end} at most ${inMm(energy.peak)}, rms ${inMm(energy.rms)}; ${hits} of the run`,
     relative: `at ±${inMm(parameters.b)}; ${percent(regime.synchronised.share)} of the contacts synchronised`,
     lambda: `the largest ends at ${lambda}${verdict ? `, ${verdict.replace("_", " ")}` : ""}`,
-    section: hits,
+    section: `${hits} of the run`,
     manifold: regimes[regime.type] ?? regimes.none,
   };
 }
@@ -25,8 +26,11 @@ let facts = {};
 
 /** What a plot that is taken away says of itself. */
 export function aboutFigure(name) {
-  const own = $(`figure-${name}`).querySelectorAll("figcaption :is(b, small:not(.params))");
-  const words = [...own].map((node) => node.textContent);
+  const own = $(`figure-${name}`).querySelector("figcaption").cloneNode(true);
+  for (const node of own.querySelectorAll(".params, .key, .value, .tag, button")) node.remove();
+  const notes = [...own.querySelectorAll("small")];
+  for (const node of notes) node.remove();
+  const words = [own, ...notes].map((node) => node.textContent.trim());
   const summary = [words.join(" "), facts[name]].filter(Boolean).join(": ");
   return {title: words[0], summary, caption, name: `vines-${name}`};
 }

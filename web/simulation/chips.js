@@ -36,10 +36,9 @@ export function start(presets, choose) {
   $("preset").onchange = () => choose($("preset").value);
 }
 
-/** Marks the preset that the form stands for, or stands on, where it is changed. */
+/** Marks the preset that the form stands on, and its chip unless it is changed. */
 export function mark(name, changed) {
   $("preset").value = name;
-  const all = document.querySelectorAll("#chips button");
-  press(all, (one) => one.dataset.preset === name && !changed);
-  for (const one of all) one.classList.toggle("changed", one.dataset.preset === name && changed);
+  const is = (one) => one.dataset.preset === name && !changed;
+  press(document.querySelectorAll("#chips button"), is);
 }

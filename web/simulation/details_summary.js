@@ -57,9 +57,11 @@ function lambdaCard({qr}, {time}) {
 function positivesCard({qr, raw_product: product, verdict}) {
   const exact = positives(qr);
   const raw = positives(product);
-  const differs = `rounding makes raw_product show ${raw}`;
+  const differs = `${raw} by the raw product`;
   const remark = raw === null || raw === exact ? "" : differs;
-  const shown = verdict === "regular" ? "none by more than its error" : String(exact ?? "–");
+  const open = verdict === "not_decided" ? "not decided" : "–";
+  const decided = {regular: "none that lasts", chaotic: String(exact ?? "–")};
+  const shown = decided[verdict] ?? open;
   return ["positive exponents (qr)", shown, remark];
 }
 
@@ -103,7 +105,8 @@ const engineeringCards = ({impacts, series, parameters}, units) => [
 
 /** What the cards of the window refer to. */
 function windowTitle({window, impacts}, {at}, asked) {
-  if (!window) return "Of the run, which has no impacts";
+  if (!window)
+    return asked ? "Of the window, which has no impacts" : "Of the run, which has no impacts";
   const whole = asked ? "Of the window" : "Of the whole run, from its first impact to its last";
   return `${whole}: ${at(window[0])} to ${at(window[1]).replace(/^.*= /, "")}, ${count(impacts, "impact")}`;
 }

@@ -5,7 +5,8 @@ import {$, attributes, write} from "../shared/dom.js";
 import {exponentRange} from "../shared/exponents.js";
 import {inMm, short} from "../shared/numbers.js";
 import {firstFrom, lastUpTo} from "../shared/search.js";
-import {logRange, mm, most, over, overRun, positive} from "./columns.js";
+import {unitsOf} from "../shared/units.js";
+import {logRange, mm, over, overRun, positive} from "./columns.js";
 import {manifold} from "./manifold.js";
 import {marksOf} from "./marks.js";
 import {exponentLines, halves, Plots} from "./plots.js";
@@ -14,6 +15,7 @@ import {axis, pick, run} from "./run.js";
 const mostSamples = 100000; // of the motion, as numbers
 const alone = matchMedia("(max-width: 700px)"); // one plot at a time is on the screen
 const walls = {plus: 1, minus: -1}; // by their colours
+const wallNames = {plus: "y − x = −b", minus: "y − x = b"};
 const overTime = ["x", "relative", "largest", "lambda"];
 
 let plots;
@@ -58,13 +60,18 @@ export function pin(other) {
   if (run) for (const step of drawing()) step();
 }
 
+/** How the pinned run's tau goes on while the shown one's goes by 1: in seconds each has its own. */
+const rate = () =>
+  run.units.si ? (pinned.answer.parameters.derived.omega0 ?? 1) * run.units.x.factor : 1;
+
 /** The motions from..to in mm, that of the pinned run first. */
 function traces(from, to, columns) {
-  const motions = [pinned?.motion, run.motion].filter(Boolean);
-  return motions.map((motion) => {
-    const {x, gap, ...rest} = motion.trace(from, to, columns);
-    return {...rest, x: mm(x), gap: mm(gap)};
-  });
+  const trace = (motion, by) => {
+    const {tau, x, gap, dense} = motion.trace(from * by, to * by, columns);
+    return {tau, dense, x: mm(x), gap: mm(gap)};
+  };
+  const own = trace(run.motion, 1);
+  return pinned ? [{...trace(pinned.motion, rate()), tau: own.tau}, own] : [own];
 }
 
 /** The same of what is in view, of which two plots draw a part each. */
@@ -92,7 +99,7 @@ function partOf(name, label, at) {
     return {data: data(lines), dense: lines.at(-1).dense};
   };
   const samples = (from, to) => {
-    const columns = Math.ceil((8 * (to - from)) / run.motion.cycle) + 200;
+    const columns = Math.ceil((8 * (to - from)) / run.motion.shortest) + 200;
     return data(traces(from, to, Math.min(columns, mostSamples)));
   };
   const series = [{label, colour: "motion"}];
@@ -106,8 +113,7 @@ function partOf(name, label, at) {
 /** Over a range that a zoom does not change. */
 function displacement() {
   const {x} = run.answer.impacts;
-  const whole = inView(0, run.motion.end, plots.all.x.columns);
-  const reach = 1.08 * Math.max(...whole.map((line) => most(line.x) || 1));
+  const reach = 1080 * Math.max(run.motion.reach, pinned?.motion.reach ?? 0) || 1;
   return {...partOf("x", "x", (i) => x[i] * 1000), range: [-reach, reach]};
 }
 
@@ -141,8 +147,8 @@ function exponents() {
   const lines = exponentLines(qr);
   const beside = (history, style) => {
     if (!history?.tau.length) return;
-    const {tau, lambda1} = history;
-    const at = (t) => (t <= tau.at(-1) ? lambda1[lastUpTo(tau, t)] : null) ?? null;
+    const {tau, lambda1, by = 1} = history;
+    const at = (t) => (t * by <= tau.at(-1) ? lambda1[lastUpTo(tau, t * by)] : null) ?? null;
     lines.series.push(style);
     lines.data.push(lines.data[0].map(at));
   };
@@ -153,7 +159,7 @@ function exponents() {
     dash: [5, 4],
   });
   const other = pinned?.answer.exponents.qr?.history;
-  beside(other, {label: "λ₁ pinned", colour: "pinned", width: 1.6});
+  beside(other && {...other, by: rate()}, {label: "λ₁ pinned", colour: "pinned", width: 1.6});
   return {...lines, range: exponentRange([qr?.history, other])};
 }
 
@@ -161,15 +167,20 @@ function exponents() {
 function section() {
   const {impacts} = run.answer;
   const {velocity} = run.units;
-  const place = (of) => ({x: mm(of.x), y: over(of.x_dot_after, velocity)});
+  const place = (of, units = run.units) => ({
+    x: mm(of.x),
+    y: over(of.x_dot_after, units.velocity),
+  });
   const kinds = Object.entries(walls).map(([name, wall]) => [
     name,
     (i) => impacts.side[i] === wall,
+    wallNames[name],
   ]);
   const points = place(impacts);
   const groups = halves(points, kinds);
   const style = {colour: "pinned", label: "pinned", size: 3, alpha: 1};
-  if (pinned) groups.unshift({...place(pinned.answer.impacts), ...style});
+  if (pinned)
+    groups.unshift({...place(pinned.answer.impacts, unitsOf(pinned.answer.parameters)), ...style});
   return {
     groups,
     xLabel: "x (mm)",

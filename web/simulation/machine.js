@@ -95,11 +95,11 @@ export function redraw() {
   const {cursor} = axis;
   const {width, height} = size;
   if (!run || cursor === null || !width) return;
-  const {motion, answer} = run;
+  const {motion} = run;
   const c = blank(canvas, size);
   const length = Math.max(width * 0.16, 60); // of the spring
   const room = (width - length - 24) / 2;
-  const scale = Math.max(room - rim - ball, 10) / (motion.b + answer.energy.peak);
+  const scale = Math.max(room - rim - ball, 10) / (motion.b + motion.reach);
   const px = (at) => length + 12 + room + at * scale;
   const {x, y} = motion.at(cursor);
   const wall = (side) => px(x - side * motion.b);

@@ -10,14 +10,23 @@ export function manifold() {
   const {points, fold, free_amplitude: free, stable, unstable, asymmetric} = run.more.manifold;
   const {velocity} = run.units;
   const place = ({V, C}) => ({x: over(V, velocity), y: mm(C)});
-  const groups = [{...place(points), colour: "after", size: 2.2, alpha: 0.6}];
-  if (fold) groups.push({...place({V: [fold.V], C: [fold.C]}), colour: "wall", size: 8, alpha: 1});
+  const groups = [{...place(points), colour: "after", label: "half cycle", size: 2.2, alpha: 0.6}];
+  if (fold)
+    groups.push({
+      ...place({V: [fold.V], C: [fold.C]}),
+      colour: "wall",
+      label: "fold",
+      size: 8,
+      alpha: 1,
+    });
   const dash = [5, 4];
   const curves = [
-    stable && {...place(stable), colour: "c2"},
-    unstable && {...place(unstable), colour: "c3", dash},
-    asymmetric && {...place(asymmetric), colour: "c4", dash},
+    stable && {...place(stable), colour: "c2", label: "stable"},
+    unstable && {...place(unstable), colour: "c3", dash, label: "unstable"},
+    asymmetric && {...place(asymmetric), colour: "c4", dash, label: "asymmetric"},
   ];
+  for (const [name, curve] of Object.entries({stable, unstable, asymmetric}))
+    document.querySelector(`#figure-manifold .key.${name}`).hidden = !curve;
   const reach = (values, ...others) => [0, Math.max(most(values), ...others) * 1.15 || 0.001];
   return {
     groups,

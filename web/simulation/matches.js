@@ -2,7 +2,8 @@
 import {$, element, write} from "../shared/dom.js";
 
 const plotsOf = {
-  "fig3 fig15 fig16 fig20 fig21": ["x"],
+  "fig3 fig16 fig21": ["x"],
+  "fig15 fig20": ["acceleration"],
   fig4: ["relative"],
   fig5: ["lambda", "raw_product"],
   fig6: ["J"],

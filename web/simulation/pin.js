@@ -27,8 +27,13 @@ export async function restore(wanted, ask) {
   if (wanted === null) return;
   const all = new URLSearchParams(wanted);
   for (const [name, list] of Object.entries(ask)) all.set(name, list.join());
-  const answer = await get(`v1/simulate?${all}`);
-  if (query() === wanted) keep({query: wanted, answer, motion: new Motion(answer)});
+  if (!all.get("preset")) all.delete("preset");
+  try {
+    const answer = await get(`v1/simulate?${all}`);
+    if (query() === wanted) keep({query: wanted, answer, motion: new Motion(answer)});
+  } catch (error) {
+    write({"pinned-run": `the run to compare with: ${error.message}`});
+  }
 }
 
 /** changed(): another run is pinned, or none; show(query): shows the run of a query. */

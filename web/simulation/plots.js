@@ -17,7 +17,7 @@ export class Plots {
       const plot = new Kind($(`plot-${name}`), axis);
       const about = () => aboutFigure(name);
       addMenu($(`figure-${name}`), plot, about);
-      operable(plot, about().title, () => run?.answer.impacts.tau ?? []);
+      operable(plot, about().title, () => run?.answer.impacts.tau ?? [], axis);
       this.all[name] = plot;
     };
     for (const name of lines) add(name, LinePlot);
@@ -51,13 +51,13 @@ export function exponentLines(estimator) {
 
 /**
  * Points as groups by the halves of the run, the first paler: what lasts stands out. kinds: [colour,
- * whether the i-th point is one of them] each.
+ * whether the i-th point is one of them, their name in tables] each.
  */
 export function halves({x, y}, kinds) {
   const style = (late) => (late ? {alpha: 1, size: 3} : {alpha: 0.35, size: 2.4});
-  const group = (late, [colour, is]) => {
+  const group = (late, [colour, is, label]) => {
     const keep = (_, i) => is(i) && i >= x.length / 2 === late;
-    return {...style(late), colour, x: x.filter(keep), y: y.filter(keep)};
+    return {...style(late), colour, label, x: x.filter(keep), y: y.filter(keep)};
   };
   return [false, true].flatMap((late) => kinds.map((kind) => group(late, kind)));
 }

@@ -61,10 +61,11 @@ export class Request {
     return only(request, differs);
   }
 
-  /** Whether the motion is no more the preset's. */
+  /** Whether the motion, or what is shown of it, is no more the preset's. */
   get edited() {
     const changed = this.differing(this.form.values());
-    return Object.keys(changed).some((name) => isOfMotion(this.fieldOf[name]));
+    const isShown = (name) => /^window|^max_imp/.test(name) || isOfMotion(this.fieldOf[name]);
+    return Object.keys(changed).some(isShown);
   }
 
   /** What a request that was asked stands on, and what of the motion differs from that, in words. */
@@ -107,9 +108,9 @@ export class Request {
     const rest = new URLSearchParams(query);
     const named = rest.get("preset") ?? (rest.size ? "" : "fig3");
     rest.delete("preset");
-    const isKnown = ([name]) => name in this.fieldOf;
+    const isKnown = ([name]) => this.form.inputs.has(name);
     const known = [...rest].filter(isKnown).map(([name, text]) => [name, queryValue(text)]);
-    const unknown = [...rest.keys()].filter((name) => !(name in this.fieldOf));
+    const unknown = [...rest].filter((entry) => !isKnown(entry)).map(([name]) => name);
     this.choose(named, Object.fromEntries(known));
     return named && !this.name ? [`preset=${named}`, ...unknown] : unknown;
   }
@@ -154,6 +155,8 @@ export class Request {
   }
 }
 
-/** A request as the address has it. */
-export const toQuery = (asked) =>
-  String(new URLSearchParams(Object.entries(asked).map(([name, v]) => [name, queryText(v)])));
+/** A request as the address has it; that of defaults alone names no preset, and says so. */
+export function toQuery(asked) {
+  const entries = Object.entries(asked).map(([name, v]) => [name, queryText(v)]);
+  return String(new URLSearchParams(entries.length ? entries : {preset: ""}));
+}

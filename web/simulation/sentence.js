@@ -5,11 +5,13 @@ import {regimes} from "../shared/quantities.js";
 import {valueText} from "./sliders.js";
 
 /** How the motion goes, and whether it is chaotic; of what both tell, only what they agree on. */
-function motionText({regime, exponents, energy}, units) {
+const untouched = ({tau}) => (tau.length ? "no impacts in the window" : "the mass meets no wall");
+
+function motionText({regime, exponents, energy, impacts: all}, units) {
   const {type, periodic, capture, period_cycles: cycles, impacts_per_period: impacts} = regime;
   if (energy.peak === 0) return "x rests: no forcing, no impact";
   if (type === "none")
-    return regime.description === "no impacts" ? "the mass meets no wall" : regime.description;
+    return regime.description === "no impacts" ? untouched(all) : regime.description;
   const name = `${regimes[type] ?? regime.description} (${type})`;
   if (periodic) {
     const hits = type === "V" ? `, ${count(impacts, "impact")}` : "";
@@ -34,7 +36,7 @@ function lambdaText({qr, verdict}, regime, parameters) {
   if (regime.periodic) return orbitText(regime, parameters);
   if (!qr || regime.type === "none" || qr.final[0] == null) return "";
   const value = `λ₁ = ${withError(qr.final[0], qr.standard_error[0], 3)}`;
-  return verdict === "not_decided" ? `${value}, too close to zero to decide` : value;
+  return verdict === "not_decided" ? `${value}, not decided` : value;
 }
 
 const amplitudeText = ({rms_ratio: ratio}) =>

@@ -4,7 +4,7 @@ import {Problem, simulate, wholeMessage} from "../shared/api.js";
 import {listWarnings} from "../shared/cards.js";
 import {formsOf} from "../shared/copies.js";
 import {$, attributes, button, countUp, nextTask, reveal, sayIn, write} from "../shared/dom.js";
-import {Form} from "../shared/form.js";
+import {Form, unknownText} from "../shared/form.js";
 import {Job} from "../shared/job.js";
 import {Motion} from "../shared/motion.js";
 import {count} from "../shared/numbers.js";
@@ -65,6 +65,7 @@ const more = new Job({
   show(answer, asked) {
     if (asked !== run.asked) return;
     run.more = answer;
+    remark(run.answer, answer);
     instrument.showMore();
     details.follow();
     countUp($("results"));
@@ -74,6 +75,7 @@ const more = new Job({
 
 function refuse(error) {
   setStale(true);
+  if (!run) write({sentence: "Nothing is computed yet."});
   if (!(error instanceof Problem)) return say(wholeMessage(error, []), true);
   const left = request.form.showErrors(error.errors, false);
   const turned = sliders.showErrors(error.errors);
@@ -87,6 +89,16 @@ function homeOf({parameters, status}) {
   return to && to < 0.9 * status.tau ? [0, to] : [0, status.tau];
 }
 
+/** What there is to know of a run beside its sentence: why it is not decided, and the service's warnings. */
+function remark({exponents: {verdict, verdict_reason: why}, regime, warnings}, more = {}) {
+  const open = verdict === "not_decided" && !regime.periodic;
+  const all = [...warnings, ...(more.warnings ?? [])];
+  const remarks = [...new Set([...(open ? [`not decided: ${why}`] : []), ...all])];
+  listWarnings($("warnings"), remarks);
+  reveal({remarks: remarks.length});
+  write({"remarks-count": count(remarks.length, "remark")});
+}
+
 function showOrigins() {
   if ($("more").open) request.form.showOrigins(run.answer.parameters);
 }
@@ -97,13 +109,12 @@ async function present(answer, asked) {
   if (pause) await pause();
   const fresh = run === null || asked.fresh;
   setRun({asked, answer, motion: new Motion(answer), units: unitsOf(answer.parameters)});
-  say(unknownText(asked));
+  say(unknownText(asked.unknown));
   setStale(false);
   request.form.showErrors([]);
   showOrigins();
-  listWarnings($("warnings"), answer.warnings);
-  reveal({remarks: answer.warnings.length, units: answer.parameters.si});
-  write({"remarks-count": count(answer.warnings.length, "remark")});
+  remark(answer);
+  reveal({units: answer.parameters.si});
   axis.span(0, answer.status.tau, homeOf(answer), fresh);
   if (wantedView) axis.view = wantedView;
   wantedView = null;
@@ -123,7 +134,7 @@ function drawing(fresh = false) {
   const {answer, asked, units} = run;
   const slider = sliders.sliderOf(touched, answer.parameters);
   const tell = () => {
-    sliders.show(answer.parameters, fresh, slider);
+    sliders.show(answer.parameters, {fresh, dragged: asked.dragged}, slider);
     showSentence(answer, slider, units);
   };
   const end = () => {
@@ -140,17 +151,13 @@ function drawing(fresh = false) {
 /** How the newest request is sent. hasty: while a slider is dragged; fresh: not by turning one. */
 function send({hasty = false, fresh = false, unknown = []} = {}) {
   const asked = request.asked();
-  Object.defineProperties(asked, {fresh: {value: fresh}, unknown: {value: unknown}});
+  const about = {fresh, unknown, dragged: hasty};
+  for (const [name, value] of Object.entries(about)) Object.defineProperty(asked, name, {value});
   chips.mark(request.name, request.edited);
   if (hasty) player.hold();
   remember(toQuery(asked), hasty);
   job.start(asked, {hasty});
 }
-
-const unknownText = ({unknown}) =>
-  unknown.length
-    ? `the address names what this page does not know: ${unknown.map((u) => `"${u}"`).join(", ")}`
-    : "";
 
 /** Back undoes an edit. */
 function remember(query, soon) {
@@ -213,10 +220,12 @@ export function open(given) {
   const view = rest.get("view")?.split(",").map(Number);
   const pinned = rest.get("pinned");
   for (const name of ["view", "pinned"]) rest.delete(name);
-  pin.restore(pinned, first).catch((error) => say(`the pinned run: ${error.message}`, true));
+  pin.restore(pinned, first);
   if (String(rest) === shown) return;
-  wantedView = view?.length === 2 && view[0] < view[1] ? view : null;
+  const isView = view?.length === 2 && view[0] < view[1];
+  wantedView = isView ? view : null;
   const unknown = request.read(rest);
+  if (view && !isView) unknown.push(`view=${new URLSearchParams(given).get("view")}`);
   touched = "b";
   note("");
   shown = toQuery(request.asked());
@@ -225,7 +234,10 @@ export function open(given) {
 }
 
 export function redraw() {
-  for (const part of [instrument, details, strip, machine]) part.redraw();
+  instrument.redraw();
+  details.redraw();
+  strip.redraw();
+  machine.redraw();
 }
 
 /**
@@ -238,7 +250,11 @@ export function start({fields, presets: list}, changed, {measure}) {
   request = new Request(form, fields, list);
   instrument.start();
   player.start();
-  sliders.start(turn, (text, {label}) => say(`${label}: “${text}” is no number`, true));
+  const refused = (text, {label}) => {
+    setStale(true);
+    say(`${label}: “${text}” is no number`, true);
+  };
+  sliders.start(turn, refused, (differs) => differs && setStale(true));
   details.start(request.fieldOf);
   chips.start(list, choosePreset);
   pin.start(changed, (other) => {

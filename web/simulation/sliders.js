@@ -1,13 +1,13 @@
 // The few parameters that one turns: a slider, a number and its unit each. What they set are fields
 // of the form.
 import {$, attributes, element} from "../shared/dom.js";
-import {short, toNumber} from "../shared/numbers.js";
+import {inMm, short, shortTo, toNumber} from "../shared/numbers.js";
 import {symbolOf} from "../shared/quantities.js";
 
 /**
  * of(parameters): the value in the field's unit; fields(value, parameters): what it sets, and null
  * for what makes way; rangeOf(parameters): of the slider, in its unit; about: what it is, where it
- * depends on the system aboutOf(parameters).
+ * depends on the system aboutOf(parameters), and textOf(parameters) its value in words.
  */
 const slider = (name, label, about, more) => ({
   name,
@@ -33,8 +33,12 @@ const restitution = slider("R", "Restitution", "of both walls", {
   rangeOf: () => [0, 1],
   of: ({R_plus: plus, R_minus: minus}) => (plus + minus) / 2,
   fields: (value) => ({R: value, R_plus: null, R_minus: null}),
-  aboutOf: ({R_plus: plus, R_minus: minus}) =>
-    plus !== minus && `mean of R₊ = ${plus} and R₋ = ${minus}`,
+  textOf: ({R_plus: plus, R_minus: minus}) =>
+    plus !== minus && `R₊ = ${shortTo(4, plus)}, R₋ = ${shortTo(4, minus)}`,
+  aboutOf(parameters) {
+    const both = this.textOf(parameters);
+    return both && `mean of ${both}`;
+  },
 });
 const reduced = [
   clearance,
@@ -98,29 +102,33 @@ function textAt(one, parameters, range = rangeOf(one, parameters)) {
   const value = valueAt(one, parameters);
   const short = written(value, range);
   const exact = Math.abs(Number(short) - value) <= 1e-6 * Math.abs(value);
-  return exact ? short : String(Number(value.toPrecision(4)));
+  if (exact) return short;
+  const fine = 1e-4 * (range[1] - range[0]); // a tenth of a step
+  const four = Number(value.toPrecision(4));
+  return String(Math.abs(four - value) <= fine ? four : Number(value.toPrecision(6)));
 }
 
-/** A slider's value in words: b = 22.0 mm. */
+/** A slider's value in words: b = 22.0 mm; of walls that differ both. */
 export const valueText = (one, parameters) =>
-  `${one.symbol} = ${textAt(one, parameters)} ${one.unit}`.trim();
+  one.textOf?.(parameters) || `${one.symbol} = ${textAt(one, parameters)} ${one.unit}`.trim();
 
 /** What of the fields differs from elsewhere, in words: the sliders' with their values. */
 export function differenceText(names, parameters) {
-  const setBy = (name) => {
-    const one = slidersOf(parameters).find((s) => s.name === (name === "lambda" ? "zeta" : name));
-    return one && !(one === restitution && parameters.R_plus !== parameters.R_minus) ? one : null;
-  };
-  const values = names.filter(setBy).map((name) => valueText(setBy(name), parameters));
-  const others = names.filter((name) => !setBy(name)).map(symbolOf);
-  return [...values, others.length ? `other ${others.join(", ")}` : ""].filter(Boolean).join(", ");
+  const setBy = (name) => slidersOf(parameters).find((s) => name in s.fields(0, parameters));
+  const text = (name) =>
+    setBy(name) ? valueText(setBy(name), parameters) : `other ${symbolOf(name)}`;
+  return [...new Set(names.map(text))].join(", ");
 }
 
-/** The parameters that matter, in a line. */
-export const parameterLine = (parameters) =>
-  slidersOf(parameters)
-    .map((one) => valueText(one, parameters))
-    .join(", ");
+/** The parameters that matter, in a line, and the start, where it is not the default one. */
+export function parameterLine(parameters) {
+  const values = slidersOf(parameters).map((one) => valueText(one, parameters));
+  const isOwn = (name) => parameters.origin[name] !== "default";
+  const start = ["x0", "x_dot0", "y0", "y_dot0"].filter(isOwn);
+  return [...values, ...start.map((name) => `${symbolOf(name)} = ${inMm(parameters[name])}`)].join(
+    ", ",
+  );
+}
 
 // What is shown.
 
@@ -128,21 +136,27 @@ const rows = new Map(); // {node, number, range, note, span} of each slider
 let shown; // parameters
 let change;
 let refuse;
+let typing;
 
 /** The range that a slider has now. */
 export const spanOf = (one) => rows.get(one).span;
 
 /**
  * changed(fields, slider, hasty): fields to set, null to empty one; hasty: more are to come.
- * refused(text, slider): of what is no number.
+ * refused(text, slider): of what is no number; typed(whether it is another number than that shown),
+ * while one types.
  */
-export function start(changed, refused) {
+export function start(changed, refused, typed) {
   change = changed;
   refuse = refused;
+  typing = typed;
 }
 
-/** fresh: another system or run than one that was turned to; last: the slider turned last. */
-export function show(parameters, fresh, last) {
+/**
+ * fresh: another system or run than one that was turned to; dragged: the ranges stay as they are;
+ * last: the slider turned last.
+ */
+export function show(parameters, {fresh, dragged}, last) {
   shown = parameters;
   const kind = slidersOf(parameters);
   if (!kind.every((one) => rows.has(one))) {
@@ -150,7 +164,7 @@ export function show(parameters, fresh, last) {
     $("sliders").replaceChildren(...kind.map(rowOf));
   }
   for (const [one, row] of rows) {
-    set(one, row, fresh);
+    set(one, row, fresh, dragged);
     row.node.classList.toggle("last", one === last);
   }
 }
@@ -165,6 +179,8 @@ function rowOf(one) {
     id,
     autocomplete: "off",
     onchange: () => typed(one, number),
+    oninput: () => typing(number.value !== number.defaultValue),
+    onblur: () => typing(number.value !== number.defaultValue),
   });
   const range = element("input", {
     type: "range",
@@ -180,10 +196,10 @@ function rowOf(one) {
   return node;
 }
 
-function set(one, row, fresh) {
+function set(one, row, fresh, dragged) {
   const {number, range} = row;
   const value = valueAt(one, shown);
-  if (fresh || !row.span || !holds(row.span, value)) row.span = rangeOf(one, shown);
+  if (!dragged || !row.span || !holds(row.span, value)) row.span = rangeOf(one, shown);
   const [min, max] = row.span;
   const put = (input, text) => {
     if (fresh || document.activeElement !== input) input.value = text;
@@ -192,7 +208,8 @@ function set(one, row, fresh) {
   put(range, value);
   attributes(range, {"aria-valuetext": `${written(value, row.span)} ${one.unit}`});
   attributes(number, {"aria-invalid": false});
-  put(number, textAt(one, shown, row.span));
+  number.defaultValue = textAt(one, shown, row.span);
+  put(number, number.defaultValue);
   row.note.textContent = one.aboutOf?.(shown) || one.about;
 }
 

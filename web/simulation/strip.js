@@ -1,9 +1,10 @@
 // Where the regimes lie along the parameter that was turned last: a band of them and lambda1 over
 // it, filled coarse to fine by a sweep in the background. Its marker is the slider.
-import {Problem, sweep} from "../shared/api.js";
+import {sweep} from "../shared/api.js";
 import {$, attributes, countUp, element, write} from "../shared/dom.js";
 import {blank, Frame, font, Size} from "../shared/frame.js";
 import {ink, stroke, write as writeText} from "../shared/ink.js";
+import {again, passes} from "../shared/job.js";
 import {jsonLines} from "../shared/json_lines.js";
 import {clamp, digits, withError} from "../shared/numbers.js";
 import {regimeColour, regimeText, verdictColour, verdicts} from "../shared/quantities.js";
@@ -12,18 +13,9 @@ import {fieldsOf, spanOf, turnTo, valueAt, written} from "./sliders.js";
 
 const cycles = 300; // measured at each point, after
 const transient = 150; // cycles
-const points = 257; // 2^8 + 1, so that each halving lies between those before
+const points = 257; // the service computes them coarse to fine
 const pause = 180; // ms without an edit before it begins
 const band = 13; // px
-
-/** 0, n - 1, the middle, the quarters, ...: n = 2^k + 1 places, coarse to fine. */
-function coarseToFine(n) {
-  const order = [0, n - 1];
-  for (let step = n - 1; step > 1; step /= 2)
-    for (let i = step / 2; i < n; i += step) order.push(i);
-  return order;
-}
-const order = coarseToFine(points);
 
 const canvas = $("strip");
 const marker = element("div", {className: "marker"});
@@ -79,13 +71,14 @@ async function fill(base, parameter) {
   abort = new AbortController();
   const {signal} = abort;
   // What is shown is a system; what its neighbours' faults are is said of each of them alone.
-  const sequence = [...new Set([nearest(valueAt(slider, parameters)), ...order])];
+  const sequence = [...new Set([nearest(valueAt(slider, parameters)), ...Array(points).keys()])];
   const values = sequence.map((i) => fieldsOf(slider, at(i), parameters)[parameter]);
   try {
     const body = {base, axes: [{parameter, values}], cycles, transient_cycles: transient};
     const stream = await sweep(body, signal);
     found = [];
     stale = false;
+    write({"strip-trouble": ""});
     for await (const {value} of jsonLines(stream)) {
       if (signal.aborted) return;
       if (value.type !== "point" || value.error) continue;
@@ -96,9 +89,8 @@ async function fill(base, parameter) {
   } catch (error) {
     if (signal.aborted) return;
     found = [];
-    write({
-      "strip-trouble": error instanceof Problem ? error.message : "no answer from the server",
-    });
+    write({"strip-trouble": error.message});
+    if (passes(error)) waiting = setTimeout(fill, again * 1000, base, parameter);
   }
   redraw();
 }

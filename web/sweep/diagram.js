@@ -10,6 +10,7 @@ import {
   quantityOf,
   regimeColour,
   regimes,
+  untouched,
   verdictColour,
   verdicts,
 } from "../shared/quantities.js";
@@ -40,8 +41,6 @@ function trace(c, start, x, y, r) {
   if (!n) c.arc(x, y, r, 0, 2 * Math.PI);
   c.closePath();
 }
-
-const untouched = (p) => p.verdict === null && p.regime === "none";
 
 /** The values of another motion of a point, of those of the point. */
 const ofOther = (of) => (p) => {

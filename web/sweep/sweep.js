@@ -296,7 +296,8 @@ const exampleOf = (asked) => examples.findIndex(([, example]) => isSame(example,
 function ask(asked, ends) {
   const named = requestOf(asked);
   const request = String(named) ? named : requestOf(examples[0][1]);
-  wanted = Object.fromEntries(asked);
+  const standard = Object.keys(menus).map((name) => [name, ""]); // the first
+  wanted = Object.fromEntries([...standard, ...asked]);
   form.setQuery(request, exampleOf(request) >= 0);
   run(ends);
 }

@@ -1,7 +1,7 @@
 // The form of a sweep: its axes, how each point is run, and what all points share; and the same as
 // a query.
 import {element, write} from "../shared/dom.js";
-import {defaultSet, Form, groups, textOf} from "../shared/form.js";
+import {defaultSet, Form, groups, textOf, unknownText} from "../shared/form.js";
 import {isOfSystem} from "../shared/presets.js";
 import {unitShown} from "../shared/units.js";
 import {fillMenu} from "./menu.js";
@@ -233,8 +233,11 @@ export class SweepForm {
   /** Sets what a query asks for. example: it is one of the examples, whose damping nobody chose. */
   setQuery(query, example) {
     this.dampingChosen = !example && query.has("damping");
-    write({"sweep-note": ""});
     const fields = Object.fromEntries(query);
+    const isKnown = (name) =>
+      axisNames.includes(name) || [this.base, this.run].some((form) => form.inputs.has(name));
+    const unknown = Object.keys(fields).filter((name) => !isKnown(name));
+    write({"sweep-note": unknownText(unknown)});
     this.base.set(fields);
     this.run.set(fields);
     const given = axisNames.filter((name) => fields[name]).map((name) => fields[name].split(","));
