@@ -772,7 +772,7 @@ test("a link to a run of defaults alone shows it again, not the paper's figure",
 
 test("remarks unfold over the page and can be read, and those of the second answer are among them", async () => {
   const page = await still("?b=0.01&tau_end=40000&max_points=500");
-  await page.click("#remarks-count");
+  await page.click("#remarks summary");
   const covered = await page.$eval("#warnings", (list) => {
     const {left, top, width, height} = list.getBoundingClientRect();
     const at = document.elementFromPoint(left + width / 2, top + height - 6);

@@ -151,6 +151,12 @@ function setAnswer(next, fields) {
   compare();
 }
 
+/** A column that was chosen is that of another file, where this one has no such. */
+function forgetColumns(names) {
+  for (const [name, value] of Object.entries(ofColumns()))
+    if (isColumn(name) && names.length && !names.includes(value)) form.replace(name, "");
+}
+
 /** The lines around one that is at fault. */
 function quoteLine(detail = "") {
   const line = Number(/^line (\d+)/.exec(detail)?.[1]);
@@ -190,6 +196,7 @@ async function take(chosen) {
     const {names, columns} = parsed;
     $("measure-columns").replaceChildren(...names.map((value) => element("option", {value})));
     $("measure-about").textContent += `, ${columns[0]?.length ?? 0} samples`;
+    forgetColumns(names);
     drawFile(form.values());
     if (record || !names.length) run();
     else say("choose which column is the time, and which the displacement or acceleration", true);

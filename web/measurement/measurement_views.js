@@ -2,7 +2,7 @@
 import {Axis} from "../shared/axis.js";
 import {$, element} from "../shared/dom.js";
 import {exponentRange, exponentSeries} from "../shared/exponents.js";
-import {addMenu} from "../shared/figure_menu.js";
+import {addMenu, captionOf} from "../shared/figure_menu.js";
 import {rangeOf} from "../shared/frame.js";
 import {LinePlot} from "../shared/line_plot.js";
 import {operable} from "../shared/operable.js";
@@ -32,18 +32,11 @@ const figures = {
 };
 const figureOf = (name) => $(`plot-measured-${name}`).closest("figure");
 
-/** What a plot shows: its caption without what explains it. */
-function titleOf(figure) {
-  const caption = figure.querySelector("figcaption").cloneNode(true);
-  for (const node of caption.querySelectorAll("small, span, button")) node.remove();
-  return caption.textContent.trim();
-}
-
 /** told(): {name, answer} of the record that is shown. */
 export function start(told) {
   axis.onCursor(() => light(told().answer));
   for (const [name, plot] of Object.entries(plots)) {
-    const title = titleOf(figureOf(name));
+    const {title} = captionOf(figureOf(name));
     operable(plot, title, () => told().answer?.impacts.time_s ?? []);
     addMenu(figureOf(name), plot, () => ({
       title,

@@ -1,5 +1,6 @@
 // Terms with their values, as cards, and warnings as a list.
-import {element} from "./dom.js";
+import {$, element} from "./dom.js";
+import {count} from "./numbers.js";
 
 /** entries: [term, value, a remark]. */
 export function cards(list, entries) {
@@ -8,6 +9,14 @@ export function cards(list, entries) {
     return element("div", {}, element("dt", {}, term), element("dd", {}, value, small));
   };
   list.replaceChildren(...entries.map(card));
+}
+
+/** What there is to know beside a result, behind its number: in a <details id> with a list. */
+export function showRemarks(id, remarks) {
+  const details = $(id);
+  details.hidden = !remarks.length;
+  details.querySelector("summary").textContent = count(remarks.length, "remark");
+  listWarnings(details.querySelector("ul"), remarks);
 }
 
 export const listWarnings = (list, warnings) =>

@@ -10,7 +10,7 @@ body = json.dumps(request).encode()
 head = {"Content-Type": "application/json"}
 with urllib.request.urlopen(urllib.request.Request(url, body, head)) as answer:
     result = json.load(answer)
-print(result["exponents"]["qr"]["final"], result["regime"]["type"])
+print(result["exponents"].get("qr", {}).get("final"), result["regime"]["type"])
 `;
 
 /** forms by name: each a function that makes the text. request(): the fields of a route. */

@@ -85,8 +85,16 @@ function show(plot, about) {
   dialog.showModal();
 }
 
-const nameOf = (figure) =>
-  figure.ariaLabel ?? figure.querySelector("figcaption b, figcaption").textContent;
+/** {title, notes} of a figure: its caption without, and within, what explains it. */
+export function captionOf(figure) {
+  const own = figure.querySelector("figcaption").cloneNode(true);
+  for (const node of own.querySelectorAll(".params, span, button")) node.remove();
+  const notes = [...own.querySelectorAll("small")];
+  for (const node of notes) node.remove();
+  return {title: own.textContent.trim(), notes: notes.map((node) => node.textContent).join(" ")};
+}
+
+const nameOf = (figure) => figure.ariaLabel ?? captionOf(figure).title;
 
 /** Adds the menu to a plot's caption. about(): {title, caption, summary, name}. */
 export function addMenu(figure, plot, about) {

@@ -41,7 +41,7 @@ export const unknownText = (names) =>
 
 /** A text as JSON wants it; what cannot be a number is sent as text, for the service to refuse. */
 const number = (text) => toNumber(text) ?? text.trim();
-const interval = (text) => text.split(",").map(number);
+const interval = (text) => text.split(text.includes(";") ? ";" : ",").map(number);
 function assignment(text) {
   const [name, value = ""] = text.split("=");
   return [name.trim(), number(value)];

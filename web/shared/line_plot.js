@@ -152,9 +152,11 @@ export class LinePlot extends Panel {
     const {series, data} = this.last;
     if (!data) return;
     const i = t === null ? -1 : lastUpTo(data[0], t);
+    const within = t > data[0][i] ? i + 1 : i; // a line that ends has no value behind its end
     series.forEach(({text = shortOrNone}, k) => {
       const column = data[k + 1];
-      const shown = text(column[i] ?? null, column.findLastIndex((v) => v !== null) < i);
+      const value = column[within] === null ? null : (column[i] ?? null);
+      const shown = text(value, column.findLastIndex((v) => v !== null) < within);
       if (this.values[k].textContent !== shown) this.values[k].textContent = shown;
     });
   }

@@ -1,5 +1,6 @@
 // What each plot says of itself: for which parameters it is, and in words what it shows.
 import {$, attributes, write} from "../shared/dom.js";
+import {captionOf} from "../shared/figure_menu.js";
 import {count, inMm, percent, withError} from "../shared/numbers.js";
 import {regimes} from "../shared/quantities.js";
 import {run} from "./run.js";
@@ -26,13 +27,9 @@ let facts = {};
 
 /** What a plot that is taken away says of itself. */
 export function aboutFigure(name) {
-  const own = $(`figure-${name}`).querySelector("figcaption").cloneNode(true);
-  for (const node of own.querySelectorAll(".params, .key, .value, .tag, button")) node.remove();
-  const notes = [...own.querySelectorAll("small")];
-  for (const node of notes) node.remove();
-  const words = [own, ...notes].map((node) => node.textContent.trim());
-  const summary = [words.join(" "), facts[name]].filter(Boolean).join(": ");
-  return {title: words[0], summary, caption, name: `vines-${name}`};
+  const {title, notes} = captionOf($(`figure-${name}`));
+  const summary = [`${title} ${notes}`, facts[name]].filter(Boolean).join(": ");
+  return {title, summary, caption, name: `vines-${name}`};
 }
 
 /** Writes both to the figures of the first screen; system: what was computed, in a few words. */

@@ -1,13 +1,12 @@
 // The tab of one simulation: what one turns goes to the service as one request, and what it answers
 // is shown at once. The address is the request, and what is in view.
 import {Problem, simulate, wholeMessage} from "../shared/api.js";
-import {listWarnings} from "../shared/cards.js";
+import {showRemarks} from "../shared/cards.js";
 import {formsOf} from "../shared/copies.js";
 import {$, attributes, button, countUp, nextTask, reveal, sayIn, write} from "../shared/dom.js";
 import {Form, unknownText} from "../shared/form.js";
 import {Job} from "../shared/job.js";
 import {Motion} from "../shared/motion.js";
-import {count} from "../shared/numbers.js";
 import {copy} from "../shared/take_away.js";
 import {onUnits, unitsOf, unitsSwitch} from "../shared/units.js";
 import {describe} from "./captions.js";
@@ -93,10 +92,7 @@ function homeOf({parameters, status}) {
 function remark({exponents: {verdict, verdict_reason: why}, regime, warnings}, more = {}) {
   const open = verdict === "not_decided" && !regime.periodic;
   const all = [...warnings, ...(more.warnings ?? [])];
-  const remarks = [...new Set([...(open ? [`not decided: ${why}`] : []), ...all])];
-  listWarnings($("warnings"), remarks);
-  reveal({remarks: remarks.length});
-  write({"remarks-count": count(remarks.length, "remark")});
+  showRemarks("remarks", [...new Set([...(open ? [`not decided: ${why}`] : []), ...all])]);
 }
 
 function showOrigins() {
@@ -254,7 +250,8 @@ export function start({fields, presets: list}, changed, {measure}) {
     setStale(true);
     say(`${label}: “${text}” is no number`, true);
   };
-  sliders.start(turn, refused, (differs) => differs && setStale(true));
+  const old = () => run && toQuery(run.asked) !== shown;
+  sliders.start(turn, refused, (differs) => setStale(differs || old()));
   details.start(request.fieldOf);
   chips.start(list, choosePreset);
   pin.start(changed, (other) => {

@@ -1,7 +1,7 @@
 // The tab of a sweep: form in, a stream of points out, drawn as they come. Its query is the request
 // and what the menus show.
 import {asCurl, wholeMessage} from "../shared/api.js";
-import {listWarnings} from "../shared/cards.js";
+import {showRemarks} from "../shared/cards.js";
 import {$, countUp, element, reveal, sayIn, write} from "../shared/dom.js";
 import {Job} from "../shared/job.js";
 import {coordinates, menuOf, otherMotion, regimes, symbolOf} from "../shared/quantities.js";
@@ -125,7 +125,7 @@ function settle() {
   if (!data) return;
   draw();
   view?.describe();
-  listWarnings($("sweep-warnings"), [...data.warnings]);
+  showRemarks("sweep-remarks", [...data.warnings]);
 }
 
 /** What of the results is there, and its words. */
