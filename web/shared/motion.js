@@ -75,12 +75,9 @@ export class Motion {
     return {x, x_dot, x_ddot: piece.flow.force(state), y, y_dot, side: piece.side};
   }
 
-  /** The largest |x| of the run. */
+  /** The largest |x| of the run, as its first trace over all of it has it. */
   get reach() {
-    this.farthest ??= this.trace(0, this.end, 400).x.reduce(
-      (a, x) => Math.max(a, Math.abs(x) || 0),
-      0,
-    );
+    if (!this.farthest) this.trace(0, this.end, 400);
     return this.farthest;
   }
 
@@ -122,6 +119,8 @@ export class Motion {
         lines.x[k] = x;
         lines.gap[k] = gap;
       });
+    if (from <= 0 && to >= this.end)
+      this.farthest ??= lines.x.reduce((most, x) => Math.max(most, Math.abs(x) || 0), 0);
     return lines;
   }
 

@@ -113,6 +113,7 @@ function partOf(name, label, at) {
 /** Over a range that a zoom does not change. */
 function displacement() {
   const {x} = run.answer.impacts;
+  inView(0, run.motion.end, plots.all.x.columns); // which is drawn, where all is in view
   const reach = 1080 * Math.max(run.motion.reach, pinned?.motion.reach ?? 0) || 1;
   return {...partOf("x", "x", (i) => x[i] * 1000), range: [-reach, reach]};
 }
