@@ -194,6 +194,8 @@ test("a number is typed with a point or a comma; what is none, or beyond the ran
   const page = await still("?preset=fig11");
   await after(page, () => type(page, "b", "18,5"));
   assert.match(await sentence(page), /^b = 18\.5 mm/);
+  await page.locator(number("b")).blur();
+  assert.ok(!(await page.$eval("#results", (node) => node.classList.contains("stale"))));
   await type(page, "b", "1.8.5");
   assert.match(await page.textContent("#message"), /Clearance: “1\.8\.5” is no number/);
   assert.match(await sentence(page), /^b = 18\.5 mm/);

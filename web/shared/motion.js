@@ -4,7 +4,8 @@
 import {Flow} from "./flow.js";
 import {lastUpTo} from "./search.js";
 
-const samplesPerCycle = 16; // at least, of the faster of forcing and oscillator, so that no beat shows that is not there
+// At least, of the faster of forcing and oscillator, so that no beat shows that is not there.
+const samplesPerCycle = 16;
 
 export class Motion {
   /** Of an answer of /v1/simulate with its impacts. */

@@ -1,5 +1,5 @@
-// The machine itself, to scale, at one moment of the run: spring and damper, oscillator, walls, the free mass
-// and where it just came from; a flash at an impact.
+// The machine itself, to scale, at one moment of the run: spring and damper, oscillator, walls, the
+// free mass and where it just came from; a flash at an impact.
 import {$} from "../shared/dom.js";
 import {blank, font, Size} from "../shared/frame.js";
 import {ink, stroke, write} from "../shared/ink.js";

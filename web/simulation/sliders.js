@@ -180,7 +180,7 @@ function rowOf(one) {
     autocomplete: "off",
     onchange: () => typed(one, number),
     oninput: () => typing(number.value !== number.defaultValue),
-    onblur: () => typing(number.value !== number.defaultValue),
+    onblur: () => typing(number.matches("[aria-invalid=true]")),
   });
   const range = element("input", {
     type: "range",
