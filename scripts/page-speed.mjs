@@ -1,6 +1,6 @@
 #!/usr/bin/env -S node
-// scripts/page-speed.mjs: how fast the page is, in Chromium on this machine: medians, and the worst.
-// Run it on a machine that does nothing else: Chromium and the service share its processors.
+// scripts/page-speed.mjs: measures the speed of the page in Chromium; prints medians and maxima.
+// Run it on an idle machine: Chromium and the service share its processors.
 import {startBrowser} from "../tests/page/browser.mjs";
 import {sum, weigh} from "../tests/page/weight.mjs";
 import {startService} from "../tests/service.mjs";
@@ -21,7 +21,7 @@ const shown = (page, n = 1) =>
     n,
   );
 
-/** From navigation to the first plots, and how much the page moved on the way. */
+/** Time from navigation to the first plots, and the layout shift meanwhile. */
 async function navigation(context, url) {
   const times = [];
   const shifts = [];
@@ -52,7 +52,7 @@ async function navigation(context, url) {
   row("layout shift", worst(shifts).toFixed(4), "below .02");
 }
 
-/** From a slider's input to the frame that shows its run. */
+/** Time from a slider's input to the frame that shows its run. */
 const turned = (page, turns) =>
   page.evaluate(async (turns) => {
     const results = document.getElementById("results");

@@ -1,8 +1,7 @@
 #!/usr/bin/env -S node
-// scripts/screenshots FOLDER [QUERY]: pictures of the page, wide and narrow, light and dark: the
-// first screen and the whole page. Without a query: of the first simulation, the first sweep, a map
-// and a measurement. With VINES_WEB_DIR=web they show the page in that folder instead of the one
-// compiled in.
+// scripts/screenshots.mjs FOLDER [QUERY]: takes screenshots of the page, wide and narrow, light and dark: the
+// first screen and the complete page. Without a query it shows the first simulation, the first sweep, a map
+// and a measurement. VINES_WEB_DIR=web selects the page in that folder instead of the compiled one.
 import {identified, open, startBrowser} from "../tests/page/browser.mjs";
 import {measured} from "../tests/record.mjs";
 import {startService} from "../tests/service.mjs";

@@ -1,5 +1,5 @@
-// Records as a laboratory has them, of a motion that the service has computed: a displacement, and
-// an acceleration that shows each impact as a half sine.
+// Simulated laboratory records of a motion that the service computes: displacement, and
+// acceleration with a half-sine pulse for each impact.
 
 /**
  * What the two sensors see.
@@ -29,11 +29,11 @@ export function sensed({series, impacts, parameters}, moments, pulse) {
   });
 }
 
-/** rows: [t, x, a], as they are to be written. */
+/** rows: [t, x, a] */
 export const csvOf = (rows) =>
   ["time_s,displacement_m,acceleration_m_s2", ...rows.map((row) => row.join(",")), ""].join("\n");
 
-/** Numbers in [-1, 1), the same each time, from a linear congruential generator (Numerical Recipes). */
+/** Reproducible numbers in [-1, 1) from a linear congruential generator (Numerical Recipes). */
 function noiseFrom(seed) {
   let state = seed;
   return () => {

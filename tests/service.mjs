@@ -1,10 +1,10 @@
-// A running service for the tests that talk to one.
+// Starts and stops a service for tests.
 import {spawn} from "node:child_process";
 
 export const program =
   process.env.VINES ?? new URL("../build/release/vines", import.meta.url).pathname;
 
-// A test that fails before it stops its service keeps nobody waiting, and leaves none behind.
+// Stops the services of tests that failed before they could do so.
 const started = new Set();
 process.once("exit", () => {
   for (const child of started) child.kill("SIGKILL");

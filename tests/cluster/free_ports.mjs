@@ -1,4 +1,4 @@
-// free_ports.mjs COUNT: so many ports of 127.0.0.1 that nothing listens on, in one line.
+// free_ports.mjs COUNT: prints COUNT free ports of 127.0.0.1 in one line.
 import {once} from "node:events";
 import {createServer} from "node:net";
 

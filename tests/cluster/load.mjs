@@ -1,9 +1,9 @@
-// load.mjs FRONT ORIGIN CLIENTS KILLS: so many clients of the port FRONT that ask without a pause
+// load.mjs FRONT ORIGIN CLIENTS KILLS: runs CLIENTS that send requests to the port FRONT without a pause
 // until SIGTERM, while KILLS of the replicas behind it are killed.
 //
-// An answer counts if it is, byte for byte, what the replica at the port ORIGIN said beforehand. One
-// that had begun when its replica was killed is cut off, which no proxy can mend: asked again, and
-// counted. Exit code 1 if a request is lost, or more are cut off than two a kill.
+// An answer counts if it equals, byte for byte, the earlier answer of the replica at the port ORIGIN. An answer
+// that has begun when its replica is killed is cut off, which no proxy can repair: it is requested again and
+// counted. Exit code 1 if a request is lost, or if more than two answers per kill are cut off.
 import http from "node:http";
 
 const [front, origin, clients, kills] = process.argv.slice(2).map(Number);

@@ -1,10 +1,10 @@
-// stream.mjs FRONT REQUEST WHOLE SIGNAL PROCESS...: a sweep through the port FRONT, then the points
-// that are missing, until none is.
+// stream.mjs FRONT REQUEST WHOLE SIGNAL PROCESS...: runs a sweep through the port FRONT and requests missing
+// points until the sweep is complete.
 //
-// REQUEST and WHOLE are files: the sweep, and its lines as the command line writes them. With a
-// SIGNAL (else an empty word) the replica that streams gets it after 20 points; the PROCESSes are
-// those of the replicas one, two and three. Exit code 1 if a point is missing, comes twice or
-// differs; without a signal also if the points do not come while they are computed.
+// REQUEST and WHOLE are files: the sweep, and its lines from the command line. With a
+// SIGNAL (may be empty) the streaming replica receives it after 20 points; the PROCESSes are
+// those of the replicas one, two and three. Exit code 1 if a point is missing, duplicate or
+// different; without a signal also if points do not arrive while they are computed.
 import fs from "node:fs";
 import http from "node:http";
 
@@ -21,7 +21,7 @@ const expected = new Map(
 const points = new Map();
 let twice = 0;
 
-/** Takes one line of an answer; `own` is what is known of that answer. */
+/** Handles one line of an answer; `own` is the state of that answer. */
 function take(line, own, breakAfter) {
   const {type, index} = JSON.parse(line);
   if (type === "done" || type === "error") own.end = type;
@@ -33,7 +33,7 @@ function take(line, own, breakAfter) {
     process.kill(Number(processes[replicas.indexOf(own.by)]), signal);
 }
 
-/** Asks for some points, or for all, and resolves once the answer is at its end or cut off. */
+/** Requests some points, or all; resolves when the answer ends or is cut off. */
 const ask = (indices, breakAfter) =>
   new Promise((resolve, reject) => {
     const body = JSON.stringify(indices ? {...request, indices} : request);

@@ -1,4 +1,4 @@
-// Every key that the service answers with, seen in real answers, part by part of the documents.
+// Collects all keys of real answers, by section of the documents.
 import assert from "node:assert/strict";
 import {measured} from "../record.mjs";
 import {startService} from "../service.mjs";

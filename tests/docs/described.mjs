@@ -1,4 +1,4 @@
-// Every key of an answer that the OpenAPI document has, part by part of the documents.
+// Collects all answer keys of the OpenAPI document, by section of the documents.
 
 /**
  * By part: the schemas that tell it, or their key `at`; what in them is told elsewhere, all but
@@ -52,7 +52,7 @@ const parts = {
   problem: {of: ["Problem"]},
 };
 
-/** The name of a sweep's parameter, and no key of its own. */
+/** Placeholder for the names of a sweep's parameters. */
 const isSwept = (path, fields) => fields.has(path.split(".").at(-1)) && !path.includes("state.");
 
 class Walk {
@@ -79,7 +79,7 @@ class Walk {
   }
 }
 
-/** A Map of Sets of paths, as of answeredKeys(). */
+/** A Map of Sets of paths, like answeredKeys(). */
 export function describedKeys(openapi) {
   const walk = new Walk(openapi);
   const fields = new Set(Object.keys(walk.schemas.SweepBase.properties));

@@ -1,4 +1,4 @@
-// What the documents say is what the program does.
+// Compares the documents with the program.
 import assert from "node:assert/strict";
 import {execFile} from "node:child_process";
 import {access, mkdtemp, readdir, rm} from "node:fs/promises";
@@ -25,7 +25,7 @@ before(async () => {
 });
 after(() => service.stop());
 
-/** Runs a program to its end: what it wrote to stdout. */
+/** Runs a program; returns its stdout. */
 const run = (file, args, options = {}) =>
   new Promise((resolve, reject) => {
     execFile(file, args, {maxBuffer: 1 << 26, ...options}, (error, stdout, stderr) =>
@@ -163,7 +163,7 @@ test("every key of every answer is in the table of its part, and no other one", 
   for (const [part, paths] of answered) {
     const own = documented.get(part);
     const known = [...own, ...(documented.get(like[part]) ?? [])];
-    // What is null, or an empty list, in one answer has its keys in another one.
+    // A value that is null or an empty list in one answer has its keys in another.
     for (const path of paths)
       assert.ok(
         known.some((k) => k === path || k.startsWith(`${path}.`) || k.startsWith(`${path}[]`)),
@@ -266,7 +266,7 @@ function sameOutput(shown, got, command) {
   });
 }
 
-/** As it is written, but of this service, this program and this checkout. */
+/** The command with this service, this program and this checkout. */
 const here = (command) =>
   command
     .replaceAll("127.0.0.1:8080", new URL(service.url).host)
@@ -274,7 +274,7 @@ const here = (command) =>
 
 test("the commands that the documents show print what they show", async () => {
   const folder = await mkdtemp(join(tmpdir(), "vines-docs-"));
-  // As a reader has them who has followed the tutorial, with the program on the PATH.
+  // The environment of a reader who has followed the tutorial, with the program on the PATH.
   const env = {...process.env, PATH: `${dirname(program)}:${process.env.PATH}`, LC_ALL: "C.UTF-8"};
   let count = 0;
   for (const [name, text] of Object.entries(documents))

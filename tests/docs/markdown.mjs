@@ -1,11 +1,11 @@
-// What the tests read of a document: tables and commands behind a marker, links, headings.
+// Reads tables and commands after markers, links and headings of a Markdown document.
 import {readFile} from "node:fs/promises";
 
 export const root = new URL("../../", import.meta.url);
 
 export const read = (name) => readFile(new URL(name, root), "utf8");
 
-/** The words of a text that are set as `code`. */
+/** Words of a text in `code` style. */
 export const codes = (text) => [...text.matchAll(/`([^`]+)`/g)].map((found) => found[1]);
 
 const cellsOf = (line) =>
@@ -14,7 +14,7 @@ const cellsOf = (line) =>
     .slice(1, -1)
     .map((cell) => cell.trim());
 
-/** The lines behind each marker `<!-- kind -->` or `<!-- kind: argument -->`. */
+/** Lines after each marker `<!-- kind -->` or `<!-- kind: argument -->`. */
 function marked(markdown, kind) {
   const marker = new RegExp(`^<!-- ${kind}(?:: (.*?))? ?-->$`);
   const lines = markdown.split("\n");
@@ -55,7 +55,7 @@ export const transcripts = (markdown) =>
     return steps;
   });
 
-/** What stands between `<!-- name: begin -->` and `<!-- name: end -->`. */
+/** Text between `<!-- name: begin -->` and `<!-- name: end -->`. */
 export function between(markdown, name) {
   const begin = `<!-- ${name}: begin -->\n`;
   const from = markdown.indexOf(begin);
@@ -66,7 +66,7 @@ export function between(markdown, name) {
 
 const withoutBlocks = (markdown) => markdown.replace(/^```[\s\S]*?^```$/gm, "");
 
-/** Where its links lead, pictures included. */
+/** Targets of its links and images. */
 export const links = (markdown) =>
   [...withoutBlocks(markdown).matchAll(/\]\(([^)\s]+)\)/g)].map((found) => found[1]);
 

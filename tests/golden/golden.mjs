@@ -1,10 +1,9 @@
-// Writes down what the program answers, one file for each request, so that two builds can be held
-// against each other:
-//   node tests/golden/golden.mjs record FOLDER     of the program that VINES names
+// Records the program's answers, one file per request, to compare two builds:
+//   node tests/golden/golden.mjs record FOLDER     answers of the program VINES
 //   node tests/golden/golden.mjs compare BEFORE AFTER
-// compare tells those that are equal byte for byte, those that say the same as JSON, and of the
-// others by how much their numbers differ, as a share of the largest of their list.
-// The version, the commit and the hash that follows from it are left out, and of a sweep's stream the progress; its points are put in order.
+// compare reports answers that are equal byte for byte, those that are equal as JSON, and for the
+// others the difference of their numbers relative to the largest of their list.
+// Version, commit and hashes are masked; a sweep's points are sorted, its progress is removed.
 import {spawn} from "node:child_process";
 import {mkdir, mkdtemp, readdir, readFile, rm, stat, writeFile} from "node:fs/promises";
 import {tmpdir} from "node:os";
@@ -31,7 +30,7 @@ const ordered = (text) => {
 const asText = (body) => (typeof body === "string" ? body : JSON.stringify(body));
 
 async function answerOf(url, {path, body, type}) {
-  // A fault tells the request's name, which the service would make up.
+  // Problem documents contain the request id, which the service would otherwise generate.
   const headers = {"Content-Type": type ?? "application/json", "X-Request-ID": "same"};
   const options = body === undefined ? {headers} : {method: "POST", body: asText(body), headers};
   const response = await fetch(url + path, options);
@@ -40,7 +39,7 @@ async function answerOf(url, {path, body, type}) {
   return `${response.status} ${kind}\n${kind.includes("ndjson") ? ordered(text) : text}`;
 }
 
-/** A file, or all files of a folder, with their names. */
+/** Contents of a file, or of all files of a folder, with their names. */
 async function contents(folder, name) {
   const path = join(folder, name);
   if (!(await stat(path)).isDirectory()) return `--- ${name}\n${await readFile(path, "utf8")}`;
@@ -86,7 +85,7 @@ async function record(folder) {
   console.log(`${count} answers in ${folder}`);
 }
 
-/** The JSON values in an answer: whole, after its status, or line by line; none if there is other text. */
+/** JSON values of an answer: complete, after its status, or by line; empty if there is other text. */
 const valuesIn = (text) => {
   const values = [];
   for (const line of text.split("\n"))
@@ -96,7 +95,7 @@ const valuesIn = (text) => {
 };
 const largestOf = (list) =>
   list.reduce((most, x) => (typeof x === "number" ? Math.max(most, Math.abs(x)) : most), 0);
-/** By how much two values differ, as a share of `size`; Infinity where it is not numbers that do. */
+/** Difference of two values relative to `size`; Infinity if other values than numbers differ. */
 const differenceOf = (one, other, size) => {
   if (one === other) return 0;
   if (typeof one === "number" && typeof other === "number")

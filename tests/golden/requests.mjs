@@ -1,8 +1,8 @@
-// Requests over all routes and subcommands, whose answers a change of the program's inside must not
-// move by a bit.
+// Requests to all routes and subcommands. An internal change of the program must not change a bit of their
+// answers.
 //
-// {name, path, body?, type?, method?}: of the service. {name, args, input?, environment?, files?}:
-// of a subcommand, run in a folder of its own, whose `files` are a part of the answer.
+// {name, path, body?, type?, method?}: request to the service. {name, args, input?, environment?, files?}:
+// subcommand, run in a folder of its own; its `files` are part of the answer.
 import {csvOf, sensed} from "../record.mjs";
 
 const machine = {
@@ -323,7 +323,7 @@ const faults = [
   get("/v1/nothing"),
 ];
 
-/** A record of so many seconds, without noise; rate: Hz. */
+/** Record of the given length in seconds, without noise; rate: Hz. */
 const record = (answer, rate, seconds) => {
   const {omega0} = answer.parameters.derived;
   const moments = Array.from({length: rate * seconds}, (_, k) => ({
@@ -334,7 +334,7 @@ const record = (answer, rate, seconds) => {
   return csvOf(sensed(answer, moments, 0.001).map(written));
 };
 
-/** Those that need the answer of another request first. `ask` posts to /v1/simulate. */
+/** Requests that depend on another answer. `ask` posts to /v1/simulate. */
 export const identifications = async (ask) => {
   const fig20 = await ask({
     preset: "fig20",
