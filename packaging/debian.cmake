@@ -1,5 +1,5 @@
-# Run by cpack on what it is about to pack, one folder for each component: what Debian has elsewhere,
-# or in another form, than `cmake --install`.
+# Run by cpack on the files to be packed, one folder per component. Changes what Debian places
+# elsewhere, or in another form, than `cmake --install`.
 cmake_policy(VERSION 3.25)
 set(debian ${CMAKE_CURRENT_LIST_DIR}/debian)
 set(program ${CPACK_TEMPORARY_DIRECTORY}/program)
@@ -14,14 +14,14 @@ file(RENAME ${program}/usr/share/zsh/site-functions ${program}/usr/share/zsh/ven
 file(MAKE_DIRECTORY ${program}/etc/default)
 file(COPY_FILE ${debian}/vines.default ${program}/etc/default/vines)
 
-# Its own, and those of the libraries of headers that it was built with.
+# Copyright of vines, and of the header-only libraries that it is built with.
 file(READ ${debian}/copyright copyright)
 foreach(library libcli11-dev libcpp-httplib-dev libeigen3-dev libspdlog-dev nlohmann-json3-dev)
     file(READ /usr/share/doc/${library}/copyright text)
     string(APPEND copyright "\n---- ${library}\n\n${text}")
 endforeach()
 
-# By SOURCE_DATE_EPOCH, if that is set.
+# Uses SOURCE_DATE_EPOCH if set.
 string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)
 foreach(package vines libvines-core-dev)
     set(folder ${program})
@@ -32,14 +32,14 @@ foreach(package vines libvines-core-dev)
     file(WRITE ${documents}/copyright "${copyright}")
     file(WRITE ${documents}/changelog "vines (${CPACK_PACKAGE_VERSION}) unstable; urgency=medium
 
-  * What changed is told by CHANGELOG.md of the sources.
+  * See CHANGELOG.md of the sources.
 
  -- ${CPACK_PACKAGE_CONTACT}  ${date}
 ")
     compress(${documents}/changelog)
 endforeach()
 
-# Nothing that only a debugger, or nobody, reads.
+# Removes symbols that only a debugger needs.
 file(GLOB libraries ${core}/usr/lib/*.a ${core}/usr/lib/*/*.a)
 foreach(file IN LISTS libraries ITEMS ${program}/usr/bin/vines)
     set(what --strip-unneeded)

@@ -1,4 +1,4 @@
-// The program `vines`: which subcommands there are, and which of them runs.
+// Entry point of the program `vines`: registers the subcommands and runs the selected one.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -8,16 +8,13 @@
 #include <utility>
 #include <vector>
 
-#include "api/schema/nearest_name.hpp"
+#include "api/schema/field.hpp"
 #include "api/version.hpp"
 #include "cli/commands.hpp"
 #include "cli/stop_signals.hpp"
 #include "http/commands.hpp"
-#include "program/command.hpp"
-#include "program/examples.hpp"
-#include "program/print.hpp"
-#include "program/streams.hpp"
-#include "program/tell.hpp"
+#include "program/standard_streams.hpp"
+#include "program/subcommand.hpp"
 #include "report/command.hpp"
 
 namespace {
@@ -28,10 +25,10 @@ const char* const examples =
     "vines identify record.csv -p preset=fig20 | jq .verdict\n"
     "vines serve --port 8080";
 
-/// The command that a wrong flag was given to.
-std::string name_of_asked(const CLI::App& app) {
-    const auto asked = app.get_subcommands();
-    return "vines" + (asked.empty() ? "" : " " + asked[0]->get_name());
+/// "vines" and the selected subcommand, for the message about a wrong flag.
+std::string name_of_selected(const CLI::App& app) {
+    const auto selected = app.get_subcommands();
+    return "vines" + (selected.empty() ? "" : " " + selected[0]->get_name());
 }
 
 std::vector<std::string> names_of(const std::vector<vines::Command>& commands) {
@@ -40,60 +37,63 @@ std::vector<std::string> names_of(const std::vector<vines::Command>& commands) {
     return names;
 }
 
-/// What is wrong with the first argument, which has to ask for a subcommand; empty: nothing.
-std::string fault_of_first(
+/// Error message for the first argument, which must be a subcommand or a flag of the program; empty
+/// if it is valid.
+std::string fault_of_first_argument(
     const CLI::App& app, const std::vector<std::string>& names, const std::string& first) {
     if (first.empty()) return fmt::format("a subcommand is missing: {}", fmt::join(names, ", "));
     if (first[0] == '-') return app.get_option_no_throw(first) ? "" : "unknown flag " + first;
     if (std::find(names.begin(), names.end(), first) != names.end()) return "";
-    const std::string meant = vines::api::nearest_name(names, first);
-    return "unknown subcommand " + first + (meant.empty() ? "" : "; did you mean " + meant + "?");
+    const std::string nearest = vines::api::nearest_name(names, first);
+    return "unknown subcommand " + first +
+           (nearest.empty() ? "" : "; did you mean " + nearest + "?");
 }
 
-/// While it lives the variables of other commands than the one that is asked for, which may be
-/// meant for another run, are not looked at.
-class OthersForgotten {
+/// During its lifetime the environment variables of all other subcommands are ignored: they can be
+/// meant for another run and be invalid here.
+class OtherVariablesIgnored {
 public:
-    OthersForgotten(const std::vector<vines::Command>& commands, const std::string& asked) {
+    OtherVariablesIgnored(
+        const std::vector<vines::Command>& commands, const std::string& selected) {
         for (const vines::Command& command : commands)
-            if (command.app->get_name() != asked)
+            if (command.app->get_name() != selected)
                 for (CLI::Option* option : command.app->get_options()) {
                     variables_.emplace_back(option, option->get_envname());
                     option->envname("");
                 }
     }
-    ~OthersForgotten() {
+    ~OtherVariablesIgnored() {
         for (const auto& [option, name] : variables_) option->envname(name);
     }
-    OthersForgotten(const OthersForgotten&) = delete;
-    OthersForgotten& operator=(const OthersForgotten&) = delete;
+    OtherVariablesIgnored(const OtherVariablesIgnored&) = delete;
+    OtherVariablesIgnored& operator=(const OtherVariablesIgnored&) = delete;
 
 private:
     std::vector<std::pair<CLI::Option*, std::string>> variables_;
 };
 
-/// A wrong use of the program.
+/// Reports a usage error. Returns the exit code 2.
 int refuse(const std::string& fault, const std::string& command) {
-    vines::tell(fault + "; see " + command + " --help");
+    vines::print_message(fault + "; see " + command + " --help");
     return 2;
 }
 
-/// Of what writes to stdout.
+/// Runs a command. Maps a closed pipe and exceptions to exit codes.
 int checked(const std::function<int()>& run) {
     try {
         return run();
-    } catch (const vines::ReaderLeft&) {
-        return vines::reader_left;
+    } catch (const vines::BrokenPipe&) {
+        return vines::broken_pipe_code;
     } catch (const std::exception& e) {
-        vines::tell(e.what());
+        vines::print_message(e.what());
         return 1;
     }
 }
 
-/// --help, --version.
-int answer(const CLI::App& app, const CLI::Success& asked) {
+/// Prints the text of --help or --version.
+int print_text(const CLI::App& app, const CLI::Success& request) {
     std::ostringstream text;
-    const int code = app.exit(asked, text, text);
+    const int code = app.exit(request, text, text);
     vines::print(text.str());
     return code;
 }
@@ -106,7 +106,7 @@ int main(int argc, char** argv) {
         "An oscillator with a vibro-impact nonlinear energy sink, simulated exactly.", "vines");
     app.set_version_flag("--version", vines::api::version());
     app.require_subcommand(1);
-    // In the order of --help.
+    // Order of --help.
     const std::vector<vines::Command> commands = {
         vines::cli::add_simulate(app),
         vines::cli::add_sweep(app),
@@ -124,17 +124,17 @@ int main(int argc, char** argv) {
         vines::cli::ended_by_signals(vines::report::add_reproduce(app)),
         vines::cli::add_completion(app),
         vines::cli::add_manual(app)};
-    vines::add_examples(app, examples);  // after the subcommands, which would inherit them
+    vines::add_examples(app, examples);  // after the subcommands, which would inherit the examples
     const std::string first = argc > 1 ? argv[1] : "";
-    const std::string fault = fault_of_first(app, names_of(commands), first);
+    const std::string fault = fault_of_first_argument(app, names_of(commands), first);
     if (!fault.empty()) return refuse(fault, "vines");
     try {
-        const OthersForgotten forgotten(commands, first);
+        const OtherVariablesIgnored ignored(commands, first);
         app.parse(argc, argv);
-    } catch (const CLI::Success& asked) {
-        return checked([&] { return answer(app, asked); });
+    } catch (const CLI::Success& request) {
+        return checked([&] { return print_text(app, request); });
     } catch (const CLI::ParseError& e) {
-        return refuse(e.what(), name_of_asked(app));
+        return refuse(e.what(), name_of_selected(app));
     }
     return checked(
         std::find_if(commands.begin(), commands.end(), [](const vines::Command& command) {

@@ -1,17 +1,15 @@
-// The page: its tabs, and the address, which names the tab and holds its request. So a link shows
-// the same, and Back leads back.
+// The page: tabs and the address. The address names the tab and holds its request, so links and the
+// Back button restore what was shown.
 
 import * as measurement from "./measurement/measurement.js";
 import {get} from "./shared/api.js";
 import {onColours} from "./shared/colours.js";
-import {$} from "./shared/dom.js";
-import * as tabs from "./shared/tabs.js";
+import {$, attributes, on} from "./shared/dom.js";
 import * as simulation from "./simulation/simulation.js";
 import * as sweep from "./sweep/sweep.js";
 
-// A tab is a module with start(tables, changed, others), open(query), query() and redraw(); it is
-// started when one goes there first. others: {simulate(fields), measure(answer)}, what one tab asks
-// of another.
+// A tab is a module with start(tables, changed, others), open(query), query() and redraw(), started
+// when it is first shown. others: {simulate(fields), measure(answer)} open another tab.
 const modules = {simulation, sweep, measurement};
 const started = new Set();
 const queryOf = (name) => (started.has(name) ? modules[name].query() : "");
@@ -19,9 +17,38 @@ const scrolled = {};
 let tables;
 let current = null;
 
-// In a frame of another page: plots only.
+// Embedded in another page's <iframe>: plots only.
 const embedded = new URLSearchParams(location.search).has("embed");
 document.body.classList.toggle("embedded", embedded);
+
+const tabs = [...document.querySelectorAll("[role=tab]")];
+const nameOf = (tab) => tab.id.replace("tab-", "");
+
+function selectTab(chosen) {
+  for (const tab of tabs) {
+    const is = nameOf(tab) === chosen;
+    attributes(tab, {"aria-selected": is, tabindex: is ? 0 : -1});
+    $(tab.getAttribute("aria-controls")).hidden = !is;
+  }
+}
+
+const moves = {ArrowRight: (i) => i + 1, ArrowLeft: (i) => i - 1, Home: () => 0, End: () => -1};
+
+/** Tabs are chosen by click and by arrow keys. */
+function listenToTabs(choose) {
+  for (const tab of tabs)
+    on(tab, {
+      click: () => choose(nameOf(tab)),
+      keydown(event) {
+        const move = moves[event.key];
+        if (!move) return;
+        event.preventDefault();
+        const next = tabs.at(move(tabs.indexOf(tab)) % tabs.length);
+        next.focus();
+        next.click();
+      },
+    });
+}
 
 function address(name, query) {
   const parts = [embedded ? "embed=1" : "", name === "simulation" ? "" : `tab=${name}`, query];
@@ -32,17 +59,17 @@ function show(name) {
   if (current === name) return;
   if (current) scrolled[current] = scrollY;
   current = name;
-  tabs.select(name);
+  selectTab(name);
   scrollTo(0, scrolled[name] ?? 0);
 }
 
-/** Follows the address. */
+/** Shows the tab and request of the address. */
 function follow() {
   const query = new URLSearchParams(location.search);
   query.delete("embed");
   const named = query.get("tab");
   const name = Object.hasOwn(modules, named) ? named : "simulation";
-  if (name === named) query.delete("tab"); // another is said to be unknown
+  if (name === named) query.delete("tab"); // other values are reported as unknown
   show(name);
   if (!started.has(name))
     modules[name].start(tables, keep(name), {simulate: simulatePoint, measure: measureRun});
@@ -55,13 +82,13 @@ function go(name, query) {
   return follow();
 }
 
-const together = 800; // ms within which edits are one for Back
+const together = 800; // ms within which edits share a history entry
 let edited = -Infinity;
 let writing = 0;
 
 /**
- * A tab has another query. edit: Back leads to the one before, unless that is just as new; soon:
- * more are to come.
+ * Writes a tab's query to the address. edit: adds a history entry, unless the last is recent; soon:
+ * more changes follow.
  */
 const keep =
   (name) =>
@@ -78,13 +105,13 @@ const keep =
     else write("replaceState");
   };
 
-/** The run of one of a sweep's points, from its first impacts on. */
+/** Opens the simulation of a sweep's point. */
 function simulatePoint(fields) {
   scrolled.simulation = 0;
   return go("simulation", new URLSearchParams(Object.entries(fields)));
 }
 
-/** A run as a record to be identified. answer: of /v1/simulate, with its impacts. */
+/** Opens the record of a run, an answer of /v1/simulate with impacts, in Measurement. */
 async function measureRun(answer) {
   await go("measurement", queryOf("measurement"));
   return measurement.measure(answer);
@@ -93,7 +120,7 @@ async function measureRun(answer) {
 async function start() {
   const [fields, {presets}] = await Promise.all([get("v1/parameters"), get("v1/presets")]);
   tables = {...fields, presets};
-  tabs.listen((name) => {
+  listenToTabs((name) => {
     if (name !== current) go(name, queryOf(name));
   });
   addEventListener("popstate", follow);

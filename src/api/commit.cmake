@@ -1,5 +1,5 @@
-# Writes FILE, a header with the commit that is built: COMMIT, where it is given, else that of the
-# checkout SOURCE. Where it has not changed the file is left as it is, and nothing is built anew.
+# Writes FILE, a header with the commit that is built: COMMIT if given, else that of the checkout
+# SOURCE. An unchanged file keeps its time stamp, so that nothing is rebuilt.
 if(COMMIT STREQUAL "")
     execute_process(
         COMMAND git -C ${SOURCE} describe --always --dirty --abbrev=12 --exclude=*

@@ -1,13 +1,18 @@
+// Lines are read one by one. Those above the data go to Heading, which keeps the last comment and
+// the last two other lines: they give names and units once the count of cells is known. Every data
+// line must have that count of cells.
 #include "api/csv.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <set>
+#include <utility>
 
-#include "api/broken_off.hpp"
+#include "api/cancellation.hpp"
 #include "api/text_encoding.hpp"
-#include "api/units.hpp"
 
 namespace vines::api {
 
@@ -15,7 +20,7 @@ namespace {
 
 constexpr std::string_view blanks = " \t";
 constexpr char by_blanks = ' ';
-// A line with more cells is no line of a record.
+// Longest line in cells.
 constexpr std::size_t most_cells = 1000;
 
 std::string_view trimmed(std::string_view text) {
@@ -24,19 +29,19 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-struct Line {
-    std::size_t number = 0;  ///< from 1 on
+struct CsvLine {
+    std::size_t number = 0;  ///< from 1
     std::string_view text;
 };
 
-class Lines {
+class CsvLines {
 public:
-    explicit Lines(std::string_view text) : rest_(text) {}
+    explicit CsvLines(std::string_view text) : rest_(text) {}
 
-    std::optional<Line> next() {
+    std::optional<CsvLine> next() {
         if (rest_.empty()) return std::nullopt;
         const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
-        const Line line{++number_, rest_.substr(0, end)};
+        const CsvLine line{++number_, rest_.substr(0, end)};
         const bool two = rest_.substr(end, 2) == "\r\n";
         rest_.remove_prefix(std::min(end + (two ? 2 : 1), rest_.size()));
         return line;
@@ -47,7 +52,7 @@ private:
     std::size_t number_ = 0;
 };
 
-/// Empty where the line is none.
+/// The text of a comment; empty for any other line.
 std::string_view comment_of(std::string_view line) {
     line = trimmed(line);
     for (const std::string_view sign : {"#", "%", "//"})
@@ -65,8 +70,8 @@ struct Cell {
     bool is_quoted = false;
 };
 
-/// The cells of a line into a list, without empty ones behind the last.
-void split(std::string_view line, char separator, std::vector<Cell>& cells) {
+/// Splits a line into cells, without trailing empty ones.
+void split_cells(std::string_view line, char separator, std::vector<Cell>& cells) {
     cells.clear();
     const bool blank = separator == by_blanks;
     const auto end_of = [&](std::size_t from) {
@@ -94,11 +99,11 @@ void split(std::string_view line, char separator, std::vector<Cell>& cells) {
 
 std::vector<Cell> cells_of(std::string_view line, char separator) {
     std::vector<Cell> cells;
-    split(line, separator, cells);
+    split_cells(line, separator, cells);
     return cells;
 }
 
-/// None where the cell is no number.
+/// nullopt if the cell is not a number.
 std::optional<double> number_of(const Cell& cell, char separator) {
     std::string_view text = cell.text;
     std::string copy;
@@ -126,18 +131,18 @@ std::optional<double> number_of(const Cell& cell, char separator) {
 }
 
 double number_in(const Cell& cell, char separator, std::size_t line, const std::string& column) {
-    if (cell.text.empty()) fault(line, column, cell.text, "there is no number");
+    if (cell.text.empty()) fault(line, column, cell.text, "a number is missing");
     const std::optional<double> value = number_of(cell, separator);
     if (!value) {
         std::string what = "\"";  // not operator+: g++ 12 warns of it at -O3, without a reason
-        what.append(cell.text.substr(0, 40)).append("\" is no number");
+        what.append(cell.text.substr(0, 40)).append("\" is not a number");
         fault(line, column, cell.text, what);
     }
     if (!std::isfinite(*value)) fault(line, column, cell.text, "the number is not finite");
     return *value;
 }
 
-[[noreturn]] void fault_of_length(const Line& line, std::size_t cells, std::size_t columns) {
+[[noreturn]] void fault_of_length(const CsvLine& line, std::size_t cells, std::size_t columns) {
     fault(
         line.number, "", line.text,
         "has " + std::to_string(cells) + " columns, the header has " + std::to_string(columns));
@@ -149,23 +154,23 @@ bool has_number(const std::vector<Cell>& cells, char separator) {
     });
 }
 
-/// Told by its first character, and by whether anything separates: most lines that are none of
-/// numbers need not be split.
-bool may_be_numbers(std::string_view line, std::optional<char> said) {
+/// A cheap test of the first character and of the presence of a separator: it rejects most lines of
+/// text without splitting them.
+bool may_be_numbers(std::string_view line, std::optional<char> declared) {
     line = trimmed(line);
-    constexpr std::string_view of_a_first_cell = "0123456789+-.,\"iInN";  // inf and nan, too
+    constexpr std::string_view of_a_first_cell = "0123456789+-.,\"iInN";  // also inf and nan
     return !line.empty() && of_a_first_cell.find(line[0]) != line.npos &&
-           (said || line.find_first_of(";\t, ") != line.npos);
+           (declared || line.find_first_of(";\t, ") != line.npos);
 }
 
-/// That by which the line is numbers, two or more.
-std::optional<char> separator_of_numbers(std::string_view line, std::optional<char> said) {
-    if (!may_be_numbers(line, said)) return std::nullopt;
+/// The separator that splits the line into two or more numbers.
+std::optional<char> separator_of_numbers(std::string_view line, std::optional<char> declared) {
+    if (!may_be_numbers(line, declared)) return std::nullopt;
     std::vector<Cell> cells;
-    std::string separators = said ? std::string(1, *said) : ";\t,";
-    if (!said) separators += by_blanks;
+    std::string separators = declared ? std::string(1, *declared) : ";\t,";
+    if (!declared) separators += by_blanks;
     for (const char separator : separators) {
-        split(line, separator, cells);
+        split_cells(line, separator, cells);
         const auto is_number = [separator](const Cell& c) {
             return number_of(c, separator).has_value();
         };
@@ -175,19 +180,19 @@ std::optional<char> separator_of_numbers(std::string_view line, std::optional<ch
     return std::nullopt;
 }
 
-/// What stands above the numbers.
+/// The lines above the data: names, units, comments.
 class Heading {
 public:
-    /// A line that is no line of numbers.
-    void take(const Line& line) {
+    /// Takes a line that is not data.
+    void take(const CsvLine& line) {
         if (is_comment(line.text)) comment_ = {line.number, comment_of(line.text)};
         else before_ = std::exchange(last_, line);
         something_ = true;
     }
     bool has_something() const { return something_; }
 
-    /// Named columns without values, for `count` cells; `first` is the first line of numbers.
-    std::vector<CsvColumn> columns(const Line& first, std::size_t count, char separator) const {
+    /// Named empty columns for `count` cells; `first` is the first data line.
+    std::vector<CsvColumn> columns(const CsvLine& first, std::size_t count, char separator) const {
         const std::vector<Cell> last = cells_of(last_.text, separator),
                                 before = cells_of(before_.text, separator),
                                 comment = cells_of(comment_.text, separator);
@@ -208,7 +213,7 @@ public:
                                            : std::vector<Cell>());
         if (fits(comment)) return named(comment, {});
         if (last.size() == count && fits(before)) {
-            // Not the names, but the first line of the numbers, and at fault.
+            // The last line is the first data line, with an invalid cell.
             const auto columns = named(before, {});
             for (std::size_t k = 0; k < count; ++k)
                 number_in(last[k], separator, last_.number, columns[k].name);
@@ -233,11 +238,11 @@ private:
         return columns;
     }
 
-    Line last_, before_, comment_;
+    CsvLine last_, before_, comment_;
     bool something_ = false;
 };
 
-/// Which decimal signs a record has: with both, one of them may group thousands.
+/// The decimal signs of a record. A record with both is refused: one may group thousands.
 class DecimalSigns {
 public:
     void see(std::string_view number, std::size_t line, const std::string& column) {
@@ -252,8 +257,8 @@ private:
     bool comma_ = false, point_ = false;
 };
 
-/// What a line like "sep=;" says, which spreadsheets write and read.
-std::optional<char> said_separator(std::string_view line) {
+/// The separator of a line "sep=;", which spreadsheets write and read.
+std::optional<char> declared_separator(std::string_view line) {
     line = trimmed(line);
     if (line.size() != 5 || !(line.starts_with("sep=") || line.starts_with("SEP=")))
         return std::nullopt;
@@ -262,22 +267,22 @@ std::optional<char> said_separator(std::string_view line) {
 
 }  // namespace
 
-Csv parse_csv(std::string_view bytes, const Reading& reading) {
-    StillWanted wanted = reading.wanted();
+Csv parse_csv(std::string_view bytes, const ReadLimits& limits) {
+    CancelCheck cancel = limits.check();
     std::size_t numbers = 0;
     std::string room;
-    Lines lines(as_utf8(bytes, room));
+    CsvLines lines(as_utf8(bytes, room));
     Csv csv;
     Heading heading;
-    std::optional<char> said, separator;
+    std::optional<char> declared, separator;
     std::vector<Cell> cells;
     DecimalSigns signs;
     while (const auto line = lines.next()) {
-        wanted.step();
+        cancel.step();
         if (trimmed(line->text).empty()) continue;
         if (csv.columns.empty()) {
-            if (!said && (said = said_separator(line->text))) continue;
-            if (!is_comment(line->text)) separator = separator_of_numbers(line->text, said);
+            if (!declared && (declared = declared_separator(line->text))) continue;
+            if (!is_comment(line->text)) separator = separator_of_numbers(line->text, declared);
             if (!separator) {
                 heading.take(*line);
                 continue;
@@ -287,20 +292,20 @@ Csv parse_csv(std::string_view bytes, const Reading& reading) {
         } else if (is_comment(line->text)) {
             continue;
         }
-        split(line->text, *separator, cells);
+        split_cells(line->text, *separator, cells);
         if (cells.empty()) continue;
         if (cells.size() != csv.columns.size()) {
-            // Empty cells are dropped at the end alone: what is missing there is named.
+            // Trailing empty cells are dropped; a missing last value is reported as such.
             if (cells.size() + 1 == csv.columns.size() && line->text.back() == *separator)
                 cells.push_back({});
             else fault_of_length(*line, cells.size(), csv.columns.size());
         }
-        if ((numbers += cells.size()) > reading.most_numbers)
+        if ((numbers += cells.size()) > limits.most_numbers)
             throw Problem(
-                413, "the record has more than " + std::to_string(reading.most_numbers) +
-                         " numbers: fewer samples, or fewer columns, tell as much");
+                413, "the record has more than " + std::to_string(limits.most_numbers) +
+                         " numbers; send fewer samples or columns");
         for (std::size_t k = 0; k < cells.size(); ++k) {
-            wanted.step();
+            cancel.step();
             csv.columns[k].values.push_back(
                 number_in(cells[k], *separator, line->number, csv.columns[k].name));
             signs.see(cells[k].text, line->number, csv.columns[k].name);
@@ -314,6 +319,38 @@ Csv parse_csv(std::string_view bytes, const Reading& reading) {
                        "tabs, commas or blanks"
                      : "the record is empty: it needs a header and lines of numbers");
     return csv;
+}
+
+std::string unit_spelling(std::string_view text) {
+    if (text.size() > longest_unit) return "?";
+    std::string spelling(text);
+    for (const auto& [written, plain] :
+         {std::pair("\u00b5", "u"), std::pair("\u03bc", "u"), std::pair("\u00b2", "2"),
+          std::pair("\u207b", "-"), std::pair("\u00b7", "")})
+        for (std::size_t at; (at = spelling.find(written)) != std::string::npos;)
+            spelling.replace(at, std::string_view(written).size(), plain);
+    std::erase_if(spelling, [](char c) {
+        return std::string_view(" ^*()[]").find(c) != std::string_view::npos;
+    });
+    std::transform(spelling.begin(), spelling.end(), spelling.begin(), [](unsigned char c) {
+        return std::tolower(c);
+    });
+    return spelling;
+}
+
+bool is_foreign_unit(std::string_view text) {
+    static const std::set<std::string, std::less<>> foreign = {
+        "nm",  "cm", "dm", "km", "mil", "in", "inch", "ft",    "us",    "ns",
+        "min", "h",  "hz", "v",  "mv",  "mg", "gal",  "cm/s2", "mm/s2", "ft/s2",
+        "s",   "ms", "m",  "mm", "um",  "g",  "m/s",  "mm/s"};
+    return foreign.contains(unit_spelling(text));
+}
+
+bool is_unit(std::string_view text) {
+    static const std::set<std::string, std::less<>> others = {
+        "",  "-",   "1",    "sec",     "msec", "m/s2", "m_s2", "ms-2", "m/s/s", "n",
+        "a", "deg", "degc", "\u00b0c", "k",    "pa",   "bar",  "%",    "rad",   "kn"};
+    return is_foreign_unit(text) || others.contains(unit_spelling(text));
 }
 
 }  // namespace vines::api

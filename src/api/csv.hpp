@@ -1,35 +1,50 @@
-// Columns of numbers from the text of a measurement, as laboratories have it.
+// Reads columns of numbers from the CSV text of a measurement.
 //
-// The numbers begin at the first line of two cells or more that are all numbers. Above them stand
-// the names, perhaps with a row of units below, perhaps as a comment; what stands above those is a
-// preamble, and passed over, as are blank lines and comments (#, %, //).
+// The data begin at the first line of two or more cells that are all numbers. The column names
+// stand above, optionally in a comment, optionally with a row of units below. Preamble above the
+// names, blank lines and comments (#, %, //) are skipped.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "api/cancellation.hpp"
 #include "api/problem.hpp"
-#include "api/reading.hpp"
 
 namespace vines::api {
 
+/// Bytes of the longest unit.
+inline constexpr std::size_t longest_unit = 32;
+
+/// Canonical spelling of a unit: lower case, without blanks, brackets, ^ and *, u for mu, digits
+/// for superscripts.
+std::string unit_spelling(std::string_view text);
+
+/// True if a cell can be part of a row of units: a unit of any quantity, or empty.
+bool is_unit(std::string_view text);
+
+/// True for a common unit at the end of a column's name; a quantity that does not accept it refuses
+/// the column.
+bool is_foreign_unit(std::string_view text);
+
 struct CsvColumn {
-    std::string name, unit;  ///< unit: of a row of units, as it stands there
+    std::string name, unit;  ///< unit: verbatim from the row of units
     std::vector<double> values;
 };
 
 struct Csv {
     std::vector<CsvColumn> columns;
-    std::vector<std::uint32_t> lines;  ///< of each row of values its line, from 1 on
+    std::vector<std::uint32_t> lines;  ///< line number of each row, from 1
 };
 
-/// Separated by semicolons, tabs, commas or blanks: what makes numbers of the first line of them,
-/// or what a first line "sep=;" says. Decimal commas where commas separate nothing, and in
-/// quotation marks. Empty cells at the end of the lines are dropped. Lines end by LF, CR LF or CR;
-/// text in any encoding of text_encoding.hpp. Problem 422 that names line and column for what is no
-/// number, NaN, or a line of another length; 413 and BrokenOff as `reading` says.
-Csv parse_csv(std::string_view text, const Reading& reading = {});
+/// The separator is the first of semicolon, tab, comma, blank that makes numbers of the first data
+/// line, or that of a first line "sep=;". Decimal commas are read where commas do not separate, and
+/// within quotation marks. Trailing empty cells are dropped. Lines end with LF, CR LF or CR;
+/// encodings as in text_encoding.hpp. Problem 422 naming line and column for a cell that is not a
+/// finite number, or a line of another length; Problem 413 and Cancelled by `limits`.
+Csv parse_csv(std::string_view text, const ReadLimits& limits = {});
 
 }  // namespace vines::api

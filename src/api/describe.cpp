@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "api/column.hpp"
-#include "api/object.hpp"
-#include "api/schema/words.hpp"
+#include "api/answer_json.hpp"
+#include "api/schema/enum_names.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines::api {
 
@@ -28,7 +28,7 @@ Json describe_system(const System& system) {
          {"R_plus", p.R_plus},
          {"R_minus", p.R_minus},
          {"b", p.b},
-         {"damping", word(p.damping)},
+         {"damping", enum_json(p.damping)},
          {"origin", system.origin}});
     if (system.si) append(j, {{"si", fields_of(*system.si)}});
     return j;
@@ -65,7 +65,7 @@ Json describe_series(const Series& s) {
          {"x_ddot", column(s.x_ddot)}});
 }
 
-Json describe_sticks(const std::vector<StuckPhase>& sticks) {
+Json describe_sticks(const std::vector<StickingPhase>& sticks) {
     return object(
         {{"side", column(sticks, [](const auto& s) { return s.start.side; })},
          {"tau_start", column(sticks, [](const auto& s) { return s.start.tau; })},
@@ -73,7 +73,7 @@ Json describe_sticks(const std::vector<StuckPhase>& sticks) {
          {"impacts", column(sticks, [](const auto& s) { return s.start.impacts; })}});
 }
 
-Json describe_touches(const std::vector<TangentContact>& touches) {
+Json describe_touches(const std::vector<GrazingEvent>& touches) {
     return object(
         {{"tau", column(touches, [](const auto& t) { return t.tau; })},
          {"side", column(touches, [](const auto& t) { return t.side; })}});
@@ -144,7 +144,7 @@ Json describe_energy(const EnergyResult& e) {
          {"rms_ratio", or_null(e.rms_ratio)},
          {"peak_ratio", or_null(e.peak_ratio)}});
     if (!e.decay) return j;
-    auto moments = [](const DecayMoments& m) {
+    auto moments = [](const DecayTimes& m) {
         return Json{{"tau_half", or_null(m.half)}, {"tau_tenth", or_null(m.tenth)}};
     };
     j["decay"] = moments(e.decay->with_absorber);
@@ -197,6 +197,94 @@ Json describe_recommendation(const std::optional<Recommendation>& r) {
          {"x_max", r->x_max},
          {"regime", name_of(r->regime)},
          {"start", r->start.name}});
+}
+
+namespace {
+
+const char* describe_type(const Regime& r) {
+    switch (r.type) {
+        case RegimeType::none: return r.forced ? "no impacts" : "free decay, no forcing";
+        case RegimeType::I: return "sparse irregular impacts, no stretch of two per cycle";
+        case RegimeType::II:
+            return "strongly modulated response: stretches of two impacts per cycle between others";
+        case RegimeType::III: return "two symmetric impacts per cycle, periodic";
+        case RegimeType::IV: return "two asymmetric impacts per cycle, periodic";
+        case RegimeType::V: return "another number of impacts per cycle, periodic";
+        case RegimeType::VI: return "irregular, more than two impacts per cycle";
+    }
+    return "";
+}
+
+/// Floquet multipliers of one period, by descending modulus.
+Json describe_multipliers(const PeriodicOrbit& orbit) {
+    return object(
+        {{"re", column(orbit.multipliers, [](auto m) { return m.real(); })},
+         {"im", column(orbit.multipliers, [](auto m) { return m.imag(); })},
+         {"modulus", column(orbit.multipliers, elementary::modulus)}});
+}
+
+Json describe_capture(const Capture& c) {
+    return object(
+        {{"tau", or_null(c.tau)},
+         {"status", c.tau ? "captured" : "on_its_way"},
+         {"chaotic_before", or_null(c.chaotic_before)},
+         {"exponents_before", describe_final(c.before)},
+         {"exponents_after", describe_final(c.after)}});
+}
+
+Json describe_point(const PeriodicOrbit& o) {
+    return object(
+        {{"tau", o.tau},
+         {"x_dot", o.state.x_dot},
+         {"x", o.state.x},
+         {"y_dot", o.state.y_dot},
+         {"y", o.state.y}});
+}
+
+void add_orbit(Json& j, const std::optional<PeriodicOrbit>& orbit) {
+    const auto of_orbit = [&](auto value) { return orbit ? Json(value(*orbit)) : Json(nullptr); };
+    using Orbit = PeriodicOrbit;
+    append(
+        j, {{"period_cycles", of_orbit([](const Orbit& o) { return o.cycles; })},
+            {"impacts_per_period", of_orbit([](const Orbit& o) { return o.contacts; })},
+            {"chatter_impacts_per_period",
+             of_orbit([](const Orbit& o) { return o.impacts - o.contacts; })},
+            {"sticks_per_period", of_orbit([](const Orbit& o) { return o.sticks; })},
+            {"symmetric", of_orbit([](const Orbit& o) { return o.symmetric; })},
+            {"stable", of_orbit([](const Orbit& o) { return o.stable(); })},
+            {"closure", of_orbit([](const Orbit& o) { return o.closure; })},
+            {"multipliers", of_orbit(describe_multipliers)},
+            {"orbit", of_orbit(describe_point)}});
+}
+
+Json describe_stretches(const std::vector<SynchronyStretch>& stretches) {
+    return object(
+        {{"tau_start", column(stretches, [](const auto& s) { return s.tau_start; })},
+         {"tau_end", column(stretches, [](const auto& s) { return s.tau_end; })},
+         {"synchronised", column(stretches, [](const auto& s) { return s.synchronised; })},
+         {"contacts", column(stretches, [](const auto& s) { return s.contacts; })}});
+}
+
+}  // namespace
+
+Json describe_regime(const Regime& r) {
+    Json j = object(
+        {{"type", name_of(r.type)},
+         {"description", describe_type(r)},
+         {"z", r.z},
+         {"z_overall", r.z_overall},
+         {"contacts", r.contacts},
+         {"periodic", r.orbit.has_value()}});
+    add_orbit(j, r.orbit);
+    append(
+        j, {{"capture", r.capture ? describe_capture(*r.capture) : Json(nullptr)},
+            {"cycles_with", column(r.cycles_with)},
+            {"share_two_impacts", r.cycles_with.size() > 2 ? r.cycles_with[2] : 0},
+            {"z_moving", object({{"tau", column(r.moving_tau)}, {"z", column(r.moving_z)}})},
+            {"synchronised",
+             object({{"share", r.synchronised}, {"longest_half_cycles", r.longest_synchronised}})},
+            {"stretches", describe_stretches(r.stretches)}});
+    return j;
 }
 
 }  // namespace vines::api

@@ -1,38 +1,59 @@
-// Results of the core as the parts of an answer, beside exponents and regime. Nothing is computed
-// here.
+// Results of the core as parts of an answer. Nothing is computed here. A number that does not exist
+// is null; a word in `status` gives the reason.
 #pragma once
 
 #include <optional>
 
 #include "api/request.hpp"
+#include "api/schema/json.hpp"
+#include "core/analysis/analysis.hpp"
+#include "core/measures/regime.hpp"
 #include "core/sweep/recommend.hpp"
 
 namespace vines::api {
 
-/// The resolved parameters of a system without what belongs to a run, and what follows from them.
+/// The resolved parameters of a system, and the quantities derived from them; without fields of a
+/// run.
 Json describe_system(const System& system);
 Json describe_derived(const System& system);
 
-/// Columns of equal length; x and y in m, derivatives in tau.
+/// Columns of equal length. x and y in m, derivatives with respect to tau.
 Json describe_series(const Series& series);
-Json describe_sticks(const std::vector<StuckPhase>& sticks);
-Json describe_touches(const std::vector<TangentContact>& touches);
+Json describe_sticks(const std::vector<StickingPhase>& sticks);
+Json describe_touches(const std::vector<GrazingEvent>& touches);
 
-/// {tau, J, M, T, M_condition}: four moduli of each matrix, one entry for each impact.
+/// {tau, J, M, T, M_condition}: the four moduli of each matrix's eigenvalues, per impact.
 Json describe_moduli(const TransferModuli& moduli);
-/// {tau, order, J, M, T}: 4 x 4 matrices by rows, one of each for each impact.
+/// {tau, order, J, M, T}: 4 x 4 matrices by rows, per impact.
 Json describe_matrices(const TransferMatrices& matrices);
 
-/// {impact, stroboscopic}, and each by itself: columns.
+/// {impact, stroboscopic}, and the columns of either.
 Json describe_sections(const Sections& sections);
 Json describe_impact_section(const std::vector<SectionPoint>& points);
 Json describe_states(const std::vector<State>& states);
 
-/// Of a result with the oscillator alone beside it.
+/// Expects a result that includes the oscillator without absorber.
 Json describe_energy(const EnergyResult& energy);
 Json describe_manifold(const Manifold& manifold);
 Json describe_manifold(const ManifoldResult& manifold);
-/// Null where there is none.
+/// Null if no b is recommended.
 Json describe_recommendation(const std::optional<Recommendation>& recommendation);
+
+/// {final, status} of the four exponents, per unit of tau.
+Json describe_final(const Exponents& values);
+
+/// Exponents and verdict of one window, by the estimators in `shown`; with their histories if
+/// `histories`. `regime` gives the reasons of the verdict.
+Json describe_exponents(
+    const WindowExponents& window, const ExponentOptions& shown, const Regime& regime,
+    bool histories);
+/// The parts of describe_exponents(): the window, and the result of each estimator.
+Json describe_window(const TransferProduct& product);
+void add_estimators(
+    Json& part, const TransferProduct& product, const Growth& growth, const ExponentOptions& shown,
+    bool histories);
+
+/// Type, impacts per cycle, periodic orbit and capture; null where a part does not exist.
+Json describe_regime(const Regime& regime);
 
 }  // namespace vines::api

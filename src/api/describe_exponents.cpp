@@ -1,11 +1,11 @@
-#include "api/describe_exponents.hpp"
+#include "api/describe.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "api/column.hpp"
-#include "api/schema/words.hpp"
+#include "api/answer_json.hpp"
+#include "api/schema/enum_names.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines::api {
@@ -36,33 +36,34 @@ std::string reason_of(const Judgement& judgement, const Growth& g, const Regime&
     };
     switch (judgement.reason) {
         case VerdictReason::growth:
-            return fmt::format("{}; at least {:.0f} decide", sigmas, verdict_sigmas) +
+            return fmt::format("{}; a verdict needs {:.0f}", sigmas, verdict_sigmas) +
                    (r.capture ? ", but " + captured() : "");
         case VerdictReason::on_orbit: return "the motion is on " + orbit();
         case VerdictReason::settling: return "the motion ends on " + orbit();
         case VerdictReason::free_decay:
-            return "without forcing (G = 0) the motion dies out: it has no exponents of a long run";
+            return "without forcing (G = 0) the motion dies out and has no long-term exponents";
         case VerdictReason::untouched:
-            return "the free mass meets no wall in the end: there are no exponents to judge";
+            return "the ball has no impacts in the end, so there are no exponents to judge";
         case VerdictReason::transient:
             return "the window begins in a chaotic transient; " + captured();
         case VerdictReason::not_known_before:
-            return captured() + "; the time limit left none to see whether it was chaotic before";
+            return captured() +
+                   "; the time limit left no time to check whether it was chaotic before";
         case VerdictReason::no_error: return "too few impacts for a standard error of lambda1";
         case VerdictReason::within_error:
-            return fmt::format("{}; less than {:.0f} decide nothing", sigmas, verdict_sigmas);
+            return fmt::format("{}; a verdict needs {:.0f}", sigmas, verdict_sigmas);
         case VerdictReason::little_growth:
             return fmt::format(
-                "{}, but deviations grow by no more than e^{:.1f} in this window, as they may "
-                "while one unstable orbit is left; e^{:.0f} decides",
+                "{}, but deviations grow by no more than e^{:.1f} in this window, as they can "
+                "while the motion leaves one unstable orbit; a verdict needs e^{:.0f}",
                 sigmas, g.whole, least_growth);
         case VerdictReason::algebraic_growth:
             return fmt::format(
                 "{}, but deviations grow by no more than e^{:.1f} in the second half of this "
-                "window: that may be algebraic growth beside a torus",
+                "window: that can be algebraic growth near a torus",
                 sigmas, g.late);
         case VerdictReason::negative:
-            return sigmas + ", but no stable periodic orbit was found that the motion comes to";
+            return sigmas + ", but no stable periodic orbit was found that the motion approaches";
     }
     return "";
 }
@@ -72,7 +73,7 @@ std::string reason_of(const Judgement& judgement, const Growth& g, const Regime&
 Json describe_final(const Exponents& values) {
     return {
         {"final", column(values)},
-        {"status", column(values, [](double v) { return word(status_of(v)); })}};
+        {"status", column(values, [](double v) { return enum_json(status_of(v)); })}};
 }
 
 Json describe_window(const TransferProduct& product) {
@@ -117,7 +118,7 @@ Json describe_exponents(
     const WindowExponents& w, const ExponentOptions& shown, const Regime& regime, bool histories) {
     Json j = describe_window(w.product);
     if (shown.qr) {
-        j["verdict"] = word(w.judgement.verdict);
+        j["verdict"] = enum_json(w.judgement.verdict);
         j["verdict_sigmas"] = finite_or_null(w.growth.lambda1 / w.growth.standard_error[0]);
         j["verdict_reason"] = reason_of(w.judgement, w.growth, regime);
     }

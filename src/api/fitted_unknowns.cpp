@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "api/column.hpp"
-#include "api/schema/words.hpp"
+#include "api/answer_json.hpp"
+#include "api/schema/enum_names.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines::api {
@@ -19,7 +19,7 @@ struct ValueWithError {
     double value, error;
 };
 
-/// In SI.
+/// Value and standard error in SI.
 ValueWithError in_si(const JointFit& fit, Unknown u, double omega0) {
     const double value = fit.values[u], error = fit.errors[u],
                  faster = std::sqrt(fit.values[Unknown::stiffness]);
@@ -41,8 +41,8 @@ Json described(const ValueWithError& v, bool fixed) {
         {"fixed", fixed}};
 }
 
-/// Of the base that moves by F sin(2 pi f t + phase), eq. (3). Its phase at the time 0 of the
-/// record is that in the middle, less what the frequency may be off by until then.
+/// F and phase of the base motion F sin(2 pi f t + phase), eq. (3). The fit has the phase at the
+/// middle of the record; extrapolated to t = 0 it also has the error of the frequency.
 void add_forcing(Json& j, const JointFit& fit, const Parameters& p) {
     const double sin = fit.values[Unknown::force_sin], cos = fit.values[Unknown::force_cos],
                  sin_error = fit.errors[Unknown::force_sin],
@@ -64,14 +64,14 @@ void add_forcing(Json& j, const JointFit& fit, const Parameters& p) {
 FixedUnknowns fixed_of(const std::set<std::string>& names) {
     FixedUnknowns fixed{};
     for (const std::string& name : names)
-        if (name != fixed_amplitude && name != fixed_phase) fixed[value_of<Unknown>(name)] = true;
+        if (name != fixed_amplitude && name != fixed_phase) fixed[enum_value<Unknown>(name)] = true;
     return fixed;
 }
 
 Json describe_fitted(const JointFit& fit, const Parameters& parameters, double omega0) {
     Json j = Json::object();
-    for (const Word<Unknown>& w : words<Unknown>())
-        j[w.word] = described(in_si(fit, w.value, omega0), fit.fixed[w.value]);
+    for (const EnumName<Unknown>& w : enum_names<Unknown>())
+        j[w.name] = described(in_si(fit, w.value, omega0), fit.fixed[w.value]);
     add_forcing(j, fit, parameters);
     return j;
 }
@@ -79,7 +79,8 @@ Json describe_fitted(const JointFit& fit, const Parameters& parameters, double o
 void add_fitted_warnings(
     const JointFit& fit, const UnknownValues& given, double omega0,
     std::vector<std::string>& warnings) {
-    // Far beyond their errors, and large enough to matter to a laboratory.
+    // A deviation is reported if it is far beyond its error and large enough to matter in a
+    // laboratory.
     constexpr double sigmas = 6, gain_off = 0.01, delay_off = 1e-4, frequency_off = 2e-4;
     const auto off = [&](Unknown u, double least) {
         const double by = std::abs(fit.values[u] - given[u]);
@@ -87,19 +88,19 @@ void add_fitted_warnings(
     };
     if (off(Unknown::x_gain, gain_off))
         warnings.push_back(fmt::format(
-            "the displacement is {:.4g} times what the acceleration says, and is taken for that: "
-            "is a sensitivity wrong?",
+            "the displacement is {:.4g} times the one that the acceleration implies, which is "
+            "corrected: is a sensitivity wrong?",
             fit.values[Unknown::x_gain]));
     if (off(Unknown::x_delay, delay_off * omega0))
         warnings.push_back(fmt::format(
-            "the displacement is {:.4g} ms {} the acceleration, which is corrected",
-            1000 * std::abs(fit.values[Unknown::x_delay]) / omega0,
-            fit.values[Unknown::x_delay] > 0 ? "behind" : "ahead of"));
+            "the displacement {} the acceleration by {:.4g} ms, which is corrected",
+            fit.values[Unknown::x_delay] > 0 ? "lags" : "leads",
+            1000 * std::abs(fit.values[Unknown::x_delay]) / omega0));
     if (off(Unknown::Omega, frequency_off * given[Unknown::Omega]))
         warnings.push_back(fmt::format(
             "the forcing has f = {:.6g} Hz, not f = {:.6g} Hz",
             hertz(fit.values[Unknown::Omega], omega0), hertz(given[Unknown::Omega], omega0)));
-    // The search frees the oscillator only where the record contradicts.
+    // The search fits the oscillator only where the record contradicts it.
     if (!fit.fixed[Unknown::stiffness] || !fit.fixed[Unknown::damping])
         warnings.push_back(fmt::format(
             "the oscillator moves with omega0 = {:.5g} rad/s and zeta = {:.4g}, not with {:.5g} "

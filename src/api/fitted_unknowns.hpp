@@ -1,5 +1,4 @@
-// What a record says of its sensors, of the forcing and of the oscillator: in SI, each value with
-// its standard error.
+// Values fitted to a record (sensors, forcing, oscillator), in SI with standard errors.
 #pragma once
 
 #include <set>
@@ -11,16 +10,16 @@
 
 namespace vines::api {
 
-/// Words of `fixed` beside those of Unknown.
+/// Values of the field `fixed` in addition to the names of Unknown.
 inline constexpr const char *fixed_amplitude = "F", *fixed_phase = "phase";
-/// Of words of Unknown; others are passed over.
+/// Ignores names that are not of Unknown.
 FixedUnknowns fixed_of(const std::set<std::string>& names);
 
-/// {word: {value, standard_error, fixed}}, and F and phase of the forcing. `parameters`: as they
-/// are used, with the fitted Omega; `omega0`: the given one, rad/s.
+/// {name: {value, standard_error, fixed}} for each Unknown, and for F and phase of the forcing.
+/// `parameters`: those in use, with the fitted Omega. `omega0`: as given, in rad/s.
 Json describe_fitted(const JointFit& fit, const Parameters& parameters, double omega0);
 
-/// What of it a user should know: a sensor, or a given value, that is wrong.
+/// Warns of sensors or given values that the record contradicts.
 void add_fitted_warnings(
     const JointFit& fit, const UnknownValues& given, double omega0,
     std::vector<std::string>& warnings);

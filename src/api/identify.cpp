@@ -5,15 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "api/answer_size.hpp"
-#include "api/column.hpp"
+#include "api/answer_json.hpp"
 #include "api/describe.hpp"
-#include "api/describe_exponents.hpp"
 #include "api/fitted_unknowns.hpp"
-#include "api/identify_text.hpp"
-#include "api/schema/words.hpp"
+#include "api/schema/enum_names.hpp"
 #include "api/si_columns.hpp"
 #include "api/version.hpp"
+#include "api/warning_text.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines::api {
@@ -27,7 +25,7 @@ Json describe_restitution(const Restitution& r) {
         {"impacts", r.impacts}};
 }
 
-/// Without the last ones of a chatter that comes to rest.
+/// Columns of impacts, without the last ones of a chatter that ends in sticking.
 Json describe_identified(std::vector<IdentifiedImpact> impacts) {
     std::erase_if(impacts, [](const IdentifiedImpact& i) { return i.comes_to_rest; });
     auto number = [&](double IdentifiedImpact::* member) {
@@ -56,13 +54,13 @@ Json describe_walls(const Identification& found) {
         {"plus", describe_restitution(found.plus)}, {"minus", describe_restitution(found.minus)}};
 }
 
-/// What the record is like, as the fit sees it.
+/// Properties of the record, as estimated by the fit.
 Json describe_signal(const Measurement& m, const MeasurementResult& result, double omega0) {
     const FoundImpacts& refined = *result.refined;
     const JointFit& fit = refined.fit;
     const double amplitude_sin = fit.values[Unknown::force_sin],
                  amplitude_cos = fit.values[Unknown::force_cos];
-    // The fit's phase is that in the record's middle.
+    // The fit has the phase at the middle of the record; here it is at t = 0.
     const double angle = fit.values[Unknown::Omega] * fit.tau_middle, sin = elementary::sin(angle),
                  cos = elementary::cos(angle);
     return {
@@ -105,36 +103,36 @@ const char* reason_of(const IdentifiedExponents& e) {
             return "the slope's 90 % interval lies below the oscillator's own damping zeta";
         case Verdict::not_decided:
             if (e.weakens)
-                return "the impacts grow weaker, to less than half from the first quarter to the "
-                       "last, though the motion is forced: a transient, or the falling part of a "
-                       "modulation, of which a longer record tells";
-            return "the record is too short to say: the slope's 90 % interval holds the "
-                   "oscillator's own damping zeta, or there are too few impacts (24 for chaotic; "
-                   "for regular 200, or 80 whose jumps are alike: a chaotic motion may be in step "
-                   "for a while)";
-        case Verdict::none: return "the motion dies out: it has no exponents of a long run";
+                return "the impacts weaken to less than half from the first quarter of the record "
+                       "to the last although the motion is forced: a transient, or the falling "
+                       "part of a modulation; a longer record can decide";
+            return "the record is too short for a verdict: the slope's 90 % interval contains the "
+                   "oscillator's own damping zeta, or there are too few impacts (chaotic needs 24; "
+                   "regular needs 200, or 80 with similar jumps, since a chaotic motion can be "
+                   "synchronised for a while)";
+        case Verdict::none: return "the motion dies out and has no long-term exponents";
     }
     return "";
 }
 
-/// How fast to sample, where impacts were not seen because their pulse fell between two samples;
-/// else empty.
+/// A recommended sampling rate if impacts were missed because their pulse fell between two samples;
+/// otherwise empty.
 std::string sampling_advice(const FoundImpacts& refined, double step, double omega0) {
     const auto impacts = static_cast<double>(refined.fit.impacts.size()),
                unseen = static_cast<double>(refined.unseen);
-    // A pulse now and then is lost in other ways.
+    // A few pulses are lost for other reasons.
     constexpr double few = 0.03, most = 8;
     if (!(unseen > few * impacts)) return "";
-    // A pulse shorter than a step is seen as often as it is long; two samples of each are enough.
+    // A pulse shorter than the step is seen with probability length/step; two samples per pulse
+    // suffice.
     const double rate = omega0 / step * std::min(most, 2 * impacts / (impacts - unseen));
     return fmt::format(
-        "the pulses of {} of {} impacts are not seen, though the displacement shows their kinks: "
-        "if "
-        "they fall between samples, {:.4g} ms apart, sample at {:.4g} Hz or more",
+        "the pulses of {} of {} impacts are not seen, although the displacement shows their kinks: "
+        "if they fall between samples, {:.4g} ms apart, sample at {:.4g} Hz or more",
         refined.unseen, refined.fit.impacts.size(), 1000 * step / omega0, std::ceil(rate));
 }
 
-/// The exponents as of a simulation, in the record's time.
+/// Exponents in the form of a simulation's, with times of the record.
 Json describe_measured(
     const MeasuredExponents& e, const ExponentOptions& estimators,
     const std::vector<KnownStretch>& stretches, const std::vector<IdentifiedImpact>& impacts,
@@ -169,7 +167,7 @@ Json describe_measured(
     return j;
 }
 
-/// `warnings`: of its exponents, where they are asked for.
+/// The direct estimate; warnings of its exponents if they are included.
 Json describe_direct(
     const IdentifyRequest& r, const std::optional<DirectEstimate>& direct, Warnings& warnings) {
     if (!direct) return nullptr;
@@ -188,7 +186,7 @@ Json describe_direct(
     return j;
 }
 
-/// The fitted motion at so many of the record's samples, evenly thinned.
+/// The fitted motion at every n-th sample of the record, at most `most_points`.
 Json describe_motion(
     const IdentifyRequest& r, const MeasurementResult& result, Warnings& warnings) {
     const std::vector<double>& all = r.measurement.record.tau;
@@ -197,8 +195,7 @@ Json describe_motion(
     for (std::size_t k = 0; k < all.size(); k += every) moments.push_back(all[k]);
     if (every > 1)
         warnings.push_back(fmt::format(
-            "the motion is given at one of {} samples, so that it holds no more than max_points = "
-            "{}",
+            "the motion is given at one of {} samples, so that it holds at most max_points = {}",
             every, r.most_points));
     const std::vector<OscillatorMotion> motion = motion_at(result.refined->fit, moments);
     return {
@@ -208,7 +205,7 @@ Json describe_motion(
         {"x_ddot", column(motion, [](const OscillatorMotion& m) { return m.x_ddot; })}};
 }
 
-/// What is odd about the fit of a record.
+/// Warnings about the fit of a record.
 void add_fit_warnings(
     const IdentifyRequest& r, const MeasurementResult& result, Warnings& warnings) {
     const FoundImpacts& refined = *result.refined;
@@ -221,7 +218,7 @@ void add_fit_warnings(
     add_fitted_warnings(refined.fit, given_unknowns(r.measurement.parameters), omega0, warnings);
     if (result.parameters.b != r.system.parameters.b)
         warnings.push_back(fmt::format(
-            "the impacts' momentum fits b = {:.5g} m, which is taken, not b = {:.5g} m ({})",
+            "the impacts' momentum fits b = {:.5g} m, which is used instead of b = {:.5g} m ({})",
             result.parameters.b, r.system.parameters.b, r.system.origin.at("b")));
     if (!b_agrees(result.parameters, found))
         warnings.push_back(fmt::format(
@@ -237,39 +234,39 @@ void add_fit_warnings(
     if (!advice.empty()) warnings.push_back(advice);
 }
 
-/// What is missing between the impacts, or was.
+/// Warnings about impacts that are missing, were restored or are left out.
 void add_continuity_warnings(const MeasurementResult& result, Warnings& warnings) {
     const Continuity& c = result.continuity;
     const auto hidden = std::count_if(
         result.found.impacts.begin(), result.found.impacts.end(),
         [](const IdentifiedImpact& i) { return i.is_hidden && !i.comes_to_rest; });
-    const auto sticks = stuck_phases(result.found.impacts).size();
-    const auto told = std::count_if(
+    const auto sticks = sticking_phases(result.found.impacts).size();
+    const auto listed = std::count_if(
         result.found.impacts.begin(), result.found.impacts.end(),
         [](const IdentifiedImpact& i) { return !i.comes_to_rest; });
     if (hidden > 0 || sticks > 0)
         warnings.push_back(fmt::format(
-            "{} impact(s) and {} stuck phase(s) that {} are put in: a run of the identified system "
-            "leads over them from one impact to the next",
-            hidden, sticks, result.refined ? "no pulse shows" : "the list misses"));
+            "{} impact(s) and {} sticking phase(s) {} were inserted: a simulation of the "
+            "identified system passes through them from one impact to the next",
+            hidden, sticks, result.refined ? "without a pulse" : "missing from the list"));
     if (c.left_out > 0)
         warnings.push_back(fmt::format(
-            "{} of {} impacts are inconsistent and left out; impacts.status says why", c.left_out,
-            told));
+            "{} of {} impacts are inconsistent and left out; impacts.status gives the reasons",
+            c.left_out, listed));
     if (c.missing > 0)
         warnings.push_back(fmt::format(
-            "between {} pair(s) of impacts the mass did not fly freely, nor does a run of the "
-            "identified system lead from one to the other: an impact is missing or false, or the "
+            "between {} pair(s) of impacts the ball did not fly freely, and no simulation of the "
+            "identified system leads from one to the other: an impact is missing or false, or the "
             "record has a gap",
             c.missing));
     if (c.stretches.size() > 1)
         warnings.push_back(fmt::format(
-            "the impacts fall into {} stretches: qr adds up what it knows of each, eigenvalues and "
-            "raw_product are of the longest",
+            "the impacts form {} stretches: qr combines all of them, eigenvalues and raw_product "
+            "use the longest",
             c.stretches.size()));
 }
 
-/// Why no verdict can rest on this measurement; empty if nothing speaks against one.
+/// Reasons against a verdict from this measurement; empty if it is sound.
 std::vector<std::string> all_doubts(const MeasurementResult& result) {
     std::vector<std::string> doubts;
     for (const Doubt doubt : result.doubts) doubts.push_back(text_of(doubt));
@@ -282,7 +279,7 @@ std::vector<std::string> all_doubts(const MeasurementResult& result) {
     return doubts;
 }
 
-/// The request's system with what was found of it.
+/// The request's system with the identified values.
 System identified_system(const IdentifyRequest& r, const MeasurementResult& result) {
     System used = r.system;
     used.parameters = result.parameters;
@@ -319,26 +316,25 @@ namespace {
 
 MeasurementResult watched_result(const IdentifyRequest& r, const IdentificationWatch& watch) {
     try {
-        return conclude(r.measurement, watch);
+        return evaluate_measurement(r.measurement, watch);
     } catch (const TooFewImpacts& few) {
         throw Problem(
             422,
             fmt::format(
-                "nothing in the record looks like impacts: {} pulse(s) or kink(s) with threshold = "
-                "{:.3g} standard deviations of the noise",
+                "no impacts found in the record: {} pulse(s) or kink(s) with threshold = {:.3g} "
+                "standard deviations of the noise",
                 few.seen, r.measurement.threshold),
             {{"/threshold", r.measurement.threshold, Json::array({3, 1000}),
-              "lower it, or give impact_times_s"}});
+              "lower threshold, or give impact_times_s"}});
     } catch (const IdentificationStopped& at) {
         const std::size_t samples = r.measurement.record.tau.size();
         throw Problem(
-            413,
-            fmt::format(
-                "the identification was stopped while {} ({}): a shorter record, fewer samples a "
-                "second or a higher threshold take less time",
-                words_of(at.stage, at.round),
-                samples > 0 ? fmt::format("a record of {} samples", samples)
-                            : fmt::format("{} impacts", r.measurement.impacts.size())));
+            413, fmt::format(
+                     "the identification was stopped while {} ({}): a shorter record, fewer "
+                     "samples per second or a higher threshold takes less time",
+                     words_of(at.stage, at.round),
+                     samples > 0 ? fmt::format("a record of {} samples", samples)
+                                 : fmt::format("{} impacts", r.measurement.impacts.size())));
     }
 }
 
@@ -367,7 +363,7 @@ Json identify_answer(const IdentifyRequest& r, const IdentificationWatch& watch)
             describe_fitted(result.refined->fit, result.parameters, r.system.si->omega0());
     }
     answer["impacts"] = describe_identified(found.impacts);
-    answer["sticking"] = describe_sticks(stuck_phases(found.impacts));
+    answer["sticking"] = describe_sticks(sticking_phases(found.impacts));
     answer["restitution"] = describe_walls(found);
     answer["b_fitted"] = {
         {"b", finite_or_null(found.b_fitted)}, {"standard_error", finite_or_null(found.b_error)}};
@@ -377,7 +373,7 @@ Json identify_answer(const IdentifyRequest& r, const IdentificationWatch& watch)
         {"lambda1", finite_or_null(judged.slope.value)},
         {"low", finite_or_null(judged.slope.low)},
         {"high", finite_or_null(judged.slope.high)}};
-    answer["verdict"] = word(judged.verdict);
+    answer["verdict"] = enum_json(judged.verdict);
     answer["verdict_reason"] = doubts.empty() ? reason_of(judged) : doubts[0];
     if (m.is_record()) {
         answer["direct"] = describe_direct(r, result.direct, warnings);

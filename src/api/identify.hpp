@@ -1,15 +1,46 @@
-// From a measurement of the oscillator, or a list of impacts, to the exponents that it shows.
+// Requests and answers of /v1/identify: from a record or a list of impacts to Lyapunov exponents.
 #pragma once
 
-#include "api/identify_request.hpp"
+#include <set>
+#include <string_view>
+
+#include "api/cancellation.hpp"
+#include "api/measured_forcing.hpp"
+#include "api/request.hpp"
+#include "core/measurement/measurement.hpp"
 
 namespace vines::api {
 
-/// Problem 422 where the record shows no impacts, 413 with the stage that was reached where the
-/// watch stops it.
+struct IdentifyRequest {
+    System system;  ///< R is valid only if given
+    Measurement measurement;
+    std::optional<MeasuredForcing> forcing;  ///< from a channel of the record
+    bool forcing_fitted = false;             ///< G comes from the measurement
+    std::vector<std::string> notes;          ///< warnings about the record
+    std::set<std::string> include;           ///< additional parts of the answer
+    std::size_t most_points;                 ///< of the motion
+
+    bool includes(const char* part) const { return include.contains(part); }
+};
+
+/// Reads JSON {fields..., record: {time_s, displacement_m, acceleration_m_s2}} or {fields...,
+/// impacts: {...}}. Problem 422 for invalid fields; throws Cancelled.
+IdentifyRequest read_identify_request(Json object, const ReadLimits& limits = {});
+/// Reads a CSV file and the other fields. Also Problem 413 beyond `limits`.
+IdentifyRequest read_identify_request(
+    const Json& fields, std::string_view csv, const ReadLimits& limits = {});
+
+/// True if a list has the phase of the forcing at its impacts; otherwise the forcing is fitted.
+bool has_phase(const Json& impacts);
+
+/// Reads columns of impacts into the request's measurement; notes report fitted values. Problem 422
+/// for invalid columns; throws Cancelled.
+void read_impact_list(IdentifyRequest& request, Json impacts, CancelCheck& cancel);
+
+/// Problem 422 if the record shows no impacts; Problem 413 naming the stage if `watch` stops it.
 Json identify_answer(const IdentifyRequest& request, const IdentificationWatch& watch = {});
 
-/// "looking for spikes", "refining the impacts, round 3", ...
+/// A stage in words: "looking for spikes", "refining the impacts, round 3", ...
 std::string words_of(IdentificationStage stage, int round);
 
 }  // namespace vines::api

@@ -1,16 +1,14 @@
-#include "api/identify_request.hpp"
+#include "api/identify.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "api/broken_off.hpp"
+#include "api/cancellation.hpp"
 #include "api/fitted_unknowns.hpp"
-#include "api/impact_list.hpp"
 #include "api/record_columns.hpp"
 #include "api/schema/check.hpp"
-#include "api/schema/echo.hpp"
 
 namespace vines::api {
 
@@ -18,7 +16,8 @@ namespace {
 
 constexpr std::size_t fewest_samples = 100;
 
-/// What would make every later step wrong without a word. `lines`: of a text, those of the samples.
+/// Checks the samples; warns of gaps and clipping. `lines`: line numbers of the samples in a CSV
+/// text.
 void check_record(
     const std::vector<double>& time, const std::vector<std::uint32_t>& lines,
     const MeasuredRecord& r, double omega0, std::vector<std::string>& notes) {
@@ -41,7 +40,7 @@ void check_record(
         notes.push_back(
             "the record has " + std::to_string(gaps.size()) + " gap(s), the first of " +
             fmt::format("{:.4g}", (gaps[0].to - gaps[0].from) / omega0) + " s at " +
-            fmt::format("{:.6g}", gaps[0].from / omega0) + " s: an impact in one is not seen");
+            fmt::format("{:.6g}", gaps[0].from / omega0) + " s: impacts in a gap are not seen");
     // A clipped signal repeats its extreme value.
     for (const auto& [name, column] :
          {std::pair("displacement", &r.x), std::pair("acceleration", &r.x_ddot)}) {
@@ -57,21 +56,21 @@ void check_record(
     }
 }
 
-/// `forcing_fitted`: it need not be given.
+/// `forcing_fitted`: the forcing need not be given.
 IdentifyRequest read_fields(const Json& given, bool with_record, bool forcing_fitted) {
     IdentifyRequest r;
-    const Layered l = layered(identify_fields(), given);
+    const MergedFields l = merge_with_preset(identify_fields(), given);
     r.system = read_system_alone(l, forcing_fitted);
     r.forcing_fitted = forcing_fitted;
     r.notes = r.system.notes;
     if (with_record && !r.system.si)
         refuse(
             {{"/m1", nullptr, nullptr,
-              "a record in seconds needs the oscillator's own frequency: give m1, c1, k1, m2 and "
-              "f, or a preset"},
+              "a record in seconds needs the oscillator's natural frequency: give m1, c1, k1, m2 "
+              "and f, or a preset"},
              {"/k1", nullptr, nullptr,
-              "a record in seconds needs the oscillator's own frequency: give m1, c1, k1, m2 and "
-              "f, or a preset"}});
+              "a record in seconds needs the oscillator's natural frequency: give m1, c1, k1, m2 "
+              "and f, or a preset"}});
     Measurement& m = r.measurement;
     m.parameters = r.system.parameters;
     m.R_given = given.contains("R") || (given.contains("R_plus") && given.contains("R_minus"));
@@ -80,33 +79,33 @@ IdentifyRequest read_fields(const Json& given, bool with_record, bool forcing_fi
         if (!with_record)
             refuse(
                 {{"/impact_times_s", nullptr, nullptr,
-                  "impact_times_s are moments in a record; impacts have their own in tau"}});
+                  "impact_times_s needs a record; a list of impacts has its own times"}});
         for (const Json& t : l.fields["impact_times_s"])
-            m.moments.push_back(t.get<double>() * r.system.si->omega0());
-        std::sort(m.moments.begin(), m.moments.end());
+            m.impact_times.push_back(t.get<double>() * r.system.si->omega0());
+        std::sort(m.impact_times.begin(), m.impact_times.end());
     }
     m.fixed = fixed_of(l.words("fixed"));
     m.estimators = read_estimators(l);
-    m.estimators.qr = true;  // the verdict's
+    m.estimators.qr = true;  // the verdict needs it
     r.include = l.words("include");
     if (!with_record && !r.include.empty())
         refuse(
             {{"/include", r.include, nullptr,
-              "motion and direct_exponents are of a record; impacts come without one"}});
+              "motion and direct_exponents need a record instead of a list of impacts"}});
     if (r.includes("direct_exponents")) m.direct_estimators = m.estimators;
     r.most_points = static_cast<std::size_t>(l.number("max_points"));
     return r;
 }
 
-/// F and phase, where they are not to be fitted: as given, or as a channel of the forcing has them.
+/// F and phase if they are fixed: from the request, else from a channel of the forcing.
 void read_known_forcing(IdentifyRequest& r, const Json& given) {
-    const Layered l = layered(identify_fields(), given);
+    const MergedFields l = merge_with_preset(identify_fields(), given);
     const std::set<std::string> fixed = l.words("fixed");
     const auto refuse_unknown = [](const char* name) {
         refuse(
             {{"/fixed", name, nullptr,
-              std::string(name) + " is fixed, but neither given nor told by a channel of the "
-                                  "record"}});
+              std::string(name) +
+                  " is fixed, but neither given nor measured by a channel of the record"}});
     };
     const Parameters& p = r.system.parameters;
     std::optional<ChannelForcing> channel;
@@ -131,20 +130,20 @@ std::vector<std::string> names_of(const std::vector<CsvColumn>& columns) {
     return names;
 }
 
-/// What becomes of each number.
+/// The values after change(value).
 template <class Change>
 std::vector<double> changed(
-    const std::vector<double>& values, StillWanted& wanted, const Change& change) {
+    const std::vector<double>& values, CancelCheck& cancel, const Change& change) {
     std::vector<double> all;
     all.reserve(values.size());
     for (const double v : values) {
-        wanted.step();
+        cancel.step();
         all.push_back(change(v));
     }
     return all;
 }
 
-void read_record(IdentifyRequest& r, const Json& fields, const Csv& csv, StillWanted& wanted) {
+void read_record(IdentifyRequest& r, const Json& fields, const Csv& csv, CancelCheck& cancel) {
     const std::vector<CsvColumn>& columns = csv.columns;
     const RecordColumn time = find_column(columns, fields, time_quantity),
                        x = find_column(columns, fields, displacement_quantity),
@@ -161,23 +160,23 @@ void read_record(IdentifyRequest& r, const Json& fields, const Csv& csv, StillWa
     const double omega0 = r.system.si->omega0();
     MeasuredRecord& record = r.measurement.record;
     const std::vector<double> seconds =
-        changed(time.column->values, wanted, [&](double t) { return t * time.factor; });
-    record.tau = changed(seconds, wanted, [&](double t) { return t * omega0; });
+        changed(time.column->values, cancel, [&](double t) { return t * time.factor; });
+    record.tau = changed(seconds, cancel, [&](double t) { return t * omega0; });
     if (x.column)
-        record.x = changed(x.column->values, wanted, [&](double v) { return v * x.factor; });
+        record.x = changed(x.column->values, cancel, [&](double v) { return v * x.factor; });
     if (a.column)
         record.x_ddot = changed(
-            a.column->values, wanted, [&](double v) { return v * a.factor / (omega0 * omega0); });
+            a.column->values, cancel, [&](double v) { return v * a.factor / (omega0 * omega0); });
     check_record(seconds, csv.lines, record, omega0, r.notes);
-    wanted.step(seconds.size());
+    cancel.step(seconds.size());
     if (!x.column)
         r.notes.push_back(
             "without a displacement, x at the impacts rests on the acceleration alone, whose "
             "errors add up: y' and R are less certain");
-    if (!a.column && r.measurement.moments.empty())
+    if (!a.column && r.measurement.impact_times.empty())
         r.notes.push_back(
-            "without an acceleration the impacts are those that kinks of the displacement show");
-    for (double tau : r.measurement.moments)
+            "without an acceleration only impacts with a kink of the displacement are found");
+    for (double tau : r.measurement.impact_times)
         if (!(tau > record.tau.front() && tau < record.tau.back()))
             refuse(
                 {{"/impact_times_s", tau / omega0,
@@ -185,8 +184,8 @@ void read_record(IdentifyRequest& r, const Json& fields, const Csv& csv, StillWa
                   "an impact lies outside the record"}});
 }
 
-/// The columns of a record in JSON, all of one length. The JSON of each goes when it is read.
-std::vector<CsvColumn> read_record_columns(Json record, StillWanted& wanted) {
+/// Columns of equal length from a record in JSON. Each column's JSON is freed after it is read.
+std::vector<CsvColumn> read_record_columns(Json record, CancelCheck& cancel) {
     std::vector<CsvColumn> columns;
     if (!record.is_object())
         refuse({{"/record", nullptr, nullptr, "record is an object of columns"}});
@@ -196,7 +195,7 @@ std::vector<CsvColumn> read_record_columns(Json record, StillWanted& wanted) {
             refuse({{"/record/" + name, nullptr, nullptr, "a column is an array of numbers"}});
         column.values.reserve(values.size());
         for (std::size_t i = 0; i < values.size(); ++i) {
-            wanted.step();
+            cancel.step();
             if (!values[i].is_number())
                 refuse(
                     {{"/record/" + name + "/" + std::to_string(i), beginning_of(values[i]), nullptr,
@@ -206,7 +205,7 @@ std::vector<CsvColumn> read_record_columns(Json record, StillWanted& wanted) {
         if (!columns.empty() && column.values.size() != columns[0].values.size())
             refuse(
                 {{"/record/" + name, column.values.size(), nullptr,
-                  "has another length than " + shortened(columns[0].name) + " (" +
+                  "differs in length from " + shortened(columns[0].name) + " (" +
                       std::to_string(columns[0].values.size()) + ")"}});
         values = nullptr;
         columns.push_back(std::move(column));
@@ -214,18 +213,18 @@ std::vector<CsvColumn> read_record_columns(Json record, StillWanted& wanted) {
     return columns;
 }
 
-/// Out of an object, in which it is no more; null where it was not.
+/// Moves a member out of an object; null if it has none of that name.
 Json taken(Json& object, const char* name) {
     Json value = object.contains(name) ? std::move(object[name]) : Json();
     object.erase(name);
     return value;
 }
 
-/// A channel of the forcing tells its frequency, if the request does not.
-IdentifyRequest read_request_of_record(const Json& given, const Csv& csv, StillWanted& wanted) {
-    // The columns are looked up by fields that nobody has checked yet.
+/// A channel of the forcing supplies f unless the request gives it.
+IdentifyRequest read_request_of_record(const Json& given, const Csv& csv, CancelCheck& cancel) {
+    // Column lookup uses fields that are not checked before.
     if (auto errors = check(identify_fields(), given); !errors.empty()) refuse(std::move(errors));
-    const std::optional<MeasuredForcing> forcing = measured_forcing(csv.columns, given, wanted);
+    const std::optional<MeasuredForcing> forcing = measured_forcing(csv.columns, given, cancel);
     Json fields = given;
     const bool f_is_given = fields.contains("f") || fields.contains("Omega");
     if (forcing && !f_is_given) fields["f"] = forcing->f;
@@ -234,14 +233,14 @@ IdentifyRequest read_request_of_record(const Json& given, const Csv& csv, StillW
     read_known_forcing(r, fields);
     if (forcing && !f_is_given)
         r.system.origin["f"] = r.system.origin["Omega"] = "measured with the record";
-    read_record(r, fields, csv, wanted);
+    read_record(r, fields, csv, cancel);
     return r;
 }
 
 }  // namespace
 
-IdentifyRequest read_identify_request(Json fields, const Reading& reading) {
-    StillWanted wanted = reading.wanted();
+IdentifyRequest read_identify_request(Json fields, const ReadLimits& limits) {
+    CancelCheck cancel = limits.check();
     const bool has_record = fields.contains("record"), has_impacts = fields.contains("impacts");
     Json record = taken(fields, "record"), impacts = taken(fields, "impacts");
     if (has_record == has_impacts)
@@ -250,18 +249,18 @@ IdentifyRequest read_identify_request(Json fields, const Reading& reading) {
               "give either record: {time_s, displacement_m, acceleration_m_s2} or impacts, with "
               "their states"}});
     if (has_impacts) {
-        IdentifyRequest r = read_fields(fields, false, !says_forcing(impacts));
-        read_impact_list(r, std::move(impacts), wanted);
+        IdentifyRequest r = read_fields(fields, false, !has_phase(impacts));
+        read_impact_list(r, std::move(impacts), cancel);
         return r;
     }
-    const Csv columns{read_record_columns(std::move(record), wanted), {}};
-    return read_request_of_record(fields, columns, wanted);
+    const Csv columns{read_record_columns(std::move(record), cancel), {}};
+    return read_request_of_record(fields, columns, cancel);
 }
 
 IdentifyRequest read_identify_request(
-    const Json& fields, std::string_view csv, const Reading& reading) {
-    StillWanted wanted = reading.wanted();
-    return read_request_of_record(fields, parse_csv(csv, reading), wanted);
+    const Json& fields, std::string_view csv, const ReadLimits& limits) {
+    CancelCheck cancel = limits.check();
+    return read_request_of_record(fields, parse_csv(csv, limits), cancel);
 }
 
 }  // namespace vines::api

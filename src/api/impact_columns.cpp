@@ -5,8 +5,7 @@
 #include <cstring>
 #include <span>
 
-#include "api/column.hpp"
-#include "api/object.hpp"
+#include "api/answer_json.hpp"
 
 namespace vines::api {
 
@@ -14,8 +13,7 @@ namespace {
 
 using Scales = ImpactScales;
 
-/// A column's name and packing (numbers, integers or flags), and the number that an impact has in
-/// it.
+/// A column's name, its packing (numbers, integers or flags), and its value for an impact.
 struct ImpactColumn {
     const char* name;
     Packed packing;
@@ -47,9 +45,9 @@ constexpr ImpactColumn impact_columns[] = {
     {"grazing", Packed::flags, [](const Impact& i, const Scales&) { return i.grazing ? 1. : 0.; }},
 };
 
-const ImpactColumn& column_of(const ListToCome& list) { return impact_columns[list.column]; }
+const ImpactColumn& column_of(const StreamedList& list) { return impact_columns[list.column]; }
 
-/// The columns made by a function of theirs.
+/// Columns made by make(column).
 template <class Make>
 Json describe(Make make) {
     Json columns = Json::object();
@@ -59,10 +57,10 @@ Json describe(Make make) {
     return columns;
 }
 
-void find_lists_to_come(const Json& json, std::vector<ListToCome>& lists) {
-    if (packing_of(json) == Packed::to_come) lists.push_back(list_to_come(json));
+void find_streamed_lists(const Json& json, std::vector<StreamedList>& lists) {
+    if (packing_of(json) == Packed::streamed) lists.push_back(streamed_list(json));
     else if (json.is_structured())
-        for (const Json& part : json) find_lists_to_come(part, lists);
+        for (const Json& part : json) find_streamed_lists(part, lists);
 }
 
 template <class Entry>
@@ -85,37 +83,37 @@ Json describe_impacts(const std::vector<Impact>& impacts, const ImpactScales& sc
     });
 }
 
-Json describe_impacts_to_come() {
+Json describe_streamed_impacts() {
     return describe([](const ImpactColumn& column) {
-        return to_come({static_cast<int>(&column - impact_columns), 1});
+        return streamed({static_cast<int>(&column - impact_columns), 1});
     });
 }
 
-ImpactLists::ImpactLists(
-    const ListedRun& run, const Json& answer, Pace& pace, std::size_t most_bytes)
+StreamedImpacts::StreamedImpacts(
+    const ListedRun& run, const Json& answer, RunControl& control, std::size_t most_bytes)
     : run_(run),
-      pace_(pace),
+      control_(control),
       most_bytes_(most_bytes) {
-    find_lists_to_come(answer, to_make_);
+    find_streamed_lists(answer, to_make_);
     std::size_t all = 0, largest = 0;
-    for (const ListToCome& list : to_make_) {
+    for (const StreamedList& list : to_make_) {
         all += size_of(list);
         largest = std::max(largest, size_of(list));
     }
     bytes_.reserve(std::max(largest, std::min(all, most_bytes_)));
 }
 
-std::size_t ImpactLists::size_of(const ListToCome& list) const {
+std::size_t StreamedImpacts::size_of(const StreamedList& list) const {
     return static_cast<std::size_t>(run_.listed.count) * entry_size(column_of(list).packing);
 }
 
-PackedList ImpactLists::list(const ListToCome&) {
+PackedList StreamedImpacts::list(const StreamedList&) {
     if (taken_ == made_.size()) make_next();
     const Made& made = made_[taken_++];
     return {column_of(made.list).packing, std::span(bytes_).subspan(made.at, size_of(made.list))};
 }
 
-void ImpactLists::make_next() {
+void StreamedImpacts::make_next() {
     made_.clear();
     taken_ = 0;
     std::size_t end = 0;
@@ -126,23 +124,23 @@ void ImpactLists::make_next() {
         end += size;
     }
     bytes_.resize(end);
-    const Wanted& w = run_.wanted;
+    const AnalysisRequest& w = run_.wanted;
     long k = 0;
-    pace_.begin();
+    control_.begin();
     const bool complete = repeat_impacts(
         w.parameters, w.start,
         {.tau_end = w.tau_end,
          .max_impacts = w.max_impacts,
-         .stop = [this] { return pace_.stop_or_yield(); }},
+         .stop = [this] { return control_.stop_or_yield(); }},
         run_.listed, [&](const Impact& impact) {
             for (const Made& to : made_) put(to, k, impact);
             ++k;
         });
-    pace_.end();
-    if (!complete) throw BrokenOff();
+    control_.end();
+    if (!complete) throw Cancelled();
 }
 
-void ImpactLists::put(const Made& to, long k, const Impact& impact) {
+void StreamedImpacts::put(const Made& to, long k, const Impact& impact) {
     const ImpactColumn& column = column_of(to.list);
     const double number = column.of(impact, run_.scales);
     std::uint8_t* const list = bytes_.data() + to.at;

@@ -1,62 +1,66 @@
-// The columns of a list of impacts: made of impacts that are kept, or of a run that is made once
-// more while they are written.
+// Columns of listed impacts.
+//
+// An answer can list more impacts than are kept in memory. Its JSON then holds placeholders, and
+// StreamedImpacts repeats the run, which yields the same bits, for a few columns at a time while
+// the text is sent.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "api/broken_off.hpp"
+#include "api/cancellation.hpp"
 #include "api/json_text.hpp"
 #include "core/analysis/analysis.hpp"
 #include "core/sweep/sweep.hpp"
 
 namespace vines::api {
 
-/// What impulses and speeds of impacts are told by.
+/// Scales of impulses and speeds of impacts.
 struct ImpactScales {
     double epsilon;
-    double typical_speed;  ///< of Analysis, m per unit of tau
+    double typical_speed;  ///< see Analysis, m per unit of tau
 };
 
-/// Columns, one entry for each impact.
+/// Columns with one entry per impact.
 Json describe_impacts(const std::vector<Impact>& impacts, const ImpactScales& scales);
 
-/// The same columns, to come: ImpactLists makes them.
-Json describe_impacts_to_come();
+/// The same columns as placeholders, which StreamedImpacts generates.
+Json describe_streamed_impacts();
 
-/// A run, and which of its impacts are listed.
+/// A run and the range of its listed impacts.
 struct ListedRun {
-    Wanted wanted;
+    AnalysisRequest wanted;
     ImpactRange listed;
     ImpactScales scales;
 };
 
-/// Makes the columns to come of an answer, in the order in which they stand there: as many at a
-/// time as fit into `most_bytes`, or one, by making the run once more.
-class ImpactLists : public ListSource {
+/// Generates the placeholder columns of an answer in their order. Each repetition of the run fills
+/// as many columns as fit into `most_bytes`, at least one.
+class StreamedImpacts : public ListSource {
 public:
-    /// A run begins and ends with that of `pace`, which may stop it: BrokenOff.
-    ImpactLists(const ListedRun& run, const Json& answer, Pace& pace, std::size_t most_bytes);
+    /// Each run calls control.begin() and control.end(). Throws Cancelled if `control` stops a run.
+    StreamedImpacts(
+        const ListedRun& run, const Json& answer, RunControl& control, std::size_t most_bytes);
 
-    PackedList list(const ListToCome&) override;
+    PackedList list(const StreamedList&) override;
 
 private:
-    /// A list, and where it begins among the bytes.
+    /// A generated list and its offset in bytes_.
     struct Made {
-        ListToCome list;
+        StreamedList list;
         std::size_t at;
     };
-    std::size_t size_of(const ListToCome& list) const;
+    std::size_t size_of(const StreamedList& list) const;
     void make_next();
     void put(const Made& to, long k, const Impact& impact);
 
     const ListedRun run_;
-    Pace& pace_;
+    RunControl& control_;
     const std::size_t most_bytes_;
-    std::vector<ListToCome> to_make_;  // in their order
-    std::size_t next_ = 0;             // of those that are not made
+    std::vector<StreamedList> to_make_;  // in order
+    std::size_t next_ = 0;               // index of the next list to generate
     std::vector<Made> made_;
-    std::size_t taken_ = 0;  // of those that are made
+    std::size_t taken_ = 0;  // count of made_ lists already returned
     std::vector<std::uint8_t> bytes_;
 };
 

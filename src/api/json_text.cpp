@@ -1,13 +1,62 @@
 #include "api/json_text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <utility>
 
-#include "api/number_text.hpp"
-
 namespace vines::api {
+
+namespace {
+
+char* write_word(char* to, const char* word, std::size_t length) {
+    std::memcpy(to, word, length);
+    return to + length;
+}
+
+/// Plain form of a number between 1e-4 and 1e15 that is not an integer. std::to_chars writes 17
+/// digits in scientific form, "d.ddde-04" to "d.ddde+14", in 5/6 of its time for the plain form;
+/// here only the point is moved.
+char* write_fraction(char* to, double size) {
+    // At most 16 digits follow the point; 16 are always copied.
+    constexpr std::size_t digits = 16, exponent = 4;
+    std::array<char, 48> text{};
+    const char *const first = text.data(), *const behind_point = first + 2;
+    const char* const end =
+        std::to_chars(text.data(), text.data() + text.size(), size, std::chars_format::scientific)
+            .ptr -
+        exponent;
+    const std::ptrdiff_t behind = end > behind_point ? end - behind_point : 0,
+                         power = 10 * (end[2] - '0') + (end[3] - '0');
+    if (end[1] == '-') {
+        std::memcpy(to, "0.000", 5);
+        to += 1 + power;
+        *to = *first;
+        std::memcpy(to + 1, behind_point, digits);
+        return to + 1 + behind;
+    }
+    *to = *first;
+    std::memcpy(to + 1, behind_point, digits);
+    to[1 + power] = '.';
+    std::memcpy(to + 2 + power, behind_point + power, digits);
+    return to + 2 + behind;
+}
+
+}  // namespace
+
+char* write_number(char* to, double value) {
+    if (!std::isfinite(value)) return write_word(to, "null", 4);
+    const double size = std::abs(value);
+    if (std::signbit(value)) *to++ = '-';
+    if (size != 0 && !(size >= 1e-4 && size < 1e15))
+        return std::to_chars(to, to + room_for_number - 1, size, std::chars_format::scientific).ptr;
+    const auto whole = static_cast<std::int64_t>(size);
+    if (static_cast<double>(whole) != size) return write_fraction(to, size);
+    return write_word(std::to_chars(to, to + room_for_number - 1, whole).ptr, ".0", 2);
+}
 
 namespace {
 
@@ -18,7 +67,7 @@ constexpr std::size_t longest_integer = 20;
 
 bool needs_no_escape(std::string_view text) {
     return std::all_of(text.begin(), text.end(), [](char c) {
-        return c >= ' ' && c != '"' && c != '\\';  // char is signed: none beyond ASCII
+        return c >= ' ' && c != '"' && c != '\\';  // char is signed: only ASCII
     });
 }
 
@@ -27,7 +76,8 @@ std::size_t room_for_lists(const Json& json) {
     if (json.is_structured())
         for (const Json& part : json) most += room_for_lists(part);
     if (!json.is_binary()) return most;
-    // "-2.2250738585072014e-308", a comma, a share of the brackets around four.
+    // Bytes of an entry. number: "-2.2250738585072014e-308", a comma, and a part of the brackets
+    // around four.
     constexpr std::size_t number = 26, integer = longest_integer + 1, flag = 6;
     const std::size_t bytes = json.get_binary().size();
     switch (packing_of(json)) {
@@ -118,7 +168,7 @@ void JsonText::put_list(const PackedList& list) {
         case Packed::matrices: return put_list<MatrixByRows>(list.bytes);
         case Packed::integers: return put_list<int>(list.bytes);
         case Packed::flags: return put_list<bool>(list.bytes);
-        case Packed::to_come:
+        case Packed::streamed:
         case Packed::no: return;
     }
 }
@@ -149,7 +199,7 @@ void JsonText::write(Json& json) {
             return values.clear();
         }
         case Type::binary:
-            if (packing_of(json) == Packed::to_come) put_list(source_->list(list_to_come(json)));
+            if (packing_of(json) == Packed::streamed) put_list(source_->list(streamed_list(json)));
             else put_list({packing_of(json), json.get_binary()});
             json = nullptr;
             return;

@@ -1,48 +1,49 @@
-// An answer as JSON text: its words and single numbers value by value, its packed lists straight
-// from their numbers (column.hpp).
+// Writes an answer as JSON text. Packed lists (answer_json.hpp) are written directly from memory.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
 #include <string_view>
 
-#include "api/column.hpp"
+#include "api/answer_json.hpp"
 
 namespace vines::api {
 
-/// The numbers of a list as they lie in memory.
+/// A list as it lies in memory.
 struct PackedList {
     Packed packing;
     std::span<const std::uint8_t> bytes;
 };
 
-/// Makes lists that are to come, one after the other as they stand in an answer.
+/// Generates lists while an answer is written, in the order in which they stand in it.
 class ListSource {
 public:
     virtual ~ListSource() = default;
-    /// Valid until the next.
-    virtual PackedList list(const ListToCome&) = 0;
+    /// Valid until the next call.
+    virtual PackedList list(const StreamedList&) = 0;
 };
 
-/// Writes text in pieces.
+/// Writes JSON text in pieces of up to 16 kB.
 class JsonText {
 public:
-    /// Takes one piece after the other.
+    /// Receives the pieces in order.
     using Take = std::function<void(std::string_view)>;
 
-    /// `source`: of an answer with lists to come.
+    /// `source` is required if the answer holds streamed lists.
     explicit JsonText(Take take, ListSource* source = nullptr)
         : take_(std::move(take)),
           source_(source) {}
     JsonText(const JsonText&) = delete;
     JsonText& operator=(const JsonText&) = delete;
 
-    /// What is written is freed: lists at once, members with their object.
+    /// Writes a value and frees it on the way: lists after they are written, members with their
+    /// object.
     void write(Json& json);
-    /// Hands out what is left.
+    /// Passes on the last piece.
     void end();
 
 private:
@@ -50,7 +51,7 @@ private:
     void put(std::string_view text);
     void put_quoted(const std::string& text);
     void put_number(double number);
-    /// An entry of a list, and the bracket or comma before it.
+    /// An entry of a list after its bracket or comma.
     void put_entry(char before, double entry);
     void put_entry(char before, int entry);
     void put_entry(char before, bool entry);
@@ -59,7 +60,7 @@ private:
     template <class Entry>
     void put_list(std::span<const std::uint8_t> list);
     void put_list(const PackedList& list);
-    /// Where so many more characters fit.
+    /// Where `length` more characters fit.
     char* room(std::size_t length);
 
     const Take take_;
@@ -68,13 +69,21 @@ private:
     std::size_t used_ = 0;
 };
 
-/// No fewer bytes than the packed lists of a value take as text.
+/// Upper bound of the text of all packed lists of a value, in bytes.
 std::size_t room_for_lists(const Json& json);
 
-/// Whether a text stands between quotation marks as it is.
+/// True if a text needs no escapes in a JSON string.
 bool needs_no_escape(std::string_view text);
 
 /// The whole text.
 std::string json_text(Json json);
+
+/// Bytes that write_number() needs: "-2.2250738585072014e-308", and its overwriting beyond the end.
+inline constexpr std::size_t room_for_number = 40;
+
+/// Writes a number and returns its end: 1.0, 0.0001, 1e-05, 123456789012345.0, 1e+15; null for NaN
+/// and infinities. The same form as the JSON library's, which is sometimes longer. Needs
+/// room_for_number bytes at `to`.
+char* write_number(char* to, double value);
 
 }  // namespace vines::api

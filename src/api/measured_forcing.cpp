@@ -14,7 +14,7 @@ namespace vines::api {
 
 namespace {
 
-// The two agree to what a calibration and a cable leave.
+// Tolerances of calibration and of cable delay: relative, and in rad.
 constexpr double amplitude_off = 0.05, phase_off = 0.1;
 
 double angular(double f) { return 2 * std::numbers::pi * f; }
@@ -22,7 +22,7 @@ double angular(double f) { return 2 * std::numbers::pi * f; }
 }  // namespace
 
 std::optional<MeasuredForcing> measured_forcing(
-    const std::vector<CsvColumn>& columns, const Json& fields, StillWanted& wanted) {
+    const std::vector<CsvColumn>& columns, const Json& fields, CancelCheck& cancel) {
     const RecordColumn time = find_column(columns, fields, time_quantity),
                        base = find_column(columns, fields, base_quantity),
                        force = find_column(columns, fields, force_quantity);
@@ -36,12 +36,12 @@ std::optional<MeasuredForcing> measured_forcing(
     std::vector<double> seconds;
     for (const double t : time.column->values) seconds.push_back(t * time.factor);
     const std::optional<Harmonic> h =
-        harmonic_of(seconds, channel.column->values, [&] { wanted.step(seconds.size()); });
+        harmonic_of(seconds, channel.column->values, [&] { cancel.step(seconds.size()); });
     if (!h)
         refuse(
             {{"/record/" + shortened(channel.column->name), nullptr, nullptr,
               "column " + shortened(channel.column->name) +
-                  " is no harmonic: one sine must explain three quarters of it, over five cycles "
+                  " is not harmonic: one sine must explain three quarters of it, over five cycles "
                   "or more"}});
     return MeasuredForcing{
         force.column != nullptr, h->omega / (2 * std::numbers::pi), h->sin * channel.factor,
@@ -52,8 +52,8 @@ ChannelForcing channel_forcing(const MeasuredForcing& m, const System& system) {
     const Parameters& p = system.parameters;
     const double amplitude = elementary::hypot(m.sin, m.cos);
     if (m.is_force) return {amplitude / system.si->k1, elementary::atan2(m.cos, m.sin)};
-    // Of a base that moves by F sin(omega t) the acceleration is -omega^2 of that, and the forcing
-    // is ahead of it by phi, eq. (3).
+    // A base moving as F sin(omega t) has the acceleration -omega^2 F sin(omega t); the forcing
+    // leads the displacement of the base by phi, eq. (3).
     const double omega = angular(m.f);
     return {
         amplitude / (omega * omega) * elementary::hypot(1.0, p.lambda * p.epsilon * p.Omega),
@@ -64,9 +64,9 @@ Json describe_measured_forcing(
     const MeasuredForcing& m, const System& used, const JointFit& fit,
     std::vector<std::string>& warnings) {
     const ChannelForcing channel = channel_forcing(m, used);
-    // Of a base, or of one that would act as the force does.
+    // F of the base, or of the base motion equivalent to the force.
     const double F = G_of(used.parameters, channel.amplitude, 0) * used.parameters.epsilon;
-    // That of the fit is of the record's middle.
+    // The fit has the phase at the middle of the record.
     const double middle = fit.tau_middle / used.si->omega0(),
                  fitted = elementary::atan2(
                      fit.values[Unknown::force_cos], fit.values[Unknown::force_sin]),
@@ -74,14 +74,14 @@ Json describe_measured_forcing(
                      channel.phase + angular(m.f) * middle - fitted, 2 * std::numbers::pi);
     if (std::abs(F / used.si->F - 1) > amplitude_off)
         warnings.push_back(fmt::format(
-            "the channel of the {} says F = {:.4g} m, the oscillator's motion {:.4g} m: is a "
+            "the channel of the {} gives F = {:.4g} m, the oscillator's motion {:.4g} m: is a "
             "sensitivity wrong?",
             m.is_force ? "force" : "base", F, used.si->F));
     if (std::abs(phase) > phase_off)
         warnings.push_back(fmt::format(
-            "the oscillator's motion shows the forcing {:.3g} rad {} the channel of the {}: is it "
-            "inverted, or late?",
-            std::abs(phase), phase > 0 ? "behind" : "ahead of", m.is_force ? "force" : "base"));
+            "the forcing in the oscillator's motion {} the channel of the {} by {:.3g} rad: is the "
+            "channel inverted or delayed?",
+            phase > 0 ? "lags" : "leads", m.is_force ? "force" : "base", std::abs(phase)));
     return {{"f", m.f}, {"F", F}, {"phase", phase}};
 }
 

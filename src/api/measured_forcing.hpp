@@ -1,11 +1,10 @@
-// How a record's own channel says the oscillator is driven: the acceleration of its base, or a
-// force on m1.
+// The forcing measured by a channel of the record: the acceleration of the base, or a force on m1.
 #pragma once
 
 #include <optional>
 #include <vector>
 
-#include "api/broken_off.hpp"
+#include "api/cancellation.hpp"
 #include "api/csv.hpp"
 #include "api/system.hpp"
 #include "core/measurement/joint_fit.hpp"
@@ -15,22 +14,23 @@ namespace vines::api {
 struct MeasuredForcing {
     bool is_force;
     double f;  ///< Hz
-    /// In m/s^2 or N, of sin(2 pi f t) and cos(2 pi f t).
+    /// Coefficients of sin(2 pi f t) and cos(2 pi f t), in m/s^2 or N.
     double sin, cos;
 };
 
-/// Of the channel's column; none without one. Problem 422 where it has no one harmonic; BrokenOff.
+/// Fits a harmonic to the channel's column; nullopt without a channel. Problem 422 if one harmonic
+/// does not describe it; throws Cancelled.
 std::optional<MeasuredForcing> measured_forcing(
-    const std::vector<CsvColumn>& columns, const Json& fields, StillWanted& wanted);
+    const std::vector<CsvColumn>& columns, const Json& fields, CancelCheck& cancel);
 
-/// As that channel has it: the forcing's amplitude, m, and its phase at the time 0.
+/// The model's forcing from a channel: amplitude in m, and phase at t = 0 in rad.
 struct ChannelForcing {
     double amplitude, phase;
 };
 ChannelForcing channel_forcing(const MeasuredForcing& measured, const System& system);
 
-/// {f, F, phase}, beside what the record says: `phase`, rad, by which the oscillator's motion shows
-/// the forcing later than the channel. With a warning where they differ.
+/// {f, F, phase}. `phase` is the lag of the forcing in the oscillator's motion after the
+/// channel, in rad. Warns if amplitudes or phases disagree.
 Json describe_measured_forcing(
     const MeasuredForcing& measured, const System& used, const JointFit& fit,
     std::vector<std::string>& warnings);

@@ -2,19 +2,19 @@
 
 #include <algorithm>
 
-#include "api/column.hpp"
+#include "api/answer_json.hpp"
 #include "api/describe.hpp"
 
 namespace vines::api {
 
 namespace {
 
-/// A part of the difference, and the field of the start that it is added to.
+/// A component of the perturbation and the start field that it is added to.
 struct Component {
     const char *name, *of_start;
     double State::* value;
 };
-constexpr Component components[] = {
+constexpr Component perturbed_components[] = {
     {"x", "x0", &State::x},
     {"x_dot", "x_dot0", &State::x_dot},
     {"y", "y0", &State::y},
@@ -23,20 +23,20 @@ constexpr Component components[] = {
 
 const std::string at_perturbation = "/perturbation/";
 
-/// The fault of a perturbed start as one of the difference. The cavity's is told of y, or of x
-/// where that is given alone; of a random one only its size can be told.
+/// Maps an invalid field of the perturbed start to the field of the perturbation. |x - y| <= b is
+/// reported for y, or for x if only that is given; a random perturbation is reported by its size.
 FieldError error_of(
     const Fault& fault, const Json& given, const Parameters& p, const State& start,
-    const State& beside) {
-    const std::string detail = "the perturbed start is at fault: " + fault.message;
+    const State& perturbed) {
+    const std::string detail = "the perturbed start is invalid: " + fault.message;
     if (given.contains("size")) return {at_perturbation + "size", given["size"], nullptr, detail};
     const bool by_x = fault.field == "y0" && !given.contains("y");
-    const Component& c =
-        *std::find_if(std::begin(components), std::end(components), [&](const Component& of) {
+    const Component& c = *std::find_if(
+        std::begin(perturbed_components), std::end(perturbed_components), [&](const Component& of) {
             return by_x ? of.value == &State::x : of.of_start == fault.field;
         });
-    const double from = start.*c.value, low = by_x ? beside.y - p.b : fault.minimum,
-                 high = by_x ? beside.y + p.b : fault.maximum;
+    const double from = start.*c.value, low = by_x ? perturbed.y - p.b : fault.minimum,
+                 high = by_x ? perturbed.y + p.b : fault.maximum;
     return {
         at_perturbation + c.name, given.value(c.name, 0.0), Json::array({low - from, high - from}),
         detail};
@@ -45,7 +45,8 @@ FieldError error_of(
 }  // namespace
 
 std::optional<State> read_perturbation(
-    const Layered& l, const Parameters& p, const State& start, std::vector<FieldError>& errors) {
+    const MergedFields& l, const Parameters& p, const State& start,
+    std::vector<FieldError>& errors) {
     if (!l.has("perturbation")) return std::nullopt;
     const Json& given = l.fields["perturbation"];
     const auto own = present(given, {"x", "x_dot", "y", "y_dot"}),
@@ -61,32 +62,32 @@ std::optional<State> read_perturbation(
     if (!random.empty() && !given.contains("size")) {
         errors.push_back(
             {at_perturbation + "size", nullptr, nullptr,
-             "size is missing: the length of the difference"});
+             "size, the length of the perturbation, is missing"});
         return std::nullopt;
     }
     State difference;
-    for (const Component& c : components) difference.*c.value = given.value(c.name, 0.0);
+    for (const Component& c : perturbed_components) difference.*c.value = given.value(c.name, 0.0);
     if (!random.empty()) {
         const double seed = given.value(
             "seed", find(find(l.table, "perturbation")->fields, "seed")->fallback.get<double>());
         difference =
             random_difference(static_cast<std::uint64_t>(seed), given["size"].get<double>());
     }
-    const State beside = displaced(start, difference);
-    if (length_of(difference_of(beside, start)) == 0)
+    const State perturbed = displaced(start, difference);
+    if (length_of(difference_of(perturbed, start)) == 0)
         errors.push_back(
             {"/perturbation", given, nullptr,
-             "the perturbed start is the start itself: the difference must not be zero, nor lost "
-             "in the rounding of the start"});
-    for (const Fault& fault : validate(p, beside))
-        errors.push_back(error_of(fault, given, p, start, beside));
+             "the perturbed start equals the start: the perturbation must not be zero, nor below "
+             "the rounding of the start"});
+    for (const Fault& fault : validate(p, perturbed))
+        errors.push_back(error_of(fault, given, p, start, perturbed));
     return difference;
 }
 
 Json describe_perturbation(Perturbation&& p) {
     const std::optional<LinearStretch>& linear = p.linear;
     Json start = Json::object();
-    for (const Component& c : components) start[c.name] = p.start.*c.value;
+    for (const Component& c : perturbed_components) start[c.name] = p.start.*c.value;
     Json j = describe_series(p.series);
     j.erase("x_ddot");
     j.update(

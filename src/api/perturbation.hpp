@@ -1,17 +1,17 @@
-// The field `perturbation` of a request, and the part of the answer that it asks for.
+// The field `perturbation` of a request, and its part of the answer.
 #pragma once
 
 #include <optional>
 
-#include "api/layers.hpp"
+#include "api/merged_fields.hpp"
 #include "core/analysis/perturbation.hpp"
 
 namespace vines::api {
 
-/// The difference of the start that the field names; none where it is not given, or at fault: then
-/// errors say so. The start itself is valid.
+/// The perturbation of the initial state; nullopt if not given or invalid, which adds to `errors`.
+/// The unperturbed start must be valid.
 std::optional<State> read_perturbation(
-    const Layered& fields, const Parameters& parameters, const State& start,
+    const MergedFields& fields, const Parameters& parameters, const State& start,
     std::vector<FieldError>& errors);
 
 Json describe_perturbation(Perturbation&& perturbation);

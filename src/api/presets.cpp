@@ -1,5 +1,11 @@
 #include "api/presets.hpp"
 
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "api/request.hpp"
+#include "core/measurement/synthetic_record.hpp"
 #include "core/motion/parameters.hpp"
 
 namespace vines::api {
@@ -16,7 +22,7 @@ constexpr double window_start = 18.13, window_end = 1708.9;
 
 Json closed_form(double b, double tau_end = window_end) {
     Json p = {{"b", b}, {"damping", "closed_form"}, {"tau_end", tau_end}};
-    if (tau_end > 2000) p["samples_per_cycle"] = 20;  // a plot of a thousand cycles needs no more
+    if (tau_end > 2000) p["samples_per_cycle"] = 20;  // enough for a plot of a thousand cycles
     return p;
 }
 
@@ -25,8 +31,8 @@ Json windowed(Json parameters, double from, double to) {
     return parameters;
 }
 
-// Table 4. The base's amplitude is not printed; with G = .01 m at resonance and R = .85 the two
-// responses of section 5 appear.
+// Table 4. The amplitude of the base is not printed; G = .01 m at resonance and R = .85 reproduce
+// both responses of section 5.
 Json experiment(double b, double cycles) {
     const SiParameters si{
         .m1 = 4.168, .c1 = 3.02, .k1 = 11.47e3, .m2 = 0.032, .F = 0.01 * 0.032 / 4.168};
@@ -38,7 +44,7 @@ Json experiment(double b, double cycles) {
 
 const char* const smr_text = "Type II, chaotic strongly modulated response";
 
-/// Those that the paper simulates with Table 1.
+/// Simulations with Table 1.
 std::vector<Preset> figures() {
     const std::string smr = smr_text;
     return {
@@ -48,10 +54,10 @@ std::vector<Preset> figures() {
         {"fig4", "Fig. 4", smr + ", b = 22 mm: relative displacement y - x enlarged", "",
          closed_form(0.022, 600)},
         {"fig5", "Fig. 5", smr + ", b = 22 mm: transient Lyapunov exponents",
-         "The paper's four positive values are presumably those of raw_product: but for lambda1 "
-         "they are its rounding floor. qr has one. The deepest spikes of lambda1 by (33) come at "
-         "impacts that are faster than most, where the product's leading eigenvalue is nearly "
-         "zero.",
+         "The paper's four positive values are presumably those of raw_product: except for lambda1 "
+         "they are its rounding floor. qr has one positive exponent. The deepest spikes of lambda1 "
+         "by (33) occur at impacts that are faster than most, where the product's leading "
+         "eigenvalue is nearly zero.",
          closed_form(0.022)},
         {"fig6", "Fig. 6", smr + ", b = 22 mm: transfer matrices J_i of the flights", "",
          closed_form(0.022)},
@@ -62,12 +68,12 @@ std::vector<Preset> figures() {
         {"fig9", "Fig. 9", smr + ", b = 22 mm: envelope of x against the matrices T_i", "",
          closed_form(0.022)},
         {"fig10", "Fig. 10", "Type I, sparse irregular impacts, b = 40 mm",
-         "Four positive values, as printed, are rounding (raw_product); qr has one. After a stick "
-         "lambda3 and lambda4 are minus infinity.",
+         "Four positive values, as printed, are rounding (raw_product); qr has one. After a "
+         "sticking phase lambda3 and lambda4 are minus infinity.",
          closed_form(0.040)},
         {"fig11", "Fig. 11", "Type III, two symmetric impacts per cycle, b = 15 mm",
-         "A stick at tau = 11.8 makes lambda3 and lambda4 of a window from the start minus "
-         "infinity; the orbit's own are in its Floquet multipliers.",
+         "A sticking phase at tau = 11.8 makes lambda3 and lambda4 of a window from the start "
+         "minus infinity; the orbit's own are in its Floquet multipliers.",
          closed_form(0.015)},
         {"fig12", "Fig. 12", "Type IV, two asymmetric impacts per cycle, b = 6.5 mm",
          "The paper prints b = 8 mm. From its initial state, and from each of 200 random ones, the "
@@ -86,7 +92,7 @@ std::vector<Preset> figures() {
     };
 }
 
-/// One window of the same motion each.
+/// Rows of Table 2: windows of one motion.
 void add_table_2(std::vector<Preset>& list) {
     const double windows[3][2] = {{18.13, 1708.9}, {1708.9, 3652.7}, {3652.7, 5521.3}};
     Json rows = Json::array();
@@ -104,9 +110,9 @@ void add_table_2(std::vector<Preset>& list) {
              of_table2(i)});
 }
 
-/// One half-width each, over the time that holds about 400 contacts: how long the paper's own
-/// window is follows from the printed lambda1 - lambda3, which is rounding (docs/paper.md). At 22
-/// mm it is printed in Table 2.
+/// Rows of Table 3: one half-width b each, over the time of about 400 contacts. The length of the
+/// paper's windows follows from the printed lambda1 - lambda3, which is rounding (docs/paper.md).
+/// At 22 mm it is printed in Table 2.
 void add_table_3(std::vector<Preset>& list) {
     struct Row {
         const char* b;
@@ -120,12 +126,13 @@ void add_table_3(std::vector<Preset>& list) {
             {"table3_b" + std::string(b), "Table 3",
              std::string(std::stod(b) > 0.032 ? "Type I" : smr_text) +
                  ", b = " + Json(std::stod(b) * 1000).dump() + " mm",
-             "The printed lambda3 is lambda1 - ln(1/2.2e-16)/T: rounding, which tells the window: "
-             "some 400 contacts. One window knows lambda1 to about 10 %.",
+             "The printed lambda3 is lambda1 - ln(1/2.2e-16)/T, which is rounding; the length of "
+             "the window follows from it: about 400 contacts. One window determines lambda1 to "
+             "about 10 %.",
              closed_form(std::stod(b), tau_end)});
 }
 
-/// Those of the experiment, Table 4.
+/// The experiment, Table 4.
 void add_experiments(std::vector<Preset>& list) {
     const std::string excitation =
         "Forced at resonance with G = 10 mm; the paper does not print its excitation.";
@@ -169,6 +176,26 @@ Json describe_presets() {
              {"note", p.note},
              {"parameters", p.parameters}});
     return {{"citation", citation}, {"doi", doi}, {"presets", std::move(list)}};
+}
+
+namespace {
+
+constexpr const char* example_preset = "fig20";
+constexpr double example_seconds = 20;
+
+}  // namespace
+
+std::string example_record() {
+    const SimulateRequest request = read_simulate_request({{"preset", example_preset}});
+    const double omega0 = request.system.si->omega0();
+    const MeasuredRecord record =
+        synthetic_record(true_motion(request.wanted.parameters, omega0, 0, example_seconds), {});
+    std::string csv = "time_s,displacement_m,acceleration_m_s2\n";
+    for (std::size_t k = 0; k < record.tau.size(); ++k)
+        fmt::format_to(
+            std::back_inserter(csv), "{:.7f},{:.8e},{:.5e}\n", record.tau[k] / omega0, record.x[k],
+            record.x_ddot[k] * omega0 * omega0);
+    return csv;
 }
 
 }  // namespace vines::api

@@ -1,4 +1,4 @@
-// One preset for each figure and table of the paper: what was run there.
+// Presets: one for each figure and table of the paper, with its parameters.
 #pragma once
 
 #include <string>
@@ -17,5 +17,9 @@ const std::vector<Preset>& presets();
 
 /// The answer of GET /v1/presets.
 Json describe_presets();
+
+/// CSV: 20 s of the paper's experiment with b = 15 mm (preset fig20), simulated, as two noisy
+/// sensors would measure it.
+std::string example_record();
 
 }  // namespace vines::api

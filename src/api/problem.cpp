@@ -1,18 +1,17 @@
 #include "api/problem.hpp"
 
-#include "api/schema/echo.hpp"
+#include "api/schema/check.hpp"
 
 namespace vines::api {
 
 namespace {
 
-// Several times as long as the longest sentence of the program, in which what it tells of a request
-// is shortened by itself.
+// Bytes: several times the longest sentence. Quoted values are shortened separately.
 constexpr std::size_t longest_detail = 2000;
-// Of a range: more than there are fields or presets to choose from.
+// Entries of a range: more than the number of fields or presets.
 constexpr std::size_t most_choices = 200;
 
-/// Up to `most` bytes, and no part of a character of UTF-8.
+/// Cuts a text to at most `most` bytes, at a boundary of UTF-8 characters.
 std::string cut(std::string_view text, std::size_t most) {
     if (text.size() <= most) return std::string(text);
     std::size_t end = most;
@@ -109,8 +108,8 @@ void refuse(std::vector<FieldError> errors) {
     const std::string detail =
         errors.size() == 1 ? errors[0].detail
         : errors.size() >= most_errors
-            ? "the first " + std::to_string(errors.size()) + " faults are listed"
-            : std::to_string(errors.size()) + " fields are at fault";
+            ? "the first " + std::to_string(errors.size()) + " errors are listed"
+            : std::to_string(errors.size()) + " fields are invalid";
     throw Problem(422, detail, std::move(errors));
 }
 

@@ -1,4 +1,4 @@
-// What is wrong with a request, as application/problem+json (RFC 9457).
+// Errors of a request as application/problem+json (RFC 9457).
 #pragma once
 
 #include <stdexcept>
@@ -6,32 +6,32 @@
 #include <string_view>
 #include <vector>
 
-#include "api/schema/field_error.hpp"
+#include "api/schema/check.hpp"
 
 namespace vines::api {
 
-/// Thrown on the way from bytes to a request; the HTTP layer answers with it.
+/// Thrown while a request is read or computed; the HTTP layer and the command line report it.
 class Problem : public std::runtime_error {
 public:
     Problem(int status, const std::string& detail, std::vector<FieldError> errors = {});
-    /// 503 for now.
+    /// A 503: the same request can succeed later.
     static Problem unavailable(const std::string& lacking, const std::string& detail);
 
     int status;
     std::vector<FieldError> errors;
-    std::string lacking = {};  ///< of a 503, what there is no more of: a word that stays the same
-    /// The problem document; never throws, whatever bytes are in it. request_id: by which the log
-    /// names the request, where it has such a name.
+    std::string lacking = {};  ///< of a 503: a stable word for the exhausted resource
+    /// The problem document. Invalid UTF-8 is replaced, so that it never throws. request_id: the
+    /// request's name in the log, if any.
     std::string body(const std::string& request_id = {}) const;
 };
 
-/// So much of a text that it can be told in a message.
+/// The beginning of a text, short enough for a message.
 std::string shortened(std::string_view text);
 
 /// "Unprocessable Content" for 422, and so on.
 std::string_view reason_phrase(int status);
 
-/// Adds the errors of a nested object to all, at their place in the request.
+/// Adds the errors of a nested object, with `where` before their pointers.
 void add_errors(
     const std::string& where, std::vector<FieldError> nested, std::vector<FieldError>& all);
 

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <utility>
 
-#include "api/column.hpp"
-#include "api/parse_object.hpp"
+#include "api/answer_json.hpp"
+#include "api/parse.hpp"
 #include "api/problem.hpp"
 #include "api/version.hpp"
 
@@ -21,12 +21,12 @@ namespace {
 
 constexpr std::string_view before_provenance = ",\"provenance\":";
 
-// Up to here each whole number is a double.
+// Up to 2^53 every integer is a double.
 constexpr double largest_whole = 9007199254740992;
 
 }  // namespace
 
-/// SHA-256 of a text that comes in pieces.
+/// SHA-256 of a text in pieces.
 class Sha256 {
 public:
     Sha256() {
@@ -53,7 +53,7 @@ public:
     }
 
 private:
-    /// Looked up once: that takes longer than to hash a small answer.
+    /// Fetched once, which takes longer than hashing a small answer.
     static const EVP_MD* method() {
         static const EVP_MD* const fetched = EVP_MD_fetch(nullptr, "SHA256", nullptr);
         return fetched;
@@ -106,7 +106,7 @@ Json canonical(const Json& request) {
         for (const Json& entry : request) array.push_back(canonical(entry));
         return array;
     }
-    // 100.0 of a query is the 100 of a body.
+    // 100.0 from a query equals 100 from a body.
     if (request.is_number_float() && std::abs(request.get<double>()) < largest_whole &&
         request == std::trunc(request.get<double>()))
         return static_cast<std::int64_t>(request.get<double>());

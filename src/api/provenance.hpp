@@ -1,4 +1,4 @@
-// What an answer was made of, told in it, so that anyone can make it once more.
+// Provenance of an answer: the inputs from which anyone can reproduce it, as a part of the answer.
 #pragma once
 
 #include <cstddef>
@@ -14,51 +14,51 @@ namespace vines::api {
 
 struct Provenance {
     std::string route;                             ///< /v1/simulate
-    Json request;                                  ///< canonical(); without a record
-    std::optional<std::size_t> answer_limit = {};  ///< bytes, of an answer that was fitted to them
-    std::optional<std::string> record = {};        ///< its sha256(), of an identification
+    Json request;                                  ///< canonical(), without the record
+    std::optional<std::size_t> answer_limit = {};  ///< bytes, if the answer was cut to fit
+    std::optional<std::string> record = {};        ///< sha256() of an identification's body
 };
 
-/// {route, commit, answer_limit, request, record_sha256, sha256}; sha256: of the answer.
+/// {route, commit, answer_limit, request, record_sha256, sha256}. sha256 is that of the answer.
 Json describe(const Provenance& provenance, const Json& sha256);
 
-/// The same request with its names in order, at every level, and whole numbers without a point.
+/// The request with names in alphabetical order at every level, and integers without a point.
 Json canonical(const Json& request);
 
-/// 64 hexadecimal digits.
+/// SHA-256 as 64 hexadecimal digits.
 std::string sha256(std::string_view text);
 
 class Sha256;
 
-/// Hands an answer's text on, an object that comes in pieces, with its provenance as its last
-/// member: sha256 is that of the text without it.
+/// Passes on an answer's text, a JSON object in pieces, and appends its provenance as the last
+/// member. The provenance's sha256 is that of the text without it.
 class Seal {
 public:
-    /// Nothing: the text as it is. The provenance outlives it.
+    /// Without a provenance the text stays unchanged. The provenance must outlive the Seal.
     Seal(const std::optional<Provenance>& provenance, JsonText::Take take);
     ~Seal();
     void add(std::string_view piece);
-    /// That was all.
+    /// Ends the text.
     void end();
 
 private:
     const std::optional<Provenance>& provenance_;
     const JsonText::Take take_;
     const std::unique_ptr<Sha256> hash_;
-    bool holds_brace_ = false;  // the last one, it may be
+    bool holds_brace_ = false;  // the last '}' so far is withheld
 };
 
-/// Writes an answer's text, a line, sealed where there is a provenance. `lists`: of those to come.
+/// Writes an answer as one line, with its provenance if any. `lists` generates streamed lists.
 void write_sealed(
     Json& answer, const std::optional<Provenance>& provenance, const JsonText::Take& take,
     ListSource* lists = nullptr);
 
-/// An answer's text taken apart.
+/// An answer's text split into answer and provenance.
 struct Unsealed {
     std::string text;  ///< without provenance
-    Json provenance;   ///< as describe() has it
+    Json provenance;   ///< see describe()
 };
-/// Nothing where there is no provenance at its end.
+/// nullopt if the text does not end with a provenance.
 std::optional<Unsealed> unsealed(std::string_view sealed);
 
 }  // namespace vines::api

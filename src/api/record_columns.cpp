@@ -4,9 +4,9 @@
 #include <cctype>
 #include <optional>
 
+#include "api/csv.hpp"
 #include "api/problem.hpp"
-#include "api/schema/joined.hpp"
-#include "api/units.hpp"
+#include "api/schema/field.hpp"
 
 namespace vines::api {
 
@@ -20,7 +20,7 @@ const Quantity displacement_quantity{
 
 namespace {
 
-// m/s^2, the standard gravity.
+// g is the standard gravity.
 const std::vector<Unit> acceleration_units = {
     {"m/s2", 1, {"m/s2", "m_s2", "ms-2", "m/s/s"}}, {"g", 9.80665, {"g"}}};
 
@@ -37,7 +37,7 @@ namespace {
 
 bool is_same_letter(unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); }
 
-/// Without regard to case, and without a copy: a name may be as long as a record.
+/// Ignores case and does not copy: a name can be as long as a record.
 bool is_same_name(std::string_view a, std::string_view b) {
     return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), is_same_letter);
 }
@@ -54,7 +54,7 @@ const Unit* known(const Quantity& q, std::string_view text) {
     return it == q.units.end() ? nullptr : &*it;
 }
 
-/// What a column's name says after the quantity: in brackets, or behind a blank or underscore.
+/// The unit part of a column's name: in brackets, or after a blank or underscore.
 struct Suffix {
     std::string text;
     bool in_brackets;
@@ -66,14 +66,14 @@ std::optional<Suffix> suffix_of(const Quantity& q, const std::string& name) {
         return Suffix{
             name.substr(open + 1, close == std::string::npos ? close : close - open - 1), true};
     }
-    // A column called by a unit alone.
+    // The name is a unit.
     if (known(q, name)) return Suffix{name, false};
     std::size_t last = name.find_last_of("_ ");
-    // Of more characters no unit is known.
+    // No unit is longer.
     const std::size_t from = name.size() > longest_unit ? name.size() - longest_unit - 1 : 0;
     for (std::size_t at = name.find_first_of("_ ", from); at != std::string::npos;
          at = name.find_first_of("_ ", at + 1)) {
-        // m_s2 before s2.
+        // The longest suffix first: m_s2 before s2.
         if (known(q, std::string_view(name).substr(at + 1)))
             return Suffix{name.substr(at + 1), false};
     }
@@ -94,7 +94,7 @@ std::string pointer_to(const CsvColumn& column) {
     return (Json::json_pointer("/record") / shortened(column.name)).to_string();
 }
 
-/// `remark`: behind the list of the units that are.
+/// `remark` follows the list of known units.
 [[noreturn]] void refuse_unit(
     const Quantity& q, const CsvColumn& column, const std::string& unit,
     const std::string& remark) {
@@ -102,50 +102,51 @@ std::string pointer_to(const CsvColumn& column) {
     refuse(
         {{pointer_to(column), shown, unit_names(q),
           "column " + shortened(column.name) + ": the unit \"" + shown +
-              "\" is not known; known are " + joined(unit_names(q)) + remark}});
+              "\" is unknown; known units: " + joined(unit_names(q)) + remark}});
 }
 
-/// The unit that the row of units says; null: none.
+/// The unit in the row of units; null if none.
 const Unit* unit_of_row(const Quantity& q, const CsvColumn& column) {
     if (unit_spelling(column.unit).empty()) return nullptr;
-    const Unit* said = known(q, column.unit);
-    if (!said) refuse_unit(q, column, column.unit, "");
-    return said;
+    const Unit* named = known(q, column.unit);
+    if (!named) refuse_unit(q, column, column.unit, "");
+    return named;
 }
 
-/// The unit that the name says; null: none.
+/// The unit in the column's name; null if none.
 const Unit* unit_of_name(const Quantity& q, const CsvColumn& column, bool named_by_request) {
     const std::optional<Suffix> suffix = suffix_of(q, column.name);
     if (!suffix) return nullptr;
-    if (const Unit* said = known(q, suffix->text)) return said;
-    // A column that the request names may be called anything but by another unit.
+    if (const Unit* named = known(q, suffix->text)) return named;
+    // A column named by the request can have any suffix except another unit.
     if (!suffix->in_brackets && named_by_request && !is_foreign_unit(suffix->text)) return nullptr;
     refuse_unit(
         q, column, suffix->text,
-        suffix->in_brackets ? "" : ". If it is no unit, name the column in " + q.name + "_column");
+        suffix->in_brackets ? ""
+                            : ". If it is not a unit, name the column in " + q.name + "_column");
 }
 
 double unit_factor(const Quantity& q, const Json& fields, const CsvColumn& column) {
     const std::string field = q.name + "_unit";
-    const Unit* asked = nullptr;
+    const Unit* requested = nullptr;
     if (fields.contains(field))
-        asked = &*std::find_if(
+        requested = &*std::find_if(
             q.units.begin(), q.units.end(),
             [name = fields[field].get<std::string>()](const Unit& u) { return u.name == name; });
-    const Unit* said = unit_of_name(q, column, fields.contains(q.name + "_column"));
-    const Unit* below = unit_of_row(q, column);
-    if (said && below && said != below)
+    const Unit* named = unit_of_name(q, column, fields.contains(q.name + "_column"));
+    const Unit* in_row = unit_of_row(q, column);
+    if (named && in_row && named != in_row)
         refuse(
-            {{pointer_to(column), shortened(column.unit), Json::array({said->name}),
-              "column " + shortened(column.name) + " says " + said->name +
-                  ", but the row of units " + below->name}});
-    if (!said) said = below;
-    if (said && asked && said != asked)
+            {{pointer_to(column), shortened(column.unit), Json::array({named->name}),
+              "column " + shortened(column.name) + " has the unit " + named->name +
+                  ", but the row of units has " + in_row->name}});
+    if (!named) named = in_row;
+    if (named && requested && named != requested)
         refuse(
-            {{"/" + field, fields[field], Json::array({said->name}),
-              field + " is " + asked->name + ", but the column " + shortened(column.name) +
-                  " says " + said->name}});
-    return (said ? said : asked ? asked : &q.units[0])->factor;
+            {{"/" + field, fields[field], Json::array({named->name}),
+              field + " is " + requested->name + ", but column " + shortened(column.name) +
+                  " has the unit " + named->name}});
+    return (named ? named : requested ? requested : &q.units[0])->factor;
 }
 
 }  // namespace

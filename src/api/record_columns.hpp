@@ -1,4 +1,4 @@
-// Which column of a record holds a quantity, and in which unit.
+// Finds the column of a record that holds a quantity, and its unit.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace vines::api {
 
-/// A unit by its name in the fields, and its unit_spelling()s.
+/// A unit: its name in the fields, and its unit_spelling()s.
 struct Unit {
     std::string name;
     double factor;  ///< to SI
@@ -16,22 +16,22 @@ struct Unit {
 };
 
 struct Quantity {
-    std::string name;                     ///< of its fields: <name>_column, <name>_unit
-    std::string column;                   ///< the default
-    std::vector<std::string> beginnings;  ///< of other columns that are taken for it
+    std::string name;                     ///< of the fields <name>_column, <name>_unit
+    std::string column;                   ///< default column name
+    std::vector<std::string> beginnings;  ///< beginnings of other accepted column names
     std::vector<Unit> units;              ///< the first one is the default
 };
 extern const Quantity time_quantity, displacement_quantity, acceleration_quantity, base_quantity,
     force_quantity;
 
 struct RecordColumn {
-    const CsvColumn* column;  ///< null where there is none
+    const CsvColumn* column;  ///< null if missing
     double factor;            ///< to SI
 };
-/// The column that the request names, else the default, else the first with one of the beginnings.
-/// Its unit is what its name says - displacement_mm, time (ms), acceleration [g] - or the row of
-/// units, else the request's field, else the default. Problem 422 where a unit is not known, or two
-/// of these say different ones.
+/// The column named by the request, else the default, else the first with one of the beginnings.
+/// Its unit is that of its name (displacement_mm, time (ms), acceleration [g]) or of the row of
+/// units, else that of the request's field, else the default. Problem 422 for an unknown unit or
+/// contradictory ones.
 RecordColumn find_column(
     const std::vector<CsvColumn>& columns, const Json& fields, const Quantity& quantity);
 

@@ -18,17 +18,17 @@ void check_window(
              "the window begins after the run's end, tau_end = " + Json(tau_end).dump()});
 }
 
-/// How long to run, by whichever of the two fields is given; a fault where that is too long.
-double read_tau_end(const Layered& l, double cycle, std::vector<FieldError>& errors) {
+/// The length of the run from tau_end or cycles; an error if it is too long.
+double read_tau_end(const MergedFields& l, double cycle, std::vector<FieldError>& errors) {
     const bool by_cycles = l.has("cycles");
     const double tau_end = by_cycles ? l.number("cycles") * cycle : l.number("tau_end"),
                  longest = std::min(longest_run, most_cycles * cycle);
-    if (errors.empty() && tau_end > longest) {  // of an Omega in its range
+    if (errors.empty() && tau_end > longest) {  // Omega is within its range
         const double most = by_cycles ? longest / cycle : longest;
         errors.push_back(
             {by_cycles ? "/cycles" : "/tau_end", by_cycles ? l.fields["cycles"] : Json(tau_end),
              Json::array({1e-6, most}),
-             "a run may be as long as tau = 1e7 and 2e6 cycles of 2 pi/Omega: here at most " +
+             "a run is limited to tau = 1e7 and 2e6 cycles of 2 pi/Omega: here at most " +
                  Json(most).dump()});
     }
     return tau_end;
@@ -50,25 +50,25 @@ Parts parts_of(const std::set<std::string>& include) {
         .manifold = includes("manifold")};
 }
 
-/// Whether the answer tells a field's value among its parameters. The other fields of a run and its
-/// output are lists and objects, which show in the answer by what it has.
-bool is_told(const Field& f) {
+/// True if the answer reports the field among its parameters. The other fields of a run and its
+/// output are lists and objects; their effect shows in the parts of the answer.
+bool is_reported(const Field& f) {
     return (f.group == "run" || f.group == "output") &&
            (f.type == FieldType::number || f.type == FieldType::integer ||
             f.type == FieldType::interval);
 }
 
-/// Where the values of a run come from.
-void add_origins(std::map<std::string, std::string>& origin, const Layered& l) {
+/// Adds the origin of the run's values.
+void add_origins(std::map<std::string, std::string>& origin, const MergedFields& l) {
     for (const Field& f : l.table)
-        if (is_told(f)) origin[f.name] = l.origin(f.name);
+        if (is_reported(f)) origin[f.name] = l.origin(f.name);
     if (l.has("cycles")) origin["tau_end"] = "follows from cycles";
     else origin["cycles"] = "follows from tau_end";
 }
 
 }  // namespace
 
-ExponentOptions read_estimators(const Layered& l) {
+ExponentOptions read_estimators(const MergedFields& l) {
     const std::set<std::string> names = l.words("exponents");
     return {
         .qr = names.contains("qr"),
@@ -78,11 +78,11 @@ ExponentOptions read_estimators(const Layered& l) {
 }
 
 SimulateRequest read_simulate_request(const Json& given) {
-    const Layered l = layered(simulate_fields(), given);
+    const MergedFields l = merge_with_preset(simulate_fields(), given);
 
     SimulateRequest r;
     r.system = read_system(l);
-    Wanted& w = r.wanted;
+    AnalysisRequest& w = r.wanted;
     w.parameters = r.system.parameters;
     w.start = read_start(l, r.system);
     std::vector<FieldError> errors = field_errors(validate(w.parameters, w.start), l);
@@ -108,7 +108,7 @@ SimulateRequest read_simulate_request(const Json& given) {
 }
 
 StartedSystem read_started_system(const Json& given) {
-    const Layered l = layered(sweep_base_fields(), given);
+    const MergedFields l = merge_with_preset(sweep_base_fields(), given);
     StartedSystem s;
     s.system = read_system(l);
     s.start = read_start(l, s.system);
@@ -119,7 +119,7 @@ StartedSystem read_started_system(const Json& given) {
 }
 
 ManifoldRequest read_manifold_request(const Json& given) {
-    const Layered l = layered(manifold_fields(), given);
+    const MergedFields l = merge_with_preset(manifold_fields(), given);
     ManifoldRequest r;
     r.system = read_system_alone(l, false);
     const Parameters& p = r.system.parameters;

@@ -1,4 +1,4 @@
-// From the JSON of a request to the structs that it stands for.
+// Reads the JSON of a request into structs.
 #pragma once
 
 #include "api/system.hpp"
@@ -8,25 +8,25 @@ namespace vines::api {
 
 struct SimulateRequest {
     System system;
-    Wanted wanted;                  ///< of the run: its parameters are the system's
+    AnalysisRequest wanted;         ///< the run and its results; parameters as in `system`
     std::set<std::string> include;  ///< parts of the answer
 
     bool includes(const char* part) const { return include.contains(part); }
 };
 
-/// Problem 422 with every field at fault.
+/// Problem 422 naming every invalid field.
 SimulateRequest read_simulate_request(const Json& object);
 
-/// Those that the field exponents names, with a history of max_points.
-ExponentOptions read_estimators(const Layered& fields);
+/// The estimators of the field exponents, with a history of max_points.
+ExponentOptions read_estimators(const MergedFields& fields);
 
-/// A system with its initial state: what the points of a sweep are.
+/// A system with its initial state: a point of a sweep.
 struct StartedSystem {
     System system;
     State start;
     long max_impacts;
 };
-/// Of sweep_base_fields(). Problem 422 with every field at fault.
+/// Reads sweep_base_fields(). Problem 422 naming every invalid field.
 StartedSystem read_started_system(const Json& object);
 
 struct ManifoldRequest {
@@ -35,7 +35,7 @@ struct ManifoldRequest {
     std::size_t points;
 };
 
-/// Problem 422 with every field at fault; also for walls with different restitution coefficients.
+/// Problem 422 naming every invalid field, also if R differs between the walls.
 ManifoldRequest read_manifold_request(const Json& object);
 
 }  // namespace vines::api

@@ -4,8 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "api/column.hpp"
-#include "api/object.hpp"
+#include "api/answer_json.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines::api {
@@ -13,7 +12,7 @@ namespace vines::api {
 namespace {
 
 // t = tau/omega0.
-constexpr Twin of_any_part[] = {
+constexpr SiCounterpart of_any_part[] = {
     {"tau", "time_s", -1},
     {"tau_start", "time_start_s", -1},
     {"tau_end", "time_end_s", -1},
@@ -35,7 +34,7 @@ constexpr Twin of_any_part[] = {
     {"impulse", "impulse_N_s", 1, true},
     {"V", "V_velocity", 1},
 };
-constexpr Twin of_energy[] = {
+constexpr SiCounterpart of_energy[] = {
     {"input", "input_J", 2, true},       {"damper", "damper_J", 2, true},
     {"impacts", "impacts_J", 2, true},   {"stored", "stored_J", 2, true},
     {"residual", "residual_J", 2, true}, {"at_start", "at_start_J", 2, true},
@@ -45,10 +44,10 @@ constexpr Twin of_energy[] = {
 Json scaled(const Json& value, double factor) {
     if (value.is_number()) return value.get<double>() * factor;
     if (value.is_null()) return nullptr;  // a number that does not exist
-    if (packing_of(value) == Packed::to_come) {
-        ListToCome list = list_to_come(value);
+    if (packing_of(value) == Packed::streamed) {
+        StreamedList list = streamed_list(value);
         list.factor *= factor;
-        return to_come(list);
+        return streamed(list);
     }
     Json list = value;
     if (value.is_binary())
@@ -58,9 +57,9 @@ Json scaled(const Json& value, double factor) {
     return list;
 }
 
-void add(Json& object, std::span<const Twin> table, const SiParameters& si) {
+void add(Json& object, std::span<const SiCounterpart> table, const SiParameters& si) {
     make_room(object, object.size());
-    for (const Twin& t : table)
+    for (const SiCounterpart& t : table)
         if (object.contains(t.name) && !object[t.name].is_string())
             object[t.si_name] = scaled(
                 object[t.name], elementary::pow(si.omega0(), t.power) * (t.per_m1 ? si.m1 : 1));
@@ -68,8 +67,8 @@ void add(Json& object, std::span<const Twin> table, const SiParameters& si) {
 
 }  // namespace
 
-std::span<const Twin> twins() { return of_any_part; }
-std::span<const Twin> joule_twins() { return of_energy; }
+std::span<const SiCounterpart> si_counterparts() { return of_any_part; }
+std::span<const SiCounterpart> energy_counterparts() { return of_energy; }
 
 void add_si(Json& part, const SiParameters& si) {
     if (!part.is_object()) {

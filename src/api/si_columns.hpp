@@ -1,5 +1,4 @@
-// The answer in the units of a question in SI: beside each quantity in units of tau its twin in s,
-// m/s, m/s^2, N s or J.
+// Adds SI counterparts to an answer: s, m/s, m/s^2, N s or J next to each quantity in units of tau.
 #pragma once
 
 #include <span>
@@ -9,24 +8,23 @@
 
 namespace vines::api {
 
-/// A quantity in units of tau and its twin: value * omega0^power, and m1 beside it for what is per
-/// m1.
-struct Twin {
+/// A quantity in units of tau and its SI counterpart = value * omega0^power, also times m1 if
+/// per_m1.
+struct SiCounterpart {
     const char *name, *si_name;
     int power;
     bool per_m1 = false;
 };
 
-/// Those of any part, and those of the part `energy` besides.
-std::span<const Twin> twins();
-std::span<const Twin> joule_twins();
+/// The quantities of any part; the additional ones of the part `energy`.
+std::span<const SiCounterpart> si_counterparts();
+std::span<const SiCounterpart> energy_counterparts();
 
-/// Adds the twins to an object and to all that it holds: time_s beside tau, x_velocity (m/s) beside
-/// x_dot, x_acceleration (m/s^2) beside x_ddot, impulse_N_s beside impulse. A column has a column
-/// beside it, null where it is null.
+/// Adds the counterparts to an object and to everything in it: time_s for tau, x_velocity (m/s) for
+/// x_dot, x_acceleration (m/s^2) for x_ddot, impulse_N_s for impulse. Nulls stay null.
 void add_si(Json& part, const SiParameters& si);
 
-/// The same for the part `energy`, whose energies are per m1 omega0^2: input_J beside input.
+/// Adds those of the part `energy`, whose energies are per m1 omega0^2: input_J for input.
 void add_joules(Json& energy, const SiParameters& si);
 
 }  // namespace vines::api

@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "api/answer_json.hpp"
 #include "api/describe.hpp"
-#include "api/describe_exponents.hpp"
-#include "api/describe_regime.hpp"
-#include "api/object.hpp"
 #include "api/perturbation.hpp"
-#include "api/schema/joined.hpp"
+#include "api/schema/field.hpp"
 #include "api/si_columns.hpp"
 #include "api/version.hpp"
 
@@ -18,8 +16,68 @@ namespace vines::api {
 
 namespace {
 
+// The size of an answer is bounded before it is computed, from the count of numbers per point and
+// impact. Bytes for words, parameters, the orbit, 200 points on each branch of the manifold:
+constexpr double rest_bytes = 64 * 1024;
+// Bytes for the exponents of one window by three estimators, with their words:
+constexpr double window_bytes = 2048;
+constexpr double fewest_points = 256;
+
+struct AnswerSize {
+    double point = 0, impact = 0, fixed = rest_bytes;
+};
+
+AnswerSize size_of(const SimulateRequest& r) {
+    // Bytes of an entry with its comma. number: "-2.2250738585072014e-308,", the longest double in
+    // its shortest form. count: up to 2000000. word: true, false, null.
+    constexpr double number = 25, side = 3, count = 8, word = 6, bracket = 2;
+    AnswerSize size;
+    const double si = r.system.si ? number : 0;  // per column with an SI counterpart
+    size.fixed += window_bytes * static_cast<double>(r.wanted.windows.size());
+    if (r.includes("series")) size.point += 6 * number + 4 * si;
+    if (r.includes("exponents")) {  // tau and four exponents, and the floor
+        if (r.wanted.estimators.qr) size.point += 5 * number + si;
+        if (r.wanted.estimators.raw_product) size.point += 6 * number + si;
+        if (r.wanted.estimators.eigenvalues)
+            size.fixed += static_cast<double>(most_eigenvalue_entries) * (5 * number + si);
+    }
+    if (r.includes("eigenvalues")) size.point += 14 * number + si + 3 * bracket;
+    if (r.includes("matrices")) size.point += 49 * number + si + 15 * bracket;
+    if (r.includes("section")) size.point += 11 * number + 7 * si + side;
+    if (r.includes("regime")) size.point += 6 * number + 3 * si;    // z_moving, stretches
+    if (r.includes("manifold")) size.point += 3 * number + 2 * si;  // the half cycles
+    if (r.wanted.perturbation) size.point += 7 * number + 3 * si;
+    size.impact = 2 * (number + si) + side + count;  // sticking
+    // Impacts, touches.
+    if (r.includes("impacts"))
+        size.impact += 11 * number + 8 * si + side + word + number + si + side;
+    if (r.wanted.perturbation) size.impact += number + si + side;
+    return size;
+}
+
+/// Lowers max_points and the count of listed impacts to fit the answer; warns of max_points.
+void fit_answer(SimulateRequest& r, std::size_t bytes, Warnings& warnings) {
+    const AnswerSize size = size_of(r);
+    const double room = std::max(0.0, static_cast<double>(bytes) - size.fixed);
+    const double points = static_cast<double>(r.wanted.most_points) * size.point,
+                 impacts = static_cast<double>(r.wanted.most_listed) * size.impact;
+    if (points + impacts <= room) return;
+    // Points or impacts that need less than half of the room get all that they need.
+    const double for_points = std::min(
+                     points, std::max({room / 2, room - impacts, fewest_points * size.point})),
+                 for_impacts = room - for_points;
+    if (impacts > for_impacts)
+        r.wanted.most_listed = static_cast<std::size_t>(std::max(1.0, for_impacts / size.impact));
+    if (points <= for_points) return;
+    const std::size_t fit = static_cast<std::size_t>(for_points / size.point);
+    warnings.push_back(
+        "max_points is " + std::to_string(fit) + " instead of " +
+        std::to_string(r.wanted.most_points) + limit_of(bytes));
+    r.wanted.most_points = r.wanted.estimators.history = fit;
+}
+
 Json describe_parameters(const SimulateRequest& r) {
-    const Wanted& w = r.wanted;
+    const AnalysisRequest& w = r.wanted;
     Json j = describe_system(r.system);
     append(
         j, {{"x0", w.start.x},
@@ -50,8 +108,8 @@ Json describe_status(const Outcome& outcome, long max_impacts, const Stop& stop)
         case End::max_impacts:
             return status(
                 "max_impacts", fmt::format(
-                                   "ended after max_impacts = {} impacts (or as many sticks and "
-                                   "touches), before tau_end",
+                                   "ended after max_impacts = {} impacts (or as many sticking "
+                                   "phases and grazing contacts), before tau_end",
                                    max_impacts));
         case End::stopped: return status(stop.reason, stop.message);
     }
@@ -70,7 +128,7 @@ Json describe_windows(
     return list;
 }
 
-/// A result on its way into an answer: it is freed where it is described.
+/// Moves a result out, so that it is freed after it is described.
 template <class Result>
 Result taken(Result& result) {
     return std::exchange(result, {});
@@ -80,15 +138,15 @@ ImpactScales scales_of(const SimulateRequest& r, const Analysis& a) {
     return {r.wanted.parameters.epsilon, a.typical_speed};
 }
 
-/// Whether something was left out for the answer's size.
-bool says_limit(const Warnings& warnings, std::size_t most_bytes) {
+/// True if a warning reports that the answer was cut to its size limit.
+bool mentions_limit(const Warnings& warnings, std::size_t most_bytes) {
     const std::string limit = limit_of(most_bytes);
     return std::any_of(warnings.begin(), warnings.end(), [&limit](const std::string& warning) {
         return warning.find(limit) != std::string::npos;
     });
 }
 
-/// The parts of an answer, one by one while there is time, with their twins in SI.
+/// Adds the parts of an answer with their SI counterparts, as long as there is time.
 class AnswerParts {
 public:
     AnswerParts(const SimulateRequest& r, const Stop& stop, Json& answer)
@@ -100,7 +158,7 @@ public:
         const ExponentOptions& shown = r_.wanted.estimators;
         part("series", [&] { return describe_series(*taken(a.series)); });
         part("impacts", [&] {
-            if (a.unkept_impacts) return describe_impacts_to_come();
+            if (a.unkept_impacts) return describe_streamed_impacts();
             return describe_impacts(taken(a.impacts), scales_of(r_, a));
         });
         add("sticking", describe_sticks(a.sticks));
@@ -117,7 +175,7 @@ public:
             put("perturbation", [&] { return describe_perturbation(*taken(a.perturbation)); });
     }
 
-    /// The parts for which there was no time.
+    /// Parts that are null for lack of time.
     std::vector<std::string> left_out;
 
 private:
@@ -153,7 +211,7 @@ Answer simulate_in_parts(
     Warnings warnings = r.system.notes;
     fit_answer(r, most_bytes, warnings);
     r.wanted.most_kept = most_kept;
-    Analysis analysis = analyse(r.wanted, {.run = stop.asked, .late = stop.analysis_late});
+    Analysis analysis = analyse(r.wanted, {.run = stop.requested, .late = stop.analysis_late});
     Json answer = object(
         {{"version", version()},
          {"parameters", describe_parameters(r)},
@@ -171,11 +229,11 @@ Answer simulate_in_parts(
     }
     if (!parts.left_out.empty())
         warnings.push_back(
-            "the time limit for one request was over before these parts were made up, which are "
+            "the time limit for one request ended before these parts were computed, which are "
             "null: " +
             joined(parts.left_out));
     answer["warnings"] = warnings;
-    const bool is_fitted = says_limit(warnings, most_bytes);
+    const bool is_fitted = mentions_limit(warnings, most_bytes);
     if (!analysis.unkept_impacts || !answer.contains("impacts") || answer["impacts"].is_null())
         return {std::move(answer), std::nullopt, analysis.outcome.impacts, is_fitted};
     return {
@@ -183,9 +241,10 @@ Answer simulate_in_parts(
         analysis.outcome.impacts, is_fitted};
 }
 
-void write_answer(Answer answer, Pace& pace, const JsonText::Take& take, std::size_t list_bytes) {
-    std::optional<ImpactLists> lists;
-    if (answer.run) lists.emplace(*answer.run, answer.json, pace, list_bytes);
+void write_answer(
+    Answer answer, RunControl& control, const JsonText::Take& take, std::size_t list_bytes) {
+    std::optional<StreamedImpacts> lists;
+    if (answer.run) lists.emplace(*answer.run, answer.json, control, list_bytes);
     write_sealed(answer.json, answer.provenance, take, lists ? &*lists : nullptr);
 }
 
@@ -195,33 +254,32 @@ Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes
 
 namespace {
 
-/// What is odd about a manifold and the b that is recommended beside it, or was not while there was
-/// time.
+/// Warnings about a manifold and the recommended b; `late`: the search for b was cut short.
 void add_manifold_warnings(
     const Manifold& m, double V_max, const std::optional<Recommendation>& recommended, bool late,
     Warnings& warnings) {
     const auto free = m.free_amplitude;
     if (!free)
         warnings.push_back(
-            "an undamped oscillator at resonance has no amplitude without the absorber: there is "
-            "none to reduce");
+            "an undamped oscillator at resonance has no finite amplitude without the absorber: "
+            "there is none to reduce");
     if (late && !recommended)
         warnings.push_back(
-            "no b is recommended: the server's time limit for one request was over before all were "
+            "no b is recommended: the server's time limit for one request ended before all were "
             "tried");
     else if (free && *free > 0 && !recommended)
         warnings.push_back(
-            "no b is recommended: none of those tried reduces the motion at this frequency from "
-            "every start");
+            "no b is recommended: no tried value reduces the motion at this frequency from every "
+            "start");
     if (free && *free < m.fold.C)
         warnings.push_back(fmt::format(
             "without the absorber the oscillator reaches {:.4g} m, less than the activation "
-            "amplitude {:.4g} m: two impacts per cycle cannot come about; b_at_free_amplitude is "
-            "the largest b for which they can",
+            "amplitude {:.4g} m: two impacts per cycle are impossible; b_at_free_amplitude is the "
+            "largest b that allows them",
             *free, m.fold.C));
     if (V_max > m.second_contact.V)
         warnings.push_back(fmt::format(
-            "the branches end at V = {:.4g}, before V_max: there the mass meets the wall that it "
+            "the branches end at V = {:.4g}, before V_max: there the ball hits the wall that it "
             "comes from a second time",
             m.second_contact.V));
 }
@@ -233,9 +291,9 @@ Json manifold_answer(const ManifoldRequest& r, const Stop& stop) {
     Json parameters = describe_system(r.system);
     parameters["derived"] = describe_derived(r.system);
     const Manifold manifold = manifold_of(p, r.V_max, r.points);
-    bool late = false;  // asked and told so
+    bool late = false;  // stop.requested() has returned true
     const auto recommended =
-        recommended_b(p, [&] { return late = late || (stop.asked && stop.asked()); });
+        recommended_b(p, [&] { return late = late || (stop.requested && stop.requested()); });
     Warnings warnings = r.system.notes;
     add_manifold_warnings(manifold, r.V_max, recommended, late, warnings);
     Json described = describe_manifold(manifold);

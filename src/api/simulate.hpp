@@ -1,58 +1,62 @@
-// From a request to its answer.
+// Answers of /v1/simulate and /v1/manifold.
 #pragma once
 
 #include <functional>
 
-#include "api/answer_size.hpp"
 #include "api/impact_columns.hpp"
 #include "api/provenance.hpp"
+#include "api/request.hpp"
+#include "api/warning_text.hpp"
 
 namespace vines::api {
 
-/// What may end a run from outside: asked every few events; once it says true, the answer is what
-/// was found until then, and status has this reason and message.
+/// Ends a run from outside. `requested` is polled every few events; once it returns true, the
+/// answer holds the results so far, with this reason and message in its status.
 struct Stop {
-    std::function<bool()> asked = {};
+    std::function<bool()> requested = {};
     std::string reason = "deadline";
     std::string message =
-        "ended before tau_end by the server's time limit for one request, or because it stops";
-    /// Asked while the run is analysed: once true, what takes long is cut short.
+        "ended before tau_end by the server's time limit for one request, or because the server "
+        "stops";
+    /// Polled during the analysis of the run; once true, long searches are cut short.
     std::function<bool()> analysis_late = {};
-    /// Asked while the answer is made up: once true, the parts that are left are null.
+    /// Polled while the answer is assembled; once true, the remaining parts are null.
     std::function<bool()> late = {};
 };
 
-/// An answer. Its lists of impacts, where they are too long to be kept, are to come of `run`.
+/// An answer. Impact lists too long for memory are placeholders, generated from `run` while it is
+/// sent.
 struct Answer {
     Json json;
     std::optional<ListedRun> run = {};
-    long impacts = 0;        ///< of the run, told or not
-    bool is_fitted = false;  ///< it would have had more than `most_bytes`
+    long impacts = 0;        ///< of the run, listed or not
+    bool is_fitted = false;  ///< cut to `most_bytes`
     std::optional<Provenance> provenance = {};
 };
 
-// So many impacts, their columns in both units and the text of these take 45 MB.
+// The listed impacts kept in memory. Impacts, their columns in both units and the text take 45 MB.
 inline constexpr std::size_t most_kept_impacts = 1 << 15;
-// A column of numbers, and one of sides, of the longest list that can be asked for.
+// Memory in bytes for a column of numbers and one of sides of the longest possible list.
 inline constexpr std::size_t most_listed_bytes = 24 << 20;
 
-/// Of no more than about `most_bytes` of JSON: see fit_answer(). More listed impacts than
-/// `most_kept` are to come.
+/// An answer of at most about `most_bytes` of JSON: max_points and the count of listed impacts are
+/// lowered until it fits. But max_points stays at 256 or more, so that the answer can still be too
+/// large. More than `most_kept` listed impacts become streamed lists.
 Answer simulate_in_parts(
     SimulateRequest request, const Stop& stop, std::size_t most_bytes = any_size,
     std::size_t most_kept = most_kept_impacts);
 
-/// Writes its text, a line, in pieces, sealed where there is a provenance. Lists to come are made
-/// while it is written, as many at a time as fit into `list_bytes`, by runs at `pace`. Throws
-/// BrokenOff where that stops one.
+/// Writes the answer as one line, in pieces, with its provenance if any. Streamed lists are
+/// generated meanwhile by runs at `control`, as many per run as fit into `list_bytes`. Throws
+/// Cancelled if `control` stops a run.
 void write_answer(
-    Answer answer, Pace& pace, const JsonText::Take& take,
+    Answer answer, RunControl& control, const JsonText::Take& take,
     std::size_t list_bytes = most_listed_bytes);
 
-/// The same with all lists.
+/// The answer with all lists in memory.
 Json simulate_answer(SimulateRequest request, const Stop& stop, std::size_t most_bytes = any_size);
 
-/// The manifold, and the b that is recommended beside it: none once stop.asked() is true.
+/// The manifold, and the recommended b: null once stop.requested() returns true.
 Json manifold_answer(const ManifoldRequest& request, const Stop& stop = {});
 
 }  // namespace vines::api

@@ -1,30 +1,119 @@
 #include "api/sweep.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 #include <mutex>
 
+#include "api/answer_json.hpp"
+#include "api/describe.hpp"
 #include "api/json_text.hpp"
-#include "api/sweep_line.hpp"
+#include "api/version.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines::api {
 
 namespace {
 
+/// Largest fraction of a free motion's amplitude after the transient.
+constexpr double most_left = 0.01;
+
+/// A warning if the free motion of the oscillator outlasts the transient, which shows where the
+/// ball has no impacts; otherwise empty.
+std::string transient_warning(const Parameters& p, double cycles) {
+    const double per_cycle = p.zeta() * p.cycle(), left = elementary::exp(-per_cycle * cycles);
+    if (!(left > most_left)) return "";
+    const double enough = std::ceil(-elementary::log(most_left) / per_cycle);
+    return fmt::format(
+               "after transient_cycles = {:.0f} the oscillator's free motion still has {:.0f} % of "
+               "its amplitude",
+               cycles, 100 * left) +
+           (std::isfinite(enough) ? fmt::format("; {:.0f} leave 1 %", enough) : ": it is undamped");
+}
+
+std::string json_line(Json json) { return json_text(std::move(json)) + "\n"; }
+
+}  // namespace
+
+Json sweep_start(const SweepRequest& r) {
+    Json axes = Json::array();
+    for (const Axis& a : r.axes)
+        axes.push_back({{"parameter", a.parameter}, {"values", column(a.values)}});
+    const System system = read_started_system(fields_of(r, r.plan.grid.place_of(0))).system;
+    Json parameters = describe_system(system);
+    for (const Axis& a : r.axes) parameters["origin"][a.parameter] = "swept: the first of its axis";
+    parameters["derived"] = describe_derived(system);
+    const PointOptions& options = r.plan.options;
+    std::vector<std::string> warnings = system.notes;
+    const std::string warning = transient_warning(system.parameters, options.transient_cycles);
+    if (!warning.empty()) warnings.push_back(warning);
+    return {
+        {"type", "start"},
+        {"version", version()},
+        {"commit", commit()},
+        {"points", r.plan.grid.lines()},
+        {"cycles",
+         static_cast<double>(r.plan.runs_of_all()) * (options.cycles + options.transient_cycles)},
+        {"axes", std::move(axes)},
+        {"parameters", std::move(parameters)},
+        {"warnings", std::move(warnings)},
+        {"request", r.given}};
+}
+
+std::string start_line(const SweepRequest& r) {
+    Json start = sweep_start(r);
+    start["of"] = r.plan.lines.size();
+    return json_line(std::move(start));
+}
+
+std::string progress_line(const SweepProgress& p) {
+    const double rate = p.seconds > 0 ? static_cast<double>(p.done) / p.seconds : 0;
+    const double left = p.done < p.of && p.runs > 0
+                            ? static_cast<double>(p.runs_of - std::min(p.runs, p.runs_of)) *
+                                  p.seconds / static_cast<double>(p.runs)
+                            : 0;
+    return json_line(
+        {{"type", "progress"},
+         {"done", p.done},
+         {"of", p.of},
+         {"per_second", rate},
+         {"seconds_left", p.runs > 0 ? Json(left) : Json(nullptr)},
+         {"runs", p.runs},
+         {"runs_of", p.runs_of}});
+}
+
+std::string warning_line(const std::string& message) {
+    return json_line({{"type", "warning"}, {"message", message}});
+}
+
+std::string done_line(std::size_t points) {
+    return json_line({{"type", "done"}, {"points", points}});
+}
+
+std::string error_line(int status, const std::string& detail, std::size_t points) {
+    return json_line(
+        {{"type", "error"}, {"status", status}, {"detail", detail}, {"points", points}});
+}
+
+namespace {
+
 using TakeLine = std::function<void(std::size_t, const std::string&)>;
 
-/// Writes lines on the threads that computed them, and hands them out one by one.
-class Lines : public SweepSink {
+/// Formats lines on the threads that computed them, and passes them on one at a time.
+class PointLineWriter : public SweepSink {
 public:
-    Lines(const SweepRequest& r, const TakeLine& take) : r_(r), take_(take) {}
+    PointLineWriter(const SweepRequest& r, const TakeLine& take) : r_(r), take_(take) {}
 
     void point(std::size_t index, const SweepPoint& point) override {
-        hand_out(index, json_text(describe_point(r_, index, point)));
+        pass_on(index, json_text(describe_point(r_, index, point)));
     }
     void row(std::size_t index, const RowSummary& row) override {
-        hand_out(index, json_text(describe_row(r_, index, row)));
+        pass_on(index, json_text(describe_row(r_, index, row)));
     }
 
 private:
-    void hand_out(std::size_t index, const std::string& line) {
+    void pass_on(std::size_t index, const std::string& line) {
         const std::lock_guard lock(mutex_);
         take_(index, line);
     }
@@ -36,9 +125,10 @@ private:
 
 }  // namespace
 
-std::string run_sweep(const SweepRequest& r, int threads, Pace& pace, const TakeLine& take) {
-    Lines lines(r, take);
-    return start_warning(vines::run_sweep(r.plan, threads, pace, lines));
+std::string run_sweep(
+    const SweepRequest& r, int threads, RunControl& control, const TakeLine& take) {
+    PointLineWriter lines(r, take);
+    return start_warning(vines::run_sweep(r.plan, threads, control, lines));
 }
 
 }  // namespace vines::api

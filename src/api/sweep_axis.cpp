@@ -1,4 +1,4 @@
-#include "api/sweep_axis.hpp"
+#include "api/sweep_request.hpp"
 
 #include <algorithm>
 
@@ -22,7 +22,7 @@ std::vector<std::string> parameter_names() {
     return names;
 }
 
-/// from, ..., to in `count` steps. The ends are exact.
+/// `count` values from `from` to `to`; both ends are exact.
 std::vector<double> spaced(double from, double to, std::size_t count, bool logarithmic) {
     std::vector<double> values;
     for (std::size_t i = 0; i < count; ++i) {
@@ -48,7 +48,7 @@ void check_values(const Json& j, std::size_t most, std::vector<FieldError>& erro
     if (values.size() > most)
         errors.push_back(
             {"/values", values.size(), Json::array({1, most}),
-             "values may hold " + std::to_string(most) + " numbers"});
+             "values can hold at most " + std::to_string(most) + " numbers"});
 }
 
 std::vector<FieldError> faults_of(const Json& j, std::size_t most) {

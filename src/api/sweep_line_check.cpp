@@ -7,23 +7,23 @@
 #include <string_view>
 
 #include "api/json_text.hpp"
-#include "api/sweep_line.hpp"
+#include "api/sweep.hpp"
 
 namespace vines::api {
 
 namespace {
 
-/// As it is read back.
+/// The line after writing and parsing.
 Json read_back(Json line) { return Json::parse(json_text(std::move(line))); }
 
-/// Each once.
+/// Adds a line unless it is there already.
 void add(std::vector<Json>& samples, Json line) {
     line = read_back(std::move(line));
     if (std::find(samples.begin(), samples.end(), line) == samples.end())
         samples.push_back(std::move(line));
 }
 
-/// Of each kind one, whatever the numbers.
+/// One motion of each kind, with arbitrary numbers.
 std::vector<Motion> sample_motions() {
     Motion not_measured{"", {}, PointResult{}}, measured = not_measured;
     measured.result.measured = true;
@@ -34,7 +34,7 @@ std::vector<Motion> sample_motions() {
 }
 
 std::vector<Json> sample_points(const SweepRequest& r, bool second) {
-    // Its values mean nothing here, and are those of no point.
+    // Arbitrary values.
     const PointSystem system{Parameters(), State(), 0};
     std::vector<Json> samples;
     for (const Motion& motion : sample_motions())
@@ -53,7 +53,7 @@ std::vector<Json> sample_points(const SweepRequest& r, bool second) {
 
 std::vector<Json> sample_rows(const SweepRequest& r) {
     std::vector<Motion> motions = sample_motions();
-    std::vector<const Motion*> peaks = {nullptr};  // of a row without a motion
+    std::vector<const Motion*> peaks = {nullptr};  // a row without a motion
     for (Motion& motion : motions) {
         if (r.plan.default_set) motion.start = "middle";
         if (motion.result.measured) peaks.push_back(&motion);
@@ -70,7 +70,8 @@ std::vector<Json> sample_rows(const SweepRequest& r) {
     return samples;
 }
 
-/// What stands for each other: a number that does not exist is null, as is what was not measured.
+/// Kinds of values that can replace each other. null stands for numbers that do not exist and for
+/// quantities that were not measured.
 enum class Kind { absent_or_number, flag, text, list, object };
 
 Kind kind_of(const Json& value) {
@@ -98,7 +99,7 @@ std::size_t common_names(const Json& one, const Json& other) {
     return common;
 }
 
-/// How an object's fields differ from those of the sample that is nearest to it.
+/// The difference between an object's fields and those of the nearest sample.
 std::string fault_of_names(const std::string& name, const Json& object, const Samples& samples) {
     const Json& nearest = **std::max_element(samples.begin(), samples.end(), [&](auto* a, auto* b) {
         return common_names(object, *a) < common_names(object, *b);
@@ -107,8 +108,8 @@ std::string fault_of_names(const std::string& name, const Json& object, const Sa
     for (const auto& [field, value] : nearest.items())
         if (!object.contains(field)) return fmt::format("{} is missing{}", field, where);
     for (const auto& [field, value] : object.items())
-        if (!nearest.contains(field)) return fmt::format("{} is no field of it{}", field, where);
-    return "its fields stand in another order" + where;
+        if (!nearest.contains(field)) return fmt::format("{} is an unknown field{}", field, where);
+    return "its fields are in another order" + where;
 }
 
 std::string fault_of_object(const std::string& name, const Json& object, const Samples& samples) {
@@ -126,7 +127,7 @@ std::string fault_of_object(const std::string& name, const Json& object, const S
     return "";
 }
 
-/// A sample's list that is empty says nothing of what a list holds.
+/// Lists that are empty in all samples are not checked.
 std::string fault_of_list(const std::string& name, const Json& list, const Samples& samples) {
     Samples entries;
     for (const Json* sample : samples)
@@ -134,14 +135,14 @@ std::string fault_of_list(const std::string& name, const Json& list, const Sampl
     if (entries.empty()) return "";
     for (const Json& entry : list)
         if (std::string fault = fault_among(name, entry, entries); !fault.empty()) return fault;
-    const bool of_objects = entries[0]->is_object();  // a set of starts: of any number
+    const bool of_objects = entries[0]->is_object();  // a set of starts has any size
     const auto same_size = [&](const Json* sample) { return sample->size() == list.size(); };
     if (!of_objects && std::none_of(samples.begin(), samples.end(), same_size))
         return fmt::format("{} has {} entries", name, list.size());
     return "";
 }
 
-/// Of a value, which has to be as one of the samples is.
+/// The fault of a value that must resemble one of the samples; empty if none.
 std::string fault_among(const std::string& name, const Json& value, const Samples& samples) {
     Samples alike;
     for (const Json* sample : samples)
@@ -152,7 +153,7 @@ std::string fault_among(const std::string& name, const Json& value, const Sample
     return "";
 }
 
-/// Of a point whose transient did not end nothing was measured, of all others everything was.
+/// All or nothing is measured at a point: nothing if its transient did not end.
 bool is_measured(const Json& line) { return line.value("reason", "") != "transient_max_impacts"; }
 
 Samples samples_for(const Json& line, const std::vector<Json>& all) {
@@ -180,7 +181,7 @@ std::string SweepLineCheck::fault_of_index(const Json& parsed) const {
     if (index == parsed.end()) return "index is missing";
     if (index->is_number_unsigned() && index->get<std::size_t>() < lines) return "";
     return fmt::format(
-        "point {} is none of the sweep, which has {}, from 0 on", index->dump(), lines);
+        "point {} is outside the sweep, which has {} points, from 0", index->dump(), lines);
 }
 
 std::string SweepLineCheck::fault_of_place(const std::string& line, const Json& parsed) const {
@@ -190,11 +191,11 @@ std::string SweepLineCheck::fault_of_place(const std::string& line, const Json& 
     if (line.starts_with(place_text.substr(0, place_text.size() - 1) + ",")) return "";
     const Json place = Json::parse(place_text);
     for (const auto& [name, value] : place.items()) {
-        const auto told = parsed.find(name);
-        if (told == parsed.end()) return name + " is missing";
-        if (told->type() != value.type() || *told != value)
+        const auto given = parsed.find(name);
+        if (given == parsed.end()) return name + " is missing";
+        if (given->type() != value.type() || *given != value)
             return fmt::format(
-                "{} is {}, but point {} lies at {}", name, told->dump(), index.dump(),
+                "{} is {}, but point {} lies at {}", name, given->dump(), index.dump(),
                 value.dump());
     }
     return "";
@@ -211,9 +212,9 @@ std::string SweepLineCheck::fault_of(const std::string& line, const Json& parsed
     if (const auto reason = parsed.find("reason"); reason != parsed.end() && !reason->is_string())
         return "reason is " + reason->dump();
     const Samples of_kind = samples_for(parsed, samples);
-    if (of_kind.empty()) return "reason is none of such a line";
+    if (of_kind.empty()) return "reason does not belong to such a line";
     if (std::string fault = fault_of_object("", parsed, of_kind); !fault.empty()) return fault;
-    return json_text(parsed) == line ? "" : "it is written in another way than it was";
+    return json_text(parsed) == line ? "" : "it is written in another way than by this program";
 }
 
 }  // namespace vines::api

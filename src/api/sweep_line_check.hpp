@@ -1,4 +1,7 @@
-// Whether a line is one that a sweep's request leads to, as far as shows without computing it.
+// Checks whether a line can belong to a sweep, without computing it.
+//
+// Lines are compared with sample lines, described for made-up results with every possible set of
+// fields.
 #pragma once
 
 #include <string>
@@ -10,23 +13,23 @@ namespace vines::api {
 
 class SweepLineCheck {
 public:
-    /// The request has to outlive it.
+    /// The request must outlive the object.
     explicit SweepLineCheck(const SweepRequest& request);
 
-    /// What is wrong with the line of a point, given as text and parsed: its index is none of the
-    /// sweep's; its place is not that of its index, bit for bit; a field is missing, is none of a
-    /// line's, or of another kind; or the text is not as this program writes it. Empty: nothing.
+    /// The fault of a point's line, given as text and parsed; empty if none. Faults: an index
+    /// outside the sweep; a place that differs from that of the index in any bit; a missing or
+    /// unknown field, or one of another type; text that this program would write differently.
     std::string fault_of(const std::string& line, const Json& parsed) const;
 
-    /// Of its index alone.
+    /// The fault of the index alone.
     std::string fault_of_index(const Json& parsed) const;
 
 private:
     std::string fault_of_place(const std::string& line, const Json& parsed) const;
 
     const SweepRequest& request_;
-    // Lines with every set of fields that one may have: where a second start is tried, and where
-    // not; where the values make no system.
+    // Sample lines with every possible set of fields: with a second start, without, and for values
+    // that form no valid system.
     std::vector<Json> tried_, single_, without_system_;
 };
 

@@ -4,22 +4,60 @@
 #include <numeric>
 
 #include "api/schema/check.hpp"
+#include "api/schema/enum_names.hpp"
 #include "api/schema/tables.hpp"
-#include "api/schema/words.hpp"
 
 namespace vines::api {
+
+SweepSystems::SweepSystems(
+    std::vector<SystemFields> bases, std::vector<Axis> axes, long max_impacts)
+    : bases_(std::move(bases)),
+      max_impacts_(max_impacts) {
+    for (Axis& axis : axes) {
+        const Range range = *find(sweep_base_fields(), axis.parameter)->range;
+        columns_.push_back(
+            {system_number(axis.parameter), std::move(axis.values), range.minimum, range.maximum});
+    }
+}
+
+SystemFields SweepSystems::fields_at(const Place& place) const {
+    SystemFields fields = bases_[place.start];
+    for (std::size_t a = 0; a < columns_.size(); ++a)
+        fields.*columns_[a].number = columns_[a].values[place.at[a]];
+    return fields;
+}
+
+std::optional<PointSystem> SweepSystems::at(const Place& place) const {
+    for (std::size_t a = 0; a < columns_.size(); ++a) {
+        const double value = columns_[a].values[place.at[a]];
+        if (!(value >= columns_[a].minimum && value <= columns_[a].maximum)) return std::nullopt;
+    }
+    const SystemFields fields = fields_at(place);
+    // f can be omitted only if F = 0.
+    if (fields.is_in_si() && !fields.is_reduced() && !fields.f && fields.F != 0.0)
+        return std::nullopt;
+    const ResolvedSystem system = resolve(fields);
+    const State start = start_of(fields, system);
+    if (!validate(system.parameters, start).empty()) return std::nullopt;
+    return PointSystem{system.parameters, start, max_impacts_};
+}
+
+std::optional<SiParameters> SweepSystems::si_at(const Place& place) const {
+    return resolve(fields_at(place)).si;
+}
 
 namespace {
 
 constexpr std::size_t most_axes = 3;
 
-/// A field of the request, or the table's default.
+/// A field of the request, else the table's default.
 Json field(const Json& object, const char* name) {
     if (object.contains(name)) return object[name];
     return find(sweep_fields(), name)->fallback;
 }
 
-/// The corners of the sweep must be valid systems; each point is checked again when its turn comes.
+/// Checks that the corners of the sweep are valid systems. Each point is checked again when it is
+/// computed.
 void check_corners(const SweepRequest& r, std::vector<FieldError>& errors) {
     for (std::size_t start = 0; start < r.starts.size(); ++start)
         for (std::size_t corner = 0; corner < (std::size_t{1} << r.axes.size()); ++corner) {
@@ -46,7 +84,7 @@ void check_corners(const SweepRequest& r, std::vector<FieldError>& errors) {
         }
 }
 
-/// "max over f": which axis, and whether its largest or its smallest peak.
+/// Reads "max over f": the axis, and whether its largest or smallest peak is wanted.
 void read_reduction(SweepRequest& r, const std::string& text, std::vector<FieldError>& errors) {
     Json known = Json::array();
     for (std::size_t a = 0; a < r.axes.size(); ++a)
@@ -89,7 +127,7 @@ void read_starts(SweepRequest& r, const Json& given, std::vector<FieldError>& er
     if (r.starts.empty()) r.starts.push_back(Json::object());
 }
 
-/// What is swept must not be set elsewhere, nor what the default set of starts sets.
+/// Swept fields must not be set elsewhere, nor fields that the default set of starts sets.
 void check_overlaps(const SweepRequest& r, std::vector<FieldError>& errors) {
     for (const Axis& a : r.axes) {
         if (r.base.contains(a.parameter))
@@ -117,23 +155,23 @@ void check_overlaps(const SweepRequest& r, std::vector<FieldError>& errors) {
 void read_options(SweepRequest& r, const Json& given, std::vector<FieldError>& errors) {
     SweepPlan& plan = r.plan;
     const std::string section = field(given, "section"), carry = field(given, "carry_state");
-    plan.carry = value_of<Carry>(carry);
+    plan.carry = enum_value<Carry>(carry);
     plan.options = {
         .transient_cycles = field(given, "transient_cycles").get<double>(),
         .cycles = field(given, "cycles").get<double>(),
-        .section = value_of<SectionKind>(section),
+        .section = enum_value<SectionKind>(section),
         .section_points = static_cast<std::size_t>(field(given, "section_points").get<double>()),
         .section_phase = field(given, "section_phase").get<double>(),
         .carry = plan.default_set || plan.carry != Carry::none};
     if (plan.default_set && plan.carry != Carry::none)
         errors.push_back(
             {"/carry_state", carry, Json::array({"none"}),
-             "the default set of starts goes on from both neighbours already"});
+             "the default set of starts already continues from both neighbours"});
     if (plan.options.section != SectionKind::none && (plan.default_set || plan.grid.reduced))
         errors.push_back(
             {"/section", section, Json::array({"none"}),
-             "a section belongs to one motion: the default set of starts and reduce tell the worst "
-             "of several"});
+             "a section belongs to one motion: the default set of starts and reduce report the "
+             "worst of several"});
 }
 
 void read_indices(SweepRequest& r, const Json& given, std::vector<FieldError>& errors) {
@@ -150,19 +188,19 @@ void read_indices(SweepRequest& r, const Json& given, std::vector<FieldError>& e
     if (!lines.empty() && lines.back() >= all)
         errors.push_back(
             {"/indices", lines.back(), Json::array({0, all - 1}),
-             "the sweep has " + std::to_string(all) + " points, from 0 on"});
+             "the sweep has " + std::to_string(all) + " points, numbered from 0"});
 }
 
 void refuse_any(std::vector<FieldError>& errors) {
     if (!errors.empty()) refuse(std::move(errors));
 }
 
-/// Of a request whose corners are valid: then only an axis' values can make a point invalid.
+/// Expects valid corners: then only the values of an axis can make a point invalid.
 std::shared_ptr<const SweepSystems> systems_of(const SweepRequest& r) {
     std::vector<SystemFields> bases;
     long max_impacts = 0;
     for (std::size_t start = 0; start < r.starts.size(); ++start) {
-        const Layered l = layered(
+        const MergedFields l = merge_with_preset(
             sweep_base_fields(), fields_of(r, {start, std::vector<std::size_t>(r.axes.size(), 0)}));
         bases.push_back(system_fields(l.fields));
         max_impacts = static_cast<long>(l.number("max_impacts"));

@@ -1,33 +1,72 @@
-// Sweeps over up to three parameters: from a request to the plan that the core carries out.
+// Requests of /v1/sweep: up to three swept parameters, read into the plan that the core executes.
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "api/problem.hpp"
 #include "api/request.hpp"
-#include "api/sweep_systems.hpp"
+#include "api/system_fields.hpp"
+#include "core/sweep/sweep.hpp"
 
 namespace vines::api {
 
+/// A swept parameter and its values.
+struct Axis {
+    std::string parameter;
+    std::vector<double> values;
+};
+
+/// Reads {parameter, from, to, count, scale} or {parameter, values} with at most `most` values.
+/// Errors are added to `errors`, with `where` before their pointers; the axis is then empty.
+Axis read_axis(
+    const Json& given, const std::string& where, std::size_t most, std::vector<FieldError>& errors);
+
+/// The systems of a sweep's points, by arithmetic alone: the request is read once.
+class SweepSystems {
+public:
+    /// `bases`: per start, the checked fields of a point, merged with the preset. The values of the
+    /// axes replace theirs.
+    SweepSystems(std::vector<SystemFields> bases, std::vector<Axis> axes, long max_impacts);
+
+    /// nullopt if the point's values are out of range or form no valid system.
+    std::optional<PointSystem> at(const Place& place) const;
+    /// The system in SI if its fields are.
+    std::optional<SiParameters> si_at(const Place& place) const;
+
+private:
+    struct Column {
+        SystemNumber number;
+        std::vector<double> values;
+        double minimum, maximum;
+    };
+    SystemFields fields_at(const Place& place) const;
+
+    std::vector<SystemFields> bases_;
+    std::vector<Column> columns_;
+    long max_impacts_;
+};
+
 struct SweepRequest {
-    Json given;  ///< the request without `indices`: what makes two sweeps the same
+    Json given;  ///< the request without `indices`; identifies the sweep
     Json base;
     std::vector<Axis> axes;    ///< one to three
     std::vector<Json> starts;  ///< at least one; {} for the default start
     SweepPlan plan;
-    std::shared_ptr<const SweepSystems> systems;  ///< what the plan asks
+    std::shared_ptr<const SweepSystems> systems;  ///< used by the plan
 
     const Axis& reduced_axis() const { return axes[*plan.grid.reduced]; }
 };
 
-/// The fields of a point: base, then its start, then its values.
+/// The fields of a point: base, overridden by its start, then by its values.
 Json fields_of(const SweepRequest& request, const Place& place);
 
-/// Problem 422 with every field at fault; `most_points` bounds the points computed.
+/// Problem 422 naming every invalid field, or if more than `most_points` points would be computed.
 SweepRequest read_sweep_request(const Json& object, std::size_t most_points);
 
-/// The part of the wanted lines that shard `shard` of `shards` computes: whole rows where their
-/// points are computed together.
+/// The requested lines of shard `shard` of `shards`. Rows computed together stay in one shard.
 std::vector<std::size_t> shard_of(
     const SweepRequest& request, std::size_t shard, std::size_t shards);
 

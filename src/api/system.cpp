@@ -2,56 +2,54 @@
 
 #include <algorithm>
 
-#include "api/schema/joined.hpp"
+#include "api/schema/field.hpp"
 
 namespace vines::api {
 
 namespace {
 
-/// Which others each field of the core follows from, where it is not given itself; of a line of
-/// si_lines the first stands for both.
+/// The fields from which each field of the core follows if it is not given. The first field of a
+/// group in si_groups stands for the whole group.
 const std::map<std::string, std::vector<std::string>> sources = {
     {"epsilon", {"m2", "m1"}},   {"lambda", {"c1", "k1", "m1", "m2"}},
     {"G", {"F", "m1", "m2"}},    {"Omega", {"f", "k1", "m1"}},
     {"x_dot0", {"x_velocity0"}}, {"y_dot0", {"y_velocity0"}}};
 
-/// A field and what may be said in place of it.
-std::vector<std::string> line_with(const std::string& name) {
-    for (const auto& line : si_lines)
-        if (line[0] == name) return line;
+/// A field and its alternative.
+std::vector<std::string> group_with(const std::string& name) {
+    for (const auto& group : si_groups)
+        if (group[0] == name) return group;
     return {name};
 }
 
-/// Those that are there of the fields that one follows from. Omega is f over f0, whatever m1 is,
-/// where f0 is given.
+/// The given fields that `name` follows from. With f0, Omega = f/f0 is independent of m1.
 std::vector<std::string> sources_of(const std::string& name, const Json& fields) {
     std::vector<std::string> names;
     for (const std::string& source : sources.at(name))
-        for (std::string& there : present(fields, line_with(source))) names.push_back(there);
+        for (std::string& there : present(fields, group_with(source))) names.push_back(there);
     if (name == "Omega" && fields.contains("f0")) std::erase(names, "m1");
     return names;
 }
 
-/// A system in SI needs all of its lines; F and f belong together, but where nothing is forced f
-/// may be any.
-void check_si_is_whole(const Layered& l, bool forcing_fitted) {
+/// Checks that a system in SI is complete. f can be omitted if F = 0.
+void check_si_is_whole(const MergedFields& l, bool forcing_fitted) {
     std::vector<FieldError> errors;
     const bool unforced = l.fields.contains("F") && l.fields["F"] == 0;
-    for (const auto& line : si_lines) {
-        if (!present(l.fields, line).empty() || (line[0] == "f" && unforced) ||
-            (line[0] == "F" && forcing_fitted))
+    for (const auto& group : si_groups) {
+        if (!present(l.fields, group).empty() || (group[0] == "f" && unforced) ||
+            (group[0] == "F" && forcing_fitted))
             continue;
         errors.push_back(
-            {"/" + line[0], nullptr, nullptr,
-             line[0] + (line.size() > 1 ? " (or " + line[1] + ")" : "") +
+            {"/" + group[0], nullptr, nullptr,
+             group[0] + (group.size() > 1 ? " (or " + group[1] + ")" : "") +
                  " is missing: a system in SI needs m1, c1 or damping_ratio, k1 or f0, m2 or "
                  "mass_ratio, F and f, or a preset for the rest"});
     }
     if (!errors.empty()) refuse(std::move(errors));
 }
 
-/// Where the values of a system come from.
-std::map<std::string, std::string> origins_of(const Layered& l, const System& s) {
+/// The origin of each value of a system.
+std::map<std::string, std::string> origins_of(const MergedFields& l, const System& s) {
     std::map<std::string, std::string> origin;
     auto follows = [&](const std::string& name) {
         return "follows from " + joined(sources_of(name, l.fields));
@@ -63,41 +61,43 @@ std::map<std::string, std::string> origins_of(const Layered& l, const System& s)
         origin[name] = l.origin(l.fields.contains(name) ? name : "R");
     if (!s.si) return origin;
     const bool reduced = !present(l.fields, reduced_names).empty();
-    for (const auto& line : si_lines) {
-        const bool other = line.size() > 1 && l.fields.contains(line[1]);
-        origin[line[0]] =
-            other ? "follows from " + line[1] + ", m1" +
-                        (line[0] == "c1" ? ", " + std::string(l.fields.contains("f0") ? "f0" : "k1")
-                                         : "")
-            : l.fields.contains(line[0]) ? l.origin(line[0])
-            : reduced                    ? "follows from the reduced fields"
-            : line[0] == "f"             ? "the natural frequency, for nothing is forced"
-                                         : "default";
+    for (const auto& group : si_groups) {
+        const bool other = group.size() > 1 && l.fields.contains(group[1]);
+        origin[group[0]] =
+            other
+                ? "follows from " + group[1] + ", m1" +
+                      (group[0] == "c1" ? ", " + std::string(l.fields.contains("f0") ? "f0" : "k1")
+                                        : "")
+            : l.fields.contains(group[0]) ? l.origin(group[0])
+            : reduced                     ? "follows from the reduced fields"
+            : group[0] == "f"             ? "the natural frequency, since F = 0"
+                                          : "default";
     }
     return origin;
 }
 
-/// What a user might not expect of the system.
-std::vector<std::string> notes_on(const Layered& l, const System& s) {
+/// Warnings about assumptions on the system that a user might not expect.
+std::vector<std::string> notes_on(const MergedFields& l, const System& s) {
     std::vector<std::string> notes;
     const Parameters& p = s.parameters;
-    if (l.left.contains("damping") && l.word("damping") != l.left["damping"].get<std::string>())
+    if (l.dropped.contains("damping") &&
+        l.word("damping") != l.dropped["damping"].get<std::string>())
         notes.push_back(
             "the system is not that of preset " + l.preset + ": its damping is " +
-            l.word("damping") + ", not the preset's " + l.left["damping"].get<std::string>());
+            l.word("damping") + ", not the preset's " + l.dropped["damping"].get<std::string>());
     if (!s.si || present(l.given, si_names).empty()) return notes;
     std::vector<std::string> taken, assumed;
     const Json si = fields_of(*s.si);
-    for (const auto& line : si_lines)
-        if (present(l.given, line).empty() && l.fields.contains(line[0]))
-            taken.push_back(line[0] + " = " + si[line[0]].dump());
-    // The cavity belongs to the machine as well.
+    for (const auto& group : si_groups)
+        if (present(l.given, group).empty() && l.fields.contains(group[0]))
+            taken.push_back(group[0] + " = " + si[group[0]].dump());
+    // b and R belong to the system, too.
     auto cavity = [&](const std::string& text, const std::vector<std::string>& names) {
         if (present(l.given, names).empty())
             (present(l.fields, names).empty() ? assumed : taken).push_back(text);
     };
     cavity("b = " + Json(p.b).dump(), {"b"});
-    // Else it is estimated.
+    // An identification estimates R.
     if (!find(l.table, "R")->fallback.is_null())
         cavity("R = " + Json(p.R_plus).dump(), {"R", "R_plus", "R_minus"});
     if (!taken.empty() && !l.preset.empty())
@@ -113,7 +113,7 @@ std::vector<std::string> notes_on(const Layered& l, const System& s) {
 
 }  // namespace
 
-std::vector<FieldError> field_errors(const std::vector<Fault>& faults, const Layered& l) {
+std::vector<FieldError> field_errors(const std::vector<Fault>& faults, const MergedFields& l) {
     std::vector<FieldError> errors;
     for (const Fault& f : faults) {
         const auto source = sources.find(f.field);
@@ -132,7 +132,7 @@ std::vector<FieldError> field_errors(const std::vector<Fault>& faults, const Lay
     return errors;
 }
 
-System read_system(const Layered& l, bool forcing_fitted) {
+System read_system(const MergedFields& l, bool forcing_fitted) {
     const SystemFields fields = system_fields(l.fields);
     if (fields.is_in_si() && !fields.is_reduced()) check_si_is_whole(l, forcing_fitted);
     const ResolvedSystem resolved = resolve(fields);
@@ -142,7 +142,7 @@ System read_system(const Layered& l, bool forcing_fitted) {
     return system;
 }
 
-State read_start(const Layered& l, System& system) {
+State read_start(const MergedFields& l, System& system) {
     for (const char* name : {"x0", "x_dot0", "y0", "y_dot0"}) system.origin[name] = l.origin(name);
     std::vector<FieldError> errors;
     auto velocity = [&](const std::string& in_tau, const std::string& in_SI) {
@@ -150,7 +150,7 @@ State read_start(const Layered& l, System& system) {
             errors.push_back(
                 {"/" + in_SI, l.fields[in_SI], nullptr,
                  in_SI +
-                     " is in m/s and needs a system in SI (m1, k1 or f0, ...); without one it is " +
+                     " is in m/s and needs a system in SI (m1, k1 or f0, ...); without one give " +
                      in_tau + ", in m per unit of tau"});
         else if (l.has(in_SI)) system.origin[in_tau] = "follows from " + in_SI;
         else if (const double value = l.number(in_tau); system.si && value != 0 && l.has(in_tau))
@@ -164,7 +164,7 @@ State read_start(const Layered& l, System& system) {
     return start_of(system_fields(l.fields), {system.parameters, system.si});
 }
 
-System read_system_alone(const Layered& l, bool forcing_fitted) {
+System read_system_alone(const MergedFields& l, bool forcing_fitted) {
     const System system = read_system(l, forcing_fitted);
     const std::vector<FieldError> errors =
         field_errors(validate(system.parameters, default_state(system.parameters)), l);

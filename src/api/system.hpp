@@ -1,33 +1,33 @@
-// The system and the start that a request's fields make.
+// Builds the system and the initial state from a request's fields.
 #pragma once
 
 #include <map>
 #include <optional>
 
-#include "api/layers.hpp"
+#include "api/merged_fields.hpp"
 
 namespace vines::api {
 
-/// The parameters of a request. `si`: the same in SI, where the request or its preset is in SI.
+/// The parameters of a request. `si`: in SI, if the request or its preset is.
 struct System {
     Parameters parameters;
     std::optional<SiParameters> si;
-    /// Of each field: given, preset fig3, default, or what it follows from.
+    /// Origin of each field: given, preset fig3, default, or the fields that it follows from.
     std::map<std::string, std::string> origin;
-    std::vector<std::string> notes;  ///< what is worth a warning
+    std::vector<std::string> notes;  ///< warnings
 };
 
-/// `forcing_fitted`: F need not be given. Problem 422 where a system in SI is not whole; the core's
-/// own ranges are not checked here.
-System read_system(const Layered& fields, bool forcing_fitted = false);
-/// Velocities in m/s need a system in SI, else Problem 422. What is worth a word goes into the
-/// system's notes.
-State read_start(const Layered& fields, System& system);
+/// `forcing_fitted`: F can be omitted. Problem 422 for an incomplete system in SI. Does not check
+/// the core's ranges.
+System read_system(const MergedFields& fields, bool forcing_fitted = false);
+/// Problem 422 if velocities are in m/s but the system is not in SI. Warnings go to the system's
+/// notes.
+State read_start(const MergedFields& fields, System& system);
 
-/// The core's faults as those of the fields that were given: a reduced one may follow from several.
-std::vector<FieldError> field_errors(const std::vector<Fault>& faults, const Layered& fields);
+/// Maps the core's faults to the given fields; a reduced parameter can follow from several.
+std::vector<FieldError> field_errors(const std::vector<Fault>& faults, const MergedFields& fields);
 
-/// A system without a start of its own. Problem 422 where its fields make none together.
-System read_system_alone(const Layered& fields, bool forcing_fitted);
+/// A system with the default start. Problem 422 if its fields form no valid system.
+System read_system_alone(const MergedFields& fields, bool forcing_fitted);
 
 }  // namespace vines::api

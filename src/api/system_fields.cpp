@@ -3,7 +3,7 @@
 #include <map>
 #include <numbers>
 
-#include "api/schema/words.hpp"
+#include "api/schema/enum_names.hpp"
 
 namespace vines::api {
 
@@ -48,7 +48,7 @@ SystemFields system_fields(const Json& fields) {
     for (const auto& [name, value] : fields.items())
         if (const SystemNumber number = system_number(name)) s.*number = value.get<double>();
     if (fields.contains("damping"))
-        s.damping = value_of<Damping>(fields["damping"].get<std::string>());
+        s.damping = enum_value<Damping>(fields["damping"].get<std::string>());
     return s;
 }
 
@@ -78,7 +78,7 @@ ResolvedSystem resolve(const SystemFields& s) {
         p.lambda = s.lambda.value_or(p.lambda);
         p.G = s.G.value_or(p.G);
         p.Omega = s.Omega.value_or(p.Omega);
-        // A preset in SI leaves its scale to reduced fields.
+        // A preset in SI supplies the scale of reduced fields.
         if (s.is_in_si()) system.si = in_si(p, s.m1.value_or(0), s.k1.value_or(0));
     }
     p.b = s.b.value_or(p.b);

@@ -1,5 +1,5 @@
-// The numbers of a request that make a system and its start, and the arithmetic from them to the
-// core's parameters: without JSON, so that a sweep does it anew at each point.
+// The numbers of a request that define a system and its start, and the core's parameters from them.
+// Free of JSON, so that a sweep can repeat it at each point.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace vines::api {
 
-/// By the names of the request's fields; empty where a field is not given.
+/// Named as the request's fields; nullopt if not given.
 struct SystemFields {
     std::optional<double> b, R, R_plus, R_minus;
     std::optional<double> epsilon, lambda, G, Omega;
@@ -25,23 +25,24 @@ struct SystemFields {
 };
 
 using SystemNumber = std::optional<double> SystemFields::*;
-/// Null where no number of a system has this name.
+/// Null if a system has no number of this name.
 SystemNumber system_number(const std::string& name);
 
-/// Of the fields of a request, each checked by itself; others are passed over.
+/// Reads checked fields of a request; ignores others.
 SystemFields system_fields(const Json& fields);
 
-/// A system in SI, of which what is left out is Table 1's; F and f then follow from the rest.
+/// A system in SI; omitted values are those of Table 1, or follow from the rest in the case of F
+/// and f.
 SiParameters si_of(const SystemFields& fields);
 
 struct ResolvedSystem {
     Parameters parameters;
-    std::optional<SiParameters> si;  ///< where the fields are in SI
+    std::optional<SiParameters> si;  ///< if the fields are in SI
 };
-/// What is left out is Table 1's. The core's ranges are not checked here.
+/// Omitted values are those of Table 1. Does not check the core's ranges.
 ResolvedSystem resolve(const SystemFields& fields);
 
-/// Velocities in m/s count where the system is in SI.
+/// Velocities in m/s apply if the system is in SI.
 State start_of(const SystemFields& fields, const ResolvedSystem& system);
 
 }  // namespace vines::api

@@ -13,7 +13,7 @@ namespace vines::api {
 
 namespace {
 
-/// None where the bytes are none of that encoding.
+/// nullopt if the bytes are invalid in that encoding.
 std::optional<std::string> converted(std::string_view bytes, const char* encoding) {
     const iconv_t opened = iconv_open("UTF-8", encoding);
     if (opened == reinterpret_cast<iconv_t>(-1)) return std::nullopt;
@@ -21,7 +21,7 @@ std::optional<std::string> converted(std::string_view bytes, const char* encodin
         opened, &iconv_close);
     std::string text;
     std::array<char, 4096> piece;
-    char* from = const_cast<char*>(bytes.data());  // which it only reads
+    char* from = const_cast<char*>(bytes.data());  // iconv only reads it
     std::size_t left = bytes.size();
     for (;;) {
         char* to = piece.data();
@@ -34,7 +34,7 @@ std::optional<std::string> converted(std::string_view bytes, const char* encodin
     }
 }
 
-/// Told at once, as most texts are.
+/// A fast test: most texts are ASCII.
 bool is_ascii(std::string_view bytes) {
     return std::all_of(
         bytes.begin(), bytes.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });

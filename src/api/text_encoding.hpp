@@ -1,4 +1,4 @@
-// The encodings in which measuring programs and spreadsheets write text.
+// Text encodings of measurement programs and spreadsheets.
 #pragma once
 
 #include <string>
@@ -6,8 +6,9 @@
 
 namespace vines::api {
 
-/// In UTF-8 and without a byte order mark: of UTF-16 (by its mark, or the zeros of its first two
-/// characters), UTF-8, or else Latin-1. What is UTF-8 already is not copied; else `room` holds it.
+/// Converts to UTF-8 without byte order mark from UTF-16 (by its mark, or the zero bytes of its
+/// first two characters), UTF-8 or else Latin-1. UTF-8 is not copied; other text is stored in
+/// `room`.
 std::string_view as_utf8(std::string_view bytes, std::string& room);
 
 bool is_utf8(std::string_view bytes);

@@ -1,18 +1,17 @@
-// Which program this is.
+// Version, commit and compiler of this program.
 #pragma once
 
 #include <string>
 
 namespace vines::api {
 
-/// Of the release: 0.2.0.
+/// Release, for example 0.2.0.
 std::string version();
 
-/// The commit it was built from, 12 digits, with "-dirty" behind it where files differed from it;
-/// empty where that is not known.
+/// The commit in 12 digits, with the suffix "-dirty" if files differed from it; empty if unknown.
 std::string commit();
 
-/// That built it, with its version.
+/// The compiler and its version.
 std::string compiler();
 
 }  // namespace vines::api

@@ -26,9 +26,9 @@ struct Sentence {
         return fmt::format("of {} {} the last {} are listed", w.seen, w.name, w.kept) +
                limit_of(most_bytes);
     }
-    std::string operator()(const Touched&) const {
-        return "the mass touches a wall without an impact (tangent contact): neighbouring "
-               "trajectories go different ways there";
+    std::string operator()(const GrazingContact&) const {
+        return "the ball touches a wall without an impact (tangent contact): neighbouring "
+               "trajectories separate there";
     }
     std::string operator()(const RawProductOverflows&) const {
         return "raw_product overflows in this window: the unscaled product leaves the range of "
@@ -44,16 +44,15 @@ struct Sentence {
         return "there are fewer than two impacts in the window, so there are no exponents";
     }
     std::string operator()(const RankLost& w) const {
-        return w.rank == 2 ? "a stick falls in the window: only deviations of the centre of mass "
-                             "survive it, lambda3 and lambda4 are minus infinity"
+        return w.rank == 2 ? "a sticking phase lies in the window: only deviations of the centre "
+                             "of mass survive it, lambda3 and lambda4 are minus infinity"
                            : "R = 0 removes every deviation of x - y at its impacts: lambda4 is "
                              "minus infinity";
     }
     std::string operator()(const NearlyTangent& w) const {
         return fmt::format(
             "M is ill-conditioned at {} nearly tangent impact(s), most at tau = {:.6g}, whose "
-            "relative speed is {:.2g} of the median: there the motion is next to one without this "
-            "impact",
+            "relative speed is {:.2g} of the median: nearby motions miss this impact",
             w.count, w.tau, w.speed_ratio);
     }
     std::string operator()(const TransfersCut& w) const {
@@ -63,8 +62,8 @@ struct Sentence {
     }
     std::string operator()(const ModuliCut& w) const {
         return fmt::format(
-            "eigenvalues are those of the last {} impacts: the time limit was over before those of "
-            "the others",
+            "eigenvalues are those of the last {} impacts: the time limit ended before those of "
+            "the others were computed",
             w.kept);
     }
     std::string operator()(const SectionsCut& w) const {
@@ -76,13 +75,12 @@ struct Sentence {
         return fmt::format("of {} stretches the last {} are listed (max_points)", w.seen, w.most);
     }
     std::string operator()(const OrbitSearchStopped&) const {
-        return "the search for a periodic orbit was ended by the time limit: periodic is not "
-               "decided";
+        return "the time limit ended the search for a periodic orbit: periodic is not decided";
     }
     std::string operator()(const CapturedTransient& w) const {
         return fmt::format(
             "a chaotic transient (lambda1 = {:.3g}) was captured by a periodic orbit {} (lambda1 = "
-            "{:.3g}): exponents of a window that reaches over it average both",
+            "{:.3g}): exponents of a window that contains the capture average both",
             w.before, w.tau ? fmt::format("at tau = {:.1f}", *w.tau) : "after the run's end",
             w.after);
     }
@@ -112,6 +110,57 @@ std::string text_of(const Warning& warning, std::size_t most_bytes) {
 std::string limit_of(std::size_t bytes) {
     return fmt::format(
         ", so that the answer is no larger than this server's limit of {} bytes", bytes);
+}
+
+const char* text_of(ImpactFault fault) {
+    switch (fault) {
+        case ImpactFault::none: return "";
+        case ImpactFault::too_close:
+            return "closer to the previous impact than the length of a pulse: one spike picked "
+                   "twice?";
+        case ImpactFault::moves_away:
+            return "the ball would move away from the wall that it hits: is a neighbouring impact "
+                   "missing, or b wrong?";
+        case ImpactFault::no_velocity: return "too few samples around it for a velocity";
+        case ImpactFault::R_impossible:
+            return "R lies outside [0, 1]: is a neighbouring impact missing, or b wrong?";
+        case ImpactFault::momentum_lost:
+            return "momentum is not conserved: is a neighbouring impact missing or false, or b "
+                   "wrong?";
+    }
+    return "";
+}
+
+const char* text_of(BFault fault) {
+    switch (fault) {
+        case BFault::none: return "";
+        case BFault::no_flight: return "no impact is next to one on the other wall";
+        case BFault::negative: return "it would be negative";
+        case BFault::scattered: return "the impacts give different values";
+    }
+    return "";
+}
+
+const char* text_of(Doubt doubt) {
+    switch (doubt) {
+        case Doubt::not_settled:
+            return "the search for impacts did not converge: one round finds impacts that the next "
+                   "one drops";
+        case Doubt::unexplained:
+            return "the fitted motion does not explain the record: the residual exceeds the noise "
+                   "of the sensors (signal.misfit). Are impacts hidden, is a fixed value wrong, or "
+                   "does a sensor have errors other than offset, drift, delay and scale?";
+        case Doubt::pulses_disagree:
+            return "many pulses are not at impacts, and equally many impacts have no pulse: does "
+                   "the ball stick to a wall in each cycle?";
+        case Doubt::impacts_differ:
+            return "R or the balance of momentum differs from impact to impact: does the ball "
+                   "stick to a wall in each cycle, or is m2 or b wrong?";
+        case Doubt::b_disagrees: return "the impacts' momentum does not fit the given b";
+        case Doubt::no_forcing:
+            return "no forcing at this frequency leads from each impact of the list to the next";
+    }
+    return "";
 }
 
 }  // namespace vines::api

@@ -5,7 +5,7 @@
 
 #include "api/problem.hpp"
 #include "cli/stop_signals.hpp"
-#include "program/examples.hpp"
+#include "program/subcommand.hpp"
 
 namespace vines::cli {
 
@@ -14,12 +14,12 @@ namespace {
 const char* const exit_codes =
     "Exit codes:\n"
     "  0    complete\n"
-    "  1    a file could not be read or written, or files do not fit together\n"
-    "  2    the request is at fault: a problem document on stderr says where\n"
-    "  3    ended by SIGTERM, or points are missing: what is there is usable\n"
-    "  130  ended by Ctrl-C; what is there is kept, too\n"
-    "  141  nobody reads the answer any more\n"
-    "  143  ended by SIGTERM before there was anything to keep";
+    "  1    a file cannot be read or written, or the files do not belong together\n"
+    "  2    invalid request; a problem document on stderr gives the reason\n"
+    "  3    ended by SIGTERM, or points are missing; the output so far is usable\n"
+    "  130  ended by Ctrl-C; the output so far is kept\n"
+    "  141  the reader of the output closed the pipe\n"
+    "  143  ended by SIGTERM before any output";
 
 }  // namespace
 

@@ -7,9 +7,8 @@
 
 #include <cerrno>
 
-#include "cli/file_error.hpp"
 #include "program/descriptor.hpp"
-#include "program/tell.hpp"
+#include "program/standard_streams.hpp"
 
 namespace vines::cli {
 
@@ -17,7 +16,8 @@ namespace {
 
 constexpr std::size_t piece_read = 1 << 16;
 
-/// Of a file that says its size, so much more than is there that its end is seen without growing.
+/// Initial buffer size. For a regular file it is one byte more than the file, so that read()
+/// reaches the end without enlarging the buffer.
 std::size_t size_of(int descriptor) {
     struct stat entry{};
     const bool known = ::fstat(descriptor, &entry) == 0 && S_ISREG(entry.st_mode);
@@ -40,8 +40,7 @@ void add_output(CLI::App& command, Files& files) {
 
 void add_plot_flag(CLI::App& command, bool& plot) {
     command
-        .add_flag(
-            "--plot", plot, "draw it here instead, or as SVG into the file that -o FILE.svg names")
+        .add_flag("--plot", plot, "draw plots instead, in the terminal or as SVG with -o FILE.svg")
         ->excludes(command.get_option("--format"));
 }
 
@@ -54,12 +53,14 @@ bool is_json(const std::string& text) {
 
 std::string read_all(const std::string& path) {
     if (!is_standard(path)) return read_file(path);
-    if (::isatty(STDIN_FILENO) == 1) tell("reading from the terminal; Ctrl-D ends it");
+    if (::isatty(STDIN_FILENO) == 1) print_message("reading from the terminal; Ctrl-D ends it");
     return read_open(STDIN_FILENO, "stdin");
 }
 
 std::string read_file(const std::string& path) {
-    if (path == "/dev/stdin") return read_open(STDIN_FILENO, path);  // a socket cannot be opened
+    if (path == "/dev/stdin")
+        return read_open(STDIN_FILENO, path);  // a socket cannot be opened by
+                                               // its path
     const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
     if (!file) fail_at("read", path);
     return read_open(file.number(), path);
@@ -74,7 +75,7 @@ std::string read_open(int descriptor, const std::string& name) {
         if (n == 0) break;
         if (n > 0) {
             length += static_cast<std::size_t>(n);
-        } else if (errno == EAGAIN) {  // who else has the terminal or the pipe made it so
+        } else if (errno == EAGAIN) {  // set non-blocking by another process
             pollfd readable{descriptor, POLLIN, 0};
             ::poll(&readable, 1, -1);
         } else if (errno != EINTR) {

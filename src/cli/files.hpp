@@ -1,31 +1,46 @@
-// Where a command reads its request and writes its answer.
+// Input and output files of a command.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
 #include <string>
+
+#include "program/standard_streams.hpp"
 
 namespace vines::cli {
 
-/// Paths; "-" or "" stands for stdin and stdout.
+/// Paths; "-" or "" stands for stdin or stdout.
 struct Files {
     std::string input, output;
 };
 void add_files(CLI::App& command, Files& files);
 void add_output(CLI::App& command, Files& files);
-/// --plot, with the file that add_files() knows, in place of the --format that is there already.
+/// Adds --plot, which excludes --format. Call add_files() and add_format() before.
 void add_plot_flag(CLI::App& command, bool& plot);
 
-/// Whether a path stands for stdin or stdout.
+/// Returns whether a path stands for stdin or stdout.
 bool is_standard(const std::string& path);
 
-/// Throws std::runtime_error with the reason where it cannot be read. read_file() knows no stdin.
+/// Return the whole content. Throw std::runtime_error with the reason if it cannot be read. Only
+/// read_all() reads stdin for "" and "-".
 std::string read_all(const std::string& path);
 std::string read_file(const std::string& path);
 
-/// The same of what is open, from where it stands; `name` in messages.
+/// Reads an open file from its current position to the end; `name` is used in messages.
 std::string read_open(int descriptor, const std::string& name);
 
-/// Whether a text is JSON rather than a file of columns.
+/// Returns whether a text is JSON rather than a file of columns.
 bool is_json(const std::string& text);
+
+/// Throws std::runtime_error such as "cannot write PATH: No space left on device", or BrokenPipe
+/// for EPIPE. `reason` is an errno value; the default is valid only directly after the failed call.
+[[noreturn]] inline void fail_at(const char* what, const std::string& path, int reason = errno) {
+    if (reason == EPIPE) throw BrokenPipe();
+    throw std::runtime_error(fmt::format("cannot {} {}: {}", what, path, std::strerror(reason)));
+}
 
 }  // namespace vines::cli

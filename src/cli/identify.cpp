@@ -1,19 +1,19 @@
-// `vines identify`: a measurement as CSV or JSON.
+// `vines identify`: identification from a measured record, as CSV or JSON.
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
-#include "api/answers/asked.hpp"
-#include "api/parse_object.hpp"
+#include "api/format/answer_request.hpp"
+#include "api/parse.hpp"
 
 #include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/files.hpp"
 #include "cli/output.hpp"
-#include "cli/progress_bar.hpp"
 #include "cli/request_fields.hpp"
 #include "cli/stop_signals.hpp"
-#include "program/tell.hpp"
+#include "cli/terminal.hpp"
+#include "program/standard_streams.hpp"
 
 namespace vines::cli {
 
@@ -21,37 +21,39 @@ namespace {
 
 struct IdentifyOptions {
     Files files;
-    RequestFields fields;  ///< of a CSV file all, of JSON those that go before its own
+    RequestFields fields;  ///< all fields for a CSV file; for JSON they override those of the file
 };
 
-api::Asked read(const std::string& text, const RequestFields& given) {
+api::AnswerRequest read(const std::string& text, const RequestFields& given) {
     api::Json fields = given_fields(given, api::identify_fields());
-    if (!is_json(text)) return api::read_asked("/v1/identify", std::move(fields), {text, true});
+    if (!is_json(text))
+        return api::read_answer_request("/v1/identify", std::move(fields), {text, true});
     api::Json request = api::parse_object(text);
     request.merge_patch(fields);
-    return api::read_asked("/v1/identify", std::move(request), {text, false});
+    return api::read_answer_request("/v1/identify", std::move(request), {text, false});
 }
 
 int identify(const IdentifyOptions& o) {
     std::string text = read_all(o.files.input);
-    // What takes long of a list of impacts does not ask whether it is to stop.
+    // Long steps on a list of impacts do not check stopped(); after the grace period this message
+    // is printed and the process ends.
     std::optional<Stoppable> stoppable(
-        std::in_place, [] { tell("the identification was stopped"); });
-    api::Asked asked = read(text, o.fields);
-    std::string().swap(text);  // a record may be large
+        std::in_place, [] { print_message("the identification was stopped"); });
+    api::AnswerRequest asked = read(text, o.fields);
+    std::string().swap(text);  // frees the record, which can be large
     const api::Format format = asked.form.format.value_or(api::Format::json);
     std::optional<StageLine> line(std::in_place);
     api::Answer answer;
     try {
-        answer = api::answered(
-            std::move(asked),
-            {.stop = {.asked = stopped}, .reached = [&line](IdentificationStage stage, int round) {
-                 line->show(api::words_of(stage, round) + " ...");
-             }});
+        answer = api::compute_answer(
+            std::move(asked), {.stop = {.requested = stopped},
+                               .reached = [&line](IdentificationStage stage, int round) {
+                                   line->show(api::words_of(stage, round) + " ...");
+                               }});
     } catch (const api::Problem& problem) {
         line.reset();
         if (!stopped()) throw;
-        tell(problem.what());
+        print_message(problem.what());
         return stopped_code();
     }
     line.reset();
@@ -66,9 +68,7 @@ Command add_identify(CLI::App& app) {
     const auto options = std::make_shared<IdentifyOptions>();
     CLI::App* command =
         app.add_subcommand("identify", "impacts, exponents of a record: POST /v1/identify");
-    command
-        ->add_option(
-            "record", options->files.input, "file with columns, or with JSON; - or nothing: stdin")
+    command->add_option("record", options->files.input, "CSV or JSON file; - or nothing: stdin")
         ->type_name("FILE");
     add_output(*command, options->files);
     add_request_fields(*command, options->fields);

@@ -1,4 +1,4 @@
-// `vines manual`: the manual page.
+// `vines manual`: the manual page, in roff.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,14 +10,15 @@
 #include "cli/commands.hpp"
 #include "cli/stop_signals.hpp"
 #include "cli/usage.hpp"
-#include "program/examples.hpp"
-#include "program/print.hpp"
+#include "program/standard_streams.hpp"
+#include "program/subcommand.hpp"
 
 namespace vines::cli {
 
 namespace {
 
-/// As roff prints it: a minus can be copied from the page, and no line is taken for a request.
+/// Escapes a text for roff: minus signs stay minus signs when copied from the page, and no line is
+/// read as a roff request.
 std::string roff(const std::string& text) {
     std::string result;
     for (const char c : text) {
@@ -45,7 +46,7 @@ std::string sentence(std::string text) {
     return text + (text.ends_with('.') ? "" : ".");
 }
 
-/// A line break of the text is one of the page.
+/// Keeps line breaks.
 std::string lines_kept(const std::string& text) {
     std::string result;
     for (const char c : roff(text)) {
@@ -59,12 +60,12 @@ std::string flag_meaning(const FlagUsage& flag) {
     std::string text = sentence(flag.description);
     if (!flag.choices.empty()) text += fmt::format(" One of: {}.", fmt::join(flag.choices, ", "));
     if (!flag.range.empty()) text += " Range: " + flag.range + ".";
-    if (!flag.standard.empty()) text += " Default: " + flag.standard + ".";
+    if (!flag.default_value.empty()) text += " Default: " + flag.default_value + ".";
     if (!flag.environment.empty()) text += " Environment: " + flag.environment + ".";
     return lines_kept(text) + "\n";
 }
 
-/// Its entry in the list of a command.
+/// Entry in the option list of a command.
 std::string flag_entry(const FlagUsage& flag, bool positional) {
     std::vector<std::string> names;
     for (const std::string& name : flag.names)
@@ -82,7 +83,7 @@ std::string flag_entries(const CommandUsage& command) {
     return text;
 }
 
-/// How a subcommand is called: "sweep [flags] [request]".
+/// Synopsis of a subcommand: "sweep [flags] [request]".
 std::string call_of(const CommandUsage& command) {
     std::string text = bold(command.name) + " [" + italic("flags") + "]";
     for (const FlagUsage& flag : command.positionals) {
@@ -108,14 +109,15 @@ std::string section_of_variables(const ProgramUsage& usage) {
             if (!flag.environment.empty())
                 variables[flag.environment].push_back(command.name + " " + flag.names.back());
     if (variables.empty()) return "";
-    std::string text = ".SH ENVIRONMENT\nA flag beats its variable, which beats the default.\n";
+    std::string text =
+        ".SH ENVIRONMENT\nA flag overrides its variable, which overrides the default.\n";
     for (const auto& [name, flags] : variables)
         text += fmt::format(
             ".TP\n{}\n{}\n", bold(name), roff(fmt::format("{}.", fmt::join(flags, ", "))));
     return text;
 }
 
-/// Its paragraphs, between empty lines.
+/// Splits a text at empty lines.
 std::vector<std::string> paragraphs_of(const std::string& text) {
     std::vector<std::string> paragraphs;
     for (std::size_t from = 0; from < text.size();) {
@@ -126,7 +128,7 @@ std::vector<std::string> paragraphs_of(const std::string& text) {
     return paragraphs;
 }
 
-/// What stands below the help of the subcommands: once where several say the same.
+/// Notes below the help of the subcommands; a note that several of them share is printed once.
 std::string section_of_notes(const ProgramUsage& usage) {
     std::vector<std::pair<std::string, std::vector<std::string>>> notes;
     for (const CommandUsage& command : usage.commands)

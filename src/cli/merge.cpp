@@ -1,4 +1,4 @@
-// `vines merge`: the file of a whole sweep from those of its shards.
+// `vines merge`: combines the files of a sweep's shards.
 #include <fmt/format.h>
 
 #include <memory>
@@ -11,7 +11,7 @@
 #include "cli/files.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep_file.hpp"
-#include "program/tell.hpp"
+#include "program/standard_streams.hpp"
 
 namespace vines::cli {
 
@@ -22,10 +22,10 @@ struct MergeOptions {
     std::string output;
 };
 
-/// Adds a shard's points to those of the others. Throws std::runtime_error where a line is at
-/// fault, or they are of different sweeps or differ in a point.
+/// Adds a shard's points. Throws std::runtime_error if a line is invalid, the shard belongs to
+/// another sweep, or its value of a point differs from an earlier shard's.
 void add(SweepFile& all, const std::string& path, const std::string& first_path) {
-    const SweepFile part = parse_sweep_file(read_file(path), path, Lines::whole);
+    const SweepFile part = parse_sweep_file(read_file(path), path, LineChecks::full);
     if (part.start.empty()) throw std::runtime_error(path + " is empty");
     if (all.start.empty()) all.start = part.start;
     if (part.start != all.start)
@@ -54,7 +54,7 @@ int merge(const MergeOptions& o) {
     for (const std::string& path : o.inputs) add(all, path, o.inputs[0]);
     const std::size_t points = request_of(all, o.inputs[0]).plan.grid.lines();
     if (all.points.size() < points) {
-        tell(fmt::format(
+        print_message(fmt::format(
             "{} of {} points are missing, the first is {}: a shard is not complete or was not "
             "given",
             points - all.points.size(), points, first_missing(all)));
@@ -68,12 +68,13 @@ int merge(const MergeOptions& o) {
 
 Command add_merge(CLI::App& app) {
     const auto options = std::make_shared<MergeOptions>();
-    CLI::App* command =
-        app.add_subcommand("merge", "the files of a sweep's shards as that of the whole");
+    CLI::App* command = app.add_subcommand("merge", "combine the files of a sweep's shards");
     command->add_option("files", options->inputs, "the shards' files")
         ->required()
         ->type_name("FILE");
-    command->add_option("--output,-o", options->output, "file for the whole; - or nothing: stdout")
+    command
+        ->add_option(
+            "--output,-o", options->output, "file for the whole sweep; - or nothing: stdout")
         ->type_name("FILE");
     return with_exit_codes(
         command, [options] { return merge(*options); },

@@ -1,13 +1,111 @@
 #include "cli/output.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 
+#include <cerrno>
+#include <charconv>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string_view>
 #include <utility>
 
-#include "cli/file_error.hpp"
-#include "cli/lock.hpp"
+#include "cli/files.hpp"
 
 namespace vines::cli {
+
+namespace {
+
+constexpr int max_links = 40;  // limit of the kernel
+
+/// Number of the file descriptor of this process that the path stands for, as /dev/fd/3 does.
+std::optional<int> open_number(const std::string& path) {
+    if (path == "/dev/stdout") return STDOUT_FILENO;
+    if (path == "/dev/stderr") return STDERR_FILENO;
+    for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
+        if (!path.starts_with(folder)) continue;
+        int number = -1;
+        const char* const end = path.data() + path.size();
+        const auto [rest, fault] = std::from_chars(path.data() + folder.size(), end, number);
+        if (fault == std::errc() && rest == end && number >= 0) return number;
+    }
+    return std::nullopt;
+}
+
+Destination open_descriptor(const std::string& name, int number) {
+    Descriptor copy(::fcntl(number, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
+    if (!copy) fail_at("write", name);
+    return {name, std::move(copy), ""};
+}
+
+/// Target of a symbolic link, one step.
+std::string link_target(const std::string& link) {
+    const std::filesystem::path to = std::filesystem::read_symlink(link);
+    return to.is_absolute() ? to.string()
+                            : (std::filesystem::path(link).parent_path() / to).string();
+}
+
+Destination open_stream(const std::string& name, const std::string& path) {
+    Descriptor stream(::open(path.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC));
+    if (!stream) fail_at("write", name);
+    return {name, std::move(stream), ""};
+}
+
+constexpr mode_t mode_of_new = 0666;  // reduced by umask
+
+void lock(int descriptor, const std::string& name) {
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+    throw std::runtime_error(
+        fmt::format("{} is being written by another run of vines: wait for its end", name));
+}
+
+/// Returns whether the path still leads to this open file.
+bool is_still_at(int descriptor, const std::string& path) {
+    struct stat open{}, there{};
+    return ::fstat(descriptor, &open) == 0 && ::stat(path.c_str(), &there) == 0 &&
+           open.st_dev == there.st_dev && open.st_ino == there.st_ino;
+}
+
+/// Opens a file for writing (flags of open()) and locks it against other runs of this program until
+/// it is closed. Returns an empty descriptor if the file is missing and O_CREAT is not set. Throws
+/// std::runtime_error at once if another run holds the lock, or with the reason if it cannot be
+/// opened. File systems without locks are written unlocked.
+Descriptor open_locked(const Destination& to, int flags) {
+    for (;;) {
+        Descriptor file(::open(to.file.c_str(), flags | O_CLOEXEC, mode_of_new));
+        if (!file && errno == ENOENT && !(flags & O_CREAT)) return file;
+        if (!file) fail_at("write", to.name);
+        lock(file.number(), to.name);
+        // The previous holder of the lock can have replaced the file.
+        if (is_still_at(file.number(), to.file)) return file;
+    }
+}
+
+}  // namespace
+
+Destination destination_of(const std::string& path) {
+    if (is_standard(path)) return open_descriptor("to stdout", STDOUT_FILENO);
+    std::string at = path;
+    for (int links = 0;; ++links) {
+        if (const auto number = open_number(at)) return open_descriptor(path, *number);
+        struct stat entry{};
+        const bool is_link = ::lstat(at.c_str(), &entry) == 0 && S_ISLNK(entry.st_mode);
+        if (!is_link) break;
+        if (links == max_links) fail_at("write", path, ELOOP);
+        at = link_target(at);
+    }
+    struct stat entry{};
+    if (::stat(at.c_str(), &entry) != 0) {
+        if (errno != ENOENT) fail_at("write", path);
+        return {path, Descriptor(), at};
+    }
+    if (S_ISDIR(entry.st_mode)) fail_at("write", path, EISDIR);
+    if (S_ISREG(entry.st_mode)) return {path, Descriptor(), at};
+    return open_stream(path, at);
+}
 
 Output::Output(Destination to) : to_(std::move(to)) {
     if (to_.is_stream()) return;
@@ -22,13 +120,47 @@ void Output::write(std::string_view text) {
 }
 
 void Output::end() {
-    if (file_) file_->take_place();
+    if (file_) file_->replace_target();
 }
 
 void write_all(const std::string& path, const std::string& text) {
     Output out(path);
     out.write(text);
     out.end();
+}
+
+AppendFile::AppendFile(const Destination& file)
+    : name_(file.name),
+      file_(open_locked(file, O_RDWR | O_CREAT | O_APPEND)) {
+    struct stat entry{};
+    if (::fstat(file_.number(), &entry) != 0) fail_at("read", name_);
+    length_ = static_cast<std::size_t>(entry.st_size);
+}
+
+std::string AppendFile::read() const {
+    if (::lseek(file_.number(), 0, SEEK_SET) < 0) fail_at("read", name_);
+    return read_open(file_.number(), name_);
+}
+
+void AppendFile::truncate(std::size_t length) {
+    if (length == length_) return;
+    if (::ftruncate(file_.number(), static_cast<off_t>(length)) != 0) fail_at("write", name_);
+    length_ = length;
+}
+
+void AppendFile::append(std::string_view lines) {
+    const int failed = write_fully(file_.number(), lines);
+    if (failed == 0) {
+        length_ += lines.size();
+        return;
+    }
+    // If this fails too, the next run removes the incomplete line.
+    (void)!::ftruncate(file_.number(), static_cast<off_t>(length_));
+    fail_at("write", name_, failed);
+}
+
+void AppendFile::sync() {
+    if (::fsync(file_.number()) != 0) fail_at("write", name_);
 }
 
 }  // namespace vines::cli

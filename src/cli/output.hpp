@@ -1,17 +1,34 @@
-// A text on its way to a file or a stream.
+// Output files and streams. A path leads to a Destination: a stream, or a regular file, which
+// Output replaces by a complete new one and AppendFile extends. While a run has a file open, it is
+// locked against other runs of this program.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <string_view>
 
-#include "cli/destination.hpp"
 #include "cli/temporary_file.hpp"
+#include "program/descriptor.hpp"
 
 namespace vines::cli {
 
-/// A file is replaced at its end, at once: another one sees the old text or the new. A stream is
-/// written as the text comes. All throw std::runtime_error with the reason, or ReaderLeft.
+/// Either a stream (stdout, a pipe, a device), which is written directly, or a regular file,
+/// existing or not, which is replaced or extended.
+struct Destination {
+    std::string name;  ///< for messages
+    Descriptor stream;
+    std::string file;  ///< path with symbolic links resolved; empty for a stream
+
+    bool is_stream() const { return static_cast<bool>(stream); }
+};
+
+/// "" and "-" stand for stdout. /dev/stdout, /dev/stderr and /dev/fd/N stand for descriptors that
+/// the process has open. Opening a named pipe blocks until it has a reader. Throws
+/// std::runtime_error with the reason if the path is a directory or cannot be resolved.
+Destination destination_of(const std::string& path);
+
+/// A file is replaced atomically by end(): other processes see the old or the new content. A stream
+/// is written at once. All members throw std::runtime_error with the reason, or BrokenPipe.
 class Output {
 public:
     explicit Output(const std::string& path) : Output(destination_of(path)) {}
@@ -21,12 +38,34 @@ public:
 
 private:
     const Destination to_;
-    /// The file that is replaced, if there is one: only by who may write it, and nobody else now.
+    /// The existing file, opened and locked: fails if it is not writable or another run writes it.
     Descriptor old_;
     std::optional<TemporaryFile> file_;
 };
 
-/// The same of a whole text.
+/// Writes a whole text.
 void write_all(const std::string& path, const std::string& text);
+
+/// File to which lines are appended. Created by the constructor and locked against other runs. All
+/// members throw std::runtime_error with the reason.
+class AppendFile {
+public:
+    explicit AppendFile(const Destination& file);
+
+    /// Returns the content.
+    std::string read() const;
+    /// Truncates the file to its first `length` bytes.
+    void truncate(std::size_t length);
+    /// Appends all lines in one write, so that a killed run keeps them. On an error nothing is
+    /// appended.
+    void append(std::string_view lines);
+    /// Waits until the content is on the disk.
+    void sync();
+
+private:
+    const std::string name_;
+    const Descriptor file_;
+    std::size_t length_ = 0;
+};
 
 }  // namespace vines::cli

@@ -4,11 +4,9 @@
 #include <utility>
 
 #include "api/format/encode.hpp"
-#include "api/parse_object.hpp"
+#include "api/parse.hpp"
 #include "api/problem.hpp"
-#include "api/query.hpp"
-#include "api/schema/nearest_name.hpp"
-#include "api/schema/text_value.hpp"
+#include "api/schema/field.hpp"
 
 namespace vines::cli {
 
@@ -41,7 +39,7 @@ api::Query pairs_of(const RequestFields& given) {
     return pairs;
 }
 
-/// What of a name's value is JSON. Its names come once, as in a file.
+/// Parses the JSON value of a field. Duplicate names are refused, as in a file.
 Json parsed(const std::string& name, const std::string& text) {
     try {
         return api::parse_object("{\"value\":" + text + "}")["value"];
@@ -50,7 +48,7 @@ Json parsed(const std::string& name, const std::string& text) {
     }
 }
 
-/// Lists and objects, for which a query has no text, may be told as JSON.
+/// Lists and objects have no query syntax; their text is parsed as JSON.
 void read_json_in_text(Json& object, const FieldTable& table) {
     for (auto& [name, value] : object.items()) {
         const api::Field* const field = api::find(table, name);
@@ -87,24 +85,24 @@ Json axis_of(const std::string& text) {
     return axis;
 }
 
-/// Of what a mistyped name was meant to be of.
-bool is_of_sweep(const std::string& name) {
+/// Returns whether a name, even a mistyped one, belongs to the sweep rather than to its base.
+bool belongs_to_sweep(const std::string& name) {
     const std::string outer = name.substr(0, name.find('.'));
     if (api::find(api::sweep_fields(), outer)) return true;
     return !api::find(api::sweep_base_fields(), name) &&
            !api::nearest_name(api::sweep_fields(), name).empty();
 }
 
-[[noreturn]] void comes_twice(const std::string& name, const std::string& other) {
-    throw api::Problem(400, name + " holds " + api::shortened(other) + ": not both");
+[[noreturn]] void refuse_both(const std::string& name, const std::string& other) {
+    throw api::Problem(400, name + " and " + api::shortened(other) + " exclude each other");
 }
 
 Json given_sweep(const RequestFields& given) {
     api::Query own, base;
-    for (auto& pair : pairs_of(given)) (is_of_sweep(pair.first) ? own : base).push_back(pair);
+    for (auto& pair : pairs_of(given)) (belongs_to_sweep(pair.first) ? own : base).push_back(pair);
     Json object = fields_of_pairs(own, api::sweep_fields());
-    if (object.contains("base") && !base.empty()) comes_twice("base", base[0].first);
-    if (object.contains("axes") && !given.axes.empty()) comes_twice("axes", "--axis");
+    if (object.contains("base") && !base.empty()) refuse_both("base", base[0].first);
+    if (object.contains("axes") && !given.axes.empty()) refuse_both("axes", "--axis");
     if (!base.empty()) object["base"] = fields_of_pairs(base, api::sweep_base_fields());
     for (const std::string& axis : given.axes) object["axes"].push_back(axis_of(axis));
     return object;
@@ -121,18 +119,20 @@ Json with_file(const Files& files, const RequestFields& given, const Json& field
 
 void add_request_fields(CLI::App& command, RequestFields& given) {
     command.add_option(
-        "--query,-q", given.query, "fields of the request as in a URL: 'preset=fig3&b=0.02'");
+        "--query,-q", given.query, "request fields as in a URL: 'preset=fig3&b=0.02'");
     command
         .add_option(
             "--parameter,-p", given.fields,
-            "a field of the request, over that of its file: -p preset=fig3 -p b=0.02")
+            "a request field; overrides that of the file: -p preset=fig3 -p b=0.02")
         ->type_name("FIELD")
         ->expected(1)
         ->take_all();
 }
 
 void add_format(CLI::App& command, RequestFields& given) {
-    command.add_option("--format", given.format, "of the answer, json unless the request says so")
+    command
+        .add_option(
+            "--format", given.format, "format of the answer; default: the request's, or json")
         ->check(CLI::IsMember(format_words()));
 }
 
@@ -140,7 +140,7 @@ void add_axes(CLI::App& command, RequestFields& given) {
     command
         .add_option(
             "--axis,-a", given.axes,
-            "an axis: b=0.01:0.03:41 (from, to, how many; :log), or b=0.01,0.02,0.03")
+            "an axis: b=0.01:0.03:41 (from, to, count; optionally :log), or b=0.01,0.02,0.03")
         ->type_name("AXIS")
         ->expected(1)
         ->take_all();

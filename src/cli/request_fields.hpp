@@ -1,4 +1,4 @@
-// The fields of a request as flags.
+// Request fields given as options.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -12,12 +12,12 @@
 namespace vines::cli {
 
 struct RequestFields {
-    std::string query;                ///< as in a URL
+    std::string query;                ///< URL query syntax
     std::vector<std::string> fields;  ///< NAME=VALUE each
     std::vector<std::string> axes;    ///< of a sweep: NAME=FROM:TO:COUNT[:log] or NAME=A,B,C
-    std::string format;               ///< of the answer; empty: as the request says
+    std::string format;               ///< of the answer; empty: the request's format
 
-    /// Whether there is a request without a file.
+    /// Returns whether the options alone form a request.
     bool is_given() const { return !query.empty() || !fields.empty() || !axes.empty(); }
 };
 
@@ -25,16 +25,16 @@ void add_request_fields(CLI::App& command, RequestFields& fields);
 void add_format(CLI::App& command, RequestFields& fields);
 void add_axes(CLI::App& command, RequestFields& fields);
 
-/// As a request's JSON, by the types of the route's table. Problem 400 for what is no NAME=VALUE,
-/// or comes twice.
+/// The options as a request's JSON, typed by the route's table. Throws Problem 400 for an argument
+/// that is not NAME=VALUE or for a duplicate.
 api::Json given_fields(const RequestFields& fields, const api::FieldTable& table);
 
-/// The request in a file, or on stdin, with the fields over its own. Where there are fields and no
-/// file is named they are the request.
+/// The request of a file or stdin, overridden by the options. If options are given and no file is
+/// named, the options are the request.
 api::Json read_request(
     const Files& files, const RequestFields& fields, const api::FieldTable& table);
 
-/// The same of a sweep: fields that are none of its own are those of its base.
+/// The same for a sweep: fields that are not a sweep's own are set in its base.
 api::Json read_sweep(const Files& files, const RequestFields& fields);
 
 }  // namespace vines::cli

@@ -1,4 +1,4 @@
-#include "cli/run_plots.hpp"
+#include "cli/plots.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "api/schema/joined.hpp"
-#include "cli/numbers.hpp"
+#include "api/schema/field.hpp"
+#include "cli/json_values.hpp"
 
 namespace vines::cli {
 
@@ -18,14 +18,14 @@ using api::Json;
 using plot::Curve;
 using plot::Plot;
 
-/// What an answer has at a path as "/exponents/qr"; null where it was left out.
+/// Value at a JSON pointer such as "/exponents/qr"; null if missing.
 const Json& part(const Json& answer, const std::string& path) {
     static const Json none;
     const Json::json_pointer at(path);
     return answer.contains(at) ? answer[at] : none;
 }
 
-/// Whether there are lists of one length, the first of them without gaps.
+/// Returns whether the object has these lists with equal lengths and the first has no gaps.
 bool has(const Json& object, const std::vector<const char*>& names) {
     const auto is_list = [&](const char* name) {
         return object.contains(name) && object[name].is_array() && !object[name].empty() &&
@@ -37,7 +37,7 @@ bool has(const Json& object, const std::vector<const char*>& names) {
            });
 }
 
-/// lambda1 with its standard error, if any; empty without.
+/// lambda1 with its standard error, if known; empty if lambda1 is missing.
 std::string lambda1_of(const Json& qr) {
     const double lambda1 = first_at(qr, "final"), error = first_at(qr, "standard_error");
     if (!std::isfinite(lambda1)) return "";
@@ -45,16 +45,16 @@ std::string lambda1_of(const Json& qr) {
            (std::isfinite(error) ? fmt::format(" +- {:.2g}", error) : "");
 }
 
-/// What the run came to, in a line.
+/// Result of the run in one line.
 std::string title_of(const Json& answer) {
     const double b = number_at(part(answer, "/parameters"), "b") / mm;
     const std::string regime = word_at(part(answer, "/regime"), "type");
-    std::vector<std::string> told = {
+    std::vector<std::string> parts = {
         regime.empty() ? "" : "regime " + regime, word_at(part(answer, "/exponents"), "verdict"),
         lambda1_of(part(answer, "/exponents/qr"))};
-    std::erase(told, "");
-    if (!std::isfinite(b)) return api::joined(told);
-    return fmt::format("b = {:.4g} mm", b) + (told.empty() ? "" : ": ") + api::joined(told);
+    std::erase(parts, "");
+    if (!std::isfinite(b)) return api::joined(parts);
+    return fmt::format("b = {:.4g} mm", b) + (parts.empty() ? "" : ": ") + api::joined(parts);
 }
 
 Plot displacement(const Json& series) {
@@ -64,7 +64,7 @@ Plot displacement(const Json& series) {
         .curves = {{.x = numbers_of(series["tau"]), .y = numbers_of(series["x"], mm)}}};
 }
 
-/// With the contacts between the samples.
+/// Includes the contacts between the samples, where |y - x| = b.
 Plot relative_displacement(const Json& answer) {
     const Json &series = answer["series"], &impacts = part(answer, "/impacts");
     const double b = number_at(part(answer, "/parameters"), "b") / mm;
@@ -89,14 +89,14 @@ Plot relative_displacement(const Json& answer) {
         curve.y.push_back(gap);
     }
     Plot p{.x_label = "tau", .y_label = "y - x (mm)", .curves = {std::move(curve)}};
-    if (has_walls) {  // in sight where none is met, too
+    if (has_walls) {  // visible even if the motion does not reach them
         p.y_range = {-1.12 * b, 1.12 * b};
         p.levels = {-b, b};
     }
     return p;
 }
 
-/// Of the later values of all curves: the first ones swing widely.
+/// Range of the last three quarters of all curves: the first values vary widely.
 std::pair<double, double> late_range(const std::vector<Curve>& curves) {
     std::pair<double, double> range{0, 0};
     for (const Curve& c : curves)

@@ -1,5 +1,5 @@
 // `vines simulate` and `vines manifold`: one answer, without the service's deadline and limits.
-#include "api/answers/asked.hpp"
+#include "api/format/answer_request.hpp"
 
 #include <memory>
 #include <optional>
@@ -9,7 +9,7 @@
 #include "cli/exit_code.hpp"
 #include "cli/files.hpp"
 #include "cli/output.hpp"
-#include "cli/pictures.hpp"
+#include "cli/plots.hpp"
 #include "cli/request_fields.hpp"
 #include "cli/stop_signals.hpp"
 
@@ -20,56 +20,58 @@ namespace {
 struct RunOptions {
     Files files;
     RequestFields fields;
-    bool plot = false;  ///< in place of the answer
+    bool plot = false;  ///< draw instead of writing the answer
 };
 
-/// The answer, also of a run that a signal ends.
-api::Answer computed(api::Asked asked) {
+/// Computes the answer. A run stopped by a signal gives the answer up to that time.
+api::Answer computed(api::AnswerRequest asked) {
     const api::Stop stop{
-        .asked = stopped, .reason = "interrupted", .message = "ended by a signal, before tau_end"};
+        .requested = stopped,
+        .reason = "interrupted",
+        .message = "ended by a signal, before tau_end"};
     const Stoppable stoppable;
-    return api::answered(std::move(asked), {.stop = stop});
+    return api::compute_answer(std::move(asked), {.stop = stop});
 }
 
-int code() { return stopped() ? stopped_code() : complete; }
+int final_code() { return stopped() ? stopped_code() : complete; }
 
-int answer(const Files& files, api::Asked asked) {
+int write_answer_of(const Files& files, api::AnswerRequest asked) {
     const api::Format format = asked.form.format.value_or(api::Format::json);
     api::Answer answer = computed(std::move(asked));
     if (format != api::Format::json) {
         write_all(files.output, api::encoded(std::move(answer.json), format, answer.provenance));
-        return code();
+        return final_code();
     }
     Output out(files.output);
-    Pace pace;  // a signal that has come lets the answer be written
+    RunControl control;  // never stops: after a signal the answer is still written
     api::write_answer(
-        std::move(answer), pace, [&out](std::string_view piece) { out.write(piece); });
+        std::move(answer), control, [&out](std::string_view piece) { out.write(piece); });
     out.end();
-    return code();
+    return final_code();
 }
 
-/// Of what is asked for that which can be drawn.
+/// Draws the parts of the request that have plots.
 int draw_run(const Files& files, api::Json request) {
     if (!request.contains("include") && !request.contains("fields"))
         request["include"] = {"series", "impacts", "exponents", "regime"};
     request["format"] = "json";
-    api::Answer answer = computed(api::read_asked("/v1/simulate", std::move(request)));
+    api::Answer answer = computed(api::read_answer_request("/v1/simulate", std::move(request)));
     const std::string text =
         api::encoded(std::move(answer.json), api::Format::json, answer.provenance);
     draw(plots_of(text), files.output);
-    return code();
+    return final_code();
 }
 
 int simulate(const RunOptions& o) {
     api::Json request = read_request(o.files, o.fields, api::simulate_fields());
     if (o.plot) return draw_run(o.files, std::move(request));
-    return answer(o.files, api::read_asked("/v1/simulate", std::move(request)));
+    return write_answer_of(o.files, api::read_answer_request("/v1/simulate", std::move(request)));
 }
 
 int manifold(const RunOptions& o) {
-    return answer(
-        o.files,
-        api::read_asked("/v1/manifold", read_request(o.files, o.fields, api::manifold_fields())));
+    return write_answer_of(
+        o.files, api::read_answer_request(
+                     "/v1/manifold", read_request(o.files, o.fields, api::manifold_fields())));
 }
 
 void add_flags(CLI::App& command, RunOptions& options) {

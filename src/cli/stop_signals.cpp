@@ -17,40 +17,40 @@ namespace vines::cli {
 
 namespace {
 
-/// What is stopped ends within a tenth of a second, whatever it waits for.
-constexpr auto patience = std::chrono::milliseconds(80);
+/// A stopped command ends within .1 s, whatever it waits for.
+constexpr auto grace_period = std::chrono::milliseconds(80);
 
-std::atomic<int> asked_by = 0;  // the signal
+std::atomic<int> stop_signal = 0;  // the signal's number
 
-/// What a signal finds.
+/// State shared with the signal thread.
 struct Work {
     std::mutex mutex;
-    std::condition_variable left;
+    std::condition_variable finished;
     bool stoppable = false;
-    std::function<void()> last_words;
+    std::function<void()> final_message;
 };
 
-/// Never destroyed: the thread that waits for signals outlives main().
+/// Never destroyed: the signal thread outlives main().
 Work& work() {
     static auto* const all = new Work;
     return *all;
 }
 
-/// Whatever the other threads do: what they have written is written.
+/// Ends the process without waiting for other threads. Completed writes are kept.
 [[noreturn]] void end(int code) {
     remove_temporary_files();
     std::_Exit(code);
 }
 
-void end_when_asked() {
+void wait_for_signals() {
     const int signal = wait_for_end_signal();
     Work& w = work();
     std::unique_lock lock(w.mutex);
     if (!w.stoppable) end(128 + signal);
-    asked_by = signal;
-    const auto has_left = [&w] { return !w.stoppable; };
-    if (w.last_words && !w.left.wait_for(lock, patience, has_left)) {
-        w.last_words();
+    stop_signal = signal;
+    const auto has_finished = [&w] { return !w.stoppable; };
+    if (w.final_message && !w.finished.wait_for(lock, grace_period, has_finished)) {
+        w.final_message();
         end(stopped_code());
     }
     lock.unlock();
@@ -61,26 +61,26 @@ void end_when_asked() {
 
 void stop_on_signals() {
     block_end_signals();
-    std::thread(end_when_asked).detach();
+    std::thread(wait_for_signals).detach();
 }
 
-bool stopped() { return asked_by != 0; }
+bool stopped() { return stop_signal != 0; }
 
-int stopped_code() { return asked_by == SIGINT ? 128 + SIGINT : static_cast<int>(incomplete); }
+int stopped_code() { return stop_signal == SIGINT ? 128 + SIGINT : static_cast<int>(incomplete); }
 
-Stoppable::Stoppable(std::function<void()> last_words) {
+Stoppable::Stoppable(std::function<void()> final_message) {
     const std::lock_guard lock(work().mutex);
     work().stoppable = true;
-    work().last_words = std::move(last_words);
+    work().final_message = std::move(final_message);
 }
 
 Stoppable::~Stoppable() {
     {
         const std::lock_guard lock(work().mutex);
         work().stoppable = false;
-        work().last_words = nullptr;
+        work().final_message = nullptr;
     }
-    work().left.notify_all();
+    work().finished.notify_all();
 }
 
 Command ended_by_signals(Command command) {

@@ -1,66 +1,118 @@
-// `vines sweep`: a sweep or a shard of one into a file, which a later run can complete.
+// `vines sweep`: computes a sweep or a shard of one.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstddef>
+#include <cstdlib>
 #include <memory>
 #include <string>
 #include <utility>
 
 #include "api/format/encode.hpp"
-#include "api/format/sweep_table.hpp"
 #include "api/problem.hpp"
 #include "cli/commands.hpp"
-#include "cli/destination.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/files.hpp"
 #include "cli/output.hpp"
-#include "cli/pictures.hpp"
+#include "cli/plots.hpp"
 #include "cli/request_fields.hpp"
-#include "cli/shard.hpp"
-#include "cli/signal_pace.hpp"
 #include "cli/sweep_file.hpp"
-#include "cli/sweep_to_file.hpp"
-#include "cli/sweep_to_stream.hpp"
-#include "cli/sweep_whole.hpp"
-#include "program/within.hpp"
+#include "cli/sweep_run.hpp"
+#include "program/subcommand.hpp"
 
 namespace vines::cli {
 
 namespace {
 
+/// Part of a sweep that one process computes.
+struct Shard {
+    std::size_t index = 0;  ///< from 0
+    std::size_t count = 1;
+};
+
+/// Non-negative integer, or -1.
+long number(const std::string& text) {
+    char* end = nullptr;
+    errno = 0;
+    const long value = std::strtol(text.c_str(), &end, 10);
+    return text.empty() || *end || errno || value < 0 ? -1 : value;
+}
+
+Shard checked(const std::string& index, const std::string& count) {
+    const long i = number(index), n = number(count);
+    if (i < 0 || n < 1 || i >= n)
+        throw api::Problem(
+            422, fmt::format("a shard is i/N with 0 <= i < N, not {}/{}", index, count));
+    return {static_cast<std::size_t>(i), static_cast<std::size_t>(n)};
+}
+
+/// Value of an environment variable; empty if unset.
+std::string variable(const char* name) {
+    const char* value = std::getenv(name);
+    return value ? value : "";
+}
+
+Shard shard_of_environment(const std::string& shards) {
+    if (const std::string id = variable("SLURM_ARRAY_TASK_ID"); !id.empty()) {
+        const long first = std::strtol(variable("SLURM_ARRAY_TASK_MIN").c_str(), nullptr, 10);
+        return checked(
+            fmt::format("{}", std::strtol(id.c_str(), nullptr, 10) - first),
+            shards.empty() ? variable("SLURM_ARRAY_TASK_COUNT") : shards);
+    }
+    if (const std::string index = variable("JOB_COMPLETION_INDEX"); !index.empty())
+        return checked(index, shards);
+    throw api::Problem(
+        422,
+        "--shard auto needs SLURM_ARRAY_TASK_ID and SLURM_ARRAY_TASK_COUNT, or "
+        "JOB_COMPLETION_INDEX and --shards, in the environment");
+}
+
+/// Reads "i/N", "" (the whole sweep), or "auto": then i and N are taken from the environment of a
+/// Slurm array or a Kubernetes Indexed Job, where `shards` replaces N if it is above 0. Throws
+/// Problem 422 for other texts.
+Shard read_shard(const std::string& text, int shards) {
+    if (text.empty()) return {};
+    if (text == "auto") return shard_of_environment(shards > 0 ? fmt::format("{}", shards) : "");
+    const std::size_t slash = std::min(text.find('/'), text.size());
+    return checked(text.substr(0, slash), slash < text.size() ? text.substr(slash + 1) : "");
+}
+
 struct SweepOptions {
     Files files;
     RequestFields fields;
-    bool plot = false;    ///< in place of the points
+    bool plot = false;    ///< draw instead of writing the points
     bool resume = false;  ///< complete the output file instead of refusing to overwrite it
-    std::string shard;    ///< as read_shard() takes it
-    int shards = 0;       ///< N for "auto" where the environment has only i
-    int threads = 0;      ///< 0: the cores
+    std::string shard;    ///< syntax of read_shard()
+    int shards = 0;       ///< N for "auto" if the environment has only i
+    int threads = 0;      ///< 0: one per core
 };
 
-/// The points wanted: those of the shard.
+/// The request, limited to the points of the shard.
 api::SweepRequest read_request(const SweepOptions& o) {
-    api::SweepRequest request = api::read_sweep_request(read_sweep(o.files, o.fields), most_points);
+    api::SweepRequest request = api::read_sweep_request(read_sweep(o.files, o.fields), max_points);
     const Shard shard = read_shard(o.shard, o.shards);
-    request.plan.lines = api::shard_of(request, shard.index, shard.of);
+    request.plan.lines = api::shard_of(request, shard.index, shard.count);
     return request;
 }
 
-/// Other than lines of JSON: they are made once all points are there.
-bool is_whole(const SweepOptions& o) { return o.plot || o.fields.format == "csv"; }
+/// Returns whether the output needs all points before it can be written.
+bool needs_all_points(const SweepOptions& o) { return o.plot || o.fields.format == "csv"; }
 
-/// Problem 422 for what cannot be done, before anything is computed.
+/// Throws Problem 422 for options that do not fit together, before anything is computed.
 void check(const SweepOptions& o, const api::SweepRequest& request) {
-    if (is_whole(o) && o.resume)
-        throw api::Problem(422, "--resume completes lines of JSON, not --plot or --format csv");
+    if (needs_all_points(o) && o.resume)
+        throw api::Problem(422, "--resume needs --format ndjson and excludes --plot");
     std::size_t along = 0;
     for (std::size_t a = 0; a < request.axes.size(); ++a)
         along += a != request.plan.grid.reduced && request.axes[a].values.size() > 1;
     const bool is_point = request.plan.grid.reduced && request.axes.size() == 1;
     if (o.plot && (along > 1 || is_point))
-        throw api::Problem(
-            422, "--plot draws along one axis; of more the page draws a map, or leave it out");
+        throw api::Problem(422, "--plot needs a sweep along one axis; the page draws maps of two");
 }
 
-int sweep_as_wanted(const SweepRun& run, const SweepOptions& o) {
-    return sweep_whole(run, [&o](const api::Json& start, const auto& points) {
+int sweep_all_points(const SweepRun& run, const SweepOptions& o) {
+    return sweep_collected(run, [&o](const api::Json& start, const auto& points) {
         if (o.plot) draw(plots_of(start, points), o.files.output);
         else write_all(o.files.output, api::csv_text(api::sweep_table(points)));
     });
@@ -69,9 +121,9 @@ int sweep_as_wanted(const SweepRun& run, const SweepOptions& o) {
 int sweep(const SweepOptions& o) {
     api::SweepRequest request = read_request(o);
     check(o, request);
-    const std::size_t of = request.plan.lines.size();
-    SweepRun run{std::move(request), of, o.threads > 0 ? o.threads : cores()};
-    if (is_whole(o)) return sweep_as_wanted(run, o);
+    const std::size_t total = request.plan.lines.size();
+    SweepRun run{std::move(request), total, o.threads > 0 ? o.threads : cores()};
+    if (needs_all_points(o)) return sweep_all_points(run, o);
     Destination to = destination_of(o.files.output);
     return to.is_stream() ? sweep_to_stream(std::move(run), std::move(to))
                           : sweep_to_file(std::move(run), to, o.resume);
@@ -89,7 +141,7 @@ Command add_sweep(CLI::App& app) {
     command
         ->add_option(
             "--format", options->fields.format,
-            "ndjson: a line of JSON for each point, as it comes (default); csv: a table, at the "
+            "ndjson (default): one JSON line per point, as it is computed; csv: a table, at the "
             "end")
         ->check(CLI::IsMember({"ndjson", "csv"}));
     add_plot_flag(*command, options->plot);
@@ -98,14 +150,14 @@ Command add_sweep(CLI::App& app) {
         "complete the output file of a run that was stopped or killed");
     command->add_option(
         "--shard", options->shard,
-        "compute a part only: i/N with i from 0, or auto: from SLURM_ARRAY_TASK_ID and _COUNT, or "
+        "compute only a part: i/N with i from 0, or auto: from SLURM_ARRAY_TASK_ID and _COUNT, or "
         "JOB_COMPLETION_INDEX and --shards");
     command->add_option("--shards", options->shards, "N for --shard auto")
         ->envname("VINES_SHARDS")
-        ->check(within(1, 1000000));
-    command->add_option("--threads", options->threads, "threads; 0: one for each core")
+        ->check(number_between(1, 1000000));
+    command->add_option("--threads", options->threads, "number of threads; 0: one per core")
         ->envname("VINES_COMPUTE_THREADS")
-        ->check(within(0, 1024))
+        ->check(number_between(0, 1024))
         ->capture_default_str();
     return with_exit_codes(
         command, [options] { return sweep(*options); },

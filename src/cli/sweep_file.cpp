@@ -6,9 +6,9 @@
 #include <stdexcept>
 
 #include "api/problem.hpp"
-#include "api/sweep_frame.hpp"
+#include "api/sweep.hpp"
 #include "api/sweep_line_check.hpp"
-#include "cli/read_back.hpp"
+#include "cli/json_values.hpp"
 
 namespace vines::cli {
 
@@ -19,20 +19,20 @@ std::string type_of(const api::Json& line) {
     return typed ? line["type"].get<std::string>() : "";
 }
 
-/// Of a line that tells nothing of a point.
+/// Returns whether a line contains no point.
 bool is_between_points(const std::string& type) {
     return type == "done" || type == "progress" || type == "warning" || type == "error";
 }
 
-/// Takes one line after the other.
+/// Parses a file line by line.
 class Reader {
 public:
-    Reader(const std::string& name, Lines lines) : name_(name), lines_(lines) {}
+    Reader(const std::string& name, LineChecks checks) : name_(name), checks_(checks) {}
 
     void take(std::string line) {
         ++number_;
-        file_.whole += line.size() + 1;
-        const api::Json json = read_back(line);
+        file_.complete_bytes += line.size() + 1;
+        const api::Json json = parse_answer(line);
         const std::string type = type_of(json);
         if (number_ == 1 && type == "start") return take_start(std::move(line));
         if (number_ == 1 || (type != "point" && !is_between_points(type)))
@@ -53,7 +53,8 @@ private:
     }
 
     std::string fault_of(const std::string& line, const api::Json& json) const {
-        return lines_ == Lines::whole ? check_->fault_of(line, json) : check_->fault_of_index(json);
+        return checks_ == LineChecks::full ? check_->fault_of(line, json)
+                                           : check_->fault_of_index(json);
     }
 
     void take_point(const std::string& line, const api::Json& json) {
@@ -67,11 +68,12 @@ private:
             fail_in_line(
                 name_, number_,
                 fmt::format(
-                    "point {} differs from the same in line {}", index, there->second.number));
+                    "point {} differs from the same point in line {}", index,
+                    there->second.number));
     }
 
     const std::string& name_;
-    const Lines lines_;
+    const LineChecks checks_;
     long number_ = 0;
     SweepFile file_;
     std::optional<api::SweepRequest> request_;
@@ -90,8 +92,8 @@ std::string SweepFile::text() const {
     return all + api::done_line(points.size());
 }
 
-SweepFile parse_sweep_file(const std::string& text, const std::string& name, Lines lines) {
-    Reader reader(name, lines);
+SweepFile parse_sweep_file(const std::string& text, const std::string& name, LineChecks checks) {
+    Reader reader(name, checks);
     for (std::size_t from = 0, end; (end = text.find('\n', from)) != std::string::npos;
          from = end + 1)
         reader.take(text.substr(from, end - from));
@@ -99,14 +101,14 @@ SweepFile parse_sweep_file(const std::string& text, const std::string& name, Lin
 }
 
 api::SweepRequest request_of(const SweepFile& file, const std::string& name) {
-    const api::Json start = read_back(file.start);
+    const api::Json start = parse_answer(file.start);
     const auto request = start.find("request");
     if (request == start.end() || !request->is_object())
-        fail_in_line(name, 1, "it does not say which request it answers");
+        fail_in_line(name, 1, "the request is missing");
     try {
-        return api::read_sweep_request(*request, most_points);
+        return api::read_sweep_request(*request, max_points);
     } catch (const api::Problem& problem) {
-        fail_in_line(name, 1, std::string("its request is at fault: ") + problem.what());
+        fail_in_line(name, 1, std::string("its request is invalid: ") + problem.what());
     }
 }
 

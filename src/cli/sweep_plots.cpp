@@ -1,4 +1,4 @@
-#include "cli/sweep_plots.hpp"
+#include "cli/plots.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "api/json_text.hpp"
-#include "cli/numbers.hpp"
+#include "cli/json_values.hpp"
 
 namespace vines::cli {
 
@@ -20,7 +20,7 @@ using api::Json;
 using plot::Curve;
 using plot::Plot;
 
-/// An axis, and the numbers of a line's quantity along it.
+/// An axis of the sweep as abscissa.
 struct Abscissa {
     std::string parameter;
     double unit;
@@ -29,8 +29,8 @@ struct Abscissa {
     double of(const Json& point) const { return number_at(point, parameter) / unit; }
 };
 
-/// The one axis along which points differ, the first where they do along none. Throws
-/// std::runtime_error where they do along more.
+/// The axis with more than one value, or the first one if all have one. Throws std::runtime_error
+/// if several axes have more than one value.
 Abscissa abscissa_of(const Json& start, const std::vector<Json>& points) {
     std::optional<std::string> first, found;
     for (const Json& axis : start["axes"]) {
@@ -40,15 +40,14 @@ Abscissa abscissa_of(const Json& start, const std::vector<Json>& points) {
         if (!axis.contains("values") || axis["values"].size() < 2) continue;
         if (found)
             throw std::runtime_error(
-                "a sweep along one axis can be drawn; one along more is a map, which the page "
-                "draws");
+                "only a sweep along one axis can be drawn here; the page draws maps of two");
         found = parameter;
     }
     const std::string parameter = found ? *found : first.value_or("");
     return {parameter, parameter == "b" ? mm : 1};
 }
 
-/// What is not told is not drawn.
+/// Skips values that are not finite.
 void add(Curve& curve, double x, double y, std::optional<double> error = {}) {
     if (!std::isfinite(x) || !std::isfinite(y)) return;
     curve.x.push_back(x);
@@ -56,7 +55,7 @@ void add(Curve& curve, double x, double y, std::optional<double> error = {}) {
     if (error) curve.error.push_back(std::isfinite(*error) ? *error : 0);
 }
 
-/// What is drawn of a section's states: at impact, where all have |x - y| = b, as at whole cycles.
+/// States in the section: at impacts (where |x - y| = b) or at whole forcing cycles.
 std::optional<Plot> section(const std::vector<Json>& points, const Abscissa& at) {
     const Json::json_pointer states("/section/x");
     Plot p{.y_label = "x in the section (mm)", .curves = {{.dots = true}}};
@@ -68,7 +67,7 @@ std::optional<Plot> section(const std::vector<Json>& points, const Abscissa& at)
     return p;
 }
 
-/// A curve of dots for each word that a field has.
+/// One curve of dots for each word that a field can have.
 std::vector<Curve> by_word(
     const std::vector<Json>& points, const Abscissa& at, const char* field,
     const std::vector<std::pair<std::string, const char*>>& colours,
@@ -114,14 +113,14 @@ Plot response(
             [field, unit](const Json& p) { return std::pair(number_at(p, field) / unit, 0.); })};
 }
 
-/// What was asked for: name = value of each, those of the base among them.
-std::string given_beside_axes(const Json& request) {
+/// Request fields except axes, as "name = value, ...", including those of the base.
+std::string fields_except_axes(const Json& request) {
     std::string text;
     for (const auto& [name, value] : request.items()) {
         if (name == "axes" || name == "indices") continue;
-        const std::string told =
-            name == "base" ? given_beside_axes(value) : name + " = " + api::json_text(value);
-        if (!told.empty()) text += (text.empty() ? "" : ", ") + told;
+        const std::string part =
+            name == "base" ? fields_except_axes(value) : name + " = " + api::json_text(value);
+        if (!part.empty()) text += (text.empty() ? "" : ", ") + part;
     }
     return text;
 }
@@ -139,7 +138,7 @@ std::vector<Plot> sweep_plots(const Json& start, const std::vector<Json>& points
     plots.push_back(response(points, at, "peak of |x| (mm)", "x_peak", mm));
     std::erase_if(plots, [](const Plot& p) { return p.curves.empty(); });
     for (Plot& p : plots) p.x_label = at.label();
-    if (!plots.empty()) plots[0].title = given_beside_axes(start.value("request", Json::object()));
+    if (!plots.empty()) plots[0].title = fields_except_axes(start.value("request", Json::object()));
     return plots;
 }
 

@@ -12,23 +12,23 @@
 #include <set>
 #include <utility>
 
-#include "cli/file_error.hpp"
+#include "cli/files.hpp"
 
 namespace vines::cli {
 
 namespace {
 
-constexpr mode_t new_mode = 0666;  // what umask leaves of it
+constexpr mode_t new_mode = 0666;  // reduced by umask
 constexpr mode_t private_mode = 0600;
 constexpr mode_t kept_bits = 0777;
 
-/// Those that are there. Held while one comes or goes.
+/// Existing temporary files. The mutex is held while one is created, renamed or removed.
 struct Temporaries {
     std::mutex mutex;
     std::set<std::string> paths;
 };
 
-/// Never destroyed: a signal may end the program while its objects are.
+/// Never destroyed: a signal can end the program during destruction of its static objects.
 Temporaries& temporaries() {
     static auto* const all = new Temporaries;
     return *all;
@@ -39,21 +39,21 @@ std::string folder_of(const std::string& path) {
     return folder.empty() ? "." : folder;
 }
 
-/// Hidden, so that no pattern of a shell takes it for one of the user's; of a length of its own,
-/// for the target's name may be as long as one can be.
+/// Hidden, so that a shell's pattern does not match it. The name does not contain the target's,
+/// which can have the maximum length.
 std::string new_path(const std::string& target) {
     std::random_device random;
     return fmt::format("{}/.vines-{:08x}{:08x}", folder_of(target), random(), random());
 }
 
-/// Owner, group and mode, as far as this process may.
-void make_alike(int file, const struct stat& old) {
+/// Copies owner, group and mode, as far as this process is permitted to.
+void copy_owner_and_mode(int file, const struct stat& old) {
     if (::fchown(file, old.st_uid, old.st_gid) != 0)
         (void)!::fchown(file, static_cast<uid_t>(-1), old.st_gid);
     ::fchmod(file, old.st_mode & kept_bits);
 }
 
-/// So that the new name outlives a power cut. Some file systems cannot, and then it comes later.
+/// Makes the new name survive a power failure. Some file systems do not support that.
 void sync_folder(const std::string& path) {
     const Descriptor folder(::open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (folder) ::fsync(folder.number());
@@ -75,7 +75,7 @@ TemporaryFile::TemporaryFile(std::string target, std::string name)
     } while (!file_ && errno == EEXIST);
     if (!file_) fail_at("write", name_);
     temporaries().paths.insert(path_);
-    if (replaces) make_alike(file_.number(), old);
+    if (replaces) copy_owner_and_mode(file_.number(), old);
 }
 
 TemporaryFile::~TemporaryFile() {
@@ -89,7 +89,7 @@ void TemporaryFile::write(std::string_view text) {
     if (const int failed = write_fully(file_.number(), text)) fail_at("write", name_, failed);
 }
 
-void TemporaryFile::take_place() {
+void TemporaryFile::replace_target() {
     if (::fsync(file_.number()) != 0) fail_at("write", name_);
     {
         const std::lock_guard lock(temporaries().mutex);
@@ -100,7 +100,7 @@ void TemporaryFile::take_place() {
 }
 
 void remove_temporary_files() {
-    temporaries().mutex.lock();  // for good
+    temporaries().mutex.lock();  // never unlocked
     for (const std::string& path : temporaries().paths) ::unlink(path.c_str());
 }
 

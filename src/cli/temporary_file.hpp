@@ -1,4 +1,4 @@
-// A file that is not yet what it is to become.
+// A temporary file that replaces another file atomically.
 #pragma once
 
 #include <string>
@@ -8,29 +8,30 @@
 
 namespace vines::cli {
 
-/// Beside the file whose place it takes, under a name of its own, with that one's mode. Removed
-/// unless it has taken the place: also by a signal that ends the program.
+/// Created in the target's folder, with the target's mode if that exists. The destructor removes it
+/// unless it has replaced the target; so does remove_temporary_files() when a signal ends the
+/// program.
 class TemporaryFile {
 public:
-    /// `name` in messages. Throws std::runtime_error with the reason where none can be made, as the
-    /// others do.
+    /// `name` is used in messages. The constructor and all members throw std::runtime_error with
+    /// the reason.
     TemporaryFile(std::string target, std::string name);
     ~TemporaryFile();
     TemporaryFile(const TemporaryFile&) = delete;
     TemporaryFile& operator=(const TemporaryFile&) = delete;
 
     void write(std::string_view text);
-    /// On the disk first, so that a power cut leaves the old text or the new.
-    void take_place();
+    /// Syncs the file to disk first, so that a power failure leaves the old or the new content.
+    void replace_target();
 
 private:
     const std::string target_, name_;
-    std::string path_;  ///< "" once it is gone
+    std::string path_;  ///< empty after it has replaced the target
     Descriptor file_;
 };
 
-/// From the thread that ends the program at a signal: none is left, and none comes or takes its
-/// place any more.
+/// Removes all temporary files and blocks the creation and renaming of others for good. Called by
+/// the thread that ends the program after a signal.
 void remove_temporary_files();
 
 }  // namespace vines::cli

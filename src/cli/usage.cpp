@@ -4,7 +4,7 @@ namespace vines::cli {
 
 namespace {
 
-/// The parts of a type as CLI11 writes it: TEXT:{json,text}, INT:[0 - 65535], TEXT:DIR, FILE.
+/// Parts of a type as CLI11 writes it: TEXT:{json,text}, INT:[0 - 65535], TEXT:DIR, FILE.
 std::vector<std::string> type_parts(const std::string& type) {
     return CLI::detail::split(type, ':');
 }
@@ -13,7 +13,7 @@ std::string inner(const std::string& text, std::size_t ends) {
     return text.substr(ends, text.size() - 2 * ends);
 }
 
-/// "[0 - 65535]" in words.
+/// "[0 - 65535]" as "0 to 65535".
 std::string range_in_words(const std::string& part) {
     std::string range = inner(part, 1);
     if (const std::size_t dash = range.find(" - "); dash != std::string::npos)
@@ -33,7 +33,7 @@ void read_type(const std::string& type, FlagUsage& flag) {
     }
 }
 
-/// Without its names.
+/// Everything but the names.
 FlagUsage read_option(const CLI::Option& option) {
     FlagUsage flag;
     flag.description = option.get_description();
@@ -44,7 +44,7 @@ FlagUsage read_option(const CLI::Option& option) {
         flag.value = ValueKind::none;
         return flag;
     }
-    flag.standard = option.get_default_str();
+    flag.default_value = option.get_default_str();
     read_type(option.get_type_name(), flag);
     return flag;
 }

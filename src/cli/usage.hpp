@@ -1,4 +1,4 @@
-// What CLI11's table says of the program: read once, written as completions and as the manual.
+// The program's subcommands and options, read from CLI11 for completions and the manual page.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -7,17 +7,17 @@
 
 namespace vines::cli {
 
-/// What stands behind a flag.
+/// Kind of value after an option.
 enum class ValueKind { none, text, file, folder, choice };
 
-/// A flag with all of its names, or a positional with its one.
+/// An option with all its names, or a positional with one.
 struct FlagUsage {
-    std::vector<std::string> names;    ///< as they are typed: -o, --output
+    std::vector<std::string> names;    ///< as typed: -o, --output
     std::string description;           ///< without a full stop
-    std::string environment;           ///< the variable that stands for it
-    std::string standard;              ///< the default
+    std::string environment;           ///< environment variable that sets it
+    std::string default_value;         ///< default
     std::string range;                 ///< "0 to 65535"
-    std::vector<std::string> choices;  ///< of ValueKind::choice
+    std::vector<std::string> choices;  ///< for ValueKind::choice
     ValueKind value = ValueKind::text;
     bool required = false, repeats = false;
 };
@@ -33,13 +33,13 @@ struct ProgramUsage {
     std::vector<CommandUsage> commands;  ///< in the order of --help
 };
 
-/// Of a program whose subcommands are all registered.
+/// Call it after all subcommands are registered.
 ProgramUsage usage_of(const CLI::App& app);
 
-/// The word for a value in a text that has no list of them; empty: there is no value.
+/// Placeholder for a value in a text without a list of choices; empty: the option takes no value.
 std::string value_word(const FlagUsage& flag);
 
-/// In single quotes, as sh, bash and zsh take a word.
+/// In single quotes, valid in sh, bash and zsh.
 std::string shell_quoted(const std::string& text);
 
 }  // namespace vines::cli

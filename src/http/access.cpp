@@ -2,15 +2,67 @@
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
+#include <openssl/crypto.h>
 
 #include <algorithm>
 #include <array>
+#include <sstream>
+#include <stdexcept>
 
 #include "api/problem.hpp"
 #include "http/header_text.hpp"
-#include "http/problem_response.hpp"
+#include "http/message.hpp"
+#include "http/regular_file.hpp"
 
 namespace vines::http {
+
+// --- API keys ---
+
+namespace {
+
+// About ten thousand keys.
+constexpr std::size_t max_key_file_size = 1 << 20;
+
+/// True if the key consists of the characters of RFC 6750's b64token.
+bool is_key(std::string_view key) {
+    return std::all_of(key.begin(), key.end(), [](char c) {
+        return (c >= '0' && c <= '9') || (lower_case(c) >= 'a' && lower_case(c) <= 'z') ||
+               std::string_view("-._~+/=").find(c) != std::string_view::npos;
+    });
+}
+
+}  // namespace
+
+ApiKeys ApiKeys::read(const std::string& path) {
+    std::istringstream in(read_regular_file(path, max_key_file_size));
+    ApiKeys keys;
+    std::size_t number = 0;
+    for (std::string line; std::getline(in, line);) {
+        ++number;
+        line = trimmed(line.substr(0, line.find('\r')));
+        if (line.empty() || line[0] == '#') continue;
+        if (line.size() < min_length || !is_key(line))
+            throw std::runtime_error(fmt::format(
+                "{}, line {}: a key must have {} or more characters: letters, digits or -._~+/=",
+                path, number, min_length));
+        keys.keys_.push_back(line);
+    }
+    if (keys.keys_.empty()) throw std::runtime_error(fmt::format("{} contains no key", path));
+    return keys;
+}
+
+bool ApiKeys::accepts(std::string_view authorization) const {
+    const std::string_view scheme = next_part(authorization, ' ');
+    const std::string_view shown = trimmed(authorization);
+    if (lower_case(scheme) != "bearer") return false;
+    bool found = false;
+    for (const std::string& key : keys_)
+        found |=
+            key.size() == shown.size() && CRYPTO_memcmp(key.data(), shown.data(), key.size()) == 0;
+    return found;
+}
+
+// --- Host names, origins, CORS ---
 
 namespace {
 
@@ -34,10 +86,10 @@ bool is_address(std::string_view host) {
     return ::inet_pton(six ? AF_INET6 : AF_INET, text.c_str(), bytes.data()) == 1;
 }
 
-/// A page of a stranger is at a name that the stranger has registered, which has a dot in it, and
-/// may have it point to this machine. It is at no name of a local network, nor at an address of
-/// this machine.
-bool is_meant(std::string_view host, const AccessOptions& options) {
+/// DNS rebinding: an attacker's page has a host name with a dot, registered by the attacker, who
+/// can make it resolve to this machine. Names without a dot and addresses of this machine are
+/// therefore safe.
+bool is_allowed_host(std::string_view host, const AccessOptions& options) {
     const auto allows = [host](const std::string& name) {
         return name == "*" || lower_case(name) == host;
     };
@@ -47,34 +99,32 @@ bool is_meant(std::string_view host, const AccessOptions& options) {
            std::any_of(options.hosts.begin(), options.hosts.end(), allows);
 }
 
-/// Without the port that goes without saying: a proxy may have taken the request at another.
+/// Host and port of an origin, without a default port: a proxy may listen on another one.
 std::string authority_of(std::string_view origin) {
     const std::size_t scheme = origin.find("://");
     std::string authority =
         lower_case(scheme == std::string_view::npos ? origin : origin.substr(scheme + 3));
     for (const std::string_view port : {":80", ":443"})
-        if (ends_with(authority, port)) authority.resize(authority.size() - port.size());
+        if (ends_with(authority, port)) authority.erase(authority.size() - port.size());
     return authority;
 }
 
-/// Whether a browser says that a page of another origin sends the request.
-bool is_foreign(const Head& head) {
+/// True if the browser marks the request as sent by a page of another origin.
+bool is_cross_origin(const Head& head) {
     const std::string_view site = head.header("sec-fetch-site");
     if (!site.empty()) return site != "same-origin" && site != "none";
     const std::string_view origin = head.header("origin");
     return !origin.empty() && authority_of(origin) != authority_of(head.host);
 }
 
-/// Whether it is for a tab of its own that somebody is led to a place here. In a frame of another
-/// page only what says itself who may show it belongs.
+/// True for a link that opens in a tab, or in a frame if the route sets a frame policy.
 bool follows_link(const Head& head, const Route* route) {
     if (head.method == "POST" || head.header("sec-fetch-mode") != "navigate") return false;
     const std::string_view destination = head.header("sec-fetch-dest");
-    return destination.empty() || destination == "document" || (route && route->knows_its_frames);
+    return destination.empty() || destination == "document" || (route && route->sets_frame_policy);
 }
 
-/// Whether a request comes from a page that may use the service.
-bool shares(const Head& head, const AccessOptions& options) {
+bool is_allowed_origin(const Head& head, const AccessOptions& options) {
     const std::string origin = lower_case(head.header("origin"));
     return !origin.empty() &&
            std::any_of(
@@ -85,7 +135,7 @@ bool shares(const Head& head, const AccessOptions& options) {
 
 Response key_refusal() {
     Response response = problem_response(
-        401, "this server asks for a key, in the header \"Authorization: Bearer KEY\"");
+        401, "this server requires an API key, in the header \"Authorization: Bearer KEY\"");
     response.headers.emplace_back("WWW-Authenticate", "Bearer realm=\"vines\"");
     return response;
 }
@@ -104,30 +154,31 @@ std::string in_url(const std::string& address) {
 std::optional<Response> access_refusal(
     const Head& head, const Route* route, const AccessOptions& options) {
     const std::string host = host_of(head.host);
-    if (!host.empty() && !is_meant(host, options)) {
+    if (!host.empty() && !is_allowed_host(host, options)) {
         const std::string shown = api::shortened(host);
         return problem_response(
             421, fmt::format(
-                     "this server is not {}: if that is its name, start it with --allow-host {}",
+                     "this server does not answer for {}; to allow it, start the server with "
+                     "--allow-host {}",
                      shown, shown));
     }
-    if (is_foreign(head) && !follows_link(head, route) && !shares(head, options))
-        return problem_response(403, "a page of another origin may not use this server");
-    if (route && !route->open && options.keys.are_asked_for() &&
-        !options.keys.open(head.header("authorization")))
+    if (is_cross_origin(head) && !follows_link(head, route) && !is_allowed_origin(head, options))
+        return problem_response(403, "pages of other origins may not use this server");
+    if (route && !route->is_public && options.keys.required() &&
+        !options.keys.accepts(head.header("authorization")))
         return key_refusal();
     return std::nullopt;
 }
 
 bool is_preflight(const Head& head, const AccessOptions& options) {
     return head.method == "OPTIONS" && head.has("access-control-request-method") &&
-           shares(head, options);
+           is_allowed_origin(head, options);
 }
 
-std::vector<std::pair<std::string, std::string>> sharing_headers(
+std::vector<std::pair<std::string, std::string>> cors_headers(
     const Head& head, const AccessOptions& options) {
     if (options.origins.empty()) return {};
-    if (!shares(head, options)) return {{"Vary", "Origin"}};
+    if (!is_allowed_origin(head, options)) return {{"Vary", "Origin"}};
     std::vector<std::pair<std::string, std::string>> headers = {
         {"Vary", "Origin"},
         {"Access-Control-Allow-Origin", std::string(head.header("origin"))},

@@ -1,5 +1,6 @@
-// From where the service may be used: a page of another site, in the browser of someone who can
-// reach it, must neither read nor use it.
+// Access control: API keys, the host a request names, and the origin of the page that sends it.
+// Any web page can make its visitor's browser send requests to this server. The checks here keep
+// pages of other sites from reading answers or starting computations.
 #pragma once
 
 #include <optional>
@@ -8,40 +9,57 @@
 #include <utility>
 #include <vector>
 
-#include "http/api_keys.hpp"
 #include "http/head.hpp"
 #include "http/route.hpp"
 
 namespace vines::http {
 
+class ApiKeys {
+public:
+    /// No keys: requests need none.
+    ApiKeys() = default;
+    /// Reads one key per line; empty lines and lines that start with # are skipped. Throws
+    /// std::runtime_error if the file cannot be read, is not a regular file, is larger than 1 MiB,
+    /// contains no key, or a key that is too short or holds characters that a header cannot.
+    static ApiKeys read(const std::string& path);
+
+    bool required() const { return !keys_.empty(); }
+    /// True if the value of Authorization is "Bearer" and one of the keys (RFC 6750). The time it
+    /// takes does not depend on how many characters of a key match.
+    bool accepts(std::string_view authorization) const;
+
+    static constexpr std::size_t min_length = 16;
+
+private:
+    std::vector<std::string> keys_;
+};
+
 struct AccessOptions {
-    std::string listens_on = "127.0.0.1";  ///< the address
-    /// Names that a request may be meant for, beside those of this machine's loopback and those
-    /// without a dot; "*": any.
+    std::string listens_on = "127.0.0.1";  ///< address of the listening socket
+    /// Host names accepted in addition to loopback names and names without a dot; "*": any.
     std::vector<std::string> hosts;
-    /// Of pages that may use the service, as their browsers say it: https://example.org; "*": all.
+    /// Origins whose pages may use the service, such as https://example.org; "*": all.
     std::vector<std::string> origins;
     ApiKeys keys;
 };
 
-/// Problem 421 for a request that is meant for another host, as one of a page that has had its own
-/// name resolved to this server's address; 403 for what a page of another origin asks for, unless
-/// it may or somebody follows a link there, not in a frame; 401 where a route is not for everyone
-/// and no key is shown. route: null where there is none.
+/// Problem 421 for a request to a host name that is not this server's, as in DNS rebinding; 403 for
+/// a cross-origin request, unless its origin is allowed or it follows a link (but not into a
+/// frame); 401 for a route that needs a key, without a valid one. Nothing if the request is
+/// allowed. route: null if no route matches.
 std::optional<Response> access_refusal(
     const Head& head, const Route* route, const AccessOptions& options);
 
-/// Whether a browser asks for leave to send a request of a page that may (Fetch, 3.2.2).
+/// True for a CORS preflight of an allowed origin (Fetch, 3.2.2).
 bool is_preflight(const Head& head, const AccessOptions& options);
 
-/// What an answer says to the browser of a page of another origin.
-std::vector<std::pair<std::string, std::string>> sharing_headers(
+std::vector<std::pair<std::string, std::string>> cors_headers(
     const Head& head, const AccessOptions& options);
 
-/// Whether a name or an address is this machine's own for itself: localhost, 127.0.0.1, [::1].
+/// True for localhost, names below it, and loopback addresses: 127.0.0.1, [::1].
 bool is_loopback(std::string_view host);
 
-/// As it stands in a URL: an IPv6 address in brackets.
+/// The address as written in a URL: IPv6 in brackets.
 std::string in_url(const std::string& address);
 
 }  // namespace vines::http

@@ -3,117 +3,161 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <functional>
+#include <memory>
 #include <utility>
 
-#include "api/answers/asked.hpp"
-#include "api/broken_off.hpp"
-#include "api/parse_object.hpp"
-#include "api/reading.hpp"
+#include "api/cancellation.hpp"
+#include "api/format/answer_request.hpp"
+#include "api/parse.hpp"
 #include "api/schema/tables.hpp"
 #include "api/version.hpp"
-#include "http/accept.hpp"
-#include "http/answer_stream.hpp"
-#include "http/compress.hpp"
+#include "http/admission_control.hpp"
 #include "http/encoding.hpp"
-#include "http/end_of_work.hpp"
 #include "http/header_text.hpp"
 #include "http/memory.hpp"
-#include "http/sweep_stream.hpp"
-#include "http/turn.hpp"
+#include "http/streams.hpp"
 
 namespace vines::http {
 
 namespace {
 
+// Extra time, as a fraction of the deadline, for analysing a run that was cut off (first half) and
+// for writing its answer.
+constexpr double time_to_write = 0.2;
+
+/// True once the client has left or the server stops.
+class Abandoned {
+public:
+    Abandoned(const Request& request, const AdmissionControl& admission)
+        : left_(request.left),
+          admission_(admission) {}
+    /// Checks the connection at most every client_check_interval.
+    bool operator()(std::chrono::steady_clock::time_point now) {
+        if (now - checked_ > client_check_interval) {
+            checked_ = now;
+            is_ = is_ || left_() || admission_.all_stopped();
+        }
+        return is_;
+    }
+
+private:
+    const std::function<bool()> left_;
+    const AdmissionControl& admission_;
+    std::chrono::steady_clock::time_point checked_ = std::chrono::steady_clock::now();
+    bool is_ = false;
+};
+
+/// The conditions that end a computation: more than `seconds` from now, not counting the time in
+/// which its permit waits; its client has left; or the server stops. `admission` and `permit` must
+/// outlive the result, which one thread at a time may call.
+api::Stop stop_conditions(
+    double seconds, const Request& request, const AdmissionControl& admission, Permit& permit) {
+    using Clock = std::chrono::steady_clock;
+    const auto now = Clock::now();
+    const auto abandoned = std::make_shared<Abandoned>(request, admission);
+    const auto after = [now, abandoned, seconds, &permit](double fraction) {
+        const std::chrono::duration<double> time(fraction * seconds);
+        return [deadline = now + time, abandoned, &permit] {
+            if (!permit.renew()) return true;
+            const auto at = Clock::now();
+            return at - permit.waited() > deadline || (*abandoned)(at);
+        };
+    };
+    return {
+        .requested = after(1),
+        .analysis_late = after(1 + time_to_write / 2),
+        .late = after(1 + time_to_write)};
+}
+
 using api::Json;
 using api::Problem;
 
-// From this size on an answer's memory is given back to the system at once.
+// Answers from this size on return their memory to the system at once, bytes.
 constexpr std::size_t large = 16 << 20;
 
-// Bytes of a body that are read in a small part of a turn's moment.
-constexpr std::size_t quickly_read = 16 << 10;
+// Largest body that is read in a small part of the grace period, bytes.
+constexpr std::size_t max_body_in_grace = 16 << 10;
 
-// Of the largest body by default, one in four characters: a record that is a measurement has eight
-// characters a number or more. They take 300 MB at most while they are read.
+// One number per four characters of the largest default body. A measured record has at least eight
+// characters per number. These take at most 300 MB while they are read.
 constexpr std::size_t most_numbers = 16'000'000;
 
-// In the fields beside the record: impact_times_s may tell each impact in it.
+// Numbers outside the record: impact_times_s can list every impact in it.
 constexpr std::size_t most_beside = 1'000'000;
 
-// Arrays, objects and names: a start of a sweep is one with up to six names, and there are no more
-// starts than points. All other fields together have some thousand.
+// Arrays, objects and names: a start of a sweep is an object with up to six names, and there are at
+// most as many starts as points. All other fields together have a few thousand.
 constexpr std::size_t parts_of_a_point = 10, least_parts = 100'000;
 
-// Bytes of a provenance, beside what was asked for: a hash, the answer's limit.
-constexpr std::size_t most_hash = 256;
+// Largest part of the provenance that is not the request's: a hash and the answer's limit, bytes.
+constexpr std::size_t max_hash = 256;
 
-[[noreturn]] void end_unheard() { throw Problem(499, "the client has left"); }  // for the log alone
+/// Ends the request of a client that has left; only the log shows its status.
+[[noreturn]] void throw_client_left() { throw Problem(499, "the client has left"); }
 
-/// The request's turn, or Problem 503.
-Turn turn_of(const Request& request, ComputeGate& gate, Stopwatch& watch) {
-    Turn turn(gate, request.left, request.body.size() <= quickly_read);
-    if (!turn && request.left()) end_unheard();
-    if (!turn)
+/// Waits for the request's permit to compute; Problem 503 if the queue is full.
+Permit permit_for(const Request& request, AdmissionControl& admission, Stopwatch& watch) {
+    Permit permit(admission, request.left, request.body.size() <= max_body_in_grace);
+    if (!permit && request.left()) throw_client_left();
+    if (!permit)
         throw Problem::unavailable(
-            "computing",
-            "as many requests as the server takes are waiting already; try again in a second");
+            "computing", "the queue for computing is full; try again in a second");
     watch.lap("queue");
-    return turn;
+    return permit;
 }
 
-/// What a body may hold for a request that gives up with `stop`.
-api::Reading reading_of(const RouteOptions& options, const api::Stop& stop) {
+api::ReadLimits reading_of(const RouteOptions& options, const api::Stop& stop) {
     return {
-        .gives_up = stop.asked,
+        .gives_up = stop.requested,
         .most_numbers = most_numbers,
-        .most_beside = most_beside,
-        .most_parts = std::max(least_parts, parts_of_a_point * options.sweep_points)};
+        .most_other_values = most_beside,
+        .most_containers = std::max(least_parts, parts_of_a_point * options.sweep_points)};
 }
 
-/// What read() returns. A Problem where that took too long, or is not needed any more: nothing is
-/// computed yet that could be told instead.
+/// Calls read(). If it is stopped, nothing is computed that could be returned: a Problem.
 template <class Read>
 auto read_in_time(const Request& r, const Service& service, const Read& read) {
     try {
         return read();
-    } catch (const api::BrokenOff&) {
-        if (r.left()) end_unheard();
-        if (service.gate.ends_all())
+    } catch (const api::Cancelled&) {
+        if (r.left()) throw_client_left();
+        if (service.admission.all_stopped())
             throw Problem::unavailable("stopping", "the server is stopping");
         throw Problem(
-            413, fmt::format(
-                     "this server computes no longer than {} s for one request, and has not read "
-                     "all of its body in them: a smaller one takes less time",
-                     service.options.deadline));
+            413,
+            fmt::format(
+                "the server's time limit of {} s for one request was over before all of the body "
+                "was read: send a smaller one",
+                service.options.deadline));
     }
 }
 
-Json body_of(const Request& r, const api::Reading& reading) {
+Json body_of(const Request& r, const api::ReadLimits& reading) {
     if (!r.query.empty())
         throw Problem(400, "a POST takes its fields from the body; the query must be empty");
     return api::parse_object(r.body, reading);
 }
 
-api::Asked asked_run(const Request& r, const api::FieldTable& table, const api::Reading& reading) {
-    return api::read_asked(
+api::AnswerRequest asked_run(
+    const Request& r, const api::FieldTable& table, const api::ReadLimits& reading) {
+    return api::read_answer_request(
         r.path, r.method == "POST" ? body_of(r, reading) : api::from_query(table, r.query));
 }
 
-api::Asked asked_identification(const Request& r, const api::Reading& reading) {
+api::AnswerRequest asked_identification(const Request& r, const api::ReadLimits& reading) {
     const std::string type = media_type(r.content_type);
     const bool is_columns = type == "text/csv" || type == "text/plain";
-    return api::read_asked(
+    return api::read_answer_request(
         r.path, is_columns ? api::from_query(api::identify_fields(), r.query) : body_of(r, reading),
         {r.body, is_columns}, reading);
 }
 
-/// What is said of formats is said by each of them.
 const std::pair<std::string, std::string> varies{"Vary", "Accept"};
 
-/// The same requests to the same build, with the same limit of its answers, have the same answer.
-/// Only what is read can be known already: a POST has no tag.
+/// ETag: equal requests to the same build, with the same answer limit, have equal answers. It is
+/// computed from what was read, before the computation, so a POST has none.
 std::string tag_of(
     const Request& r, api::Format format, std::size_t answer_limit, const std::string& provenance) {
     if (r.method == "POST") return {};
@@ -121,93 +165,94 @@ std::string tag_of(
         "{} {} {} {}", api::version(), api::name_of(format).word, answer_limit, provenance));
 }
 
-/// Problem 413 beyond the limit, to which what it tells of its provenance does not count.
+/// The answer's bytes in the requested format. Problem 413 if they exceed the limit; the request's
+/// part of the provenance does not count.
 std::string encoded(
     api::Answer answer, api::Format format, std::size_t limit, std::size_t provenance,
     const std::function<bool()>& gives_up) {
     try {
         std::string bytes =
             api::encoded(std::move(answer.json), format, answer.provenance, gives_up);
-        if (bytes.size() >= large) give_memory_back();
+        if (bytes.size() >= large) trim_memory();
         if (bytes.size() <= limit + provenance) return bytes;
         throw Problem(
             413, fmt::format(
-                     "the answer has {} bytes, and this server sends no more than {}: ask for "
+                     "the answer has {} bytes, more than this server's limit of {}: request "
                      "fewer parts (include, fields), points (max_points) or impacts (max_impacts)",
                      bytes.size(), limit));
-    } catch (const api::BrokenOff&) {
-        end_unheard();
+    } catch (const api::Cancelled&) {
+        throw_client_left();
     }
 }
 
-/// Ends parts of the work, each without what it waited for its place.
-class Laps {
+/// Records phases, with the time that the permit waited counted as "queue".
+class Phases {
 public:
-    Laps(Stopwatch& watch, const Turn& turn) : watch_(watch), turn_(turn) {}
-    void lap(const char* part) {
-        watch_.lap(part);
-        const auto waited = turn_.waited();
-        watch_.move(part, "queue", waited - waited_);
+    Phases(Stopwatch& watch, const Permit& permit) : watch_(watch), permit_(permit) {}
+    void end(const char* phase) {
+        watch_.lap(phase);
+        const auto waited = permit_.waited();
+        watch_.move(phase, "queue", waited - waited_);
         waited_ = waited;
     }
 
 private:
     Stopwatch& watch_;
-    const Turn& turn_;
-    decltype(std::declval<const Turn>().waited()) waited_{};
+    const Permit& permit_;
+    decltype(std::declval<const Permit>().waited()) waited_{};
 };
 
-/// The answer to what is read(request), in a place to compute in.
 Response answer(
     const Request& r, const Service& service, Stopwatch& watch,
-    const std::function<api::Asked(const Request&, const api::Reading&)>& read) {
-    Turn turn = turn_of(r, service.gate, watch);
+    const std::function<api::AnswerRequest(const Request&, const api::ReadLimits&)>& read) {
+    Permit permit = permit_for(r, service.admission, watch);
     const RouteOptions& options = service.options;
-    const api::Stop stop = end_of_work(options.deadline, r, service.gate, turn);
-    Laps laps(watch, turn);
-    api::Asked asked = read_in_time(r, service, [&] { return read(r, reading_of(options, stop)); });
+    const api::Stop stop = stop_conditions(options.deadline, r, service.admission, permit);
+    Phases phases(watch, permit);
+    api::AnswerRequest asked =
+        read_in_time(r, service, [&] { return read(r, reading_of(options, stop)); });
     std::optional<api::Format>& format = asked.form.format;
     if (!format) format = accepted_format(r.accept);
     const std::string provenance = api::describe(asked.provenance, nullptr).dump();
     std::string tag = tag_of(r, *format, options.answer_limit, provenance);
-    if (!tag.empty() && names_tag(r.known_tags, tag))
+    if (!tag.empty() && matches_tag(r.if_none_match, tag))
         return {.status = 304, .tag = tag, .headers = {varies}};
-    laps.lap("parse");
-    api::Answer answer = api::answered(
+    phases.end("parse");
+    api::Answer answer = api::compute_answer(
         std::move(asked),
         {.stop = stop, .most_bytes = options.answer_limit, .most_kept = options.most_kept_impacts});
-    const bool goes_on = turn.goes_on();
-    laps.lap("solve");
-    if (!goes_on) end_unheard();
+    const bool renewed = permit.renew();
+    phases.end("solve");
+    if (!renewed) throw_client_left();
     service.metrics.count_impacts(answer.impacts);
     if (answer.run) {
-        Response response = stream_answer(std::move(answer), r.id, service.gate);
+        Response response = stream_answer(std::move(answer), r.id, service.admission);
         response.headers.push_back(varies);
         return response;
     }
     std::string bytes = encoded(
-        std::move(answer), *format, options.answer_limit, provenance.size() + most_hash, r.left);
-    if (stop.asked()) tag = {};  // another time it may get further
+        std::move(answer), *format, options.answer_limit, provenance.size() + max_hash, r.left);
+    if (stop.requested()) tag = {};  // a repeated request can get further
     Response response{
         .content_type = api::name_of(*format).media_type,
         .body = std::move(bytes),
         .tag = std::move(tag),
         .headers = {varies}};
-    if (!compress(response, r, [&] { return !turn.goes_on() || r.left(); })) end_unheard();
-    laps.lap("encode");
+    if (!compress(response, r, [&] { return !permit.renew() || r.left(); })) throw_client_left();
+    phases.end("encode");
     return response;
 }
 
 }  // namespace
 
 Response simulate(const Request& r, const Service& service, Stopwatch& watch) {
-    return answer(r, service, watch, [](const Request& request, const api::Reading& reading) {
+    return answer(r, service, watch, [](const Request& request, const api::ReadLimits& reading) {
         return asked_run(request, api::simulate_fields(), reading);
     });
 }
 
 Response manifold(const Request& r, const Service& service, Stopwatch& watch) {
-    return answer(r, service, watch, [](const Request& request, const api::Reading& reading) {
+    return answer(r, service, watch, [](const Request& request, const api::ReadLimits& reading) {
         return asked_run(request, api::manifold_fields(), reading);
     });
 }
@@ -217,15 +262,16 @@ Response identify(const Request& r, const Service& service, Stopwatch& watch) {
 }
 
 Response sweep(const Request& r, const Service& service, Stopwatch& watch) {
-    Turn turn = turn_of(r, service.gate, watch);  // to read the request
+    Permit permit = permit_for(r, service.admission, watch);  // for reading the request
     const RouteOptions& options = service.options;
-    const api::Stop stop = end_of_work(options.deadline, r, service.gate, turn);
+    const api::Stop stop = stop_conditions(options.deadline, r, service.admission, permit);
     api::SweepRequest request = read_in_time(r, service, [&] {
         return api::read_sweep_request(body_of(r, reading_of(options, stop)), options.sweep_points);
     });
-    Laps(watch, turn).lap("parse");
+    Phases(watch, permit).end("parse");
     return stream_sweep(
-        std::move(request), service.options.sweep_deadline, r.id, service.gate, service.metrics);
+        std::move(request), service.options.sweep_deadline, r.id, service.admission,
+        service.metrics);
 }
 
 }  // namespace vines::http

@@ -1,4 +1,6 @@
-// The answers of the routes that compute.
+// The routes that compute: /v1/simulate, /v1/manifold, /v1/sweep, /v1/identify.
+// Each function waits for admission, reads the request, computes, and encodes the answer. A Problem
+// that it throws is its answer. It records the durations of these phases in the stopwatch.
 #pragma once
 
 #include "http/routes.hpp"
@@ -6,19 +8,16 @@
 
 namespace vines::http {
 
-/// What a computation is made with.
 struct Service {
     const RouteOptions options;
-    ComputeGate& gate;
+    AdmissionControl& admission;
     Metrics& metrics;
 };
-
-// Each throws a Problem that is its answer, and tells the watch what it has done.
 
 Response simulate(const Request& request, const Service& service, Stopwatch& watch);
 Response manifold(const Request& request, const Service& service, Stopwatch& watch);
 Response sweep(const Request& request, const Service& service, Stopwatch& watch);
-/// Of a CSV file with the fields in the query, or JSON with all in the body.
+/// Takes a CSV file with the fields in the query, or JSON with everything in the body.
 Response identify(const Request& request, const Service& service, Stopwatch& watch);
 
 }  // namespace vines::http

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "api/problem.hpp"
-#include "http/problem_response.hpp"
+#include "http/message.hpp"
 
 namespace vines::http {
 
@@ -18,25 +18,25 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// From the first byte of a head to its last.
+// Time from the first byte of a head to its last.
 constexpr auto head_time = 10s;
-// For each so many bytes of a body, and its last ones.
+// Time for each further step of a body.
 constexpr auto body_time = 10s;
 constexpr std::size_t body_step = 65536;
 
-// Is always taken.
+// Bodies up to this size, in bytes, are accepted even when the memory budget is used up.
 constexpr std::size_t small_body = 65536;
 
-// What comes behind a last answer is read for so long and so much of it.
-constexpr auto ending_time = 3s;
-constexpr std::size_t most_dropped = 64 << 20;
+// Lingering close: longest time, and most bytes discarded.
+constexpr auto lingering_time = 3s;
+constexpr std::size_t max_dropped = 64 << 20;
 
-// Of one client in one go, so that the others have their turn.
-constexpr std::size_t in_one_go = 1 << 18;
+// Bytes read from one client before the others get their turn.
+constexpr std::size_t max_read = 1 << 18;
 
 constexpr std::string_view continue_line = "HTTP/1.1 100 Continue\r\n\r\n";
 
-/// Without waiting: the number of bytes, 0 at the end, nothing where there are none.
+/// Returns the number of bytes, 0 at the end or on an error, nothing if none have arrived.
 std::optional<std::size_t> receive(int socket, char* data, std::size_t size) {
     const ssize_t n = ::recv(socket, data, size, MSG_DONTWAIT);
     if (n >= 0) return static_cast<std::size_t>(n);
@@ -45,7 +45,7 @@ std::optional<std::size_t> receive(int socket, char* data, std::size_t size) {
 }
 
 void send_continue(int socket) {
-    // As the first bytes of an answer they find room.
+    // The socket's buffer is empty: these are the first bytes of an answer.
     static_cast<void>(
         ::send(socket, continue_line.data(), continue_line.size(), MSG_DONTWAIT | MSG_NOSIGNAL));
 }
@@ -53,13 +53,13 @@ void send_continue(int socket) {
 }  // namespace
 
 Connection::Connection(
-    int socket, std::string client, const Admission& admission, HeldMemory& memory)
+    int socket, std::string client, const HeadCheck& check_head, MemoryBudget& memory)
     : socket_(socket),
       client_(std::move(client)),
-      admission_(admission),
+      check_head_(check_head),
       held_(memory),
-      since_(Clock::now()),
-      deadline_(since_ + head_time) {}
+      waiting_since_(Clock::now()),
+      deadline_(waiting_since_ + head_time) {}
 
 Connection::~Connection() { ::close(socket_); }
 
@@ -68,7 +68,7 @@ Connection::Progress Connection::advance() {
         const Progress progress = read_on();
         if (progress == Progress::complete) complete_since_ = Clock::now();
         return progress;
-    } catch (const std::bad_alloc&) {  // of this one's bytes: the others go on
+    } catch (const std::bad_alloc&) {  // only this connection fails
         bytes_ = {};
         return Progress::ended;
     }
@@ -79,7 +79,7 @@ Connection::Progress Connection::read_on() {
     std::size_t taken = 0;
     for (;;) {
         const Progress progress = read_request();
-        if (progress != Progress::waits || taken >= in_one_go) return progress;
+        if (progress != Progress::waits || taken >= max_read) return progress;
         if (half_closed_) return Progress::ended;
         const std::optional<std::size_t> size = receive(socket_, piece.data(), piece.size());
         if (!size) return Progress::waits;
@@ -92,7 +92,6 @@ Connection::Progress Connection::read_on() {
     }
 }
 
-/// Of what has come.
 Connection::Progress Connection::read_request() {
     if (refused_) return Progress::complete;
     try {
@@ -100,32 +99,32 @@ Connection::Progress Connection::read_request() {
     } catch (const api::Problem& problem) {
         refuse(problem_response(problem));
     }
-    if (!refused_ && has_no_room()) refused_ = memory_refusal();
+    if (!refused_ && exceeds_memory()) refused_ = memory_refusal();
     if (refused_) return Progress::complete;
     const bool whole = head_ && bytes_.size() >= head_->content_length;
     return whole ? Progress::complete : Progress::waits;
 }
 
-/// For a large body: small ones are bounded by the number of connections.
-bool Connection::has_no_room() const {
+/// Large bodies only: the number of connections bounds the small ones.
+bool Connection::exceeds_memory() const {
     return head_ && head_->content_length > small_body && held_.memory().is_full();
 }
 
 void Connection::begin_request() {
-    since_ = Clock::now();
-    deadline_ = since_ + head_time;
+    waiting_since_ = Clock::now();
+    deadline_ = waiting_since_ + head_time;
 }
 
 void Connection::begin_waiting() {
-    since_ = Clock::now();
-    deadline_ = since_ + (bytes_.empty() ? Clock::duration(idle_time) : head_time);
+    waiting_since_ = Clock::now();
+    deadline_ = waiting_since_ + (bytes_.empty() ? Clock::duration(idle_time) : head_time);
     hold(0);
 }
 
 void Connection::begin_body() {
     head_ = reader_.take();
     bytes_.erase(0, reader_.size());
-    Admitted admitted = admission_(*head_);
+    CheckedHead admitted = check_head_(*head_);
     route_ = admitted.route;
     refused_ = std::move(admitted.refused);
     if (refused_ || bytes_.size() >= head_->content_length) return;
@@ -133,7 +132,6 @@ void Connection::begin_body() {
     if (head_->expects_continue) send_continue(socket_);
 }
 
-/// Of a body, in time.
 void Connection::expect_more() {
     expected_ = bytes_.size() + body_step;
     deadline_ = Clock::now() + body_time;
@@ -155,7 +153,7 @@ Exchange Connection::take() {
     exchange.head = std::move(*std::exchange(head_, {}));
     exchange.route = std::exchange(route_, nullptr);
     const std::size_t length = exchange.refused ? 0 : exchange.head.content_length;
-    // The large buffer goes with the body.
+    // Moves the large buffer out with the body.
     std::string rest = bytes_.substr(length);
     bytes_.resize(length);
     exchange.body = std::exchange(bytes_, std::move(rest));
@@ -164,37 +162,37 @@ Exchange Connection::take() {
     return exchange;
 }
 
-void Connection::begin_ending() {
-    ending_ = true;
+void Connection::begin_closing() {
+    closing_ = true;
     bytes_ = {};
     hold(0);
-    if (broken_) {
+    if (aborted_) {
         const linger reset{1, 0};
         ::setsockopt(socket_, SOL_SOCKET, SO_LINGER, &reset, sizeof reset);
     } else {
         ::shutdown(socket_, SHUT_WR);
     }
-    deadline_ = Clock::now() + (broken_ ? Clock::duration(0) : ending_time);
+    deadline_ = Clock::now() + (aborted_ ? Clock::duration(0) : lingering_time);
 }
 
-bool Connection::has_ended() {
-    if (broken_) return true;
+bool Connection::finish_closing() {
+    if (aborted_) return true;
     std::array<char, 65536> piece;
-    for (std::size_t taken = 0; taken < in_one_go;) {
+    for (std::size_t taken = 0; taken < max_read;) {
         const std::optional<std::size_t> size = receive(socket_, piece.data(), piece.size());
         if (!size) return false;
         taken += *size;
         dropped_ += *size;
-        if (*size == 0 || dropped_ > most_dropped) return true;
+        if (*size == 0 || dropped_ > max_dropped) return true;
     }
     return false;
 }
 
-Connection::Presence Connection::presence() const {
+Connection::PeerState Connection::peer_state() const {
     pollfd state{socket_, POLLIN | POLLRDHUP, 0};
-    if (::poll(&state, 1, 0) <= 0) return Presence::there;
-    if (state.revents & (POLLERR | POLLHUP | POLLNVAL)) return Presence::left;
-    return state.revents & POLLRDHUP ? Presence::in_doubt : Presence::there;
+    if (::poll(&state, 1, 0) <= 0) return PeerState::connected;
+    if (state.revents & (POLLERR | POLLHUP | POLLNVAL)) return PeerState::reset;
+    return state.revents & POLLRDHUP ? PeerState::half_closed : PeerState::connected;
 }
 
 }  // namespace vines::http

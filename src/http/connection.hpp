@@ -1,4 +1,7 @@
-// One client's connection: the bytes that have come, as one request after the other.
+// One client's connection. It reads the bytes that arrive, without blocking, and turns them into
+// one complete request after another.
+// Its time limits: 10 s for a head, 10 s for each further 64 KiB of a body, 60 s idle between
+// requests.
 #pragma once
 
 #include <chrono>
@@ -7,31 +10,34 @@
 #include <string>
 
 #include "http/head.hpp"
-#include "http/held_memory.hpp"
+#include "http/memory.hpp"
 #include "http/message.hpp"
 #include "http/route.hpp"
 
 namespace vines::http {
 
-/// A request that is there as a whole, or what is wrong with it: then nothing that comes behind it
-/// is read.
+struct WriteTimeout {
+    std::chrono::milliseconds time;   ///< total time to wait for the client to read
+    std::function<bool()> contended;  ///< whether other requests wait for this thread
+};
+
+/// A complete request, or the refusal of one; nothing is read after a refused request.
 struct Exchange {
     Head head;
     std::string body;
-    const Route* route = nullptr;  ///< of one that is not refused
+    const Route* route = nullptr;  ///< can be null if refused
     std::optional<Response> refused = {};
-    std::chrono::steady_clock::time_point since = {};  ///< it was complete
+    std::chrono::steady_clock::time_point since = {};  ///< time at which the request was complete
 };
 
-/// What is said of a request by its head alone, before its body is read: what is wrong with it, or
-/// the route that takes it, and a body as long as the head says.
-struct Admitted {
+/// Decision by a request's head, before its body is read: its route, or a refusal.
+struct CheckedHead {
     const Route* route = nullptr;
     std::optional<Response> refused = {};
 };
-using Admission = std::function<Admitted(const Head&)>;
+using HeadCheck = std::function<CheckedHead(const Head&)>;
 
-// From one request to the next.
+// Longest time between an answer and the next request.
 inline constexpr std::chrono::seconds idle_time(60);
 
 /// Used by one thread at a time.
@@ -39,85 +45,85 @@ class Connection {
 public:
     using Clock = std::chrono::steady_clock;
 
-    /// Takes over a socket that does not block. The others outlive it.
-    /// client: its address, for the log.
-    Connection(int socket, std::string client, const Admission& admission, HeldMemory& memory);
+    /// Takes ownership of a non-blocking socket; check_head and the budget must outlive the
+    /// connection. client: its address, for the log.
+    Connection(int socket, std::string client, const HeadCheck& check_head, MemoryBudget& memory);
     ~Connection();
     Connection(const Connection&) = delete;
     Connection& operator=(const Connection&) = delete;
 
     enum class Progress {
-        waits,     ///< for more bytes
+        waits,     ///< more bytes are needed
         complete,  ///< a request can be taken
-        ended      ///< by the client, with no request that is whole
+        ended      ///< closed by the client without a complete request
     };
-    /// Reads what is there, some of it at most, and waits for nothing.
+    /// Reads the bytes that have arrived, up to 256 KiB, without blocking.
     Progress advance();
-    /// Whether the complete request is answered however busy the server is.
-    bool is_light() const { return refused_ || route_->light; }
-    /// The complete request; its bytes are forgotten.
+    /// True if the event loop itself answers the complete request, however busy the workers are.
+    bool is_answered_on_loop() const { return refused_ || route_->on_event_loop; }
+    /// Returns the complete request and removes its bytes from the buffer.
     Exchange take();
-    /// Makes what has come of a request one that is refused, which can be taken.
+    /// Turns the incomplete request into a refused one, to be returned by take().
     void refuse(Response refusal);
 
-    /// When it is given up unless something comes to its end before: a head, a body, or the
-    /// client's last bytes.
+    /// Time at which the connection times out unless further bytes arrive.
     Clock::time_point deadline() const { return deadline_; }
-    /// Whether nothing of a request has come.
-    bool is_idle() const { return bytes_.empty() && !head_ && !is_ending(); }
-    /// Whether it has had its answers, and nothing has come since.
-    bool is_spare() const { return is_idle() && served_; }
-    /// Since it waits for what it waits for.
-    Clock::time_point since() const { return since_; }
-    /// Its answer is sent: now it may wait for another request.
+    /// True if no byte of a next request has arrived.
+    bool is_idle() const { return bytes_.empty() && !head_ && !is_closing(); }
+    /// True if idle after at least one answer.
+    bool is_idle_keep_alive() const { return is_idle() && served_; }
+    /// Start of the current wait for the client.
+    Clock::time_point waiting_since() const { return waiting_since_; }
+    /// To be called after an answer: waits for the next request.
     void begin_waiting();
 
-    /// Its answer could not be sent as a whole: it will end with a reset, so that nobody takes a
-    /// part for the whole.
-    void break_off() { broken_ = true; }
-    /// No answer follows. What its client still sends is read and dropped for a while: closed on
-    /// bytes that nobody read, a connection is reset, and the client may never see its answer.
-    void begin_ending();
-    bool is_ending() const { return ending_; }
-    /// Reads and drops; true once the client is done, too, or has sent too much.
-    bool has_ended();
+    /// To be called if an answer could not be sent completely: the connection will end with a
+    /// reset, so that the client does not take the part for the whole.
+    void abort() { aborted_ = true; }
+    /// Starts a lingering close: closes the sending side, and discards what the client still sends
+    /// for up to 3 s or 64 MiB. Closing with unread bytes would reset the connection, and the
+    /// client could lose its last answer.
+    void begin_closing();
+    bool is_closing() const { return closing_; }
+    /// Discards received bytes; true once the client has closed too, or sent too much.
+    bool finish_closing();
 
-    enum class Presence {
-        there,
-        in_doubt,  ///< the client has closed its own side: it may still read, or have left
-        left       ///< it has reset the connection
+    enum class PeerState {
+        connected,
+        half_closed,  ///< the client has closed its sending side; it can still be reading, or gone
+        reset         ///< the client has reset the connection
     };
-    Presence presence() const;
+    PeerState peer_state() const;
 
     int socket() const { return socket_; }
     const std::string& client() const { return client_; }
 
-    /// So many bytes of an answer are held for it, beside those that it has received.
+    /// Sets the bytes of answers held for the client; received bytes are added.
     void hold(std::size_t bytes) { held_.set(bytes + bytes_.capacity()); }
 
 private:
     Progress read_on();
     Progress read_request();
-    bool has_no_room() const;
+    bool exceeds_memory() const;
     void begin_request();
     void begin_body();
     void expect_more();
 
     const int socket_;
     const std::string client_;
-    const Admission& admission_;
-    HeldBytes held_;
-    std::string bytes_;  // received, and not yet taken
+    const HeadCheck& check_head_;
+    MemoryShare held_;
+    std::string bytes_;  // received, not yet taken
     HeadReader reader_;
-    std::optional<Head> head_;  // complete; what follows is its body
+    std::optional<Head> head_;  // once complete; bytes_ then holds its body
     const Route* route_ = nullptr;
     Clock::time_point complete_since_;
-    std::size_t expected_ = 0;  // bytes of it, before the deadline
+    std::size_t expected_ = 0;  // size of the body that must be reached before the deadline
     std::optional<Response> refused_;
-    bool half_closed_ = false;  // the client sends no more
-    bool ending_ = false, broken_ = false, served_ = false;
+    bool half_closed_ = false;  // the client has closed its sending side
+    bool closing_ = false, aborted_ = false, served_ = false;
     std::size_t dropped_ = 0;
-    Clock::time_point since_, deadline_;
+    Clock::time_point waiting_since_, deadline_;
 };
 
 }  // namespace vines::http

@@ -1,26 +1,35 @@
-// How the bytes of a body travel: compressed, or not at all where the client has them already.
+// The form in which an answer is sent (RFC 9110, 8): its format, chosen by Accept; its compression,
+// chosen by Accept-Encoding; its ETag.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "api/format/encode.hpp"
+#include "http/message.hpp"
+
 namespace vines::http {
 
-/// gzip, level 1: a third of the size in a tenth of level 6's time, for columns of numbers. Throws
-/// std::runtime_error where zlib fails.
+/// The format that Accept prefers (RFC 9110, 12.5.1); the first one, JSON, among equals or if the
+/// header is empty. Problem 406 if it accepts none.
+api::Format accepted_format(std::string_view accept);
+
+/// gzip at level 1: for columns of numbers a third of the size in a tenth of level 6's time. Throws
+/// std::runtime_error if zlib fails.
 std::string gzip(const std::string& text);
-/// Nothing once it is given up, which is asked before each MB.
+/// Returns nothing once gives_up() is true; it is polled before each MB.
 std::optional<std::string> gzip(std::string_view text, const std::function<bool()>& gives_up);
 
-/// The same of a text that comes in pieces.
+/// Compresses a text that comes in pieces.
 class Gzip {
 public:
     Gzip();
     ~Gzip();
-    /// What can be told of the whole by now; with `last` all.
+    /// Returns the compressed bytes available so far; with `last` all that remain.
     std::string add(std::string_view text, bool last = false);
 
 private:
@@ -28,16 +37,22 @@ private:
     const std::unique_ptr<Stream> stream_;
 };
 
-/// Whether a request with this header Accept-Encoding takes gzip (RFC 9110, 12.5.3): by its name,
-/// or by "*" where its name is not there, and would not rather have the body as it is. Empty: no.
+/// True if Accept-Encoding (RFC 9110, 12.5.3) accepts gzip, by name or else by "*", and does not
+/// prefer the uncompressed body. An empty header does not accept it.
 bool accepts_gzip(std::string_view accept_encoding);
 
-/// The header ETag of a body, by a hash after FNV-1a, of 64 bits at a time: tells its versions
-/// apart, guards against nothing.
+/// A weak ETag: a 64-bit hash of the body derived from FNV-1a, not safe against forgery.
 std::string entity_tag(const std::string& body);
 
-/// Whether a request with this header If-None-Match (RFC 9110, 13.1.2) names the tag. ("*" is for
-/// who knows that there is an answer.)
-bool names_tag(std::string_view if_none_match, std::string_view tag);
+/// True if If-None-Match (RFC 9110, 13.1.2) lists the tag. The caller handles "*".
+bool matches_tag(std::string_view if_none_match, std::string_view tag);
+
+// Smallest body that is compressed, in bytes; below it compression takes longer than sending.
+inline constexpr std::size_t compress_from = 65536;
+
+/// Compresses the body in place if it is large enough and the client accepts gzip. Called where the
+/// answer is computed, because a large body takes longer to compress than to send. False if
+/// gives_up() returned true; it is polled before each MB.
+bool compress(Response& response, const Request& request, const std::function<bool()>& gives_up);
 
 }  // namespace vines::http

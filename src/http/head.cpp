@@ -4,12 +4,17 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdint>
+#include <random>
+#include <string_view>
 #include <tuple>
 
 #include "api/problem.hpp"
 #include "http/header_text.hpp"
 
 namespace vines::http {
+
+// --- Parsing of heads ---
 
 namespace {
 
@@ -23,7 +28,7 @@ bool is_letter_or_digit(char c) {
     return (c >= '0' && c <= '9') || (lower_case(c) >= 'a' && lower_case(c) <= 'z');
 }
 
-/// RFC 9110, 5.6.2.
+/// True for a token (RFC 9110, 5.6.2).
 bool is_token(std::string_view text) {
     const auto allowed = [](char c) {
         return is_letter_or_digit(c) ||
@@ -36,7 +41,7 @@ bool is_printable(std::string_view text) {
     return std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c < 0x7f; });
 }
 
-/// HOST or HOST:PORT (RFC 3986, 3.2.2), or nothing at all.
+/// True for HOST or HOST:PORT (RFC 3986, 3.2.2), or an empty text.
 bool is_authority(std::string_view text) {
     const bool in_brackets = text.starts_with('[');
     if (in_brackets && text.find(']') == std::string_view::npos) return false;
@@ -52,7 +57,7 @@ bool is_authority(std::string_view text) {
            port.find_first_not_of("0123456789", 1) == std::string_view::npos;
 }
 
-/// Of a header's value, which may hold blanks and bytes of any other character set.
+/// True if a header's value holds a control character; blanks and bytes above 127 are allowed.
 bool has_control(std::string_view text) {
     return std::any_of(text.begin(), text.end(), [](char c) {
         const auto byte = static_cast<unsigned char>(c);
@@ -60,7 +65,7 @@ bool has_control(std::string_view text) {
     });
 }
 
-/// Of a target in absolute form, as a client sends it to a proxy: whom it names, and the rest.
+/// Splits a target in absolute form, as sent to a proxy, into authority and path.
 std::pair<std::string, std::string> split_absolute(std::string_view target) {
     const std::size_t begin = std::string_view("http://").size();
     const std::size_t end = std::min(target.find_first_of("/?", begin), target.size());
@@ -77,15 +82,15 @@ std::size_t length_of(std::string_view text) {
     return length;
 }
 
-/// Of those that are read here: it may stand there several times, with a part of its list each (RFC
-/// 9110, 5.3). Two of Authorization are no key.
-bool is_list(std::string_view name) {
+/// True for those headers that the server reads and that a client can send several times, each with
+/// a part of a list (RFC 9110, 5.3). Authorization is included: two of them, joined, match no key.
+bool is_list_header(std::string_view name) {
     return name == "accept" || name == "accept-encoding" || name == "authorization" ||
            name == "if-none-match";
 }
 
 /// The elements of all comma-separated lists of a header, in lower case.
-std::vector<std::string> listed(const Head& head, std::string_view header) {
+std::vector<std::string> list_elements(const Head& head, std::string_view header) {
     std::vector<std::string> elements;
     for (const auto& [name, value] : head.headers) {
         if (name != header) continue;
@@ -95,8 +100,8 @@ std::vector<std::string> listed(const Head& head, std::string_view header) {
     return elements;
 }
 
-bool lists(const Head& head, std::string_view header, std::string_view word) {
-    const std::vector<std::string> elements = listed(head, header);
+bool list_contains(const Head& head, std::string_view header, std::string_view word) {
+    const std::vector<std::string> elements = list_elements(head, header);
     return std::find(elements.begin(), elements.end(), word) != elements.end();
 }
 
@@ -131,12 +136,12 @@ bool HeadReader::read(std::string_view bytes) {
         const std::size_t end = bytes.find('\n', std::max(read_, searched_));
         searched_ = bytes.size();
         const std::size_t size = end == std::string_view::npos ? bytes.size() : end + 1;
-        if (version_.empty() && size > most_target + 32)  // a method and a version beside it
+        if (version_.empty() && size > max_target + 32)  // plus method and version
             throw Problem(
-                414, fmt::format("the request's target is longer than {} bytes", most_target));
-        if (size > most_bytes)
+                414, fmt::format("the request's target is longer than {} bytes", max_target));
+        if (size > max_bytes)
             throw Problem(
-                431, fmt::format("the request's headers are longer than {} bytes", most_bytes));
+                431, fmt::format("the request's headers are longer than {} bytes", max_bytes));
         if (end == std::string_view::npos) return false;
         if (end == read_ || bytes[end - 1] != '\r') malformed("a line must end with CR LF");
         const std::string_view line = bytes.substr(read_, end - 1 - read_);
@@ -148,7 +153,8 @@ bool HeadReader::read(std::string_view bytes) {
 
 void HeadReader::take_line(std::string_view line) {
     const bool is_first = read_ == line.size() + 2;
-    if (version_.empty() && line.empty() && is_first) return;  // RFC 9112, 2.2
+    if (version_.empty() && line.empty() && is_first)
+        return;  // empty line before the request (RFC 9112, 2.2)
     if (version_.empty()) return take_request_line(line);
     if (!line.empty()) return take_header(line);
     finish();
@@ -162,13 +168,14 @@ void HeadReader::take_request_line(std::string_view line) {
         malformed("its first line must be METHOD /PATH HTTP/1.1");
     const std::string_view target = line.substr(first + 1, last - first - 1);
     head_.method = line.substr(0, first);
-    if (!is_token(head_.method)) malformed("its method is none");
+    if (!is_token(head_.method)) malformed("invalid method");
     version_ = line.substr(last + 1);
     if (version_.size() != 8 || version_.compare(0, 5, "HTTP/") != 0)
         malformed("its first line must end with HTTP/1.1");
     if (version_ != "HTTP/1.1" && version_ != "HTTP/1.0")
-        throw Problem(505, "this service speaks HTTP/1.1 and HTTP/1.0");
-    if (target.empty() || !is_printable(target)) malformed("its target holds a blank or a control");
+        throw Problem(505, "this service supports HTTP/1.1 and HTTP/1.0");
+    if (target.empty() || !is_printable(target))
+        malformed("its target contains a blank or a control character");
     if (lower_case(target.substr(0, 7)) == "http://")
         std::tie(head_.host, head_.target) = split_absolute(target);
     else if (target[0] == '/') head_.target = target;
@@ -178,15 +185,15 @@ void HeadReader::take_request_line(std::string_view line) {
 void HeadReader::take_header(std::string_view line) {
     const std::size_t colon = line.find(':');
     const std::string_view name = line.substr(0, colon);
-    // A blank before the colon, or at the begin of a line that goes on with the one before.
+    // Also refuses a blank before the colon, and a line that starts with a blank (line folding).
     if (colon == std::string_view::npos || !is_token(name))
         malformed("a header must be NAME: VALUE, without a blank before the colon");
     const std::string_view value = trimmed(line.substr(colon + 1));
-    if (has_control(value)) malformed("a header's value holds a control character");
-    if (head_.headers.size() >= most_headers)
-        throw Problem(431, fmt::format("the request has more than {} headers", most_headers));
+    if (has_control(value)) malformed("a header's value contains a control character");
+    if (head_.headers.size() >= max_headers)
+        throw Problem(431, fmt::format("the request has more than {} headers", max_headers));
     std::string lower = lower_case(name);
-    if (is_list(lower)) {
+    if (is_list_header(lower)) {
         const auto before = std::find_if(
             head_.headers.begin(), head_.headers.end(),
             [&lower](const auto& header) { return header.first == lower; });
@@ -206,31 +213,87 @@ void HeadReader::finish() {
     };
     const bool is_old = version_ == "HTTP/1.0";
     if (times("host") > 1 || (times("host") == 0 && !is_old))
-        malformed("it must have one header Host");
+        malformed("it must have exactly one Host header");
     if (!is_authority(head_.host) || !is_authority(head_.header("host")))
-        malformed("it must be meant for a HOST or a HOST:PORT");
+        malformed("its Host must be HOST or HOST:PORT");
     if (head_.host.empty()) head_.host = head_.header("host");
     if (times("content-length") > 1)
         throw Problem(400, "the Content-Length must be one whole number");
     if (head_.has("transfer-encoding")) {
         if (head_.has("content-length") || is_old)
-            malformed("it has a Transfer-Encoding beside a Content-Length, or in HTTP/1.0");
+            malformed("it has a Transfer-Encoding together with a Content-Length, or in HTTP/1.0");
         throw Problem(411, "send the body with a Content-Length, not in chunks");
     }
     if (head_.has("content-length"))
         head_.content_length = length_of(head_.header("content-length"));
     head_.takes_chunks = !is_old;
-    const bool ends = lists(head_, "connection", "close");
-    head_.keep_alive = !ends && (!is_old || lists(head_, "connection", "keep-alive"));
+    const bool ends = list_contains(head_, "connection", "close");
+    head_.keep_alive = !ends && (!is_old || list_contains(head_, "connection", "keep-alive"));
     if (head_.has("expect") && !is_old) {
-        const std::vector<std::string> expected = listed(head_, "expect");
+        const std::vector<std::string> expected = list_elements(head_, "expect");
         const auto others = std::count_if(expected.begin(), expected.end(), [](const auto& one) {
             return one != "100-continue";
         });
         if (others > 0 || expected.empty())
-            throw Problem(417, "this service can meet no expectation but 100-continue");
+            throw Problem(417, "the only supported expectation is 100-continue");
         head_.expects_continue = true;
     }
+}
+
+// --- Request ids ---
+
+namespace {
+
+constexpr std::size_t max_id_length = 64;
+
+bool is_hexadecimal(std::string_view text) {
+    return text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+bool is_word(std::string_view text) {
+    const auto allowed = [](char c) {
+        return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+               c == '.' || c == '_' || c == '-';
+    };
+    return !text.empty() && text.size() <= max_id_length &&
+           std::all_of(text.begin(), text.end(), allowed);
+}
+
+bool is_zero(std::string_view digits) {
+    return digits.find_first_not_of('0') == std::string_view::npos;
+}
+
+/// Removes `number` hexadecimal digits and the dash after them from the front of a text; returns
+/// the digits, or nothing if they are missing.
+std::string_view next_digits(std::string_view& text, std::size_t number) {
+    const std::string_view digits = text.substr(0, number);
+    const bool ends = text.size() <= number || text[number] == '-';
+    text.remove_prefix(std::min(text.size(), number + 1));
+    return digits.size() == number && ends && is_hexadecimal(digits) ? digits : std::string_view();
+}
+
+/// The trace-id of VERSION-TRACE-PARENT-FLAGS (2, 32, 16 and 2 digits; later versions can have more
+/// fields); empty if the header is invalid.
+std::string_view trace_of(std::string_view traceparent) {
+    constexpr std::size_t whole = 55;
+    std::string_view rest = traceparent;
+    const std::string_view version = next_digits(rest, 2), trace = next_digits(rest, 32),
+                           parent = next_digits(rest, 16), flags = next_digits(rest, 2);
+    const bool is_known =
+        version == "00" ? traceparent.size() == whole : !version.empty() && version != "ff";
+    return is_known && !is_zero(trace) && !is_zero(parent) && !flags.empty() ? trace
+                                                                             : std::string_view();
+}
+
+}  // namespace
+
+std::string request_id(const Head& head) {
+    if (const std::string_view given = head.header("x-request-id"); is_word(given))
+        return std::string(given);
+    if (const std::string_view trace = trace_of(head.header("traceparent")); !trace.empty())
+        return std::string(trace);
+    thread_local std::mt19937_64 random(std::random_device{}());
+    return fmt::format("{:016x}", static_cast<std::uint64_t>(random()));
 }
 
 }  // namespace vines::http

@@ -1,5 +1,6 @@
-// The head of a request (RFC 9112), read strictly: where two readers could take the same bytes for
-// different requests, it is refused.
+// The head of a request: request line and headers (RFC 9112).
+// It is read strictly. Where two programs could take the same bytes for different requests (request
+// smuggling), the request is refused.
 #pragma once
 
 #include <cstddef>
@@ -13,34 +14,34 @@ namespace vines::http {
 struct Head {
     std::string method;
     std::string target;  ///< path and query
-    std::string host;    ///< whom it is meant for: of Host, or of a target in absolute form
-    /// Names in lower case, values without blanks around them.
+    std::string host;    ///< authority: of Host, or of a target in absolute form
+    /// Names in lower case, values without surrounding blanks.
     std::vector<std::pair<std::string, std::string>> headers;
     std::size_t content_length = 0;
-    bool keep_alive = true;         ///< whether another request may follow on its connection
-    bool takes_chunks = true;       ///< whether an answer without a length may come in chunks
-    bool expects_continue = false;  ///< whether its client waits before it sends the body
+    bool keep_alive = true;         ///< the connection can be reused
+    bool takes_chunks = true;       ///< an answer without a length can be sent in chunks
+    bool expects_continue = false;  ///< the client waits for 100 before it sends the body
 
-    std::string_view path() const;   ///< of the target, as it was sent
-    std::string_view query() const;  ///< behind the "?"
-    /// The value of a header, by its name in lower case; empty where it is not there.
+    std::string_view path() const;   ///< of the target, not decoded
+    std::string_view query() const;  ///< after the "?"
+    /// The value of a header by its name in lower case; empty if missing.
     std::string_view header(std::string_view name) const;
     bool has(std::string_view name) const;
 };
 
-/// Reads a head from bytes that come bit by bit, each of them once.
+/// Incremental parser: reads each byte of a head once.
 class HeadReader {
 public:
-    /// bytes: all of this request's so far. True once the head is complete. Throws Problem (400,
-    /// 411, 414, 417, 431, 505) as soon as it can be no request that the service takes; its
-    /// connection has to end then, because nobody knows where the next request begins.
+    /// bytes: all bytes of this request so far. Returns true once the head is complete. Throws
+    /// Problem (400, 411, 414, 417, 431, 505) as soon as the head is invalid or unsupported; the
+    /// connection must then be closed, because the start of the next request is unknown.
     bool read(std::string_view bytes);
     Head take() { return std::move(head_); }
-    std::size_t size() const { return read_; }  ///< of the complete head
+    std::size_t size() const { return read_; }  ///< bytes of the complete head
 
-    static constexpr std::size_t most_bytes = 16384;
-    static constexpr std::size_t most_target = 8192;
-    static constexpr std::size_t most_headers = 100;
+    static constexpr std::size_t max_bytes = 16384;
+    static constexpr std::size_t max_target = 8192;
+    static constexpr std::size_t max_headers = 100;
 
 private:
     void take_line(std::string_view line);
@@ -50,9 +51,14 @@ private:
 
     Head head_;
     std::string version_;
-    std::size_t read_ = 0;      // up to the end of the last complete line
-    std::size_t searched_ = 0;  // for the end of the next one
+    std::size_t read_ = 0;      // end of the last complete line
+    std::size_t searched_ = 0;  // bytes searched for the end of the next line
     bool complete_ = false;
 };
+
+/// The request's id, by which its client finds it in the log: the header X-Request-ID, if it is up
+/// to 64 letters, digits, ".", "_" or "-"; else the trace-id of a traceparent (W3C Trace Context);
+/// else 16 random hexadecimal digits.
+std::string request_id(const Head& head);
 
 }  // namespace vines::http

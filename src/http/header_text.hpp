@@ -1,4 +1,4 @@
-// The values of headers, taken apart.
+// Parsing of header values.
 #pragma once
 
 #include <algorithm>
@@ -8,14 +8,13 @@
 
 namespace vines::http {
 
-/// Without blanks around it.
 inline std::string_view trimmed(std::string_view text) {
     constexpr std::string_view blanks = " \t";
     text.remove_prefix(std::min(text.size(), text.find_first_not_of(blanks)));
     return text.substr(0, text.find_last_not_of(blanks) + 1);
 }
 
-/// Takes what stands before the separator, without blanks around it, from the front of a text.
+/// Removes the part before the separator from a text; returns it without surrounding blanks.
 inline std::string_view next_part(std::string_view& text, char separator) {
     const std::string_view part = text.substr(0, text.find(separator));
     text.remove_prefix(std::min(text.size(), part.size() + 1));
@@ -32,13 +31,13 @@ inline std::string lower_case(std::string_view text) {
     return lower;
 }
 
-/// What a header Content-Type names, in lower case and without its parameters.
+/// The media type of a Content-Type, in lower case and without parameters.
 inline std::string media_type(std::string_view content_type) {
     return lower_case(next_part(content_type, ';'));
 }
 
-/// An element of a header that lists what a client takes: "gzip;q=0.5". RFC 9110, 12.4.2: a weight
-/// of 0 refuses, and so does one that is no number.
+/// One element of an Accept or Accept-Encoding header, such as "gzip;q=0.5" (RFC 9110, 12.4.2). A
+/// weight of 0 refuses it, and so does a weight that is not a number.
 struct Preference {
     std::string name;  ///< in lower case
     double weight = 1;

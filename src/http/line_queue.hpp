@@ -1,4 +1,4 @@
-// Lines on their way from the threads that compute them to the one that sends them.
+// Queue of a sweep's lines between the threads that compute them and the one that sends them.
 #pragma once
 
 #include <atomic>
@@ -22,7 +22,7 @@ public:
         }
         changed_.notify_all();
     }
-    /// No line follows.
+    /// To be called after the last line.
     void finish() {
         {
             const std::lock_guard lock(mutex_);
@@ -32,11 +32,11 @@ public:
     }
 
     struct Taken {
-        std::string text;       ///< the lines since the last call
-        std::size_t count = 0;  ///< of all lines so far
-        bool finished = false;  ///< and that is all
+        std::string text;       ///< lines since the last call
+        std::size_t count = 0;  ///< lines so far
+        bool finished = false;  ///< no more will come
     };
-    /// Waits for something to come, for so long at most. By one thread at a time.
+    /// Waits for lines, for at most `at_most`. One thread at a time.
     Taken take(std::chrono::milliseconds at_most) {
         std::unique_lock lock(mutex_);
         changed_.wait_for(lock, at_most, [this] { return !text_.empty() || finished_; });
@@ -47,21 +47,21 @@ public:
         return taken;
     }
 
-    /// Whether the lines come faster than they are taken: who computes more should wait.
-    bool is_full() const { return size_ > most_; }
-    /// Until that is over, for so long at most.
-    void wait_for_room(std::chrono::milliseconds at_most) {
+    /// True while the queue is full; producers should wait.
+    bool is_full() const { return size_ > capacity_; }
+    /// Waits until the queue is not full, for at most `at_most`.
+    void wait_while_full(std::chrono::milliseconds at_most) {
         std::unique_lock lock(mutex_);
         changed_.wait_for(lock, at_most, [this] { return !is_full(); });
     }
 
 private:
-    static constexpr std::size_t most_ = 1 << 20;  // bytes
+    static constexpr std::size_t capacity_ = 1 << 20;  // bytes
 
     std::mutex mutex_;
     std::condition_variable changed_;
     std::string text_;
-    std::atomic<std::size_t> size_ = 0;  // of the text; read without the mutex by who only looks
+    std::atomic<std::size_t> size_ = 0;  // bytes of text_; is_full() reads it without the mutex
     std::size_t count_ = 0;
     bool finished_ = false;
 };

@@ -23,12 +23,11 @@ namespace vines::http {
 namespace {
 
 LogFormat format = LogFormat::json;
-std::atomic<std::size_t> all_dropped = 0;
+std::atomic<std::size_t> dropped_total = 0;
 
-// Characters, about.
+// Typical length of a line, characters.
 constexpr std::size_t usual_line = 256;
 
-/// A line as it is written, its fields in the order in which a reader wants them.
 class Line {
 public:
     explicit Line(std::string_view level) {
@@ -41,7 +40,7 @@ public:
     }
     void add(std::string_view name, std::string_view text) {
         if (api::needs_no_escape(text)) return put(name, text, "\"");
-        // Whatever bytes a path has in it.
+        // A path can contain any bytes: invalid UTF-8 is replaced.
         using Json = nlohmann::json;
         put(name, Json(text).dump(-1, ' ', false, Json::error_handler_t::replace));
     }
@@ -69,7 +68,7 @@ const char* level_of(int status) {
     return status < 500 || status == 503 ? "warning" : "error";
 }
 
-/// Throws nothing: a line that cannot be written is no reason to fail.
+/// Never throws: a line that cannot be written must not make a request fail.
 template <class Add>
 void log(std::string_view level, Add add) {
     try {
@@ -79,14 +78,14 @@ void log(std::string_view level, Add add) {
     } catch (...) {}
 }
 
-/// Standard error, as far as somebody reads it: a full pipe would hold every thread that writes to
-/// it. What finds no room is dropped, and counted in a line once there is some.
-class Unhindered : public spdlog::sinks::base_sink<std::mutex> {
+/// Writes to stderr without blocking: a full pipe would stop every thread that logs. Lines that do
+/// not fit are dropped; the next line that fits is preceded by their count.
+class NonBlockingSink : public spdlog::sinks::base_sink<std::mutex> {
 protected:
     void sink_it_(const spdlog::details::log_msg& message) override {
-        if (!has_room()) {
+        if (!is_writable()) {
             ++dropped_;
-            ++all_dropped;
+            ++dropped_total;
             return;
         }
         if (dropped_ > 0) {
@@ -101,9 +100,9 @@ protected:
     void flush_() override {}
 
 private:
-    /// For two lines: a pipe is writable as long as there is room for a page, and lines are shorter
-    /// than half of one, as long as what they echo is.
-    static bool has_room() {
+    /// True if two lines fit: a pipe is writable while it has space for a page, and lines are
+    /// shorter than half a page because the texts they quote are shortened.
+    static bool is_writable() {
         pollfd state{STDERR_FILENO, POLLOUT, 0};
         return ::poll(&state, 1, 0) > 0 && (state.revents & POLLOUT);
     }
@@ -111,20 +110,20 @@ private:
         static_cast<void>(!::write(STDERR_FILENO, text.data(), text.size()));
     }
 
-    std::size_t dropped_ = 0;  // since the last one that was not
+    std::size_t dropped_ = 0;  // since the last written line
 };
 
 }  // namespace
 
-std::size_t log_lines_dropped() { return all_dropped; }
+std::size_t log_lines_dropped() { return dropped_total; }
 
 void start_log(LogFormat chosen) {
     format = chosen;
-    auto log = std::make_shared<spdlog::logger>("vines", std::make_shared<Unhindered>());
+    auto log = std::make_shared<spdlog::logger>("vines", std::make_shared<NonBlockingSink>());
     spdlog::set_default_logger(log);
 }
 
-void log_served(const Served& served) {
+void log_request(const ServedRequest& served) {
     const bool probe = served.path == "/livez" || served.path == "/readyz" ||
                        served.path == "/healthz" || served.path == "/metrics";
     if (probe && served.status == 200) return;
@@ -141,14 +140,14 @@ void log_served(const Served& served) {
     });
 }
 
-void log_cut_off(const Served& unanswered) {
+void log_unanswered(const ServedRequest& request) {
     log("warning", [&](Line& line) {
-        line.add("method", api::shortened(unanswered.method));
-        line.add("path", api::shortened(unanswered.path));
-        line.add("ms", unanswered.ms);
-        line.add("client", unanswered.client);
-        line.add("request_id", unanswered.id);
-        line.add("what", "the end of the service cut it off");
+        line.add("method", api::shortened(request.method));
+        line.add("path", api::shortened(request.path));
+        line.add("ms", request.ms);
+        line.add("client", request.client);
+        line.add("request_id", request.id);
+        line.add("what", "the service ended before the answer was sent");
     });
 }
 

@@ -1,4 +1,4 @@
-// The service's log: one line of JSON for each request, on stderr.
+// The service's log: one line of JSON (or text) per request on stderr.
 #pragma once
 
 #include <exception>
@@ -10,36 +10,34 @@ namespace vines::http {
 
 enum class LogFormat { json, text };
 
-/// Makes the lines below go to stderr, each at once.
+/// Sets the log's format and destination, stderr; must be called before the functions below.
 void start_log(LogFormat format);
 
-/// One request, and its answer.
-struct Served {
+/// A request and its answer, for the log and the metrics.
+struct ServedRequest {
     std::string id, client, method, path;
-    std::string route;  ///< that its answer came from: "page" for all files, "none" for no route
-    std::string lacking = {};  ///< of a 503, what there was no more of
+    std::string route;         ///< of the answer; "page" for all files, "none" without a route
+    std::string lacking = {};  ///< of a 503: the exhausted resource
     int status = 0;
-    double ms = 0;          ///< from its last byte to its answer's
-    Timing timing = {};     ///< of its computation
+    double ms = 0;          ///< from the request's last byte to the answer's
+    Timing timing = {};     ///< of the computation
     std::size_t bytes = 0;  ///< sent
-    bool left = false;      ///< the client, before all was sent
+    bool left = false;      ///< the client left before all was sent
 };
-/// A line, of the level that the status stands for; none of a probe that went well.
-void log_served(const Served& served);
+/// Logs a request, at the level of its status; successful probes are not logged.
+void log_request(const ServedRequest& served);
 
-/// A line about one that the end of the process leaves without its answer.
-void log_cut_off(const Served& unanswered);
+/// Logs a request that the end of the process leaves unanswered.
+void log_unanswered(const ServedRequest& request);
 
-/// Why a request failed. Throws nothing, whatever was thrown: an exception here would end the
-/// process.
+/// Logs why a request failed. Never throws: an exception here would end the process.
 void log_failure(
     const std::string& path, const std::string& request_id, const std::exception_ptr& thrown);
 
-/// What the service does by itself.
 void log_event(const std::string& what);
 void log_warning(const std::string& what);
 
-/// That nobody read in time, so far.
+/// Lines dropped so far because stderr was full.
 std::size_t log_lines_dropped();
 
 }  // namespace vines::http

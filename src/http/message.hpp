@@ -1,4 +1,4 @@
-// A request and a response as the routes see them: no library type in sight.
+// Request and response as the routes see them, independent of the HTTP library.
 #pragma once
 
 #include <chrono>
@@ -9,53 +9,63 @@
 #include <utility>
 #include <vector>
 
+#include "api/parse.hpp"
 #include "api/problem.hpp"
-#include "api/query.hpp"
 #include "http/stopwatch.hpp"
 
 namespace vines::http {
 
-// How soon a client that has left ends what is computed for it.
-inline constexpr auto presence_look = std::chrono::milliseconds(50);
+// Interval at which a computation checks whether its client has left.
+inline constexpr auto client_check_interval = std::chrono::milliseconds(50);
 
 struct Request {
     std::string method, path;
     api::Query query;
     std::string content_type;
     std::string body;
-    std::string accept = {};           ///< the header Accept
-    std::string accept_encoding = {};  ///< the header Accept-Encoding
-    std::string known_tags = {};       ///< the header If-None-Match
-    std::string id = {};               ///< by which the log names it
-    /// Whether the client has left and nobody waits for the answer.
+    std::string accept = {};           ///< header Accept
+    std::string accept_encoding = {};  ///< header Accept-Encoding
+    std::string if_none_match = {};    ///< header If-None-Match
+    std::string id = {};               ///< see request_id()
+    /// Returns true once the client has left.
     std::function<bool()> left = [] { return false; };
 };
 
-/// The connection of an answer that is sent bit by bit.
+/// Destination of an answer that is sent in pieces.
 class Writer {
 public:
     virtual ~Writer() = default;
-    virtual bool write(std::string_view text) = 0;  ///< false: the client is gone
-    virtual bool present() = 0;                     ///< whether it still is there
+    virtual bool write(std::string_view text) = 0;  ///< false: the client has left
+    virtual bool connected() = 0;                   ///< false once the client has left
 };
 
 struct Response {
     int status = 200;
     std::string content_type = "application/json";
     std::string body = {};
-    std::string_view gzipped = {};  ///< the body compressed, where that is there already
-    std::size_t gzipped_from = 0;   ///< bytes of the body before it was compressed; 0: it is not
-    bool immutable = false;         ///< whether what its path names never changes
-    std::string tag = {};           ///< the header ETag; without one it is that of the body
+    std::string_view gzipped = {};  ///< the compressed body, if precomputed
+    std::size_t uncompressed_size =
+        0;                   ///< size of the uncompressed body; 0: body is not compressed
+    bool immutable = false;  ///< the content of this path never changes
+    std::string tag = {};    ///< header ETag; empty: computed from the body
     std::vector<std::pair<std::string, std::string>> headers = {};
-    /// In place of a body: writes it and returns at its end, or before that with false, which
-    /// breaks the connection off, so that nobody takes a part for the whole.
+    /// Writes the answer instead of a body; false closes the connection with a reset.
     std::function<bool(Writer&)> stream = {};
-    std::size_t held = 0;       ///< bytes that a stream keeps until its end, about
-    bool compressible = false;  ///< of a stream: for clients that take gzip
-    /// What is wrong with the request: its body is made up when it is sent.
+    std::size_t held = 0;       ///< bytes a stream holds until its end, approximately
+    bool compressible = false;  ///< the stream can be sent gzipped
+    /// For an error: the body is made from it when sent.
     std::optional<api::Problem> problem = {};
-    Timing timing = {};  ///< the header Server-Timing
+    Timing timing = {};  ///< header Server-Timing
 };
+
+/// A problem document (RFC 9457) as a response; 503 with Retry-After. Its body, which contains the
+/// request's id, is made when it is sent.
+Response problem_response(const api::Problem& problem);
+Response problem_response(int status, const std::string& detail);
+
+/// 503: the memory limit is reached.
+Response memory_refusal();
+/// 503: the server is stopping; the request can be sent to another server.
+Response stopping_refusal();
 
 }  // namespace vines::http

@@ -4,18 +4,84 @@
 #include <prometheus/histogram.h>
 #include <prometheus/registry.h>
 #include <prometheus/text_serializer.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <mutex>
+#include <sstream>
+#include <string>
+#include <system_error>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "api/version.hpp"
-#include "http/process_load.hpp"
 
 namespace vines::http {
+
+/*PL*/
+/// Resource use of this process, by the names of Prometheus' client libraries; 0 if unknown.
+struct ProcessLoad {
+    double cpu_seconds = 0;
+    double start_time_seconds = 0;  ///< since 1970
+    double resident_memory_bytes = 0, virtual_memory_bytes = 0;
+    double open_fds = 0, max_fds = 0;
+    double threads = 0;
+};
+
+ProcessLoad process_load();
+
+namespace {
+
+/// Boot time of the system, seconds since 1970.
+double boot_time() {
+    std::ifstream in("/proc/stat");
+    for (std::string word; in >> word;) {
+        double seconds = 0;
+        if (word == "btime" && in >> seconds) return seconds;
+    }
+    return 0;
+}
+
+/// Reads /proc/self/stat (proc(5)); the name in parentheses can contain any character.
+void read_stat(ProcessLoad& load) {
+    std::ifstream in("/proc/self/stat");
+    const std::string text(std::istreambuf_iterator<char>(in), {});
+    const std::size_t name_ends = text.rfind(')');
+    if (name_ends == std::string::npos) return;
+    std::istringstream fields(text.substr(name_ends + 1));
+    std::string skipped;
+    double user = 0, system = 0, since_boot = 0, pages = 0;
+    for (int field = 3; field < 14; ++field) fields >> skipped;
+    fields >> user >> system;  // 14, 15
+    for (int field = 16; field < 20; ++field) fields >> skipped;
+    fields >> load.threads >> skipped >> since_boot;  // 20, 22
+    fields >> load.virtual_memory_bytes >> pages;     // 23, 24
+    const auto ticks = static_cast<double>(::sysconf(_SC_CLK_TCK));
+    load.cpu_seconds = (user + system) / ticks;
+    load.start_time_seconds = boot_time() + since_boot / ticks;
+    load.resident_memory_bytes = pages * static_cast<double>(::sysconf(_SC_PAGESIZE));
+}
+
+}  // namespace
+
+ProcessLoad process_load() {
+    ProcessLoad load;
+    read_stat(load);
+    std::error_code ignored;
+    for (std::filesystem::directory_iterator entry("/proc/self/fd", ignored), end; entry != end;
+         entry.increment(ignored))
+        ++load.open_fds;
+    --load.open_fds;  // without the descriptor of this directory
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_NOFILE, &limit) == 0) load.max_fds = static_cast<double>(limit.rlim_cur);
+    return load;
+}
 
 namespace {
 
@@ -23,12 +89,11 @@ using prometheus::ClientMetric;
 using prometheus::MetricFamily;
 using prometheus::MetricType;
 
-// Seconds: from an answer that was there already to a sweep of an hour.
+// Seconds: from cached answers to a sweep of an hour.
 const prometheus::Histogram::BucketBoundaries durations = {
     .0005, .001, .0025, .005, .01, .025, .05, .1, .25, .5, 1, 2.5, 5, 10, 30, 60, 300, 3600};
 
-/// Of all methods that there are those that the service takes: a client's own words would each be a
-/// series of their own.
+/// Unsupported methods share one label, so that clients cannot create new series.
 std::string method_label(const std::string& method) {
     constexpr std::array known{"GET", "HEAD", "POST"};
     return std::find(known.begin(), known.end(), method) != known.end() ? method : "other";
@@ -37,7 +102,6 @@ std::string method_label(const std::string& method) {
 // In the order of SweepEnd.
 constexpr std::array sweep_ends{"complete", "client_left", "deadline", "stopping", "failed"};
 
-/// A number that is known when it is asked for.
 MetricFamily sampled(
     std::string name, std::string help, double value, MetricType type = MetricType::Gauge) {
     ClientMetric metric;
@@ -70,10 +134,9 @@ void add_process(std::vector<MetricFamily>& all) {
     all.push_back(sampled("process_threads", "Threads.", load.threads));
 }
 
-/// Members of a family by one word: to find them by their labels takes as long as to answer a small
-/// request.
+/// Members of a metric family by one key: a look-up by labels takes as long as a small request.
 template <class Member>
-class Members {
+class LabelCache {
 public:
     template <class Make>
     Member& at(const std::string& word, Make make) {
@@ -91,14 +154,14 @@ private:
 }  // namespace
 
 struct Metrics::Implementation {
-    explicit Implementation(const ComputeGate& gate_) : gate(gate_) {
-        // From the start on: a rate needs a value before the first one.
+    explicit Implementation(const AdmissionControl& admission_) : admission(admission_) {
+        // All series exist from the start: a rate needs an earlier value.
         for (const char* lacking : {"computing", "memory", "stopping", "sweeps", "threads"})
             unavailable.Add({{"reason", lacking}});
         for (const char* end : sweep_ends) sweeps.Add({{"end", end}});
     }
 
-    const ComputeGate& gate;
+    const AdmissionControl& admission;
     std::function<ConnectionLoad()> connections;
     prometheus::Registry registry;
 
@@ -114,43 +177,41 @@ struct Metrics::Implementation {
 
     prometheus::Family<prometheus::Counter>& requests =
         counters("vines_http_requests_total", "Requests answered, by route, method and status.");
-    Members<prometheus::Counter> of_requests;
+    LabelCache<prometheus::Counter> of_requests;
     prometheus::Family<prometheus::Histogram>& taken = histograms(
         "vines_http_request_duration_seconds",
-        "From a request's last byte to its answer's, by route.");
-    Members<prometheus::Histogram> of_taken;
+        "Time from a request's last byte to its answer's, by route.");
+    LabelCache<prometheus::Histogram> of_taken;
     prometheus::Counter& bytes = counter("vines_http_sent_bytes_total", "Bytes of answers.");
     prometheus::Counter& left =
         counter("vines_http_clients_left_total", "Answers whose client left before their end.");
     prometheus::Family<prometheus::Counter>& unavailable = counters(
-        "vines_http_unavailable_total",
-        "Requests answered with 503, by what the server had no more of.");
+        "vines_http_unavailable_total", "Requests answered with 503, by exhausted resource.");
     prometheus::Histogram& queued =
-        histograms("vines_compute_queue_seconds", "Wait of a request for a place to compute in.")
+        histograms("vines_compute_queue_seconds", "Time that a request waited for a compute slot.")
             .Add({}, durations);
     prometheus::Family<prometheus::Counter>& sweeps =
-        counters("vines_sweeps_total", "Sweeps that had begun, by how they ended.");
-    prometheus::Counter& runs =
-        counter("vines_sweep_runs_total", "Runs of sweeps that have ended.");
+        counters("vines_sweeps_total", "Started sweeps, by outcome.");
+    prometheus::Counter& runs = counter("vines_sweep_runs_total", "Runs of ended sweeps.");
     prometheus::Counter& impacts = counter(
         "vines_impacts_total",
-        "Impacts computed: of simulations, and of the measured parts of ended sweeps.");
+        "Impacts computed by simulations and in the measured part of ended sweeps.");
 
     void add_load(std::vector<MetricFamily>& all) const {
-        const ComputeLoad load = gate.load();
+        const AdmissionLoad load = admission.load();
         all.push_back(sampled(
-            "vines_compute_running", "Computations in work.", static_cast<double>(load.running)));
+            "vines_compute_running", "Computations running.", static_cast<double>(load.running)));
         all.push_back(sampled(
-            "vines_compute_queue_depth", "Requests that wait for a place to compute in.",
+            "vines_compute_queue_depth", "Requests that wait for a compute slot.",
             static_cast<double>(load.waiting)));
         all.push_back(
-            sampled("vines_sweeps_running", "Sweeps in work.", static_cast<double>(load.sweeps)));
+            sampled("vines_sweeps_running", "Sweeps running.", static_cast<double>(load.sweeps)));
         if (!connections) return;
         const ConnectionLoad now = connections();
         all.push_back(
             sampled("vines_http_connections", "Open connections.", static_cast<double>(now.open)));
         all.push_back(sampled(
-            "vines_http_requests_in_flight", "Requests that have come and are not yet answered.",
+            "vines_http_requests_in_flight", "Requests received and not yet answered.",
             static_cast<double>(now.in_flight)));
         all.push_back(sampled(
             "vines_http_held_bytes", "Bytes of requests and answers in memory.",
@@ -158,12 +219,12 @@ struct Metrics::Implementation {
     }
 };
 
-Metrics::Metrics(const ComputeGate& gate)
-    : implementation_(std::make_unique<Implementation>(gate)) {}
+Metrics::Metrics(const AdmissionControl& admission)
+    : implementation_(std::make_unique<Implementation>(admission)) {}
 
 Metrics::~Metrics() = default;
 
-void Metrics::count_served(const Served& served) {
+void Metrics::count_served(const ServedRequest& served) {
     Implementation& all = *implementation_;
     const std::string method = method_label(served.method), code = std::to_string(served.status);
     all.of_requests
@@ -194,7 +255,7 @@ void Metrics::count_sweep(SweepEnd end, std::size_t runs, std::size_t impacts) {
     implementation_->impacts.Increment(static_cast<double>(impacts));
 }
 
-void Metrics::watch(std::function<ConnectionLoad()> connections) {
+void Metrics::watch_connections(std::function<ConnectionLoad()> connections) {
     implementation_->connections = std::move(connections);
 }
 
@@ -202,7 +263,7 @@ std::string Metrics::text() const {
     std::vector<MetricFamily> all = implementation_->registry.Collect();
     implementation_->add_load(all);
     all.push_back(sampled(
-        "vines_log_lines_dropped_total", "Lines of the log that nobody read in time.",
+        "vines_log_lines_dropped_total", "Log lines dropped because stderr was full.",
         static_cast<double>(log_lines_dropped()), MetricType::Counter));
     add_process(all);
     all.push_back(build_info());

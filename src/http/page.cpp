@@ -1,6 +1,7 @@
 #include "http/page.hpp"
 
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
@@ -9,9 +10,8 @@
 #include <string_view>
 #include <utility>
 
-#include "http/assets.hpp"
-#include "http/plain_file.hpp"
-#include "http/problem_response.hpp"
+#include "http/message.hpp"
+#include "http/regular_file.hpp"
 
 namespace vines::http {
 
@@ -22,7 +22,8 @@ struct Page {
 };
 constexpr Page pages[] = {{"/", "index.html"}, {"/docs", "docs.html"}};
 
-/// Everything from this server, nothing inline: the page's scripts and styles are files.
+/// Content security policy: everything from this server, nothing inline; the page's scripts and
+/// styles are files.
 std::string policy_of(const std::vector<std::string>& embed_origins) {
     std::string policy =
         "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
@@ -32,7 +33,7 @@ std::string policy_of(const std::vector<std::string>& embed_origins) {
     return policy;
 }
 
-/// By the file name's ending; the paths of pages have none.
+/// Content type by the extension; pages have none.
 std::string content_type_of(std::string_view path) {
     const std::string_view ending = path.substr(std::min(path.rfind('.'), path.size()));
     if (ending == ".js" || ending == ".mjs") return "text/javascript; charset=utf-8";
@@ -68,14 +69,14 @@ std::vector<Route> embedded_routes(const std::string& policy) {
     return routes;
 }
 
-/// Of a file as it is whenever it is asked for, by its real path: a link that takes the place of
-/// it, or of a folder on the way to it, could lead anywhere.
+/// Reads the file for each request, without links: they could lead out of the folder.
 Route file_route(
     const std::filesystem::path& file, const std::string& path, const std::string& policy) {
     return {.method = "GET", .path = path, .answer = [=](const Request&) {
                 try {
                     return file_response(
-                        path, read_without_links(file, std::numeric_limits<std::size_t>::max()),
+                        path,
+                        read_regular_file_no_links(file, std::numeric_limits<std::size_t>::max()),
                         policy);
                 } catch (const std::runtime_error&) {
                     return problem_response(404, "there is no " + path);
@@ -83,8 +84,8 @@ Route file_route(
             }};
 }
 
-/// Whether the page asks for a file of its folder: for none of the packages beside it.
-bool is_of_page(const std::filesystem::path& name) {
+/// True if the page uses the file; files of packages in the folder are not served.
+bool is_page_asset(const std::filesystem::path& name) {
     const std::filesystem::path ending = name.extension();
     if (ending != ".js" && ending != ".css" && ending != ".svg") return false;
     const std::string path = name.generic_string();
@@ -99,7 +100,7 @@ std::vector<Route> folder_routes(const std::filesystem::path& given, const std::
             routes.push_back(file_route(folder / page.file, page.path, policy));
         for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
             const std::filesystem::path name = entry.path().lexically_relative(folder);
-            if (is_of_page(name) && std::filesystem::is_regular_file(entry.symlink_status()))
+            if (is_page_asset(name) && std::filesystem::is_regular_file(entry.symlink_status()))
                 routes.push_back(file_route(entry.path(), "/" + name.generic_string(), policy));
         }
     } catch (const std::filesystem::filesystem_error& e) {

@@ -1,25 +1,38 @@
-// The files of the page, and of that of the OpenAPI document, as routes.
+// The page's files and those of the API documentation, as routes: compiled into the program, or
+// read from a folder during development.
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "http/route.hpp"
 
 namespace vines::http {
 
+struct Asset {
+    /// Path of a page, or below a folder named by a hash of all files: its content never changes.
+    std::string_view path;
+    std::string_view content;
+    std::string_view gzipped;  ///< the content, compressed
+};
+
+/// All files; generated at build time from web/ by bundle.mjs.
+std::span<const Asset> assets();
+
 struct PageOptions {
-    /// Its scripts, style sheets and drawings as they are in this folder, so that a change shows
-    /// without a build; empty: those compiled in.
+    /// Serve scripts, style sheets and drawings from this folder, so that changes need no build;
+    /// empty: the compiled-in files.
     std::string web_dir = {};
-    /// Of pages that may show it in a frame: "https://example.org:8443", each.
+    /// Origins of pages that may show this one in a frame, such as "https://example.org:8443".
     std::vector<std::string> embed_origins = {};
 };
 
-/// Whether a text is an origin: a scheme, http or https, a host and perhaps a port, no more.
+/// True for an origin: http or https, a host and an optional port, nothing else.
 bool is_origin(const std::string& text);
 
-/// Throws std::runtime_error where the folder cannot be read.
+/// The routes of all files. Throws std::runtime_error if the folder cannot be read.
 std::vector<Route> page_routes(const PageOptions& options);
 
 }  // namespace vines::http

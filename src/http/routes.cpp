@@ -7,12 +7,12 @@
 #include "api/json_text.hpp"
 #include "api/openapi/openapi.hpp"
 #include "api/presets.hpp"
-#include "api/schema/parameters.hpp"
+#include "api/schema/tables.hpp"
 #include "api/version.hpp"
 #include "http/computations.hpp"
 #include "http/encoding.hpp"
+#include "http/message.hpp"
 #include "http/page.hpp"
-#include "http/problem_response.hpp"
 
 namespace vines::http {
 
@@ -23,7 +23,7 @@ using api::Problem;
 
 Response json_response(Json json) { return {.body = api::json_text(std::move(json)) + "\n"}; }
 
-/// What it returns, or the Problem that it throws.
+/// Calls answer(); a Problem that it throws becomes the response.
 Response answer_of(const std::function<Response()>& answer) {
     try {
         return answer();
@@ -32,7 +32,6 @@ Response answer_of(const std::function<Response()>& answer) {
     }
 }
 
-/// A route whose answer may throw a Problem.
 Route route(std::string method, std::string path, std::function<Response(const Request&)> answer) {
     return {
         .method = std::move(method),
@@ -42,7 +41,7 @@ Route route(std::string method, std::string path, std::function<Response(const R
         }};
 }
 
-/// One that always has the same answer: made when it is first asked for (of OpenAPI in 20 ms).
+/// A constant JSON document, made at the first request (OpenAPI: 20 ms).
 Route document(std::string path, Json (*make)()) {
     struct Made {
         std::once_flag once;
@@ -60,19 +59,20 @@ Route document(std::string path, Json (*make)()) {
     });
 }
 
-/// One that is answered however busy the server is, to everyone.
+/// A health route: answered however busy the server is, without a key.
 Route health(std::string path, std::function<Response(const Request&)> answer) {
     Route made = route("GET", std::move(path), std::move(answer));
-    made.light = made.open = true;
+    made.on_event_loop = made.is_public = true;
     return made;
 }
 
 }  // namespace
 
-std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate, Metrics& metrics) {
+std::vector<Route> make_routes(
+    const RouteOptions& options, AdmissionControl& admission, Metrics& metrics) {
     std::vector<Route> routes;
     using Computation = Response (*)(const Request&, const Service&, Stopwatch&);
-    const auto service = std::make_shared<const Service>(Service{options, gate, metrics});
+    const auto service = std::make_shared<const Service>(Service{options, admission, metrics});
     const auto compute = [&](const char* method, const char* path, Computation answer) {
         routes.push_back(
             {.method = method, .path = path, .answer = [answer, service](const Request& r) {
@@ -92,13 +92,13 @@ std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate, M
     routes.push_back(document("/v1/presets", api::describe_presets));
     routes.push_back(document("/v1/parameters", api::describe_fields));
     routes.push_back(document("/v1/openapi.json", api::openapi));
-    // Alive: the process answers. Ready: it takes work; a proxy stops sending it some once it is
-    // about to stop.
+    // Alive: the process answers. Ready: it accepts work; before a shutdown it is not, so that a
+    // proxy sends no more requests.
     for (const char* path : {"/healthz", "/livez"})
         routes.push_back(
             health(path, [](const Request&) { return json_response({{"status", "ok"}}); }));
-    routes.push_back(health("/readyz", [&gate](const Request&) {
-        if (gate.closed_to_sweeps()) return stopping_refusal();
+    routes.push_back(health("/readyz", [&admission](const Request&) {
+        if (admission.sweeps_stopped()) return stopping_refusal();
         return json_response({{"status", "ok"}});
     }));
     routes.push_back(health("/version", [](const Request&) {
@@ -111,12 +111,12 @@ std::vector<Route> make_routes(const RouteOptions& options, ComputeGate& gate, M
     routes.push_back(route("GET", "/metrics", [&metrics](const Request&) {
         return Response{.content_type = Metrics::content_type, .body = metrics.text()};
     }));
-    routes.back().light = true;
+    routes.back().on_event_loop = true;
     for (Route& r : routes) r.name = r.path;
     for (Route& file : page_routes(options.page)) {
         file.name = "page";
-        file.open = true;
-        file.knows_its_frames = true;
+        file.is_public = true;
+        file.sets_frame_policy = true;
         routes.push_back(std::move(file));
     }
     return routes;

@@ -16,14 +16,13 @@
 #include <string>
 #include <utility>
 
-#include "http/connections.hpp"
+#include "http/event_loop.hpp"
+#include "http/head.hpp"
 #include "http/log.hpp"
 #include "http/memory.hpp"
-#include "http/problem_response.hpp"
-#include "http/refusal.hpp"
-#include "http/request_id.hpp"
+#include "http/message.hpp"
+#include "http/route.hpp"
 #include "http/send.hpp"
-#include "http/socket_stream.hpp"
 
 namespace vines::http {
 
@@ -32,16 +31,17 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Handled = httplib::Server::HandlerResponse;
 
-constexpr int backlog = 512;  // httplib's own is 5: of 400 clients at once some would be refused
+// httplib's default of 5 would refuse some of 400 simultaneous clients.
+constexpr int backlog = 512;
 
-// Is always sent: there are no more than threads.
+// Largest answer sent even when the memory budget is used up, bytes; one per worker at most.
 constexpr std::size_t small_answer = 1 << 20;
 
-// From this size on the memory that a body took, some times as much as itself, is given back to the
-// system at once: that takes as long as to read some of it.
+// From this size on the memory of a body, several times its size, is returned to the system at
+// once. That takes as long as to read a part of it. Bytes.
 constexpr std::size_t large_body = 1 << 20;
 
-/// What httplib is here for: it makes the listening socket, and writes answers.
+/// httplib's part: it creates the listening socket and writes answers.
 class Engine : public httplib::Server {
 public:
     int listening() { return svr_sock_; }
@@ -49,7 +49,7 @@ public:
     bool answer(httplib::Stream& stream) { return process(*this, stream); }
 
 private:
-    /// Its later versions want the addresses, too.
+    /// Later versions of httplib also take the addresses.
     template <class Self>
     static bool process(Self& self, httplib::Stream& stream) {
         bool closed = false;
@@ -59,12 +59,12 @@ private:
     }
 };
 
-/// With what may help. error: errno, 0 where the system does not say.
+/// Reason and remedy. error: errno, or 0 if unknown.
 std::string why_not_bound(const ServerOptions& options, int error) {
     constexpr const char* other_port = "use --port, or --port 0 for any free one";
     if (error == EADDRINUSE) return fmt::format("port {} is taken; {}", options.port, other_port);
     if (error == EACCES)
-        return fmt::format("port {} is not for everyone; {}", options.port, other_port);
+        return fmt::format("port {} needs privileges; {}", options.port, other_port);
     if (error == 0 || error == EADDRNOTAVAIL)
         return fmt::format(
             "cannot listen on {}; use --host with an address of this machine", options.host);
@@ -83,18 +83,18 @@ struct Server::Implementation {
     ServerOptions options;
     std::vector<Route> routes;
     Metrics& metrics;
-    /// What it says stands in its headers.
+    /// Answer to a CORS preflight; the content is in its headers.
     const Route preflight = {
         .name = "preflight",
         .answer = [](const Request&) { return Response{.body = "{}\n"}; },
-        .light = true};
+        .on_event_loop = true};
     Engine http;
-    std::optional<Connections> connections;
+    std::optional<EventLoop> event_loop;
     std::atomic<bool> closing = false;
 
-    /// What a thread answers. The library calls back while it does, and has no place for it in its
-    /// own structs.
-    struct InWork {
+    /// The request that a thread is answering. httplib calls back into the server meanwhile, and
+    /// its own structs cannot carry this.
+    struct ActiveRequest {
         Connection* connection = nullptr;
         Exchange exchange;
         SocketStream* stream = nullptr;
@@ -102,68 +102,68 @@ struct Server::Implementation {
         int status = 0;
         std::string lacking = {};
         Timing timing = {};
-        bool keeps = false;  ///< the connection, for another request
+        bool keep_alive = false;  ///< the connection can be reused
     };
-    /// Those of all threads. Of each, what is read of it by others stays as it is until it is out.
+    /// The active requests of all threads. Other threads read only members that stay constant while
+    /// the request is in the list.
     std::mutex mutex;
-    std::list<const InWork*> in_work;
+    std::list<const ActiveRequest*> active;
 
-    /// Keeps one among them.
-    class Entry {
+    class Registration {
     public:
-        Entry(Implementation& server, const InWork& work) : server_(server) {
+        Registration(Implementation& server, const ActiveRequest& work) : server_(server) {
             const std::lock_guard lock(server_.mutex);
-            at_ = server_.in_work.insert(server_.in_work.end(), &work);
+            at_ = server_.active.insert(server_.active.end(), &work);
         }
-        ~Entry() {
+        ~Registration() {
             const std::lock_guard lock(server_.mutex);
-            server_.in_work.erase(at_);
+            server_.active.erase(at_);
         }
-        Entry(const Entry&) = delete;
-        Entry& operator=(const Entry&) = delete;
+        Registration(const Registration&) = delete;
+        Registration& operator=(const Registration&) = delete;
 
     private:
         Implementation& server_;
-        std::list<const InWork*>::iterator at_;
+        std::list<const ActiveRequest*>::iterator at_;
     };
 
-    static InWork& current() {
-        thread_local InWork work;
+    static ActiveRequest& current() {
+        thread_local ActiveRequest work;
         return work;
     }
 
-    /// To the exchange that this thread has.
+    /// Fills in the response to the request of this thread.
     void respond(const httplib::Request& in, httplib::Response& out) {
-        InWork& work = current();
-        work.keeps = work.exchange.head.keep_alive && !work.exchange.refused;
+        ActiveRequest& work = current();
+        work.keep_alive = work.exchange.head.keep_alive && !work.exchange.refused;
         Response response = response_to(work);
-        const std::size_t size = std::max(response.body.size(), response.gzipped_from);
-        if (size + response.held > small_answer && connections->memory().is_full())
+        const std::size_t size = std::max(response.body.size(), response.uncompressed_size);
+        if (size + response.held > small_answer && event_loop->memory().is_full())
             response = memory_refusal();
-        for (auto& header : sharing_headers(work.exchange.head, options.access))
+        for (auto& header : cors_headers(work.exchange.head, options.access))
             response.headers.push_back(std::move(header));
         work.connection->hold(response.body.size() + response.held);
-        // Of a stream that comes in no chunks the end is that of its connection.
-        if (response.stream && !work.exchange.head.takes_chunks) work.keeps = false;
+        // Without chunks only the end of the connection marks the end of a stream.
+        if (response.stream && !work.exchange.head.takes_chunks) work.keep_alive = false;
         work.timing = response.timing;
         if (response.problem) work.lacking = response.problem->lacking;
         send(work.exchange.head, work.id, out, std::move(response));
         work.status = out.status;
-        // A client must hear that its connection ends, and the library says so to who asks for it.
-        if (closing) work.keeps = false;
-        if (!work.keeps) const_cast<httplib::Request&>(in).set_header("Connection", "close");
+        // httplib announces the close if the request asks for it.
+        if (closing) work.keep_alive = false;
+        if (!work.keep_alive) const_cast<httplib::Request&>(in).set_header("Connection", "close");
     }
 
-    Response response_to(InWork& work) const {
+    Response response_to(ActiveRequest& work) const {
         Exchange& exchange = work.exchange;
         if (exchange.refused) return std::move(*exchange.refused);
         const std::size_t size = exchange.body.size();
         Response response = answer_of_route(work);
-        if (size >= large_body) give_memory_back();
+        if (size >= large_body) trim_memory();
         return response;
     }
 
-    Response answer_of_route(InWork& work) const {
+    Response answer_of_route(ActiveRequest& work) const {
         Exchange& exchange = work.exchange;
         const Head& head = exchange.head;
         try {
@@ -175,17 +175,17 @@ struct Server::Implementation {
                  .body = std::move(exchange.body),
                  .accept = std::string(head.header("accept")),
                  .accept_encoding = std::string(head.header("accept-encoding")),
-                 .known_tags = std::string(head.header("if-none-match")),
+                 .if_none_match = std::string(head.header("if-none-match")),
                  .id = work.id,
                  .left = [&work] { return work.stream->has_left(); }});
         } catch (...) {
             log_failure(std::string(head.path()), work.id, std::current_exception());
-            return problem_response(500, "the server failed at this request; its log says why");
+            return problem_response(500, "the server failed; the reason is in its log");
         }
     }
 
-    /// What is known of it before its answer.
-    static Served served_so_far(const InWork& work) {
+    /// The log entry of a request, as far as it is known before the answer.
+    static ServedRequest begin_log_entry(const ActiveRequest& work) {
         const Exchange& exchange = work.exchange;
         const std::chrono::duration<double, std::milli> taken = Clock::now() - exchange.since;
         return {
@@ -197,15 +197,15 @@ struct Server::Implementation {
             .ms = taken.count()};
     }
 
-    /// False where the answer was broken off.
-    bool write_among_others(const InWork& work) {
-        const Entry entry(*this, work);
+    /// False if the answer was broken off.
+    bool write_registered(const ActiveRequest& work) {
+        const Registration entry(*this, work);
         return write(*work.stream) && work.stream->finish();
     }
     bool write(SocketStream& stream) {
         try {
             return http.answer(stream);
-        } catch (...) {  // by an answer that is made while it is sent
+        } catch (...) {  // thrown by an answer that is made while it is sent
             log_failure(
                 std::string(current().exchange.head.path()), current().id,
                 std::current_exception());
@@ -213,50 +213,50 @@ struct Server::Implementation {
         }
     }
 
-    /// True: another request may follow on the connection.
-    bool answer(Connection& connection, Exchange exchange, Patience patience) {
-        // All that the library is told of the request: its answer to a HEAD has no body.
+    /// Answers one request; true if the connection can be reused.
+    bool answer(Connection& connection, Exchange exchange, WriteTimeout timeout) {
+        // httplib needs to know only this of the request: an answer to a HEAD has no body.
         const char* method = exchange.head.method == "HEAD" ? "HEAD" : "GET";
         SocketStream stream(
-            connection, fmt::format("{} / HTTP/1.1\r\n\r\n", method), std::move(patience));
-        InWork& work = current();
+            connection, fmt::format("{} / HTTP/1.1\r\n\r\n", method), std::move(timeout));
+        ActiveRequest& work = current();
         std::string id = request_id(exchange.head);
         work = {&connection, std::move(exchange), &stream, std::move(id)};
-        const bool sent = write_among_others(work);
-        const bool keeps = sent && work.keeps;
-        if (!sent) connection.break_off();
-        Served served = served_so_far(work);
+        const bool sent = write_registered(work);
+        const bool keep_alive = sent && work.keep_alive;
+        if (!sent) connection.abort();
+        ServedRequest served = begin_log_entry(work);
         served.lacking = work.lacking;
         served.status = work.status;
         served.timing = work.timing;
         served.bytes = stream.written();
         served.left = !sent;
-        log_served(served);
+        log_request(served);
         metrics.count_served(served);
         work = {};
-        return keeps;
+        return keep_alive;
     }
 
-    Admitted admit(const Head& head) const {
-        Admitted admitted{.route = find_route(routes, head.method, head.path())};
-        admitted.refused = access_refusal(head, admitted.route, options.access);
-        if (!admitted.refused && is_preflight(head, options.access)) admitted.route = &preflight;
-        if (!admitted.refused)
-            admitted.refused = refusal(head, admitted.route, routes, options.payload_limit);
-        return admitted;
+    CheckedHead check_head(const Head& head) const {
+        CheckedHead checked{.route = find_route(routes, head.method, head.path())};
+        checked.refused = access_refusal(head, checked.route, options.access);
+        if (!checked.refused && is_preflight(head, options.access)) checked.route = &preflight;
+        if (!checked.refused)
+            checked.refused = request_refusal(head, checked.route, routes, options.payload_limit);
+        return checked;
     }
 
-    Answering answering() {
+    Handlers handlers() {
         return {
-            .admission = [this](const Head& head) { return admit(head); },
+            .check_head = [this](const Head& head) { return check_head(head); },
             .answer =
-                [this](Connection& connection, Exchange exchange, Patience patience) {
-                    return answer(connection, std::move(exchange), std::move(patience));
+                [this](Connection& connection, Exchange exchange, WriteTimeout timeout) {
+                    return answer(connection, std::move(exchange), std::move(timeout));
                 },
             .overloaded =
                 [] {
                     return problem_response(api::Problem::unavailable(
-                        "threads", "as many requests as the server takes are in work already"));
+                        "threads", "all worker threads are busy and their queue is full"));
                 }};
     }
 };
@@ -264,18 +264,18 @@ struct Server::Implementation {
 Server::Server(const ServerOptions& options, std::vector<Route> routes, Metrics& metrics)
     : implementation_(std::make_unique<Implementation>(options, std::move(routes), metrics)) {
     Engine& http = implementation_->http;
-    http.set_keep_alive_timeout(idle_time.count());  // as it tells its clients
+    http.set_keep_alive_timeout(idle_time.count());  // announced to clients
     http.set_keep_alive_max_count(1000000);
     http.set_pre_routing_handler([this](const auto& in, auto& out) {
         implementation_->respond(in, out);
         return Handled::Handled;
     });
-    // It would say that the body has no bytes, which is not that of the answer which is known.
+    // httplib would state Content-Length: 0, which is not the length of the known answer.
     http.set_post_routing_handler([](const auto&, auto& out) {
         if (out.status == 304) out.headers.erase("Content-Length");
     });
-    // Not the library's SO_REUSEPORT: with that a second server on the same port starts without
-    // a word and takes half of the requests.
+    // Replaces httplib's SO_REUSEPORT: with it a second server on the same port would start without
+    // an error and take half of the requests.
     http.set_socket_options([](auto socket) {
         const int yes = 1;
         ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -293,32 +293,33 @@ int Server::bind() {
                                  : http.bind_to_port(options.host, port);
     if (!bound) throw std::runtime_error(why_not_bound(options, errno));
     http.widen_backlog();
-    implementation_->connections.emplace(
+    implementation_->event_loop.emplace(
         http.listening(),
         ConnectionLimits{
             .connections = options.connections,
             .workers = options.threads,
             .waiting = static_cast<std::size_t>(options.threads),
             .held_bytes = options.memory_limit},
-        implementation_->answering());
-    implementation_->metrics.watch([this] { return implementation_->connections->load(); });
+        implementation_->handlers());
+    implementation_->metrics.watch_connections(
+        [this] { return implementation_->event_loop->load(); });
     return port;
 }
 
-void Server::run() { implementation_->connections->run(); }
+void Server::run() { implementation_->event_loop->run(); }
 
 void Server::close_connections() { implementation_->closing = true; }
 
 void Server::stop() {
     close_connections();
-    implementation_->connections->stop();
+    implementation_->event_loop->stop();
 }
 
-std::size_t Server::log_cut_off() {
-    const std::size_t number = implementation_->connections->load().in_flight;
+std::size_t Server::log_unanswered() {
+    const std::size_t number = implementation_->event_loop->load().in_flight;
     const std::lock_guard lock(implementation_->mutex);
-    for (const auto* work : implementation_->in_work)
-        http::log_cut_off(Implementation::served_so_far(*work));
+    for (const auto* work : implementation_->active)
+        http::log_unanswered(Implementation::begin_log_entry(*work));
     return number;
 }
 

@@ -1,4 +1,10 @@
-// The HTTP server: bytes to requests and back.
+// The HTTP server. A request passes these phases:
+// 1. The event loop reads its head (head.hpp). Access control (access.hpp) and the route
+//    (route.hpp) accept or refuse it before its body is read (connection.hpp).
+// 2. A worker takes the complete request and calls the route's function. Routes that compute wait
+//    for admission (admission_control.hpp).
+// 3. The worker sends the answer through httplib (send.hpp), logs and counts it, and returns the
+//    connection to the event loop.
 #pragma once
 
 #include <memory>
@@ -13,31 +19,32 @@ namespace vines::http {
 
 struct ServerOptions {
     std::string host = "127.0.0.1";
-    int port = 8080;                       ///< 0: any free one
-    int threads = 128;                     ///< that answer: a client that reads slowly holds one
-    std::size_t connections = 4096;        ///< open at once, idle ones too
-    std::size_t payload_limit = 1 << 20;   ///< bytes of a request's body
-    std::size_t memory_limit = 512 << 20;  ///< bytes of requests and answers held at once
-    AccessOptions access = {};             ///< its address is `host`
+    int port = 8080;                 ///< 0: any free port
+    int threads = 128;               ///< worker threads; a client that reads slowly occupies one
+    std::size_t connections = 4096;  ///< open connections, including idle ones
+    std::size_t payload_limit = 1 << 20;   ///< largest request body, bytes
+    std::size_t memory_limit = 512 << 20;  ///< requests and answers held at once, bytes
+    AccessOptions access = {};             ///< listens_on is set to `host`
 };
 
 class Server {
 public:
-    /// The metrics outlive it.
+    /// The metrics must outlive the server.
     Server(const ServerOptions& options, std::vector<Route> routes, Metrics& metrics);
     ~Server();
 
-    /// Binds and returns the port. Throws std::runtime_error with the reason where that fails.
+    /// Binds and returns the port. Throws std::runtime_error with the reason if that fails.
     int bind();
-    /// Serves until stop() is called and what is in work then is answered. Call bind() first.
+    /// Serves until stop() is called and the requests then in progress are answered. Call bind()
+    /// first.
     void run();
-    /// From now on each answer is the last one of its connection. From any thread.
+    /// From now on each answer is the last one on its connection. From any thread.
     void close_connections();
-    /// Takes nothing new, and makes run() return once all is answered. From any thread, once.
+    /// Accepts no new requests, and lets run() return once all are answered. From any thread, once.
     void stop();
-    /// Says in the log which requests are not answered yet, for who ends the process without that;
-    /// returns how many. From any thread.
-    std::size_t log_cut_off();
+    /// Logs the requests that are not yet answered, before the process ends without answering them;
+    /// returns their number. From any thread.
+    std::size_t log_unanswered();
 
 private:
     struct Implementation;

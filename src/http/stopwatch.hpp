@@ -1,4 +1,4 @@
-// Where the time of a request goes.
+// Measures the phases of a request's work.
 #pragma once
 
 #include <chrono>
@@ -9,21 +9,21 @@
 
 namespace vines::http {
 
-/// Names of parts of the work, and how long each took, in ms.
+/// Duration of each phase by name, ms.
 using Timing = std::vector<std::pair<std::string, double>>;
 
 class Stopwatch {
 public:
     using Clock = std::chrono::steady_clock;
 
-    /// The part that is over, from the end of the one before.
+    /// Ends a phase that began at the previous call.
     void lap(const char* name) {
         const auto now = Clock::now();
         laps_.emplace_back(
             name,
             std::chrono::duration<double, std::milli>(now - std::exchange(last_, now)).count());
     }
-    /// A part of a lap that belongs to another.
+    /// Moves time from one phase to another.
     void move(std::string_view from, std::string_view to, Clock::duration time) {
         const double ms = std::chrono::duration<double, std::milli>(time).count();
         for (auto& [name, lap] : laps_) lap += name == to ? ms : name == from ? -ms : 0;

@@ -11,10 +11,9 @@ namespace vines::plot {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-// Beyond any value.
-constexpr Range nothing{infinity, -infinity};
+constexpr Range nothing{infinity, -infinity};  // empty range
 
-// Steps from zero that are still counted one by one.
+// Largest number of steps from zero that doubles still resolve.
 constexpr double most_steps = 1e15;
 
 Range extended(const Range& r, double from, double to) {
@@ -23,8 +22,8 @@ Range extended(const Range& r, double from, double to) {
 
 Range widened(const Range& r, double share) {
     if (!(r.second > r.first)) {
-        const double beside = std::max(0.5, 1e-6 * std::abs(r.first));
-        return {r.first - beside, r.first + beside};
+        const double half_width = std::max(0.5, 1e-6 * std::abs(r.first));
+        return {r.first - half_width, r.first + half_width};
     }
     const double margin = (r.second - r.first) * share;
     return {r.first - margin, r.second + margin};

@@ -1,4 +1,4 @@
-// The axes of plots: their ranges and ticks.
+// Axes of plots: ranges and ticks.
 #pragma once
 
 #include <string>
@@ -11,18 +11,18 @@ namespace vines::plot {
 
 using Range = std::pair<double, double>;
 
-/// Of all curves of all plots: they share their abscissa.
+/// Common abscissa range of all curves of all plots.
 Range x_range(const std::vector<Plot>& plots);
-/// Of a plot's curves with their error bars, or as it says; of a logarithmic one in log10.
+/// Ordinate range of a plot: fixed, or of curves and error bars; log10 if logarithmic.
 Range y_range(const Plot& plot);
 
-/// Where a value stands on the ordinate.
+/// Position of a value on the ordinate: y, or log10 y.
 double on_ordinate(const Plot& plot, double y);
 
-/// Steps of 1, 2 or 5 times a power of ten, about `count` of them; none where a step is lost in
-/// the digits of the values.
+/// About `count` ticks in steps of 1, 2 or 5 times a power of ten; none if the step is below the
+/// rounding of the values.
 std::vector<double> ticks(const Range& range, int count);
-/// The same of the ordinate: a logarithmic one has ticks at powers of ten.
+/// Ticks of the ordinate; powers of ten if logarithmic.
 std::vector<double> y_ticks(const Plot& plot, const Range& range, int count);
 std::string tick_label(double tick);
 std::string y_tick_label(const Plot& plot, double tick);

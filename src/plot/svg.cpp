@@ -1,4 +1,4 @@
-#include "plot/svg.hpp"
+#include "plot/plot.hpp"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* grid = R"(stroke="#e4e7ea")";
 constexpr const char* level_line = R"(stroke="#8a939b")";
-constexpr const char* moment_line = R"(stroke="#b3261e" stroke-dasharray="6 4")";
+constexpr const char* time_line = R"(stroke="#b3261e" stroke-dasharray="6 4")";
 
 std::string escaped(const std::string& text) {
     std::string out;
@@ -23,7 +23,7 @@ std::string escaped(const std::string& text) {
     return out;
 }
 
-/// The attribute, if any, with a space before it.
+/// stroke-dasharray attribute with a leading space, or nothing.
 std::string dashed(const Curve& c) {
     return c.dash.empty() ? "" : fmt::format(R"( stroke-dasharray="{}")", c.dash);
 }
@@ -42,7 +42,7 @@ public:
     std::string draw() {
         shade_bands();
         draw_grid();
-        mark_levels_and_moments();
+        mark_levels_and_times();
         frame();
         for (const Curve& c : plot_.curves) c.dots ? dots(c) : line(c);
         legend();
@@ -104,12 +104,12 @@ private:
         }
     }
 
-    void mark_levels_and_moments() {
+    void mark_levels_and_times() {
         for (double level : plot_.levels)
             if (inside(x_.first, value(level)))
                 rule(left_, py(value(level)), right_, py(value(level)), level_line);
-        for (double m : plot_.moments)
-            if (m >= x_.first && m <= x_.second) rule(px(m), top_, px(m), bottom_, moment_line);
+        for (double m : plot_.marked_times)
+            if (m >= x_.first && m <= x_.second) rule(px(m), top_, px(m), bottom_, time_line);
     }
 
     void frame() {
@@ -129,8 +129,8 @@ private:
 
     void line(const Curve& c) {
         std::string points;
-        // Of all points in one column of half a pixel the first, the lowest, the highest and the
-        // last: the same picture.
+        // Decimation: in each column of half a pixel the first, lowest, highest and last point give
+        // the same picture.
         for (std::size_t i = 0; i < c.x.size();) {
             if (!std::isfinite(value(c.y[i]))) {
                 polyline(c, points);
@@ -174,7 +174,7 @@ private:
         double x = left_ + 8;
         for (const Curve& c : plot_.curves) {
             if (c.label.empty()) continue;
-            // Behind the words, so that they can be read over curves.
+            // Background that keeps the label legible over curves.
             const double width = 26 + 6.3 * static_cast<double>(c.label.size());
             add(R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="16" {}/>)", x - 3, top_ + 3,
                 width, R"(fill="#fff" fill-opacity=".8")");

@@ -1,4 +1,4 @@
-#include "plot/text.hpp"
+#include "plot/plot.hpp"
 
 #include <fmt/format.h>
 
@@ -14,13 +14,12 @@ namespace vines::plot {
 
 namespace {
 
-constexpr int least_room = 7;  // characters of the ordinate's labels
+constexpr int least_room = 7;  // width of the ordinate's labels, characters
 constexpr int narrowest = 20, least_height = 4;
 
-// Dots in a character of Braille.
-constexpr int dots_across = 2, dots_down = 4;
+constexpr int dots_across = 2, dots_down = 4;  // dots of a Braille character
 
-/// The character of Unicode's Braille patterns with these dots, in UTF-8.
+/// Unicode Braille pattern with these dots, in UTF-8.
 std::string braille(unsigned dots) {
     const unsigned code = 0x2800 + dots;
     return {
@@ -28,14 +27,14 @@ std::string braille(unsigned dots) {
         static_cast<char>(0x80 | (code & 0x3F))};
 }
 
-/// Of a dot in its character, counted from the upper left.
+/// Bit of a dot, counted from the upper left.
 unsigned braille_dot(int across, int down) {
     constexpr std::array<std::array<unsigned, dots_down>, dots_across> bits = {
         {{0x01, 0x02, 0x04, 0x40}, {0x08, 0x10, 0x20, 0x80}}};
     return bits[static_cast<std::size_t>(across)][static_cast<std::size_t>(down)];
 }
 
-/// "#rrggbb" as one of the 6 x 6 x 6 colours that terminals have.
+/// "#rrggbb" as the nearest of the 6 x 6 x 6 terminal colours.
 int terminal_colour(const std::string& hex) {
     const auto level = [&hex](std::size_t at) {
         return static_cast<int>(std::strtol(hex.substr(at, 2).c_str(), nullptr, 16) * 5 + 127) /
@@ -44,7 +43,7 @@ int terminal_colour(const std::string& hex) {
     return 16 + 36 * level(1) + 6 * level(3) + level(5);
 }
 
-/// Characters of a text in UTF-8.
+/// Length of a UTF-8 text in characters.
 int length(const std::string& text) {
     return static_cast<int>(
         std::count_if(text.begin(), text.end(), [](char c) { return (c & '\xC0') != '\x80'; }));
@@ -56,13 +55,13 @@ std::vector<double> ordinate_ticks(const Plot& plot, const Terminal& terminal) {
     return y_ticks(plot, y_range(plot), std::max(lines_of(terminal) / 3, 2));
 }
 
-/// Characters of the frames.
+/// Widths of the frame in characters.
 struct Layout {
-    int left;   ///< before them, for the ordinate's labels and the axis
-    int width;  ///< in them
+    int left;   ///< left margin for the ordinate's labels and the axis
+    int width;  ///< inside the frame
 };
 
-// Of points, curve by curve: they tell them apart where colours do not.
+// Marks of the curves of points, which distinguish them without colours.
 constexpr std::array unicode_marks = {"•", "×", "+", "◦", "▪", "▵", "◇"};
 constexpr std::array ascii_marks = {"o", "x", "+", "#", "@", "%", "&"};
 
@@ -78,7 +77,7 @@ public:
           height_(lines_of(terminal)),
           cells_(static_cast<std::size_t>(width_ * height_)) {
         for (double level : plot.levels) rule_across(on_ordinate(plot_, level));
-        for (double moment : plot.moments) rule_down(moment);
+        for (double time : plot.marked_times) rule_down(time);
         for (const Curve& c : plot.curves) c.dots ? dots(c) : line(c);
     }
 
@@ -105,9 +104,9 @@ public:
 private:
     struct Cell {
         unsigned dots = 0;
-        const Curve* curve = nullptr;  ///< the last that has a dot there
-        const char* mark = nullptr;    ///< a character in place of dots
-        bool is_point = false;         ///< the mark is one of the curve
+        const Curve* curve = nullptr;  ///< the last curve with a dot here
+        const char* mark = nullptr;    ///< character that replaces the dots
+        bool is_point = false;         ///< the mark belongs to the curve
     };
 
     Cell& cell(int column, int row) {
@@ -117,7 +116,7 @@ private:
         return cells_[static_cast<std::size_t>(row * width_ + column)];
     }
 
-    /// Dots from the left and from the top.
+    /// Dot coordinates from the left and from the top.
     int across(double x) const {
         return static_cast<int>(
             std::lround((x - x_.first) / (x_.second - x_.first) * (width_ * dots_across - 1)));
@@ -206,7 +205,7 @@ private:
         return labels;
     }
 
-    /// Where each curve is last, or as near below it as there is a free line, or above.
+    /// Row of each curve's end, or the nearest free one below, or above.
     std::map<int, std::string> end_labels() const {
         std::map<int, std::string> labels;
         for (const Curve& c : plot_.curves) {
@@ -248,7 +247,7 @@ Layout layout_of(const std::vector<Plot>& plots, const Terminal& terminal) {
     return {left, std::max(terminal.width - 1 - left - (label > 0 ? label + 1 : 0), narrowest)};
 }
 
-/// The axis with its ticks, the numbers below them, and its label.
+/// Axis with ticks, the numbers below them, and the label.
 std::string abscissa(const Range& x, const Layout& layout, const std::string& label, bool ascii) {
     const auto [left, width] = layout;
     std::string axis, numbers(static_cast<std::size_t>(left + width), ' ');

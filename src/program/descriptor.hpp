@@ -1,4 +1,4 @@
-// An open file.
+// Owner of a file descriptor.
 #pragma once
 
 #include <unistd.h>
@@ -7,7 +7,7 @@
 
 namespace vines {
 
-/// Closed when it goes; -1: none.
+/// Closes the file descriptor in its destructor; -1: empty.
 class Descriptor {
 public:
     explicit Descriptor(int number = -1) : number_(number) {}

@@ -1,5 +1,5 @@
-// SIGTERM, SIGINT and SIGHUP, which ask the program to end, are waited for by a thread instead of
-// interrupting one: that thread may take locks and write logs.
+// SIGTERM, SIGINT and SIGHUP end the program. One thread waits for them with sigwait(), outside a
+// signal handler, and therefore can take locks and write logs.
 #pragma once
 
 #include <csignal>
@@ -9,7 +9,7 @@ namespace vines {
 inline sigset_t end_signals() {
     sigset_t signals;
     sigemptyset(&signals);
-    // Of a terminal that goes away, unless the program is to outlive it (nohup).
+    // SIGHUP arrives when the terminal closes; it stays ignored under nohup.
     struct sigaction hangup{};
     sigaction(SIGHUP, nullptr, &hangup);
     if (hangup.sa_handler != SIG_IGN) sigaddset(&signals, SIGHUP);
@@ -18,13 +18,14 @@ inline sigset_t end_signals() {
     return signals;
 }
 
-/// Keeps them from this thread and those that it starts from now on: call it before the first one.
+/// Blocks these signals in this thread and in those that it starts later. Call it before the first
+/// thread is started.
 inline void block_end_signals() {
     const sigset_t signals = end_signals();
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 }
 
-/// Returns the next that comes, or that came since they were blocked.
+/// Returns the next signal, including one that has arrived since they were blocked.
 inline int wait_for_end_signal() {
     const sigset_t signals = end_signals();
     int signal = 0;

@@ -5,11 +5,9 @@
 #include <memory>
 #include <string>
 
-#include "program/examples.hpp"
-#include "program/print.hpp"
-#include "program/tell.hpp"
-#include "report/markdown.hpp"
-#include "report/reproduce.hpp"
+#include "program/standard_streams.hpp"
+#include "program/subcommand.hpp"
+#include "report/report.hpp"
 
 namespace vines::report {
 
@@ -18,9 +16,9 @@ namespace {
 int run(const std::string& folder) {
     const Report result = reproduce(folder);
     print(markdown_table(result.findings));
-    if (!folder.empty()) tell(fmt::format("wrote {}/report.md and its plots", folder));
-    if (!result.stands()) tell("a verdict is not what it was found to be");
-    return result.stands() ? 0 : 1;
+    if (!folder.empty()) print_message(fmt::format("wrote {}/report.md and its plots", folder));
+    if (!result.as_expected()) print_message("a verdict has changed");
+    return result.as_expected() ? 0 : 1;
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
-// The subcommand reproduce.
+// Subcommand `reproduce`.
 #pragma once
 
-#include "program/command.hpp"
+#include "program/subcommand.hpp"
 
 namespace vines::report {
 
-/// Exit code 0 if every number lies in its band, else 1.
+/// Adds the subcommand. Exit code 0 if every verdict is the expected one, else 1.
 Command add_reproduce(CLI::App& app);
 
 }  // namespace vines::report

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <span>
 
-#include "core/motion/special_values.hpp"
+#include "core/motion/elementary.hpp"
 #include "report/statistics.hpp"
 
 namespace vines::report {
@@ -16,23 +16,23 @@ std::string in_words(const Exponents& lambda) {
         "{:.4f}, {:.4f}, {:.4f}, {:.4f}", lambda[0], lambda[1], lambda[2], lambda[3]);
 }
 
-Exponents exponents_of(const Response& r) {
+Exponents exponents_of(const PaperRun& r) {
     const auto& orbit = r.run.regime->orbit;
     return orbit ? orbit->exponents(r.parameters) : r.run.exponents->product.qr();
 }
 
 namespace {
 
-/// Of a history's values those of the second half of its window.
 std::span<const Exponents> late(const ExponentHistory& h) {
     const double half = (h.tau.front() + h.tau.back()) / 2;
     const auto first = std::ranges::lower_bound(h.tau, half) - h.tau.begin();
     return std::span(h.lambda).subspan(static_cast<std::size_t>(first));
 }
 
-/// At the impacts of the second half of a window, where "transient spikes" are not, "at these
-/// non-smooth points u_i is equal or close to zero": of the impacts without a zero among the four
-/// eigenvalues those at which all exponents are positive; and the others' share of all.
+/// Fractions of the impacts in the second half of a window. `share`: of the impacts without a zero
+/// eigenvalue, those at which all four exponents are positive. `spikes`: of all impacts, those with
+/// a zero eigenvalue (the paper: "transient spikes", "at these non-smooth points u_i is equal or
+/// close to zero").
 struct Positive {
     double share, spikes;
 };
@@ -46,19 +46,19 @@ Positive all_positive(const ExponentHistory& h) {
     return {all / finite, 1 - finite / static_cast<double>(late(h).size())};
 }
 
-double over_error(const Response& r) {
+double over_error(const PaperRun& r) {
     const auto& exponents = *r.run.exponents;
     return exponents.product.qr()[0] / exponents.growth.standard_error[0];
 }
 
 void chaotic(
-    Report& report, const PositiveExponents& paper, const Response& here, const Response& other) {
-    const auto text = [](const Response& r) {
+    Report& report, const PositiveExponents& paper, const PaperRun& here, const PaperRun& other) {
+    const auto text = [](const PaperRun& r) {
         const auto& exponents = *r.run.exponents;
         return fmt::format(
             "{:.4f} +- {:.4f}", exponents.product.qr()[0], exponents.growth.standard_error[0]);
     };
-    report.find(
+    report.add(
         {.where = paper.where,
          .what = "lambda1 (qr) over its standard error",
          .paper = paper.chaotic,
@@ -72,15 +72,15 @@ void chaotic(
 }  // namespace
 
 void positive_exponents(
-    Report& report, const PositiveExponents& paper, const Response& here, const Response& other) {
+    Report& report, const PositiveExponents& paper, const PaperRun& here, const PaperRun& other) {
     chaotic(report, paper, here, other);
     const TransferProduct &product = here.run.exponents->product,
                           &by_equation = other.run.exponents->product;
     const Positive found = all_positive(product.raw_product_history());
-    report.find(
+    report.add(
         {.where = paper.where,
-         .what = "raw_product, second half of the window without its spikes: share of impacts up "
-                 "to which all four are positive",
+         .what = "raw_product, second half of the window without its spikes: fraction of impacts "
+                 "up to which all four are positive",
          .paper = paper.positive,
          .here = fmt::format(
              "{:.2f}; at the last {}. At {:.2f} of all impacts an eigenvalue is zero: a spike",
@@ -88,9 +88,9 @@ void positive_exponents(
          .number = found.share,
          .by_equation = all_positive(by_equation.raw_product_history()).share,
          .band = {0.9, 1},
-         .because = "nine in ten; the spikes, of which the paper speaks too, are left out"});
+         .because = "nine in ten; spikes, which the paper mentions too, are left out"});
     const Exponents lambda = product.qr();
-    report.find(
+    report.add(
         {.where = paper.where,
          .what = "positive exponents (qr)",
          .paper = paper.positive,
@@ -99,7 +99,7 @@ void positive_exponents(
          .by_equation = static_cast<double>(positive(by_equation.qr())),
          .band = exactly(4),
          .because = "all four",
-         .expected = Verdict::not_reproduced});
+         .expected = ClaimVerdict::not_reproduced});
 }
 
 double late_change(const ExponentHistory& h, int k) {

@@ -1,4 +1,4 @@
-// What the paper says of exponents at more than one place.
+// Statements on exponents that several chapters use, and the numbers of Tables 2 and 3.
 #pragma once
 
 #include "report/report.hpp"
@@ -8,22 +8,46 @@ namespace vines::report {
 
 std::string in_words(const Exponents& lambda);
 
-/// Of the orbit that the run has come to, else of the window.
-Exponents exponents_of(const Response& response);
+/// Exponents of the orbit that the run approaches, else of the window.
+Exponents exponents_of(const PaperRun& response);
 
-/// Where the paper says that a motion is chaotic and that its four exponents are positive, and how.
+/// Quotations: the place, that the motion is chaotic, and that its four exponents are positive.
 struct PositiveExponents {
     std::string where, chaotic, positive;
 };
-/// `other`: by eq. (1).
+/// Adds the findings on chaos and positive exponents. `other`: with the damping of eq. (1).
 void positive_exponents(
-    Report& report, const PositiveExponents& paper, const Response& here, const Response& other);
+    Report& report, const PositiveExponents& paper, const PaperRun& here, const PaperRun& other);
 
-/// How far the k-th exponent (0 to 3) comes over the second half of a window, but for its spikes
-/// (one value in twenty at either end), over its last value.
+/// Range of the k-th exponent (0 to 3) over the second half of a window, without spikes (one value
+/// in twenty at either end), over its last value.
 double late_change(const ExponentHistory& history, int k);
-/// Almost constant, and nearly so.
+/// Limits of late_change() for "almost constant", and for holding in part.
 inline constexpr double small_change = 0.1, some_change = 0.2;
 inline const char* const why_small_change = "a tenth; in part: a fifth";
+
+/// Table 2: exponents at b = 22 mm over three windows of one run.
+struct Table2Row {
+    double from, to;  ///< tau
+    double lambda1, lambda3;
+    double T() const { return to - from; }
+    double spread() const { return (lambda1 - lambda3) * T(); }
+};
+inline constexpr Table2Row printed_table_2[] = {
+    {18.1300, 1708.9, 0.1093, 0.08427},
+    {1708.9, 3652.7, 0.1143, 0.09242},
+    {3652.7, 5521.3, 0.1197, 0.1015}};
+
+/// Table 3: exponents over windows that the paper does not state.
+struct Table3Row {
+    double b;  ///< m
+    double lambda1, lambda3;
+    double difference() const { return lambda1 - lambda3; }
+};
+inline constexpr Table3Row printed_table_3[] = {
+    {0.040, 0.1321, 0.1245},   {0.034, 0.1372, 0.127},    {0.031, 0.1528, 0.1391},
+    {0.028, 0.1452, 0.1309},   {0.025, 0.1138, 0.09727},  {0.022, 0.1093, 0.08427},
+    {0.020, 0.1014, 0.0783},   {0.018, 0.06368, 0.03913}, {0.017, 0.04703, 0.02043},
+    {0.0165, 0.03686, 0.01084}};
 
 }  // namespace vines::report

@@ -22,7 +22,7 @@ Curve floor_of(const ExponentHistory& raw, double tau_start) {
     return c;
 }
 
-/// lambda1's largest value once its first, wide swings are over.
+/// Largest lambda1 after its first, wide swings.
 double highest_late(const ExponentHistory& h) {
     double highest = 0;
     for (std::size_t i = h.tau.size() / 8; i < h.tau.size(); ++i)
@@ -41,7 +41,7 @@ Plot displacement(const Series& series, double to) {
     return {.x_label = "tau", .y_label = "x (mm)", .curves = {std::move(c)}};
 }
 
-Plot relative_displacement(const Response& r, double from, double to) {
+Plot relative_displacement(const PaperRun& r, double from, double to) {
     Curve c;
     const auto add = [&](double tau, double gap) {
         if (tau < from || tau > to) return;
@@ -50,7 +50,6 @@ Plot relative_displacement(const Response& r, double from, double to) {
     };
     const double b = r.parameters.b;
     auto impact = r.run.impacts.begin();
-    // With the contacts between the samples.
     for (std::size_t k = 0; k < r.run.series->tau.size(); ++k) {
         for (; impact != r.run.impacts.end() && impact->tau <= r.run.series->tau[k]; ++impact)
             add(impact->tau, -impact->side * b);

@@ -6,21 +6,21 @@
 #include <cmath>
 #include <thread>
 
-#include "core/motion/contacts.hpp"
+#include "core/motion/elementary.hpp"
 #include "core/motion/random.hpp"
-#include "core/motion/special_values.hpp"
+#include "core/motion/record.hpp"
 #include "core/sweep/parallel.hpp"
 
 namespace vines::report {
 
 namespace {
 
-// Far above what any run here has: each ends at its tau_end.
+// Never reached: each run here ends at its tau_end.
 constexpr long max_impacts = 10000000;
 constexpr ExponentOptions qr_and_raw_product = {.qr = true, .raw_product = true, .history = 0};
 
-/// From a start at tau = 0; the rest is to be filled in.
-Wanted run_to(const Parameters& p, const State& start, double tau_end) {
+/// Run from tau = 0; the caller sets the parts.
+AnalysisRequest run_to(const Parameters& p, const State& start, double tau_end) {
     return {
         .parameters = p,
         .start = start,
@@ -29,7 +29,7 @@ Wanted run_to(const Parameters& p, const State& start, double tau_end) {
         .window = {0, tau_end}};
 }
 
-/// The windows of one size that follow each other in a run up to some tau.
+/// Consecutive windows of one size in a run up to `until`.
 std::vector<Interval> windows_of(
     WindowsOf size, const Parameters& p, const State& start, double until) {
     std::vector<Interval> windows;
@@ -49,14 +49,14 @@ std::vector<Interval> windows_of(
     return windows;
 }
 
-/// The paper's initial state, for k = 0, and others beside it.
+/// The paper's initial state for k = 0, and slightly different ones.
 State start_beside(const Parameters& p, std::size_t k) {
     State start = default_state(p);
     start.y -= static_cast<double>(k) * 1e-6 * p.b;
     return start;
 }
 
-// So that the median is known to a fifth of what they scatter by.
+// Determines the median to a fifth of the scatter.
 constexpr std::size_t neighbour_runs = 50;
 
 Ensemble::Window concluded(const TransferProduct& product) {
@@ -65,9 +65,8 @@ Ensemble::Window concluded(const TransferProduct& product) {
     return {T, product.qr(), std::isfinite(raw[2]) ? (raw[0] - raw[2]) * T : nan};
 }
 
-/// One run of the ensemble.
 Ensemble one_run(const Parameters& p, const State& start, WindowsOf size) {
-    Wanted wanted = run_to(p, start, Ensemble::tau_end);
+    AnalysisRequest wanted = run_to(p, start, Ensemble::tau_end);
     wanted.parts = {.regime = true, .before_capture = true};
     wanted.estimators = qr_alone;
     const Regime regime = *analyse(wanted).regime;
@@ -82,7 +81,7 @@ Ensemble one_run(const Parameters& p, const State& start, WindowsOf size) {
     const double until =
         captured ? regime.capture->tau.value_or(Ensemble::tau_end) : Ensemble::tau_end;
     if (captured) e.capture_tau = {until};
-    Wanted exponents = run_to(p, start, until);
+    AnalysisRequest exponents = run_to(p, start, until);
     exponents.estimators = qr_and_raw_product;
     exponents.windows = windows_of(size, p, start, until);
     for (const WindowExponents& w : analyse(exponents).windows)
@@ -97,7 +96,7 @@ struct Case {
 std::vector<Regime> regimes_of(const std::vector<Case>& cases, const Interval& window) {
     std::vector<Regime> regimes(cases.size());
     parallel(cases.size(), all_threads(), [&](std::size_t i) {
-        Wanted wanted = run_to(cases[i].parameters, cases[i].start, window.to);
+        AnalysisRequest wanted = run_to(cases[i].parameters, cases[i].start, window.to);
         wanted.window.from = window.from;
         wanted.parts = {.regime = true};
         wanted.estimators = qr_alone;
@@ -122,7 +121,6 @@ Ensemble make_ensemble(double b, WindowsOf size, Damping damping) {
     return all;
 }
 
-/// Of those that are numbers.
 Moments finite_moments(const std::vector<Ensemble::Window>& windows, auto&& value) {
     std::vector<double> values;
     for (const Ensemble::Window& w : windows)
@@ -145,11 +143,11 @@ long positive(const Exponents& lambda) {
     return std::ranges::count_if(lambda, [](double v) { return v > 0; });
 }
 
-std::string Response::type() const { return std::string("Type ") + name_of(run.regime->type); }
+std::string PaperRun::type() const { return std::string("Type ") + name_of(run.regime->type); }
 
 Series series_until(double b, double tau_end) {
     const Parameters p = table1(b, Damping::closed_form);
-    Wanted wanted = run_to(p, default_state(p), tau_end);
+    AnalysisRequest wanted = run_to(p, default_state(p), tau_end);
     wanted.parts = {.series = true};
     return std::move(*analyse(wanted).series);
 }
@@ -185,9 +183,9 @@ std::vector<Regime> regimes_of_random_starts(const Parameters& p, int starts) {
     return regimes_of(cases, {1500, 3000});
 }
 
-Response long_response(double b) {
+PaperRun long_response(double b) {
     const Parameters p = table1(b, Damping::closed_form);
-    Wanted wanted = run_to(p, default_state(p), 10 * window_end);
+    AnalysisRequest wanted = run_to(p, default_state(p), 10 * window_end);
     wanted.parts = {.series = true, .moduli = true, .regime = true};
     wanted.estimators = qr_alone;
     return {p, analyse(wanted)};
@@ -195,16 +193,16 @@ Response long_response(double b) {
 
 std::string Typical::in_words(int decimals) const {
     return fmt::format(
-        "{:.{}f}; of {} starts beside each other the median {:.{}f}, quartiles {:.{}f} and {:.{}f}",
-        first, decimals, neighbour_runs, median, decimals, lower_quartile, decimals, upper_quartile,
+        "{:.{}f}; {} neighbouring starts: median {:.{}f}, quartiles {:.{}f} and {:.{}f}", first,
+        decimals, neighbour_runs, median, decimals, lower_quartile, decimals, upper_quartile,
         decimals);
 }
 
-const Response& Runs::response(double b, Damping damping) {
+const PaperRun& RunCache::paper_run(double b, Damping damping) {
     const auto found = responses_.find({b, damping});
     if (found != responses_.end()) return found->second;
     const Parameters p = table1(b, damping);
-    Wanted wanted = run_to(p, default_state(p), window_end);
+    AnalysisRequest wanted = run_to(p, default_state(p), window_end);
     wanted.parts = {
         .series = true,
         .impacts = true,
@@ -215,26 +213,26 @@ const Response& Runs::response(double b, Damping damping) {
         .before_capture = true,
         .manifold = true};
     wanted.estimators = all_estimators;
-    return responses_.emplace(std::pair{b, damping}, Response{p, analyse(wanted)}).first->second;
+    return responses_.emplace(std::pair{b, damping}, PaperRun{p, analyse(wanted)}).first->second;
 }
 
-const std::vector<Response>& Runs::neighbours(double b, Damping damping) {
+const std::vector<PaperRun>& RunCache::neighbours(double b, Damping damping) {
     const auto found = neighbours_.find({b, damping});
     if (found != neighbours_.end()) return found->second;
     const Parameters p = table1(b, damping);
     std::vector<std::optional<Analysis>> runs(neighbour_runs);
     parallel(neighbour_runs, all_threads(), [&](std::size_t k) {
-        Wanted wanted = run_to(p, start_beside(p, k), window_end);
+        AnalysisRequest wanted = run_to(p, start_beside(p, k), window_end);
         wanted.parts = {.series = true, .exponents = true, .moduli = true, .regime = true};
         wanted.estimators = {.qr = true, .raw_product = true};
         runs[k].emplace(analyse(wanted));
     });
-    std::vector<Response> responses;
+    std::vector<PaperRun> responses;
     for (auto& run : runs) responses.push_back({p, std::move(*run)});
     return neighbours_.emplace(std::pair{b, damping}, std::move(responses)).first->second;
 }
 
-const Ensemble& Runs::ensemble(double b, WindowsOf size, Damping damping) {
+const Ensemble& RunCache::ensemble(double b, WindowsOf size, Damping damping) {
     const auto [at, is_new] = ensembles_.try_emplace({b, size, damping});
     if (is_new) at->second = make_ensemble(b, size, damping);
     return at->second;

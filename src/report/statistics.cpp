@@ -4,13 +4,13 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/motion/special_values.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines::report {
 
 namespace {
 
-/// How many of the values lie below each.
+/// Number of values below each.
 std::vector<double> ranks(const std::vector<double>& values) {
     std::vector<double> ranks;
     for (double v : values)

@@ -1,4 +1,4 @@
-// Plain statistics of a few numbers.
+// Elementary statistics of a few numbers.
 #pragma once
 
 #include <utility>
@@ -7,19 +7,18 @@
 namespace vines::report {
 
 struct Moments {
-    double mean, deviation;  ///< the deviation of one value: n - 1 under the sum of squares
+    double mean, deviation;  ///< standard deviation of one value (n - 1)
 
-    /// How many deviations a value lies above the mean.
     double deviations_of(double value) const { return (value - mean) / deviation; }
     double scatter() const { return deviation / mean; }
 };
-/// NaN of nothing; of one value the deviation is NaN.
+/// NaN without values; the deviation of one value is NaN.
 Moments moments(const std::vector<double>& values);
 
-/// Spearman's, -1 to 1: of pairs of equal length without ties.
+/// Spearman's rank correlation, -1 to 1, of two lists of equal length without ties.
 double rank_correlation(const std::vector<double>& a, const std::vector<double>& b);
 
-/// The value below which a share (below 1) of the others lies; NaN of nothing.
+/// Quantile at `share` (0 to below 1); NaN without values.
 double quantile(std::vector<double> values, double share);
 inline double median(std::vector<double> values) { return quantile(std::move(values), 0.5); }
 

@@ -10,14 +10,14 @@ namespace vines::report {
 
 namespace {
 
-/// What is linear in V and 1: at + bV.
+/// A quantity linear in V.
 struct LinearInV {
     double constant, slope;
     double at(double V) const { return constant + slope * V; }
 };
 
 /// The impact at x - y = +b and the flight to x - y = -b, half a cycle later, after which
-/// everything is reversed. The mass flies 2 (b - x) in pi/Omega, and the impact law (4) gives x' on
+/// everything is reversed. The ball flies 2 (b - x) in pi/Omega, and the impact law (4) gives x' on
 /// both sides.
 struct HalfCycle {
     explicit HalfCycle(const Parameters& p)
@@ -30,8 +30,8 @@ struct HalfCycle {
     LinearInV x, x_dot_before, x_dot_after;
 };
 
-/// The forcing's part of the motion, (x', x), at the impact of the + wall: what is left of the
-/// state after it, carried over half a cycle, is minus what is left before it.
+/// Forced part (x', x) of the motion at the impact of the + wall. The free part after the impact,
+/// carried over half a cycle, is minus the free part before it.
 Eigen::Vector2d forced_part(const HalfCycle& h, const Transfer& J, double V) {
     const Eigen::Matrix2d A{{J.a11, J.a12}, {J.a21, J.a22}};
     const Eigen::Vector2d after(h.x_dot_after.at(V), h.x.at(V)),
@@ -43,8 +43,8 @@ Eigen::Vector2d forced_part(const HalfCycle& h, const Transfer& J, double V) {
     return inverse * (A * after + before);
 }
 
-/// x'' at the impact from the forced part's phase: of x = X sin + Y cos, x'' = -Omega^2 x, and the
-/// free part obeys x'' = -2 zeta x' - x.
+/// x'' before the impact: the forced part x = X sin + Y cos has x'' = -Omega^2 x, and the free part
+/// obeys x'' = -2 zeta x' - x.
 double acceleration_before(
     const Parameters& p, const Eigen::Vector2d& forced, double x_dot, double x) {
     return -p.Omega * p.Omega * forced[1] - 2 * p.zeta() * (x_dot - forced[0]) - (x - forced[1]);
@@ -72,8 +72,8 @@ SymmetricMotion motion_at(const Parameters& p, const HalfCycle& h, const Flow& f
     return motion;
 }
 
-/// The amplitude of the forced part is epsilon A / sqrt(D), which leaves a quadratic equation for
-/// V; sign: of its root.
+/// Solves for V. The amplitude of the forced part is epsilon A / sqrt(D), which is a quadratic
+/// equation for V; `sign` selects its root.
 std::optional<SymmetricMotion> symmetric_motion(const Parameters& p, int sign) {
     const HalfCycle h(p);
     const Flow flow = Flow::free(p);

@@ -1,5 +1,4 @@
-// What several tests of requests and answers need: answers to a JSON text, and what is at fault
-// with one.
+// Helpers for tests of requests and answers: answers to JSON texts, and the errors of refused ones.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -11,7 +10,7 @@
 
 #include "api/identify.hpp"
 #include "api/json_text.hpp"
-#include "api/parse_object.hpp"
+#include "api/parse.hpp"
 #include "api/schema/tables.hpp"
 #include "api/simulate.hpp"
 #include "api/sweep.hpp"
@@ -20,7 +19,7 @@ namespace vines::test {
 
 using namespace vines::api;
 
-/// What an answer says to who reads its text.
+/// The answer as a client reads it.
 inline Json read_back(Json answer) { return Json::parse(json_text(std::move(answer))); }
 
 inline Json simulated(
@@ -35,12 +34,12 @@ inline Json slow_manifold(const ManifoldRequest& request, const Stop& stop = {})
 }
 inline Json start_of_sweep(const SweepRequest& request) { return read_back(sweep_start(request)); }
 
-/// Of /v1/simulate.
+/// The answer of /v1/simulate.
 inline Json answer(const std::string& text) {
     return simulated(read_simulate_request(parse_object(text)), {});
 }
 
-/// All parts of such an answer.
+/// All parts that /v1/simulate can include.
 inline const std::vector<std::string>& all_parts() {
     return find(simulate_fields(), "include")->choices;
 }
@@ -51,7 +50,7 @@ inline bool warns(const Json& a, const std::string& of) {
     return false;
 }
 
-/// The problem that reading a request, or answering it, ends with.
+/// The Problem thrown by reading or answering a request.
 template <class Work>
 Problem problem_of(Work work) {
     try {
@@ -63,13 +62,13 @@ Problem problem_of(Work work) {
     return {0, ""};
 }
 
-/// That of a request to /v1/simulate.
+/// The Problem of a request to /v1/simulate.
 inline Problem refused(const std::string& text) {
     CAPTURE(text.substr(0, 200));
     return problem_of([&] { read_simulate_request(parse_object(text)); });
 }
 
-/// The fields at fault.
+/// The invalid fields.
 inline std::set<std::string> pointers(const Problem& problem) {
     std::set<std::string> all;
     for (const FieldError& e : problem.errors) all.insert(e.pointer);
@@ -80,7 +79,7 @@ inline SweepRequest sweep_request(const std::string& text) {
     return read_sweep_request(parse_object(text), 100000);
 }
 
-/// Those of a request to /v1/sweep.
+/// The invalid fields of a request to /v1/sweep.
 inline std::set<std::string> faults_of_sweep(const std::string& text) {
     CAPTURE(text);
     const Problem problem = problem_of([&] { sweep_request(text); });
@@ -88,14 +87,14 @@ inline std::set<std::string> faults_of_sweep(const std::string& text) {
     return pointers(problem);
 }
 
-/// The lines of a sweep by their index, and what it warns of.
+/// The lines of a sweep by index, and its warning.
 struct Swept {
     std::map<std::size_t, Json> lines;
     std::string warning;
 };
-inline Swept swept(const SweepRequest& r, int threads, Pace& pace) {
+inline Swept swept(const SweepRequest& r, int threads, RunControl& control) {
     Swept s;
-    s.warning = run_sweep(r, threads, pace, [&](std::size_t index, const std::string& text) {
+    s.warning = run_sweep(r, threads, control, [&](std::size_t index, const std::string& text) {
         const Json line = Json::parse(text);
         CHECK(line["index"] == index);
         CHECK_FALSE(s.lines.contains(index));
@@ -104,8 +103,8 @@ inline Swept swept(const SweepRequest& r, int threads, Pace& pace) {
     return s;
 }
 inline Swept swept(const SweepRequest& r, int threads = 2) {
-    Pace pace;
-    return swept(r, threads, pace);
+    RunControl control;
+    return swept(r, threads, control);
 }
 inline Swept swept(const std::string& text) { return swept(sweep_request(text)); }
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "api/broken_off.hpp"
+#include "api/cancellation.hpp"
 #include "api/csv.hpp"
 #include "support.hpp"
 
@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::string_literals;
 
-/// What all texts below say.
+/// The columns of all texts below.
 void check_is_the_record(std::string_view text) {
     CAPTURE(text);
     const Csv csv = parse_csv(text);
@@ -35,7 +35,7 @@ std::string problem(std::string_view text) {
 
 }  // namespace
 
-TEST_CASE("a record is the same by any separator, line end, decimal sign and encoding") {
+TEST_CASE("a record reads the same with any separator, line end, decimal sign and encoding") {
     const std::string plain = "time_s,x_mm\n0,1.5\n0.001,-2.5\n0.002,3e-5\n";
     check_is_the_record(plain);
     check_is_the_record("time_s,x_mm\r\n0,1.5\r\n0.001,-2.5\r\n0.002,3e-5");
@@ -51,7 +51,7 @@ TEST_CASE("a record is the same by any separator, line end, decimal sign and enc
             check_is_the_record(utf16(plain, big_end_first, mark));
 }
 
-TEST_CASE("what stands above, between and behind the numbers is passed over") {
+TEST_CASE("preamble, comments and blank lines are skipped") {
     check_is_the_record("sep=;\ntime_s;x_mm\n0;1,5\n0,001;-2,5\n0,002;3e-5\n");
     check_is_the_record("time_s,x_mm,,\n0,1.5,,\n0.001,-2.5,,\n0.002,3e-5,,\n,,,\n");
     check_is_the_record("time_s;x_mm;\n0;1.5;\n0.001;-2.5;\n0.002;3e-5;\n");
@@ -67,7 +67,7 @@ TEST_CASE("what stands above, between and behind the numbers is passed over") {
     check_is_the_record("%time_s,x_mm\n0,1.5\n0.001,-2.5\n0.002,3e-5\n");
 }
 
-TEST_CASE("a row of units stands below the names") {
+TEST_CASE("a row of units below the names is read") {
     for (const char* text :
          {"Time,Acceleration 1\ns,m/s^2\n0,1\n1,2\n",
           "Time;Acceleration 1\n[s];[m/s^2]\n0;1\n1;2\n",
@@ -90,11 +90,11 @@ TEST_CASE("a row of units stands below the names") {
         CHECK(csv.columns[1].unit == "mm");
     }
     CHECK(parse_csv("sep=|\ntime|x\n0|1\n").columns[1].name == "x");
-    // Names that could be units are names.
+    // Names that are also units are names.
     CHECK(parse_csv("t,a\n0,1\n").columns[1].name == "a");
 }
 
-TEST_CASE("the lines of the samples are those of the file") {
+TEST_CASE("samples have the line numbers of the file") {
     const Csv csv = parse_csv("head\r\n\r\ntime_s,x\r\n0,1\r\n# pause\r\n1,2\r\n");
     CHECK(csv.lines == std::vector<std::uint32_t>{4, 6});
 }
@@ -104,16 +104,16 @@ TEST_CASE("letters beyond ASCII in a record of another encoding are read as Lati
     CHECK(parse_csv("Zeit \u00b5s,x\n0,1\n").columns[0].name == "Zeit \u00b5s");
 }
 
-TEST_CASE("what is no record is refused with the line and the reason") {
+TEST_CASE("an invalid record is refused with the line and the reason") {
     CHECK(problem("") == "the record is empty: it needs a header and lines of numbers");
     CHECK(problem("time_s,x\n").find("the record has no line of two or more numbers") == 0);
     CHECK(problem(std::string(1 << 20, ',')).find("the record has no line") == 0);
     CHECK(problem("0,1\n1,2\n").find("line 1: a line above the numbers must name") == 0);
     CHECK(problem("time_s,x,y\n0,1\n") == "line 2: has 2 columns, the header has 3");
     CHECK(problem("time_s,x\n0,1\n1,2,3\n") == "line 3: has 3 columns, the header has 2");
-    CHECK(problem("time_s,x\n0,1\n1,\n") == "line 3, column x: there is no number");
-    CHECK(problem("time_s,x\n0,1\n,2\n") == "line 3, column time_s: there is no number");
-    CHECK(problem("time_s,x\n0,one\n1,2\n") == "line 2, column x: \"one\" is no number");
+    CHECK(problem("time_s,x\n0,1\n1,\n") == "line 3, column x: a number is missing");
+    CHECK(problem("time_s,x\n0,1\n,2\n") == "line 3, column time_s: a number is missing");
+    CHECK(problem("time_s,x\n0,one\n1,2\n") == "line 2, column x: \"one\" is not a number");
     CHECK(problem("time_s,x\n0,1\n1,inf\n") == "line 3, column x: the number is not finite");
     CHECK(
         problem("t;x\n0;1.5\n1;2,5\n") ==
@@ -121,18 +121,18 @@ TEST_CASE("what is no record is refused with the line and the reason") {
     CHECK(
         problem("t,x\n0.5,\"1,234\"\n") ==
         "line 2, column x: the record has decimal points and decimal commas");
-    CHECK(problem("t,x\n0,1\n1,+-5\n") == "line 3, column x: \"+-5\" is no number");
-    CHECK(problem("t,x\n0,1\n1,\"2\"5\n") == "line 3, column x: \"\"2\"5\" is no number");
-    // A decimal comma beside separating ones.
+    CHECK(problem("t,x\n0,1\n1,+-5\n") == "line 3, column x: \"+-5\" is not a number");
+    CHECK(problem("t,x\n0,1\n1,\"2\"5\n") == "line 3, column x: \"\"2\"5\" is not a number");
+    // Decimal commas and separating commas in one line.
     CHECK(problem("time_s,x\n0,001,1,5\n") == "line 2: has 4 columns, the header has 2");
 }
 
-TEST_CASE("a record is read no further than somebody waits for it, and than it may have numbers") {
+TEST_CASE("reading a record stops when it is cancelled or exceeds the limit of numbers") {
     std::string rows = "time_s,x\n", preamble;
     for (int k = 0; k < 50000; ++k) rows += "1,1\n", preamble += "1\n";
     for (const std::string& text : {rows, preamble}) {
         int asked = 0;
-        CHECK_THROWS_AS(parse_csv(text, {.gives_up = [&] { return ++asked == 3; }}), BrokenOff);
+        CHECK_THROWS_AS(parse_csv(text, {.gives_up = [&] { return ++asked == 3; }}), Cancelled);
         CHECK(asked == 3);
     }
     CHECK(parse_csv(rows, {.most_numbers = 100000}).lines.size() == 50000);
@@ -141,7 +141,7 @@ TEST_CASE("a record is read no further than somebody waits for it, and than it m
     CHECK(std::string(many.what()).find("more than 99999 numbers") != std::string::npos);
 }
 
-TEST_CASE("a line above the numbers is one of numbers by whatever may begin one") {
+TEST_CASE("a data line can begin with any character that a number or a quoted cell begins with") {
     for (const auto& line :
          {std::pair("0;1", ";"), std::pair("+1\t2", "\t"), std::pair("-1 2", " "),
           std::pair(".5,1", ","), std::pair("\"0,5\",1", ","), std::pair(",5;1", ";"),
@@ -152,7 +152,7 @@ TEST_CASE("a line above the numbers is one of numbers by whatever may begin one"
     }
 }
 
-TEST_CASE("a fault of a record is told in a few lines, however long its names and units are") {
+TEST_CASE("the error of a record is short, however long its names and units are") {
     const std::string word(1000000, 'u');
     std::string rows;
     for (int k = 0; k < 200; ++k) rows += std::to_string(k) + "," + std::to_string(k % 3) + "\n";

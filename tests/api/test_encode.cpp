@@ -1,12 +1,12 @@
-// How answers are written as bytes, in each format.
+// Encoding of answers in each format.
 #include <doctest/doctest.h>
 
 #include <limits>
 #include <string>
 #include <vector>
 
-#include "api/broken_off.hpp"
-#include "api/column.hpp"
+#include "api/answer_json.hpp"
+#include "api/cancellation.hpp"
 #include "api/format/encode.hpp"
 
 using namespace vines::api;
@@ -21,7 +21,7 @@ std::vector<double> numbers_of(std::size_t length) {
     return numbers;
 }
 
-/// An answer of one table.
+/// An answer with one table.
 Json long_answer() {
     const std::vector<double> numbers = numbers_of(100000);
     Json lists;
@@ -32,7 +32,7 @@ Json long_answer() {
     return {{"impacts", lists}};
 }
 
-/// The same by the JSON library's own writer.
+/// The CBOR of the JSON library.
 std::string typed_by_library(const std::vector<double>& numbers) {
     const auto* const first = reinterpret_cast<const std::uint8_t*>(numbers.data());
     std::string bytes;
@@ -42,7 +42,7 @@ std::string typed_by_library(const std::vector<double>& numbers) {
 
 }  // namespace
 
-TEST_CASE("what nobody wants any longer is not written to its end, whatever its format") {
+TEST_CASE("encoding stops when it is cancelled, in every format") {
     for (const FormatName& name : format_names) {
         CAPTURE(name.word);
         const std::string whole = encoded(long_answer(), name.format, std::nullopt);
@@ -58,13 +58,13 @@ TEST_CASE("what nobody wants any longer is not written to its end, whatever its 
                 encoded(
                     long_answer(), name.format, std::nullopt,
                     [&times, stops_at] { return ++times >= stops_at; }),
-                BrokenOff);
+                Cancelled);
             CHECK(times == stops_at);
         }
     }
 }
 
-TEST_CASE("CBOR has the bytes that the JSON library writes of typed arrays of any length") {
+TEST_CASE("CBOR of typed arrays equals that of the JSON library at any length") {
     for (const std::size_t length : lengths) {
         CAPTURE(length);
         const std::vector<double> numbers = numbers_of(length);
@@ -86,7 +86,7 @@ TEST_CASE("CBOR has the bytes that the JSON library writes of typed arrays of an
     }
 }
 
-TEST_CASE("CBOR without lists of numbers is what the JSON library writes") {
+TEST_CASE("CBOR without lists of numbers equals that of the JSON library") {
     const Json answer = Json::parse(
         R"({"words":["a","b"],"none":null,"nested":{"window":[[1,2],[3,4.5]],"empty":{},"":[]},)"
         R"("large":18446744073709551615,"objects":[{"a":1},{"b":[{"c":true}]}],"text":"\u03bb"})");

@@ -7,9 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "api/column.hpp"
+#include "api/answer_json.hpp"
 #include "api/json_text.hpp"
-#include "api/number_text.hpp"
 
 using namespace vines::api;
 
@@ -23,7 +22,7 @@ std::string text_of_number(double value) {
 
 }  // namespace
 
-TEST_CASE("a number has the form that the JSON library gives it") {
+TEST_CASE("a number has the JSON library's form") {
     for (const double value :
          {0.0,
           -0.0,
@@ -83,7 +82,7 @@ TEST_CASE("a number reads back to the same bits, and is never longer than the JS
     CHECK(shorter < count / 100);
 }
 
-TEST_CASE("a packed list is written as the array that it stands for") {
+TEST_CASE("a packed list is written as an array") {
     const double none = std::numeric_limits<double>::quiet_NaN();
     const std::vector<double> numbers = {1, -0.25, none, 1e-9};
     CHECK(json_text(column(numbers)) == "[1.0,-0.25,null,1e-09]");
@@ -101,7 +100,7 @@ TEST_CASE("a packed list is written as the array that it stands for") {
         "[[[1.0,2.0,3.0,4.0],[5.0,0.0,0.0,0.0],[6.0,0.0,0.0,0.0],[0.0,7.0,0.0,0.0]]]");
 }
 
-TEST_CASE("what is not a packed list is written as the JSON library writes it") {
+TEST_CASE("other values are written as by the JSON library") {
     const Json json = {
         {"words", {"plain", "\"quoted\"", "line\n", "\u00e4", "", "back\\slash"}},
         {"a \"name\"", {{"empty", Json::object()}, {"list", Json::array()}}},
@@ -111,7 +110,7 @@ TEST_CASE("what is not a packed list is written as the JSON library writes it") 
     CHECK(json_text("word") == "\"word\"");
 }
 
-TEST_CASE("a text comes in pieces that make up the whole") {
+TEST_CASE("the pieces of a text add up to the whole") {
     std::vector<double> numbers(20000);
     for (std::size_t k = 0; k < numbers.size(); ++k) numbers[k] = 1.0 / static_cast<double>(k + 1);
     const Json json = {{"numbers", column(numbers)}, {"word", std::string(50000, 'w')}};

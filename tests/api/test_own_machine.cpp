@@ -1,4 +1,4 @@
-// What an engineer asks of a machine: systems in SI, several starts, reductions, a recommended b.
+// User-defined systems in SI: several starts, reductions, a recommended b.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ using namespace vines::test;
 
 namespace {
 
-/// Whether a number is another one, relatively. (doctest's Approx takes small ones for equal.)
+/// True if two numbers agree relatively. (doctest's Approx treats small ones as equal.)
 bool is_near(const Json& value, double expected, double relative) {
     return std::abs(value.get<double>() - expected) <= relative * std::abs(expected);
 }
@@ -27,9 +27,7 @@ const std::string platform =
 
 }  // namespace
 
-TEST_CASE(
-    "a platform is walked from its data sheet to the peak without absorber and both worst peaks, "
-    "in one request") {
+TEST_CASE("one request yields a platform's peak without absorber and both worst peaks") {
     const Json a = answer("{" + platform + R"(,"f":14,"include":["energy"]})");
     CHECK(is_near(a["energy"]["without_absorber"]["amplitude"], 0.0333, 0.002));
     CHECK(a["parameters"]["damping"] == "equation_of_motion");
@@ -43,8 +41,8 @@ TEST_CASE(
     const Json& line = s.lines.at(0);
     std::map<std::string, Json> from;
     for (const Json& start : line["starts"]) from[start["start"]] = start;
-    // A strongly modulated response: its peak is that of its window, .0135 to .0152 of neighbouring
-    // starts.
+    // A strongly modulated response: the peak depends on the window; neighbouring starts give .0135
+    // to .0152.
     CHECK(is_near(from["wall"]["x_peak"], 0.0144, 0.1));
     CHECK(is_near(from["middle"]["x_peak"], 0.0287, 0.01));
     CHECK(from["middle"]["regime"] == "none");
@@ -59,7 +57,7 @@ TEST_CASE(
     CHECK(std::abs(line["f"].get<double>() - 14) < 0.2);
 }
 
-TEST_CASE("an engineer's fields are the paper's by its definitions") {
+TEST_CASE("f0, damping_ratio and mass_ratio follow the paper's definitions") {
     const Json by_ratio = answer("{" + platform + R"(,"f":14.2,"include":[]})")["parameters"];
     const double omega0 = 2 * std::numbers::pi * 14, k1 = 12 * omega0 * omega0,
                  c1 = 2 * 0.006 * 12 * omega0;
@@ -89,7 +87,7 @@ TEST_CASE("an engineer's fields are the paper's by its definitions") {
     }
 }
 
-TEST_CASE("a system in SI that is not whole is refused by the names of what is missing") {
+TEST_CASE("an incomplete system in SI is refused with the names of the missing fields") {
     CHECK(
         pointers(refused(R"({"m1":12,"k1":92853.2,"c1":12.667,"m2":0.12,"f":14})")) ==
         std::set<std::string>{"/F"});
@@ -100,7 +98,7 @@ TEST_CASE("a system in SI that is not whole is refused by the names of what is m
         pointers(refused(R"({"m1":12})")) ==
         std::set<std::string>{"/c1", "/k1", "/m2", "/F", "/f"});
     CHECK_THROWS_AS(read_manifold_request(parse_object(R"({"m1":12})")), Problem);
-    // Without a forcing there is no frequency to give.
+    // f is not needed without forcing.
     CHECK(
         answer(R"({"m1":12,"f0":14,"damping_ratio":0.006,"mass_ratio":0.01,"F":0,"include":[]})")
             ["parameters"]["Omega"] == 1);
@@ -111,7 +109,7 @@ TEST_CASE("a system in SI that is not whole is refused by the names of what is m
         std::set<std::string>{"/base/F"});
 }
 
-TEST_CASE("what is not given comes from the preset that is named, with a word") {
+TEST_CASE("omitted fields come from the named preset, with a warning") {
     const Json a = answer(R"({"preset":"fig20","m1":5,"include":[]})");
     CHECK(warns(
         a, "not given, and taken from preset fig20: c1 = 3.02, k1 = 11470.0, m2 = 0.032, F = "));
@@ -121,7 +119,7 @@ TEST_CASE("what is not given comes from the preset that is named, with a word") 
     CHECK(a["parameters"]["origin"]["y0"] == "default");
 }
 
-TEST_CASE("a system of one's own over a preset has the damping of eq. (1) and its own window") {
+TEST_CASE("a user-defined system over a preset has the damping of eq. (1) and its own window") {
     const std::string own =
         "{" + platform +
         R"(,"preset":"fig3","f":14,"include":["energy","exponents"],"tau_end":400)";
@@ -137,7 +135,7 @@ TEST_CASE("a system of one's own over a preset has the damping of eq. (1) and it
     CHECK(
         answer(R"({"preset":"fig3","lambda":2,"include":[]})")["parameters"]["damping"] ==
         "equation_of_motion");
-    // The preset's own values, and another excitation of its own oscillator, leave the damping.
+    // The preset's own values, or another excitation of its oscillator, keep the damping.
     CHECK(
         answer(R"({"preset":"fig3","b":0.02,"G":0.01,"include":[]})")["parameters"]["damping"] ==
         "closed_form");
@@ -147,7 +145,7 @@ TEST_CASE("a system of one's own over a preset has the damping of eq. (1) and it
         "preset fig20");
 }
 
-TEST_CASE("a preset's window is that of its own motion") {
+TEST_CASE("a preset's window applies only to its own motion") {
     const Json own =
         answer(R"({"preset":"fig3","G":0,"x0":0.03,"tau_end":100,"include":["energy"]})")["energy"];
     CHECK(is_near(own["at_start"], 0.00045, 1e-12));
@@ -157,7 +155,7 @@ TEST_CASE("a preset's window is that of its own motion") {
     CHECK(answer(R"({"preset":"fig3","b":0.021,"include":[]})")["parameters"]["window"][0] == 0);
 }
 
-TEST_CASE("starts in SI are in m/s, and one in units of tau beside SI is warned of") {
+TEST_CASE("starts in SI are in m/s; velocities in units of tau cause a warning") {
     const std::string si = "{" + platform + R"(,"f":14,"include":[])";
     const double omega0 = 2 * std::numbers::pi * 14;
     const Json a = answer(si + R"(,"x_velocity0":0.5,"y_velocity0":-0.2})");
@@ -177,9 +175,9 @@ TEST_CASE("starts in SI are in m/s, and one in units of tau beside SI is warned 
 
 namespace {
 
-/// Whether every `tau` in a part of an answer has its time_s, on the scale of omega0.
+/// True if every `tau` in a part of an answer has a time_s, scaled by omega0.
 void check_times(const Json& part, double omega0) {
-    const std::map<std::string, std::string> twins = {
+    const std::map<std::string, std::string> counterparts = {
         {"tau", "time_s"},
         {"tau_start", "time_start_s"},
         {"tau_end", "time_end_s"},
@@ -190,11 +188,11 @@ void check_times(const Json& part, double omega0) {
     if (!part.is_object()) return;
     for (const auto& [name, value] : part.items()) {
         check_times(value, omega0);
-        const auto twin = twins.find(name);
-        if (twin == twins.end() || value.is_string()) continue;
-        CAPTURE(std::string(twin->second));
-        REQUIRE(part.contains(twin->second));
-        const Json& seconds = part[twin->second];
+        const auto counterpart = counterparts.find(name);
+        if (counterpart == counterparts.end() || value.is_string()) continue;
+        CAPTURE(std::string(counterpart->second));
+        REQUIRE(part.contains(counterpart->second));
+        const Json& seconds = part[counterpart->second];
         if (value.is_number()) CHECK(is_near(seconds, value.get<double>() / omega0, 1e-14));
         if (!value.is_array()) continue;
         REQUIRE(seconds.size() == value.size());
@@ -205,8 +203,7 @@ void check_times(const Json& part, double omega0) {
 
 }  // namespace
 
-TEST_CASE(
-    "the answer to a question in SI has seconds beside every tau, and m/s, m/s^2, N s and J") {
+TEST_CASE("the answer to a request in SI has seconds for every tau, and m/s, m/s^2, N s and J") {
     const std::string all =
         R"("include":)" + Json(all_parts()).dump() + R"(,"windows":[[10,400]],"tau_end":600)";
     const Json a = answer("{" + platform + R"(,"f":14,)" + all + "}");
@@ -224,12 +221,12 @@ TEST_CASE(
         const double speed = impacts["x_velocity_before"][i].get<double>() -
                              impacts["y_velocity_before"][i].get<double>();
         CHECK(is_near(impacts["impact_speed"][i], std::abs(speed), 1e-12));
-        // The impulse on the free mass is its change of momentum, in kg m/s.
+        // The impulse on the ball is its change of momentum, in kg m/s.
         const double change = 0.12 * (impacts["y_velocity_after"][i].get<double>() -
                                       impacts["y_velocity_before"][i].get<double>());
         CHECK(is_near(impacts["impulse_N_s"][i], change, 1e-10));
     }
-    // The spring's and the masses' energy, from the SI values themselves.
+    // The energy of the spring and the masses, from SI values.
     CHECK(is_near(energy["at_start_J"], 0, 1e-12));
     CHECK(is_near(
         energy["impacts_J"], energy["impacts"].get<double>() * m1 * omega0 * omega0, 1e-14));
@@ -261,8 +258,8 @@ TEST_CASE("x_ddot is the derivative of x_dot between impacts, and obeys the equa
 }
 
 TEST_CASE(
-    "a free motion has no verdict, and its decay is told from the window's start, with the "
-    "absorber and without") {
+    "a free motion has no verdict; its decay is measured from the window's start, with and without "
+    "absorber") {
     const Json a = answer(R"({"G":0,"x_dot0":0.1,"b":0.01})");
     CHECK(a["exponents"]["verdict"].is_null());
     CHECK(
@@ -295,15 +292,15 @@ TEST_CASE("impacts that die out get no verdict") {
     const Json forced =
         identified(read_identify_request({{"b", 0.004}, {"impacts", run["impacts"]}}));
     CHECK(forced["verdict"] == "not_decided");
-    CHECK(forced["verdict_reason"].get<std::string>().find("grow weaker") != std::string::npos);
+    CHECK(forced["verdict_reason"].get<std::string>().find("impacts weaken") != std::string::npos);
 }
 
-TEST_CASE("the untouched ball is a motion of its own") {
+TEST_CASE("a motion without impacts is an attractor") {
     const Json a = answer(R"({"y0":0,"G":0.001,"include":["regime","exponents"]})");
     CHECK(a["regime"]["type"] == "none");
     CHECK(a["exponents"]["verdict"].is_null());
     CHECK(
-        a["exponents"]["verdict_reason"].get<std::string>().find("meets no wall") !=
+        a["exponents"]["verdict_reason"].get<std::string>().find("no impacts in the end") !=
         std::string::npos);
     const Json line =
         swept(R"({"base":{"y0":0},"axes":[{"parameter":"G","values":[0.001]}]})").lines.at(0);
@@ -311,8 +308,7 @@ TEST_CASE("the untouched ball is a motion of its own") {
     CHECK(line["verdict"].is_null());
 }
 
-TEST_CASE(
-    "a sweep whose motion depends on the start says so, by a second start at some of its points") {
+TEST_CASE("a sweep detects a dependence on the start by a second start at some points") {
     const std::string sweep =
         R"({"base":{)" + platform +
         R"(},"axes":[{"parameter":"f","from":13,"to":15,"count":33}],"transient_cycles":100,
@@ -326,7 +322,7 @@ TEST_CASE(
         if (line.contains("second_start")) CHECK(line["second_start"]["start"] == "middle");
     }
     CHECK(tried == 11);
-    // Where there is one attractor, nothing is said.
+    // With a single attractor there is no warning.
     const Swept one_attractor = swept(
         R"({"base":{"damping":"closed_form"},
             "axes":[{"parameter":"b","from":0.006,"to":0.0066,"count":4}]})");
@@ -351,7 +347,7 @@ TEST_CASE(
     CHECK(upper);
 }
 
-TEST_CASE("the default set's lines do not depend on threads, shards or the indices asked for") {
+TEST_CASE("the default set's lines do not depend on threads, shards or the requested indices") {
     const std::string text =
         R"({"base":{"damping":"closed_form"},
             "axes":[{"parameter":"Omega","from":0.95,"to":1.05,"count":6},
@@ -378,7 +374,7 @@ TEST_CASE("a sweep over three axes counts the first fastest, then the starts, th
     CHECK(s.lines.at(0)["standard_error"].size() == 4);
 }
 
-TEST_CASE("a reduction is the peak over the points that it folds") {
+TEST_CASE("a reduction is the peak over the reduced axis") {
     const std::string axes =
         R"("axes":[{"parameter":"b","values":[0.012,0.02]},
             {"parameter":"Omega","from":0.97,"to":1.03,"count":5}],"cycles":50,
@@ -409,7 +405,7 @@ TEST_CASE("a reduction is the peak over the points that it folds") {
         Problem);
 }
 
-TEST_CASE("a stroboscopic section is taken at the phase asked for") {
+TEST_CASE("a stroboscopic section is taken at the requested phase") {
     const Json zero = answer(
         R"({"tau_end":200,"include":["section","series"],"samples_per_cycle":4,"y0":0,"b":1})");
     const Json quarter = answer(
@@ -427,8 +423,7 @@ TEST_CASE("a stroboscopic section is taken at the phase asked for") {
 }
 
 TEST_CASE(
-    "the manifold recommends a b whose reduction a run of its own confirms, far below the limit of "
-    "activation") {
+    "a separate run confirms the reduction at the recommended b, far below the activation limit") {
     for (const std::string& system :
          {platform + R"(,"f":14)", std::string(R"("damping":"closed_form")")}) {
         const Json m =
@@ -448,7 +443,7 @@ TEST_CASE(
             CHECK(
                 s.lines.at(2 * start)["x_rms_ratio"].get<double>() <
                 1.1 * best["x_rms_ratio"].get<double>());
-            // At the limit next to nothing.
+            // At the limit the reduction is nearly zero.
             CHECK(s.lines.at(2 * start + 1)["x_rms_ratio"].get<double>() > 0.8);
         }
     }
@@ -458,9 +453,9 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "the untouched ball is found wherever it is a motion, though every start that meets it leads "
+    "a motion without impacts is found wherever it exists, even if every start with impacts leads "
     "elsewhere") {
-    // At rest in the middle the ball is met while the oscillator swings in.
+    // A ball at rest in the middle is hit while the oscillation builds up.
     const std::string system =
         R"("m1":12,"f0":14,"damping_ratio":0.006,"mass_ratio":0.01,"F":0.0004,"R":0.8,"f":14.1)";
     const Swept point = swept(
@@ -501,7 +496,7 @@ TEST_CASE("x_rms_ratio is over the steady motion without absorber, as in a simul
         line["x_rms"].get<double>() * std::sqrt(2) / line["x_free"].get<double>(), 1e-12));
 }
 
-TEST_CASE("a transient that is too short for the oscillator is warned of, and is no other motion") {
+TEST_CASE("too short a transient causes a warning and does not count as another motion") {
     const std::string sweep =
         R"({"base":{"m1":12,"f0":14,"damping_ratio":0.0005,"mass_ratio":0.01,"F":1e-5,"R":0.4,
             "b":0.5},"axes":[{"parameter":"f","values":[14,14.2]}],
@@ -520,8 +515,8 @@ TEST_CASE("a transient that is too short for the oscillator is warned of, and is
 }
 
 TEST_CASE(
-    "the cavity of a machine of one's own, and the damping that goes with a preset, are not "
-    "assumed without a word") {
+    "an assumed cavity of a user-defined system, or a dropped damping of a preset, causes a "
+    "warning") {
     const Json a = answer(
         R"({"m1":0.5,"f0":80,"damping_ratio":0.006,"mass_ratio":0.01,"F":1e-6,"f":80,
             "include":[]})");
@@ -533,7 +528,7 @@ TEST_CASE(
     CHECK(warns(
         answer(R"({"preset":"fig3","lambda":2,"include":[]})"),
         "its damping is equation_of_motion, not the preset's closed_form"));
-    // The preset's own value is no other system, however it is said.
+    // The preset's own value, in any form, does not change the system.
     const Json fig3 = answer(R"({"preset":"fig3","include":[]})")["parameters"];
     for (const char* own :
          {R"("epsilon":0.008405568689256633)", R"("mass_ratio":0.008405568689256633)",
@@ -546,7 +541,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("what a sweep sets twice is refused") {
+TEST_CASE("a sweep that sets a field twice is refused") {
     CHECK(
         faults_of_sweep(
             R"({"axes":[{"parameter":"x0","values":[0,0.01]}],"starts":[{"x0":0.005}]})") ==
@@ -564,7 +559,7 @@ TEST_CASE("what a sweep sets twice is refused") {
         std::set<std::string>{"/starts"});
 }
 
-TEST_CASE("the state of a motion in a sweep's line leads a simulation to the same motion") {
+TEST_CASE("a simulation from the state in a sweep's line reproduces the motion") {
     const Swept s = swept(
         R"({"base":{)" + platform +
         R"(},"axes":[{"parameter":"f","from":13.9,"to":14,"count":3}],"starts":"default set",

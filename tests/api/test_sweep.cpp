@@ -26,8 +26,8 @@ const char* const plane =
 }  // namespace
 
 TEST_CASE(
-    "a point's line depends on the request and its index alone: not on threads, order, shards or "
-    "what else is asked for") {
+    "a point's line depends only on the request and its index, not on threads, order, shards or "
+    "other points") {
     for (const char* more :
          {"}", R"(,"carry_state":"up"})", R"(,"carry_state":"down"})",
           R"(,"starts":[{},{"x_dot0":0.01}]})",
@@ -52,7 +52,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("lines come coarse to fine, so that the whole is seen early") {
+TEST_CASE("lines are computed coarse to fine, so that an overview is available early") {
     for (const char* axis : {"G", "Omega"})
         for (const char* more : {"}", R"(,"carry_state":"up"})"}) {
             CAPTURE(axis);
@@ -63,19 +63,19 @@ TEST_CASE("lines come coarse to fine, so that the whole is seen early") {
                 "cycles":2,"transient_cycles":0)" +
                 more);
             std::vector<std::size_t> levels;
-            api::Pace pace;
-            run_sweep(r, 1, pace, [&](std::size_t line, const std::string&) {
+            api::RunControl control;
+            run_sweep(r, 1, control, [&](std::size_t line, const std::string&) {
                 levels.push_back(r.plan.grid.level(r.plan.grid.place_of(line)));
             });
             CHECK(levels.size() == r.plan.grid.lines());
-            // Lanes side by side end one before the other.
+            // Runs of a batch end at different times.
             const std::size_t early = levels.size() / 16;
             for (std::size_t i = 0; i < early; ++i) CHECK(levels[i] <= 1);
             CHECK(levels.back() == 3);
         }
 }
 
-TEST_CASE("a point tells its place, exponents, regime, amplitude, energy and section") {
+TEST_CASE("a point has its axis values, exponents, regime, amplitude, energy and section") {
     const auto lines = run(sweep_request(std::string(plane) + "}"));
     const Json& line = lines.at(6);  // the second b at the second R
     CHECK(line["type"] == "point");
@@ -95,8 +95,8 @@ TEST_CASE("a point tells its place, exponents, regime, amplitude, energy and sec
 }
 
 TEST_CASE("continuation follows a branch that a fresh start does not find") {
-    // Down from 15 mm two symmetric impacts per cycle stay, wherever a fresh start goes; what is
-    // carried is the state, cavity and all.
+    // Continued down from 15 mm, two symmetric impacts per cycle persist where a fresh start goes
+    // elsewhere. The carried state includes the position in the cavity.
     const std::string text =
         R"({"base":{"damping":"closed_form"},
             "axes":[{"parameter":"b","values":[0.0072,0.01,0.015]}],"cycles":200)";
@@ -104,13 +104,13 @@ TEST_CASE("continuation follows a branch that a fresh start does not find") {
     for (const auto& [index, line] : down) CHECK(line["regime"] == "III");
     Json afresh = run(sweep_request(text + "}")).at(0);
     for (const char* name : {"second_start", "depends_on_start"}) afresh.erase(name);
-    // The first of a chain starts afresh.
+    // The first point of a chain has a fresh start.
     CHECK(run(sweep_request(text + R"(,"carry_state":"up"})")).at(0) == afresh);
     CHECK(down.at(1)["x_max"] != run(sweep_request(text + "}")).at(1)["x_max"]);
 }
 
 TEST_CASE(
-    "a long transient is run to its end, so that the phase of the forcing is right behind it") {
+    "a long transient is run to its end, so that the phase of the forcing is right after it") {
     const std::string text =
         R"({"base":{"epsilon":1,"lambda":0.2,"R_plus":0.9,"R_minus":0.2,"G":0.1},
             "axes":[{"parameter":"b","values":[0.23152542372881355]}],"cycles":500,
@@ -124,7 +124,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("a point whose transient does not end says so, and nothing else") {
+TEST_CASE("a point whose transient does not end reports only that") {
     // In a cavity of 10 nm the mass bounces a million times a cycle.
     const Json line =
         run(sweep_request(
@@ -141,8 +141,8 @@ TEST_CASE("a point whose transient does not end says so, and nothing else") {
     CHECK(line["b"] == 1e-8);
 }
 
-TEST_CASE("a state is carried at a whole cycle, or not at all") {
-    // The first point ends within a cycle, by max_impacts: its state is taken at the end of that
+TEST_CASE("a state is carried at a whole cycle or not at all") {
+    // The first point ends within a cycle, by max_impacts; its state is taken at the end of that
     // cycle.
     const std::string axes =
         R"("axes":[{"parameter":"b","values":[0.0151,0.015]}],"carry_state":"up",
@@ -151,7 +151,7 @@ TEST_CASE("a state is carried at a whole cycle, or not at all") {
         "{" + axes + R"("base":{"damping":"closed_form","max_impacts":801},"cycles":1000})"));
     CHECK(carried.at(0)["reason"] == "max_impacts");
     CHECK(carried.at(1)["regime"] == "III");
-    CHECK(carried.at(1)["capture_cycle"] == 0);  // it begins where the branch is
+    CHECK(carried.at(1)["capture_cycle"] == 0);  // it begins on the branch
     CHECK_FALSE(carried.at(1).contains("carried"));
     // In a cavity of 10 nm the transient does not end.
     const auto broken = run(sweep_request(
@@ -161,7 +161,7 @@ TEST_CASE("a state is carried at a whole cycle, or not at all") {
 }
 
 TEST_CASE("several starts at each point show coexisting attractors") {
-    // A mass at rest in the middle of a wide cavity is never hit; one with a push is.
+    // A ball at rest in the middle of a wide cavity is never hit; one with an initial velocity is.
     const auto lines = run(sweep_request(
         R"({"base":{"damping":"closed_form"},"axes":[{"parameter":"b","values":[0.03]}],
             "starts":[{"y0":0},{"y0":0,"y_dot0":0.02}],"cycles":200})"));
@@ -194,8 +194,8 @@ TEST_CASE("axes are linear or logarithmic with exact ends, or a list") {
             .plan.grid.lines() == 1);
 }
 
-TEST_CASE("an axis over a preset changes that field alone, reduced, SI or of one wall") {
-    // Each point is the point of a sweep whose base says all of the preset's values.
+TEST_CASE("an axis over a preset changes only its field, reduced, SI or of one wall") {
+    // Each point equals that of a sweep whose base states all values of the preset.
     const std::string rest = R"(,"cycles":60,"transient_cycles":0})";
     const auto point = [&](const std::string& base, const std::string& axis) {
         return run(sweep_request(R"({"base":)" + base + R"(,"axes":[)" + axis + "]" + rest)).at(0);
@@ -218,7 +218,7 @@ TEST_CASE("an axis over a preset changes that field alone, reduced, SI or of one
         point(std::string("{") + reduced + R"(,"Omega":1.01,"R_minus":0.85})", R_plus));
     const std::string c1 = R"({"parameter":"c1","values":[3]})";
     CHECK(point(R"({"preset":"fig3"})", c1) == point(R"({"preset":"table1"})", c1));
-    // Another damper: eq. (1)'s damping.
+    // Another damper has the damping of eq. (1).
     CHECK(
         point(R"({"preset":"fig3"})", c1)["x_rms"] !=
         point(R"({"preset":"fig3","damping":"closed_form"})", c1)["x_rms"]);
@@ -231,7 +231,7 @@ TEST_CASE("an axis over a preset changes that field alone, reduced, SI or of one
         std::set<std::string>{"/axes/0"});
 }
 
-TEST_CASE("what is wrong with a sweep is named at its place") {
+TEST_CASE("errors of a sweep are reported at their field") {
     CHECK(faults_of_sweep("{}") == std::set<std::string>{"/axes"});
     CHECK(faults_of_sweep(R"({"axes":[]})") == std::set<std::string>{"/axes"});
     CHECK(
@@ -289,16 +289,16 @@ TEST_CASE("what is wrong with a sweep is named at its place") {
                 "carry_state":"sideways"})") == std::set<std::string>{"/cycles", "/carry_state"});
 }
 
-TEST_CASE("a sweep that is stopped hands out no point that is not complete") {
-    class Impatient : public Pace {
+TEST_CASE("a stopped sweep passes on only complete points") {
+    class Impatient : public RunControl {
     public:
         bool stop_or_yield() override { return ++asked > 300; }
         std::atomic<long> asked = 0;
-    } pace;
+    } control;
     const SweepRequest r = sweep_request(
         R"({"axes":[{"parameter":"b","from":0.01,"to":0.02,"count":50}],"cycles":300})");
     const auto all = run(r);
-    const Swept some = swept(r, 2, pace);
+    const Swept some = swept(r, 2, control);
     for (const auto& [index, line] : some.lines) CHECK(line == all.at(index));
     CHECK(some.lines.size() < 50);
 }

@@ -1,6 +1,6 @@
-// How fast running services answer over a connection that is kept, beside a bare server of the same
-// library that has the same bytes ready, as rows of scripts/bench's table: bench_answers PORT...
-// All are asked in turn.
+// Response times of running services over a keep-alive connection, next to a bare server of the
+// same HTTP library with the same bytes ready, as rows of scripts/bench's table: bench_answers
+// PORT... All are measured in turn.
 #include <arpa/inet.h>
 #include <httplib.h>
 #include <sys/socket.h>
@@ -20,7 +20,7 @@ using namespace vines::bench;
 
 namespace {
 
-/// One connection, that sends a request and waits for the answer.
+/// A connection that sends a request and waits for the response.
 class Connection {
 public:
     explicit Connection(int port)
@@ -37,7 +37,7 @@ public:
     Connection(const Connection&) = delete;
     Connection& operator=(const Connection&) = delete;
 
-    /// The body of the answer, valid until the next call.
+    /// Body of the response, valid until the next call.
     std::string_view ask(const std::string& request) {
         if (::send(socket_, request.data(), request.size(), 0) < 0)
             throw std::runtime_error("the connection is closed");
@@ -98,8 +98,8 @@ std::string get(const std::string& query) {
     return "GET /v1/simulate?" + query + " HTTP/1.1\r\nHost: localhost\r\n\r\n";
 }
 
-/// Microseconds from a request to the end of its answer: of a round of so many, one after the
-/// other.
+/// Microseconds from a request to the end of its response; one round of `count` sequential
+/// requests.
 double microseconds(int port, const std::string& request, int count) {
     Connection connection(port);
     connection.ask(request);
@@ -133,7 +133,7 @@ void bench_answer(
     }
 }
 
-/// Without the bare server: it would pack the packed bytes once more.
+/// Without the bare server, which would compress the compressed bytes again.
 void bench_gzipped(int port) {
     const std::string request = post("{}", "Accept-Encoding: gzip\r\n");
     const std::size_t size = Connection(port).ask(request).size();

@@ -1,4 +1,5 @@
-// Measures the core and the making of answers, as rows of scripts/bench's table: bench [--long].
+// Measures the core and the generation of answers, as rows of scripts/bench's table: bench
+// [--long].
 #include <cstdio>
 #include <cstring>
 

@@ -16,10 +16,10 @@ constexpr double endless = 1e12;
 
 std::string power(double count) { return "1e" + std::to_string(std::lround(std::log10(count))); }
 
-/// Of a motion that has two impacts in every cycle: at b = 22 mm an orbit with a chatter captures
-/// it after 30,000 cycles, and a cycle is no longer the same work.
-Wanted exponents_alone() {
-    Wanted w;
+/// For a motion with two impacts in every cycle. At b = 22 mm, an orbit with a chatter captures the
+/// motion after 30,000 cycles, and cycles no longer have equal cost.
+AnalysisRequest exponents_alone() {
+    AnalysisRequest w;
     w.parameters.b = 0.015;
     w.parameters.damping = Damping::closed_form;
     w.start = default_state(w.parameters);
@@ -31,7 +31,7 @@ Wanted exponents_alone() {
 void bench_run(double cycles) {
     const int rounds = cycles < 1e6 ? 5 : 1;
     const auto run = [cycles] {
-        Wanted w = exponents_alone();
+        AnalysisRequest w = exponents_alone();
         w.tau_end = cycles * w.parameters.cycle();
         w.max_impacts = 1000000000;
         w.window = {0, w.tau_end};
@@ -57,9 +57,9 @@ void short_sweep(std::size_t points) {
         p.b = 0.002 + 0.038 * static_cast<double>(place.at[0]) / static_cast<double>(points);
         return std::optional(PointSystem{p, default_state(p), 100000});
     };
-    Pace pace;
+    RunControl control;
     Nowhere sink;
-    run_sweep(plan, 2, pace, sink);
+    run_sweep(plan, 2, control, sink);
 }
 
 void bench_memory() {
@@ -68,7 +68,7 @@ void bench_memory() {
             {cost_of([points] { short_sweep(points); }).megabytes}, "MB");
     for (long impacts : {200000, 2000000}) {
         const Cost run = cost_of([impacts] {
-            Wanted w = exponents_alone();
+            AnalysisRequest w = exponents_alone();
             w.tau_end = endless;
             w.window = {0, endless};
             w.max_impacts = impacts;
@@ -79,7 +79,7 @@ void bench_memory() {
     }
 }
 
-/// A record of a regular motion, which does not stick however long it is; 2048 samples a second.
+/// Record of a regular motion, which never sticks; 2048 samples per second.
 Measurement record_of(double samples) {
     const TrueMotion motion = test::settled_motion(0.008, 0.6, 0.6, samples / 2048);
     const test::Experiment e = test::measured(motion, Sensors{});
@@ -91,14 +91,14 @@ void bench_identification(double samples, int rounds) {
     std::vector<double> seconds;
     double megabytes = 0;
     for (int k = 0; k < rounds; ++k) {
-        const Cost cost = cost_of([&] { conclude(measurement); });
+        const Cost cost = cost_of([&] { evaluate_measurement(measurement); });
         seconds.push_back(cost.seconds);
         megabytes = cost.megabytes;
     }
     const std::string name =
         samples < 1e6 ? "a record of 41,000 samples" : "a record of 1,000,000 samples";
     row(name + " identified", seconds, "s",
-        ", " + digits(megabytes) + " MB of memory beside the record");
+        ", " + digits(megabytes) + " MB of memory in addition to the record");
 }
 
 }  // namespace

@@ -17,8 +17,8 @@ struct Case {
     const char* name;
     double b;
     Damping damping;
-    /// Of the plain program: as many as it comes to in reasonable time, before it chatters. Its
-    /// step of .05 still misses contacts, but few enough that it gets through.
+    /// For the plain program: the number it reaches in reasonable time, before a chatter. With its
+    /// step of .05 it still misses contacts, but few enough to continue.
     long plain_impacts;
 };
 
@@ -26,8 +26,8 @@ double per_impact(long count, const std::function<void()>& work) {
     return 1e9 * seconds_of(work) / static_cast<double>(count);
 }
 
-/// What no search can do without: the state at each contact, and the impact there, of flights
-/// whose durations are known, one after the other. Gives a number that depends on all of them.
+/// Lower bound for any contact search: the state at each contact and the impact there, for flights
+/// of known duration. Returns a number that depends on all of them.
 double states_at(const Parameters& p, const Flow& flow, const std::vector<Impact>& impacts) {
     const Impact& first = impacts.front();
     Oscillation o{first.x, first.x_dot_after, first.sin_theta, first.cos_theta};
@@ -37,8 +37,8 @@ double states_at(const Parameters& p, const Flow& flow, const std::vector<Impact
         const int k = static_cast<int>(s / flow.cell());
         const Oscillation left = flow.roughly_at(o, k);
         const double d = s - k * flow.cell();
-        o = flow.turned(left, d);
-        const auto [x, x_dot] = flow.near_series(left).at(d);
+        o = flow.rotated(left, d);
+        const auto [x, x_dot] = flow.short_series(left).at(d);
         o.x = x, o.x_dot = x_dot;
         const Contact contact{s, impacts[i].side, o, x_dot - y_dot};
         const Impact impact = impact_at(p, contact, flow.acceleration(o), impacts[i].tau);
@@ -62,7 +62,7 @@ void bench_case(const Case& c) {
     Observer* const recording[] = {&known};
     simulate(p, default_state(p), limits, recording);
     const auto flow = Flow::shared_free(p);
-    volatile double kept = 0;  // or it would not be computed
+    volatile double kept = 0;  // keeps the compiler from removing the computation
     const auto times = in_turn(
         9, {[&] {
                 ImpactRecord record;

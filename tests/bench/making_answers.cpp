@@ -50,7 +50,7 @@ void bench_sampling() {
     row("five columns of them by std::to_chars alone", times[2], "ms");
 }
 
-/// The default request, from its text on: each form of its answer by itself.
+/// The default request, from its text to each form of its answer.
 void bench_forms() {
     api::Json answer;
     std::string text, packed;

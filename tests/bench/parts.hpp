@@ -1,16 +1,16 @@
-// What scripts/bench measures of the core and of answers; each part prints its rows.
+// Parts of the benchmark of the core and of answers (scripts/bench); each prints its rows.
 #pragma once
 
 namespace vines::bench {
 
-/// Costs that grow with the work, and the memory that they take: first, in a process that has taken
-/// little itself. `long_too`: a run of 1e6 cycles and a record of 1e6 samples as well.
+/// Costs that grow with the work, and its memory. Run it first, in a process that has used little
+/// memory. `long_too` adds a run of 1e6 cycles and a record of 1e6 samples.
 void bench_growth(bool long_too);
-/// Time per impact, beside the plain program.
+/// Time per impact, compared with the plain program.
 void bench_kernel();
-/// Sweeps of b, and a map over b and R.
+/// Sweeps over b, and a map over b and R.
 void bench_sweeps();
-/// The samples of a series, and an answer in the forms that it travels in.
+/// Samples of a series, and an answer in its output formats.
 void bench_answers();
 
 }  // namespace vines::bench

@@ -12,7 +12,7 @@ Plain plain(const Parameters& p, long impacts, double scan_step) {
     const double D = (1 - W * W) * (1 - W * W) + 4 * z * z * W * W, X = a * (1 - W * W) / D,
                  Y = -2 * z * W * a / D;
     double x = 0, v = 0, y = 0.95 * p.b, u = 0, theta = p.phi(), T = 0;
-    int left = 0;  // the wall that the mass has just left
+    int left = 0;  // the wall that the ball has just left
     Matrix4 frame = Matrix4::Identity();
     double growth = 0;
     Plain result;

@@ -1,5 +1,5 @@
-// The plain program that one writes first: the closed form with the library's sin, cos and exp, a
-// scan for a change of sign, bisection, and a dense QR at each impact.
+// A straightforward implementation for comparison: closed form with the library's sin, cos and exp,
+// a scan for sign changes, bisection, and a dense QR decomposition at each impact.
 #pragma once
 
 #include "core/motion/parameters.hpp"
@@ -11,8 +11,8 @@ struct Plain {
     double lambda1 = 0;
 };
 
-/// So many impacts from the default start. Contacts that come and go within a step of the scan are
-/// missed; in a chatter it never ends.
+/// Runs this number of impacts from the default start. Misses contacts that begin and end within a
+/// step of the scan; never ends in a chatter.
 Plain plain(const Parameters& p, long impacts, double scan_step);
 
 }  // namespace vines::bench

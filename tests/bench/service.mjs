@@ -1,6 +1,6 @@
-// How long a sweep makes others wait, in the running service, how fast its lines come and how fast
-// it answers beside a bare server, as rows of scripts/bench's table: node tests/bench/service.mjs
-// [PORT...], where the ports are those of other services to be measured in turn with it.
+// Waiting time caused by a sweep in the running service, rate of its lines, and response times next
+// to a bare server, as rows of scripts/bench's table: node tests/bench/service.mjs [PORT...], where
+// PORTs are those of other services to be measured in turn.
 import {spawnSync} from "node:child_process";
 import {startService} from "../service.mjs";
 
@@ -19,7 +19,7 @@ const run = JSON.stringify({
 const post = (path, body, options = {}) =>
   fetch(service.url + path, {method: "POST", body, ...options});
 
-/** Starts a sweep as soon as there is room for one and returns, once its first line has come, how to leave it. */
+/** Starts a sweep once it is accepted. Resolves, after its first line, to its cancel function. */
 const startSweep = async () => {
   for (;;) {
     const leaving = new AbortController();
@@ -33,7 +33,7 @@ const startSweep = async () => {
   }
 };
 
-/** So many times, ascending, in ms. What else the machine does only adds. */
+/** Times of repeated calls in ms, ascending. Other load on the machine only adds to them. */
 const timed = async (count, work) => {
   const times = [];
   for (let i = 0; i < count; ++i) times.push(await work());
@@ -63,7 +63,7 @@ const free = await timed(9, async () => {
 });
 leave();
 
-// A sweep whose points cost little shows what its lines cost.
+// A sweep with cheap points shows the cost of its lines.
 const many = JSON.stringify({
   base: {damping: "closed_form"},
   axes: [{parameter: "b", from: 0.002, to: 0.04, count: 1000}],
@@ -82,11 +82,11 @@ const lines = await timed(9, async () => {
 });
 
 row("over HTTP: a simulation alone", alone);
-row("the same beside a sweep on all cores", beside);
+row("the same next to a sweep on all cores", beside);
 console.log(
-  `| the least of the one over the least of the other | ${(beside[0] / alone[0]).toFixed(2)}, to be below 2 | |`,
+  `| ratio of the shortest times | ${(beside[0] / alone[0]).toFixed(2)}, to be below 2 | |`,
 );
-row("a sweep whose client left gives its room back after", free, ", to be below 200");
+row("time until a sweep whose client left is replaced", free, ", to be below 200");
 row(`over HTTP: a sweep of 1000 points of one cycle each, ${size} bytes of lines`, lines);
 const answers = new URL("../../build/release/tests/bench_answers", import.meta.url).pathname;
 const ports = [new URL(service.url).port, ...process.argv.slice(2)];

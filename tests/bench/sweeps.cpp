@@ -3,7 +3,7 @@
 #include <deque>
 #include <string>
 
-#include "core/motion/together.hpp"
+#include "core/motion/batch_run.hpp"
 #include "core/stability/lyapunov.hpp"
 #include "core/sweep/parallel.hpp"
 #include "core/sweep/points.hpp"
@@ -33,10 +33,10 @@ Parameters value_of_b(std::size_t i) {
     return closed_form(between(0.002, 0.040, i, values_of_b), 0.6);
 }
 
-/// The simulations of all values of b, and their exponents if these are asked for.
+/// Simulations for all values of b, with their exponents if requested.
 void motions(int threads, double cycles, bool exponents) {
     std::atomic<std::size_t> next = 0;
-    class Line : public RunLine {
+    class Line : public RunSource {
     public:
         Line(std::atomic<std::size_t>& next, double cycles, bool exponents)
             : next_(next),
@@ -60,30 +60,30 @@ void motions(int threads, double cycles, bool exponents) {
     };
     parallel(static_cast<std::size_t>(threads), threads, [&](std::size_t) {
         std::deque<Line> lines;
-        std::vector<RunLine*> going;
-        for (int k = 0; k < most_lines; ++k)
+        std::vector<RunSource*> going;
+        for (int k = 0; k < max_batch_runs; ++k)
             going.push_back(&lines.emplace_back(next, cycles, exponents));
-        simulate_together(going);
+        simulate_batch(going);
     });
 }
 
-/// Points with all that they hold.
+/// Points with all their results.
 void points(
     int threads, std::size_t count, const PointOptions& options,
     const std::function<Parameters(std::size_t)>& parameters_of) {
-    Pace pace;
-    run_points(count, threads, options, pace, [&](std::size_t i) {
+    RunControl control;
+    run_points(count, threads, options, control, [&](std::size_t i) {
         const Parameters p = parameters_of(i);
         const State start = default_state(p);
         return PointTask{{p, start, options.max_impacts}, {{"", start}}, [](const auto&) {}};
     });
 }
 
-/// How many cores a piece of work had: on a busy machine less than its threads could use.
+/// Average number of cores that a piece of work used; less than its threads on a busy machine.
 class Cores {
 public:
     double seconds_of(const std::function<void()>& work) {
-        const std::clock_t before = std::clock();  // of all threads
+        const std::clock_t before = std::clock();  // CPU time of all threads
         const double seconds = bench::seconds_of(work);
         cores_.push_back(static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC / seconds);
         return seconds;

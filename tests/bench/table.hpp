@@ -7,29 +7,29 @@
 
 namespace vines::bench {
 
-/// Seconds that a piece of work takes.
+/// Runs a piece of work and returns its time in s.
 double seconds_of(const std::function<void()>& work);
 
-/// What each of some measurements gave in so many rounds; in each round all are taken in turn, so
-/// that what else the machine does meets all of them.
+/// Results of several measurements over this number of rounds. Each round takes all in turn, so
+/// that other load on the machine affects all of them.
 std::vector<std::vector<double>> in_turn(
     int rounds, const std::vector<std::function<double()>>& measurements);
 
-/// Quotients round by round.
+/// Quotients, round by round.
 std::vector<double> ratios(const std::vector<double>& of, const std::vector<double>& to);
 
 double median(std::vector<double> values);
-/// With three significant digits, or all before the point.
+/// With three significant digits, or all digits before the decimal point.
 std::string digits(double value);
 
-/// Prints a row: what was measured, the median, and the range of all rounds; behind the median what
-/// follows from it.
+/// Prints a row: the name, the median, the range of all rounds, and after the median a derived
+/// value.
 void row(
     const std::string& what, const std::vector<double>& values, const std::string& unit,
     const std::string& remark = "");
 
-/// Of work done in a process of its own: its time, and the most memory that it held beyond what it
-/// began with. Call it before anything else has taken memory, or threads were started.
+/// Time of work in a process of its own, and its peak memory beyond the initial one. Call it before
+/// anything else uses much memory or starts threads.
 struct Cost {
     double seconds, megabytes;
 };

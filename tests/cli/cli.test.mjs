@@ -1,4 +1,4 @@
-// The subcommands, as a terminal and a batch system use them.
+// The subcommands as used in a terminal and by a batch system.
 import assert from "node:assert/strict";
 import {spawn} from "node:child_process";
 import {createHash} from "node:crypto";
@@ -21,7 +21,7 @@ const at = (name) => join(folder, name);
 const simulated = async (fields) => (await run(["simulate"], {input: JSON.stringify(fields)})).out;
 const verified = async (answer, args = []) => run(["verify", ...args], {input: answer});
 
-test("an answer says what it was made of, and verify makes the same of it", async () => {
+test("an answer contains its provenance, and verify reproduces it", async () => {
   const fields = {preset: "fig3", tau_end: 400, fields: ["impacts", "regime.z"]};
   const answer = await simulated(fields);
   const {provenance} = JSON.parse(answer);
@@ -31,20 +31,20 @@ test("an answer says what it was made of, and verify makes the same of it", asyn
   assert.equal(createHash("sha256").update(text).digest("hex"), provenance.sha256);
   const same = await verified(answer);
   assert.equal(same.code, 0, same.errors);
-  assert.match(same.out, /sha256: as told\nrecomputed: the same \d+ bytes\n/);
+  assert.match(same.out, /sha256: matches\nrecomputed: the same \d+ bytes\n/);
   const changed = await verified(answer.replace(/"z":[\d.]+/, '"z":9'));
   assert.equal(changed.code, 1);
-  assert.match(changed.out, /the answer was changed\nrecomputed: regime\.z: 9 became /);
-  // A hash that is made anew does not help.
+  assert.match(changed.out, /the answer was modified\nrecomputed: regime\.z: 9 became /);
+  // A recomputed hash does not hide the change.
   const z = /"z":[\d.]+/;
   const forged = text.replace(z, '"z":9');
   const sha256 = createHash("sha256").update(forged).digest("hex");
   const again = await verified(answer.replace(z, '"z":9').replace(provenance.sha256, sha256));
   assert.equal(again.code, 1);
-  assert.match(again.out, /sha256: as told\nrecomputed: regime\.z: 9 became /);
+  assert.match(again.out, /sha256: matches\nrecomputed: regime\.z: 9 became /);
 });
 
-test("verify compares what an answer was made of, too, and says whether another build made it", async () => {
+test("verify also compares the provenance and reports another build's commit", async () => {
   const answer = await simulated({preset: "fig3", tau_end: 40, include: ["regime"]});
   const altered = (alter) => {
     const fields = JSON.parse(answer);
@@ -53,7 +53,7 @@ test("verify compares what an answer was made of, too, and says whether another 
     return verified(`${answer.slice(0, at)},"provenance":${JSON.stringify(fields.provenance)}}\n`);
   };
   const cases = [
-    [(p) => Object.assign(p, {extra: 1}), /^provenance: extra is no more$/m],
+    [(p) => Object.assign(p, {extra: 1}), /^provenance: extra is missing$/m],
     [
       (p) => Object.assign(p, {answer_limit: 1e9}),
       /^provenance: answer_limit: 1000000000 became null/m,
@@ -63,22 +63,22 @@ test("verify compares what an answer was made of, too, and says whether another 
     [(p) => Object.assign(p.request, {b: 0.019}), /^recomputed: parameters/m],
     [
       (p) => Object.assign(p, {request: {tau_end: 40, preset: "fig3", include: ["regime"]}}),
-      /^provenance: the same, written in another way$/m,
+      /^provenance: the same, formatted differently$/m,
     ],
   ];
-  for (const [alter, said] of cases) {
+  for (const [alter, message] of cases) {
     const {code, out, errors} = await altered(alter);
     assert.equal(code, 1, out + errors);
-    assert.match(out, said);
-    assert.match(out, /^sha256: as told$/m, "which covers the answer alone");
+    assert.match(out, message);
+    assert.match(out, /^sha256: matches$/m, "the hash does not cover the provenance");
   }
   const other = await altered((p) => Object.assign(p, {commit: "another"}));
   assert.equal(other.code, 0, other.out + other.errors);
-  assert.match(other.out, /^answered by \S+ \(another\), .*\ncommit: another build's /);
+  assert.match(other.out, /^answered by \S+ \(another\), .*\ncommit: not this program's/);
   assert.doesNotMatch((await verified(answer)).out, /^commit|^provenance/m);
 });
 
-test("what is not one answer, or has words where numbers stand, is refused in words of its own", async () => {
+test("verify refuses a text that is not one answer with a message, also with values of a wrong type", async () => {
   const answer = await simulated({tau_end: 40, include: ["regime"]});
   const whole = (alter) => {
     const fields = JSON.parse(answer);
@@ -86,31 +86,31 @@ test("what is not one answer, or has words where numbers stand, is refused in wo
     return `${JSON.stringify(fields)}\n`;
   };
   const cases = [
-    [answer + answer, 2, /not one answer/],
-    [answer.replace('{"', '{"a":[,"'), 2, /not one answer/],
-    [`${answer}}`, 2, /no provenance at the end/],
-    [`${answer}and more`, 2, /no provenance at the end/],
-    [answer.replace('"provenance":{', '"provenance":{"route":"/x",'), 2, /no provenance/],
-    [whole((a) => Object.assign(a, {version: 7})), 1, /the answer was changed/],
-    [whole((a) => Object.assign(a, {status: []})), 1, /the answer was changed/],
-    [whole((a) => Object.assign(a.status, {reason: 7})), 1, /the answer was changed/],
-    [`{"a":${"[".repeat(100000)}${"]".repeat(100000)},${answer.slice(1)}`, 2, /not one answer/],
-    [`{"a":[[["]\\"["]]],${answer.slice(1)}`, 1, /recomputed: a is no more/],
+    [answer + answer, 2, /one unmodified/],
+    [answer.replace('{"', '{"a":[,"'), 2, /one unmodified/],
+    [`${answer}}`, 2, /not end with/],
+    [`${answer}and more`, 2, /not end with/],
+    [answer.replace('"provenance":{', '"provenance":{"route":"/x",'), 2, /not end with/],
+    [whole((a) => Object.assign(a, {version: 7})), 1, /the answer was modified/],
+    [whole((a) => Object.assign(a, {status: []})), 1, /the answer was modified/],
+    [whole((a) => Object.assign(a.status, {reason: 7})), 1, /the answer was modified/],
+    [`{"a":${"[".repeat(100000)}${"]".repeat(100000)},${answer.slice(1)}`, 2, /one unmodified/],
+    [`{"a":[[["]\\"["]]],${answer.slice(1)}`, 1, /recomputed: a is missing/],
     [
       answer.replace('"request":{', `"request":{"b":${"[".repeat(100000)}${"]".repeat(100000)},`),
       2,
-      /no provenance at the end/,
+      /not end with a provenance/,
     ],
   ];
-  for (const [text, code, said] of cases) {
+  for (const [text, code, message] of cases) {
     const result = await verified(text);
     assert.equal(result.code, code, result.out + result.errors);
-    assert.match(result.out + result.errors, said);
+    assert.match(result.out + result.errors, message);
     assert.doesNotMatch(result.errors, /exception/);
   }
 });
 
-test("verify takes what the service answers: runs, manifolds, identifications, sweeps", async () => {
+test("verify reproduces the service's answers: runs, manifolds, identifications, sweeps", async () => {
   const service = await startService(["--answer-limit", "300000"]);
   const post = async (path, body, type = "application/json") =>
     (
@@ -131,9 +131,9 @@ test("verify takes what the service answers: runs, manifolds, identifications, s
   const identified = await post("/v1/identify?preset=fig20", record, "text/csv");
   const same = await verified(identified, ["--record", file]);
   assert.equal(same.code, 0, same.out + same.errors);
-  assert.equal((await verified(identified)).code, 2, "what was measured is not in it");
+  assert.equal((await verified(identified)).code, 2, "the record is not in the answer");
   await writeFile(file, record.replace(/^.*\n.*\n/, ""));
-  assert.match((await verified(identified, ["--record", file])).out, /another file/);
+  assert.match((await verified(identified, ["--record", file])).out, /not the file that was sent/);
   const lines = await post("/v1/sweep", sweep);
   const points = await verified(lines);
   assert.equal(points.code, 0, points.out + points.errors);
@@ -144,14 +144,14 @@ test("verify takes what the service answers: runs, manifolds, identifications, s
   await service.stop();
 });
 
-test("of a run that a time limit ended, and of what is no answer, verify says so", async () => {
-  const hasty = await startService(["--deadline", "0.2"]);
+test("verify reports a run ended by a time limit, and a text that is not an answer", async () => {
+  const limited = await startService(["--deadline", "0.2"]);
   const body = '{"b":0.0005,"R":1,"tau_end":1e7,"max_impacts":2000000,"include":["regime"]}';
-  const answer = await fetch(`${hasty.url}/v1/simulate`, {method: "POST", body});
+  const answer = await fetch(`${limited.url}/v1/simulate`, {method: "POST", body});
   const late = await verified(await answer.text());
   assert.equal(late.code, 3);
-  assert.match(late.out, /not decided: the run was ended/);
-  await hasty.stop();
+  assert.match(late.out, /not decided: a time limit/);
+  await limited.stop();
   for (const none of ["", "{}", "[1]", '{"provenance":1}', '{"a":1,"provenance":{"route":"/x"}}'])
     assert.equal((await verified(none)).code, 2, none);
 });
@@ -163,12 +163,12 @@ const sweep = JSON.stringify({
   section: "impact",
   section_points: 5,
 });
-// Longer than a look at its file may take on any machine.
+// Runs longer than a check of its file takes on any machine.
 const long = JSON.stringify({...JSON.parse(sweep), cycles: 100000});
 const lines = async (name) =>
   (await readFile(at(name), "utf8").catch(() => "")).split("\n").length - 1;
 
-test("simulate answers as the service does, from a file or stdin to a file or stdout", async () => {
+test("simulate gives the service's answer, from a file or stdin to a file or stdout", async () => {
   const service = await startService();
   const body = '{"b":0.015,"tau_end":100,"include":["impacts"]}';
   const answer = await (await fetch(`${service.url}/v1/simulate`, {method: "POST", body})).text();
@@ -180,8 +180,8 @@ test("simulate answers as the service does, from a file or stdin to a file or st
 });
 
 /**
- * The most memory that a simulation held, in MB, and how long its answer is. Its end is written as
- * it is read, so that the process is still there to be looked at.
+ * Peak memory of a simulation in MB, and the length of its answer in bytes. The memory is read with
+ * each piece of output, while the process still exists.
  */
 const peakOf = (request) =>
   new Promise((resolve) => {
@@ -194,21 +194,21 @@ const peakOf = (request) =>
         const status = readFileSync(`/proc/${child.pid}/status`, "utf8");
         megabytes = Number(status.match(/VmHWM:\s+(\d+)/)[1]) / 1024;
       } catch {
-        // It has ended.
+        // The process has ended.
       }
     });
     child.on("close", () => resolve({megabytes, bytes}));
     child.stdin.end(JSON.stringify(request));
   });
 
-test("the memory of a run that is asked for its exponents does not grow with its impacts", async () => {
+test("the memory of a run with exponents does not grow with its impacts", async () => {
   const peak = async (max_impacts) =>
     (await peakOf({b: 0.015, tau_end: 1e7, max_impacts, include: ["exponents"]})).megabytes;
   const [half, whole] = [await peak(250000), await peak(500000)];
   assert.ok(half > 1 && whole < half + 4, `${half} and ${whole} MB`);
 });
 
-test("the memory of an answer that lists many impacts does not grow with them", async () => {
+test("the memory of an answer does not grow with the impacts that it lists", async () => {
   const peak = (max_impacts) => peakOf({b: 0.015, tau_end: 1e7, max_impacts, include: ["impacts"]});
   const [half, whole] = [await peak(250000), await peak(500000)];
   assert.ok(whole.bytes > 1e8, `${whole.bytes} bytes`);
@@ -218,7 +218,7 @@ test("the memory of an answer that lists many impacts does not grow with them", 
   );
 });
 
-test("identify takes a CSV file with its fields as a query, or the service's JSON", async () => {
+test("identify accepts a CSV file with its fields as a query, or the service's JSON", async () => {
   const asked = '{"preset":"fig20","include":["impacts","exponents"],"exponents":["qr"]}';
   const simulated = JSON.parse((await run(["simulate"], {input: asked})).out);
   const {code, out} = await run(["identify"], {
@@ -230,10 +230,10 @@ test("identify takes a CSV file with its fields as a query, or the service's JSO
   await writeFile(at("record.csv"), "time_s,x_m,a\n0,1,2\n0.001,1,x\n");
   const refused = await run(["identify", at("record.csv"), "-q", "preset=fig20&b=0.015"]);
   assert.equal(refused.code, 2);
-  assert.equal(JSON.parse(refused.errors).detail, 'line 3, column a: "x" is no number');
+  assert.equal(JSON.parse(refused.errors).detail, 'line 3, column a: "x" is not a number');
 });
 
-test("identify decodes its query as the service does a URL's", async () => {
+test("identify decodes its query the way the service decodes a URL's", async () => {
   const input = "time_s,the x,a\n0,1,2\n0.001,1,3\n";
   const refused = async (column) => {
     const query = `preset=fig20&displacement_column=${column}`;
@@ -248,7 +248,7 @@ test("identify decodes its query as the service does a URL's", async () => {
   assert.equal((await refused("50%zz%2")).errors[0].value, "50%zz%2");
 });
 
-test("a sweep whose motion depends on the start says so on stderr, one with the default set of starts has the worst and the best in its lines", async () => {
+test("a sweep reports on stderr a motion that depends on the start; with the default set of starts its lines hold the worst and the best", async () => {
   const platform = {
     base: {m1: 12, f0: 14, damping_ratio: 0.006, mass_ratio: 0.01, F: 0.0004, R: 0.4, b: 0.03},
     axes: [{parameter: "f", from: 13.8, to: 14.2, count: 3}],
@@ -267,7 +267,7 @@ test("a sweep whose motion depends on the start says so on stderr, one with the 
   assert.deepEqual(done, {type: "done", points: 1});
 });
 
-test("a request at fault is a problem document on stderr and exit code 2, a file that is not there is 1", async () => {
+test("an invalid request gives a problem document on stderr and exit code 2, a missing file exit code 1", async () => {
   const faults = [
     ["simulate", '{"b":-1}'],
     ["sweep", '{"axes":[{"parameter":"q","values":[1]}]}'],
@@ -285,7 +285,7 @@ test("a request at fault is a problem document on stderr and exit code 2, a file
   assert.equal((await run(["sweep", "--shard", "auto"], {input: sweep})).code, 2);
 });
 
-test("an interrupted simulation answers with what it has and exit code 130", async () => {
+test("an interrupted simulation writes its answer up to that time, with exit code 130", async () => {
   const {code, out} = await run(["simulate"], {
     input: '{"b":0.003,"R":1,"tau_end":1e7,"max_impacts":2000000,"include":["exponents"]}',
     signal: "SIGINT",
@@ -295,7 +295,7 @@ test("an interrupted simulation answers with what it has and exit code 130", asy
   assert.equal(JSON.parse(out).status.reason, "interrupted");
 });
 
-test("an interrupted identification says what it was at, with exit code 130", async () => {
+test("an interrupted identification reports its stage, with exit code 130", async () => {
   const sample = (k) => `${k * 1e-9},${Math.sin(k)}`;
   const {code, out, errors} = await run(["identify", "-q", "preset=fig15"], {
     input: ["time_s,a", ...Array.from({length: 200000}, (_, k) => sample(k))].join("\n"),
@@ -307,7 +307,7 @@ test("an interrupted identification says what it was at, with exit code 130", as
   assert.match(errors, /^vines: the identification was stopped while looking for spikes/);
 });
 
-test("a sweep's file has its points in order, the same on stdout and on any number of threads", async () => {
+test("a sweep's file has its points in order, the same as on stdout and for any number of threads", async () => {
   assert.equal((await run(["sweep", "-o", at("whole.ndjson")], {input: sweep})).code, 0);
   const whole = await readFile(at("whole.ndjson"), "utf8");
   assert.equal((await run(["sweep", "--threads", "1"], {input: sweep})).out, whole);
@@ -318,7 +318,7 @@ test("a sweep's file has its points in order, the same on stdout and on any numb
   assert.deepEqual(indices.slice(1, -1), [...Array(40).keys()]);
 });
 
-test("shards put together are the whole, byte for byte; a missing one is named", async () => {
+test("merged shards equal the whole sweep byte for byte; a missing point is reported", async () => {
   const whole = await readFile(at("whole.ndjson"), "utf8");
   const slurm = {
     SLURM_ARRAY_TASK_ID: "11",
@@ -348,7 +348,7 @@ test("shards put together are the whole, byte for byte; a missing one is named",
   assert.match(mixed.errors, /another sweep/);
 });
 
-test("a file that is there is not overwritten; --resume completes one that was cut anywhere", async () => {
+test("an existing file is not overwritten; --resume completes one that was cut anywhere", async () => {
   const whole = await readFile(at("whole.ndjson"), "utf8");
   assert.equal((await run(["sweep", "-o", at("whole.ndjson")], {input: sweep})).code, 1);
   const resume = (name, input) => run(["sweep", "--resume", "-o", at(name)], {input});
@@ -363,7 +363,7 @@ test("a file that is there is not overwritten; --resume completes one that was c
   assert.equal((await resume("whole.ndjson", sweep.replace("60", "61"))).code, 1);
 });
 
-test("a killed sweep loses the points in work at most, and one that is interrupted ends with exit code 130", async () => {
+test("a killed sweep loses only unfinished points, and an interrupted one ends with exit code 130", async () => {
   const killed = await run(["sweep", "-o", at("killed")], {
     input: long,
     signal: "SIGKILL",

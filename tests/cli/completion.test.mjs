@@ -1,4 +1,4 @@
-// The completions of three shells and the manual page: of every flag that the program has.
+// Completion in three shells and the manual page, for every flag of the program.
 import assert from "node:assert/strict";
 import {spawnSync} from "node:child_process";
 import {mkdirSync, mkdtempSync, rmSync, writeFileSync} from "node:fs";
@@ -10,14 +10,14 @@ import {run} from "./run.mjs";
 const folder = mkdtempSync(join(tmpdir(), "vines-completion-"));
 after(() => rmSync(folder, {recursive: true}));
 
-/** What a subcommand writes, which has nothing to complain of. */
+/** Output of a subcommand that must succeed without messages. */
 async function written(...args) {
   const {code, out, errors} = await run(args);
   assert.deepEqual({code, errors}, {code: 0, errors: ""}, args.join(" "));
   return out;
 }
 
-/** By subcommand, "" for the program: the names of its flags, as its help has them. */
+/** Names of the flags in the help, by subcommand; "" for the program. */
 const flags = {};
 before(async () => {
   const top = await written("--help");
@@ -34,13 +34,13 @@ before(async () => {
   writeFileSync(join(folder, "files/a request.json"), "");
 });
 
-/** Whether a program is there; a test of what is not is skipped. */
+/** Test options that skip the test if a program is missing. */
 const needs = (program) =>
   spawnSync("sh", ["-c", `command -v ${program}`]).status === 0
     ? {}
     : {skip: `there is no ${program} (scripts/setup test)`};
 
-/** Runs a shell in the folder of files: what it writes. */
+/** Output of a shell run in the folder of files. */
 function shell(program, args, input) {
   const {status, stdout, stderr} = spawnSync(program, args, {
     cwd: join(folder, "files"),
@@ -53,7 +53,7 @@ function shell(program, args, input) {
 
 const sorted = (words) => [...words].sort();
 
-/** What bash and fish offer for a line, by what is behind its last blank; the same for both. */
+/** Expected completions of a line's last word, the same in bash and fish. */
 const offers = () => [
   ["si", ["simulate"]],
   ["", Object.keys(flags).filter(Boolean)],
@@ -74,7 +74,7 @@ const offers = () => [
 ];
 
 test("bash completes subcommands, flags, values and files", () => {
-  // A line in words as readline cuts it, where "=" is a word.
+  // Words as readline splits them: "=" is a word.
   const script = `source ../bash
     while IFS= read -r line; do
       mapfile -t COMP_WORDS < <(sed 's/=/ = /; s/ /\\n/g; s/ $/\\n/' <<<"vines $line")
@@ -85,9 +85,9 @@ test("bash completes subcommands, flags, values and files", () => {
     done`;
   const lines = offers();
   const answers = shell("bash", ["-c", script], lines.map(([line]) => `${line}\n`).join(""));
-  const said = answers.split("\n");
+  const answered = answers.split("\n");
   for (const [at, [line, expected]] of lines.entries())
-    assert.deepEqual(sorted(said[at].split("\t").filter(Boolean)), sorted(expected), line);
+    assert.deepEqual(sorted(answered[at].split("\t").filter(Boolean)), sorted(expected), line);
 });
 
 test("fish completes the same", needs("fish"), () => {
@@ -100,9 +100,9 @@ test("fish completes the same", needs("fish"), () => {
   }
 });
 
-test("zsh completes what is typed", needs("zsh"), () => {
+test("zsh completes a typed line", needs("zsh"), () => {
   shell("zsh", ["-n", "../zsh"]);
-  // A zsh at a terminal of its own; what a line becomes it writes into a file.
+  // An interactive zsh in a pseudo-terminal; it writes the completed line to a file.
   const script = `zmodload zsh/zpty
     zpty z zsh -f -i
     type() { zpty -w z "$1"; }
@@ -133,7 +133,7 @@ test("zsh completes what is typed", needs("zsh"), () => {
   );
 });
 
-test("what is a file or a folder is completed as one", async () => {
+test("options for files and folders are completed as such", async () => {
   for (const name of Object.keys(flags).filter(Boolean)) {
     const help = await written(name, "--help");
     const entries = help.replace(/\n {10,}/g, "  ").split("\n");
@@ -142,8 +142,8 @@ test("what is a file or a folder is completed as one", async () => {
   }
 });
 
-test("the manual page has every subcommand, flag and variable, and no fault", async () => {
-  // Variables that are no flag's value for this run change nothing.
+test("the manual page has every subcommand, flag and variable, and no formatting error", async () => {
+  // Environment variables of other subcommands have no effect.
   const {out: page} = await run(["manual"], {env: {VINES_PORT: "x", VINES_COMPUTE_THREADS: "1"}});
   assert.equal(page, await written("manual"));
   const text = page.replaceAll("\\-", "-");

@@ -1,4 +1,4 @@
-// What becomes of the files that the command line writes, whatever happens.
+// The files that the command line writes, also after errors and signals.
 import assert from "node:assert/strict";
 import {execFileSync, spawn} from "node:child_process";
 import {
@@ -26,8 +26,8 @@ const folder = mkdtempSync(join(tmpdir(), "vines-files-"));
 after(() => rmSync(folder, {recursive: true}));
 const at = (name) => join(folder, name);
 const text = (name) => readFileSync(at(name), "utf8");
-/** A folder of its own for a test. */
-const room = (name) => {
+/** Creates a folder for one test. */
+const newFolder = (name) => {
   mkdirSync(at(name));
   return name;
 };
@@ -39,7 +39,7 @@ const fields = {
   cycles: 20,
 };
 const sweep = JSON.stringify(fields);
-// Longer than a look at its file may take on any machine.
+// Runs longer than a check of its file takes on any machine.
 const long = JSON.stringify({...fields, cycles: 100000});
 
 let answer;
@@ -49,7 +49,7 @@ before(async () => {
   whole = (await run(["sweep"], {input: sweep})).out;
   writeFileSync(at("shard"), whole);
 });
-/** The commands that have -o, with a name for their file: each writes the same in any case. */
+/** The commands with -o, given the path of their file, and the expected content. */
 const writers = () => [
   {args: (path) => ["simulate", "-o", path], input: request, whole: answer},
   {args: (path) => ["sweep", "-o", path], input: sweep, whole},
@@ -58,8 +58,8 @@ const writers = () => [
 const points = (name) => text(name).split("\n").length - 2;
 
 /**
- * A device, by its number, of which root has one of its own: were it replaced by a file, /dev's
- * would be everybody's loss.
+ * A device with this minor number. For root it is a copy in the test's folder, since a faulty program
+ * could replace the one in /dev by a file.
  */
 function device(name, minor) {
   if (process.getuid() !== 0) return `/dev/${name}`;
@@ -67,7 +67,7 @@ function device(name, minor) {
   return at(name);
 }
 
-test("a device that an answer is written to is a device afterwards", async () => {
+test("a device remains a device after an answer was written to it", async () => {
   const none = device("null", "3");
   for (const {args, input} of writers()) {
     const {code, errors} = await run(args(none), {input});
@@ -76,7 +76,7 @@ test("a device that an answer is written to is a device afterwards", async () =>
   }
 });
 
-test("a pipe with a name gets the answer and stays", async () => {
+test("a named pipe receives the answer and remains", async () => {
   const pipe = at("pipe");
   execFileSync("mkfifo", [pipe]);
   for (const {args, input, whole} of writers()) {
@@ -91,8 +91,8 @@ test("a pipe with a name gets the answer and stays", async () => {
   }
 });
 
-test("/dev/stdout is what the process has there: a pipe, or a file between what others write to it", async () => {
-  symlinkSync("/dev/stdout", at("stdout")); // by a link, which alone a wrong program would replace
+test("/dev/stdout is the process's stdout: a pipe, or a file that others write to before and after", async () => {
+  symlinkSync("/dev/stdout", at("stdout")); // a link, so that a faulty program replaces only that
   for (const {args, input, whole} of writers())
     for (const path of [at("stdout"), "/proc/self/fd/1"]) {
       assert.equal((await run(args(path), {input})).out, whole);
@@ -102,9 +102,9 @@ test("/dev/stdout is what the process has there: a pipe, or a file between what 
     }
 });
 
-test("a symbolic link stays one: its file has the answer, there or not yet", async () => {
+test("a symbolic link remains; the answer is in the file that it leads to, existing or new", async () => {
   for (const [k, {args, input, whole}] of writers().entries()) {
-    const inside = room(`links${k}`);
+    const inside = newFolder(`links${k}`);
     mkdirSync(at(`${inside}/real`));
     symlinkSync("real/file", at(`${inside}/link`));
     symlinkSync("link", at(`${inside}/second`));
@@ -124,7 +124,7 @@ test("a symbolic link stays one: its file has the answer, there or not yet", asy
   );
 });
 
-test("a file keeps its mode, a new one has what umask leaves", async () => {
+test("a file keeps its mode, and a new one obeys umask", async () => {
   for (const [k, {args, input, whole}] of writers().entries()) {
     const file = at(`mode${k}`);
     const shell = 'umask 027; "$VINES" "$@"';
@@ -139,9 +139,9 @@ test("a file keeps its mode, a new one has what umask leaves", async () => {
   }
 });
 
-test("nobody else's file is touched, and none is left behind, whether it goes well or not", async () => {
+test("other files are not changed and no temporary file remains, with and without an error", async () => {
   for (const [k, {args, input, whole}] of writers().entries()) {
-    const inside = room(`alone${k}`);
+    const inside = newFolder(`alone${k}`);
     writeFileSync(at(`${inside}/f.part`), "mine");
     assert.equal((await run(args(at(`${inside}/f`)), {input})).code, 0);
     assert.equal(text(`${inside}/f`), whole);
@@ -155,15 +155,15 @@ test("nobody else's file is touched, and none is left behind, whether it goes we
   }
 });
 
-test("a failure leaves the file that was there", async () => {
+test("a failure keeps the existing file", async () => {
   writeFileSync(at("old"), "old");
   const shell = 'ulimit -f 4; "$VINES" "$@"';
   assert.equal((await run(["simulate", "-o", at("old")], {input: request, shell})).code, 1);
   assert.equal(text("old"), "old");
 });
 
-test("what cannot be written or read is named in one line, with exit code 1", async () => {
-  const inside = room("folder");
+test("a file that cannot be written or read is named in one line, with exit code 1", async () => {
+  const inside = newFolder("folder");
   for (const {args, input} of writers()) {
     const {code, errors} = await run(args(at(inside)), {input});
     assert.equal(code, 1);
@@ -185,7 +185,7 @@ test("what cannot be written or read is named in one line, with exit code 1", as
   }
 });
 
-test("where stderr is closed nothing that is told stands in the answer", async () => {
+test("messages do not get into the answer if stderr is closed", async () => {
   const shell = '"$VINES" "$@" 2>&-';
   const depends = JSON.stringify({
     ...fields,
@@ -200,8 +200,8 @@ test("where stderr is closed nothing that is told stands in the answer", async (
 const resume = (name, input = sweep, more = []) =>
   run(["sweep", "--resume", "-o", at(name), ...more], {input});
 
-test("a sweep is completed in its file: no other one is made while it computes", async () => {
-  const inside = room("inplace");
+test("a sweep is completed in its own file, without a temporary one while it computes", async () => {
+  const inside = newFolder("inplace");
   const name = `${inside}/file`;
   const grown = (n) => () => existsSync(at(name)) && points(name) >= n;
   await run(["sweep", "-o", at(name)], {input: long, signal: "SIGKILL", until: grown(4)});
@@ -224,7 +224,7 @@ test("a sweep is completed in its file: no other one is made while it computes",
   assert.ok(parsed(text(name)).length > 8);
 });
 
-test("a complete file is left as it is; one whose points are all there in order gets its last line", async () => {
+test("a complete file is not written again; one with all points in order only gets its last line", async () => {
   writeFileSync(at("complete"), whole);
   const {ino, mtimeMs} = statSync(at("complete"));
   assert.equal((await resume("complete")).code, 0);
@@ -238,7 +238,7 @@ test("a complete file is left as it is; one whose points are all there in order 
   assert.equal(text("complete"), whole);
 });
 
-test("a file that is no sweep's is not touched by --resume, even without an end of its line", async () => {
+test("--resume does not change a file that is not a sweep's, even without a line feed", async () => {
   for (const other of ["my thesis", "my thesis\n", '{"type":"start"}', '{"type":"start"}\n']) {
     writeFileSync(at("thesis"), other);
     const {code, errors} = await resume("thesis");
@@ -248,8 +248,8 @@ test("a file that is no sweep's is not touched by --resume, even without an end 
   }
 });
 
-test("while a run writes a file a second one is refused at once", async () => {
-  const inside = room("two");
+test("a second run on a file that is being written is refused at once", async () => {
+  const inside = newFolder("two");
   const name = at(`${inside}/file`);
   let second;
   let merged;
@@ -267,16 +267,16 @@ test("while a run writes a file a second one is refused at once", async () => {
       return true;
     },
   });
-  const said = `vines: ${name} is being written by another run of vines: wait for its end\n`;
-  assert.deepEqual([second.code, second.errors], [1, said]);
-  assert.deepEqual([merged.code, merged.errors], [1, said]);
+  const message = `vines: ${name} is being written by another run of vines: wait for its end\n`;
+  assert.deepEqual([second.code, second.errors], [1, message]);
+  assert.deepEqual([merged.code, merged.errors], [1, message]);
   assert.equal(first.code, 130);
   assert.match(readFileSync(name, "utf8"), /^(\{.*\}\n)+$/);
   assert.deepEqual(readdirSync(at(inside)), ["file"]);
 });
 
-/** How a run ends whose file or folder has no more room. */
-async function withoutRoom(name, shell) {
+/** Runs a sweep whose file cannot grow any more, and checks its message and its file. */
+async function sweepWithoutSpace(name, shell) {
   const {code, errors} = await run(["sweep", "-o", at(name)], {input: sweep, shell});
   assert.equal(code, 1);
   const [, kept] = errors.match(
@@ -287,15 +287,15 @@ async function withoutRoom(name, shell) {
   assert.ok(text(name).endsWith("}\n"), "no line is torn");
 }
 
-test("where a file may grow no more, a sweep says what is kept, and completes it later", async () => {
-  await withoutRoom("limited", 'ulimit -f 12; "$VINES" "$@"');
+test("a sweep at the limit of its file's size reports the kept points, and can be completed later", async () => {
+  await sweepWithoutSpace("limited", 'ulimit -f 12; "$VINES" "$@"');
   assert.equal((await resume("limited")).code, 0);
   assert.equal(text("limited"), whole);
 });
 
-/** A file system of so many kB, or undefined where none can be mounted. */
+/** Mounts a file system of this size. Returns undefined if that is not permitted. */
 function small(name, kilobytes) {
-  room(name);
+  newFolder(name);
   try {
     execFileSync("mount", ["-t", "tmpfs", "-o", `size=${kilobytes}k`, "tmpfs", at(name)], {
       stdio: "ignore",
@@ -306,18 +306,18 @@ function small(name, kilobytes) {
   }
 }
 
-test("on a full disk a sweep keeps what there is; completed without room for a second copy it says so", async (t) => {
+test("on a full disk a sweep keeps its points, and reports missing space for a sorted copy", async (t) => {
   const disk = small("disk", 24);
   if (!disk) return t.skip("no file system can be mounted");
   try {
-    await withoutRoom(`${disk}/file`);
-    // Room for the whole, but not twice.
+    await sweepWithoutSpace(`${disk}/file`);
+    // Space for one copy, but not for two.
     execFileSync("mount", ["-o", "remount,size=48k", at(disk)]);
     const {code, errors} = await resume(`${disk}/file`);
     assert.equal(code, 1);
     assert.match(
       errors,
-      /No space left on device; all 40 points are kept, but not in order: --resume/,
+      /No space left on device; all 40 points are kept but not sorted: --resume/,
     );
     assert.deepEqual(readdirSync(at(disk)), ["file"]);
     assert.equal((await run(["merge", at(`${disk}/file`)])).out, whole);
@@ -333,7 +333,7 @@ test("on a full disk a sweep keeps what there is; completed without room for a s
   }
 });
 
-test("what every subcommand writes is checked, on a full device too", async () => {
+test("every subcommand reports a failed write to stdout or to a full device", async () => {
   writeFileSync(at("answer"), answer);
   const commands = [
     {args: ["simulate"], input: request},
@@ -357,22 +357,22 @@ test("what every subcommand writes is checked, on a full device too", async () =
     ]) {
       if (args[0] === "reproduce" && to === ">&-") continue; // it takes seconds
       const {code, errors} = await run(args, {input, shell: `"$VINES" "$@" ${to}`});
-      const said = errors.split("\n").filter((line) => line.startsWith("vines: "));
+      const message = errors.split("\n").filter((line) => line.startsWith("vines: "));
       assert.deepEqual(
-        {code, said},
-        {code: 1, said: [`vines: cannot write to stdout: ${reason}`]},
+        {code, message},
+        {code: 1, message: [`vines: cannot write to stdout: ${reason}`]},
         `${args.join(" ")} ${to}`,
       );
     }
   for (const {args, input} of writers()) {
     const full = device("full", "7");
     const {code, errors} = await run(args(full), {input});
-    const said = `vines: cannot write ${full}: No space left on device\n`;
-    assert.deepEqual({code, errors}, {code: 1, errors: said});
+    const message = `vines: cannot write ${full}: No space left on device\n`;
+    assert.deepEqual({code, errors}, {code: 1, errors: message});
   }
 });
 
-/** A sweep's text with the line of a point changed. */
+/** The sweep's text with the line of one point changed. */
 const changed = (index, change) =>
   whole
     .split("\n")
@@ -387,14 +387,14 @@ const faults = () => [
   [
     changed(7, (line) => line.replace('"index":7', '"index":40')),
     9,
-    /point 40 is none of the sweep, which has 40/,
+    /point 40 is outside the sweep, which has 40/,
   ],
   [
     changed(7, (line) => line.replace('"index":7', '"index":-1')),
     9,
-    /point -1 is none of the sweep/,
+    /point -1 is outside the sweep/,
   ],
-  [changed(7, (line) => line.replace('"index":7', '"index":1e300')), 9, /is none of the sweep/],
+  [changed(7, (line) => line.replace('"index":7', '"index":1e300')), 9, /is outside the sweep/],
   [
     changed(7, (line) => line.replace('"index":7', '"index":8')),
     9,
@@ -428,7 +428,7 @@ const faults = () => [
   [
     changed(5, (line) => `${line}\n${line.replace(/"z":[\d.]+/, '"z":9.0')}`),
     8,
-    /point 5 differs from the same in line 7/,
+    /point 5 differs from the same point in line 7/,
   ],
   [changed(5, () => "\0\0\0"), 7, /not a line of a sweep/],
   [
@@ -440,7 +440,7 @@ const faults = () => [
   [whole.replace(/"count":40/, '"count":0'), 1, /./],
 ];
 
-test("a point that is not of its sweep, or lacks something, is refused by its file's name and the line's number", async () => {
+test("an invalid or incomplete point is refused with the file's name and the line number", async () => {
   for (const [lines, number, why] of faults()) {
     writeFileSync(at("faulty"), lines);
     writeFileSync(at("result"), "old");
@@ -455,33 +455,33 @@ test("a point that is not of its sweep, or lacks something, is refused by its fi
     assert.ok(
       resumed.errors.startsWith(`vines: ${at("faulty")}, line ${number}: `) || number === 1,
     );
-    assert.equal(text("faulty"), lines, "it is left as it is");
+    assert.equal(text("faulty"), lines, "the file is not changed");
   }
 });
 
-test("verify says by name and line which point is none of the sweep's", async () => {
+test("verify reports file and line of a point that does not belong to the sweep", async () => {
   writeFileSync(
     at("beyond"),
     changed(7, (line) => line.replace('"index":7', '"index":40')),
   );
   const {code, errors} = await run(["verify", at("beyond")]);
   assert.equal(code, 1);
-  assert.match(errors, /^vines: .*beyond, line 9: point 40 is none of the sweep, which has 40/);
+  assert.match(errors, /^vines: .*beyond, line 9: point 40 is outside the sweep, which has 40/);
 });
 
-test("--resume refuses the file of another shard, or of the undivided sweep, by the line's number", async () => {
+test("--resume refuses the file of another shard or of the whole sweep, with the line number", async () => {
   writeFileSync(at("undivided"), whole);
   const {code, errors} = await resume("undivided", sweep, ["--shard", "1/2"]);
   assert.equal(code, 1);
   assert.equal(
     errors,
-    `vines: ${at("undivided")}, line 2: point 0 is none of those wanted: the file is of another ` +
-      "shard, or of the undivided sweep\n",
+    `vines: ${at("undivided")}, line 2: point 0 is not requested: the file belongs to another ` +
+      "shard or to the whole sweep\n",
   );
   assert.equal(text("undivided"), whole);
 });
 
-test("the lines of every kind of sweep are known again: resumed and merged they are the same bytes", async () => {
+test("the lines of every kind of sweep pass the checks: resumed and merged they are the same bytes", async () => {
   const base = {m1: 12, f0: 14, damping_ratio: 0.006, mass_ratio: 0.01, F: 0.0004, R: 0.4, b: 0.03};
   const f = {parameter: "f", from: 13.8, to: 14.2, count: 4};
   const b = {parameter: "b", values: [0.01, 0.03, 0.05]};
@@ -517,23 +517,24 @@ test("the lines of every kind of sweep are known again: resumed and merged they 
     "a wall that takes all": {axes: [{parameter: "R", values: [0, 0.5, 1]}], base: {b: 0.01}},
     "not forced": {axes: [{parameter: "b", values: [0.01, 0.02]}], base: {G: 0}},
   };
-  const said = new Set();
+  const reasons = new Set();
   for (const [kind, asked] of Object.entries(kinds)) {
     const input = JSON.stringify({cycles: 30, transient_cycles: 20, ...asked});
     const {code, out, errors} = await run(["sweep"], {input});
     assert.equal(code, 0, `${kind}: ${errors}`);
-    for (const line of parsed(out)) if (line.reason || line.error) said.add(line.reason ?? "error");
+    for (const line of parsed(out))
+      if (line.reason || line.error) reasons.add(line.reason ?? "error");
     writeFileSync(at("kind"), out.slice(0, -20));
     const resumed = await resume("kind", input);
     assert.equal(resumed.code, 0, `${kind}: ${resumed.errors}`);
     assert.equal(text("kind"), out, kind);
     assert.equal((await run(["merge", at("kind")])).out, out, kind);
-    // Point by point each is the line that its file begins with.
+    // Each point in turn precedes the others in the file.
     const lines = out.trimEnd().split("\n");
     for (let n = 1; n < lines.length - 1; n += 2)
       writeFileSync(at("kind"), `${lines.filter((_, k) => k % 2 === 0 || k === n).join("\n")}\n`);
     assert.equal((await resume("kind", input)).code, 0, kind);
     assert.equal(text("kind"), out, kind);
   }
-  assert.ok(["complete", "transient_max_impacts", "error"].every((reason) => said.has(reason)));
+  assert.ok(["complete", "transient_max_impacts", "error"].every((reason) => reasons.has(reason)));
 });

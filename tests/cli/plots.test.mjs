@@ -13,7 +13,7 @@ const at = (name) => join(folder, name);
 const esc = "\u001b";
 const plain = {LC_ALL: "", LC_CTYPE: "", LANG: "", NO_COLOR: "", TERM: "xterm"};
 
-async function told(args, {env = {}, ...options} = {}) {
+async function outputOf(args, {env = {}, ...options} = {}) {
   const {code, out, errors} = await run(args, {...options, env: {...plain, ...env}});
   assert.equal(code, 0, `${args.join(" ")}: ${errors}`);
   return out;
@@ -22,8 +22,8 @@ async function told(args, {env = {}, ...options} = {}) {
 const orbit = ["simulate", "-p", "preset=fig11", "-p", "tau_end=60"];
 const sweep = ["sweep", "-a", "b=0.008:0.03:12", "-p", "cycles=60", "-p", "section=impact"];
 
-test("a run is drawn with its sentence, its walls and its time", async () => {
-  const out = await told([...orbit, "--plot"]);
+test("a run's plot has its title, its walls and its time axis", async () => {
+  const out = await outputOf([...orbit, "--plot"]);
   const lines = out.trimEnd().split("\n");
   assert.match(lines[0], /^b = 15 mm: regime \w+, (regular|chaotic|not_decided)/);
   for (const label of ["x (mm)", "y - x (mm)", "exponents (qr)"]) assert.ok(lines.includes(label));
@@ -35,8 +35,8 @@ test("a run is drawn with its sentence, its walls and its time", async () => {
 });
 
 test("the curve of a run goes through its values", async () => {
-  const {series} = JSON.parse(await told([...orbit, "-p", "include=series"]));
-  const out = await told([...orbit, "-p", "include=series", "--plot"]);
+  const {series} = JSON.parse(await outputOf([...orbit, "-p", "include=series"]));
+  const out = await outputOf([...orbit, "-p", "include=series", "--plot"]);
   const rows = out.split("\n");
   const first = rows.indexOf("x (mm)") + 1;
   const frame = rows.slice(first, rows.indexOf("y - x (mm)")).map((row) => [...row].slice(9));
@@ -58,12 +58,12 @@ test("the curve of a run goes through its values", async () => {
   });
 });
 
-test("a sweep is drawn by verdict and by regime, as its lines are by vines plot", async () => {
-  const drawn = await told([...sweep, "--plot"]);
-  const lines = await told(sweep);
-  assert.equal(await told(["plot"], {input: lines}), drawn);
+test("a sweep is drawn by verdict and by regime, the same with --plot as with vines plot", async () => {
+  const drawn = await outputOf([...sweep, "--plot"]);
+  const lines = await outputOf(sweep);
+  assert.equal(await outputOf(["plot"], {input: lines}), drawn);
   writeFileSync(at("sweep.ndjson"), lines);
-  assert.equal(await told(["plot", at("sweep.ndjson")]), drawn);
+  assert.equal(await outputOf(["plot", at("sweep.ndjson")]), drawn);
   for (const label of ["x in the section (mm)", "lambda1, by verdict", "max |x| (mm), by regime"])
     assert.ok(drawn.includes(label), label);
   const points = parsed(lines).filter(({type}) => type === "point");
@@ -72,32 +72,32 @@ test("a sweep is drawn by verdict and by regime, as its lines are by vines plot"
   assert.match(drawn, / b \(mm\)\n$/);
 });
 
-test("SVG goes into a file of that name, with every point of a sweep", async () => {
-  await told([...sweep, "--plot", "-o", at("sweep.svg")]);
+test("a file named .svg receives SVG with every point of a sweep", async () => {
+  await outputOf([...sweep, "--plot", "-o", at("sweep.svg")]);
   const svg = readFileSync(at("sweep.svg"), "utf8");
   assert.ok(svg.startsWith("<svg ") && svg.endsWith("</svg>\n"));
-  const points = parsed(await told(sweep)).filter(({type}) => type === "point");
+  const points = parsed(await outputOf(sweep)).filter(({type}) => type === "point");
   const states = points.reduce((sum, {section}) => sum + section.x.length, 0);
   const circles = svg.match(/<circle /g).length;
   assert.ok(circles >= states + 3 * points.length, `${circles} of ${states} and more`);
-  await told(["plot", "-", "-o", at("run.svg")], {input: await told(orbit)});
+  await outputOf(["plot", "-", "-o", at("run.svg")], {input: await outputOf(orbit)});
   assert.match(readFileSync(at("run.svg"), "utf8"), />lambda1</);
 });
 
-test("a terminal without UTF-8 is drawn to in ASCII, one with colours in them unless unwanted", async () => {
-  const ascii = await told([...orbit, "--plot"], {env: {LC_ALL: "C"}});
+test("a terminal without UTF-8 gets ASCII, and one with colours gets colours unless NO_COLOR is set", async () => {
+  const ascii = await outputOf([...orbit, "--plot"], {env: {LC_ALL: "C"}});
   assert.match(ascii, /^[\n -~]+$/);
   assert.match(ascii, /\*{2}/);
-  assert.ok(!(await told([...orbit, "--plot"])).includes(esc));
+  assert.ok(!(await outputOf([...orbit, "--plot"])).includes(esc));
   const shell = `script -qec "stty cols 100; $VINES ${orbit.join(" ")} --plot" /dev/null </dev/null`;
-  const coloured = await told([], {shell});
+  const coloured = await outputOf([], {shell});
   assert.ok(coloured.includes(`${esc}[38;5;`));
   const seen = coloured.replaceAll(new RegExp(`${esc}\\[[\\d;]*m`, "g"), "").split("\n");
   assert.ok(seen.some((line) => [...line].length > 80));
-  assert.ok(!(await told([], {shell, env: {NO_COLOR: "1"}})).includes(esc));
+  assert.ok(!(await outputOf([], {shell, env: {NO_COLOR: "1"}})).includes(esc));
 });
 
-test("what was left out of an answer is left out of its plots", async () => {
+test("parts left out of an answer are left out of its plots", async () => {
   const whole = ["simulate", "-p", "preset=fig11", "-p", "tau_end=60"];
   const all = "include=series,impacts,exponents,regime";
   for (const [fields, title, labels] of [
@@ -108,19 +108,19 @@ test("what was left out of an answer is left out of its plots", async () => {
     ["exponents.qr.history.tau,exponents.qr.history.lambda1", "", ["exponents (qr)"]],
   ]) {
     const thinned = [...whole, "-p", all, "-p", `fields=${fields}`];
-    const drawn = await told([...thinned, "--plot"]);
+    const drawn = await outputOf([...thinned, "--plot"]);
     assert.deepEqual(
       drawn.split("\n").filter((line) => /\(mm\)|\(qr\)|^b =|^regime|^not_/.test(line)),
       [...(title ? [title] : []), ...labels],
       fields,
     );
-    assert.equal(await told(["plot"], {input: await told(thinned)}), drawn);
+    assert.equal(await outputOf(["plot"], {input: await outputOf(thinned)}), drawn);
   }
   const others = ["-p", "include=series,exponents", "-p", "exponents=eigenvalues", "--plot"];
-  assert.match(await told([...whole, ...others]), /^b = 15 mm\nx \(mm\)\n/);
+  assert.match(await outputOf([...whole, ...others]), /^b = 15 mm\nx \(mm\)\n/);
 });
 
-test("what no run answers is not drawn, and ends nothing", async () => {
+test("a text that is not an answer gives an error message instead of a plot", async () => {
   const run_of = (series, more = {}) => JSON.stringify({series, parameters: {b: 1}, ...more});
   for (const input of [
     run_of({tau: [1, 2, 3], x: [1]}),
@@ -131,24 +131,24 @@ test("what no run answers is not drawn, and ends nothing", async () => {
   ]) {
     const {code, out, errors} = await run(["plot"], {input});
     assert.deepEqual({code, out}, {code: 1, out: ""}, input);
-    assert.match(errors, /nothing to draw|without its first line/, input);
+    assert.match(errors, /nothing to draw|first line of the sweep is missing/, input);
   }
   const sound = {tau: [1, 2], x: [0, 0], y: [0, 0]};
   for (const impacts of [{}, [], {tau: [1]}, {tau: [1], side: []}])
     assert.equal(
-      await told(["plot"], {input: run_of(sound, {impacts})}),
-      await told(["plot"], {input: run_of(sound)}),
+      await outputOf(["plot"], {input: run_of(sound, {impacts})}),
+      await outputOf(["plot"], {input: run_of(sound)}),
     );
   for (const series of [
     {tau: [1e16, 10000000000000004], x: [1, 2]},
     {tau: [1, 2], x: [1e17, 1e17]},
   ])
-    assert.match(await told(["plot"], {input: run_of(series)}), /^b = 1000 mm\nx \(mm\)\n/);
+    assert.match(await outputOf(["plot"], {input: run_of(series)}), /^b = 1000 mm\nx \(mm\)\n/);
 });
 
-test("the walls are in sight of a run that meets none", async () => {
+test("the walls are visible for a run without impacts", async () => {
   const free = ["simulate", "-p", "b=0.5", "-p", "y0=0", "-p", "tau_end=30", "--plot"];
-  const rows = (await told(free)).split("\n");
+  const rows = (await outputOf(free)).split("\n");
   const frame = rows.slice(rows.indexOf("y - x (mm)") + 1);
   for (const wall of [500, -500])
     assert.ok(
@@ -157,37 +157,37 @@ test("the walls are in sight of a run that meets none", async () => {
     );
 });
 
-test("a reduced sweep is drawn over its other axis, one of a single point at it", async () => {
+test("a reduced sweep is drawn over its other axis, also with a single point", async () => {
   const reduced = ["-a", "Omega=0.9:1.1:3", "-p", "cycles=5", "-p", "reduce=max over Omega"];
   for (const axis of ["b=0.01:0.02:4", "b=0.01"]) {
     const args = ["sweep", "-a", axis, ...reduced];
-    const drawn = await told([...args, "--plot"]);
+    const drawn = await outputOf([...args, "--plot"]);
     assert.match(drawn, /\npeak of \|x\| \(mm\), by regime\n(.*\n)+ *b \(mm\)\n$/);
-    assert.equal(await told(["plot"], {input: await told(args)}), drawn);
+    assert.equal(await outputOf(["plot"], {input: await outputOf(args)}), drawn);
   }
   const point = ["sweep", "-a", "b=0.01", "-a", "R=0.6", "-p", "cycles=5", "--plot"];
-  assert.match(await told(point), / b \(mm\)\n$/);
+  assert.match(await outputOf(point), / b \(mm\)\n$/);
   assert.equal((await run(["sweep", ...reduced, "--plot"])).code, 2);
 });
 
-test("points that are no system are left out of a plot, and told where there are no others", async () => {
+test("points without a valid system are left out of a plot, and an error if there are no others", async () => {
   const some = ["sweep", "-a", "x0=0,0.05,0.03", "-p", "y0=0.02", "-p", "cycles=5"];
-  const points = parsed(await told(some)).filter(({type}) => type === "point");
+  const points = parsed(await outputOf(some)).filter(({type}) => type === "point");
   assert.deepEqual(
     points.map((point) => "error" in point),
     [false, true, false],
   );
-  assert.match(await told([...some, "--plot"]), /max \|x\| \(mm\), by regime/);
+  assert.match(await outputOf([...some, "--plot"]), /max \|x\| \(mm\), by regime/);
   const none = await run([...some, "-p", "indices=[1]", "--plot"]);
   assert.deepEqual({code: none.code, out: none.out}, {code: 1, out: ""});
   assert.match(none.errors, /nothing to draw/);
 });
 
-test("lines whose last one was cut off are drawn up to it", async () => {
-  const lines = await told(sweep);
+test("an incomplete last line is left out of the plot", async () => {
+  const lines = await outputOf(sweep);
   const whole = lines.trimEnd().split("\n").slice(0, 5).join("\n");
   const cut = `${whole}\n${lines.split("\n")[5].slice(0, 100)}`;
-  assert.equal(await told(["plot"], {input: cut}), await told(["plot"], {input: whole}));
+  assert.equal(await outputOf(["plot"], {input: cut}), await outputOf(["plot"], {input: whole}));
 });
 
 test("without colours points of different words have different marks", async () => {
@@ -195,7 +195,7 @@ test("without colours points of different words have different marks", async () 
     [{}, "•"],
     [{LC_ALL: "C"}, "o"],
   ]) {
-    const rows = (await told([...sweep, "--plot"], {env})).split("\n");
+    const rows = (await outputOf([...sweep, "--plot"], {env})).split("\n");
     const first = rows.findIndex((row) => row.startsWith("max |x|")) + 1;
     const frame = rows.slice(first, first + 8);
     const labels = frame.flatMap((row) => row.match(/(\S) (\w+)$/)?.slice(1, 3) ?? []);
@@ -209,27 +209,27 @@ test("without colours points of different words have different marks", async () 
 
 test("ticks of a narrow range differ, and long ones leave the frame in line", async () => {
   const narrow = ["sweep", "-a", "Omega=1:1.0000001:3", "-p", "cycles=5", "--plot"];
-  const ticks = (await told(narrow)).trimEnd().split("\n").at(-2).trim().split(/ +/);
+  const ticks = (await outputOf(narrow)).trimEnd().split("\n").at(-2).trim().split(/ +/);
   assert.ok(ticks.length > 1 && new Set(ticks).size === ticks.length, ticks.join());
   const series = {tau: [1, 2], x: [1e4, 1e4 + 0.5]};
-  const long = await told(["plot"], {input: JSON.stringify({series})});
+  const long = await outputOf(["plot"], {input: JSON.stringify({series})});
   const frame = long.split("\n").filter((row) => /[│┤]/.test(row));
   assert.equal(new Set(frame.map((row) => row.search(/[│┤]/))).size, 1, long);
   assert.match(long, /^10000400 ┤/m);
 });
 
-test("a file that a plot goes into has no colours of the terminal", async () => {
+test("a plot written to a file has no terminal colours", async () => {
   const file = at("plot.txt");
   const shell = `script -qec "stty cols 200; $VINES ${orbit.join(" ")} --plot -o ${file}" /dev/null </dev/null`;
-  await told([], {shell});
-  assert.equal(readFileSync(file, "utf8"), await told([...orbit, "--plot"]));
+  await outputOf([], {shell});
+  assert.equal(readFileSync(file, "utf8"), await outputOf([...orbit, "--plot"]));
 });
 
-test("what cannot be drawn is said before anything is computed", async () => {
+test("a request that cannot be drawn is refused before anything is computed", async () => {
   const map = ["sweep", "-a", "b=0.01:0.03:900", "-a", "R=0.5:0.9:900", "-p", "cycles=1000"];
-  for (const [args, input, code, said] of [
-    [[...map, "--plot"], "", 2, /one axis; of more the page draws a map/],
-    [[...sweep, "--plot", "--resume"], "", 2, /--resume completes lines of JSON/],
+  for (const [args, input, code, message] of [
+    [[...map, "--plot"], "", 2, /a sweep along one axis; the page draws maps/],
+    [[...sweep, "--plot", "--resume"], "", 2, /--resume needs --format ndjson/],
     [
       [...sweep, "--plot", "--format", "csv"],
       "",
@@ -244,18 +244,18 @@ test("what cannot be drawn is said before anything is computed", async () => {
     ],
     [["plot"], "{}", 1, /nothing to draw/],
     [["plot"], "[]", 2, /object/],
-    [["plot"], '{"type":"point","index":0}\n', 1, /without its first line/],
+    [["plot"], '{"type":"point","index":0}\n', 1, /first line of the sweep is missing/],
     [["plot", at("none")], "", 1, /none/],
     [[...orbit, "-p", "include=energy", "--plot"], "", 1, /nothing to draw/],
   ]) {
     const ended = await run(args, {input});
     assert.equal(ended.code, code, args.join(" "));
-    assert.match(ended.errors, said);
+    assert.match(ended.errors, message);
     assert.equal(ended.out, "");
   }
 });
 
-test("a sweep that is stopped is drawn as far as it came", async () => {
+test("a stopped sweep is drawn with its points so far", async () => {
   const long = ["sweep", "-a", "b=0.01:0.03:100000", "-p", "cycles=100", "--plot"];
   const {code, out, errors} = await run(long, {signal: "SIGINT", until: hasComputed(0.5)});
   assert.equal(code, 130);

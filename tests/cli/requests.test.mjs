@@ -1,4 +1,4 @@
-// Requests as flags: nothing needs a service, and nothing a file of JSON.
+// Requests given as flags, without a service or a JSON file.
 import assert from "node:assert/strict";
 import {mkdtempSync, readFileSync, rmSync, writeFileSync} from "node:fs";
 import {tmpdir} from "node:os";
@@ -18,55 +18,55 @@ after(async () => {
 });
 const at = (name) => join(folder, name);
 
-/** What a command writes, which has no fault. */
-async function told(args, options) {
+/** Output of a command that must succeed. */
+async function outputOf(args, options) {
   const {code, out, errors} = await run(args, options);
   assert.equal(code, 0, `${args.join(" ")}: ${errors}`);
   return out;
 }
 
-/** The problem document that a command refuses its request with. */
+/** Problem document of a command that must refuse its request. */
 async function refused(args, options) {
   const {code, out, errors} = await run(args, options);
   assert.deepEqual({code, out}, {code: 2, out: ""}, args.join(" "));
   return JSON.parse(errors);
 }
 
-/** An answer without what tells where it comes from. */
+/** An answer without its provenance. */
 const content = (text) => {
   const {provenance, ...rest} = JSON.parse(text);
   return {request: provenance.request, ...rest};
 };
 
-test("fields as flags are the request that they are as JSON", async () => {
+test("fields as flags give the same request as JSON", async () => {
   const fields = {preset: "fig3", b: 0.02, tau_end: 100, include: ["impacts", "regime"]};
-  const json = content(await told(["simulate"], {input: JSON.stringify(fields)}));
+  const json = content(await outputOf(["simulate"], {input: JSON.stringify(fields)}));
   const each = Object.entries(fields).flatMap(([name, value]) => ["-p", `${name}=${value}`]);
-  assert.deepEqual(content(await told(["simulate", ...each])), json);
+  assert.deepEqual(content(await outputOf(["simulate", ...each])), json);
   const query = "preset=fig3&b=2e-2&tau_end=100&include=impacts%2Cregime";
-  assert.deepEqual(content(await told(["simulate", "-q", query])), json);
+  assert.deepEqual(content(await outputOf(["simulate", "-q", query])), json);
   const both = ["-q", "preset=fig3&include=impacts,regime", "-p", "b=.02", "-p", "tau_end=100"];
-  assert.deepEqual(content(await told(["simulate", ...both])), json);
+  assert.deepEqual(content(await outputOf(["simulate", ...both])), json);
   const answer = await fetch(`${service.url}/v1/simulate?${query}`);
   assert.deepEqual(content(await answer.text()), json);
 });
 
-test("fields as flags go over those of a file, part by part", async () => {
+test("fields as flags override those of a file, member by member", async () => {
   const file = at("request.json");
   writeFileSync(file, JSON.stringify({b: 0.02, tau_end: 50, include: ["impacts"]}));
-  const over = JSON.parse(await told(["simulate", file, "-p", "b=0.015"]));
+  const over = JSON.parse(await outputOf(["simulate", file, "-p", "b=0.015"]));
   assert.equal(over.parameters.b, 0.015);
   assert.equal(over.parameters.tau_end, 50);
-  const piped = await told(["simulate", "-", "-p", "b=0.015"], {input: readFileSync(file)});
+  const piped = await outputOf(["simulate", "-", "-p", "b=0.015"], {input: readFileSync(file)});
   assert.deepEqual(content(piped), content(JSON.stringify(over)));
 });
 
-test("with fields as flags nothing is read from stdin", async () => {
+test("stdin is not read if fields are given as flags", async () => {
   const args = ["simulate", "-p", "b=0.02", "-p", "tau_end=10"];
   assert.equal((await run(args, {input: "not JSON"})).code, 0);
 });
 
-test("a fault of a flag names the field, or how it is written", async () => {
+test("an error in a flag names the field or shows the syntax", async () => {
   for (const [args, detail] of [
     [["simulate", "-p", "b"], /-p b: not NAME=VALUE, as in -p b=0.02/],
     [["simulate", "-p", "=3"], /not NAME=VALUE/],
@@ -78,8 +78,8 @@ test("a fault of a flag names the field, or how it is written", async () => {
     [["sweep", "-a", "b=0.01:0.02:3", "-p", "cycels=5"], /did you mean cycles\?/],
     [["sweep", "-a", "b=0.01:x:3"], /number/],
     [["sweep", "-p", "cycles=5"], /axes|required/],
-    [["sweep", "-p", "axes=x", "-a", "b=0.01:0.02:3"], /axes holds --axis: not both/],
-    [["sweep", "-p", 'base={"preset":"fig3"}', "-p", "b=0.02"], /base holds b: not both/],
+    [["sweep", "-p", "axes=x", "-a", "b=0.01:0.02:3"], /axes and --axis exclude each other/],
+    [["sweep", "-p", 'base={"preset":"fig3"}', "-p", "b=0.02"], /base and b exclude each other/],
     [["sweep", "-a", "b=0.01", "-p", 'starts=[{"y0":0,"y0":1}]'], /^starts: .*"y0" comes twice/],
     [["sweep", "-a", "b=0.01", "-p", "starts=[{"], /^starts: .*not valid JSON/],
     [["presets", "fig33"], /no preset has the name fig33; did you mean fig3\?/],
@@ -88,7 +88,7 @@ test("a fault of a flag names the field, or how it is written", async () => {
     assert.match((await refused(args)).detail, detail, args.join(" "));
 });
 
-test("a sweep as flags is that of its JSON: axes, its own fields, those of its base", async () => {
+test("a sweep as flags equals its JSON: axes, its own fields, those of its base", async () => {
   const json = {
     axes: [
       {parameter: "b", from: 0.01, to: 0.03, count: 3},
@@ -101,10 +101,10 @@ test("a sweep as flags is that of its JSON: axes, its own fields, those of its b
   const flags = ["-a", "b=0.01:0.03:3", "--axis", "R=0.6,0.7", "-p", "preset=fig3"];
   flags.push("-q", "cycles=20", "-p", 'starts=[{"y0":0},{"y0":0.01}]');
   const points = (text) => parsed(text).slice(1);
-  const expected = points(await told(["sweep"], {input: JSON.stringify(json)}));
+  const expected = points(await outputOf(["sweep"], {input: JSON.stringify(json)}));
   assert.equal(expected.length, 13);
-  assert.deepEqual(points(await told(["sweep", ...flags])), expected);
-  const log = parsed(await told(["sweep", "-a", "b=0.01:0.04:3:log", "-p", "cycles=5"]));
+  assert.deepEqual(points(await outputOf(["sweep", ...flags])), expected);
+  const log = parsed(await outputOf(["sweep", "-a", "b=0.01:0.04:3:log", "-p", "cycles=5"]));
   assert.deepEqual(
     log.slice(1, 4).map((point) => point.b),
     [0.01, 0.02, 0.04],
@@ -113,15 +113,21 @@ test("a sweep as flags is that of its JSON: axes, its own fields, those of its b
 
 test("an answer has the format that --format says", async () => {
   const impacts = ["simulate", "-p", "preset=fig11", "-p", "tau_end=60"];
-  const csv = await told([...impacts, "-p", "fields=impacts.tau,impacts.side", "--format", "csv"]);
-  const {tau, side} = JSON.parse(await told(impacts)).impacts;
+  const csv = await outputOf([
+    ...impacts,
+    "-p",
+    "fields=impacts.tau,impacts.side",
+    "--format",
+    "csv",
+  ]);
+  const {tau, side} = JSON.parse(await outputOf(impacts)).impacts;
   assert.deepEqual(csv.trim().split("\n"), ["tau,side", ...tau.map((t, n) => `${t},${side[n]}`)]);
   for (const [format, first] of [
     ["npz", "PK"],
-    ["cbor", "\ufffd"], // a map, of more than text has
+    ["cbor", "\ufffd"], // a map; invalid as UTF-8 text
   ])
-    assert.ok((await told([...impacts, "--format", format])).startsWith(first), format);
-  const manifold = JSON.parse(await told(["manifold", "-p", "b=0.015"]));
+    assert.ok((await outputOf([...impacts, "--format", format])).startsWith(first), format);
+  const manifold = JSON.parse(await outputOf(["manifold", "-p", "b=0.015"]));
   const over = await (await fetch(`${service.url}/v1/manifold?b=0.015`)).json();
   assert.deepEqual(manifold, over);
   assert.equal((await run([...impacts, "--format", "yaml"])).code, 2);
@@ -129,8 +135,8 @@ test("an answer has the format that --format says", async () => {
 
 test("a sweep as CSV has a row for each point and a column for each number", async () => {
   const flags = ["sweep", "-a", "b=0.008:0.03:5", "-p", "cycles=50"];
-  const points = parsed(await told(flags)).filter(({type}) => type === "point");
-  const rows = (await told([...flags, "--format", "csv"])).trim().split("\n");
+  const points = parsed(await outputOf(flags)).filter(({type}) => type === "point");
+  const rows = (await outputOf([...flags, "--format", "csv"])).trim().split("\n");
   const [names, ...cells] = rows.map((row) => row.split(","));
   assert.equal(new Set(names).size, names.length);
   const cell = (row, name) => cells[row][names.indexOf(name)];
@@ -146,17 +152,17 @@ test("a sweep as CSV has a row for each point and a column for each number", asy
   });
   assert.equal(cells.length, points.length);
   const resumed = await refused([...flags, "--format", "csv", "--resume"]);
-  assert.match(resumed.detail, /--resume completes lines of JSON/);
+  assert.match(resumed.detail, /--resume needs --format ndjson/);
 });
 
-test("a record is identified by fields as flags, over those of its JSON", async () => {
-  const csv = await told(["example", "record"]);
+test("identify accepts fields as flags, which override those of its JSON", async () => {
+  const csv = await outputOf(["example", "record"]);
   assert.equal(csv.split("\n")[0], "time_s,displacement_m,acceleration_m_s2");
   writeFileSync(at("record.csv"), csv);
   const flags = ["-p", "preset=fig20", "-p", "b=0.015", "-p", "fields=restitution,verdict"];
-  const identified = content(await told(["identify", at("record.csv"), ...flags]));
+  const identified = content(await outputOf(["identify", at("record.csv"), ...flags]));
   assert.equal(identified.verdict, "chaotic");
-  // Within three standard errors of what the record was made with.
+  // Within three standard errors of the values that the record was computed with.
   for (const {R, standard_error: error} of [
     identified.restitution.plus,
     identified.restitution.minus,
@@ -171,27 +177,30 @@ test("a record is identified by fields as flags, over those of its JSON", async 
   );
   const record = {time_s, displacement_m, acceleration_m_s2};
   const input = JSON.stringify({record, preset: "fig15", b: 0.02});
-  const over = content(await told(["identify", "-", ...flags], {input}));
+  const over = content(await outputOf(["identify", "-", ...flags], {input}));
   assert.deepEqual(over.restitution, identified.restitution);
 });
 
-test("presets and parameters are those of the service", async () => {
+test("presets and parameters print the service's lists", async () => {
   for (const what of ["presets", "parameters"]) {
-    const json = await told([what, "--format", "json"]);
+    const json = await outputOf([what, "--format", "json"]);
     assert.equal(json, await (await fetch(`${service.url}/v1/${what}`)).text());
   }
-  const presets = JSON.parse(await told(["presets", "--format", "json"])).presets.map(
+  const presets = JSON.parse(await outputOf(["presets", "--format", "json"])).presets.map(
     ({name}) => name,
   );
-  const listed = (await told(["presets"])).trim().split("\n");
+  const listed = (await outputOf(["presets"])).trim().split("\n");
   assert.deepEqual(
     listed.map((line) => line.split(" ")[0]),
     presets,
   );
-  assert.match(await told(["presets", "fig3"]), /\n {2}b = 0.022\n(.*\n)*vines simulate -p preset/);
-  const {fields} = JSON.parse(await told(["parameters", "--format", "json"]));
-  const all = await told(["parameters"]);
-  assert.match(all, / {2}y_dot0 +m per unit of tau its velocity\n/);
+  assert.match(
+    await outputOf(["presets", "fig3"]),
+    /\n {2}b = 0.022\n(.*\n)*vines simulate -p preset/,
+  );
+  const {fields} = JSON.parse(await outputOf(["parameters", "--format", "json"]));
+  const all = await outputOf(["parameters"]);
+  assert.match(all, / {2}y_dot0 +m per unit of tau velocity of the ball at tau = 0\n/);
   assert.match(all, / {2}base_acceleration_column choice /);
   for (const {name, description} of fields)
     assert.ok(
@@ -199,7 +208,7 @@ test("presets and parameters are those of the service", async () => {
       name,
     );
   assert.match(
-    await told(["parameters", "b"]),
+    await outputOf(["parameters", "b"]),
     /half-width(.*\n)* {4}default {2}.*\n {4}range {4}\[/,
   );
 });

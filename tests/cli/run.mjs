@@ -1,12 +1,12 @@
-// Runs of the program.
+// Runs the program for the tests.
 import {spawn} from "node:child_process";
 import {readFile} from "node:fs/promises";
 import {program} from "../service.mjs";
 
 /**
- * Runs the program to its end, or sends it one signal once `until`, given its process's number and
- * what it has written, says so. shell: a command line in which $VINES is the program and "$@" its
- * arguments. Resolves to {code, out, errors}, and ms: how long it took from the signal to its end.
+ * Runs the program to its end, or sends it one signal once `until(pid, stdout so far)` is true.
+ * shell: a command line in which $VINES is the program and "$@" its arguments. Resolves to
+ * {code, out, errors, ms}; ms is the time from the signal to the end.
  */
 export const run = (args, {input = "", open = false, env = {}, signal, until, shell} = {}) =>
   new Promise((resolve) => {
@@ -23,33 +23,33 @@ export const run = (args, {input = "", open = false, env = {}, signal, until, sh
     child.stdin.on("error", () => {});
     child.stdin.write(input);
     if (!open) child.stdin.end();
-    // One look after the other: a second signal would end the program at once.
-    const look = async () => {
+    // Checked one after the other: a second signal would end the program at once.
+    const check = async () => {
       if (child.exitCode !== null) return;
       if (await until(child.pid, out)) {
         sent = performance.now();
         child.kill(signal);
-      } else setTimeout(look, 5);
+      } else setTimeout(check, 5);
     };
-    if (signal) look();
+    if (signal) check();
   });
 
-/** Whether a process has SIGINT blocked: it waits for it then. */
+/** Returns whether a process has blocked SIGINT; it then waits for it in a thread. */
 export const waitsForSignals = async (pid) =>
   (BigInt(`0x${(await readFile(`/proc/${pid}/status`, "utf8")).match(/^SigBlk:\s+(\w+)/m)[1]}`) &
     2n) !==
   0n;
 
-/** For how many seconds a process has had a processor. */
+/** CPU time of a process in s. */
 export async function computed(pid) {
   const fields = (await readFile(`/proc/${pid}/stat`, "utf8")).split(") ")[1].split(" ");
   return (Number(fields[11]) + Number(fields[12])) / 100;
 }
 
-/** Whether that is so long: it has read its request then. */
+/** Condition for `until`: the process has used this CPU time, so it has read its request. */
 export const hasComputed = (seconds) => async (pid) => (await computed(pid)) >= seconds;
 
-/** Lines of JSON. */
+/** Parses lines of JSON. */
 export const parsed = (text) =>
   text
     .trim()

@@ -1,4 +1,4 @@
-// How the subcommands end: at a signal, and where nobody reads any more.
+// How the subcommands end after a signal, and after the reader of their output has left.
 import assert from "node:assert/strict";
 import {mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync} from "node:fs";
 import {readFile} from "node:fs/promises";
@@ -15,13 +15,13 @@ const fields = {
   base: {damping: "closed_form"},
   axes: [{parameter: "b", from: 0.008, to: 0.03, count: 40}],
 };
-// Longer than a look at it may take on any machine.
+// Runs longer than a check of its state takes on any machine.
 const long = JSON.stringify({...fields, cycles: 100000});
 const endless = JSON.stringify({...fields, cycles: 1e6});
 const lines = (text) => text.split("\n").length - 1;
 
-/** The run that ended soonest: others may have had to wait for a processor. */
-async function soonest(args, options) {
+/** Repeats a run up to 4 times and returns the one that ended fastest; others can lack a CPU. */
+async function fastest(args, options) {
   let best;
   for (let tries = 0; tries < 4 && !(best?.ms < 100); ++tries) {
     const result = await run(args, options);
@@ -30,17 +30,17 @@ async function soonest(args, options) {
   return best;
 }
 
-/** Asserts how a run ends, and that a tenth of a second is enough for it. */
-async function ends(args, options, code, said = /^$/) {
-  const result = await soonest(args, options);
+/** Asserts the exit code and stderr of a run, and that it ends within .1 s. */
+async function ends(args, options, code, message = /^$/) {
+  const result = await fastest(args, options);
   const what = `${args.join(" ")} by ${options.signal}: ${result.errors}`;
   assert.equal(result.code, code, what);
   assert.ok(result.ms < 100, `${result.ms} ms for ${what}`);
-  assert.match(result.errors, said, what);
+  assert.match(result.errors, message, what);
   return result;
 }
 
-test("a command that waits for its input ends at a signal", async () => {
+test("a command that waits for its input ends after a signal", async () => {
   for (const command of ["simulate", "sweep", "identify", "verify"])
     for (const [signal, code] of [
       ["SIGINT", 130],
@@ -50,7 +50,7 @@ test("a command that waits for its input ends at a signal", async () => {
       await ends([command], {open: true, input: "{", signal, until: waitsForSignals}, code);
 });
 
-test("a report ends at a signal, also one whose parent ignores SIGINT", async () => {
+test("a report ends after a signal, also if its parent ignores SIGINT", async () => {
   const until = hasComputed(0.2);
   await ends(["reproduce"], {signal: "SIGINT", until}, 130);
   await ends(["reproduce"], {signal: "SIGTERM", until}, 143);
@@ -58,13 +58,13 @@ test("a report ends at a signal, also one whose parent ignores SIGINT", async ()
   await ends(["reproduce"], {signal: "SIGINT", until, shell}, 130);
 });
 
-// Of what has something to keep: Ctrl-C ends a loop of a shell, a scheduler may go on from there.
+// Exit codes of commands with partial results: 130 ends a shell's loop, after 3 a scheduler can resume.
 const stops = [
   ["SIGINT", 130],
   ["SIGTERM", 3],
 ];
 
-test("a run that is stopped answers with what it has, an identification says what it was at", async () => {
+test("a stopped run writes its answer up to that time", async () => {
   const input = '{"b":0.003,"R":1,"tau_end":1e7,"max_impacts":2000000,"include":["exponents"]}';
   const until = hasComputed(0.3);
   for (const [signal, code] of stops) {
@@ -73,8 +73,8 @@ test("a run that is stopped answers with what it has, an identification says wha
   }
 });
 
-test("an identification of a list of impacts ends at a signal", async () => {
-  const impacts = 500000; // a second and more to be read and computed
+test("an identification of a list of impacts ends after a signal", async () => {
+  const impacts = 500000; // takes more than 1 s to read and compute
   const column = (value) => Array.from({length: impacts}, (_, k) => value(k));
   const list = {
     tau: column((k) => Math.PI * k),
@@ -90,26 +90,28 @@ test("an identification of a list of impacts ends at a signal", async () => {
   await ends(["identify", at("list.json")], options, 130, /^vines: the identification was stopped/);
 });
 
-test("a sweep ends at a signal, whatever each point takes", async () => {
+test("a sweep ends after a signal, however long each point takes", async () => {
   const cases = [[{}], "default set"].flatMap((starts) => stops.map((stop) => [starts, ...stop]));
   for (const [starts, signal, code] of cases) {
     const input = JSON.stringify({...JSON.parse(endless), starts});
+    // The start line is written once a stop is possible.
+    const hasStarted = async (pid, written) => written !== "" && (await hasComputed(0.1)(pid));
     const options = {input, signal, until: hasComputed(0.3)};
     const {out} = await ends(
       ["sweep"],
-      options,
+      {...options, until: hasStarted},
       code,
       /^vines: stopped after \d+ of 40 points\n$/m,
     );
     assert.ok(lines(out) >= 1);
     const shell = 'rm -f "$3"; exec "$VINES" "$@"';
-    const said = /^vines: stopped after \d+ of 40 points; --resume completes the file\n$/m;
-    await ends(["sweep", "-o", at("endless")], {...options, shell}, code, said);
+    const message = /^vines: stopped after \d+ of 40 points; --resume completes the file\n$/m;
+    await ends(["sweep", "-o", at("endless")], {...options, shell}, code, message);
     assert.match(readFileSync(at("endless"), "utf8"), /^(\{.*\}\n)+$/);
   }
 });
 
-test("verify ends at a signal", async () => {
+test("verify ends after a signal", async () => {
   const {out} = await run(["sweep"], {
     input: long,
     signal: "SIGINT",
@@ -117,19 +119,24 @@ test("verify ends at a signal", async () => {
   });
   writeFileSync(at("some"), out);
   const options = {signal: "SIGINT", until: hasComputed(0.1)};
-  const {out: said} = await ends(["verify", at("some")], options, 130);
-  assert.match(said, /recomputed: \d+ of \d+ points are the same/);
+  const {out: message} = await ends(["verify", at("some")], options, 130);
+  assert.match(message, /recomputed: \d+ of \d+ points are the same/);
   const request = '{"b":0.015,"tau_end":1e7,"max_impacts":2000000,"include":["exponents"]}';
   const answer = JSON.parse(
     (await run(["simulate"], {input: request.replace("2000000", "10")})).out,
   );
   answer.provenance.request.max_impacts = 2000000;
   writeFileSync(at("answer"), JSON.stringify(answer));
-  const {out: compared} = await ends(["verify", at("answer")], options, 130, /stopped before all/);
+  const {out: compared} = await ends(
+    ["verify", at("answer")],
+    options,
+    130,
+    /stopped before everything/,
+  );
   assert.doesNotMatch(compared, /recomputed:/);
 });
 
-test("a signal while a large answer is written ends that, and leaves the file that was there", async () => {
+test("a signal while a large answer is written keeps the existing file", async () => {
   writeFileSync(at("large"), "old");
   const input = '{"b":0.015,"tau_end":1e7,"max_impacts":1000000,"include":["impacts"]}';
   const until = () => readdirSync(folder).some((name) => name.startsWith(".vines-"));
@@ -141,7 +148,7 @@ test("a signal while a large answer is written ends that, and leaves the file th
   );
 });
 
-test("a sweep writes each line to a pipe as it comes, in order, and what it has when it is stopped", async () => {
+test("a sweep writes each line to a pipe in order as it is computed, also when it is stopped", async () => {
   let first;
   const {code, out, errors} = await run(["sweep"], {
     input: long,
@@ -151,7 +158,7 @@ test("a sweep writes each line to a pipe as it comes, in order, and what it has 
       return lines(written) > 4;
     },
   });
-  assert.equal(lines(first), 0, "it has not waited for all");
+  assert.equal(lines(first), 0, "lines are written before all are computed");
   assert.equal(code, 130);
   const [start, ...points] = parsed(out);
   assert.equal(start.type, "start");
@@ -165,17 +172,17 @@ test("a sweep writes each line to a pipe as it comes, in order, and what it has 
   assert.match(errors, new RegExp(`^vines: stopped after ${points.length} of 40 points\n$`, "m"));
 });
 
-test("the first line of a sweep is there before its first point", async () => {
+test("the first line of a sweep is written before its first point", async () => {
   const {code, out} = await run(["sweep"], {
     input: endless,
     signal: "SIGKILL",
     until: (_, written) => written.includes("\n"),
   });
-  assert.equal(code, null, "it was still at work");
+  assert.equal(code, null, "it was still computing");
   assert.equal(parsed(out)[0].type, "start");
 });
 
-test("who reads no more ends a command without a word, with exit code 141", async () => {
+test("a closed pipe ends a command without a message, with exit code 141", async () => {
   const many = JSON.stringify({...fields, cycles: 100});
   const large = '{"b":0.015,"tau_end":1e5,"include":["impacts"]}';
   const shell = 'set -o pipefail; "$VINES" "$@" | head -c 100 >/dev/null';
@@ -191,7 +198,7 @@ test("who reads no more ends a command without a word, with exit code 141", asyn
   }
 });
 
-test("who leaves stderr does not end a sweep into a file", async () => {
+test("a closed stderr does not end a sweep into a file", async () => {
   const many = JSON.stringify({...fields, cycles: 100});
   const shell = '"$VINES" "$@" 2> >(exec true); exit $?';
   const {code} = await run(["sweep", "-o", at("told")], {input: many, shell});
@@ -199,7 +206,7 @@ test("who leaves stderr does not end a sweep into a file", async () => {
   assert.equal(lines(await readFile(at("told"), "utf8")), 42);
 });
 
-test("a reader that stands still keeps no command from ending", async () => {
+test("a reader that does not read cannot keep a command from ending", async () => {
   const still = JSON.stringify({
     ...fields,
     axes: [{parameter: "b", from: 0.008, to: 0.03, count: 4000}],
@@ -208,7 +215,7 @@ test("a reader that stands still keeps no command from ending", async () => {
     section: "impact",
   });
   const large = '{"b":0.015,"tau_end":1e5,"include":["impacts"]}';
-  // `read` holds the pipe open, and takes nothing of it.
+  // Descriptor 9 keeps the pipe open, and nothing reads from it.
   const shell = 'mkfifo "$PIPE"; exec 9<>"$PIPE"; exec "$VINES" "$@" >"$PIPE"';
   for (const [k, [args, input, code]] of [
     [["sweep"], still, 130],

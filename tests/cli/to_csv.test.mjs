@@ -1,4 +1,4 @@
-// Measuring programs' files as CSV, by scripts/to-csv and Debian's Python.
+// Conversion of measurement files to CSV by scripts/to-csv, with Debian's Python.
 import assert from "node:assert/strict";
 import {spawnSync} from "node:child_process";
 import {mkdtempSync, rmSync, writeFileSync} from "node:fs";
@@ -15,10 +15,10 @@ const at = (name) => join(folder, name);
 
 function converted(...args) {
   const {status, stdout, stderr} = spawnSync(python, [script, ...args], {encoding: "utf8"});
-  return {status, lines: stdout.trimEnd().split("\n"), said: stderr.trimEnd()};
+  return {status, lines: stdout.trimEnd().split("\n"), message: stderr.trimEnd()};
 }
 
-/** Two channels of 16 bits. */
+/** WAV file with two 16-bit channels. */
 function wav(rate, frames) {
   const header = Buffer.alloc(44);
   header.write("RIFF", 0);
@@ -38,7 +38,7 @@ function wav(rate, frames) {
   return Buffer.concat([header, data]);
 }
 
-test("a WAV file's channels become columns with names and factors, on its own clock", () => {
+test("a WAV file's channels become columns with names and factors, with the file's sampling times", () => {
   writeFileSync(
     at("r.wav"),
     wav(2000, [
@@ -59,10 +59,10 @@ test("a WAV file's channels become columns with names and factors, on its own cl
   ]);
   const missing = converted(at("r.wav"), "acceleration_g=3");
   assert.equal(missing.status, 1);
-  assert.match(missing.said, /^to-csv: acceleration_g=3: no channel 3; there are channel 1, /);
+  assert.match(missing.message, /^to-csv: acceleration_g=3: no channel 3; there are channel 1, /);
 });
 
-test("a MAT file's vectors and the columns of its matrices are channels; time is asked for", () => {
+test("a MAT file's vectors and its matrices' columns are channels; the time must be named", () => {
   const made = spawnSync(
     python,
     [
@@ -81,22 +81,22 @@ test("a MAT file's vectors and the columns of its matrices are channels; time is
     "1,6",
   ]);
   assert.match(
-    converted(at("r.mat"), "displacement_m=x:1").said,
+    converted(at("r.mat"), "displacement_m=x:1").message,
     /does not tell time: give --rate/,
   );
   assert.deepEqual(converted(at("r.mat"), "displacement_m=x:1", "--rate", "4").lines[3], "0.5,3");
 });
 
-test("a file that is none, or of another kind, is refused in a sentence", () => {
+test("a missing file, or one of another kind, is refused in one sentence", () => {
   writeFileSync(at("broken.wav"), "no sound");
   writeFileSync(at("r.xls"), "");
-  for (const [file, said] of [
+  for (const [file, message] of [
     ["broken.wav", /^to-csv: broken\.wav cannot be read: /],
     ["r.xls", /^to-csv: r\.xls: known are \.wav, \.mat, \.tdms, \.uff/],
     ["none.mat", /^to-csv: there is no file /],
   ]) {
-    const {status, said: heard} = converted(at(file));
+    const {status, message: actual} = converted(at(file));
     assert.equal(status, 1);
-    assert.match(heard, said);
+    assert.match(actual, message);
   }
 });

@@ -1,4 +1,4 @@
-// What the command line says to who uses it wrongly, and shows at a terminal.
+// Usage errors, help, and output to a terminal.
 import assert from "node:assert/strict";
 import {mkdtempSync, rmSync, writeFileSync} from "node:fs";
 import {tmpdir} from "node:os";
@@ -10,8 +10,8 @@ const folder = mkdtempSync(join(tmpdir(), "vines-usage-"));
 after(() => rmSync(folder, {recursive: true}));
 const at = (name) => join(folder, name);
 
-test("a wrong use is one line that says what and where to look, with exit code 2", async () => {
-  for (const [args, said] of [
+test("a usage error gives one line with the fault and the help to read, and exit code 2", async () => {
+  for (const [args, message] of [
     [[], /a subcommand is missing: simulate, sweep, .*; see vines --help/],
     [["swep"], /unknown subcommand swep; did you mean sweep\?; see vines --help/],
     [["Simulate"], /unknown subcommand Simulate; did you mean simulate\?/],
@@ -34,11 +34,11 @@ test("a wrong use is one line that says what and where to look, with exit code 2
     const {code, out, errors} = await run(args);
     assert.deepEqual({code, out}, {code: 2, out: ""}, args.join(" "));
     assert.match(errors, /^vines: [^\n]+; see vines( \w+)? --help\n$/);
-    assert.match(errors, said);
+    assert.match(errors, message);
   }
 });
 
-test("the help of the program is one screen, and that of a subcommand has examples that run", async () => {
+test("the program's help fits one screen, and a subcommand's help has examples that run", async () => {
   const {out} = await run(["--help"]);
   const lines = out.trimEnd().split("\n");
   assert.ok(lines.length <= 32, `${lines.length} lines`);
@@ -53,19 +53,19 @@ test("the help of the program is one screen, and that of a subcommand has exampl
   }
 });
 
-test("a request that is awaited from a terminal is asked for", async () => {
+test("a command that reads its request from a terminal prompts for it", async () => {
   const shell = 'script -qec "$VINES simulate" /dev/null <<<"{"tau_end":5}"$\'\\n\\x04\'';
   assert.match((await run([], {shell})).out, /vines: reading from the terminal; Ctrl-D ends it/);
 });
 
-test("a variable of one subcommand is no fault of another", async () => {
+test("an environment variable of one subcommand does not affect another", async () => {
   const env = {VINES_PORT: "x", VINES_SHARDS: "x"};
   const input = '{"b":0.015,"tau_end":10}';
   assert.equal((await run(["simulate"], {input, env})).code, 0);
   assert.match((await run(["sweep"], {env})).errors, /--shards/);
 });
 
-/** What a terminal of so many columns gets while a sweep runs, line by line as it is drawn anew. */
+/** Successive contents of the progress line of a sweep in a terminal of this width. */
 async function drawn(columns) {
   const axes = [{parameter: "b", from: 0.008, to: 0.03, count: 400}];
   writeFileSync(at("sweep.json"), JSON.stringify({axes, cycles: 300}));
@@ -75,7 +75,7 @@ async function drawn(columns) {
   return out.split("\n")[0].split("\r").filter(Boolean);
 }
 
-test("the bar of a sweep is as wide as the terminal, and breaks no line of a narrow one", async () => {
+test("a sweep's progress bar fits the terminal's width, and a narrow line does not wrap", async () => {
   for (const columns of [30, 50, 80, 200]) {
     const lines = await drawn(columns);
     assert.ok(lines.length > 1);

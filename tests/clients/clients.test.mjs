@@ -1,5 +1,5 @@
-// The client for Python, against the running service and the program, and what every client knows of
-// the fields.
+// Tests of the Python client with a running service and the program, and of the list of fields in
+// each client.
 import assert from "node:assert/strict";
 import {spawnSync} from "node:child_process";
 import {readFileSync, writeFileSync} from "node:fs";
@@ -7,7 +7,7 @@ import {join} from "node:path";
 import {after, before, test} from "node:test";
 import {fileURLToPath} from "node:url";
 import {program} from "../service.mjs";
-import {key, said, startServices} from "./services.mjs";
+import {key, outcome, startServices} from "./services.mjs";
 
 const root = fileURLToPath(new URL("../../", import.meta.url));
 const python = (args, env = {}, cwd = root) =>
@@ -28,8 +28,8 @@ before(async () => {
 });
 after(() => services.stop());
 
-test("the Python client has the same answers, errors and ends from service and program", () => {
-  const {room, open, locked} = services;
+test("the Python client gives the same answers and errors with service and program", () => {
+  const {folder, open, locked} = services;
   const suite = ["-W", "error::ResourceWarning", "-m", "unittest", "-v", "test_vines"];
   const ended = python(suite, {
     PYTHONPATH: `${join(root, "clients/python")}:${join(root, "tests/clients")}`,
@@ -37,20 +37,20 @@ test("the Python client has the same answers, errors and ends from service and p
     TEST_SERVICE: open.url,
     TEST_LOCKED: locked.url,
     TEST_KEY: key,
-    TEST_RECORD: join(room, "record.csv"),
+    TEST_RECORD: join(folder, "record.csv"),
   });
-  assert.equal(ended.status, 0, said(ended));
+  assert.equal(ended.status, 0, outcome(ended));
   assert.match(ended.stderr, /^Ran \d{2} tests/m);
-  // What is missing on this machine is said, not hidden.
+  // Prints the tests skipped for a missing package.
   for (const [skipped] of ended.stderr.matchAll(/^.*skipped.*$/gm)) console.log(skipped);
 });
 
-test("its fields are those of the service", () => {
+test("the Python client has the fields of the service", () => {
   const ended = python([join(root, "clients/python/fields.py"), "--check", program]);
-  assert.equal(ended.status, 0, said(ended));
+  assert.equal(ended.status, 0, outcome(ended));
 });
 
-test("its version is that of the project", () => {
+test("the Python client has the version of the project", () => {
   const declared = (file, pattern) => readFileSync(join(root, file), "utf8").match(pattern)[1];
   assert.equal(
     declared("clients/python/pyproject.toml", /^version = "(.*)"$/m),
@@ -58,24 +58,25 @@ test("its version is that of the project", () => {
   );
 });
 
-test("the lines of Python in the documents work as they stand", () => {
-  const {room, open} = services;
+test("the Python examples in the documents work unchanged", () => {
+  const {folder, open} = services;
   const hasPandas = python(["-c", "import pandas"]).status === 0;
   for (const [file, shown] of [
     ["README.md", /^(\S+ \S+ \S+\n){5}$/],
     ["clients/python/README.md", /^41\/41 /m],
   ]) {
     const [, lines] = readFileSync(join(root, file), "utf8").match(/```python\n([\s\S]*?)```/);
-    writeFileSync(join(room, "lines.py"), hasPandas ? lines : lines.replace(/^run\.frame.*$/m, ""));
+    const runnable = hasPandas ? lines : lines.replace(/^run\.frame.*$/m, "");
+    writeFileSync(join(folder, "lines.py"), runnable);
     for (const way of [{VINES_URL: open.url}, {VINES_PROGRAM: program}]) {
-      const ended = python(["lines.py"], way, room);
-      assert.equal(ended.status, 0, said(ended));
+      const ended = python(["lines.py"], way, folder);
+      assert.equal(ended.status, 0, outcome(ended));
       assert.match(ended.stdout, shown);
     }
   }
 });
 
-test("the fields that are lists are known to the Octave client", () => {
+test("the Octave client knows which fields are lists", () => {
   const {schemas} = JSON.parse(
     spawnSync(program, ["openapi"], {encoding: "utf8"}).stdout,
   ).components;

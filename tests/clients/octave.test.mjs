@@ -1,4 +1,4 @@
-// The client for Octave and MATLAB, against the running service and the program, by Octave.
+// Tests of the client for Octave and MATLAB in Octave, with a running service and the program.
 import assert from "node:assert/strict";
 import {spawnSync} from "node:child_process";
 import {mkdirSync, readFileSync, symlinkSync, writeFileSync} from "node:fs";
@@ -6,7 +6,7 @@ import {join} from "node:path";
 import {after, before, test} from "node:test";
 import {fileURLToPath} from "node:url";
 import {program} from "../service.mjs";
-import {key, said, startServices} from "./services.mjs";
+import {key, outcome, startServices} from "./services.mjs";
 
 const root = fileURLToPath(new URL("../../", import.meta.url));
 const octave = (args, options = {}) =>
@@ -16,7 +16,7 @@ const octave = (args, options = {}) =>
     env: {...process.env, ...options.env},
   });
 const isThere = octave(["--version"]).status === 0;
-// CTest takes these words for a suite that is skipped.
+// CTest recognises a skipped suite by this text.
 const skip = isThere ? false : "there is no Octave; scripts/setup test installs it";
 
 let services;
@@ -25,40 +25,40 @@ before(async () => {
 });
 after(() => services?.stop());
 
-test("the Octave client has the same answers, errors and ends from service and program", {
+test("the Octave client gives the same answers and errors with service and program", {
   skip,
 }, () => {
-  const {room, open, locked} = services;
-  const own = join(room, "its $(own)'s"); // a name that a shell would make something else of
+  const {folder, open, locked} = services;
+  const own = join(folder, "its $(own)'s"); // a name that a shell would expand
   symlinkSync(program, own);
-  mkdirSync(join(room, "tmp"));
+  mkdirSync(join(folder, "tmp"));
   const ended = octave([join(root, "tests/clients/test_vines.m")], {
-    cwd: room,
+    cwd: folder,
     env: {
       VINES_PROGRAM: own,
       TEST_SERVICE: open.url,
       TEST_LOCKED: locked.url,
       TEST_KEY: key,
-      TEST_RECORD: join(room, "record.csv"),
-      TEST_ROOM: room,
-      TMPDIR: join(room, "tmp"),
+      TEST_RECORD: join(folder, "record.csv"),
+      TEST_FOLDER: folder,
+      TMPDIR: join(folder, "tmp"),
     },
   });
-  assert.equal(ended.status, 0, said(ended));
+  assert.equal(ended.status, 0, outcome(ended));
   assert.match(ended.stdout, /^(ok - .*\n){30,}0 failed$/m);
   assert.equal(ended.stderr, "");
 });
 
-test("the lines of Octave in its document work as they stand", {skip}, () => {
-  const {room, open} = services;
+test("the Octave example in the README works unchanged", {skip}, () => {
+  const {folder, open} = services;
   const text = readFileSync(join(root, "clients/octave/README.md"), "utf8");
   const [, lines] = text.match(/```octave\n([\s\S]*?)```/);
-  const [, promised] = lines.match(/% (422: .*)$/m);
-  writeFileSync(join(room, "shown.m"), lines);
+  const [, expected] = lines.match(/% (422: .*)$/m);
+  writeFileSync(join(folder, "shown.m"), lines);
   for (const env of [{VINES_URL: open.url}, {VINES_PROGRAM: program}]) {
-    const ended = octave(["shown.m"], {cwd: room, env});
-    assert.equal(ended.status, 0, said(ended));
+    const ended = octave(["shown.m"], {cwd: folder, env});
+    assert.equal(ended.status, 0, outcome(ended));
     assert.match(ended.stdout, /^41\/41 /m);
-    assert.ok(ended.stdout.includes(promised), said(ended));
+    assert.ok(ended.stdout.includes(expected), outcome(ended));
   }
 });

@@ -1,4 +1,4 @@
-// Whom the clients ask: a running service, one with a key, and what the documents call record.csv.
+// Fixtures of the client tests: a service, one with a key, and the file record.csv of the examples.
 import {mkdtempSync, rmSync, writeFileSync} from "node:fs";
 import {tmpdir} from "node:os";
 import {join} from "node:path";
@@ -7,19 +7,19 @@ import {startService} from "../service.mjs";
 
 export const key = "a-key-of-thirty-two-characters--";
 
-/** Starts them: {room, open, locked, stop}, where room is a folder with the record. */
+/** Starts the services. Returns {folder, open, locked, stop}; the folder holds record.csv. */
 export async function startServices() {
-  const room = mkdtempSync(join(tmpdir(), "vines-clients-"));
-  writeFileSync(join(room, "keys"), `${key}\n`);
+  const folder = mkdtempSync(join(tmpdir(), "vines-clients-"));
+  writeFileSync(join(folder, "keys"), `${key}\n`);
   const open = await startService();
-  const locked = await startService(["--api-key-file", join(room, "keys"), "--deadline", "0.5"]);
-  writeFileSync(join(room, "record.csv"), await measured(open.url, "fig20", 20));
+  const locked = await startService(["--api-key-file", join(folder, "keys"), "--deadline", "0.5"]);
+  writeFileSync(join(folder, "record.csv"), await measured(open.url, "fig20", 20));
   const stop = async () => {
     await Promise.all([open.stop(), locked.stop()]);
-    rmSync(room, {recursive: true});
+    rmSync(folder, {recursive: true});
   };
-  return {room, open, locked, stop};
+  return {folder, open, locked, stop};
 }
 
-/** How a program ended, for a test that fails. */
-export const said = ({status, stdout, stderr}) => `${status}\n${stdout}\n${stderr}`;
+/** Exit code and output of a program, for the message of a failed test. */
+export const outcome = ({status, stdout, stderr}) => `${status}\n${stdout}\n${stderr}`;

@@ -1,5 +1,7 @@
-"""The Python client against a service, one with a key, and the program: tests/clients/clients.test.mjs
-starts them and says where they are."""
+"""Tests of the Python client with a service, a service with a key, and the program.
+
+tests/clients/clients.test.mjs starts them and passes their addresses in the environment.
+"""
 
 from __future__ import annotations
 
@@ -30,15 +32,15 @@ except ImportError:
     pandas = None
 
 
-class BothWays(unittest.TestCase):
+class WithBothClients(unittest.TestCase):
     def each(self):
         for name, client in BOTH.items():
             with self.subTest(client=name):
                 yield client
 
 
-class Answers(BothWays):
-    def test_a_run_has_its_lists_as_arrays_and_its_parts_as_attributes(self):
+class Answers(WithBothClients):
+    def test_a_run_has_lists_as_arrays_and_parts_as_attributes(self):
         for client in self.each():
             run = client.simulate(b=0.022, tau_end=200, include=["impacts", "exponents"])
             self.assertEqual(run.status.reason, "tau_end")
@@ -47,7 +49,7 @@ class Answers(BothWays):
             self.assertTrue(0 < run.impacts.tau[0] < run.impacts.tau[-1] <= 200)
             self.assertEqual(run.parameters.b, 0.022)
 
-    def test_null_in_a_list_of_numbers_is_nan_and_goes_back_as_null(self):
+    def test_null_in_a_list_of_numbers_is_nan_and_is_written_as_null(self):
         for client in self.each():
             moduli = client.simulate(tau_end=100, include=["eigenvalues"]).eigenvalues
             self.assertTrue(all(isinstance(float(v), float) for v in moduli.M_condition))
@@ -56,7 +58,7 @@ class Answers(BothWays):
             self.assertTrue(final is None or any(math.isnan(v) for v in final) or len(final) == 4)
             self.assertNotIn("NaN", repr(run.plain()))
 
-    def test_both_ways_have_the_same_numbers(self):
+    def test_service_and_program_give_the_same_numbers(self):
         one, other = (
             client.simulate(preset="fig11", tau_end=300).plain() for client in BOTH.values()
         )
@@ -64,7 +66,7 @@ class Answers(BothWays):
             answer.pop("provenance")
         self.assertEqual(one, other)
 
-    def test_a_request_at_fault_names_its_fields(self):
+    def test_the_error_of_an_invalid_request_names_its_fields(self):
         for client in self.each():
             with self.assertRaises(vines.Problem) as caught:
                 client.simulate(b=-1, Omga=2)
@@ -72,23 +74,23 @@ class Answers(BothWays):
             self.assertEqual([e.field for e in caught.exception.errors], ["b", "Omga"])
             self.assertEqual(caught.exception.errors[0].value, -1)
 
-    def test_a_run_that_ends_early_is_an_answer_with_a_warning(self):
+    def test_a_run_that_ends_early_gives_an_answer_and_a_warning(self):
         for client in self.each():
-            with warnings.catch_warnings(record=True) as told:
+            with warnings.catch_warnings(record=True) as caught:
                 warnings.simplefilter("always")
                 run = client.simulate(max_impacts=5)
             self.assertEqual(run.status.reason, "max_impacts")
-            self.assertEqual([w.category for w in told], [vines.PartialAnswer])
-            self.assertEqual(told[0].filename, __file__)
+            self.assertEqual([w.category for w in caught], [vines.PartialAnswer])
+            self.assertEqual(caught[0].filename, __file__)
 
-    def test_a_deadline_is_told_and_not_hidden(self):
+    def test_a_deadline_is_reported(self):
         with self.assertWarns(vines.PartialAnswer):
             run = vines.Service(LOCKED, key=KEY).simulate(
                 b=0.003, R=1, tau_end=1e7, max_impacts=2000000, include=["exponents"]
             )
         self.assertEqual(run.status.reason, "deadline")
 
-    def test_no_key_of_an_answer_is_hidden_by_a_method(self):
+    def test_no_method_hides_a_key_of_an_answer(self):
         for client in self.each():
             whole = client.simulate(preset="fig20", tau_end=400)
             todo = [whole]
@@ -100,10 +102,10 @@ class Answers(BothWays):
                         self.assertIs(value, answer[name])
                         todo += [value] if isinstance(value, vines.Answer) else []
                     else:
-                        self.fail(f"{name} is a method, too")
+                        self.fail(f"{name} is also a method")
 
-    @unittest.skipUnless(pandas, "no pandas on this machine")
-    def test_lists_of_one_length_are_a_data_frame(self):
+    @unittest.skipUnless(pandas, "pandas is not installed")
+    def test_lists_of_equal_length_form_a_data_frame(self):
         for client in self.each():
             run = client.simulate(tau_end=200, include=["impacts"])
             frame = run.frame("impacts")
@@ -113,8 +115,8 @@ class Answers(BothWays):
             self.assertEqual(list(points.index), list(range(12)))
 
 
-class Sweeps(BothWays):
-    def test_a_sweep_gives_its_points_as_they_come_and_counts_them(self):
+class Sweeps(WithBothClients):
+    def test_a_sweep_passes_on_and_counts_its_points_as_they_arrive(self):
         for client in self.each():
             with client.sweep(axes=[LINE], cycles=50, base={"lambda": 1.4}) as sweep:
                 self.assertEqual((sweep.total, sweep.done), (12, 0))
@@ -123,13 +125,13 @@ class Sweeps(BothWays):
             self.assertEqual((sweep.done, sweep.missing), (12, []))
             self.assertEqual(len(points[0].lambda_), 4)
 
-    def test_a_sweep_at_fault_says_so_before_its_first_point(self):
+    def test_an_invalid_sweep_raises_before_its_first_point(self):
         for client in self.each():
             with self.assertRaises(vines.Problem) as caught:
                 client.sweep(axes=[{**LINE, "count": -3}])
             self.assertEqual(caught.exception.status, 422)
 
-    def test_a_sweep_that_is_closed_computes_no_further(self):
+    def test_closing_a_sweep_stops_the_computation(self):
         for client in self.each():
             sweep = client.sweep(axes=[{**LINE, "count": 4000}], cycles=20000)
             next(sweep)
@@ -137,20 +139,20 @@ class Sweeps(BothWays):
             self.assertEqual(list(sweep), [])
             self.assertLess(sweep.done, 4000)
 
-    def test_a_sweep_that_breaks_off_raises_behind_its_last_point(self):
+    def test_an_interrupted_sweep_raises_after_its_last_point(self):
         program = vines.Program(PROGRAM, threads=1)
         sweep = program.sweep(axes=[{**LINE, "count": 4000}], cycles=20000)
-        came = [next(sweep)]
+        received = [next(sweep)]
         for child in pathlib.Path(f"/proc/self/task/{os.getpid()}/children").read_text().split():
             os.kill(int(child), signal.SIGTERM)
         with self.assertRaises(vines.Incomplete):
-            came += sweep
-        self.assertGreater(len(came), 0)
+            received += sweep
+        self.assertGreater(len(received), 0)
         self.assertEqual(len(sweep.missing), 4000 - sweep.done)
 
 
-class Identifications(BothWays):
-    def test_a_file_and_its_columns_have_one_identification(self):
+class Identifications(WithBothClients):
+    def test_a_file_and_its_columns_give_the_same_identification(self):
         with open(RECORD, newline="") as file:
             rows = [row for row in csv.reader(file) if row]
         columns = {name: [float(row[k]) for row in rows[1:]] for k, name in enumerate(rows[0])}
@@ -163,20 +165,20 @@ class Identifications(BothWays):
                 of_file.restitution.plus.R, of_columns.restitution.plus.R, places=6
             )
 
-    def test_impacts_of_a_run_are_a_measurement(self):
+    def test_impacts_of_a_run_are_accepted_as_a_measurement(self):
         for client in self.each():
             run = client.simulate(b=0.015, R=0.7, tau_end=300, include=["impacts"])
             found = client.identify(impacts=run.impacts, b=0.015)
             self.assertAlmostEqual(found.restitution.plus.R, 0.7, places=9)
 
-    def test_a_file_that_is_not_there_is_an_os_error(self):
+    def test_a_missing_file_is_an_os_error(self):
         for client in self.each():
             with self.assertRaises(FileNotFoundError):
                 client.identify("/nowhere/record.csv", preset="fig20")
 
 
-class Ways(unittest.TestCase):
-    def test_a_key_is_shown_where_there_is_one(self):
+class ClientChoice(unittest.TestCase):
+    def test_the_key_is_sent_if_there_is_one(self):
         with self.assertRaises(vines.Problem) as caught:
             vines.Service(LOCKED).simulate(tau_end=20)
         self.assertEqual(caught.exception.status, 401)
@@ -185,20 +187,20 @@ class Ways(unittest.TestCase):
         )
         self.assertNotIn(KEY, repr(vines.Service(LOCKED, key=KEY)))
 
-    def test_the_environment_says_who_is_asked(self):
+    def test_the_environment_chooses_the_client(self):
         line = "import vines; print(vines.client(), vines.simulate(tau_end=20).status.reason)"
-        for environment, who in (
+        for environment, client_type in (
             ({"VINES_URL": LOCKED, "VINES_KEY": KEY}, "Service"),
             ({"VINES_PROGRAM": PROGRAM}, "Program"),
         ):
             kept = {n: v for n, v in os.environ.items() if not n.startswith("VINES_")}
-            told = subprocess.run(
+            output = subprocess.run(
                 [sys.executable, "-c", line],
                 env={**kept, **environment}, capture_output=True, text=True, check=True,
             ).stdout
-            self.assertTrue(told.startswith(who) and told.rstrip().endswith("tau_end"), told)
+            self.assertTrue(output.startswith(client_type) and output.rstrip().endswith("tau_end"), output)
 
-    def test_nobody_there_is_a_connection_error_and_no_program_a_missing_file(self):
+    def test_a_missing_service_or_program_raises(self):
         with self.assertRaises(ConnectionError):
             vines.Service("http://127.0.0.1:9").simulate(tau_end=20)
         with self.assertRaisesRegex(FileNotFoundError, "VINES_PROGRAM"):

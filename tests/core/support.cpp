@@ -45,11 +45,11 @@ Record record(
     std::vector<Observer*> observers) {
     ImpactRecord impacts;
     StickRecord sticks;
-    TouchRecord touches;
-    observers.insert(observers.end(), {&impacts, &sticks, &touches});
+    GrazingRecord grazing;
+    observers.insert(observers.end(), {&impacts, &sticks, &grazing});
     const Outcome outcome = simulate(p, start, {tau_end, max_impacts, {}}, observers);
     return {
-        outcome, std::move(impacts.entries), std::move(sticks.entries), std::move(touches.entries)};
+        outcome, std::move(impacts.entries), std::move(sticks.entries), std::move(grazing.entries)};
 }
 
 Parameters table1(double b, Damping damping) {
@@ -83,7 +83,7 @@ CapturedTransient captured_transient() {
     for (int k = 0; k < 20; ++k) {
         Parameters p = table1(0.022 + k * 1e-9, Damping::closed_form);
         p.R_plus = p.R_minus = 0.5;
-        Wanted w{.parameters = p, .start = default_state(p), .tau_end = 20000};
+        AnalysisRequest w{.parameters = p, .start = default_state(p), .tau_end = 20000};
         w.parts.regime = true;
         w.estimators = qr_alone;
         const auto capture = analyse(w).regime->capture;

@@ -1,4 +1,4 @@
-// What several test files need: reference trajectories, recorded runs, random systems.
+// Shared by the tests: reference trajectories, recorded runs, random systems.
 #pragma once
 
 #include <string>
@@ -21,8 +21,8 @@ struct ReferenceStick {
     double start, end;
 };
 
-/// One file of reference/: a trajectory in 250-digit arithmetic from Table 1's initial state to
-/// tau = 1709.
+/// One file of reference/: a trajectory in 250-digit arithmetic from Table 1's initial state to tau
+/// = 1709.
 struct Reference {
     Parameters parameters;
     std::vector<ReferenceImpact> impacts;
@@ -34,8 +34,8 @@ Reference read_reference(const std::string& name);
 struct Record {
     Outcome outcome;
     std::vector<Impact> impacts;
-    std::vector<StuckPhase> sticks;
-    std::vector<TangentContact> touches;
+    std::vector<StickingPhase> sticks;
+    std::vector<GrazingEvent> touches;
 };
 Record record(
     const Parameters& parameters, const State& start, double tau_end, long max_impacts = 1000000,
@@ -43,17 +43,17 @@ Record record(
 
 Parameters table1(double b, Damping damping);
 
-/// A system whose chaotic transient from the default start an orbit captures between tau = 2000 and
-/// 9000. When that is rests on the last bit of every sum on the way, so it is looked for: by then
-/// half of the neighbours of b = 22 mm, R = .5 are captured.
+/// A system whose chaotic transient from the default start is captured by a periodic orbit between
+/// tau = 2000 and 9000. The capture time depends on the last bit of every sum before it, so the
+/// function searches for such a system: by then half of the neighbours of b = 22 mm, R = .5 are
+/// captured.
 struct CapturedTransient {
     Parameters parameters;
     double tau;
 };
 CapturedTransient captured_transient();
 
-/// A system and a start that validate, over the ranges that people study and well beyond;
-/// reproducible from the engine's seed.
+/// A valid system and start, over the usual ranges and well beyond; reproducible by the seed.
 struct System {
     Parameters parameters;
     State start;

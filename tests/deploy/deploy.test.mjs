@@ -1,5 +1,4 @@
-// What deploy/ holds is what its readers take: Kubernetes, HAProxy, Prometheus, Compose, systemd,
-// and the program itself.
+// The files in deploy/ are valid for Kubernetes, HAProxy, Prometheus, Compose, systemd and the program.
 import assert from "node:assert/strict";
 import {execFile, spawnSync} from "node:child_process";
 import {access, mkdtemp, readdir, readFile, rm, writeFile} from "node:fs/promises";
@@ -14,7 +13,7 @@ const root = fileURLToPath(new URL("../../", import.meta.url));
 const require = createRequire(join(root, "web/package.json"));
 const {parse, parseAllDocuments} = require("yaml");
 
-/** Runs a program to its end: its exit code and what it wrote. */
+/** Runs a program to its end. Resolves to its exit code and output. */
 const run = (file, args, env = {}) =>
   new Promise((resolve) => {
     execFile(file, args, {cwd: root, env: {...process.env, ...env}}, (error, stdout, stderr) =>
@@ -39,11 +38,11 @@ const kubernetes = () =>
     .filter(([name]) => name.startsWith("kubernetes-"))
     .flatMap(([, text]) => parseAllDocuments(text).map((document) => document.toJS()));
 
-/** The value, and the paths in it that nobody has looked at yet. */
-function watched(value, path = "") {
+/** A copy of the value that records reads, and a function that lists the paths not read so far. */
+function observed(value, path = "") {
   if (value === null || typeof value !== "object") return [value, () => []];
   const seen = new Set();
-  const parts = Object.entries(value).map(([key, part]) => [key, watched(part, `${path}/${key}`)]);
+  const parts = Object.entries(value).map(([key, part]) => [key, observed(part, `${path}/${key}`)]);
   const copy = Array.isArray(value) ? [] : {};
   for (const [key, [part]] of parts) copy[key] = part;
   const get = (target, key) => {
@@ -56,23 +55,23 @@ function watched(value, path = "") {
 }
 
 /**
- * Throws where a resource is not as the published schema of its kind. They allow keys that they do
- * not know, which a cluster would drop: so they are told by that the schema never looks at them.
+ * Throws if a resource violates the published schema of its kind. The schemas allow unknown keys,
+ * which a cluster would drop; such keys are recognised because validation never reads them.
  */
 function validate(resource) {
   const {[resource.kind]: Kind} = require(`kubernetes-models/${resource.apiVersion}`);
-  const [value, unseen] = watched(resource);
+  const [value, unseen] = observed(resource);
   Kind.prototype.validate.call(value);
-  assert.deepEqual(unseen(), [], `keys that a ${resource.kind} does not have`);
+  assert.deepEqual(unseen(), [], `unknown keys of a ${resource.kind}`);
 }
 
-test("every Kubernetes resource is as the published schema of its kind", () => {
+test("every Kubernetes resource follows the published schema of its kind", () => {
   const resources = kubernetes();
   assert.ok(resources.length >= 8);
   for (const resource of resources) validate(resource);
 });
 
-test("a resource with a wrong type, an unknown key or without a required one is refused", () => {
+test("a resource with a wrong type, an unknown key or a missing one is refused", () => {
   const faults = {
     type: (spec) => {
       spec.template.spec.terminationGracePeriodSeconds = "40";
@@ -100,7 +99,7 @@ test("a resource with a wrong type, an unknown key or without a required one is 
 
 // The program.
 
-/** By subcommand: the flags and the variables that its help names. */
+/** Flags and environment variables in the help of each subcommand. */
 async function known() {
   const names = new Map();
   for (const subcommand of ["serve", "healthcheck", "sweep", "merge"]) {
@@ -110,7 +109,7 @@ async function known() {
   return names;
 }
 
-/** The command lines of the program in a file: subcommand and the rest. */
+/** Command lines of the program in a file, as [match, subcommand, arguments]. */
 function commands(text) {
   const shell = text.replace(/\\\n/g, " ");
   const written = shell.matchAll(
@@ -123,7 +122,7 @@ function commands(text) {
 /** Lines with flags of other programs. */
 const others = /sbatch|parallel|kubectl|docker|cmake|systemctl/i;
 
-test("every flag and variable that a file uses is one of the program, or its own", async () => {
+test("every flag and variable in a file belongs to the program or is defined in the file", async () => {
   const names = await known();
   const all = new Set([...names.values()].flatMap((set) => [...set]));
   for (const name of texts["haproxy.cfg"].match(/(?<=presetenv )\w+/g)) all.add(name);
@@ -142,10 +141,10 @@ test("every flag and variable that a file uses is one of the program, or its own
         ++flags;
       }
   }
-  assert.ok(flags >= 10, `${flags} flags were found`);
+  assert.ok(flags >= 10, `only ${flags} flags were found`);
 });
 
-test("each way to stop leaves the time that the service takes for its end", async () => {
+test("each way to stop gives the service enough time to end", async () => {
   const source = await readFile(join(root, "src/http/serve.cpp"), "utf8");
   const [work, last] = [...source.matchAll(/_time = std::chrono::seconds\((\d+)\)/g)];
   const end = Number(work[1]) + Number(last[1]) + 0.3;
@@ -169,7 +168,7 @@ test("each way to stop leaves the time that the service takes for its end", asyn
 
 // Compose.
 
-test("each container of the compose set is as closed, and as bounded, as it can be", async () => {
+test("each container of the compose file is locked down and has limits", async () => {
   for (const [name, service] of Object.entries(compose.services)) {
     assert.equal(service.read_only, true, name);
     assert.deepEqual(service.cap_drop, ["ALL"], name);
@@ -184,7 +183,7 @@ test("each container of the compose set is as closed, and as bounded, as it can 
   assert.match(texts.Dockerfile, /^HEALTHCHECK /m);
 });
 
-test("of the compose set the proxy alone is reached from outside", () => {
+test("only the proxy of the compose file can be reached from outside", () => {
   const published = Object.entries(compose.services).filter(([, service]) => service.ports);
   assert.deepEqual(Object.fromEntries(published.map(([name, {ports}]) => [name, ports])), {
     proxy: ["8080:8080"],
@@ -204,20 +203,20 @@ test("the proxy and Prometheus know every replica, and each computes on its own 
 
 // HAProxy, Prometheus, systemd.
 
-test("HAProxy takes its file, with addresses and with names that are not known yet", async () => {
+test("HAProxy accepts its file, with addresses and with names that cannot be resolved yet", async () => {
   for (const env of [{}, compose.services.proxy.environment]) {
     const {code, text} = await run("haproxy", ["-c", "-f", "deploy/haproxy.cfg"], env);
     assert.equal(code, 0, text);
   }
 });
 
-/** promtool of the PATH, or the one that scripts/setup fetches. */
+/** promtool of the PATH, or the one fetched by scripts/setup. */
 const promtool = (args) =>
   run("promtool", args, {
     PATH: [process.env.PATH, join(root, "build/tools")].join(delimiter),
   });
 
-test("Prometheus takes its files, and each alert is raised by what it is for", async () => {
+test("Prometheus accepts its files, and each alert is raised by its cause", async () => {
   for (const args of [
     ["check", "config", "deploy/prometheus.yml"],
     ["check", "rules", "deploy/alerts.yml"],
@@ -228,7 +227,7 @@ test("Prometheus takes its files, and each alert is raised by what it is for", a
   }
 });
 
-test("every metric that an alert asks for is one of the service", async () => {
+test("every metric in an alert exists in the service", async () => {
   const service = await startService();
   await (await fetch(`${service.url}/v1/simulate?tau_end=20`)).text();
   const text = await (await fetch(`${service.url}/metrics`)).text();
@@ -242,17 +241,17 @@ test("every metric that an alert asks for is one of the service", async () => {
 
 const exposure = 1.5;
 const analyze = spawnSync("systemd-analyze", ["--version"]).error
-  ? {skip: "there is no systemd-analyze (Debian's systemd)"}
+  ? {skip: "systemd-analyze is missing (Debian's package systemd)"}
   : {};
 
 test(
-  `systemd takes the unit, and finds it exposed by less than ${exposure} of 10`,
+  `systemd accepts the unit and rates its exposure below ${exposure} of 10`,
   analyze,
   async (t) => {
     const folder = await mkdtemp(join(tmpdir(), "vines-unit-"));
     t.after(() => rm(folder, {recursive: true}));
     const unit = join(folder, "vines.service");
-    // It looks whether the program is there.
+    // systemd-analyze checks that the program exists.
     await writeFile(unit, texts["vines.service"].replace("/usr/bin/vines", program));
     assert.deepEqual(await run("systemd-analyze", ["verify", "--man=no", unit]), {
       code: 0,

@@ -1,10 +1,10 @@
-// A record as text: the first line is the query that comes with it.
+// Fuzz target: a CSV record. The first line is the query sent with it.
 #include "api/csv.hpp"
 
 #include <cmath>
 
-#include "api/identify_request.hpp"
-#include "api/query.hpp"
+#include "api/identify.hpp"
+#include "api/parse.hpp"
 #include "api/schema/tables.hpp"
 #include "fuzz.hpp"
 
@@ -13,13 +13,13 @@ using namespace vines;
 namespace {
 
 void check(const api::Csv& csv) {
-    fuzz::require(csv.columns.size() >= 2, "a record has two columns");
+    fuzz::require(csv.columns.size() >= 2, "a record has at least two columns");
     for (const api::CsvColumn& c : csv.columns) {
-        fuzz::require(c.values.size() == csv.lines.size(), "each row has a number of each column");
+        fuzz::require(c.values.size() == csv.lines.size(), "each row has a number in each column");
         for (const double v : c.values) fuzz::require(std::isfinite(v), "numbers are finite");
     }
     for (std::size_t k = 1; k < csv.lines.size(); ++k)
-        fuzz::require(csv.lines[k] > csv.lines[k - 1], "rows follow each other");
+        fuzz::require(csv.lines[k] > csv.lines[k - 1], "line numbers increase");
 }
 
 }  // namespace

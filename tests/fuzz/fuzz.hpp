@@ -1,4 +1,4 @@
-// What the fuzz targets share.
+// Helpers of the fuzz targets.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 #include "api/problem.hpp"
 #include "api/schema/json.hpp"
 
-/// One input, as libFuzzer calls it.
+/// Runs one input; called by libFuzzer.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace vines::fuzz {
@@ -21,34 +21,33 @@ inline std::string_view text_of(const std::uint8_t* data, std::size_t size) {
     return {reinterpret_cast<const char*>(data), size};
 }
 
-/// Ends the program where a sentence does not hold: the fuzzer keeps the input.
+/// Aborts if a condition does not hold; the fuzzer then keeps the input.
 inline void require(bool holds, const char* sentence) {
     if (holds) return;
-    std::fprintf(stderr, "WRONG: not so: %s\n", sentence);
+    std::fprintf(stderr, "WRONG: violated: %s\n", sentence);
     std::abort();
 }
 
-/// Does what may end with a Problem, whose document must be JSON. Whatever else is thrown is a
-/// finding.
+/// Runs `work`, which can throw a Problem with a JSON document and a status of 400 to 499. Any
+/// other exception is a finding.
 template <class Work>
 void or_problem(Work work) {
     try {
         work();
     } catch (const api::Problem& problem) {
-        require(problem.status >= 400 && problem.status < 500, "a request is refused as its own");
+        require(problem.status >= 400 && problem.status < 500, "a problem has a status of 4xx");
         require(api::Json::accept(problem.body()), "a problem's document is JSON");
     }
 }
 
-/// The part before the first separator, taken with it from the front of a text.
+/// Removes the part before the first separator, and the separator, from the text; returns the part.
 inline std::string_view take_part(std::string_view& text, char separator) {
     const std::string_view part = text.substr(0, text.find(separator));
     text.remove_prefix(std::min(text.size(), part.size() + 1));
     return part;
 }
 
-/// Numbers that stand in a text, so that an input can be read: a word that is none, or that is not
-/// there, is what it would be otherwise.
+/// Numbers in a text, so that inputs are readable. A missing or invalid word gives the default.
 class Numbers {
 public:
     explicit Numbers(std::string_view text) : rest_(text) {}
@@ -66,10 +65,10 @@ private:
     std::string_view rest_;
 };
 
-/// Says stop at the so many-th time that it is asked.
-class Patience {
+/// Stop function that returns true after the given number of calls.
+class CallLimit {
 public:
-    explicit Patience(long looks) : left_(looks) {}
+    explicit CallLimit(long max_calls) : left_(max_calls) {}
     bool is_over() { return --left_ < 0; }
 
 private:

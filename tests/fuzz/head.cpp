@@ -1,4 +1,4 @@
-// The head of a request, as it may come from the network: in pieces.
+// Fuzz target: the head of a request, arriving in pieces.
 #include "http/head.hpp"
 
 #include <algorithm>
@@ -14,17 +14,17 @@ using http::HeadReader;
 
 namespace {
 
-/// What has become of the bytes so far.
+/// Result of reading the bytes so far.
 struct Reading {
     std::optional<Head> head;  ///< complete
-    std::size_t size = 0;      ///< of it
+    std::size_t size = 0;      ///< of the head
     int status = 0;            ///< of a refusal
     std::string refusal = {};
     bool is_over() const { return head || status != 0; }
 };
 
-/// Bytes that come up to each of the ends, the last one all of them; each time alone in memory, so
-/// that a look behind them is seen.
+/// Reads prefixes of the bytes up to each of the ends, the last being the whole. Each prefix is
+/// copied to its own buffer, so that sanitizers detect reads beyond it.
 Reading read_up_to(std::string_view bytes, const std::vector<std::size_t>& ends) {
     HeadReader reader;
     Reading result;
@@ -55,7 +55,7 @@ bool same(const Reading& a, const Reading& b) {
            h.expects_continue == k.expects_continue;
 }
 
-/// Some ends of pieces, the same for the same bytes; short ones come more often.
+/// Random ends of pieces, always the same for the same bytes; short pieces are more frequent.
 std::vector<std::size_t> some_ends(std::string_view bytes) {
     std::minstd_rand random(static_cast<unsigned>(std::hash<std::string_view>()(bytes)));
     std::vector<std::size_t> ends;
@@ -67,16 +67,16 @@ std::vector<std::size_t> some_ends(std::string_view bytes) {
     return ends;
 }
 
-/// By itself, or in a list with others of its name.
-bool tells(const Head& head, std::string_view name, std::string_view value) {
+/// Returns whether the head has this header, alone or in a list with others of its name.
+bool has_header(const Head& head, std::string_view name, std::string_view value) {
     return std::any_of(head.headers.begin(), head.headers.end(), [&](const auto& header) {
         return header.first == http::lower_case(name) &&
                header.second.find(http::trimmed(value)) != std::string::npos;
     });
 }
 
-/// Of the bytes of a head that was taken, by their lines: nothing that two readers could take for
-/// different requests.
+/// Checks the lines of an accepted head: it must not allow two HTTP parsers to see different
+/// requests.
 void check_strictness(std::string_view bytes, const Head& head) {
     using fuzz::require;
     require(bytes.ends_with("\r\n\r\n"), "a head ends with an empty line");
@@ -85,7 +85,7 @@ void check_strictness(std::string_view bytes, const Head& head) {
     std::size_t hosts = 0, lengths = 0;
     const std::string_view first = bytes.substr(0, bytes.find('\n') + 1);
     const bool is_old = first.ends_with(" HTTP/1.0\r\n");
-    require(is_old || first.ends_with(" HTTP/1.1\r\n"), "the version is one of two");
+    require(is_old || first.ends_with(" HTTP/1.1\r\n"), "the version is 1.0 or 1.1");
     bytes.remove_prefix(first.size());
     while (!bytes.empty()) {
         std::string_view line = fuzz::take_part(bytes, '\n');
@@ -95,7 +95,7 @@ void check_strictness(std::string_view bytes, const Head& head) {
         const std::string_view name = line.substr(0, line.find(':'));
         require(name.size() < line.size() && !name.empty(), "a header has a name");
         require(name.find_first_of(" \t") == name.npos, "no blank before the colon");
-        require(tells(head, name, line.substr(name.size() + 1)), "each header is told");
+        require(has_header(head, name, line.substr(name.size() + 1)), "each header is reported");
         hosts += http::lower_case(name) == "host";
         lengths += http::lower_case(name) == "content-length";
         require(http::lower_case(name) != "transfer-encoding", "no chunks");
@@ -104,7 +104,7 @@ void check_strictness(std::string_view bytes, const Head& head) {
     require(lengths == 1 || (lengths == 0 && head.content_length == 0), "one Content-Length");
     require(head.target.starts_with('/'), "a target begins with /");
     require(head.target.find_first_of(" \t\r\n") == head.target.npos, "no blank in a target");
-    require(head.path().starts_with('/'), "so does a path");
+    require(head.path().starts_with('/'), "a path begins with /");
 }
 
 }  // namespace
@@ -112,13 +112,17 @@ void check_strictness(std::string_view bytes, const Head& head) {
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view bytes = fuzz::text_of(data, size);
     const Reading whole = read_up_to(bytes, {size});
-    fuzz::require(same(whole, read_up_to(bytes, some_ends(bytes))), "pieces are read as the whole");
+    fuzz::require(
+        same(whole, read_up_to(bytes, some_ends(bytes))),
+        "reading in pieces gives the same result");
     if (whole.head) {
-        fuzz::require(whole.size <= size && whole.size <= HeadReader::most_bytes, "it is bounded");
+        fuzz::require(
+            whole.size <= size && whole.size <= HeadReader::max_bytes, "a head is limited in size");
         check_strictness(bytes.substr(0, whole.size), *whole.head);
-        fuzz::require(same(whole, read_up_to(bytes, {whole.size})), "what follows does not matter");
+        fuzz::require(
+            same(whole, read_up_to(bytes, {whole.size})), "following bytes do not matter");
     }
     if (!whole.is_over())
-        fuzz::require(size <= HeadReader::most_bytes, "what is too long is refused at once");
+        fuzz::require(size <= HeadReader::max_bytes, "a head that is too long is refused at once");
     return 0;
 }

@@ -1,5 +1,5 @@
-// A measurement and what is concluded from it. An input that begins with { is a request as JSON;
-// another one is a query, and in its second line the numbers of a synthetic record.
+// Fuzz target: identification. An input that begins with { is a request as JSON; any other is a
+// query, followed by a line with the numbers of a synthetic record.
 #include "api/identify.hpp"
 
 #include <fmt/format.h>
@@ -7,8 +7,7 @@
 #include <iterator>
 
 #include "api/json_text.hpp"
-#include "api/parse_object.hpp"
-#include "api/query.hpp"
+#include "api/parse.hpp"
 #include "api/schema/tables.hpp"
 #include "core/measurement/synthetic_record.hpp"
 #include "fuzz.hpp"
@@ -17,11 +16,11 @@ using namespace vines;
 
 namespace {
 
-// A second or so under the sanitizers.
-constexpr long looks = 3000;
+// About a second under the sanitizers.
+constexpr long max_calls = 3000;
 
-/// A record of Table 4's oscillator as text. Behind the numbers of its motion and its sensors stand
-/// those of samples that are changed: which, and to what.
+/// A record of Table 4's oscillator as CSV. The numbers of its motion and its sensors are followed
+/// by pairs of a sample's index and its new value.
 std::string record(fuzz::Numbers numbers) {
     const SiParameters si{.m1 = 4.168, .c1 = 3.02, .k1 = 11.47e3, .m2 = 0.032};
     Parameters p{.epsilon = si.epsilon(), .lambda = si.lambda(), .G = 0.01};
@@ -70,9 +69,9 @@ api::IdentifyRequest request_of(std::string_view text) {
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view text = fuzz::text_of(data, size);
     fuzz::or_problem([text] {
-        fuzz::Patience patience(looks);
+        fuzz::CallLimit call_limit(max_calls);
         const api::Json answer =
-            api::identify_answer(request_of(text), {.stop = [&] { return patience.is_over(); }});
+            api::identify_answer(request_of(text), {.stop = [&] { return call_limit.is_over(); }});
         const std::string written = api::json_text(answer);
         fuzz::require(api::Json::accept(written), "an answer is JSON: its numbers are finite");
         fuzz::require(

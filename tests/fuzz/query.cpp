@@ -1,6 +1,6 @@
-// A URL's query to the requests that take one.
-#include "api/query.hpp"
-#include "api/identify_request.hpp"
+// Fuzz target: URL queries of the requests that accept one.
+#include "api/identify.hpp"
+#include "api/parse.hpp"
 #include "api/schema/tables.hpp"
 #include "fuzz.hpp"
 
@@ -8,7 +8,7 @@ using namespace vines;
 
 namespace {
 
-/// The shortest record that is taken.
+/// The shortest valid record.
 std::string record() {
     std::string csv = "time_s,displacement_m\n";
     for (int k = 0; k < 100; ++k) csv += std::to_string(k) + "e-3," + std::to_string(k % 7) + "\n";

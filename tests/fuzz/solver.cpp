@@ -1,12 +1,13 @@
-// Motions of systems that a request may ask for, held against what holds of every motion. The input
-// is a line of numbers: the system and its start in the order of parameter_ranges(), y as a share
-// of b, then the damping, tau_end and the moment of the start.
+// Fuzz target: motions of systems that a request can specify, checked against the invariants of
+// every motion. The input is a line of numbers: the system and its start in the order of
+// parameter_ranges(), with y as a fraction of b, then the damping, tau_end and the time of the
+// start.
 #include <cmath>
 #include <vector>
 
 #include "core/analysis/analysis.hpp"
-#include "core/motion/guard.hpp"
-#include "core/motion/together.hpp"
+#include "core/motion/batch_run.hpp"
+#include "core/motion/contact_search.hpp"
 #include "fuzz.hpp"
 
 using namespace vines;
@@ -15,25 +16,26 @@ using fuzz::require;
 namespace {
 
 constexpr long most_impacts = 1000;
-// Of a stop function, which is asked every 64 events.
-constexpr long looks = 100, looks_of_analysis = 400;
+// Calls of a stop function, which occur every 64 events.
+constexpr long max_calls = 100, max_analysis_calls = 400;
 
-/// Momentum, restitution, energy, order and walls, and all of it as a list to compare.
+/// Checks momentum, restitution, energy, order and walls, and records the impacts for comparison.
 class Invariants : public Observer {
 public:
     explicit Invariants(const Parameters& p, double tau) : p_(p), tau_(tau) {}
     void on_stretch(const Stretch& s) override {
-        require(s.duration >= 0, "time goes on");
-        require(std::abs(s.tau - tau_) <= 1e-12 * (1 + std::abs(tau_)), "stretches join");
+        require(s.duration >= 0, "time does not decrease");
+        require(std::abs(s.tau - tau_) <= 1e-12 * (1 + std::abs(tau_)), "stretches are contiguous");
         tau_ = s.tau + s.duration;
         const double rounding =
             64 * position_rounding(s.flow.bounds(s.start, s.duration), std::abs(s.y) + p_.b, p_.b);
         for (int k = 0; k <= 4; ++k) {
             const State at = s.at(s.duration * k / 4);
             const double apart = at.x - at.y;
-            require(std::abs(apart) <= p_.b + rounding, "the mass stays in its cavity");
-            if (s.stuck_side != 0)
-                require(std::abs(apart - s.stuck_side * p_.b) <= rounding, "it sticks to its wall");
+            require(std::abs(apart) <= p_.b + rounding, "the ball stays in its cavity");
+            if (s.sticking_side != 0)
+                require(
+                    std::abs(apart - s.sticking_side * p_.b) <= rounding, "it sticks to its wall");
         }
     }
     void on_impact(const Impact& i) override {
@@ -47,30 +49,32 @@ public:
                             epsilon *
                                 (i.y_dot_after * i.y_dot_after - i.y_dot_before * i.y_dot_before);
         require(i.side * i.relative_speed_before > 0, "the masses meet");
-        require(std::abs(momentum) <= 1e-14 * (1 + epsilon) * speed, "momentum stays");
-        require(std::abs(after + R * before) <= 1e-14 * speed, "the relative speed is R times it");
+        require(std::abs(momentum) <= 1e-14 * (1 + epsilon) * speed, "momentum is conserved");
+        require(
+            std::abs(after + R * before) <= 1e-14 * speed,
+            "the relative speed is reversed with factor R");
         require(gain <= 1e-13 * (1 + epsilon) * speed * speed, "no energy is gained");
-        require(i.tau >= last_, "impacts follow each other");
+        require(i.tau >= last_, "impact times increase");
         last_ = i.tau;
-        told.insert(told.end(), {i.tau, i.x, i.x_dot_after, i.y_dot_after});
+        impacts.insert(impacts.end(), {i.tau, i.x, i.x_dot_after, i.y_dot_after});
     }
 
-    std::vector<double> told;
+    std::vector<double> impacts;
 
 private:
     const Parameters& p_;
     double tau_, last_ = -infinity;
 };
 
-struct Followed {
+struct ObservedRun {
     Outcome outcome;
-    std::vector<double> told;
+    std::vector<double> impacts;
 };
 
-/// The only run of its line.
-class Once : public RunLine {
+/// A line with a single run.
+class SingleRun : public RunSource {
 public:
-    explicit Once(RunPlan plan) : plan_(std::move(plan)) {}
+    explicit SingleRun(RunPlan plan) : plan_(std::move(plan)) {}
     std::optional<RunPlan> next(const std::optional<Outcome>& last) override {
         outcome = last;
         return last ? std::nullopt : std::optional(plan_);
@@ -82,27 +86,27 @@ private:
     const RunPlan plan_;
 };
 
-Followed follow(RunPlan plan, bool in_lanes) {
+ObservedRun observe(RunPlan plan, bool vectorised) {
     Invariants invariants(plan.parameters, plan.limits.tau_start);
-    fuzz::Patience patience(looks);
-    plan.limits.stop = [&] { return patience.is_over(); };
+    fuzz::CallLimit call_limit(max_calls);
+    plan.limits.stop = [&] { return call_limit.is_over(); };
     plan.observers = {&invariants};
-    Once line(plan);
-    RunLine* const lines[] = {&line};
-    if (in_lanes) simulate_together(lines);
+    SingleRun line(plan);
+    RunSource* const lines[] = {&line};
+    if (vectorised) simulate_batch(lines);
     else line.outcome = simulate(plan);
-    return {*line.outcome, std::move(invariants.told)};
+    return {*line.outcome, std::move(invariants.impacts)};
 }
 
-void check(const Followed& alone, const Followed& in_lanes) {
+void check(const ObservedRun& alone, const ObservedRun& vectorised) {
     const State& s = alone.outcome.state;
     require(std::isfinite(s.x) && std::isfinite(s.x_dot), "the oscillator's state is finite");
-    require(std::isfinite(s.y) && std::isfinite(s.y_dot), "the mass' state is finite");
-    require(alone.told == in_lanes.told, "impacts are the same in a lane");
-    require(alone.outcome.tau == in_lanes.outcome.tau, "a run in a lane ends with the one alone");
+    require(std::isfinite(s.y) && std::isfinite(s.y_dot), "the ball's state is finite");
+    require(alone.impacts == vectorised.impacts, "vectorised runs have the same impacts");
+    require(alone.outcome.tau == vectorised.outcome.tau, "a vectorised run ends at the same time");
 }
 
-/// The exact sum of the exponents, where nothing sticks and all four have a value.
+/// Exact sum of the exponents, for a motion without sticking whose four exponents all have a value.
 void check_sum_rule(const Parameters& p, const Analysis& a) {
     if (!a.exponents || a.exponents->product.rank() != 4) return;
     const TransferProduct& product = a.exponents->product;
@@ -117,9 +121,10 @@ void check_sum_rule(const Parameters& p, const Analysis& a) {
 }
 
 void check_analysis(const Parameters& p, const State& start, double tau_end) {
-    fuzz::Patience patience(looks_of_analysis);
-    const auto is_over = [&] { return patience.is_over(); };
-    Wanted w{.parameters = p, .start = start, .tau_end = tau_end, .max_impacts = most_impacts / 4};
+    fuzz::CallLimit call_limit(max_analysis_calls);
+    const auto is_over = [&] { return call_limit.is_over(); };
+    AnalysisRequest w{
+        .parameters = p, .start = start, .tau_end = tau_end, .max_impacts = most_impacts / 4};
     w.parts = {.impacts = true, .exponents = true, .energy = true, .regime = true};
     w.estimators = qr_alone;
     check_sum_rule(p, analyse(w, {.run = is_over, .late = is_over}));
@@ -144,8 +149,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
         p,
         start,
         {.tau_end = tau_start + tau_end, .max_impacts = most_impacts, .tau_start = tau_start}};
-    const Followed alone = follow(plan, false);
-    check(alone, follow(plan, true));
+    const ObservedRun alone = observe(plan, false);
+    check(alone, observe(plan, true));
     check_analysis(p, start, tau_end);
     return 0;
 }

@@ -1,10 +1,10 @@
-// A sweep of a few points: each line is JSON, and comes once.
+// Fuzz target: a sweep of a few points. Each line is JSON and is written once.
 #include "api/sweep.hpp"
 
 #include <set>
 
 #include "api/json_text.hpp"
-#include "api/parse_object.hpp"
+#include "api/parse.hpp"
 #include "fuzz.hpp"
 
 using namespace vines;
@@ -13,36 +13,36 @@ namespace {
 
 constexpr std::size_t most_points = 64;
 // About a tenth of a second under the sanitizers.
-constexpr long looks = 400;
+constexpr long max_calls = 400;
 
-class ShortPace : public Pace {
+class ShortControl : public RunControl {
 public:
-    bool stop_or_yield() override { return stopped_ = stopped_ || patience_.is_over(); }
+    bool stop_or_yield() override { return stopped_ = stopped_ || call_limit_.is_over(); }
     bool has_stopped() const { return stopped_; }
 
 private:
-    fuzz::Patience patience_{looks};
+    fuzz::CallLimit call_limit_{max_calls};
     bool stopped_ = false;
 };
 
 void check_line(std::size_t index, const std::string& text) {
     const api::Json line = api::Json::parse(text);
-    fuzz::require(line["type"] == "point", "a line is of a point");
-    fuzz::require(line["index"] == index, "a line tells its index");
+    fuzz::require(line["type"] == "point", "a line contains a point");
+    fuzz::require(line["index"] == index, "a line contains its index");
 }
 
 void sweep(const api::SweepRequest& request) {
     const std::vector<std::size_t>& wanted = request.plan.lines;
     fuzz::require(api::Json::accept(api::start_line(request)), "the first line is JSON");
-    ShortPace pace;
+    ShortControl control;
     std::set<std::size_t> seen;
-    api::run_sweep(request, 1, pace, [&](std::size_t index, const std::string& text) {
+    api::run_sweep(request, 1, control, [&](std::size_t index, const std::string& text) {
         check_line(index, text);
-        fuzz::require(seen.insert(index).second, "a line comes once");
+        fuzz::require(seen.insert(index).second, "a line is written once");
         fuzz::require(
-            std::binary_search(wanted.begin(), wanted.end(), index), "a line was asked for");
+            std::binary_search(wanted.begin(), wanted.end(), index), "a line was requested");
     });
-    fuzz::require(pace.has_stopped() || seen.size() == wanted.size(), "all lines come");
+    fuzz::require(control.has_stopped() || seen.size() == wanted.size(), "all lines are written");
 }
 
 }  // namespace

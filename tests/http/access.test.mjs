@@ -1,4 +1,4 @@
-// Who may use the service: those who have a key, and pages of other origins that are allowed to.
+// Access control: API keys, and pages of other origins.
 import assert from "node:assert/strict";
 import {execFileSync, spawnSync} from "node:child_process";
 import {mkdtemp, rm, symlink, writeFile} from "node:fs/promises";
@@ -21,7 +21,7 @@ const keyFile = async (text) => {
 };
 const keys = ["first-key-0123456789", "second.key~with+all/of=them=="];
 
-test("with --api-key-file all but health and the page asks for one of its keys", async (t) => {
+test("with --api-key-file everything except health and the page requires one of its keys", async (t) => {
   const service = await startService([
     "--api-key-file",
     await keyFile(`# of the laboratory\n\n${keys[0]}\r\n  ${keys[1]}  \n`),
@@ -35,7 +35,7 @@ test("with --api-key-file all but health and the page asks for one of its keys",
   };
   for (const path of ["/", "/docs", "/livez", "/readyz", "/healthz", "/version"])
     assert.equal(await status(path), 200, path);
-  const asking = [
+  const protectedPaths = [
     "/v1/simulate?include=regime",
     "/v1/manifold",
     "/v1/presets",
@@ -43,7 +43,7 @@ test("with --api-key-file all but health and the page asks for one of its keys",
     "/v1/openapi.json",
     "/metrics",
   ];
-  for (const path of asking) {
+  for (const path of protectedPaths) {
     assert.equal(await status(path), 401, path);
     assert.equal(await status(path, `Bearer ${keys[0]}`), 200, path);
     assert.equal(await status(path, `bearer  ${keys[1]}`), 200, path);
@@ -68,7 +68,7 @@ test("with --api-key-file all but health and the page asks for one of its keys",
       "\r\n",
     ].join("\r\n"),
   );
-  assert.match(twice, /^HTTP\/1.1 401/, "two are none");
+  assert.match(twice, /^HTTP\/1.1 401/, "two headers are no valid key");
   for (const shown of wrong) assert.equal(await status("/v1/presets", shown), 401, shown);
   const post = {method: "POST", body: "{}"};
   for (const path of ["/v1/simulate", "/v1/sweep", "/v1/identify", "/v1/manifold"])
@@ -78,11 +78,11 @@ test("with --api-key-file all but health and the page asks for one of its keys",
   assert.match((await refused.json()).detail, /Authorization: Bearer KEY/);
 });
 
-test("a key file that keeps nobody out, or cannot be read, is refused at the start", async () => {
+test("the server does not start with a key file that has no valid key", async () => {
   const cases = [
-    ["", /there is no key in .*keys/],
-    ["# only words\n", /there is no key in/],
-    ["long-enough-0123456\nshort\n", /keys, line 2: a key has 16 or more letters/],
+    ["", /keys contains no key/],
+    ["# only words\n", /contains no key/],
+    ["long-enough-0123456\nshort\n", /keys, line 2: a key must have 16 or more characters/],
     ["a key with blanks in it\n", /line 1/],
   ];
   for (const [text, message] of cases) {
@@ -93,19 +93,19 @@ test("a key file that keeps nobody out, or cannot be read, is refused at the sta
     });
     assert.equal(status, 2, text);
     assert.match(stderr, message);
-    assert.doesNotMatch(stderr, /short|blanks in it/, "a key is not told");
+    assert.doesNotMatch(stderr, /short|blanks in it/, "the message does not show a key");
   }
 });
 
-test("a key file that is none, or far too large, is refused at once in one line", async () => {
+test("a key file that is missing, not a regular file or far too large is refused at once in one line", async () => {
   const at = (name) => join(folder, name);
   execFileSync("mkfifo", [at("pipe")]);
   await writeFile(at("large"), `${keys[0]}\n`.repeat(100000));
   const cases = [
     [at("none"), /cannot read .*none: No such file/],
-    [at("pipe"), /pipe: it is no regular file/], // nobody writes to it
-    ["/dev/zero", /zero: it is no regular file/],
-    [folder, /it is no regular file/],
+    [at("pipe"), /pipe: not a regular file/], // no process writes to it
+    ["/dev/zero", /zero: not a regular file/],
+    [folder, /not a regular file/],
     [at("large"), /large: it has more than 1048576 bytes/],
   ];
   for (const [path, message] of cases) {
@@ -120,11 +120,11 @@ test("a key file that is none, or far too large, is refused at once in one line"
   }
   await symlink(at("keys"), at("way"));
   await keyFile(`${keys[0]}\n`);
-  const linked = await startService(["--api-key-file", at("way")]); // as of a mounted secret
+  const linked = await startService(["--api-key-file", at("way")]); // as with a mounted secret
   assert.equal(await linked.stop(), 0);
 });
 
-test("a page of an origin that is allowed may use the service, and hears its headers; others may not", async (t) => {
+test("a page of an allowed origin may use the service and read its headers; others may not", async (t) => {
   const service = await startService(["--cors-origin", "https://lab.example.org"]);
   t.after(() => service.stop());
   const ask = (origin, options = {}) =>
@@ -166,7 +166,7 @@ test("a page of an origin that is allowed may use the service, and hears its hea
     }
 });
 
-test("a question of a browser has no body, as no request but a POST has", async (t) => {
+test("a preflight with a body is refused, like every request with a body that is not a POST", async (t) => {
   const service = await startService(["--cors-origin", "https://lab.example.org"]);
   t.after(() => service.stop());
   const head = [
@@ -180,7 +180,7 @@ test("a question of a browser has no body, as no request but a POST has", async 
   assert.match(await exchange(service.url, head.join("\r\n")), /^HTTP\/1.1 400/);
 });
 
-test("what is refused for lack of memory is told to a page of an allowed origin, too", async (t) => {
+test("a refusal for lack of memory carries the CORS headers, too", async (t) => {
   const service = await startService([
     "--cors-origin",
     "https://lab.example.org",
@@ -196,7 +196,7 @@ test("what is refused for lack of memory is told to a page of an allowed origin,
   assert.equal(answer.headers.get("access-control-allow-origin"), "https://lab.example.org");
 });
 
-test("--cors-origin * lets every page use the service; no origin at all is refused", async (t) => {
+test("--cors-origin * lets every page use the service; a value that is not an origin is refused", async (t) => {
   const service = await startService(["--cors-origin", "*"]);
   t.after(() => service.stop());
   const answer = await fetch(`${service.url}/v1/manifold`, {
@@ -212,10 +212,10 @@ test("--cors-origin * lets every page use the service; no origin at all is refus
     {encoding: "utf8", timeout: 5000},
   );
   assert.equal(status, 2);
-  assert.match(stderr, /lab\.example\.org is no origin such as https:/);
+  assert.match(stderr, /lab\.example\.org is not an origin such as https:/);
 });
 
-test("where a key is asked for, a page of an allowed origin may ask for leave without one", async (t) => {
+test("a preflight of an allowed origin needs no key", async (t) => {
   const service = await startService([
     "--cors-origin",
     "https://lab.example.org",
@@ -234,6 +234,6 @@ test("where a key is asked for, a page of an allowed origin may ask for leave wi
   assert.equal(
     none.headers.get("access-control-allow-origin"),
     from.Origin,
-    "the page hears that it lacks a key",
+    "the page can read the 401",
   );
 });

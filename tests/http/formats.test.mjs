@@ -1,4 +1,4 @@
-// An answer as CSV, CBOR or arrays for NumPy, and as much of it as one wants.
+// Answers as CSV, CBOR or NumPy arrays, and the selection of fields.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
 import {after, before, test} from "node:test";
@@ -16,7 +16,7 @@ const get = (query, accept, headers = {}) =>
   });
 const json = async (query) => (await get(query)).json();
 
-/** What Debian's Python makes of bytes: it prints JSON. */
+/** Runs Python code on bytes from stdin; returns the JSON that it prints. */
 const python = (code, bytes) =>
   JSON.parse(
     execFileSync("/usr/bin/python3", ["-c", code], {
@@ -48,10 +48,10 @@ test("as CSV an answer is one table, with the numbers of the JSON", async () => 
   assert.match(await thin.text(), /^tau,side\n18\.14\d+,-?1\n/);
 });
 
-test("as CSV four numbers and matrices are columns of their own, and null is an empty cell", async () => {
+test("as CSV each component of a vector or matrix is a column, and null is an empty cell", async () => {
   const {matrices, eigenvalues} = await json("include=matrices,eigenvalues");
-  const told = await (await get("format=csv&fields=matrices.tau,matrices.T")).text();
-  const [head, first] = told.split("\n").map((line) => line.split(","));
+  const table = await (await get("format=csv&fields=matrices.tau,matrices.T")).text();
+  const [head, first] = table.split("\n").map((line) => line.split(","));
   const names = [1, 2, 3, 4].flatMap((i) => [1, 2, 3, 4].map((j) => `T${i}${j}`));
   assert.deepEqual(head, ["tau", ...names]);
   assert.deepEqual(first.map(Number), [matrices.tau[0], ...matrices.T[0].flat()]);
@@ -64,7 +64,7 @@ test("as CSV four numbers and matrices are columns of their own, and null is an 
   );
   const {exponents} = await json("include=exponents&exponents=raw_product");
   const history = exponents.raw_product.history;
-  assert.ok(history.lambda4.includes(null), "the product has lost them");
+  assert.ok(history.lambda4.includes(null), "the product has lost them to rounding");
   const csv = await get("format=csv&exponents=raw_product&fields=exponents.raw_product.history");
   const rows = (await csv.text()).trimEnd().split("\n").slice(1);
   const k = Object.keys(history).indexOf("lambda4");
@@ -74,7 +74,7 @@ test("as CSV four numbers and matrices are columns of their own, and null is an 
   );
 });
 
-test("an answer of several tables, or of none, is no CSV: it names them", async () => {
+test("an answer with several tables, or none, cannot be CSV: the problem lists them", async () => {
   for (const [query, range] of [
     ["include=series,impacts&format=csv", ["series", "impacts", "sticking"]],
     ["fields=status&format=csv", []],
@@ -89,7 +89,7 @@ test("an answer of several tables, or of none, is no CSV: it names them", async 
   }
 });
 
-test("as CBOR the lists are typed arrays, and all else is as in the JSON", async () => {
+test("as CBOR the lists are typed arrays, and everything else equals the JSON", async () => {
   const answer = await get(`${everything}&format=cbor`);
   assert.equal(answer.headers.get("content-type"), "application/cbor");
   const bytes = await answer.arrayBuffer();
@@ -101,15 +101,15 @@ def typed(decoder, tag):
     numbers = struct.unpack("<%d%s" % (len(tag.value) // size, code), tag.value)
     return [None if isinstance(n, float) and math.isnan(n) else n for n in numbers]
 json.dump(cbor2.loads(sys.stdin.buffer.read(), tag_hook=typed), sys.stdout)`;
-  const {provenance, ...told} = python(code, bytes);
+  const {provenance, ...decoded} = python(code, bytes);
   const {provenance: sealed, ...whole} = await json(everything);
-  assert.deepEqual(told, whole);
-  assert.equal(provenance.sha256, null, "it is that of the JSON text");
+  assert.deepEqual(decoded, whole);
+  assert.equal(provenance.sha256, null, "it is the hash of the JSON text");
   assert.equal(provenance.commit, sealed.commit);
   assert.ok(bytes.byteLength < 0.6 * JSON.stringify(whole).length);
 });
 
-test("as npz each list is an array that numpy.load gives, and the rest is JSON beside them", async () => {
+test("as npz each list is an array for numpy.load, and the rest is one JSON entry", async () => {
   const answer = await get(`${everything}&format=npz`);
   assert.equal(answer.headers.get("content-type"), "application/x-npz");
   const code = `
@@ -137,10 +137,10 @@ json.dump({"arrays": told, "rest": json.loads(arrays["answer.json"])}, sys.stdou
   assert.equal(rest.impacts.tau, undefined, "each list once");
   const twice = await (await get(`${everything}&format=npz`)).arrayBuffer();
   const again = await (await get(`${everything}&format=npz`)).arrayBuffer();
-  assert.deepEqual(Buffer.from(twice), Buffer.from(again), "no clock in it");
+  assert.deepEqual(Buffer.from(twice), Buffer.from(again), "no timestamp in it");
 });
 
-test("the format is what Accept asks for most; what the service has not is refused with its formats", async () => {
+test("Accept selects the format; the refusal of unknown formats lists the known ones", async () => {
   const type = async (accept) => {
     const answer = await get("fields=impacts", accept);
     await answer.arrayBuffer();
@@ -165,10 +165,10 @@ test("the format is what Accept asks for most; what the service has not is refus
     /application\/json, text\/csv, application\/cbor, application\/x-npz/,
   );
   const named = await get("fields=impacts&format=json", "image/png");
-  assert.equal(named.status, 200, "the field says it");
+  assert.equal(named.status, 200, "the field format overrides Accept");
 });
 
-test("fields keep what they name, compute nothing else, and say what they do not find", async () => {
+test("fields select parts, nothing else is computed, and unknown names give warnings", async () => {
   const thin = await json("fields=impacts.tau,regime.z,exponents.qr.final");
   assert.deepEqual(Object.keys(thin), [
     "version",
@@ -194,7 +194,7 @@ test("fields keep what they name, compute nothing else, and say what they do not
   assert.equal(windows.windows.length, 2);
 });
 
-test("a POST takes format and fields in its body; so do the manifold and an identification", async () => {
+test("a POST has format and fields in its body; the manifold and an identification support them, too", async () => {
   const post = (path, body) =>
     fetch(service.url + path, {
       method: "POST",
@@ -227,7 +227,7 @@ test("a POST takes format and fields in its body; so do the manifold and an iden
   }
 });
 
-test("fields are bounded, in names and in work, whatever is sent", async () => {
+test("fields are limited in number and in work", async () => {
   const post = (fields) =>
     fetch(`${service.url}/v1/simulate`, {method: "POST", body: JSON.stringify(fields)});
   const windows = Array.from({length: 1000}, (_, k) => [k, k + 1]);
@@ -253,7 +253,7 @@ test("fields are bounded, in names and in work, whatever is sent", async () => {
   assert.equal((await answer.json()).warnings.length >= 1000, true);
 });
 
-test("texts that are no UTF-8, or are cut within a character, harm no answer", async () => {
+test("invalid UTF-8 is refused, and shortened texts stay valid UTF-8", async () => {
   const answer = await fetch(`${service.url}/v1/simulate?fields=%ff`);
   assert.equal(answer.status, 400);
   assert.match((await answer.json()).detail, /not in UTF-8/);
@@ -262,22 +262,22 @@ test("texts that are no UTF-8, or are cut within a character, harm no answer", a
     return fetch(`${service.url}/v1/simulate`, {method: "POST", body});
   };
   for (const format of ["json", "cbor", "npz"]) {
-    const told = await ask([`a${"\u00e9".repeat(99)}`], format);
-    assert.equal(told.status, 200, format);
-    await told.arrayBuffer();
+    const answer = await ask([`a${"\u00e9".repeat(99)}`], format);
+    assert.equal(answer.status, 200, format);
+    await answer.arrayBuffer();
   }
   const {errors} = await (await ask([`a${"\u00e9".repeat(150)}`], "json")).json();
   assert.match(errors[0].value, /^a\u00e9+\.\.\.$/);
 });
 
-test("touches are computed where fields name them", async () => {
+test("touches are computed if fields name them", async () => {
   const system = {G: 0, lambda: 0, x0: 0.02, y0: 0, b: 0.02, tau_end: 30, fields: ["touches"]};
   const body = JSON.stringify(system);
   const answer = await fetch(`${service.url}/v1/simulate`, {method: "POST", body});
   assert.ok((await answer.json()).touches.tau.length > 0);
 });
 
-test("what is known is told by format and fields, too", async () => {
+test("the ETag depends on format and fields, too", async () => {
   const first = await get("fields=impacts.tau&format=csv");
   const tag = first.headers.get("etag");
   const again = (query) =>
@@ -290,12 +290,12 @@ test("what is known is told by format and fields, too", async () => {
   const weak = await fetch(first.url, {headers: {"If-None-Match": `"x", ${tag.slice(2)}`}});
   assert.equal(weak.status, 304, "a client need not repeat the W/");
   const any = await get("format=csv", undefined, {"If-None-Match": "*"});
-  assert.equal(any.status, 422, "there is nothing to be known of what is refused");
+  assert.equal(any.status, 422, "a refused request is never answered with 304");
   assert.equal((await again("fields=impacts.tau&format=cbor")).status, 200);
   assert.equal((await again("fields=impacts.side&format=csv")).status, 200);
 });
 
-test("more impacts than are kept are thinned, too, and told in every format", async () => {
+test("fields and formats also work for answers with more impacts than are kept in memory", async () => {
   const many = "b=0.003&tau_end=60000&max_impacts=60000";
   const ask = (rest) => fetch(`${service.url}/v1/simulate?${many}&${rest}`);
   const {impacts} = await (await ask("fields=impacts.tau")).json();

@@ -1,4 +1,4 @@
-// What the service counts, as Prometheus reads it.
+// The service's metrics, as Prometheus reads them.
 import assert from "node:assert/strict";
 import {spawnSync} from "node:child_process";
 import {existsSync} from "node:fs";
@@ -7,9 +7,9 @@ import {startService} from "../service.mjs";
 import {exchange, until} from "./raw.mjs";
 
 const setUp = new URL("../../build/tools/promtool", import.meta.url).pathname;
-const promtool = existsSync(setUp) ? setUp : "promtool"; // as scripts/setup has it, or Debian
+const promtool = existsSync(setUp) ? setUp : "promtool"; // installed by scripts/setup, or Debian's
 
-/** The samples, by name and labels as they are written. */
+/** The samples by name and labels, as written. */
 async function metrics(url) {
   const text = await (await fetch(`${url}/metrics`)).text();
   const lines = text.split("\n").filter((line) => line && !line.startsWith("#"));
@@ -23,10 +23,10 @@ async function metrics(url) {
 
 const post = (url, path, body) => fetch(url + path, {method: "POST", body: JSON.stringify(body)});
 
-// Until its deadline, or its client leaves.
+// Runs until its deadline, or until its client leaves.
 const endless = {b: 0.0005, R: 1, tau_end: 1e7, max_impacts: 2e6, include: ["regime"]};
 
-test("requests are counted by route, method and status, their times by route; promtool finds nothing", async (t) => {
+test("requests are counted by route, method and status, durations by route; promtool finds no fault", async (t) => {
   const service = await startService();
   t.after(() => service.stop());
   const {url} = service;
@@ -55,8 +55,8 @@ test("requests are counted by route, method and status, their times by route; pr
   assert.equal(requests("/v1/simulate", "GET", 200), 2);
   assert.equal(requests("/v1/simulate", "GET", 422), 1);
   assert.equal(requests("none", "GET", 404), 1);
-  assert.equal(requests("none", "other", 405), 1, "no series of a client's own words");
-  assert.equal(requests("none", "other", 400), 1, "behind another one on its connection, too");
+  assert.equal(requests("none", "other", 405), 1, "a client's words create no series");
+  assert.equal(requests("none", "other", 400), 1, "also after another request on its connection");
   assert.equal(requests("page", "GET", 200), 1);
   assert.equal(
     all.get('vines_http_request_duration_seconds_count{route="/v1/simulate"}'),
@@ -70,7 +70,7 @@ test("requests are counted by route, method and status, their times by route; pr
   assert.equal(all.get(`vines_build_info${build}`), 1);
 });
 
-test("impacts, sweeps and their runs are counted, and how each sweep ended", async (t) => {
+test("impacts, sweeps, their runs and the outcome of each sweep are counted", async (t) => {
   const service = await startService();
   t.after(() => service.stop());
   const {url} = service;
@@ -93,32 +93,32 @@ test("impacts, sweeps and their runs are counted, and how each sweep ended", asy
   const ended = async (end) => (await metrics(url)).get(`vines_sweeps_total{end="${end}"}`);
   await until(async () => (await ended("client_left")) === 1);
   assert.equal(await ended("complete"), 1);
-  assert.equal(await ended("failed"), 0, "there from the start on");
+  assert.equal(await ended("failed"), 0, "present from the start");
   const all = await metrics(url);
   assert.ok(all.get("vines_sweep_runs_total") >= 7);
   assert.ok(all.get("vines_impacts_total") > impacts.tau.length);
   assert.equal(all.get("vines_sweeps_running"), 0);
 });
 
-test("a client that leaves the queue is none that the server had no room for", async (t) => {
+test("a client that leaves the queue is not counted as refused", async (t) => {
   const one = await startService(["--compute-threads", "1"]);
   t.after(() => one.stop());
   const leaving = new AbortController();
   const {signal} = leaving;
   const body = JSON.stringify(endless);
-  const asked = [1, 2, 3].map(() =>
+  const requested = [1, 2, 3].map(() =>
     fetch(`${one.url}/v1/simulate`, {method: "POST", body, signal}).catch(() => {}),
   );
   await until(async () => (await metrics(one.url)).get("vines_compute_queue_depth") === 2);
   leaving.abort();
-  await Promise.all(asked);
+  await Promise.all(requested);
   await until(async () => (await metrics(one.url)).get("vines_http_requests_in_flight") === 0);
   const all = await metrics(one.url);
   assert.equal(all.get('vines_http_unavailable_total{reason="computing"}'), 0);
   for (const name of all.keys()) assert.doesNotMatch(name, /code="503"/);
 });
 
-test("what waits, computes and is refused for lack of room is told while it is so", async (t) => {
+test("waiting, running and refused requests are shown as they occur", async (t) => {
   const one = await startService(["--compute-threads", "1", "--compute-queue", "1"]);
   t.after(() => one.stop());
   const leaving = new AbortController();
@@ -136,7 +136,7 @@ test("what waits, computes and is refused for lack of room is told while it is s
   const refused = await post(one.url, "/v1/simulate", {b: 0.022});
   assert.equal(refused.status, 503);
   assert.equal((await refused.json()).lacking, "computing");
-  // An answer is counted once it has been sent.
+  // An answer is counted after it has been sent.
   const lacking = 'vines_http_unavailable_total{reason="computing"}';
   await until(async () => (await load(lacking)) === 1);
   const all = await metrics(one.url);

@@ -1,6 +1,6 @@
-// Asks /livez every 10 ms, each time on a connection of its own, and says at the end how many ms each
-// answer took. In a process of its own: one that makes a load, too, would measure its own waiting.
-// node prober.mjs URL MS
+// Requests /livez every 10 ms, each time on a new connection, and prints the duration of each in
+// ms. A separate process: one that also generates load would measure its own waiting.
+// Usage: node prober.mjs URL MS
 import net from "node:net";
 import {sleep} from "./raw.mjs";
 
@@ -8,7 +8,7 @@ const [url, ms] = process.argv.slice(2);
 const {hostname, port} = new URL(url);
 const request = "GET /livez HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
 
-/** The time to the whole answer, ms. */
+/** Time until the complete answer, ms. */
 const probe = () =>
   new Promise((resolve, reject) => {
     const began = performance.now();

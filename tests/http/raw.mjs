@@ -1,7 +1,7 @@
-// Bytes as they are, to a service and back.
+// Raw bytes to a service and back.
 import net from "node:net";
 
-/** A connection that is open: {socket, text(): what has come, ended: a promise of its end}. */
+/** An open connection: {socket, text(): the bytes received so far, ended: a promise of its end}. */
 export async function connect(url, options = {}) {
   const {hostname, port} = new URL(url);
   const host = hostname.replace(/^\[|\]$/g, "");
@@ -24,8 +24,8 @@ export async function connect(url, options = {}) {
 
 export const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
-/** Waits until condition() holds; fails after so many ms. */
-export async function until(condition, ms = 5000) {
+/** Waits until condition() holds; throws after `ms`. */
+export async function until(condition, ms = 20000) {
   const began = performance.now();
   while (!(await condition())) {
     if (performance.now() - began > ms) throw new Error(`not within ${ms} ms: ${condition}`);
@@ -33,11 +33,11 @@ export async function until(condition, ms = 5000) {
   }
 }
 
-/** The answers in a text, by their status lines; interim ones (1xx) are left out. */
+/** The status codes of the answers in a text, without interim ones (1xx). */
 export const statuses = (text) =>
   [...text.matchAll(/^HTTP\/1\.1 ([2-5]\d\d) /gm)].map((found) => Number(found[1]));
 
-/** Sends bytes and returns what comes until the server closes, or ms are over. */
+/** Sends bytes and returns everything received until the server closes or `ms` are over. */
 export async function exchange(url, bytes, ms = 4000) {
   const connection = await connect(url);
   connection.socket.write(bytes);
@@ -48,14 +48,14 @@ export async function exchange(url, bytes, ms = 4000) {
   return text;
 }
 
-/** The memory that a process holds, or with VmHWM has held at most, in MB. */
+/** Memory of a process in MB: current, or with VmHWM its peak. */
 export async function memory(pid, what = "VmRSS") {
   const {readFile} = await import("node:fs/promises");
   const status = await readFile(`/proc/${pid}/status`, "utf8");
   return Number(new RegExp(`${what}:\\s+(\\d+)`).exec(status)[1]) / 1024;
 }
 
-/** The seconds that a process has computed. */
+/** CPU time of a process, s. */
 export async function computed(pid) {
   const {readFile} = await import("node:fs/promises");
   const fields = (await readFile(`/proc/${pid}/stat`, "utf8")).split(") ")[1].split(" ");

@@ -7,7 +7,7 @@
 
 using namespace vines::http;
 
-TEST_CASE("a tag tells a body from others of its length, and from longer ones") {
+TEST_CASE("an ETag differs for bodies of the same length and for longer ones") {
     const std::string body = "{\"tau\":[0.0,0.19634954084936207,0.39269908169872414]}\n";
     std::set<std::string> tags = {entity_tag(body), entity_tag(body + '\0'), entity_tag("")};
     for (std::size_t at = 0; at < body.size(); ++at)
@@ -20,19 +20,19 @@ TEST_CASE("a tag tells a body from others of its length, and from longer ones") 
     CHECK(entity_tag(body) == entity_tag(std::string(body)));
 }
 
-TEST_CASE("a long text is compressed in pieces, and no further once that is given up") {
+TEST_CASE("a long text is compressed in pieces, and compression stops when it is given up") {
     std::string text;
     for (int k = 0; text.size() < 3 << 20; ++k) text += std::to_string(k * 31 % 7919) + ",";
     text += "and a little more";
-    int asked = 0;
-    const auto never = [&asked] { return ++asked < 0; };
+    int polls = 0;
+    const auto never = [&polls] { return ++polls < 0; };
     CHECK(gzip(text, never) == gzip(text));
-    CHECK(asked == 4);
-    CHECK_FALSE(gzip(text, [&asked] { return ++asked == 7; }));
-    CHECK(asked == 7);
+    CHECK(polls == 4);
+    CHECK_FALSE(gzip(text, [&polls] { return ++polls == 7; }));
+    CHECK(polls == 7);
 }
 
-TEST_CASE("gzip is taken by whoever names it, with any weight but 0, or takes all") {
+TEST_CASE("gzip is accepted if it is listed with a weight above 0, or everything is") {
     for (const char* header :
          {"gzip", "GZIP", "x-gzip", "br, gzip", "gzip;q=0.5", "gzip ; q=0.001", "gzip;Q=1.000",
           "br;q=1.0, gzip;q=0.8, *;q=0.1", "*", "*;q=0.5", "identity;q=0.5, gzip",
@@ -42,7 +42,7 @@ TEST_CASE("gzip is taken by whoever names it, with any weight but 0, or takes al
     }
 }
 
-TEST_CASE("gzip is not sent to whoever does not name it, or gives it the weight 0") {
+TEST_CASE("gzip is not accepted if it is not listed, or has the weight 0") {
     for (const char* header :
          {"", "identity", "br, deflate", "gzip;q=0", "gzip;q=0.0", "gzip; q=0.000", "br, gzip;q=0",
           "gzip;q=0, *", "*;q=0", "gzip;q=much", "identity, gzip;q=0.5", "gzipped", "not-gzip"}) {
@@ -51,7 +51,7 @@ TEST_CASE("gzip is not sent to whoever does not name it, or gives it the weight 
     }
 }
 
-TEST_CASE("a text that is compressed piece by piece is the one that is compressed at once") {
+TEST_CASE("compression in pieces gives the same bytes as compression at once") {
     std::string text;
     for (int k = 0; k < 300000; ++k) text += std::to_string(k % 9973 * 7919 % 9973) + ",";
     REQUIRE(text.size() > (1 << 20));

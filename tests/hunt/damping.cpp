@@ -15,23 +15,24 @@ namespace vines::hunt {
 namespace {
 
 constexpr double tolerance = 1e-6;
-constexpr int most_impacts_by_the_exact_product = 60;
-// R = 0 soon ends in a stick: windows of few impacts keep some of them at rank 3.
+constexpr int max_impacts_of_exact_product = 60;
+// R = 0 soon leads to sticking: windows with few impacts keep some of these runs at rank 3.
 int fewest_impacts(const Parameters& p) { return std::min(p.R_plus, p.R_minus) > 0 ? 5 : 3; }
-// A run in double precision that leaves the true one by more (in tau) is no regular window.
-constexpr double most_departure = 1e-9;
+// Double precision can depart from the true run; a window is excluded if the event times differ by
+// more than this (in tau).
+constexpr double max_departure = 1e-9;
 
-/// What is said of a window, and what is true.
+/// Results of a window, and the exact values.
 struct Window {
     std::string request;
     ExactExponents exact;
     Exponents qr, eigenvalues;
     int impacts, rank;
-    double residual;  ///< of the sum rule, or of what stands for it at a lower rank
+    double residual;  ///< of the sum rule, or of its equivalent at a lower rank
 };
 
-/// The run's first impacts, as many as asked for or as the digits suffice for; none where these are
-/// too few, or where double precision leaves the true run.
+/// The run's first impacts: at most `most`, and at most the number for which the digits are enough.
+/// Empty if these are too few, or if double precision departs from the true run.
 std::optional<Window> window_of(const System& system, int most) {
     const auto& [p, start] = system;
     const double longest = 500 / p.Omega;
@@ -46,7 +47,7 @@ std::optional<Window> window_of(const System& system, int most) {
         const TransferProduct& product = lyapunov.product();
         if (product.impacts() < fewest_impacts(p)) return std::nullopt;
         const Retraced run = retrace(p, start, record.events);
-        if (!(run.departure < most_departure)) return std::nullopt;
+        if (!(run.departure < max_departure)) return std::nullopt;
         if (!exact_exponents_possible(digits_lost(p, run))) continue;
         char more[100];
         std::snprintf(
@@ -64,21 +65,21 @@ std::optional<Window> window_of(const System& system, int most) {
     return std::nullopt;
 }
 
-/// The first random system of this number that has a window.
+/// First random system of this number that has a window.
 Window random_window(std::uint64_t seed, int number) {
     std::mt19937_64 engine = engine_of(seed, number);
     for (;;) {
         const System system = strongly_damped(engine);
         const int fewest = fewest_impacts(system.parameters),
-                  most = fewest == 3 ? 5 : most_impacts_by_the_exact_product;
+                  most = fewest == 3 ? 5 : max_impacts_of_exact_product;
         if (auto window =
                 window_of(system, fewest + static_cast<int>(engine() % (most - fewest + 1))))
             return *window;
     }
 }
 
-/// The largest difference of two spectra, each in descending order; infinite where one has a number
-/// and the other has none.
+/// Largest difference of two spectra, each sorted in descending order; infinite if only one has a
+/// value.
 double difference(Exponents a, Exponents b) {
     double most = 0;
     std::sort(a.begin(), a.end(), std::greater<>());

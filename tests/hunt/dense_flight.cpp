@@ -27,8 +27,8 @@ Real rate(const Series& c, Real d) {
     return sum;
 }
 
-/// The largest value over (0, length] of a polynomial minus what it is allowed to have, or less
-/// where that is proven to be below zero.
+/// Maximum over (0, length] of a polynomial minus its allowed rounding, or a lower value if that is
+/// proven to be negative.
 class Excess {
 public:
     Excess(const Series& c, Real length, Real allowed, Real allowed_rate)
@@ -64,7 +64,7 @@ public:
         : motion_(flow.coefficients()),
           side_(start.side),
           b_(b),
-          // The wall that was touched and the speed at which it is left are exact, not y and y'.
+          // For a flight from a wall, the wall and the leaving speed are exact, not y and y'.
           y_(side_ != 0 ? Real(start.lo.x) - side_ * Real(b) : Real(start.y)),
           y_dot_(
               side_ != 0 ? Real(start.lo.x_dot) - Real(start.relative_speed) : Real(start.y_dot)),
@@ -81,9 +81,9 @@ public:
 
     FlightJudgement judge(double limit, const std::optional<Contact>& found) {
         const Real end = found ? found->s : limit;
-        // Where a search ended a rounding error before a wall, the next one begins at it.
+        // If a search ended a rounding error before a wall, the next one starts at the wall.
         if (found && !(found->s >= 0 && found->s <= limit && (found->s > 0 || side_ == 0)))
-            return {"outside of the search"};
+            return {"a contact outside the search"};
         if (side_ != 0) leave(std::min(first_cell_, end));
         Real s = 0;
         for (; s + motion_.step() < end; s += motion_.step()) pass(s, motion_.step());
@@ -100,7 +100,7 @@ private:
     Real allowed_speed(Real s) const {
         return allowed_ulps * (sizes_ + motion_.forcing() * s + std::abs(y_dot_));
     }
-    /// Of (x - y - side b)/s: of its first term, and of those that come from x''.
+    /// For (x - y - side b)/s: from its first term, and from the terms with x''.
     Real allowed_at_wall() const { return allowed_ulps * std::abs(leaving_); }
     Real allowed_at_wall_rate() const {
         return allowed_ulps *
@@ -111,36 +111,38 @@ private:
         if (excess > 0 && result_.wrong.empty()) result_.wrong = what;
     }
 
-    /// The flight's own wall over the first cell: (x - y - side b)/s stays below zero.
+    /// The flight's own wall over the first cell: (x - y - side b)/s remains below zero.
     void leave(Real end) {
         const Real excess = Excess(own_, end, allowed_at_wall(), allowed_at_wall_rate()).most();
         if (excess > 0)
-            note(excess, allowed_at_wall() + allowed_at_wall_rate() * end, "missed: its own wall");
+            note(
+                excess, allowed_at_wall() + allowed_at_wall_rate() * end,
+                "missed contact: its own wall");
     }
 
-    /// The walls over a step of such a length from s on.
+    /// Both walls over a step of this length from s.
     void pass(Real s, Real length) {
         const Place next = length == motion_.step() ? motion_.next(place_) : place_;
         const Real left = place_.x - (y_ + y_dot_ * s),
                    right = next.x - (y_ + y_dot_ * (s + length));
-        const Real bulge = motion_.most_acceleration(place_) * length * length / 8;
+        const Real bulge = motion_.acceleration_bound(place_) * length * length / 8;
         if (length != motion_.step() || std::max(std::abs(left), std::abs(right)) + bulge > b_) {
             Series g = motion_.series(place_);
             g[0] = left;
             g[1] -= y_dot_;
             for (int wall : {1, -1}) {
-                // leave() has looked at the own one.
+                // Checked by leave().
                 if (wall == side_ && s + length <= first_cell_) continue;
                 const Real may = allowed(s + length);
                 Series f;
                 for (std::size_t n = 0; n < f.size(); ++n) f[n] = wall * g[n];
                 f[0] -= b_;
                 if (wall == side_ && s < first_cell_) {
-                    // The step in which the first cell ends: the part behind it.
+                    // The first cell ends within this step: check the part after it.
                     note_beyond(s, length, may);
                     continue;
                 }
-                note(Excess(f, length, may, 0).most(), may, "missed: a contact");
+                note(Excess(f, length, may, 0).most(), may, "missed contact");
             }
         }
         if (length == motion_.step()) place_ = next;
@@ -154,26 +156,27 @@ private:
         f[1] -= y_dot_;
         for (Real& c : f) c *= side_;
         f[0] -= b_;
-        note(Excess(f, length - skip, may, 0).most(), may, "missed: its own wall");
+        note(Excess(f, length - skip, may, 0).most(), may, "missed contact: its own wall");
     }
 
-    /// place_ is that of s.
+    /// place_ is the state at s.
     void meet(const Contact& found, Real s) {
         const Real at = found.s, d = at - s;
-        if (found.side * found.relative_speed < 0) result_.wrong = "a contact that moves away";
+        if (found.side * found.relative_speed < 0)
+            result_.wrong = "a contact that moves away from the wall";
         Series g = motion_.series(place_);
         g[0] -= y_ + y_dot_ * s;
         g[1] -= y_dot_;
         Real off = std::abs(value(g, d) - found.side * b_), may = allowed(at);
         Real fast = rate(g, d), may_differ = allowed_speed(at);
-        // A contact at the grid point where the first cell ends is one of the next cell.
+        // A contact at the grid point where the first cell ends belongs to the next cell.
         if (found.side == side_ && at < first_cell_) {
             off = std::abs(value(own_, at)), may = allowed_at_wall() + allowed_at_wall_rate() * at;
             fast = side_ * (value(own_, at) + at * rate(own_, at)), may_differ = may;
         }
-        note(off - may, may, "a contact where there is no wall");
+        note(off - may, may, "a contact away from the walls");
         const Real difference = std::abs(fast - found.relative_speed);
-        note(difference - may_differ, may_differ, "another relative speed");
+        note(difference - may_differ, may_differ, "a wrong relative speed");
     }
 
     const SeriesMotion motion_;
@@ -203,7 +206,7 @@ Series SeriesMotion::series(const Place& p) const {
     Series c;
     c[0] = p.x;
     c[1] = p.x_dot;
-    // The n-th coefficient of sin(theta + Omega d) from sin and cos by turns.
+    // Coefficient n of sin(theta + Omega d), alternately from sin and cos.
     Real sin = p.sin, cos = p.cos;
     for (int n = 0; n + 2 < terms; ++n) {
         const auto i = static_cast<std::size_t>(n);
@@ -235,7 +238,7 @@ Place SeriesMotion::after(Place p, Real s) const {
     return by_series(p, s);
 }
 
-Real SeriesMotion::most_acceleration(const Place& p) const {
+Real SeriesMotion::acceleration_bound(const Place& p) const {
     const Real root = std::sqrt(stiffness_),
                speed = root * std::abs(p.x) + std::abs(p.x_dot) + forcing_ * step_;
     return (root + damping_) * speed + forcing_;

@@ -1,13 +1,13 @@
-// A free flight judged by dense sampling: its motion in Taylor series of long double, from the
-// coefficients of the equation of motion alone, so that it shares nothing with the tables and the
-// proofs of the search for contacts that it judges.
+// Check of a free flight by dense sampling. The motion is computed by Taylor series in long double,
+// from the coefficients of the equation of motion alone, and is therefore independent of the tables
+// and proofs of the contact search under test.
 #pragma once
 
 #include <array>
 #include <optional>
 #include <string>
 
-#include "core/motion/guard.hpp"
+#include "core/motion/contact_search.hpp"
 
 namespace vines::hunt {
 
@@ -24,15 +24,15 @@ public:
 
     explicit SeriesMotion(const Flow::Coefficients& coefficients);
 
-    /// 1/200 of the period of the fastest of forcing, oscillator and damper; a series reaches
-    /// twenty of them with an error below 1e-17 of the motion.
+    /// 1/200 of the shortest period of forcing, oscillator and damper. Over twenty steps a series
+    /// has an error below 1e-17 of the motion.
     Real step() const { return step_; }
     Series series(const Place& place) const;
-    /// A step further.
+    /// State one step later.
     Place next(const Place& place) const;
     Place after(Place place, Real s) const;
-    /// Of |x''| over the next step, by the growth of the energy.
-    Real most_acceleration(const Place& place) const;
+    /// Bound of |x''| over the next step, from the growth of the energy.
+    Real acceleration_bound(const Place& place) const;
     Real forcing() const { return forcing_; }
     Real damping() const { return damping_; }
 
@@ -40,24 +40,25 @@ private:
     Place by_series(const Place& place, Real d) const;
 
     const Real stiffness_, damping_, forcing_, Omega_, step_;
-    std::array<Place, 4> over_step_;  // what each part of a place, of size 1 and alone, becomes
+    std::array<Place, 4> over_step_;  // fundamental solutions over one step: one for each component
+                                      // of a place, set to 1
 };
 
 SeriesMotion::Place place_of(const Oscillation& lo);
 
-/// What a search for the next contact claimed, and what is wrong with it.
+/// Error in the result of a contact search, if any.
 struct FlightJudgement {
-    std::string wrong;  ///< empty: nothing
-    /// By how much x - y is beyond a wall at the most before the contact that was found (or the end
-    /// of the search), or off the wall at it: over the rounding that is allowed.
+    std::string wrong;  ///< empty: none
+    /// Largest excess of x - y over a wall before the contact (or the end of the search), or
+    /// distance from the wall at the contact, relative to the allowed rounding.
     long double worst = 0;
 };
 
-/// Samples the flight up to the contact, or to `limit` where none was found, and refines wherever a
-/// wall may be passed between two samples: until a bound of the curvature proves that it is not.
-/// What is allowed: 16 ulp of the positions' terms; of the flight's own wall, within the first cell
-/// of the search, 16 ulp of the terms of (x - y - side b)/s, so that a chatter's hops are judged
-/// relative to themselves.
+/// Samples the flight up to the contact found, or to `limit` if none was found, and refines where a
+/// wall can be crossed between two samples, until a bound of the curvature proves that it is not.
+/// Allowed rounding: 16 ulp of the terms of the positions; for the flight's own wall within the
+/// first cell of the search, 16 ulp of the terms of (x - y - side b)/s, so that the tiny hops of a
+/// chatter are checked relative to their own size.
 FlightJudgement judge_flight(
     const Flow& flow, const FlightStart& start, double b, double limit,
     const std::optional<Contact>& found);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The events of the window: what comes after the first impact, up to the last.
+/// Events of the window: those after the first impact, up to the last.
 std::span<const PreciseEvent> window_of(const Retraced& run) {
     const auto is_impact = [](const PreciseEvent& e) { return e.kind == Event::impact; };
     const auto& all = run.events;
@@ -34,7 +34,7 @@ Square<Real> product_of(const Parameters& p, std::span<const PreciseEvent> windo
     return P;
 }
 
-/// The lengths that Gram-Schmidt leaves of the columns: the diagonal of the triangular factor.
+/// Lengths of the columns after Gram-Schmidt: the diagonal of the triangular factor.
 template <class Real>
 std::array<Real, 4> lengths_of_columns(Square<Real> P) {
     std::array<Real, 4> lengths;
@@ -53,7 +53,7 @@ std::array<Real, 4> lengths_of_columns(Square<Real> P) {
     return lengths;
 }
 
-/// The matrix of all minors of k rows and k columns.
+/// Matrix of all minors with k rows and k columns.
 template <class Real>
 Square<Real> minors(const Square<Real>& P, int k) {
     std::vector<std::vector<int>> choices;
@@ -128,15 +128,15 @@ ExactExponents exponents_in(const Parameters& p, const Retraced& run, double los
 
 constexpr unsigned few_digits = 250, many_digits = 1000;
 
-/// Digits enough for a product that loses so many, and for telling a length that is nothing from
-/// one that is small.
+/// Digits sufficient for a product that loses `lost` digits, and to distinguish a zero length from
+/// a small one.
 double digits_for(double lost) { return lost + 60; }
 
 }  // namespace
 
 double digits_lost(const Parameters& p, const Retraced& run) {
-    // The condition number of each factor: of J through det J = e^(-2 zeta s), of M through its
-    // determinant R^2.
+    // Condition number of each factor: of J from det J = e^(-2 zeta s), of M from its determinant
+    // R^2.
     double digits = 0;
     const double zeta = p.zeta();
     for (const PreciseEvent& e : window_of(run)) {

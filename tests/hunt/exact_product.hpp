@@ -1,5 +1,5 @@
-// The Lyapunov exponents of a run from the plain product of all its transfer matrices, in so many
-// digits that nothing of it is lost.
+// Lyapunov exponents of a run from the plain product of all its transfer matrices, with enough
+// digits that no accuracy is lost.
 #pragma once
 
 #include "core/stability/lyapunov.hpp"
@@ -8,18 +8,18 @@
 namespace vines::hunt {
 
 struct ExactExponents {
-    int impacts;                ///< of the window, the first included
-    double T;                   ///< from the first impact to the last
-    int rank;                   ///< of the product
+    int impacts;                ///< in the window, including the first
+    double T;                   ///< time from the first impact to the last
+    int rank;                   ///< rank of the product
     Exponents qr, eigenvalues;  ///< -infinity beyond the rank
 };
 
-/// How many digits the product of all matrices of a run loses at most.
+/// Upper bound of the decimal digits lost in the product of a run's matrices.
 double digits_lost(const Parameters& parameters, const Retraced& run);
-/// Whether the digits provided suffice for it.
+/// Returns whether the available digits are enough.
 bool exact_exponents_possible(double digits_lost);
 
-/// Of a run with two impacts or more, and where they are possible.
+/// Requires a run with at least two impacts, for which exact_exponents_possible() is true.
 ExactExponents exact_exponents(const Parameters& parameters, const Retraced& run);
 
 }  // namespace vines::hunt

@@ -6,7 +6,7 @@
 #include <mutex>
 
 #include "../core/support.hpp"
-#include "core/motion/in_lanes.hpp"
+#include "core/motion/batch_run.hpp"
 #include "core/sweep/parallel.hpp"
 #include "dense_flight.hpp"
 #include "systems.hpp"
@@ -17,16 +17,17 @@ namespace {
 
 using Real = SeriesMotion::Real;
 
-// A flight without a contact within the reach of one search goes on; so many times at the most.
-constexpr int most_searches = 8;
+// Largest number of searches for one flight: a search without a contact within its reach is
+// continued.
+constexpr int max_searches = 8;
 
-/// A flight from a wall: the oscillator anywhere in its motion, the free mass at any speed.
+/// A flight from a wall, with any state of the oscillator and any speed of the ball.
 struct RandomFlight {
     Flow flow;
     double b;
     Oscillation lo;
     int side;
-    double w;  ///< the speed at which it leaves
+    double w;  ///< speed at which it leaves the wall
 
     FlightStart start() const {
         return {lo, lo.x - side * b, lo.x_dot + side * w, side, -side * w, 1};
@@ -58,20 +59,20 @@ RandomFlight any_flight(std::mt19937_64& engine) {
         speed * (engine() % 2 ? uniform(engine, 0.01, 2) : power_of_ten(engine, -13, 0))};
 }
 
-/// Turns the flight so that x - y is, but for the share `off` of b, at a wall at s: where a search
-/// has a grid point, or anywhere.
-void meet_at(RandomFlight& f, Real s, int wall, double off) {
+/// Changes the flight so that x - y reaches a wall at s, except for the fraction `off` of b; s is a
+/// grid point of the search or any time.
+void reach_wall_at(RandomFlight& f, Real s, int wall, double off) {
     const Real x = SeriesMotion(f.flow.coefficients()).after(place_of(f.lo), s).x;
     const Real y_dot = (x - wall * f.b * (1 + Real(off)) - (f.lo.x - f.side * Real(f.b))) / s,
                w = f.side * (y_dot - f.lo.x_dot);
     if (w > 0) f.w = static_cast<double>(w);
 }
 
-/// Turns the flight so that it touches, or nearly, at s: the other wall by the choice of b, its own
-/// by that of the oscillator's speed.
+/// Changes the flight so that it grazes, or nearly grazes, a wall at s: the other wall by the
+/// choice of b, its own wall by that of the oscillator's speed.
 void graze_at(RandomFlight& f, Real s, bool own, double off) {
     const SeriesMotion motion(f.flow.coefficients());
-    // x(s) - x(0) - x'(s) s: how far x - y is at s from where it was, if x' - y' = 0 there.
+    // x(s) - x(0) - x'(s) s: change of x - y up to s, if x' - y' = 0 there.
     const auto turned = [&](Real x_dot) {
         SeriesMotion::Place from = place_of(f.lo);
         from.x_dot = x_dot;
@@ -97,7 +98,7 @@ RandomFlight random_flight(std::mt19937_64& engine) {
     switch (engine() % 8) {
         case 0: {
             const Real grid_time = (1 + engine() % Flow::cells) * Real(f.flow.cell());
-            meet_at(f, grid_time, engine() % 2 ? 1 : -1, engine() % 2 ? 0 : off * 1e-8);
+            reach_wall_at(f, grid_time, engine() % 2 ? 1 : -1, engine() % 2 ? 0 : off * 1e-8);
             break;
         }
         case 1: graze_at(f, somewhere, false, off); break;
@@ -118,7 +119,8 @@ struct Tally {
     }
 };
 
-void say(int number, const RandomFlight& f, const FlightStart& s, double limit, const char* wrong) {
+void report(
+    int number, const RandomFlight& f, const FlightStart& s, double limit, const char* wrong) {
     const Flow::Coefficients c = f.flow.coefficients();
     std::printf(
         "WRONG  flight %d: %s\n    flow %.17g %.17g %.17g %.17g, b %.17g, limit %.17g, x %.17g, x' "
@@ -135,20 +137,20 @@ bool same(const std::optional<Contact>& a, const std::optional<Contact>& b) {
            a->relative_speed == b->relative_speed;
 }
 
-/// The searches in lanes that do not find the same contact, to the last bit, or leave it open.
+/// Names of the vectorised searches that give another contact, in any bit.
 std::string differing_searches(
     const Flow& flow, const FlightStart& start, double b, double limit,
     const std::optional<Contact>& alone) {
     std::string differing;
     const FlowTables tables = flow.tables();
-    for (const NamedSearch& by : flight_searches()) {
-        FlightLanes flights;
+    for (const NamedBatchSearch& by : batch_searches()) {
+        FlightBatch flights;
         flights.tables = &tables;
-        put(flights, start, b, limit);
+        append(flights, start, b, limit);
         search(flights, by.search);
-        if (flights.found[0] == FlightLanes::open) continue;
+        if (flights.result[0] == FlightBatch::undecided) continue;
         if (same(
-                alone, flights.found[0] == FlightLanes::contact
+                alone, flights.result[0] == FlightBatch::contact
                            ? std::optional(contact_of(flights, 0))
                            : std::nullopt))
             continue;
@@ -162,12 +164,12 @@ Tally hunt_flight(std::uint64_t seed, int number) {
     const RandomFlight f = random_flight(engine);
     FlightStart start = f.start();
     const double reach = f.flow.reach();
-    // A run may end within the flight.
-    const double last = engine() % 3 ? most_searches : uniform(engine, 0, 2);
+    // A run can end within the flight.
+    const double last = engine() % 3 ? max_searches : uniform(engine, 0, 2);
     Tally tally;
     for (int k = 0; k < last; ++k) {
         const double limit = std::min(1.0, last - k) * reach;
-        std::vector<Touch> touches;
+        std::vector<GrazingPoint> touches;
         const auto found = fast_contact(f.flow, start, f.b, limit, touches);
         const FlightJudgement judgement = judge_flight(f.flow, start, f.b, limit, found);
         ++tally.searches;
@@ -175,13 +177,13 @@ Tally hunt_flight(std::uint64_t seed, int number) {
         tally.worst = std::max(tally.worst, judgement.worst);
         if (!judgement.wrong.empty()) {
             ++tally.wrong;
-            say(number, f, start, limit, judgement.wrong.c_str());
+            report(number, f, start, limit, judgement.wrong.c_str());
         }
-        if (is_plain(start)) {
+        if (has_simple_start(start)) {
             const std::string differing = differing_searches(f.flow, start, f.b, limit, found);
             if (!differing.empty()) {
                 ++tally.wrong;
-                say(number, f, start, limit, ("otherwise in lanes:" + differing).c_str());
+                report(number, f, start, limit, ("vectorised search differs:" + differing).c_str());
             }
         }
         if (found) {
@@ -191,7 +193,7 @@ Tally hunt_flight(std::uint64_t seed, int number) {
             tally.hops += own && found->s < f.flow.cell();
             break;
         }
-        // As simulate() goes on.
+        // Continues like simulate().
         start = {f.flow.at(start.lo, Flow::cells), start.y + start.y_dot * reach, start.y_dot};
     }
     return tally;
@@ -214,8 +216,8 @@ bool hunt_contacts(int flights, std::uint64_t seed, int first, int threads) {
         if (done % 100000 == 0) std::fprintf(stderr, "%d of %d flights\n", done, flights);
     });
     std::printf(
-        "%d flights, %ld searches, %ld contacts (%ld with the wall that was left, of them %ld "
-        "within a cell), %ld touches without one: %ld contacts missed or wrong; x - y off by %.2f "
+        "%d flights, %ld searches, %ld contacts (%ld with the wall left, %ld of these within a "
+        "cell), %ld grazing contacts: %ld contacts missed or wrong; x - y off by %.2f "
         "of "
         "the rounding that is allowed\n",
         flights, all.searches, all.contacts, all.own_wall, all.hops, all.touches, all.wrong,

@@ -1,13 +1,13 @@
-// The hunt for contacts that are missed, and for such that are none.
+// Search for missed and for wrong contacts.
 #pragma once
 
 #include <cstdint>
 
 namespace vines::hunt {
 
-/// Judges so many random flights from a wall, from the seed's `first` one on, each followed to its
-/// contact: see dense_flight.hpp. True if no contact is missed and none is found that is none; says
-/// what it finds on standard output.
+/// Checks random flights from a wall, each followed to its contact, starting with number `first` of
+/// the seed: see dense_flight.hpp. Returns whether no contact is missed or wrong; prints errors to
+/// stdout.
 bool hunt_contacts(int flights, std::uint64_t seed, int first, int threads);
 
 }  // namespace vines::hunt

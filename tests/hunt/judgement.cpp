@@ -8,15 +8,15 @@ namespace vines::hunt {
 
 namespace {
 
-// The periods that must be found.
+// Longest period that must be found.
 constexpr int longest_sought = 64;
-// Next to an orbit, in units of the motion's size: so near that what follows is its pull; and as
-// far as a capture may be said.
+// Distances from an orbit, relative to the size of the motion: so close that the orbit attracts the
+// motion; and the largest at which a capture can be reported.
 constexpr double next_to = 0.01, around = 0.5;
-// The moment is a matter of the norm: a hundredth of it more is no fault.
-constexpr double moment_share = 0.01;
-// A deviation that has grown by less, in e-folds over the whole long run, has not grown as in
-// chaos: on a torus it grows as the number of cycles, in a slow approach not even that.
+// The time of capture depends on the norm: a difference of 1 % is not an error.
+constexpr double capture_time_tolerance = 0.01;
+// In chaos a deviation grows by more e-folds than this over the whole long run. On a torus it grows
+// in proportion to the number of cycles, in a slow approach even less.
 constexpr double least_growth = 25;
 constexpr double sigmas = 5;
 
@@ -27,7 +27,7 @@ std::string sentence(const char* format, Values... values) {
     return text;
 }
 
-/// The irregular motion of a stretch of the long run.
+/// Returns whether the motion is irregular over an interval of the long run.
 bool chaotic(const LongRun& run, int from, int to) {
     if (to - from < 100) return false;
     const auto exponent = run.exponent(from, to);
@@ -48,7 +48,8 @@ void judge_orbit(
         if (chaotic(run, s.cycles, end)) {
             const auto exponent = run.exponent(s.cycles, end);
             wrong.push_back(sentence(
-                "periodic (%d cycles) is said, but the run stays irregular: lambda1 = %.4g +- %.2g "
+                "periodic (%d cycles) is reported, but the run remains irregular: lambda1 = %.4g "
+                "+- %.2g "
                 "over "
                 "the next %d cycles",
                 s.period, exponent.lambda1, exponent.error, end - s.cycles));
@@ -57,9 +58,8 @@ void judge_orbit(
             run.miss(end, s.period) >
                 std::max(1e-3, run.miss(s.cycles, std::min(s.period, s.cycles)))) {
             wrong.push_back(sentence(
-                "periodic (%d cycles) is said, but the run does not return: it misses by %.2g "
-                "then, by "
-                "%.2g at the end of the long run",
+                "periodic (%d cycles) is reported, but the run does not return: it misses by %.2g, "
+                "at the end of the long run by %.2g",
                 s.period, run.miss(s.cycles, std::min(s.period, s.cycles)),
                 run.miss(end, s.period)));
         }
@@ -68,27 +68,29 @@ void judge_orbit(
     const int captured = run.captured_from(period, around);
     if (s.captured_at && captured > s.cycles) {
         wrong.push_back(sentence(
-            "periodic (%d cycles) is said, but the run is captured only at cycle %d, by %d cycles",
+            "periodic (%d cycles) is reported, but the run is captured only at cycle %d, by %d "
+            "cycles",
             s.period, captured, period));
     } else if (s.period != period) {
-        wrong.push_back(sentence("a period of %d cycles is said, it is %d", s.period, period));
+        wrong.push_back(
+            sentence("a period of %d cycles is reported, but it is %d", s.period, period));
     } else {
-        if (s.captured_at && captured > *s.captured_at + 1 + moment_share * captured)
+        if (s.captured_at && captured > *s.captured_at + 1 + capture_time_tolerance * captured)
             wrong.push_back(sentence(
-                "a capture at cycle %.0f is said, but the run leaves the orbit until cycle %d",
+                "a capture at cycle %.0f is reported, but the run leaves the orbit until cycle %d",
                 *s.captured_at, captured));
         const auto contacts = run.contacts_at_end(period);
-        // Behind a complete chatter the walls' R are forgotten, but not in it.
+        // After a complete chatter the walls' R no longer matter, but during it they do.
         const bool walls_differ = p.R_plus != p.R_minus && contacts.impacts > 0,
                    symmetric = !walls_differ && run.ends_symmetric(period);
         if (s.symmetric != symmetric)
             wrong.push_back(sentence(
-                "symmetric: %d is said of a period of %d cycles, it is the other way round",
+                "symmetric: %d is reported for a period of %d cycles, the opposite is true",
                 s.symmetric, period));
         const char* type = p.G > 0 ? type_expected(period, contacts.impacts, symmetric) : "none";
         if (contacts.sticks == 0 && s.type != type)
             wrong.push_back(sentence(
-                "type %s is said of %d impacts in %d cycles, it is %s", s.type.c_str(),
+                "type %s is reported for %d impacts in %d cycles, but it is %s", s.type.c_str(),
                 contacts.impacts, period, type));
     }
 }
@@ -100,40 +102,44 @@ void judge_verdict(
         if (chaotic(run, 0, captured) && captured > s.cycles) {
             const auto exponent = run.exponent(0, captured);
             wrong.push_back(sentence(
-                "regular is said, but the run is irregular up to cycle %d: lambda1 = %.4g +- %.2g",
+                "regular is reported, but the run is irregular up to cycle %d: lambda1 = %.4g +- "
+                "%.2g",
                 captured, exponent.lambda1, exponent.error));
         }
     } else if (s.verdict == Verdict::chaotic) {
         if (period > 0 && captured <= 1)
             wrong.push_back(sentence(
-                "chaotic is said of a run that is on an orbit of %d cycles all along", period));
+                "chaotic is reported for a run that is always on an orbit of %d cycles", period));
         else if (
             run.growth(0, captured) < least_growth && (captured <= s.cycles || captured == end))
             wrong.push_back(sentence(
-                "chaotic is said, but a deviation grows by %.1f e-folds only in the %d cycles up "
+                "chaotic is reported, but a deviation grows only by %.1f e-folds in the %d cycles "
+                "up "
                 "to %s",
                 run.growth(0, captured), captured,
                 period > 0 ? "the capture" : "the end of the long run"));
         else if (run.growth(0, std::min(captured, s.cycles)) <= 0)
             wrong.push_back(sentence(
-                "chaotic is said, but a deviation has shrunk by %.1f e-folds",
+                "chaotic is reported, but a deviation has shrunk by %.1f e-folds",
                 -run.growth(0, std::min(captured, s.cycles))));
-        else if (!chaotic(run, 0, captured) && run.returns_all_along(0, s.cycles))
-            wrong.push_back("chaotic is said of a motion that returns all along");
+        else if (!chaotic(run, 0, captured) && run.returns_throughout(0, s.cycles))
+            wrong.push_back("chaotic is reported for a motion that always returns");
     }
     if (s.verdict == Verdict::regular && s.lambda1 > verdict_sigmas * s.error &&
         !s.chaotic_before && !s.periodic)
         wrong.push_back(
-            sentence("regular is said beside lambda1 = %.4g +- %.2g", s.lambda1, s.error));
+            sentence("regular is reported with lambda1 = %.4g +- %.2g", s.lambda1, s.error));
     if (s.verdict == Verdict::chaotic && s.lambda1 < 0)
         wrong.push_back(
-            sentence("chaotic is said beside lambda1 = %.4g +- %.2g", s.lambda1, s.error));
+            sentence("chaotic is reported with lambda1 = %.4g +- %.2g", s.lambda1, s.error));
     if (s.verdict == Verdict::chaotic && s.periodic && !s.chaotic_before)
-        wrong.push_back("chaotic is said of a periodic motion, and no chaos before its capture");
+        wrong.push_back(
+            "chaotic is reported for a periodic motion without chaos before its capture");
     if (s.verdict == Verdict::none && s.type != "none")
-        wrong.push_back("no verdict is given of a motion of type " + s.type);
+        wrong.push_back("no verdict is given for a motion of type " + s.type);
     if (!s.periodic && (s.type == "III" || s.type == "IV" || s.type == "V"))
-        wrong.push_back("type " + s.type + ", a periodic one, is said of a motion that is not");
+        wrong.push_back(
+            "type " + s.type + ", a periodic type, is reported for a motion that is not periodic");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A statement held against the long run of the same motion.
+// Comparison of a result with a long run of the same motion.
 #pragma once
 
 #include <string>
@@ -10,17 +10,17 @@
 namespace vines::hunt {
 
 struct Judgement {
-    /// Sentences on what is said with confidence and does not hold.
+    /// Confident results that the long run contradicts, as sentences.
     std::vector<std::string> wrong;
-    /// The period, of up to 64 cycles, that the run itself returns with at its end.
+    /// Period, up to 64 cycles, with which the run returns at its end; 0: none.
     int recurrent = 0;
-    bool missed = false;  ///< and which was not found
+    bool missed = false;  ///< `recurrent` was not found
 };
 
 Judgement judge(const Parameters& parameters, const Statement& statement, const LongRun& run);
 
-/// What contradicts itself among statements on longer and longer runs from the same start.
+/// Contradictions among the results of successively longer runs from the same start.
 std::vector<std::string> contradictions(
-    const std::vector<Statement>& longer_and_longer, const LongRun& run);
+    const std::vector<Statement>& increasing_length, const LongRun& run);
 
 }  // namespace vines::hunt

@@ -10,16 +10,16 @@ namespace vines::hunt {
 
 namespace {
 
-// A period longer than this is not looked for.
+// Longest period searched for.
 constexpr int longest_period = 400;
-// A return, in units of the motion's size.
+// Distance of a return, relative to the size of the motion.
 constexpr double returned = 1e-9;
-// From here on a run that has returned for so long is not followed further.
+// After settled_after cycles, a run that has returned for settled_for cycles is ended.
 constexpr int settled_after = 6000, settled_for = 1000;
 // Enough for thirty impacts per cycle.
-constexpr long most_impacts_of_a_long_run = 600000;
+constexpr long max_impacts_of_long_run = 600000;
 
-/// The states at half cycles.
+/// Records the states at half cycles.
 class HalfCycleStates : public Observer {
 public:
     HalfCycleStates(const Parameters& p, std::vector<State>& states)
@@ -36,7 +36,7 @@ private:
     std::vector<State>& states_;
 };
 
-/// A deviation carried along, and what happens in each cycle.
+/// Propagates a deviation, and counts the events of each cycle.
 class Deviation : public Observer {
 public:
     Deviation(
@@ -51,8 +51,8 @@ public:
 
     void on_stretch(const Stretch& stretch) override {
         carry(
-            stretch.stuck_side == 0 ? flight(free_, stretch.duration)
-                                    : together(stuck_, p_.epsilon, stretch.duration));
+            stretch.sticking_side == 0 ? flight(free_, stretch.duration)
+                                       : together(stuck_, p_.epsilon, stretch.duration));
         const auto cycle = static_cast<std::size_t>((stretch.tau + stretch.duration) / p_.cycle());
         while (growth_.size() <= cycle) growth_.push_back(log_);
     }
@@ -88,7 +88,7 @@ private:
 
     const Parameters p_;
     const Oscillator<double> free_, stuck_;
-    std::array<double, 4> d_ = {0.5, -0.4, 0.6, 0.5};  // in no special direction
+    std::array<double, 4> d_ = {0.5, -0.4, 0.6, 0.5};  // a generic direction
     double log_ = 0;
     std::vector<double>& growth_;
     std::vector<int>&impacts_, &sticks_;
@@ -108,8 +108,7 @@ LongRun::LongRun(const Parameters& p, const State& start, int cycles) : paramete
         look += settled_for;
         return all_along;
     };
-    simulate(
-        p, start, {(cycles + 0.25) * p.cycle(), most_impacts_of_a_long_run, settled}, observers);
+    simulate(p, start, {(cycles + 0.25) * p.cycle(), max_impacts_of_long_run, settled}, observers);
     cycles_ = std::min(cycles, complete_cycles());
     impacts_.resize(std::max(impacts_.size(), static_cast<std::size_t>(cycles_) + 1));
     sticks_.resize(std::max(sticks_.size(), static_cast<std::size_t>(cycles_) + 1));
@@ -147,8 +146,8 @@ int LongRun::period_at(int at) const {
                 return false;
         return true;
     };
-    // A shorter return may be spoilt by the rounding in a chatter, or still be converging: the
-    // slower of two multipliers.
+    // The return of a shorter period can be spoilt by rounding in a chatter, or still be
+    // converging, with the slower of two multipliers.
     const auto returns_in_the_end = [&](int period) {
         if (returns(period, 100 * returned)) return true;
         const int before = at - at / 4;
@@ -164,7 +163,7 @@ int LongRun::period_at(int at) const {
     return 0;
 }
 
-bool LongRun::returns_all_along(int from, int to) const {
+bool LongRun::returns_throughout(int from, int to) const {
     const int middle = (from + to) / 2, longest = std::min(longest_period, (to - from) / 4);
     int nearest = 1;
     for (int period = 2; period <= longest; ++period)
@@ -190,7 +189,7 @@ int LongRun::captured_from(int period, double within) const {
 }
 
 bool LongRun::ends_symmetric(int period) const {
-    if (period % 2 == 0) return false;  // half a period on, the forcing is the same
+    if (period % 2 == 0) return false;  // half a period later the forcing is the same
     const State
         now = at_cycle(cycles_),
         half = states_[2 * static_cast<std::size_t>(cycles_) - static_cast<std::size_t>(period)];
@@ -198,7 +197,7 @@ bool LongRun::ends_symmetric(int period) const {
 }
 
 LongRun::PeriodContacts LongRun::contacts_at_end(int period) const {
-    // An impact near the moment at which cycles are cut moves over it by rounding: several periods.
+    // Rounding can move an impact across the end of a cycle; average over several periods.
     const int periods = std::max(1, 100 / period);
     PeriodContacts sum{0, 0};
     for (int k = cycles_ - periods * period; k < cycles_; ++k) {

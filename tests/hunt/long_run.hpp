@@ -1,5 +1,5 @@
-// The judge: a run twenty times as long as the one that is judged, with its own search for periods
-// and its own largest exponent. Of the code it judges it uses the trajectory alone.
+// Reference for verdicts: a run twenty times as long as the one under test, with its own search for
+// periods and its own largest exponent. It shares only the trajectory with the code under test.
 #pragma once
 
 #include <vector>
@@ -10,40 +10,40 @@ namespace vines::hunt {
 
 class LongRun {
 public:
-    /// Runs from tau = 0 over so many forcing cycles, or over fewer where it stays on a periodic
-    /// orbit or takes too many impacts.
+    /// Runs from tau = 0 over `cycles` forcing cycles, or fewer if it stays on a periodic orbit or
+    /// has too many impacts.
     LongRun(const Parameters& parameters, const State& start, int cycles);
 
-    int cycles() const { return cycles_; }  ///< that the run has come to
-    /// Forcing cycles after which the state at cycle `at` and those of two periods before it had
-    /// returned; 0: none of up to 400.
+    int cycles() const { return cycles_; }  ///< completed
+    /// Smallest period in forcing cycles, up to 400, with which the states up to cycle `at` have
+    /// returned for two periods; 0: none.
     int period_at(int at) const;
-    /// Whether nearly all states of a stretch are next to those some cycles before: it may be an
-    /// unstable orbit, but no chaos.
-    bool returns_all_along(int from, int to) const;
-    /// How far the state at cycle `at` is from that `period` cycles before, in units of the
-    /// motion's size there.
+    /// Returns whether nearly all states of an interval are close to those a fixed number of cycles
+    /// before: possibly an unstable orbit, but not chaos.
+    bool returns_throughout(int from, int to) const;
+    /// Distance of the state at cycle `at` from that `period` cycles before, relative to the size
+    /// of the motion.
     double miss(int at, int period) const;
-    /// The first cycle from which on the run stays within a distance of the periodic motion of so
-    /// many cycles that it ends on.
+    /// First cycle from which the run stays within a distance of its final periodic motion of this
+    /// period.
     int captured_from(int period, double distance) const;
-    /// Whether that motion is its own mirror image half a period later.
+    /// Returns whether the final motion is its own mirror image half a period later.
     bool ends_symmetric(int period) const;
-    /// Impacts of a period, and whether anything sticks in it.
+    /// Number of impacts and of sticking phases per period.
     struct PeriodContacts {
         int impacts, sticks;
     };
     PeriodContacts contacts_at_end(int period) const;
 
-    /// ln of the growth of a deviation from one cycle to another.
+    /// ln of the growth of a deviation between two cycles.
     double growth(int from, int to) const;
     struct Exponent {
-        double lambda1, error;  ///< of the mean of 20 blocks
+        double lambda1, error;  ///< standard error of the mean of 20 blocks
     };
     Exponent exponent(int from, int to) const;
 
 private:
-    /// What each component of a state is measured by, around a cycle.
+    /// Units of a state's components around a cycle.
     struct Scale {
         double x, y_dot, gap;
     };

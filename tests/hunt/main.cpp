@@ -1,5 +1,5 @@
-// Hunts for statements of the product that are wrong with confidence. scripts/hunt builds and runs
-// it.
+// Searches for results of the product that are wrong with confidence. Built and run by
+// scripts/hunt.
 #include <CLI/CLI.hpp>
 #include <cstdint>
 
@@ -9,26 +9,27 @@
 
 int main(int count, char** arguments) {
     CLI::App app(
-        "Hunts for statements that are wrong with confidence. Every system it reports is a request "
-        "that repeats "
-        "it.");
+        "Searches for results that are wrong with confidence. Every reported system is a request "
+        "that "
+        "reproduces it.");
     app.option_defaults()->always_capture_default();
     int systems = 2000, damped = 200, flights = 1000000, first = 0, threads = 2;
     std::uint64_t seed = 1;
     app.add_option(
         "--systems", systems,
-        "random systems whose verdicts and periods are judged by runs twenty times as long");
+        "random systems whose verdicts and periods are checked by runs twenty times as long");
     app.add_option(
         "--damped", damped,
-        "strongly damped systems whose exponents are compared with multi-precision ones");
+        "strongly damped systems whose exponents are compared with multi-precision results");
     app.add_option(
         "--flights", flights,
-        "random flights whose contacts are judged by dense sampling in extended precision");
+        "random flights whose contacts are checked by dense sampling in extended precision");
     app.add_option(
         "--first", first,
-        "the first system and flight of the seed to be judged: --damped 0 --flights 0 --systems 1 "
-        "--first 61 repeats one");
-    app.add_option("--seed", seed, "of all");
+        "number of the first system and flight: --damped 0 --flights 0 --systems 1 --first 61 "
+        "repeats "
+        "one");
+    app.add_option("--seed", seed, "random seed");
     app.add_option("--threads", threads);
     try {
         app.parse(count, arguments);

@@ -1,6 +1,6 @@
-// The forced oscillator in closed form, in any arithmetic:
-// x'' = -stiffness x - damping x' + forcing sin(theta), theta' = Omega. Written from the equations
-// alone, so that it shares nothing with the flow that it judges.
+// The forced oscillator in closed form, in any arithmetic: x'' = -stiffness x - damping x' +
+// forcing sin(theta), theta' = Omega. Derived only from the equations, independent of the flow
+// under test.
 #pragma once
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
@@ -10,7 +10,7 @@
 
 namespace vines::hunt {
 
-/// A binary number of so many decimal digits.
+/// Binary floating-point number with this many decimal digits.
 template <unsigned digits>
 using Decimal = boost::multiprecision::number<
     boost::multiprecision::cpp_bin_float<digits>, boost::multiprecision::et_off>;
@@ -19,12 +19,12 @@ template <class Real>
 struct Oscillator {
     Real stiffness, damping, forcing, Omega;
 
-    /// Eq. (2): the absorber's mass flies freely.
+    /// Eq. (2): the ball flies freely.
     static Oscillator free(const Parameters& p) { return with_mass(p, 1); }
-    /// Both masses as one.
+    /// Oscillator and ball moving as one mass.
     static Oscillator stuck(const Parameters& p) { return with_mass(p, 1 + Real(p.epsilon)); }
 
-    /// [x' x] after s without forcing from [x' x] before: {a11, a12, a21, a22}.
+    /// Homogeneous solution: maps [x' x] to its value after time s; {a11, a12, a21, a22}.
     struct Block {
         Real a11, a12, a21, a22;
     };
@@ -48,7 +48,7 @@ struct Oscillator {
     struct Motion {
         Real x, x_dot;
     };
-    /// The response that is left when all else has died out, at a phase.
+    /// Steady-state response at a phase.
     Motion steady(const Real& theta) const {
         using std::cos, std::sin;
         const Real detuning = stiffness - Omega * Omega, loss = damping * Omega,
@@ -57,7 +57,7 @@ struct Oscillator {
                    c = cos(theta);
         return {X * s + Y * c, Omega * (X * c - Y * s)};
     }
-    /// The motion s after a moment where the phase was theta.
+    /// Motion after time s, from a motion at phase theta.
     Motion after(const Motion& m, const Real& theta, const Real& s) const {
         const Block J = transfer(s);
         const Motion now = steady(theta), then = steady(theta + Omega * s);
@@ -85,7 +85,7 @@ private:
     }
 };
 
-/// The phase of the forcing at tau = 0, eq. (3).
+/// Phase of the forcing at tau = 0, eq. (3).
 template <class Real>
 Real phase_at_start(const Parameters& p) {
     return atan(Real(p.lambda) * p.epsilon * p.Omega);

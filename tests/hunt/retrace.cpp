@@ -6,8 +6,8 @@ namespace vines::hunt {
 
 namespace {
 
-/// The zero of a function next to a guess: Newton's method, each step doubling the digits. {value,
-/// slope} = function(s).
+/// Zero of a function near a guess by Newton's method, which doubles the digits in each step.
+/// function(s) returns {value, slope}.
 template <class Function>
 Precise zero_near(Precise s, Function function) {
     for (int step = 0; step < 12; ++step) {
@@ -23,8 +23,8 @@ Precise zero_near(Precise s, Function function) {
 
 Retraced retrace(const Parameters& p, const State& start, const std::vector<Event>& events) {
     const auto free = Oscillator<Precise>::free(p), stuck = Oscillator<Precise>::stuck(p);
-    // Of the absorber in the whole mass.
-    const Precise share = Precise(p.epsilon) / (1 + Precise(p.epsilon));
+    // Fraction of the ball in the total mass.
+    const Precise fraction = Precise(p.epsilon) / (1 + Precise(p.epsilon));
     Oscillator<Precise>::Motion lo{start.x, start.x_dot};
     Precise y = start.y, y_dot = start.y_dot, theta = phase_at_start<Precise>(p), tau = 0;
     Retraced result{{}, 0};
@@ -32,7 +32,7 @@ Retraced retrace(const Parameters& p, const State& start, const std::vector<Even
         PreciseEvent e{event.kind, 0, {}};
         const Precise guess = event.tau - tau;
         if (event.kind == Event::impact) {
-            // A contact of the first moment (a start on the wall) stays there.
+            // A contact at tau = 0 (a start at the wall) stays there.
             if (event.tau > 0)
                 e.since = zero_near(guess, [&](const Precise& s) {
                     const auto at = free.after(lo, theta, s);
@@ -59,14 +59,14 @@ Retraced retrace(const Parameters& p, const State& start, const std::vector<Even
             c.x_dot_before = lo.x_dot;
             c.y_dot_before = y_dot;
             c.x_ddot_before = free.acceleration(lo, theta);
-            // Eq. (4): the momentum stays, the relative speed is reversed with factor R.
+            // Eq. (4): momentum is conserved, the relative speed is reversed with factor R.
             const Precise momentum = lo.x_dot + p.epsilon * y_dot,
                           leaving = -c.R * (lo.x_dot - y_dot);
             y_dot = c.y_dot_after = (momentum - leaving) / (1 + Precise(p.epsilon));
             lo.x_dot = c.x_dot_after = y_dot + leaving;
             c.x_ddot_after = free.acceleration(lo, theta);
         } else if (event.kind == Event::stick) {
-            lo.x_dot += share * (y_dot - lo.x_dot);  // the velocity of the centre of mass
+            lo.x_dot += fraction * (y_dot - lo.x_dot);  // velocity of the centre of mass
         }
         if (event.kind != Event::impact) y_dot = lo.x_dot;
         result.departure =

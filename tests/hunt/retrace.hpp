@@ -1,5 +1,5 @@
-// A run's events once more in 100 digits. The run in double precision says only which event comes
-// next and about when.
+// Events of a run recomputed in 100 digits. The run in double precision only gives the sequence of
+// events and their approximate times.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@ namespace vines::hunt {
 
 using Precise = Decimal<100>;
 
-/// What a run does, in order of time.
+/// An event of a run, in order of time.
 struct Event {
     enum Kind { impact, stick, release } kind;
     double tau;
@@ -29,11 +29,11 @@ public:
     std::vector<Event> events;
 };
 
-/// An event with what its transfer matrix is made from.
+/// An event with the data of its transfer matrix.
 struct PreciseEvent {
     Event::Kind kind;
-    Precise since;                 ///< time since the event before, or since tau = 0
-    Collision<Precise> collision;  ///< of an impact
+    Precise since;                 ///< time since the previous event, or since tau = 0
+    Collision<Precise> collision;  ///< for an impact
 };
 
 struct Retraced {

@@ -9,7 +9,7 @@ namespace vines::hunt {
 
 namespace {
 
-constexpr long most_impacts_of_a_request = 500000;
+constexpr long max_impacts_of_request = 500000;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 Verdict verdict_named(const api::Json& name) {
@@ -28,10 +28,11 @@ Statement sweep_point(const System& system, int transient, int cycles) {
     PointOptions options;
     options.transient_cycles = transient;
     options.cycles = cycles;
-    options.max_impacts = most_impacts_of_a_request;
+    options.max_impacts = max_impacts_of_request;
     const PointResult r = measure(p, system.start, options, {});
     Statement s{};
-    s.door = "sweep, " + std::to_string(transient) + " + " + std::to_string(cycles) + " cycles";
+    s.interface =
+        "sweep, " + std::to_string(transient) + " + " + std::to_string(cycles) + " cycles";
     s.start = simulate(
                   p, system.start,
                   {transient * p.cycle(), transient * transient_impacts_per_cycle, {}}, {})
@@ -59,12 +60,12 @@ Statement sweep_point(const System& system, int transient, int cycles) {
 
 Statement simulation(const System& system, int cycles) {
     Statement s{};
-    s.door = "simulation, " + std::to_string(cycles) + " cycles";
+    s.interface = "simulation, " + std::to_string(cycles) + " cycles";
     s.start = system.start;
     s.cycles = cycles;
     s.request = request(
         system, "\"cycles\":" + std::to_string(cycles) +
-                    ",\"max_impacts\":" + std::to_string(most_impacts_of_a_request) +
+                    ",\"max_impacts\":" + std::to_string(max_impacts_of_request) +
                     ",\"include\":[\"exponents\",\"regime\"],\"exponents\":[\"qr\"]");
     const api::Json answer = api::Json::parse(api::json_text(
         api::simulate_answer(api::read_simulate_request(api::Json::parse(s.request)), {})));

@@ -1,4 +1,4 @@
-// What the product says of a run, through its two doors: a sweep's point and the answer to a
+// Results of the product for a run, from its two interfaces: a sweep's point and the answer to a
 // simulation.
 #pragma once
 
@@ -11,25 +11,25 @@
 namespace vines::hunt {
 
 struct Statement {
-    std::string door;  ///< which door it comes through
-    State start;       ///< of the measured run
-    int cycles;        ///< measured
-    bool complete;     ///< it ran to its end
+    std::string interface;  ///< interface and length of the run, for messages
+    State start;            ///< of the measured run
+    int cycles;             ///< number of measured cycles
+    bool complete;          ///< the run reached its end
     Verdict verdict;
     double lambda1, error;
     bool periodic;
-    int period;  ///< in cycles, with what follows where periodic
+    int period;  ///< in cycles; valid, with `symmetric`, if periodic
     bool symmetric;
-    std::optional<double> captured_at;  ///< in cycles; none: not yet
+    std::optional<double> captured_at;  ///< in cycles; empty: not captured
     bool chaotic_before;
     std::string type;
-    std::string request;  ///< that repeats it
+    std::string request;  ///< reproduces the run
 };
 
-/// measure(), as a sweep does with each of its points.
+/// Result of measure(), as for a sweep's point.
 Statement sweep_point(const System& system, int transient, int cycles);
 
-/// The answer to a request for a run of so many cycles.
+/// Answer to a simulation request over this number of cycles.
 Statement simulation(const System& system, int cycles);
 
 }  // namespace vines::hunt

@@ -24,7 +24,7 @@ double unattached_amplitude(const Parameters& p) {
     return p.epsilon * p.A() / std::hypot(1 - p.Omega * p.Omega, 2 * p.zeta() * p.Omega);
 }
 
-/// Anywhere in the range of the motion, the mass inside its cavity.
+/// A state in the range of the motion, with the ball inside its cavity.
 State random_start(std::mt19937_64& engine, const Parameters& p, double amplitude) {
     State s;
     s.x = amplitude * uniform(engine, -1, 1);
@@ -59,7 +59,8 @@ System table(std::mt19937_64& engine) {
     Parameters p;
     p.damping = random_damping(engine);
     p.R_plus = p.R_minus = chance(engine, 0.5) ? 0.6 : uniform(engine, 0.3, 0.9);
-    // Symmetry breaking, torus and fold of the motion with two impacts per cycle, closed form.
+    // Symmetry breaking, torus and fold of the motion with two impacts per cycle, closed-form
+    // damping.
     const double special[] = {0.007046736303, 0.0162860264, 0.017274732497};
     p.b = chance(engine, 0.2) ? special[engine() % 3] * uniform(engine, 0.99, 1.01)
                               : log_uniform(engine, 0.003, 0.04);
@@ -93,7 +94,7 @@ System neutral(std::mt19937_64& engine) {
         case 0: p.R_plus = p.R_minus = 1; break;
         case 1: p.R_plus = 1; break;
         case 2: p.lambda = 0; break;
-        case 3:  // not touched
+        case 3:  // without impacts
             p.b = unattached_amplitude(p) * uniform(engine, 1.5, 5);
             system.start = {0, 0, 0, 0};
             break;
@@ -153,14 +154,14 @@ System strongly_damped(std::mt19937_64& engine) {
     set_zeta(p, chance(engine, 0.05) ? 1 : log_uniform(engine, 0.5, 9.999));
     p.Omega = log_uniform(engine, 0.2, 3);
     p.G = log_uniform(engine, 1e-3, 10);
-    // Small R leads to sticks, R = 0 to a lost direction at every impact.
+    // Small R leads to sticking; R = 0 loses a direction at every impact.
     p.R_plus = chance(engine, 0.15)  ? 0
                : chance(engine, 0.3) ? uniform(engine, 0.05, 0.3)
                                      : uniform(engine, 0.3, 1);
     p.R_minus = chance(engine, 0.6) ? p.R_plus : uniform(engine, 0.05, 1);
     p.b = unattached_amplitude(p) * log_uniform(engine, 0.1, 1);
     System system = with_random_start(engine, p);
-    if (p.R_plus == 0) system.start.y_dot *= 10;  // fast enough to leave the wall at times
+    if (p.R_plus == 0) system.start.y_dot *= 10;  // fast enough to leave the wall sometimes
     return system;
 }
 

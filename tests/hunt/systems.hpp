@@ -1,5 +1,4 @@
-// Random systems for the hunt, reproducible from the engine's seed, and the requests that repeat
-// them.
+// Random systems, reproducible from the engine's seed, and the requests that reproduce them.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +9,7 @@
 
 namespace vines::hunt {
 
-/// The engine of the system with this number.
+/// Random engine of the system with this number.
 std::mt19937_64 engine_of(std::uint64_t seed, int number);
 
 struct System {
@@ -21,9 +20,9 @@ struct System {
 /// zeta from .5 to 10, with impacts.
 System strongly_damped(std::mt19937_64& engine);
 
-/// Where verdicts go wrong: wide ranges of everything; Table 1 over b; a thin chaotic band beside a
-/// stable orbit; strongly contracting walls with their long periods; neutral motions (R = 1,
-/// zeta = 0, a mass that is not touched).
+/// Kinds of systems in which verdicts tend to be wrong: wide ranges of all parameters; Table 1 over
+/// b; a thin chaotic band next to a stable orbit; strongly contracting walls with long periods;
+/// neutral motions (R = 1, zeta = 0, a ball without impacts).
 enum class Kind { wide, table, band, contracting, neutral };
 inline constexpr Kind kinds[] = {
     Kind::wide, Kind::table, Kind::band, Kind::contracting, Kind::neutral};
@@ -31,8 +30,8 @@ const char* name_of(Kind kind);
 Kind random_kind(std::mt19937_64& engine);
 System random_system(Kind kind, std::mt19937_64& engine);
 
-/// The body of a request for a run of a system, with every digit; `more` is appended, such as
-/// `"cycles":1000`.
+/// Body of a request for a run of a system, with all digits; `more`, such as `"cycles":1000`, is
+/// appended.
 std::string request(const System& system, const std::string& more);
 
 }  // namespace vines::hunt

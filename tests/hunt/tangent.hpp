@@ -1,6 +1,5 @@
-// How deviations [x' x y' y] are carried by flights, stuck phases and impacts, in any arithmetic.
-// Derived anew from the equations of motion, so that it shares nothing with the matrices that it
-// judges.
+// Propagation of deviations [x' x y' y] over flights, sticking phases and impacts, in any
+// arithmetic. Derived independently from the equations of motion, to check the product's matrices.
 #pragma once
 
 #include <vector>
@@ -9,7 +8,7 @@
 
 namespace vines::hunt {
 
-/// A square matrix of any size and arithmetic; no more than what is needed here.
+/// Square matrix of any size and arithmetic.
 template <class Real>
 struct Square {
     explicit Square(int size) : n(size), entries(static_cast<std::size_t>(size) * size, Real(0)) {}
@@ -43,7 +42,7 @@ struct Square {
     std::vector<Real> entries;
 };
 
-/// J of a flight, (19): [x' x] by the oscillator's block, y' stays, y grows by y' s.
+/// J of a flight, eq. (19): [x' x] by the oscillator's block, y' is constant, y grows by y' s.
 template <class Real>
 Square<Real> flight(const Oscillator<Real>& law, const Real& s) {
     const auto a = law.transfer(s);
@@ -53,7 +52,7 @@ Square<Real> flight(const Oscillator<Real>& law, const Real& s) {
     return J;
 }
 
-/// Both masses on their common path, whose deviation is that of the centre of mass.
+/// Transfer matrix of a sticking phase: both masses follow the deviation of the centre of mass.
 template <class Real>
 Square<Real> together(const Oscillator<Real>& law, const Real& epsilon, const Real& s) {
     const auto a = law.transfer(s);
@@ -65,7 +64,7 @@ Square<Real> together(const Oscillator<Real>& law, const Real& epsilon, const Re
     return K;
 }
 
-/// An impact's velocities and the oscillator's accelerations before and after it.
+/// Velocities of an impact, and the oscillator's accelerations before and after it.
 template <class Real>
 struct Collision {
     Real R, x_dot_before, x_dot_after, y_dot_before, y_dot_after, x_ddot_before, x_ddot_after;
@@ -78,7 +77,7 @@ struct Collision {
 };
 
 /// M of an impact: a deviation d meets the wall later by -(g d)/(g f-), g = [0 1 0 -1]; until then
-/// it moves by f-, from then on by f+: M = S + (f+ - S f-) g/(g f-), f = [x'' x' 0 y'].
+/// it moves by f-, afterwards by f+: M = S + (f+ - S f-) g/(g f-), f = [x'' x' 0 y'].
 template <class Real>
 Square<Real> strike(const Collision<Real>& c, const Real& epsilon) {
     const Real gain = (1 + c.R) / (1 + epsilon);

@@ -12,11 +12,11 @@ namespace vines::hunt {
 namespace {
 
 constexpr int transient = 200, measured = 1000;
-// The judge's run is so many times as long as the shortest run that is judged.
+// Length of the reference run, relative to the shortest run under test.
 constexpr int longer = 20;
 
 struct Findings {
-    std::string report;  ///< of what is wrong
+    std::string report;  ///< description of the errors
     int wrong = 0, statements = 0, unjudged = 0;
     int verdicts[4] = {};
     int recurrent = 0, missed = 0, longest = 0;
@@ -27,7 +27,7 @@ void add(
     for (const std::string& sentence : sentences) {
         ++f.wrong;
         f.report +=
-            "WRONG  " + s.door + ", " + kind + ": " + sentence + "\n    " + s.request + "\n";
+            "WRONG  " + s.interface + ", " + kind + ": " + sentence + "\n    " + s.request + "\n";
     }
 }
 
@@ -45,7 +45,7 @@ void judge_statement(
     f.longest = std::max(f.longest, j.recurrent);
     if (!j.missed) return;
     ++f.missed;
-    f.report += "MISSED " + s.door + ", " + kind + ": the state returns every " +
+    f.report += "MISSED " + s.interface + ", " + kind + ": the state returns every " +
                 std::to_string(j.recurrent) + " cycles\n    " + s.request + "\n";
 }
 

@@ -1,6 +1,6 @@
-# Installs the core of the build BUILD into the folder WORK and moves it, where a program that has
-# nothing else of it is then built as that build was (GENERATOR, COMPILER, TYPE, FLAGS), and run: by
-# CMake's package, and by pkg-config.
+# Installs the core of the build in BUILD into the folder WORK and moves the installation. Then
+# builds a program that uses only the installation, with the settings of that build (GENERATOR,
+# COMPILER, TYPE, FLAGS), and runs it: with CMake's package, and with pkg-config.
 file(REMOVE_RECURSE ${WORK})
 function(run)
     execute_process(COMMAND ${ARGV} COMMAND_ERROR_IS_FATAL ANY)

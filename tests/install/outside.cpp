@@ -1,4 +1,4 @@
-// The paper's system: does the core, once installed, say what it says here?
+// Checks that the installed core gives the reference exponent of the paper's system.
 #include <cmath>
 #include <cstdio>
 #include <vines/core/analysis/analysis.hpp>

@@ -1,4 +1,4 @@
-// What is installed, by CMake and in Debian's packages, of the build that the program is of.
+// Files installed by CMake and by the Debian packages, from the build of the program under test.
 import assert from "node:assert/strict";
 import {spawnSync} from "node:child_process";
 import {mkdtempSync, readdirSync, readFileSync, rmSync, statSync} from "node:fs";
@@ -11,7 +11,7 @@ const build = dirname(program);
 const folder = mkdtempSync(join(tmpdir(), "vines-packages-"));
 after(() => rmSync(folder, {recursive: true}));
 
-/** Runs a program to its end, which has to be good: what it wrote. */
+/** Runs a program that must succeed. Returns its output. */
 function run(file, ...args) {
   const {status, stdout, stderr} = spawnSync(file, args, {cwd: folder, encoding: "utf8"});
   assert.equal(status, 0, `${file} ${args.join(" ")}\n${stdout}${stderr}`);
@@ -21,11 +21,11 @@ function run(file, ...args) {
 const version = run(program, "--version").trim().split(" ").at(-1);
 const architecture = run("dpkg", "--print-architecture").trim();
 
-/** The paths of all files below a folder. */
+/** Paths of all files below a folder. */
 const filesOf = (path) =>
   readdirSync(path, {recursive: true}).filter((name) => statSync(join(path, name)).isFile());
 
-test("cmake --install puts each file where its readers look for it", () => {
+test("cmake --install puts each file where it is expected", () => {
   const prefix = join(folder, "prefix");
   run("cmake", "--install", build, "--prefix", prefix, "--component", "program");
   assert.deepEqual(filesOf(prefix).sort(), [
@@ -45,7 +45,7 @@ test("cmake --install puts each file where its readers look for it", () => {
   );
 });
 
-/** By package: its file, control fields and the paths in it. */
+/** Each package's file, control fields and paths. */
 const packages = {};
 before(() => {
   run(
@@ -70,7 +70,7 @@ before(() => {
   }
 });
 
-test("the package of the program has what it needs, and depends on the libraries it loads", () => {
+test("the program's package is complete and depends on the libraries that it loads", () => {
   const {fields, paths} = packages.vines;
   assert.deepEqual(paths.sort(), [
     "/etc/default/vines",
@@ -88,7 +88,7 @@ test("the package of the program has what it needs, and depends on the libraries
   assert.doesNotMatch(fields.Depends, /-dev/);
 });
 
-test("the package of the core has its headers, library and what finds them", () => {
+test("the core's package has headers, library, and the files for CMake and pkg-config", () => {
   const {fields, paths} = packages["libvines-core-dev"];
   assert.match(fields.Depends, /libeigen3-dev/);
   for (const end of [
@@ -104,7 +104,7 @@ test("the package of the core has its headers, library and what finds them", () 
   assert.ok(!paths.some((path) => path.includes(folder)));
 });
 
-test("the unit of the package starts the program of the package, which root owns", () => {
+test("the package's unit starts the package's program, which is owned by root", () => {
   const {file} = packages.vines;
   const list = run("dpkg-deb", "-c", file);
   for (const line of list.trim().split("\n")) assert.match(line, /^\S+ root\/root /);
@@ -117,10 +117,10 @@ test("the unit of the package starts the program of the package, which root owns
   );
 });
 
-const lintian = spawnSync("lintian", ["--version"]).error ? {skip: "there is no lintian"} : {};
+const lintian = spawnSync("lintian", ["--version"]).error ? {skip: "lintian is not installed"} : {};
 
-test("lintian has nothing to say of the packages", lintian, () => {
-  // Only a build for the prefix /usr, as that of the preset `package`, knows Debian's library folder.
+test("lintian reports nothing about the packages", lintian, () => {
+  // Only a build for the prefix /usr, such as the preset `package`, uses Debian's library folder.
   const suppressed = "pkg-config-unavailable-for-cross-compilation";
   const files = Object.values(packages).map(({file}) => file);
   const words = ["--allow-root", "--fail-on", "none", "--suppress-tags", suppressed];

@@ -1,7 +1,7 @@
-// Whether the parts of parts.cpp take as many instructions as was recorded: count.mjs [record].
-// More than a tenth above the record fails, more than a tenth below is said. A count is the same
-// from run to run but for some dozen instructions of the allocator's. Exit code 77 where nothing can
-// be compared: CTest's word for a test that is skipped.
+// Compares the instruction counts of the parts in parts.cpp with the recorded ones: count.mjs
+// [record]. More than 10 % above the record fails; more than 10 % below is reported. Counts vary
+// from run to run only by a few dozen instructions of the allocator. Exit code 77, with which CTest
+// marks a test as skipped, if no comparison is possible.
 import {spawnSync} from "node:child_process";
 import {mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync} from "node:fs";
 import {tmpdir} from "node:os";
@@ -14,8 +14,8 @@ const program =
   process.env.INSTRUCTION_PARTS ??
   new URL("../../build/release/tests/instruction_parts", import.meta.url).pathname;
 
-// The C library picks memcpy by the processor; this is the one that every x86-64 has. Left to it,
-// the copies alone are 7 % of a trajectory.
+// The C library selects memcpy by the processor; this setting selects the one of every x86-64.
+// Otherwise the copies alone can be 7 % of a trajectory.
 const everywhere = {
   ...process.env,
   GLIBC_TUNABLES: "glibc.cpu.hwcaps=-AVX,-AVX2,-FMA,-FMA4,-BMI2,-ERMS,-SSSE3",
@@ -35,7 +35,7 @@ const skip = (why) => {
   process.exit(77);
 };
 
-/** What the program was compiled by, and its parts. */
+/** The compiler of the program, and its parts. */
 const described = () => {
   const [compiler, ...lines] = run(program, []).trim().split("\n");
   const parts = lines.map((line) => {
@@ -45,7 +45,7 @@ const described = () => {
   return {compiler, parts};
 };
 
-/** Instructions per unit of each part, by its name. */
+/** Instructions per unit of each part, by name. */
 const counted = (parts) => {
   const folder = mkdtempSync(join(tmpdir(), "instructions-"));
   try {
@@ -53,7 +53,7 @@ const counted = (parts) => {
     const out = `--callgrind-out-file=${join(folder, "out")}`;
     run("valgrind", ["--tool=callgrind", out, "--toggle-collect=part_*", ...dumps, program]);
     const totals = {};
-    // Two of each part, in the order of their numbers: the second one finds its tables made.
+    // Two dumps of each part, in order of their numbers: the second finds its tables filled.
     const number = (file) => Number(file.split(".")[1] ?? 0);
     for (const file of readdirSync(folder).sort((a, b) => number(a) - number(b))) {
       const text = readFileSync(join(folder, file), "utf8");
@@ -67,7 +67,7 @@ const counted = (parts) => {
 };
 
 if (spawnSync("valgrind", ["--version"]).error)
-  skip("there is no valgrind; scripts/setup test installs it");
+  skip("valgrind is not installed; scripts/setup test installs it");
 const {compiler, parts} = described();
 const all = JSON.parse(readFileSync(recorded, "utf8"));
 
@@ -85,7 +85,7 @@ for (const {name, unit} of parts) {
   const change = now[name] / before[name] - 1;
   const percent = (100 * change).toFixed(1);
   const line = `${name}, ${now[name]} instructions per ${unit}, recorded ${before[name]}`;
-  // NaN: a part that nothing is recorded of.
+  // NaN: nothing is recorded for the part.
   if (Math.abs(change) <= most) {
     console.log(`as before: ${line}`);
     continue;

@@ -1,7 +1,7 @@
-// What the instructions are counted of: each part is a function that callgrind knows by its name
-// (counting begins and ends with it, see count.mjs). Main calls all of them once to fill the tables
-// that a thread keeps, and once to be counted. It prints what it was compiled by, and of each part
-// its name, its unit and how many units it has done.
+// Program whose instructions are counted. Each part is a function that callgrind recognises by its
+// name (counting begins and ends with it, see count.mjs). main() calls all parts twice: first to
+// fill the tables that a thread keeps, then to be counted. It prints the compiler, and for each
+// part its name, its unit and the number of units.
 #include <array>
 #include <cstdio>
 #include <deque>
@@ -10,8 +10,8 @@
 #include "api/json_text.hpp"
 #include "api/request.hpp"
 #include "api/simulate.hpp"
+#include "core/motion/batch_run.hpp"
 #include "core/motion/record.hpp"
-#include "core/motion/together.hpp"
 #include "core/sweep/point.hpp"
 
 using namespace vines;
@@ -43,9 +43,9 @@ double spectrum(double b) {
     return static_cast<double>(lyapunov.product().impacts());
 }
 
-/// Eight motions side by side, by the search that every processor can do.
+/// Eight motions at once, with the vectorised search for any processor.
 double lanes(double b, bool observed) {
-    struct Once : RunLine {
+    struct Once : RunSource {
         std::optional<RunPlan> next(const std::optional<Outcome>& last) override {
             if (last) return std::nullopt;
             return RunPlan{p, default_state(p), limits, observers};
@@ -54,16 +54,16 @@ double lanes(double b, bool observed) {
         Limits limits{1e9, impacts, {}};
         std::vector<Observer*> observers;
     };
-    std::array<Once, most_lines> lines;
-    std::vector<RunLine*> all;
+    std::array<Once, max_batch_runs> lines;
+    std::vector<RunSource*> all;
     std::deque<Lyapunov> spectra;
     for (Once& line : lines) {
         line.p = closed_form(b += 1e-5);
         if (observed) line.observers = {&spectra.emplace_back(line.p, 0, 1e9, qr_alone)};
         all.push_back(&line);
     }
-    simulate_together(all, baseline_search().search);
-    return most_lines * impacts;
+    simulate_batch(all, baseline_search().search);
+    return max_batch_runs * impacts;
 }
 
 double point(double b) {

@@ -1,4 +1,4 @@
-// What measuring chains do to a record, one thing at a time: each effect has a name.
+// Errors of measuring chains, mostly one at a time: each effect has a name.
 #pragma once
 
 #include <string>
@@ -11,11 +11,11 @@ namespace vines::test {
 struct Effect {
     std::string name;
     Sensors sensors;
-    Misinformation told = {};
-    bool is_hard = false;  ///< more than a record can make good: only a verdict must not be wrong
+    GivenErrors given_errors = {};
+    bool is_hard = false;  ///< not fully recoverable: only the verdict must not be wrong
 };
 
-/// Those that docs/measurements.md has a table of.
+/// The effects in the table of docs/measurements.md.
 std::vector<Effect> laboratory_effects();
 
 }  // namespace vines::test

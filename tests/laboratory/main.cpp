@@ -1,5 +1,5 @@
-// The table of docs/measurements.md: what becomes of an identification by each thing that a
-// laboratory does to a record.
+// Makes the table of docs/measurements.md: the error of identification under each effect of a
+// measuring chain.
 //
 //     scripts/laboratory --seeds 3 --seconds 20 --only Butterworth
 #include <fmt/format.h>
@@ -30,16 +30,17 @@ int main(int argc, char** argv) {
     double seconds = 20, R = 0.85, settling = 0;
     std::vector<double> widths = {0.015, 0.009};
     std::string only;
-    CLI::App app("Identifies records of a simulated laboratory and holds them against the truth");
-    app.add_option("--seeds", seeds, "records of each effect and b");
-    app.add_option("--first-seed", first_seed, "of the first of them");
-    app.add_option("--seconds", seconds, "that a record lasts");
-    app.add_option("--b", widths, "m");
-    app.add_option("--R", R, "of both walls");
+    CLI::App app(
+        "Identifies records of a simulated laboratory and compares the results with the truth");
+    app.add_option("--seeds", seeds, "number of records for each effect and b");
+    app.add_option("--first-seed", first_seed, "seed of the first record");
+    app.add_option("--seconds", seconds, "length of a record");
+    app.add_option("--b", widths, "clearance b, m");
+    app.add_option("--R", R, "coefficient of restitution of both walls");
     app.add_option(
         "--settling", settling,
-        "s from the start to the records; without: once it has settled, where it does not stick");
-    app.add_option("--only", only, "effects whose names hold this");
+        "s from the start to the record; default: a settled part of the motion without sticking");
+    app.add_option("--only", only, "only effects whose names contain this text");
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
@@ -57,7 +58,7 @@ int main(int argc, char** argv) {
             for (int k = 0; k < seeds; ++k) {
                 Sensors sensors = effect.sensors;
                 sensors.seed = static_cast<std::uint64_t>(first_seed + k);
-                const Score s = score_of(measured(motion, sensors, effect.told));
+                const Score s = score_of(measured(motion, sensors, effect.given_errors));
                 ++records, right += s.is_right(), wrong_verdicts += s.verdict_wrong;
                 fmt::print(
                     "| {} | {:g} | {} of {} | {} | {:.1f} % | {:.4f} | {:.2f} % | {:.1f} % | {}{} "

@@ -12,17 +12,17 @@ namespace {
 
 constexpr double found_within = 1.5e-3;  // s
 
-/// Gaps that may hide an impact.
+/// Gaps that can hide an impact.
 std::vector<TimeGap> long_gaps(const Experiment& e) {
     std::vector<TimeGap> gaps = time_gaps(e.record);
     std::erase_if(gaps, [&](const TimeGap& g) { return g.to - g.from < 0.01 * e.omega0; });
     return gaps;
 }
 
-/// Those of a chatter that ends in a stick are one contact: the stick.
+/// Marks the impacts of chatters that end in a sticking phase: they count as one contact.
 std::vector<char> are_of_sticks(const Experiment& e) {
     std::vector<char> are(e.impacts.size(), 0);
-    for (const StuckPhase& s : e.sticks) {
+    for (const StickingPhase& s : e.sticks) {
         auto end = std::find_if(e.impacts.begin(), e.impacts.end(), [&](const Impact& i) {
             return i.tau > s.start.tau;
         });
@@ -39,7 +39,7 @@ bool can_be_seen(const Experiment& e, const std::vector<TimeGap>& gaps, const Im
     });
 }
 
-/// The exponent of the true impacts that can be seen: what a perfect identification would give.
+/// Exponent of the visible true impacts: result of a perfect identification.
 double true_lambda1(
     const Experiment& e, const std::vector<TimeGap>& gaps, const std::vector<Impact>& seen) {
     std::vector<IdentifiedImpact> impacts = listed(seen);
@@ -72,7 +72,7 @@ Score score_of(const Experiment& e, const MeasurementResult& result) {
     std::vector<char> taken(e.impacts.size(), 0);
     std::vector<double> off;
     for (const IdentifiedImpact& i : result.found.impacts) {
-        // Of a chatter that comes to rest the last ones follow each other too soon to be compared.
+        // The last impacts of a chatter are too close to each other to be compared.
         if (i.is_left_out() || i.comes_to_rest) continue;
         const auto nearest = std::min_element(
             e.impacts.begin(), e.impacts.end(), [&](const Impact& a, const Impact& b) {
@@ -101,7 +101,7 @@ Score score_of(const Experiment& e, const MeasurementResult& result) {
         R_off(result.found.plus.R, e.parameters.R_plus),
         R_off(result.found.minus.R, e.parameters.R_minus));
     s.b_error = result.found.b_fitted / e.parameters.b - 1;
-    // Of a regular motion lambda1 is near -zeta or 0: there .04 of 1/tau is the scale.
+    // lambda1 of a regular motion is near -zeta or 0; its errors are relative to .04.
     const double lambda1 = result.exponents.all().qr()[0];
     const double truth = !gaps.empty() ? true_lambda1(e, gaps, seen) : e.lambda1;
     s.lambda1_error = std::abs(lambda1 - truth) / std::max(std::abs(truth), 0.04);
@@ -117,7 +117,7 @@ Score score_of(const Experiment& e) {
     s.impacts = static_cast<long>(e.impacts.size());
     s.R_error = s.lambda1_error = 1;
     try {
-        s = score_of(e, conclude(m));
+        s = score_of(e, evaluate_measurement(m));
     } catch (const TooFewImpacts&) {}
     s.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return s;

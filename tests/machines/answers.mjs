@@ -1,19 +1,19 @@
-// Answers to be held against each other.
+// Responses in a form that can be compared byte by byte.
 
 /** The response to one of the golden requests. */
 export const ask = async (url, {path, body, type = "application/json"}) => {
   const text = typeof body === "string" ? body : JSON.stringify(body);
   const options = body === undefined ? {} : {method: "POST", body: text};
-  // A fault tells the request's name, which the service would make up.
+  // Problems contain the request ID, which the service would generate.
   const headers = {"Content-Type": type, "X-Request-ID": "same"};
   return await fetch(url + path, {...options, headers});
 };
-/** A sweep's points come in any order, its progress by the clock. */
+/** The text with its lines sorted and without progress lines: order and progress of a sweep vary. */
 const steady = (text) =>
   text
     .split("\n")
     .filter((line) => !line.startsWith('{"type":"progress"'))
     .sort()
     .join("\n");
-/** Its text, the same for the same answer. */
+/** The text of the response, independent of the order of a sweep's lines. */
 export const answerOf = async (url, request) => steady(await (await ask(url, request)).text());

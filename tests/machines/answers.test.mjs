@@ -1,5 +1,5 @@
-// Answers whose bytes are published (answers.json): every compiler, every instruction set and every
-// build gives the same. After a change that is meant to change them:
+// The service's responses have the bytes whose SHA-256 is published in answers.json, with every
+// compiler, instruction set and build. After an intended change of the responses:
 //   VINES=build/release/vines PUBLISH=1 node --test tests/machines/answers.test.mjs
 import assert from "node:assert/strict";
 import {createHash} from "node:crypto";
@@ -11,14 +11,14 @@ import {answerOf, ask} from "./answers.mjs";
 
 const file = new URL("answers.json", import.meta.url);
 
-/** Without what a build says of itself. */
+/** The text without commit, version and provenance, which depend on the build. */
 const asPublished = (text) =>
   text
     .replace(/,"provenance":.*$/m, "}")
     .replace(/"commit":"[^"]*",/, "")
     .replaceAll(/"version":"[^"]*"/g, '"version":""');
 
-test("answers have the bytes that are published", async (t) => {
+test("responses have the published bytes", async (t) => {
   const service = await startService();
   t.after(() => service.stop());
   const simulate = async (body) => (await ask(service.url, {path: "/v1/simulate", body})).json();

@@ -1,5 +1,5 @@
-// Whether an answer depends on the processor. The C library chooses variants of its functions by
-// what the processor offers; told to do without fused operations, it computes as an older one does.
+// Responses do not depend on the processor. The C library selects variants of its functions by the
+// instruction sets of the processor; without fused operations it computes as on an older processor.
 import assert from "node:assert/strict";
 import {spawnSync} from "node:child_process";
 import {readFileSync} from "node:fs";
@@ -10,24 +10,24 @@ import {answerOf, ask} from "./answers.mjs";
 
 const older = {GLIBC_TUNABLES: "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F,-FMA4"};
 
-/** Why there is nothing to compare here, or false. */
+/** The reason to skip the comparison on this computer, or false. */
 const nothingToCompare = () => {
   if (!process.report.getReport().header.glibcVersionRuntime)
-    return "the C library is not glibc: it cannot be told what the processor offers";
+    return "the C library is not glibc: its variants cannot be selected";
   if (!/ fma /.test(readFileSync("/proc/cpuinfo", "utf8")))
-    return "the processor has no fused operations that could be left out";
+    return "the processor has no fused operations to disable";
   return false;
 };
 
-test("an answer is the same, byte for byte, on a processor without fused operations", {
+test("a response is the same, byte for byte, on a processor without fused operations", {
   skip: nothingToCompare(),
 }, async () => {
   const services = [await startService(), await startService([], older)];
   try {
     const simulate = async (body) =>
       (await ask(services[0].url, {path: "/v1/simulate", body})).json();
-    const asked = requests.filter(({path}) => path.startsWith("/v1/"));
-    for (const request of [...asked, ...(await identifications(simulate))]) {
+    const routed = requests.filter(({path}) => path.startsWith("/v1/"));
+    for (const request of [...routed, ...(await identifications(simulate))]) {
       const [here, there] = await Promise.all(services.map(({url}) => answerOf(url, request)));
       assert.ok(here === there, `${request.name} differs`);
     }
@@ -36,7 +36,7 @@ test("an answer is the same, byte for byte, on a processor without fused operati
   }
 });
 
-test("core and api call no function of the C library that its variants round differently", () => {
+test("core and api call no function of the C library whose variants round differently", () => {
   const inexact =
     /^c?(sin|cos|sincos|tan|exp|exp2|exp10|expm1|log|log2|log10|log1p|pow|cbrt|hypot|erf|erfc|[lt]gamma|a?(sin|cos|tan)h?|atan2|abs|arg)[fl]?$/;
   for (const library of process.env.LIBRARIES.split(" ")) {

@@ -1,4 +1,4 @@
-// The OpenAPI document of a running service, and answers held against it.
+// The OpenAPI document of a running service, and the validation of responses against it.
 import assert from "node:assert/strict";
 import {createRequire} from "node:module";
 
@@ -8,7 +8,7 @@ const Ajv = require("ajv/dist/2020").default;
 export class Document {
   constructor(json) {
     this.json = json;
-    // An OpenAPI document is no schema, but holds some.
+    // Not strict: the document as a whole is not a schema, it only contains schemas.
     this.ajv = new Ajv({strict: false}).addSchema(json, "document");
   }
 
@@ -16,14 +16,14 @@ export class Document {
     return new Document(await (await fetch(`${url}/v1/openapi.json`)).json());
   }
 
-  /** What a reference stands for. */
+  /** The value to which a reference points; any other value itself. */
   resolved(value) {
     if (!value?.$ref) return value;
     const path = value.$ref.slice(2).split("/");
     return path.reduce((at, name) => at[name], this.json);
   }
 
-  /** Why a value is none of a schema among the components; empty: it is one. */
+  /** Why a value does not match a schema of the components; empty if it does. */
   faults(name, value) {
     const valid = this.ajv.getSchema(`document#/components/schemas/${name}`);
     return valid(value) ? "" : this.ajv.errorsText(valid.errors);
@@ -33,7 +33,7 @@ export class Document {
     assert.equal(this.faults(name, value), "", what);
   }
 
-  /** Fails unless an answer is one that the document has for this operation. */
+  /** Fails unless the document describes the response of this operation: status, headers, body. */
   check(answer, path, method, what = `${method} ${path}`) {
     const operation = this.json.paths[path][method.toLowerCase()];
     const response = this.resolved(operation.responses[answer.status]);
@@ -51,7 +51,7 @@ export class Document {
   }
 }
 
-/** {status, headers, text} of an answer. */
+/** Sends a request and returns {status, headers, text} of the response. */
 export async function ask(url, path, {body, type = "application/json", method, headers = {}} = {}) {
   const text = body === undefined || typeof body === "string" ? body : JSON.stringify(body);
   const post = {method: "POST", body: text, headers: {"Content-Type": type, ...headers}};
@@ -59,7 +59,7 @@ export async function ask(url, path, {body, type = "application/json", method, h
   return {status: response.status, headers: response.headers, text: await response.text()};
 }
 
-/** The same of what came over a socket. */
+/** {status, headers, text} of a response read from a socket. */
 export function parsed(bytes) {
   const [head, ...rest] = bytes.split("\r\n\r\n");
   const [line, ...lines] = head.split("\r\n");

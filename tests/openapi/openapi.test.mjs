@@ -1,4 +1,4 @@
-// What the OpenAPI document says of requests and answers is so, to the last key.
+// The OpenAPI document agrees with real requests and responses, to the last key.
 import assert from "node:assert/strict";
 import {mkdtemp, readFile, rm, writeFile} from "node:fs/promises";
 import {tmpdir} from "node:os";
@@ -23,10 +23,10 @@ before(async () => {
 });
 after(() => service.stop());
 
-/** As the service has it: the path of a target. */
+/** The path of a request target. */
 const pathOf = (target) => target.split("?")[0];
 
-/** Asks, and holds the answer against the document. */
+/** Sends a request and checks the response against the document. */
 async function checked(target, request = {}, name = target) {
   const method = request.method ?? (request.body === undefined ? "GET" : "POST");
   const answer = await ask(service.url, target, request);
@@ -34,7 +34,7 @@ async function checked(target, request = {}, name = target) {
   return answer;
 }
 
-test("the document is clean by the recommended rules", async () => {
+test("the document passes the recommended lint rules", async () => {
   const {lintFromString, loadConfig} = require("@redocly/openapi-core");
   const configPath = fileURLToPath(new URL("redocly.yaml", import.meta.url));
   const config = await loadConfig({configPath});
@@ -48,7 +48,7 @@ test("the document is clean by the recommended rules", async () => {
 
 // Examples.
 
-/** The requests of an operation's examples: [name, target, request]. */
+/** The example requests of an operation: [name, target, request]. */
 function exampleRequests(path, method, operation) {
   if (method === "post")
     return Object.entries(operation.requestBody.content["application/json"].examples).map(
@@ -59,7 +59,7 @@ function exampleRequests(path, method, operation) {
   return [["query", given.length ? `${path}?${query}` : path, {}]];
 }
 
-/** Equal but for the last digits of numbers. */
+/** Equal except for the last digits of numbers. */
 function alike(shown, got, at = "") {
   if (typeof shown === "number" && typeof got === "number")
     return assert.ok(Math.abs(shown - got) <= 1e-9 * Math.max(1, Math.abs(shown)), `${at}: ${got}`);
@@ -70,7 +70,7 @@ function alike(shown, got, at = "") {
       alike(value, got[name], `${at}.${name}`);
 }
 
-test("every request of an example is answered as the document says, and with the answer shown", async () => {
+test("every example request gets a response that matches the document and its example", async () => {
   const shown = new Set();
   for (const [path, methods] of Object.entries(document.json.paths))
     for (const [method, operation] of Object.entries(methods)) {
@@ -95,7 +95,7 @@ test("every request of an example is answered as the document says, and with the
   assert.deepEqual([...shown].sort(), ["Identification", "Manifold", "Simulation", "SweepLine"]);
 });
 
-test("every example of an answer is one", () => {
+test("every example response matches its schema", () => {
   const responses = Object.values(document.json.paths).flatMap((methods) =>
     Object.values(methods).flatMap((operation) => Object.values(operation.responses)),
   );
@@ -109,9 +109,9 @@ test("every example of an answer is one", () => {
   assert.ok(count >= 25, `${count} examples`);
 });
 
-// Real answers.
+// Real responses.
 
-test("the answers of many requests are as the document says", async () => {
+test("responses to many requests match the document", async () => {
   const simulate = async (body) =>
     JSON.parse((await ask(service.url, "/v1/simulate", {body})).text);
   const measurements = await identifications(simulate);
@@ -123,7 +123,7 @@ test("the answers of many requests are as the document says", async () => {
   for (const body of sweeps) await checked("/v1/sweep", {body});
 });
 
-test("every preset with everything included is as the document says", async () => {
+test("every preset with all parts included matches the document", async () => {
   const {presets} = JSON.parse((await checked("/v1/presets")).text);
   assert.ok(presets.length >= 37, `${presets.length} presets`);
   for (const {name} of presets) {
@@ -138,7 +138,7 @@ test("every preset with everything included is as the document says", async () =
   }
 });
 
-test("the answers to records are as the document says", async () => {
+test("responses to records match the document", async () => {
   const csv = await measured(service.url, "fig20", 6);
   const target = "/v1/identify?preset=fig20&b=0.015";
   for (const [query, body] of [
@@ -149,7 +149,7 @@ test("the answers to records are as the document says", async () => {
       assert.equal((await checked(target + query, {body, type})).status, 200);
 });
 
-test("a sweep that is stopped is as the document says, to its last line", async () => {
+test("an interrupted sweep matches the document, including its last line", async () => {
   const stopped = await startService();
   const body = {axes: [{parameter: "b", from: 0.008, to: 0.03, count: 50000}]};
   const answer = ask(stopped.url, "/v1/sweep", {body});
@@ -165,7 +165,7 @@ test("a sweep that is stopped is as the document says, to its last line", async 
   assert.deepEqual([...types].sort(), ["error", "point", "progress", "start"]);
 });
 
-test("an answer that is known is 304", async () => {
+test("a request with the current ETag gets 304", async () => {
   for (const target of ["/v1/presets", "/version", "/v1/simulate?preset=fig11&include=energy"]) {
     const tag = (await checked(target)).headers.get("etag");
     const again = await checked(target, {headers: {"If-None-Match": tag}});
@@ -179,7 +179,7 @@ const head = (line, ...headers) => [line, "Host: localhost", ...headers, "", ""]
 const get = "GET /v1/simulate HTTP/1.1";
 const post = "POST /v1/simulate HTTP/1.1";
 
-/** Requests that get each status, as bytes. */
+/** For each status, the bytes of a request that gets it. */
 const refused = {
   400: `${head(post, "Content-Length: 1", "Connection: close")}{`,
   403: head(get, "Sec-Fetch-Site: cross-site"),
@@ -198,7 +198,7 @@ const refused = {
   505: head("GET /v1/simulate HTTP/2.0"),
 };
 
-test("each refusal is a problem as the document says", async () => {
+test("each refusal is a problem that matches the document", async () => {
   for (const [status, bytes] of Object.entries(refused)) {
     const answer = parsed(await exchange(service.url, bytes));
     assert.equal(answer.status, Number(status), answer.text);
@@ -207,7 +207,7 @@ test("each refusal is a problem as the document says", async () => {
   }
 });
 
-test("without a key it is a problem as the document says, where the service asks for one", async (t) => {
+test("a request without the required key gets a problem that matches the document", async (t) => {
   const folder = await mkdtemp(join(tmpdir(), "vines-keys-"));
   t.after(() => rm(folder, {recursive: true}));
   await writeFile(join(folder, "keys"), "a-key-of-the-tests\n");
@@ -218,7 +218,7 @@ test("without a key it is a problem as the document says, where the service asks
   document.check(answer, "/v1/presets", "GET");
 });
 
-/** What a 503 says is lacking. */
+/** `lacking` of a 503 response. */
 async function lackingOf(flags, path, body) {
   const small = await startService(flags);
   const answer = await ask(small.url, path, {body});
@@ -228,14 +228,14 @@ async function lackingOf(flags, path, body) {
   return JSON.parse(answer.text).lacking;
 }
 
-test("a 503 says what is lacking, as the document says", async () => {
+test("a 503 names the lacking resource and matches the document", async () => {
   const axes = [{parameter: "b", values: [0.01]}];
   assert.equal(await lackingOf(["--sweeps", "0"], "/v1/sweep", {axes}), "sweeps");
   const large = " ".repeat(100000);
   assert.equal(await lackingOf(["--memory-limit", "1"], "/v1/simulate", large), "memory");
 });
 
-test("of a server that is stopping /readyz is as the document says", async () => {
+test("/readyz of a stopping server matches the document", async () => {
   const draining = await startService(["--drain", "30"]);
   process.kill(draining.pid, "SIGTERM");
   let answer;
@@ -248,9 +248,9 @@ test("of a server that is stopping /readyz is as the document says", async () =>
   await draining.stop();
 });
 
-// What is none.
+// Changed responses.
 
-/** Calls visit(object, path) for each object of a value, of lists for the first entry alone. */
+/** Calls visit(object, path) for each object in a value; in lists for the first entry only. */
 function eachObject(value, visit, path = "") {
   if (Array.isArray(value)) return eachObject(value[0], visit, `${path}[0]`);
   if (value === null || typeof value !== "object") return;
@@ -259,8 +259,8 @@ function eachObject(value, visit, path = "") {
 }
 
 /**
- * Fails if a change of an answer goes unseen: a key more anywhere, or a text for any number.
- * Returns how many numbers there are.
+ * Fails if a schema accepts a changed response: an additional key in any object, or a string in
+ * place of any number. Returns the count of numbers.
  */
 function refusesChanges(schema, answer) {
   document.holds(schema, answer);
@@ -268,14 +268,14 @@ function refusesChanges(schema, answer) {
   eachObject(answer, (object, path) => {
     if (/\.(origin|symbols)$|\.request\b/.test(path)) return;
     object.unknown = 1;
-    assert.ok(document.faults(schema, answer), `${schema}: a key more in ${path}`);
+    assert.ok(document.faults(schema, answer), `${schema}: an additional key in ${path}`);
     delete object.unknown;
     for (const [name, value] of Object.entries(object)) {
-      if (name === "start") continue; // of a sweep's point a number or a name
+      if (name === "start") continue; // a number or a name in a sweep's point
       const isColumn = Array.isArray(value) && typeof value[0] === "number";
       if (typeof value !== "number" && !isColumn) continue;
       object[name] = isColumn ? ["1", ...value.slice(1)] : "1";
-      assert.ok(document.faults(schema, answer), `${schema}: a text as ${path}.${name}`);
+      assert.ok(document.faults(schema, answer), `${schema}: a string as ${path}.${name}`);
       object[name] = value;
       ++changes;
     }
@@ -284,7 +284,7 @@ function refusesChanges(schema, answer) {
   return changes;
 }
 
-test("a changed answer is refused, and an empty one", async () => {
+test("a changed or empty response does not match the document", async () => {
   const body = {...simulations[1], max_points: 256};
   const run = JSON.parse((await checked("/v1/simulate", {body})).text);
   assert.ok(refusesChanges("Simulation", run) > 100);
@@ -314,7 +314,7 @@ test("a changed answer is refused, and an empty one", async () => {
   assert.ok(refusesChanges("Identification", structuredClone(example)) > 40);
 });
 
-test("a changed line of a sweep is refused", async () => {
+test("a changed line of a sweep does not match the document", async () => {
   const changed = new Set();
   for (const body of sweeps) {
     const {text} = await checked("/v1/sweep", {body});
@@ -333,7 +333,7 @@ test("a changed line of a sweep is refused", async () => {
 
 // A client.
 
-/** Programs against a client that is made from the document: what the compiler finds in each. */
+/** The compiler's diagnostics for each program, compiled with types generated from the document. */
 async function compiled(programs) {
   const {default: make, astToString} = await import(
     pathToFileURL(require.resolve("openapi-typescript").replace(/cjs$/, "mjs"))
@@ -357,7 +357,7 @@ async function compiled(programs) {
   return found.map((list) => list.map((d) => ts.flattenDiagnosticMessageText(d.messageText, "\n")));
 }
 
-test("a client in TypeScript made from the document reads answers without a cast", async () => {
+test("a TypeScript client generated from the document reads responses without a cast", async () => {
   const program = await readFile(new URL("client.ts", import.meta.url), "utf8");
   const [right, wrong] = await compiled([
     program,
@@ -367,7 +367,7 @@ test("a client in TypeScript made from the document reads answers without a cast
   assert.notDeepEqual(wrong, []);
 });
 
-test("a request that does not end is a problem as the document says", async () => {
+test("an incomplete request gets a problem that matches the document", async () => {
   const answer = parsed(await unended.ended);
   assert.equal(answer.status, 408);
   document.check(answer, "/v1/simulate", "GET");

@@ -1,10 +1,9 @@
-// What axe-core finds on each tab, light and dark: nothing.
+// axe-core reports no violations on any tab, light or dark.
 import assert from "node:assert/strict";
 import {test} from "node:test";
 import {measured} from "../record.mjs";
-import {findings} from "./axe.mjs";
 import {drawn, identified, swept} from "./browser.mjs";
-import {browser, service} from "./support.mjs";
+import {browser, findings, service} from "./support.mjs";
 
 const tabs = {
   "a simulation with its details": async (page) => {

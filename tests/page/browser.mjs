@@ -1,4 +1,4 @@
-// A real Chromium for the page's tests.
+// Chromium for the page's tests.
 import {mkdtemp, rm} from "node:fs/promises";
 import {createRequire} from "node:module";
 import {tmpdir} from "node:os";
@@ -8,16 +8,16 @@ const require = createRequire(new URL("../../web/package.json", import.meta.url)
 const {chromium} = require("playwright-core");
 
 /**
- * A page breaks off what a newer input has overtaken. (And Chromium now and then calls a request
- * aborted whose stream a script has read to its end.)
+ * True for requests aborted by the page because newer input replaced them. Chromium sometimes also
+ * reports a fully read stream as aborted.
  */
 const brokenOff = (request) =>
   /\/v1\/(simulate|sweep|identify)\b/.test(request.url()) &&
   request.failure().errorText === "net::ERR_ABORTED";
 
 /**
- * Chromium with a profile of its own; what its pages write to the console as errors, and what they
- * refuse to load, is collected.
+ * Starts Chromium with a fresh profile. `complaints` collects console errors and warnings, uncaught
+ * exceptions and failed requests of all pages.
  */
 export async function startBrowser() {
   const profile = await mkdtemp(join(tmpdir(), "vines-page-"));
@@ -33,7 +33,7 @@ export async function startBrowser() {
       "--disable-sync",
     ],
   });
-  context.setDefaultTimeout(120000); // a busy machine is slow, not wrong
+  context.setDefaultTimeout(120000); // slow machines must not fail the tests
   const complaints = [];
   context.on("page", (page) => {
     page.on("console", (message) => {
@@ -53,8 +53,8 @@ export async function startBrowser() {
 }
 
 /**
- * Opens a page and waits until its first answer is drawn: of a simulation, or of a whole sweep; or
- * until a record can be chosen.
+ * Opens a page and waits for its first result: a drawn simulation, a complete sweep, or the
+ * measurement form.
  */
 export async function open(context, url, options = {}) {
   const page = await context.newPage();
@@ -72,11 +72,13 @@ const done = (id) => (page, n) =>
     ([id, n]) => Number(document.getElementById(id).dataset.done ?? 0) >= n,
     [id, n],
   );
-/** Resolves when the page has drawn what it heard of until now. */
-export const painted = (page) =>
-  page.evaluate(
-    () => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))),
-  );
+/** Resolves after n animation frames. */
+export const frames = (page, n) =>
+  page.evaluate(async (n) => {
+    for (let k = 0; k < n; ++k) await new Promise(requestAnimationFrame);
+  }, n);
+/** Resolves when pending drawing is done. */
+export const painted = (page) => frames(page, 2);
 
 export const drawn = done("results");
 export const identified = done("measure-results");

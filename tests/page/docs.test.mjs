@@ -1,14 +1,13 @@
-// The page of the OpenAPI document: what stands on it, is found, copied and tried.
+// The page of the OpenAPI document: content, search, copying and trying examples.
 import assert from "node:assert/strict";
 import {mkdtemp, rm, writeFile} from "node:fs/promises";
 import {tmpdir} from "node:os";
 import {join} from "node:path";
 import {test} from "node:test";
 import {startService} from "../service.mjs";
-import {findings} from "./axe.mjs";
-import {browser, fits, service} from "./support.mjs";
+import {browser, findings, fits, service} from "./support.mjs";
 
-/** The page at a place, once all of it is there. */
+/** The page at a hash, completely built. */
 async function visit(place = "", {url = service.url, viewport, colorScheme} = {}) {
   const page = await browser.context.newPage();
   if (viewport) await page.setViewportSize(viewport);
@@ -27,7 +26,7 @@ const inView = (page, id) =>
   });
 const narrow = {width: 360, height: 740};
 
-/** Clicks "Try it" of an operation's nth example; the status and the text of the answer. */
+/** Clicks "Try it" of an operation's nth example; returns status and text of the response. */
 async function tried(page, id, n = 0) {
   const example = page.locator(`#${id} .example`).nth(n);
   await example.getByRole("button", {name: "Try it"}).click();
@@ -39,7 +38,7 @@ async function tried(page, id, n = 0) {
   };
 }
 
-test("every operation and every schema of the document stands on the page, and in its contents", async () => {
+test("every operation and schema of the document is on the page and in its contents", async () => {
   const {paths, components, info} = await openapi();
   const page = await visit();
   for (const [path, methods] of Object.entries(paths))
@@ -83,7 +82,7 @@ test("an operation shows each field with its type, range, default and meaning, a
   await page.close();
 });
 
-test("a link to a place opens what is around it and shows it", async () => {
+test("a link opens the elements around its target and shows it", async () => {
   for (const place of ["sweep", "schema-Impacts", "identify.fixed"]) {
     const page = await visit(`#${place}`);
     assert.ok(await isOpen(page, place.split(".")[0]), place);
@@ -101,7 +100,7 @@ test("a link to a place opens what is around it and shows it", async () => {
   await page.close();
 });
 
-test("a schema in a schema unfolds, however deep", async () => {
+test("nested schemas can be opened at any depth", async () => {
   const page = await visit("#schema-Presets");
   const inside = page.locator("#schema-Presets");
   await inside.locator("details > summary", {hasText: "6 fields"}).click();
@@ -116,7 +115,7 @@ test("a schema in a schema unfolds, however deep", async () => {
   await page.close();
 });
 
-test("the box finds fields by their name, and leads to each, however deep", async () => {
+test("fields are found by name at any depth, with links to each", async () => {
   const page = await visit();
   await page.fill("#docs-filter", "LAMBDA");
   const names = await page.locator("#docs-found li > code").allTextContents();
@@ -135,7 +134,7 @@ test("the box finds fields by their name, and leads to each, however deep", asyn
   await page.close();
 });
 
-test("each field that can be found is at its place", async () => {
+test("each search result leads to its field", async () => {
   const page = await visit();
   await page.click("#docs-unfold");
   await page.waitForSelector("#schema-Problem[open] .fields");
@@ -157,7 +156,7 @@ test("each field that can be found is at its place", async () => {
   await page.close();
 });
 
-test("an example is copied as a line for a terminal", async () => {
+test("an example is copied as a curl command", async () => {
   await browser.context.grantPermissions(["clipboard-read", "clipboard-write"]);
   const page = await visit("#simulate_by_query");
   const copied = async (id, n) => {
@@ -181,7 +180,7 @@ test("an example is copied as a line for a terminal", async () => {
   await page.close();
 });
 
-test("an example is tried: status, time and the first lines of what this server answers", async () => {
+test("trying an example shows status, time and the first lines of the response", async () => {
   const page = await visit("#simulate_by_query");
   const got = await tried(page, "simulate_by_query");
   assert.match(got.status, /^200 OK · \d+ ms · \d+\.\d kB · the first of \d+ lines$/);
@@ -200,7 +199,7 @@ test("an example is tried: status, time and the first lines of what this server 
   await page.close();
 });
 
-test("a key is asked for where the server wants one, and then shown", async (t) => {
+test("the page asks for a required key and then sends it", async (t) => {
   const folder = await mkdtemp(join(tmpdir(), "vines-docs-"));
   const file = join(folder, "keys");
   await writeFile(file, "a-key-of-the-tests-0\n");
@@ -218,7 +217,7 @@ test("a key is asked for where the server wants one, and then shown", async (t) 
   const line = await page.textContent("#presets .example code");
   assert.equal(line, `curl -s -H "Authorization: Bearer $KEY" '${closed.url}/v1/presets'`);
   await page.close();
-  // The browser tells of the 401 that the page has asked about.
+  // The console notes the 401 that made the page ask for a key.
   const told = browser.complaints.splice(0);
   assert.ok(
     told.every((text) => text.includes("401")),
@@ -226,7 +225,7 @@ test("a key is asked for where the server wants one, and then shown", async (t) 
   );
 });
 
-test("where the service does not answer the page says so", async () => {
+test("the page reports an unreachable service", async () => {
   const page = await browser.context.newPage();
   await page.route("**/v1/openapi.json", (route) =>
     route.fulfill({status: 503, json: {detail: "too busy"}}),
@@ -235,7 +234,7 @@ test("where the service does not answer the page says so", async () => {
   await page.waitForSelector("#docs-message.fault");
   assert.equal(
     await page.textContent("#docs-message"),
-    "The OpenAPI document is not here: too busy.",
+    "The OpenAPI document cannot be loaded: too busy.",
   );
   await page.unroute("**/v1/openapi.json");
   await page.reload();
@@ -249,14 +248,14 @@ test("where the service does not answer the page says so", async () => {
   browser.complaints.splice(0);
 });
 
-test("without JavaScript there is a link to the document", async () => {
+test("without JavaScript the page links to the document", async () => {
   const html = await (await fetch(`${service.url}/docs`)).text();
   assert.match(html, /<noscript>.*href="v1\/openapi\.json".*<\/noscript>/);
   const main = await (await fetch(`${service.url}/`)).text();
   assert.match(main, /<a href="docs">/, "the page leads here");
 });
 
-test("on a phone of 360 px nothing reaches beyond the screen", async () => {
+test("the page fits a phone of 360 px", async () => {
   const page = await visit("", {viewport: narrow});
   assert.ok(await fits(page), "folded");
   await page.click("#docs-unfold");
@@ -268,7 +267,7 @@ test("on a phone of 360 px nothing reaches beyond the screen", async () => {
   await page.close();
 });
 
-test("the keyboard leads through it: the box, the contents, an operation, its example", async () => {
+test("the keyboard reaches the search box, the contents, an operation and its example", async () => {
   const page = await visit();
   await page.focus("#docs-filter");
   await page.keyboard.press("Tab");
@@ -299,7 +298,7 @@ for (const colorScheme of ["light", "dark"])
     await page.close();
   });
 
-test("its files are named by their content, its scripts are its own, the console is silent", async () => {
+test("files are named by content, scripts come from the service, and the console is silent", async () => {
   const answer = await fetch(`${service.url}/docs`);
   assert.match(answer.headers.get("content-type"), /^text\/html/);
   assert.match(answer.headers.get("content-security-policy"), /script-src 'self'/);

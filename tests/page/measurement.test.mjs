@@ -1,4 +1,4 @@
-// The tab of measurements in real Chromium.
+// The measurement tab in Chromium.
 import assert from "node:assert/strict";
 import {test} from "node:test";
 import {measured} from "../record.mjs";
@@ -24,13 +24,15 @@ const asFile = (text, name = "record.csv", encoding = "utf8") => ({
 /** A page that has identified a record. */
 async function identify(text, query = "", options = {}) {
   const page = await visit(`?tab=measurement${query}`, options);
-  await page.setInputFiles("#measure-file", asFile(text)); // which identifies it
+  await page.setInputFiles("#measure-file", asFile(text)); // identified without a click
   await identified(page, 1);
   return page;
 }
 
 const records = {};
-/** Of 6 s: 68 impacts, too few to be called regular; of 12 s they are enough. */
+/**
+ * A record of the periodic experiment. 6 s hold 68 impacts, too few for a verdict; 12 s are enough.
+ */
 async function regular(seconds = 6) {
   records[seconds] ??= await measured(service.url, "fig15", seconds);
   return records[seconds];
@@ -52,7 +54,7 @@ const rows = (page) =>
     ),
   );
 
-test("a record shows itself when it is chosen; identified, its impacts, section, exponents and verdict", async () => {
+test("a chosen record is drawn; after identification its impacts, section, exponents and verdict are shown", async () => {
   const page = await visit("?tab=measurement&preset=fig15");
   await page.setInputFiles("#measure-file", asFile(await regular(12)));
   await page.waitForSelector("#plot-measured-a canvas");
@@ -76,7 +78,7 @@ test("a record shows itself when it is chosen; identified, its impacts, section,
   const fitted = await page.textContent("#measure-fitted");
   assert.match(fitted, /frequency of the forcing8\.349\d* ± 0\.0000\d+ Hz/);
   assert.match(fitted, /damping ratio ζ0\.006\d*, as given/);
-  assert.match(fitted, /half clearance b\d\.\d+ ± 0\.0\d+ mm/);
+  assert.match(fitted, /clearance b\d\.\d+ ± 0\.0\d+ mm/);
   assert.equal((await rows(page)).length, Number(summary.match(/impacts(\d+) 0 left/)[1]));
   const file = await downloaded(page, "#measure-download");
   assert.equal(JSON.parse(file.text).verdict, "regular");
@@ -113,7 +115,7 @@ test("a spreadsheet's file with a preamble, a row of units and decimal commas is
   await page.close();
 });
 
-test("the form's link holds its fields, another tab keeps the record, and other units and separators draw the same", async () => {
+test("a link keeps the form's fields, switching tabs keeps the record, and other units and separators draw the same", async () => {
   const text = (await regular(12))
     .replace(/^.*\n/, "Zeit;Weg;a\n")
     .replace(/(?<=\d),/g, ";")
@@ -149,7 +151,7 @@ test("the form's link holds its fields, another tab keeps the record, and other 
   await again.close();
 });
 
-/** Adds the impact whose spike is at time t (s) of a record of 6 s: zooms there, and clicks on it. */
+/** Adds the impact whose spike is at time t (s) of a record of 6 s: zooms in and clicks on it. */
 async function addBySpike(page, t) {
   const listed = (await rows(page)).length;
   const over = page.locator("#plot-measured-a .over");
@@ -174,7 +176,7 @@ async function addBySpike(page, t) {
   await page.waitForSelector("#measure-impacts tr.edited");
 }
 
-test("the list is edited by keyboard and by the plot; without one of its impacts the neighbours are inconsistent", async () => {
+test("the list is edited by keyboard and plot; a removed impact makes its neighbours inconsistent", async () => {
   const page = await identify(await regular(), "&preset=fig15");
   const before = await rows(page);
   assert.ok(await page.isDisabled("#measure-again"));
@@ -203,7 +205,7 @@ test("the list is edited by keyboard and by the plot; without one of its impacts
   await page.click("#measure-again");
   await identified(page, 3);
   assert.equal(await page.textContent("#measure-warnings"), "");
-  // Move one, by its field, and take all back.
+  // Moves an impact by its field and undoes all edits.
   const fifth = "#measure-impacts tr:nth-child(5) input";
   await page.fill(fifth, "1e9");
   await page.keyboard.press("Enter");
@@ -221,7 +223,7 @@ test("the list is edited by keyboard and by the plot; without one of its impacts
   await page.close();
 });
 
-test("of a record without acceleration the impacts are found, too, by the displacement's kinks", async () => {
+test("without an acceleration the impacts are found at kinks of the displacement", async () => {
   const page = await identify(await regular(), "&preset=fig15");
   const times = (await rows(page)).map((row) => Number(row[1])).filter((t) => t < 2.4);
   const lines = (await regular()).split("\n").slice(0, 5001);
@@ -241,14 +243,14 @@ test("of a record without acceleration the impacts are found, too, by the displa
   await page.close();
 });
 
-test("a list too long for an address is sent as JSON", async () => {
+test("fields too long for an address are sent as JSON", async () => {
   const text = await regular(12);
   const page = await identify(text, "&preset=fig15");
   let type;
   page.on("request", (request) => {
     if (request.url().includes("/v1/identify")) type = request.headers()["content-type"];
   });
-  // So many columns of nothing, as long a name, fill the address.
+  // A long column name makes the address too long.
   await page.click("#measure-group-record > summary");
   const name = "acceleration_m_s2".padEnd(6100, "x");
   await page.setInputFiles("#measure-file", asFile(text.replace("acceleration_m_s2", name)));
@@ -260,7 +262,7 @@ test("a list too long for an address is sent as JSON", async () => {
   await page.close();
 });
 
-test("what is wrong with a file is shown with its line; what is wrong with a field, at the field", async () => {
+test("errors of a file are shown with its line, errors of a field at the field", async () => {
   const page = await visit("?tab=measurement&preset=fig15");
   await page.click("#measure-run");
   assert.match(await page.textContent("#measure-message"), /choose a file/);
@@ -271,7 +273,7 @@ test("what is wrong with a file is shown with its line; what is wrong with a fie
   await page.waitForSelector("#measure-lines:not([hidden])");
   assert.equal(
     await page.textContent("#measure-message"),
-    'line 7, column displacement_m: "abc" is no number',
+    'line 7, column displacement_m: "abc" is not a number',
   );
   assert.match(await page.textContent("#measure-lines .at-fault"), /^ +7 {2}0\.003,abc,1\n$/);
   await page.setInputFiles("#measure-file", asFile(await regular()));
@@ -287,11 +289,11 @@ test("what is wrong with a file is shown with its line; what is wrong with a fie
   await page.selectOption("#measure-preset", "fig15");
   await page.click("#measure-run");
   await identified(page, 1);
-  browser.complaints.length = 0; // Chromium notes each 422 in its console
+  browser.complaints.length = 0; // Chromium logs each 422
   await page.close();
 });
 
-test("on a narrow screen no measurement is wider than the screen", async () => {
+test("a measurement fits a narrow screen", async () => {
   const page = await identify(await regular(), "&preset=fig15", narrow);
   assert.ok(await fits(page));
   const parts = "#panel-measurement :is(canvas, select, figure, input, .scroll, .legend)";
@@ -299,7 +301,7 @@ test("on a narrow screen no measurement is wider than the screen", async () => {
   await page.close();
 });
 
-test("a record that is chosen is identified at once, its figures of the paper are named, and each plot is taken away", async () => {
+test("a chosen record is identified, its plots are tagged with the paper's figures, and each plot can be exported", async () => {
   const page = await visit("?tab=measurement&preset=fig15");
   await page.setInputFiles("#measure-file", asFile(await regular()));
   await identified(page, 1);
@@ -328,7 +330,7 @@ test("a record that is chosen is identified at once, its figures of the paper ar
   await page.close();
 });
 
-test("a file whose columns have other names asks which they are, and is identified once that is told", async () => {
+test("a file with unknown column names is identified once its columns are chosen", async () => {
   const text = (await regular()).replace(/^.*\n/, "clock,wire,piezo\n");
   const page = await visit("?tab=measurement&preset=fig15");
   await page.setInputFiles("#measure-file", asFile(text));
@@ -340,11 +342,11 @@ test("a file whose columns have other names asks which they are, and is identifi
   await identified(page, 1);
   assert.match(await page.textContent("#measure-summary"), /impacts68 0 left out/);
   assert.match(page.url(), /time_column=clock/);
-  browser.complaints.length = 0; // Chromium notes the 422 of columns that are still to be told
+  browser.complaints.length = 0; // Chromium logs the 422 for the unknown columns
   await page.close();
 });
 
-test("a file that is no text is refused with what to do", async () => {
+test("a binary file is rejected with advice", async () => {
   const page = await visit("?tab=measurement");
   const requests = [];
   page.on("request", (request) => requests.push(request.url()));
@@ -352,23 +354,23 @@ test("a file that is no text is refused with what to do", async () => {
   const file = {name: "record.wav", mimeType: "audio/wav", buffer: bytes};
   await page.setInputFiles("#measure-file", file);
   await page.waitForFunction(() =>
-    document.getElementById("measure-message").textContent.includes("no text"),
+    document.getElementById("measure-message").textContent.includes("not a text file"),
   );
   assert.match(
     await page.textContent("#measure-message"),
-    /record\.wav cannot be read: it is no text; scripts\/to-csv/,
+    /record\.wav cannot be read: it is not a text file; scripts\/to-csv/,
   );
   assert.deepEqual(requests, []);
   await page.close();
 });
 
-/** A card's number, and whether the truth lies within four of its errors. */
+/** Checks that the true value lies within four standard errors of a card's value. */
 function agrees(summary, name, truth) {
   const [, value, error] = summary.match(new RegExp(`${name}([\\d.]+) ± ([\\d.]+)`)).map(Number);
   assert.ok(Math.abs(value - truth) < 4 * error, `${name}: ${value} ± ${error}, not ${truth}`);
 }
 
-test("a simulated run is sent to Measurement, which finds its restitution and clearance", async () => {
+test("Measurement identifies the restitution and clearance of a simulated run", async () => {
   const page = await visit("?preset=fig3&R=0.65");
   await page.click("#measure-this");
   await identified(page, 1);
@@ -382,7 +384,7 @@ test("a simulated run is sent to Measurement, which finds its restitution and cl
   await page.close();
 });
 
-test("without a record at hand a simulated one is a click away", async () => {
+test("a simulated record is identified with one click", async () => {
   const page = await visit("?tab=measurement");
   await page.click("#measure-samples button:has-text('periodic')");
   await identified(page, 1);
@@ -394,9 +396,9 @@ test("without a record at hand a simulated one is a click away", async () => {
   await page.close();
 });
 
-test("a long identification says how long it takes already, and can be cancelled", async () => {
+test("a long identification shows the elapsed time and can be cancelled", async () => {
   const page = await visit("?tab=measurement&preset=fig15");
-  await page.route("**/v1/identify?*", () => {}); // no answer for now
+  await page.route("**/v1/identify?*", () => {}); // never answered
   await page.setInputFiles("#measure-file", asFile(await regular()));
   await page.waitForFunction(() =>
     /identifying \d+ samples … [12] s/.test(document.getElementById("measure-message").textContent),
@@ -406,17 +408,17 @@ test("a long identification says how long it takes already, and can be cancelled
     () => document.getElementById("measure-message").textContent === "cancelled",
   );
   assert.equal(await page.isVisible("#measure-cancel"), false);
-  browser.complaints.length = 0; // Chromium notes the request that was broken off
+  browser.complaints.length = 0; // Chromium logs the aborted request
   await page.close();
 });
 
-test("an impact that is pointed at in one plot of a measurement is ringed in the others", async () => {
+test("an impact picked in one plot of a measurement is ringed in the others", async () => {
   const page = await identify(await regular(), "&preset=fig15");
   await page.locator("#plot-measured-section").scrollIntoViewIfNeeded();
   await page.evaluate(() => {
     const canvas = document.getElementById("plot-measured-section");
     const {left, top, width, height} = canvas.getBoundingClientRect();
-    // Over the whole plane, until a point is near.
+    // Scans the plane; the last point passed stays picked.
     for (let i = 1; i < 40; ++i)
       for (let j = 1; j < 40; ++j) {
         const at = {clientX: left + (i / 40) * width, clientY: top + (j / 40) * height};
@@ -435,7 +437,7 @@ test("an impact that is pointed at in one plot of a measurement is ringed in the
   await page.close();
 });
 
-test("the newest of two samples is identified, and an oscillator leaves the columns that were picked", async () => {
+test("the newer of two samples is identified, and a new oscillator keeps the chosen columns", async () => {
   const page = await visit("?tab=measurement");
   await page.click("#measure-samples button:has-text('periodic')");
   await page.click("#measure-samples button:has-text('chaotic')");

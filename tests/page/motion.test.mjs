@@ -1,4 +1,4 @@
-// The motion that the page makes from the impacts is that of the service, to rounding.
+// The motion that the page reconstructs from impacts equals that of the service up to rounding.
 import assert from "node:assert/strict";
 import {after, before, test} from "node:test";
 import {Motion} from "../../web/shared/motion.js";
@@ -16,24 +16,24 @@ async function answerTo(query) {
 }
 
 const cases = {
-  "strongly modulated, with stuck phases": "preset=fig3",
-  "periodic, with a stuck phase": "preset=fig11",
+  "strongly modulated, with sticking": "preset=fig3",
+  "periodic, with sticking": "preset=fig11",
   "an experiment in SI": "preset=fig20",
   "dense impacts": "preset=fig14",
-  "stuck at each impact": "R=0&b=0.01&tau_end=500",
+  "sticking at each impact": "R=0&b=0.01&tau_end=500",
   "chatter and release in each cycle": "epsilon=0.5&lambda=3&R=0.3&b=0.01&G=0.1&tau_end=500",
   "a heavy absorber": "epsilon=1&lambda=2&b=0.05&R=0.5&tau_end=500",
-  "walls that differ": "R_plus=0.9&R_minus=0.3&tau_end=600",
+  "different walls": "R_plus=0.9&R_minus=0.3&tau_end=600",
   "a free decay": "G=0&x0=0.02&tau_end=600",
   "no impact for a long time": "b=0.5&tau_end=3000",
-  "resonance without damping": "lambda=0&b=1&tau_end=5000",
-  "damping beyond the critical": "lambda=200&G=0.5&tau_end=300",
+  "undamped resonance": "lambda=0&b=1&tau_end=5000",
+  overdamped: "lambda=200&G=0.5&tau_end=300",
   "fast forcing": "Omega=20&G=5&b=0.001&tau_end=100",
   "slow forcing": "Omega=0.01&G=3&tau_end=3000",
 };
 
 for (const [name, query] of Object.entries(cases))
-  test(`at every sample, and at the end: ${name}`, async () => {
+  test(`equal at every sample and at the end: ${name}`, async () => {
     const answer = await answerTo(query);
     const {series} = answer;
     const motion = new Motion(answer);
@@ -46,7 +46,7 @@ for (const [name, query] of Object.entries(cases))
     assert.ok(worst < 1e-12, `${worst} m`);
   });
 
-test("a close look follows the motion, a wide one holds all of it, and the impacts reach the walls", async () => {
+test("a zoomed trace follows the motion, a dense one contains it, and impacts reach the walls", async () => {
   const answer = await answerTo("preset=fig3");
   const motion = new Motion(answer);
   const near = motion.trace(700, 730, 500);
@@ -65,8 +65,8 @@ test("a close look follows the motion, a wide one holds all of it, and the impac
   };
   for (const [i, at] of tau.entries())
     assert.ok(within(wide.gap, at, -side[i] * motion.b, 0), `impact ${i}`);
-  // Between two of its samples x bends by less than a fiftieth of its amplitude, and a column ends
-  // less than a sample before the next one begins.
+  // Between two samples x bends by less than a fiftieth of its amplitude, and the end of a column
+  // is less than a sample away from the next one.
   const beside = (at) => [at, Math.max(at - motion.cycle / 16, 0), at + motion.cycle / 16];
   for (const [i, at] of answer.series.tau.entries())
     assert.ok(
@@ -75,7 +75,7 @@ test("a close look follows the motion, a wide one holds all of it, and the impac
     );
 });
 
-test("an oscillator that is faster than its forcing shows no beat that is not there", async () => {
+test("an oscillator faster than its forcing is drawn without aliasing", async () => {
   const query = "Omega=0.05&b=0.1&x0=0.002&y0=0.002&tau_end=8000&lambda=0";
   const motion = new Motion(await answerTo(query));
   const {x, dense} = motion.trace(0, motion.end, 600);
@@ -85,7 +85,7 @@ test("an oscillator that is faster than its forcing shows no beat that is not th
   assert.ok(least > 0.0037, `${least} of 0.004 m between the extremes of a pixel`);
 });
 
-test("beyond the run there is nothing", async () => {
+test("a trace is empty outside the run", async () => {
   const motion = new Motion(await answerTo("tau_end=100"));
   const {x, tau} = motion.trace(90, 110, 100);
   for (const [i, t] of tau.entries()) assert.equal(Number.isNaN(x[i]), t > 100, `${t}`);

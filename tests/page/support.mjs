@@ -1,5 +1,6 @@
-// What the page's tests share: a service and a real Chromium, and ways to look at what is drawn.
+// Shared by the page's tests: a service, Chromium, and functions that examine what is drawn.
 import {readFile} from "node:fs/promises";
+import {createRequire} from "node:module";
 import {after, before} from "node:test";
 import {startService} from "../service.mjs";
 import {open, startBrowser} from "./browser.mjs";
@@ -15,12 +16,15 @@ after(async () => {
   await service.stop();
 });
 
-/** A page of the service, once its first answer is drawn. */
+/** A page of the service with its first result. */
 export const visit = (address = "", options = {}) =>
   open(browser.context, `${service.url}/${address}`, options);
 export const narrow = {viewport: {width: 390, height: 800}};
 
-/** What of a selection reaches beyond the right edge of the screen, but for `except`. */
+/**
+ * Names the selected elements that extend beyond the right edge of the screen, except those inside
+ * `except`.
+ */
 export const beyond = (page, selector, except = null) =>
   page.$$eval(
     selector,
@@ -39,24 +43,23 @@ export const beyond = (page, selector, except = null) =>
 export const fits = (page) =>
   page.evaluate(() => document.documentElement.scrollWidth <= innerWidth);
 
-/** The texts of a table's cells. */
 export const cells = (page, rows) =>
   page.$$eval(rows, (list) => list.map((row) => [...row.cells].map((cell) => cell.textContent)));
 
-/** The same by the text of the first in each row. */
+/** The rows of a table by the text of their first cell. */
 export const cellsByName = async (page, rows) =>
   Object.fromEntries((await cells(page, rows)).map(([name, ...others]) => [name, others]));
 
-/** The file that a click on a link saves. */
+/** The file that a click saves. */
 export async function downloaded(page, link) {
   const [download] = await Promise.all([page.waitForEvent("download"), page.click(link)]);
   return {name: download.suggestedFilename(), text: await readFile(await download.path(), "utf8")};
 }
 
 /**
- * Of a canvas: how many colours it shows (an empty one has one), how many pixels have exactly the
- * one that the style sheet names so, and a hash of all. It is counted in the page, where the pixels
- * are, and of a copy, because Chromium complains of canvases that are read.
+ * Examines a canvas: the number of colours (an empty canvas has one), the number of pixels in
+ * exactly the colour `name` of the style sheet, and a hash. The pixels are counted in the page, in
+ * a copy, because Chromium warns about reading from a visible canvas.
  */
 const survey = (page, selector, name = "text") =>
   page.evaluate(
@@ -102,7 +105,7 @@ export const platform = {
 };
 export const platformQuery = String(new URLSearchParams(platform));
 
-/** Counts the requests of a page to a route. */
+/** Collects the requests of a page to a route. */
 export function asked(page, route) {
   const requests = [];
   page.on("request", (request) => {
@@ -114,8 +117,22 @@ export function asked(page, route) {
 export const input = (name) => `#fields [aria-describedby='error-${name}']`;
 export const origin = (page, name) => page.textContent(`#fields .field-${name} .origin`);
 
-/** Opens the form's groups. */
+/** Opens the form and its groups. */
 export async function unfold(page) {
   await page.click("#more > summary");
   for (const part of await page.$$("#fields details:not([open]) > summary")) await part.click();
+}
+
+const require = createRequire(new URL("../../web/package.json", import.meta.url));
+
+/** Accessibility violations reported by axe-core, a text for each. */
+export async function findings(page) {
+  const axe = await readFile(require.resolve("axe-core/axe.min.js"), "utf8");
+  return page.evaluate(async (source) => {
+    new Function(source)();
+    const {violations} = await window.axe.run(document, {resultTypes: ["violations"]});
+    return violations.flatMap(({id, nodes}) =>
+      nodes.map(({target, failureSummary}) => `${id}: ${target.join(" ")}: ${failureSummary}`),
+    );
+  }, axe);
 }

@@ -1,6 +1,6 @@
-// What travels for the whole page, compressed: itself and the files that it names.
+// Size of the page's files as transferred.
 
-/** Their bytes by path. */
+/** Compressed bytes by path. */
 export async function weigh(url) {
   const index = await (await fetch(url)).text();
   const paths = ["", ...index.match(/(?<=(?:src|href)=")[0-9a-f]{12}\/[^"]+/g)];

@@ -1,4 +1,4 @@
-// The report as a text: what its chapters find is checked by `vines reproduce` itself.
+// Output and verdict rules of the report; `vines reproduce` checks the chapters' findings.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "core/analysis/analysis.hpp"
-#include "plot/svg.hpp"
-#include "report/markdown.hpp"
+#include "plot/plot.hpp"
+#include "report/report.hpp"
 #include "report/statistics.hpp"
 #include "report/symmetric_motion.hpp"
 
@@ -44,58 +44,58 @@ std::string contents(const std::filesystem::path& path) {
 
 }  // namespace
 
-TEST_CASE("a verdict is what the number says, the band's ends included") {
-    CHECK(finding(1, {1, 2}).verdict() == Verdict::reproduced);
-    CHECK(finding(2, {1, 2}).verdict() == Verdict::reproduced);
-    CHECK(finding(4, exactly(4)).verdict() == Verdict::reproduced);
+TEST_CASE("a verdict follows from the number and the band, ends included") {
+    CHECK(finding(1, {1, 2}).verdict() == ClaimVerdict::reproduced);
+    CHECK(finding(2, {1, 2}).verdict() == ClaimVerdict::reproduced);
+    CHECK(finding(4, exactly(4)).verdict() == ClaimVerdict::reproduced);
     Finding f = finding(std::nextafter(2, 3), {1, 2});
-    CHECK(f.verdict() == Verdict::not_reproduced);
+    CHECK(f.verdict() == ClaimVerdict::not_reproduced);
     f.partly = Band{0, 3};
-    CHECK(f.verdict() == Verdict::partly);
+    CHECK(f.verdict() == ClaimVerdict::partly);
 }
 
-TEST_CASE("a verdict says which damping a statement takes") {
+TEST_CASE("a verdict names the damping with which a statement holds") {
     Finding f = finding(1.5, {1, 2});
     f.by_equation = 1.6;
-    CHECK(f.verdict() == Verdict::reproduced);
+    CHECK(f.verdict() == ClaimVerdict::reproduced);
     f.by_equation = 2.1;
-    CHECK(f.verdict() == Verdict::by_closed_form);
+    CHECK(f.verdict() == ClaimVerdict::by_closed_form);
     f.number = 2.2;
-    CHECK(f.verdict() == Verdict::not_reproduced);
+    CHECK(f.verdict() == ClaimVerdict::not_reproduced);
     f.by_equation = 1.6;
-    CHECK(f.verdict() == Verdict::by_equation_of_motion);
+    CHECK(f.verdict() == ClaimVerdict::by_equation_of_motion);
 }
 
-TEST_CASE("what holds in part holds in part by one damping alone, if the other misses that, too") {
+TEST_CASE("a statement that holds in part with one damping only is marked so") {
     Finding f = finding(2.5, {1, 2});
     f.partly = Band{0, 3};
     f.by_equation = 0.5;
-    CHECK(f.verdict() == Verdict::partly);
+    CHECK(f.verdict() == ClaimVerdict::partly);
     f.by_equation = 4;
-    CHECK(f.verdict() == Verdict::partly_by_closed_form);
+    CHECK(f.verdict() == ClaimVerdict::partly_by_closed_form);
     std::swap(f.number, *f.by_equation);
-    CHECK(f.verdict() == Verdict::partly_by_equation_of_motion);
+    CHECK(f.verdict() == ClaimVerdict::partly_by_equation_of_motion);
     f.by_equation = 5;
-    CHECK(f.verdict() == Verdict::not_reproduced);
+    CHECK(f.verdict() == ClaimVerdict::not_reproduced);
 }
 
-TEST_CASE("what is not a number is not reproduced") {
-    CHECK(finding(std::nan(""), {-1e300, 1e300}).verdict() == Verdict::not_reproduced);
+TEST_CASE("NaN is not reproduced") {
+    CHECK(finding(std::nan(""), {-1e300, 1e300}).verdict() == ClaimVerdict::not_reproduced);
 }
 
-TEST_CASE("a report stands while every verdict is the expected one, good or bad") {
+TEST_CASE("a report is as expected while every verdict is the expected one, good or bad") {
     Report report;
-    CHECK(report.stands());
-    report.find(finding(1, {1, 2}));
+    CHECK(report.as_expected());
+    report.add(finding(1, {1, 2}));
     Finding bad = finding(3, {1, 2});
-    bad.expected = Verdict::not_reproduced;
-    report.find(bad);
-    CHECK(report.stands());
-    report.find(finding(3, {1, 2}));
-    CHECK_FALSE(report.stands());
+    bad.expected = ClaimVerdict::not_reproduced;
+    report.add(bad);
+    CHECK(report.as_expected());
+    report.add(finding(3, {1, 2}));
+    CHECK_FALSE(report.as_expected());
 }
 
-TEST_CASE("a verdict that has changed is marked in its row of the table, and only there") {
+TEST_CASE("a changed verdict is marked in its row of the table only") {
     const std::string table = markdown_table({finding(1.5, {1, 2}), finding(12345.6, {1, 2})});
     CHECK(
         table.find(
@@ -106,7 +106,7 @@ TEST_CASE("a verdict that has changed is marked in its row of the table, and onl
         std::string::npos);
 }
 
-TEST_CASE("a verdict on a computed record speaks of that record") {
+TEST_CASE("a verdict on a computed record mentions that record") {
     std::vector<Finding> findings = {
         finding(1.5, {1, 2}), finding(2.5, {1, 2}), finding(3.5, {1, 2})};
     for (Finding& f : findings) f.computed_record = true, f.partly = Band{1, 3};
@@ -117,11 +117,11 @@ TEST_CASE("a verdict on a computed record speaks of that record") {
     CHECK(table.find("reproduced") == std::string::npos);
 }
 
-TEST_CASE("the verdicts are counted, those on computed records apart") {
+TEST_CASE("verdicts on computed records are counted separately") {
     const auto folder = std::filesystem::temp_directory_path() / "vines-test-report-counts";
     std::filesystem::create_directories(folder);
     Report report;
-    for (int i = 0; i < 3; ++i) report.find(finding(1, {1, 2}));
+    for (int i = 0; i < 3; ++i) report.add(finding(1, {1, 2}));
     report.findings[2].computed_record = true;
     write_markdown(report, folder.string());
     const std::string text = contents(folder / "report.md");
@@ -131,25 +131,26 @@ TEST_CASE("the verdicts are counted, those on computed records apart") {
     std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("two symmetric impacts per cycle in closed form are those that a run comes to") {
+TEST_CASE("two symmetric impacts per cycle in closed form are those that a run reaches") {
     vines::Parameters p;
     p.b = 0.015;
     p.damping = vines::Damping::closed_form;
-    vines::Wanted wanted{.parameters = p, .start = vines::default_state(p), .tau_end = 3000};
+    vines::AnalysisRequest wanted{
+        .parameters = p, .start = vines::default_state(p), .tau_end = 3000};
     wanted.window = {2000, 3000};
     wanted.parts = {.impacts = true, .regime = true};
     const vines::Analysis run = vines::analyse(wanted);
     const auto motion = fast_symmetric_motion(p);
     REQUIRE(motion);
     CHECK(std::abs(run.impacts.back().y_dot_after) == doctest::Approx(motion->V).epsilon(1e-12));
-    // Of half a period, squared, they are those of a whole one.
+    // Multipliers of half a period, squared, are those of a period.
     CHECK(
         std::norm(motion->multipliers[0]) ==
         doctest::Approx(std::abs(run.regime->orbit->multipliers[0])).epsilon(1e-9));
 }
 
 TEST_CASE(
-    "two symmetric impacts per cycle attract between 7.0467 and 16.2860 mm, and are there to a "
+    "two symmetric impacts per cycle attract between 7.0467 and 16.2860 mm and exist up to a "
     "fold") {
     const auto at = [](double mm) {
         vines::Parameters p;
@@ -165,13 +166,13 @@ TEST_CASE(
     CHECK_FALSE(at(17.27473415));
 }
 
-TEST_CASE("the report is a text in the chapters' order, with its pictures in files beside it") {
+TEST_CASE("the report is one text in the order of the chapters, with pictures in separate files") {
     const auto folder = std::filesystem::temp_directory_path() / "vines-test-report";
     std::filesystem::create_directories(folder);
     Report report;
-    report.find(finding(1, {1, 2}));
+    report.add(finding(1, {1, 2}));
     report.heading("Fig. 5");
-    report.say("In words.");
+    report.paragraph("In words.");
     report.picture(
         {.name = "fig5",
          .caption = "Exponents",
@@ -203,13 +204,13 @@ TEST_CASE("a curve has a gap where it is not finite") {
     CHECK(lines({nan, nan}) == 0);
 }
 
-TEST_CASE("a rank correlation is one of what rises together, however, and minus one of opposites") {
+TEST_CASE("the rank correlation is 1 for equal order and -1 for opposite order") {
     CHECK(rank_correlation({1, 2, 3, 4}, {10, 11, 50, 1000}) == doctest::Approx(1));
     CHECK(rank_correlation({1, 2, 3, 4}, {4, 3, 2, 1}) == doctest::Approx(-1));
     CHECK(rank_correlation({1, 2, 3, 4, 5}, {2, 1, 4, 3, 5}) == doctest::Approx(0.8));
 }
 
-TEST_CASE("moments and quantiles are those of the numbers, and of none they are none") {
+TEST_CASE("moments and quantiles, which are NaN without values") {
     const Moments m = moments({1, 2, 3, 4, 5});
     CHECK(m.mean == 3);
     CHECK(m.deviation == doctest::Approx(std::sqrt(2.5)));

@@ -1,17 +1,17 @@
-// A request sent from the page, and the beginning of what is answered.
-import {reach} from "../shared/api.js";
+// Sends an example request from the page and shows the beginning of the response.
+import {sendRequest} from "../shared/api.js";
 import {element} from "../shared/dom.js";
 import {count} from "../shared/numbers.js";
 
-const mostRead = 1 << 20; // bytes of an answer
+const mostRead = 1 << 20; // bytes of a response
 const mostLines = 60;
 const mostText = 6000; // characters
 
-/** As indented JSON, lists of numbers in one line. */
+/** Indented JSON with lists of numbers in one line. */
 export const pretty = (value) =>
   JSON.stringify(value, null, 2).replace(/\[[^[\]{}]*\]/g, (list) => list.replace(/\s+/g, " "));
 
-/** An answer's text as far as it is read, the bytes of that, and whether it is all. */
+/** Reads at most mostRead bytes: {text, bytes, whole: whether that is everything}. */
 async function read(response) {
   const reader = response.body?.getReader();
   const decoder = new TextDecoder();
@@ -23,11 +23,11 @@ async function read(response) {
     bytes += value.length;
     text += decoder.decode(value, {stream: true});
   }
-  reader?.cancel().catch(() => {}); // nobody waits for the rest
+  reader?.cancel().catch(() => {}); // the rest is not needed
   return {text, bytes, whole: !reader};
 }
 
-/** The first lines of a text, and how many there are. */
+/** The first lines of a text, and the number of all lines. */
 function beginning(text) {
   const lines = text.trimEnd().split("\n");
   const first = lines.slice(0, mostLines).join("\n");
@@ -42,7 +42,7 @@ function readable(text, response, whole) {
 
 const size = (bytes) => (bytes < 1000 ? `${bytes} bytes` : `${(bytes / 1000).toFixed(1)} kB`);
 
-/** Sends a request; {ok, status, text}: the words of what came of it, and its first lines. */
+/** Sends a request; {ok, status, text}: summary of the response and its first lines. */
 async function attempt({path, type, body}, signal) {
   const began = performance.now();
   const sent = body && {
@@ -50,23 +50,23 @@ async function attempt({path, type, body}, signal) {
     headers: {"Content-Type": type},
     body: JSON.stringify(body),
   };
-  const response = await reach(path, {...sent, signal});
+  const response = await sendRequest(path, {...sent, signal});
   const {text, bytes, whole} = await read(response);
   const took = Math.round(performance.now() - began);
   const {first, cut, lines} = beginning(readable(text, response, whole));
   const status = [`${response.status} ${response.statusText}`.trim(), `${took} ms`];
-  status.push(whole ? size(bytes) : `more than ${size(bytes)}, broken off`);
+  status.push(whole ? size(bytes) : `more than ${size(bytes)}, truncated`);
   if (cut) status.push(`the first of ${count(lines, "line")}`);
   return {ok: response.ok, status: status.join(" · "), text: first};
 }
 
-/** Adds a button to an example's actions; the nodes that show what came of it. */
+/** Adds a "Try it" button to an example's actions; returns the nodes that show the response. */
 export function tryIt(request, actions) {
   const button = element("button", {type: "button", textContent: "Try it"});
   const status = element("p", {className: "message", role: "status"});
   const shown = element("pre", {className: "answer", tabIndex: 0, hidden: true});
   shown.setAttribute("role", "group");
-  shown.setAttribute("aria-label", "The answer");
+  shown.setAttribute("aria-label", "Response");
   const show = ({ok, status: words, text}) => {
     status.className = ok ? "message" : "message fault";
     status.textContent = words;

@@ -1,5 +1,5 @@
-// The page of the HTTP interface: the service's OpenAPI document, to be read and tried.
-import {get, whole} from "../shared/api.js";
+// The documentation page of the HTTP interface, generated from the OpenAPI document.
+import {absoluteUrl, get} from "../shared/api.js";
 import {$, element} from "../shared/dom.js";
 import {count} from "../shared/numbers.js";
 import {load, operationsByTag, resolved, schemaPlace, schemas} from "./document.js";
@@ -10,14 +10,14 @@ import {code, schemaView} from "./schema.js";
 
 const link = (place, ...children) => element("a", {href: `#${place}`}, ...children);
 
-/** How a key is shown. */
+/** The header that carries a key. */
 const keyWords = ({scheme, description}) => [
   `${description}: `,
   code(`Authorization: ${scheme[0].toUpperCase()}${scheme.slice(1)} KEY`),
 ];
 
-/** The address of a server, which may be said relative to this one's. */
-const address = (url) => (url.startsWith("/") ? whole(`.${url}`) : url);
+/** Absolute address of a server; the document can give a relative one. */
+const address = (url) => (url.startsWith("/") ? absoluteUrl(`.${url}`) : url);
 
 function showHead({info, servers, components}, {commit, compiler}) {
   $("docs-version").textContent = `${info.title} ${info.version}`;
@@ -25,7 +25,7 @@ function showHead({info, servers, components}, {commit, compiler}) {
   $("docs-description").textContent = info.description ?? "";
   const about = [
     ["Version", [info.version]],
-    ["Commit", [commit ? code(commit) : "not known", `, ${compiler}`]],
+    ["Commit", [commit ? code(commit) : "unknown", `, ${compiler}`]],
     ...servers.map(({url, description}) => ["Server", [code(address(url)), `, ${description}`]]),
     ...Object.values(components.securitySchemes ?? {}).map((one) => ["Key", keyWords(one)]),
   ];
@@ -62,7 +62,7 @@ function showSchemas() {
   $("docs-schemas").hidden = false;
 }
 
-/** [path, its operations]. */
+/** Operations grouped by path: [path, operations]. */
 const byPath = (operations) =>
   [...new Set(operations.map(({path}) => path))].map((path) => [
     path,
@@ -95,7 +95,7 @@ function listen() {
   $("docs-unfold").addEventListener("click", () => setAll(true));
   $("docs-fold").addEventListener("click", () => setAll(false));
   addEventListener("hashchange", () => reveal(location.hash));
-  // A place that is in the address already is gone to once more.
+  // A click on the current hash fires no hashchange event.
   document.addEventListener("click", ({target}) => {
     const {hash} = target.closest("a[href^='#']") ?? {};
     if (hash && hash === location.hash) reveal(hash);
@@ -115,6 +115,6 @@ async function start() {
 }
 
 start().catch((error) => {
-  $("docs-message").textContent = `The OpenAPI document is not here: ${error.message}.`;
+  $("docs-message").textContent = `The OpenAPI document cannot be loaded: ${error.message}.`;
   $("docs-message").classList.add("fault");
 });

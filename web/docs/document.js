@@ -1,5 +1,5 @@
-// The OpenAPI document: what stands in it, and at which place of the page. A place is the id of an
-// operation or a schema, then the names on the way: schema-Energy.without_absorber.rms.
+// The OpenAPI document and the ids of its parts on the page. An id is an operation or a schema
+// followed by field names: schema-Energy.without_absorber.rms.
 import {get} from "../shared/api.js";
 
 let root;
@@ -11,7 +11,7 @@ export async function load() {
 
 const unescaped = (name) => name.replaceAll("~1", "/").replaceAll("~0", "~");
 
-/** What a $ref leads to, with what is said beside it; anything else is itself. */
+/** The target of a $ref, merged with its siblings; any other node unchanged. */
 export function resolved(node) {
   if (!node.$ref) return node;
   const {$ref, ...beside} = node;
@@ -20,15 +20,15 @@ export function resolved(node) {
   return {...resolved(there), ...beside};
 }
 
-/** Of a $ref: the name of the component. */
+/** Component name of a $ref. */
 export const nameOf = ($ref) => $ref.slice($ref.lastIndexOf("/") + 1);
 
 export const schemas = () => Object.entries(root.components.schemas);
 export const schemaPlace = (name) => `schema-${name}`;
 
 /**
- * All operations, in the document's order: what it says of them, path, method, and their body by its
- * media types.
+ * All operations in document order, with path, method, resolved parameters, and their request body
+ * by media type.
  */
 export const operations = () =>
   Object.entries(root.paths).flatMap(([path, methods]) =>
@@ -42,7 +42,7 @@ export const operations = () =>
     })),
   );
 
-/** [tag, its operations], but for tags without any. */
+/** [tag, operations] for tags with operations. */
 export function operationsByTag() {
   const all = operations();
   const of = (name) => all.filter(({tags}) => tags?.[0] === name);
@@ -51,7 +51,7 @@ export function operationsByTag() {
   return [...listed, [{name: "other"}, rest]].filter(([, list]) => list.length);
 }
 
-/** The objects and the components that a value of a schema may be or hold, not looking into them. */
+/** The objects and components that a value of a schema can be or contain, one level deep. */
 function parts(schema) {
   if (schema.$ref || schema.properties) return [schema];
   const {items, additionalProperties, anyOf = [], oneOf = [], allOf = []} = schema;
@@ -61,8 +61,8 @@ function parts(schema) {
 }
 
 /**
- * The same, each with the place of its fields: null of a component, whose fields stand at its own.
- * place: of the schema; null where there is none; taken: whether fields stand there already.
+ * parts() with the id of their fields: null for a component, whose fields have their own ids.
+ * place: of the schema, or null; taken: its id is in use already.
  */
 export function placedParts(schema, place, taken = false) {
   let n = Number(taken);
@@ -83,7 +83,7 @@ function* fieldsOfParts(parts, of) {
   for (const [part, place] of parts) if (place) yield* fieldsOf(part, place, of);
 }
 
-/** Every field of a request or an answer: {name, place, of, description}. */
+/** Every field of a request or response: {name, place, of, description}. */
 export const allFields = () => [
   ...operations().flatMap(({id, method, path, parameters}) =>
     parameters.map(({name, description}) => ({

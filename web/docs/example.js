@@ -1,11 +1,11 @@
-// An operation's examples: a line for a terminal each, which is copied, or sent from here.
+// Examples of an operation: a curl command that can be copied, and a button that sends the request.
 import {asCurl, getAsCurl, sendFileAsCurl} from "../shared/api.js";
 import {element} from "../shared/dom.js";
+import {copy} from "../shared/export.js";
 import {hasKey} from "../shared/key.js";
-import {copy} from "../shared/take_away.js";
 import {tryIt} from "./attempt.js";
 
-/** The query of those parameters that have an example. */
+/** A query of the parameters with examples. */
 function exampleQuery(parameters) {
   const given = parameters.filter(
     (parameter) => parameter.in === "query" && "example" in parameter,
@@ -16,7 +16,7 @@ function exampleQuery(parameters) {
   return written.length ? `?${written.join("&")}` : "";
 }
 
-/** {path, body, file, type, summary}: each a request; one of a file cannot be sent from here. */
+/** Requests {path, body, file, type, summary}; those with a file cannot be sent from the page. */
 function requestsOf({method, path, parameters, body}) {
   const at = path.slice(1);
   if (method === "GET") return [{path: at + exampleQuery(parameters)}];
@@ -27,7 +27,7 @@ function requestsOf({method, path, parameters, body}) {
   });
 }
 
-/** The flags of curl: a key where this server has asked for one, and lines as they come. */
+/** curl flags: a key if this server required one, and no buffering for streams. */
 function flags({security, responses}) {
   const streams = Object.keys(responses[200]?.content ?? {}).includes("application/x-ndjson");
   const key = hasKey() && security?.length !== 0 ? ' -H "Authorization: Bearer $KEY"' : "";
@@ -45,7 +45,7 @@ function exampleView(operation, request) {
   const copied = element("button", {type: "button", textContent: "Copy curl"});
   copied.addEventListener("click", () => {
     copy(line.textContent, (text) => {
-      said.textContent = text === "copied" ? text : "the browser does not let it be copied";
+      said.textContent = text === "copied" ? text : "the browser does not allow copying";
     });
   });
   const view = element("div", {className: "example"});
@@ -57,6 +57,5 @@ function exampleView(operation, request) {
   return view;
 }
 
-/** All examples of an operation. */
 export const examplesView = (operation) =>
   requestsOf(operation).map((request) => exampleView(operation, request));

@@ -1,17 +1,17 @@
-// The box that finds fields by their name.
+// Search for fields by name.
 import {$, element} from "../shared/dom.js";
 import {count} from "../shared/numbers.js";
 import {allFields} from "./document.js";
 
-const most = 40; // names that are listed
+const most = 40; // names listed
 
-/** Those before come first: the name itself, then those that begin with it. */
+/** Sort order: exact matches, then prefixes, then others. */
 function rank(name, wanted) {
   if (name === wanted) return 0;
   return name.startsWith(wanted) ? 1 : 2;
 }
 
-/** [name, its fields] of those whose name has a text in it. */
+/** [name, fields] for names that contain a text. */
 function find(fields, wanted) {
   const names = new Map();
   for (const field of fields) {
@@ -22,7 +22,7 @@ function find(fields, wanted) {
   return [...names].sort((a, b) => ranked(a) - ranked(b));
 }
 
-/** A path, which may go on in a new line behind its points. */
+/** A path with optional line breaks after its points. */
 const broken = (path) =>
   path.split(/(?<=\.)/).flatMap((part, i) => (i ? [element("wbr"), part] : [part]));
 
@@ -49,7 +49,7 @@ export function startFinder() {
     list.replaceChildren(...found.slice(0, most).map(foundView));
     list.hidden = !found.length;
     $("docs-contents").hidden = Boolean(wanted);
-    const listed = found.length > most ? `, ${most} of them here` : "";
+    const listed = found.length > most ? `, ${most} shown` : "";
     $("docs-found-count").textContent = wanted ? count(found.length, "name") + listed : "";
   };
   box.addEventListener("input", look);

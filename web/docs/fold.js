@@ -1,9 +1,9 @@
-// What is folded is made when it is first opened: a schema may hold itself.
+// <details> elements filled when first opened, because schemas can be recursive.
 import {$, element} from "../shared/dom.js";
 
-const folds = new Map(); // by the place of what they hold
+const folds = new Map(); // by the id of their content
 
-/** A <details>. summary: nodes; make(): the nodes in it; place: of them, if they have one. */
+/** A <details> element. summary: nodes; make() returns the content; place: its id, if any. */
 export function fold(summary, make, place) {
   const node = element("details", {}, element("summary", {}, ...summary));
   let filled = false;
@@ -17,19 +17,19 @@ export function fold(summary, make, place) {
   return node;
 }
 
-/** Opens what is around a place, from outside in. */
+/** Opens all elements around an id, from the outside in. */
 export const unfold = (place) => {
   for (const {index} of place.matchAll(/[./]|$/g)) folds.get(place.slice(0, index))?.();
 };
 
-/** Goes to the place that the address names. */
+/** Scrolls to the id in the address and focuses it. */
 export function reveal(hash) {
   const place = hash.slice(1);
   unfold(place);
   const found = $(place);
   if (!found) return;
-  const heard = found.tagName === "DETAILS" ? found.firstChild : found;
-  if (heard === found) found.tabIndex = -1;
-  heard.focus({preventScroll: true});
-  found.scrollIntoView({block: heard === found ? "center" : "start"});
+  const focused = found.tagName === "DETAILS" ? found.firstChild : found;
+  if (focused === found) found.tabIndex = -1;
+  focused.focus({preventScroll: true});
+  found.scrollIntoView({block: focused === found ? "center" : "start"});
 }

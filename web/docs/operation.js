@@ -1,4 +1,4 @@
-// One operation: its examples, fields and answers.
+// One operation: examples, request and responses.
 import {element} from "../shared/dom.js";
 import {pretty} from "./attempt.js";
 import {resolved} from "./document.js";
@@ -10,7 +10,7 @@ const titled = (title, nodes) =>
   nodes.length ? [element("h4", {textContent: title}), ...nodes] : [];
 const places = {query: "Query", header: "Header", path: "Path", cookie: "Cookie"};
 
-/** The parameters, a table for each part of the request that takes some. */
+/** Parameters, in a table for each part of the request. */
 function parametersView({id, parameters}) {
   return Object.entries(places).flatMap(([where, title]) => {
     const fields = parameters.filter((parameter) => parameter.in === where);
@@ -18,7 +18,7 @@ function parametersView({id, parameters}) {
   });
 }
 
-/** What a media type holds: a line, and its fields. open: at once, else folded, with its example. */
+/** A media type with its schema. open: fields are visible; otherwise folded, with the example. */
 function mediaView(type, {schema = {}, example}, open) {
   const description = schema.description ? `: ${schema.description}` : "";
   const nodes = [element("p", {}, code(type), " ", ...typeWords(schema), description)];
@@ -33,7 +33,6 @@ function mediaView(type, {schema = {}, example}, open) {
 const contentView = (content, open) =>
   Object.entries(content ?? {}).flatMap(([type, media]) => mediaView(type, media, open));
 
-/** The headers of an answer. */
 function headersView(headers = {}) {
   const fields = Object.entries(headers).map(([name, header]) => ({name, ...resolved(header)}));
   return fields.length ? [fold(["Headers"], () => [fieldTable(fields, null)])] : [];
@@ -42,7 +41,7 @@ function headersView(headers = {}) {
 const statusWords = (status, {description}) => [code(status), " ", description];
 const answerView = ({content, headers}) => [...contentView(content), ...headersView(headers)];
 
-/** Those that are no answer to what was asked: a line each, opened one by one. */
+/** Other statuses, each folded to a line. */
 function refusalsView(answers) {
   if (!answers.length) return [];
   const make = () =>
@@ -65,7 +64,6 @@ function answersView({responses}) {
   ];
 }
 
-/** What an operation is opened to see. */
 function inside(operation) {
   const {description = "", body, security} = operation;
   const keyless = security?.length === 0 ? " No key is needed." : "";
@@ -73,11 +71,10 @@ function inside(operation) {
     element("p", {textContent: description + keyless}),
     ...titled("Examples", examplesView(operation)),
     ...titled("Request", [...parametersView(operation), ...contentView(body, true)]),
-    ...titled("Answers", answersView(operation)),
+    ...titled("Responses", answersView(operation)),
   ];
 }
 
-/** An operation, folded to its line. */
 export function operationView(operation) {
   const {id, method, path, summary = ""} = operation;
   const verb = element("span", {className: `method ${method.toLowerCase()}`, textContent: method});

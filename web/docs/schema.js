@@ -1,4 +1,4 @@
-// Schemas as words and as tables of fields.
+// Schemas as text and as tables of fields.
 import {element} from "../shared/dom.js";
 import {count} from "../shared/numbers.js";
 import {nameOf, placedParts, resolved, schemaPlace} from "./document.js";
@@ -11,7 +11,6 @@ const paragraph = (...children) => element("p", {}, ...children);
 const joined = (list, word) => list.flatMap((nodes, i) => (i ? [word, ...nodes] : nodes));
 const alternatives = (list) => joined(list, " or ");
 
-/** A link to where a component stands. */
 const linkTo = ($ref) => {
   const name = nameOf($ref);
   return element("a", {href: `#${schemaPlace(name)}`, textContent: name});
@@ -29,7 +28,7 @@ function oneType(type, schema, many) {
   return [many && type !== "null" ? `${type}s` : type];
 }
 
-/** What a value may be, as texts and links. many: several of them. */
+/** A type as texts and links. many: plural. */
 export function typeWords(schema, many = false) {
   if (schema.$ref) return [linkTo(schema.$ref)];
   if ("const" in schema) return [json(schema.const)];
@@ -45,7 +44,7 @@ function span(least, most, unit = "") {
   return [most === undefined ? `at least ${least}${unit}` : `${least} to ${most}${unit}`];
 }
 
-/** What narrows a value down: its range, its default. */
+/** Range, number of entries and default. */
 function limits(schema) {
   const {minimum, maximum, exclusiveMinimum, minItems, maxItems} = schema;
   const words = span(minimum, maximum).map((text) => [text]);
@@ -57,7 +56,7 @@ function limits(schema) {
 
 const cell = (name, ...children) => element("td", {className: name}, ...children);
 
-/** field: {name, schema, required, description}. Its row, and one for what it holds. */
+/** Table row of a field {name, schema, required, description}, and one for its content. */
 function rows({name, schema, required, description}, place) {
   const at = place && `${place}.${name}`;
   const head = element("th", {scope: "row"}, code(name));
@@ -71,7 +70,6 @@ function rows({name, schema, required, description}, place) {
   return [row, element("tr", {className: "inside"}, element("td", {colSpan: 3}, ...folds))];
 }
 
-/** What a part of a schema holds, folded. */
 function partFold(part, place) {
   const fields = Object.keys(resolved(part).properties ?? {}).length;
   const name = part.$ref ? [nameOf(part.$ref), " "] : [];
@@ -81,7 +79,7 @@ function partFold(part, place) {
   return fold([...name, number], () => schemaView(part, place), place);
 }
 
-/** A table of fields. place: whose they are; null: of nobody who is looked for. */
+/** A table of fields. place: id of their parent; null if they are not search targets. */
 export function fieldTable(fields, place, title) {
   const heads = ["field", "type", "meaning"].map((textContent) =>
     element("th", {scope: "col", textContent}),
@@ -93,7 +91,7 @@ export function fieldTable(fields, place, title) {
   return table;
 }
 
-/** A schema, as nodes: its fields, and what else it may be. */
+/** A schema as nodes: its fields and alternatives. */
 export function schemaView(schema, place) {
   const {properties, required = [], ...rest} = resolved(schema);
   const fields = Object.entries(properties ?? {}).map(([name, field]) => ({
@@ -103,6 +101,6 @@ export function schemaView(schema, place) {
   }));
   const nodes = fields.length ? [fieldTable(fields, place)] : [paragraph(...typeWords(rest))];
   const others = placedParts(rest, place, true);
-  if (fields.length && others.length) nodes.push(paragraph("and those of one of:"));
+  if (fields.length && others.length) nodes.push(paragraph("and the fields of one of:"));
   return [...nodes, ...others.map(([part, inside]) => partFold(part, inside))];
 }

@@ -1,14 +1,14 @@
-// The impacts as a list to edit: remove one, move one, add one.
+// The editable list of impacts: remove, move, add.
 import {$, element} from "../shared/dom.js";
 import {digits, toNumber} from "../shared/numbers.js";
 
-const most = 2000; // rows that a browser scrolls without effort
+const most = 2000; // rows; more would scroll slowly
 
 const walls = {1: "+b", "-1": "−b"};
 const taken = ["ok", "R is not known", "hidden"];
 export const isLeftOut = (status) => !taken.includes(status);
 
-/** What an impact is shown as: by what was done to it, else by what it is. */
+/** How an impact is marked: by its edit, or else by its status or wall. */
 export function kindOf(row) {
   if (row.removed) return "removed";
   if (row.t !== row.found) return "edited";
@@ -27,7 +27,7 @@ function statusOf(row) {
 const refuse = (input) => input.setAttribute("aria-invalid", true);
 
 export class ImpactList {
-  /** changed: called after each change. */
+  /** changed() is called after each change. */
   constructor(changed) {
     this.changed = changed;
     this.rows = [];
@@ -44,14 +44,13 @@ export class ImpactList {
     $("measure-doubtful").onchange = () => this.show();
   }
 
-  /** The impacts of an answer; span: the record's [start, end] in s. */
+  /** Takes the impacts of an answer; span: [start, end] of the record in s. */
   set({time_s: times, side, R, status}, span) {
     this.span = span;
     this.rows = times.map((found, i) => ({found, side: side[i], R: R[i], status: status[i]}));
     this.reset();
   }
 
-  /** All as they were found. */
   reset() {
     const found = this.rows.filter((row) => row.status !== "added");
     this.rows = found.map((row) => ({...row, t: row.found, removed: false}));
@@ -62,13 +61,13 @@ export class ImpactList {
     return this.rows.some(isEdited);
   }
 
-  /** The moments to identify with, in s. */
+  /** The impact times to identify with, s. */
   times() {
     const kept = this.rows.filter((row) => !row.removed);
     return kept.map(({t}) => Number(t.toFixed(7)));
   }
 
-  /** Whether a moment, or null, lies in the record. */
+  /** True when t is a time inside the record; t can be null. */
   inside(t) {
     return t !== null && t > this.span[0] && t < this.span[1];
   }
@@ -88,7 +87,7 @@ export class ImpactList {
     this.changed();
   }
 
-  /** All rows, or those left out, those beside them and those edited. */
+  /** Shows all rows or, on request, those left out or edited with their neighbours. */
   show() {
     const isDoubtful = (row) => !["plus", "minus"].includes(kindOf(row));
     const all = !$("measure-doubtful").checked;

@@ -1,5 +1,6 @@
-// The tab of a measurement: a file and its fields in, one request, what was identified out; the
-// list of impacts can be edited and sent again.
+// The measurement tab: a file and the form are sent as one request, and the identified system is
+// shown. The list of impacts can be edited and sent again.
+
 import {
   identify,
   identifyJson,
@@ -8,13 +9,12 @@ import {
   simulate,
   wholeMessage,
 } from "../shared/api.js";
-import {$, countUp, element, sayIn} from "../shared/dom.js";
+import {$, countUp, element, sayIn, scrollToResults} from "../shared/dom.js";
+import {copy, save} from "../shared/export.js";
 import {Form} from "../shared/form.js";
 import {Job} from "../shared/job.js";
-import {copy, save} from "../shared/take_away.js";
-import {showFit} from "./fit.js";
 import {ImpactList} from "./impact_list.js";
-import {summariseMeasurement} from "./measurement_summary.js";
+import {showFit, summariseMeasurement} from "./measurement_summary.js";
 import {
   draw,
   drawRecord,
@@ -32,20 +32,20 @@ const groups = {
   SI: ["Oscillator", true],
   record: ["Columns and units", false],
 };
-/** The experiments of Table 4, and a simulated record of each by its name. */
+/** Experiments of Table 4: label of the button for a simulated record. */
 const samples = {fig15: "b = 9 mm, periodic", fig20: "b = 15 mm, chaotic"};
-const longestQuery = 6000; // servers and proxies take 8 kB of address
-const sampleCycles = 330; // some 40 s
+const longestQuery = 6000; // characters; servers and proxies accept addresses of about 8 kB
+const sampleCycles = 330; // about 40 s
 const presets = {}; // of the experiments, by name
 
 let form;
 let list;
 let file = null;
-let parsed = null; // what was read of it
-let record = null; // what the fields make of that
+let parsed = null; // content of the file
+let record = null; // parsed columns as selected by the form
 let answer = null;
-let sent = null; // the fields that it answers
-let turn = 0; // counts the records that were asked for: the newest one counts
+let sent = null; // fields that the answer belongs to
+let newest = 0; // counts the records requested; only the newest is shown
 let ticking = 0;
 let shown = null;
 let remembered = () => {};
@@ -55,8 +55,8 @@ const results = $("measure-results");
 const say = sayIn("measure-message");
 
 /**
- * The service's fields as this form shows them: names of columns are typed in or taken from the
- * file's header; the forcing's amplitude is fitted.
+ * Changes to the service's fields: column names are typed or taken from the file's header; the
+ * amplitude of the forcing is fitted and has no field.
  */
 const changes = {
   threshold: {group: "system", unit: "sd of the noise"},
@@ -73,20 +73,20 @@ const fieldsOf = (fields) =>
 
 const preset = () => $("measure-preset").value;
 
-/** The oscillator that is chosen; what is estimated is left: the presets have it of a simulation. */
+/** Fields of the chosen oscillator, without those that are estimated. */
 function base() {
   const {R, F, cycles, ...oscillator} = presets[preset()]?.parameters ?? {};
   return oscillator;
 }
 
-/** Fields as a query, a list as its values with commas, which stay readable. */
+/** Fields as a query; commas stay readable. */
 const asQuery = (fields) => String(new URLSearchParams(fields)).replaceAll("%2C", ",");
 
 export const query = () => shown;
 
 const pick = (fields, isWanted) => Object.fromEntries(Object.entries(fields).filter(isWanted));
 
-/** The form as a query for a link; the file stays with who has it. */
+/** Updates the address with the form. The file itself is not part of a link. */
 function remember() {
   const given = base();
   const differing = pick(form.values(), ([name, value]) => value !== given[name]);
@@ -95,12 +95,12 @@ function remember() {
   compare();
 }
 
-/** Another oscillator; more: other fields. */
+/** Selects an oscillator; more: further fields. */
 function choosePreset(name, more) {
   $("measure-preset").value = Object.hasOwn(presets, name) ? name : "";
   form.set({...base(), ...more});
 }
-/** What the form says of the columns, which stays with another oscillator. */
+/** Column fields of the form, which are kept when the oscillator changes. */
 function ofColumns() {
   const names = form.fields.filter((f) => f.group === "record").map((f) => f.name);
   return pick(form.values(), ([name]) => names.includes(name));
@@ -116,16 +116,14 @@ export async function open(given) {
 
 export {redraw};
 
-// What is drawn.
-
-/** What the fields make of the file's columns, and what is known of it. */
+/** Draws the columns selected by the fields, with the impacts known. */
 function drawFile(fields) {
   record = parsed && recordOf(parsed, fields);
   for (const id of ["measure-parts", "measure-list", "measure-add-at"]) $(id).hidden = !record;
   if (parsed) picker.show(parsed, fields);
   if (!record) return;
   drawRecord(record, addAt);
-  // A record whose impacts cannot be found has them given by hand.
+  // Without an answer the list starts empty, so that impacts can be added by hand.
   list.set(answer?.impacts ?? {time_s: []}, [record.t[0], record.t.at(-1)]);
 }
 
@@ -134,16 +132,14 @@ function edited() {
   mark(record, list.rows, answer);
 }
 
-/**
- * A click on the acceleration adds the impact whose spike is there, if that is what it is for now.
- */
+/** Adds the impact at a clicked spike of the acceleration, while adding is switched on. */
 function addAt(t, reach) {
   if (!$("plot-measured-a").matches(".adding")) return;
   const at = spikeNear(record, t, reach);
   if (at !== null && list.add(record.t[at])) say(`added an impact at ${record.t[at].toFixed(4)} s`);
 }
 
-/** What is known of the record; null: nothing yet. */
+/** Sets the answer of the record; null: not identified yet. */
 function setAnswer(next, fields) {
   answer = next;
   sent = fields;
@@ -151,13 +147,13 @@ function setAnswer(next, fields) {
   compare();
 }
 
-/** A column that was chosen is that of another file, where this one has no such. */
+/** Clears chosen columns that a new file does not have. */
 function forgetColumns(names) {
   for (const [name, value] of Object.entries(ofColumns()))
     if (isColumn(name) && names.length && !names.includes(value)) form.replace(name, "");
 }
 
-/** The lines around one that is at fault. */
+/** Quotes the lines around one with an error. */
 function quoteLine(detail = "") {
   const line = Number(/^line (\d+)/.exec(detail)?.[1]);
   const first = Math.max(line - 1, 1);
@@ -171,15 +167,13 @@ function quoteLine(detail = "") {
   $("measure-lines").hidden = !lines.length;
 }
 
-// What is done.
-
-/** A file is there: it is drawn, and, if it can be, identified. */
-async function take(chosen) {
+/** Reads a chosen file, draws it and, if its columns are known, identifies it. */
+async function readFile(chosen) {
   if (!chosen) return;
-  ++turn;
+  ++newest;
   job.cancel();
   const input = $("measure-file");
-  if (input.files[0] !== chosen) input.value = ""; // so that the same file can be chosen again
+  if (input.files[0] !== chosen) input.value = ""; // allows choosing the same file again
   file = chosen;
   parsed = null;
   setAnswer(null, null);
@@ -208,11 +202,11 @@ async function take(chosen) {
   }
 }
 
-/** What is sent: the file as it is, or, where the address would be too long, all as JSON. */
+/** Sends the file unchanged or, if the address would be too long, everything as JSON. */
 function request(fields, signal) {
-  const asked = asQuery(fields);
-  return asked.length <= longestQuery
-    ? identify(asked, file, signal)
+  const text = asQuery(fields);
+  return text.length <= longestQuery
+    ? identify(text, file, signal)
     : identifyJson(asJson(parsed, fields), signal);
 }
 
@@ -246,7 +240,6 @@ const job = new Job({
   later: (text) => say(text, true),
 });
 
-/** How long it takes already. */
 function tick(seconds) {
   if ($("measure-message").matches(".fault")) return;
   const of = record ? ` ${record.t.length} samples` : "";
@@ -259,7 +252,7 @@ function run(more = {}) {
     $("measure-file").focus();
     return;
   }
-  if (!parsed) return; // what is being read is identified then
+  if (!parsed) return; // identified after reading
   form.showErrors([]);
   quoteLine();
   say("identifying …");
@@ -267,19 +260,19 @@ function run(more = {}) {
   job.start({fields: {...form.values(), ...more}, file: [name, size, lastModified]});
 }
 
-const takeRun = (run, name) => take(new File([recordOfRun(run)], name, {type: "text/csv"}));
+const readRun = (run, name) => readFile(new File([recordOfRun(run)], name, {type: "text/csv"}));
 
-/** A record of a run that was simulated: {parameters, impacts, sticking, status}. */
+/** Identifies the record of a simulated run {parameters, impacts, sticking, status}. */
 export async function measure(run) {
   const {parameters} = run;
   choosePreset("", oscillatorOf(parameters));
   remember();
-  await takeRun(run, `run-b${parameters.b * 1000}mm.csv`);
+  await readRun(run, `run-b${parameters.b * 1000}mm.csv`);
 }
 
-/** The same of one of the experiments. */
-async function takeSample(name) {
-  const mine = ++turn;
+/** Identifies a simulated record of one of the experiments. */
+async function readSample(name) {
+  const mine = ++newest;
   job.cancel();
   choosePreset(name, ofColumns());
   remember();
@@ -288,16 +281,10 @@ async function takeSample(name) {
   const fields = {...parameters, cycles: sampleCycles, include: ["impacts", "regime"]};
   try {
     const run = await simulate(fields);
-    if (turn === mine) await takeRun(run, `sample-${name}.csv`);
+    if (newest === mine) await readRun(run, `sample-${name}.csv`);
   } catch (error) {
-    if (turn === mine) say(error.message, true);
+    if (newest === mine) say(error.message, true);
   }
-}
-
-/** Where the plots lie below the form, one who asks for them is led there. */
-function lead() {
-  const panel = $("measure-form");
-  if (file && results.offsetLeft < panel.offsetLeft + panel.offsetWidth) results.scrollIntoView();
 }
 
 function download() {
@@ -311,19 +298,19 @@ function command() {
   return sendFileAsCurl(path, "text/csv", file?.name ?? "record.csv");
 }
 
-/** A file is chosen, or dropped anywhere. */
+/** Files are chosen or dropped on the tab. */
 function listenToFiles() {
   const input = $("measure-file");
-  input.onchange = () => take(input.files[0]);
+  input.onchange = () => readFile(input.files[0]);
   const drag = (event) => {
     event.preventDefault();
     $("measure-drop").classList.toggle("over", event.type === "dragover");
-    if (event.type === "drop") take(event.dataTransfer.files[0]);
+    if (event.type === "drop") readFile(event.dataTransfer.files[0]);
   };
   for (const type of ["ondragover", "ondragleave", "ondrop"]) $("panel-measurement")[type] = drag;
 }
 
-/** tables: of /v1/parameters, and presets; changed: called when there is another query. */
+/** identify_fields: of /v1/parameters; presets; changed(): called when the query changes. */
 export function start({identify_fields: fields, presets: all}, changed) {
   remembered = changed;
   startViews(() => ({name: file?.name ?? "", answer}));
@@ -331,7 +318,7 @@ export function start({identify_fields: fields, presets: all}, changed) {
   for (const [name, input] of form.inputs)
     if (isColumn(name)) input.setAttribute("list", "measure-columns");
   list = new ImpactList(edited);
-  $("measure-preset").append(new Option("own oscillator", ""));
+  $("measure-preset").append(new Option("user-defined oscillator", ""));
   for (const {name, title, ...preset} of all) {
     if (!(name in samples)) continue;
     presets[name] = preset;
@@ -340,7 +327,7 @@ export function start({identify_fields: fields, presets: all}, changed) {
       type: "button",
       className: "small",
       textContent: samples[name],
-      onclick: () => takeSample(name),
+      onclick: () => readSample(name),
     });
     $("measure-samples").append(" ", button);
   }
@@ -348,7 +335,10 @@ export function start({identify_fields: fields, presets: all}, changed) {
   listenToFiles();
 }
 
-/** Whether what is shown is of other fields than the form's, or will be soon. */
+/**
+ * Marks the results as stale if they do not belong to the form's fields, or are about to be
+ * replaced.
+ */
 function compare(isBusy = false) {
   const {impact_times_s: _, ...fields} = sent ?? {};
   const isOld = sent !== null && asQuery(form.values()) !== asQuery(fields);
@@ -375,7 +365,7 @@ function listen() {
   $("measure-form").onsubmit = (event) => {
     event.preventDefault();
     run();
-    lead();
+    if (file) scrollToResults("measure");
   };
   $("measure-cancel").onclick = () => job.cancel();
   $("measure-again").onclick = () => run({impact_times_s: list.times()});

@@ -1,12 +1,12 @@
-// What a measurement came to, in words and numbers.
+// The results of a measurement as cards, and the table of fitted parameters.
 
-import {cards, listWarnings} from "../shared/cards.js";
-import {$} from "../shared/dom.js";
-import {count, digits, withError} from "../shared/numbers.js";
+import {$, element} from "../shared/dom.js";
+import {count, digits, minus, withError} from "../shared/numbers.js";
 import {verdicts} from "../shared/quantities.js";
+import {cards, listWarnings} from "../shared/tables.js";
 import {isLeftOut} from "./impact_list.js";
 
-export const about = (value, n) => (value == null ? "–" : String(Number(value.toPrecision(n))));
+export const rounded = (value, n) => (value == null ? "–" : String(Number(value.toPrecision(n))));
 
 const wall = (name, {R, standard_error: error, impacts}) => [
   `R at ${name}`,
@@ -39,7 +39,7 @@ function exponentCards({
     [
       "λ₁ of the identified system",
       digits(forward?.lambda[0]),
-      forward ? "run forward from the first known state" : "no state is known",
+      forward ? "simulated from the first known state" : "no state is known",
     ],
   ];
 }
@@ -52,21 +52,22 @@ function impactsCard({impacts: {status, tau}, sticking}) {
   const notes = [
     `${status.filter(isLeftOut).length} left out`,
     hidden && `${hidden} hidden`,
-    stuck && `${count(stuck, "stuck phase")}, shaded`,
+    stuck && `${count(stuck, "sticking phase")}, shaded`,
     unknown && `R of ${unknown} not known, at the ends`,
   ];
   return ["impacts", tau.length, notes.filter(Boolean).join("; ")];
 }
 
-/** The half clearance that the impacts fit, beside the given one, in mm. */
+/** The fitted clearance, compared with the given one. */
 function clearanceCard({b, standard_error: error}, parameters) {
   const card = (remark) => [
     "b fitted",
     b == null ? "–" : `${withError(b * 1000, error * 1000, 2)} mm`,
     remark,
   ];
-  if (parameters.origin.b === "fitted to the record") return card("taken, not the given one");
-  const given = `given ${about(parameters.b * 1000, 5)} mm`;
+  if (parameters.origin.b === "fitted to the record")
+    return card("used in place of the given value");
+  const given = `given ${rounded(parameters.b * 1000, 5)} mm`;
   if (b == null) return card(given);
   const off = (b / parameters.b - 1) * 100;
   return card(`${given}, ${Math.abs(off) < 0.05 ? "agrees" : `off by ${digits(off, 1)} %`}`);
@@ -78,14 +79,22 @@ function signalCards(signal, milliseconds) {
   const seconds = (samples / rate).toFixed(1);
   const answered = `answered in ${milliseconds.toFixed(0)} ms`;
   return [
-    ["forcing G", `${about(signal.G * 1000, 4)} mm`, "fitted"],
-    ["noise", x == null ? "–" : `${about(x * 1e6, 3)} µm`, a == null ? "" : `${about(a, 3)} m/s²`],
+    ["forcing G", `${rounded(signal.G * 1000, 4)} mm`, "fitted"],
+    [
+      "noise",
+      x == null ? "–" : `${rounded(x * 1e6, 3)} µm`,
+      a == null ? "" : `${rounded(a, 3)} m/s²`,
+    ],
     [
       "pulse of an impact",
-      `${about(pulse * 1000, 3)} ms`,
-      `${about(pulse * rate, 2)} samples long`,
+      `${rounded(pulse * 1000, 3)} ms`,
+      `${rounded(pulse * rate, 2)} samples long`,
     ],
-    ["sampling", `${about(rate, 5)} Hz`, `${count(samples, "sample")}, ${seconds} s; ${answered}`],
+    [
+      "sampling",
+      `${rounded(rate, 5)} Hz`,
+      `${count(samples, "sample")}, ${seconds} s; ${answered}`,
+    ],
   ];
 }
 
@@ -100,4 +109,39 @@ export function summariseMeasurement(answer, milliseconds) {
     ...signalCards(signal, milliseconds),
   ]);
   listWarnings($("measure-warnings"), warnings);
+}
+
+/** Key in the answer's `fitted`: description, unit, factor from SI. */
+const rows = [
+  ["f", "frequency of the forcing", "Hz"],
+  ["F", "amplitude F of the base", "mm", 1e3],
+  ["phase", "its phase at t = 0", "rad"],
+  ["displacement_offset", "offset of the displacement", "µm", 1e6],
+  ["displacement_drift", "its drift over the record", "µm", 1e6],
+  ["displacement_gain", "its scale relative to the acceleration"],
+  ["displacement_delay_s", "its delay relative to the acceleration", "ms", 1e3],
+  ["acceleration_offset", "offset of the acceleration", "m/s²"],
+  ["acceleration_drift", "its drift over the record", "m/s²"],
+  ["omega0", "ω₀ of the oscillator", "rad/s"],
+  ["zeta", "its damping ratio ζ"],
+  ["b", "clearance b", "mm", 1e3],
+  ["R_plus", "R at +b"],
+  ["R_minus", "R at −b"],
+];
+
+export function showFit({fitted, signal: {forcing}}) {
+  const row = ([key, name, unit = "", factor = 1]) => {
+    const {value, standard_error: error, fixed} = fitted[key];
+    const shown = fixed
+      ? minus(rounded(value * factor, 6))
+      : withError(value * factor, error * factor, 4);
+    const text = `${shown} ${unit}`.trim() + (fixed ? ", as given" : "");
+    return element("tr", {}, element("td", {}, name), element("td", {}, text));
+  };
+  $("measure-fitted").replaceChildren(...rows.map(row));
+  $("measure-channel").textContent = forcing
+    ? `The forcing channel gives f = ${forcing.f.toPrecision(7)} Hz and ` +
+      `F = ${(forcing.F * 1000).toPrecision(4)} mm; in the motion it appears ` +
+      `${forcing.phase.toFixed(3)} rad later.`
+    : "";
 }

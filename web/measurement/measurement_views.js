@@ -1,19 +1,20 @@
-// The plots of a measurement: the record with its impacts, and what was identified from them.
-import {Axis} from "../shared/axis.js";
+// Plots of a measurement: the record with its impacts, and the results identified from it.
+
 import {$, element} from "../shared/dom.js";
 import {exponentRange, exponentSeries} from "../shared/exponents.js";
-import {addMenu, captionOf} from "../shared/figure_menu.js";
+import {addExportButton, captionOf} from "../shared/export_dialog.js";
 import {rangeOf} from "../shared/frame.js";
+import {makeAccessible} from "../shared/gestures.js";
 import {LinePlot} from "../shared/line_plot.js";
-import {operable} from "../shared/operable.js";
 import {verdicts} from "../shared/quantities.js";
 import {ScatterPlot} from "../shared/scatter_plot.js";
 import {firstFrom, lastUpTo} from "../shared/search.js";
+import {Viewport} from "../shared/viewport.js";
 import {isLeftOut, kindOf} from "./impact_list.js";
 import {spikeNear} from "./record.js";
 
-const axis = new Axis();
-const line = (name) => [name, new LinePlot($(`plot-measured-${name}`), axis)];
+const viewport = new Viewport();
+const line = (name) => [name, new LinePlot($(`plot-measured-${name}`), viewport)];
 const plane = (name) => [name, new ScatterPlot($(`plot-measured-${name}`))];
 const planes = ["portrait", "section"];
 const plots = Object.fromEntries([
@@ -22,43 +23,42 @@ const plots = Object.fromEntries([
 ]);
 const mm = (metres) => metres.map((v) => v * 1000);
 
-/** Draws lines over the record. */
 const drawLines = (name, options) => plots[name].draw({...options, x: "t (s)"});
 
-/** The figures of the paper that show the same of its own records, by preset. */
+/** Figures of the paper that show the corresponding plot, by preset. */
 const figures = {
   fig15: {a: 15, x: 16, portrait: 17, section: 18, qr: 19, raw: 19},
   fig20: {a: 20, x: 21, portrait: 22, section: 23, qr: 24, raw: 24},
 };
 const figureOf = (name) => $(`plot-measured-${name}`).closest("figure");
 
-/** told(): {name, answer} of the record that is shown. */
-export function start(told) {
-  axis.onCursor(() => light(told().answer));
+/** shown() returns {name, answer} of the record shown. */
+export function start(shown) {
+  viewport.onCursor(() => light(shown().answer));
   for (const [name, plot] of Object.entries(plots)) {
     const {title} = captionOf(figureOf(name));
-    operable(plot, title, () => told().answer?.impacts.time_s ?? []);
-    addMenu(figureOf(name), plot, () => ({
+    makeAccessible(plot, title, () => shown().answer?.impacts.time_s ?? []);
+    addExportButton(figureOf(name), plot, () => ({
       title,
-      summary: summaryOf(told()),
-      caption: told().name,
+      summary: summaryOf(shown()),
+      caption: shown().name,
       name: `measured-${name}`,
     }));
   }
 }
 
 function summaryOf({answer}) {
-  if (!answer) return "A record of which nothing is identified yet.";
+  if (!answer) return "A record that is not identified yet.";
   const {impacts, verdict, slope} = answer;
   const lambda = slope.lambda1 == null ? "" : `, slope of λ₁τ ${slope.lambda1.toFixed(4)}`;
   return `${impacts.tau.length} impacts, ${verdicts[verdict] ?? "no verdict"}${lambda}`;
 }
 
-/** Tags the plots of an experiment of the paper with its figures. */
+/** Tags the plots of an experiment with the figures of the paper. */
 export function nameFigures(preset) {
   for (const tag of document.querySelectorAll("#measure-results .tag")) tag.remove();
   for (const [name, number] of Object.entries(figures[preset] ?? {})) {
-    const title = "what this figure of the paper shows of its own record";
+    const title = "the corresponding figure of the paper, for its own record";
     const tag = element("span", {className: "tag", textContent: `as Fig. ${number}`, title});
     figureOf(name).querySelector("figcaption").append(tag);
   }
@@ -66,7 +66,7 @@ export function nameFigures(preset) {
 
 /** Rings the impact nearest to the cursor. */
 function light(answer) {
-  const {cursor} = axis;
+  const {cursor} = viewport;
   if (!answer || cursor === null) return;
   const {time_s: t, x, x_dot_after: xDot, R} = answer.impacts;
   const before = Math.max(lastUpTo(t, cursor), 0);
@@ -81,10 +81,10 @@ export function redraw() {
   for (const plot of Object.values(plots)) plot.refresh();
 }
 
-/** The colours of the marks of impacts, by kind. */
+/** Colours of the impact marks, by kind. */
 const kinds = {plus: "plus", minus: "minus", "left-out": "wall", removed: "soft", edited: "c4"};
 
-/** The rows of the list as marks at heights: y(row). */
+/** Marks for the rows of the list at the heights y(row). */
 const marks = (rows, y, shape, size) =>
   Object.entries(kinds)
     .map(([kind, colour]) => {
@@ -94,7 +94,7 @@ const marks = (rows, y, shape, size) =>
     })
     .filter(({x}) => x.length);
 
-/** The value of a column between its samples. */
+/** A column, interpolated linearly. */
 function valueAt({t}, column, moment) {
   const i = Math.min(Math.max(firstFrom(t, moment), 1), t.length - 1);
   const share = (moment - t[i - 1]) / (t[i] - t[i - 1]);
@@ -102,8 +102,8 @@ function valueAt({t}, column, moment) {
 }
 
 /**
- * The impacts of the list on the plots of the record, with its edits, and the intervals in which the
- * mass sticks to a wall; answer: null before there is one.
+ * Marks the impacts of the list, with edits, and the sticking phases on the plots of the record.
+ * answer: null before identification.
  */
 export function mark(record, rows, answer) {
   const {t, a, x} = record;
@@ -122,17 +122,17 @@ export function mark(record, rows, answer) {
   plots.x.mark([...forwardMarks(answer, seconds), ...rings], stuck);
 }
 
-/** What makes moments in s of those of an answer. */
+/** Returns a function that converts tau to s. */
 const secondsOf = (answer) => (taus) => taus.map((tau) => tau / answer.parameters.derived.omega0);
 
-/** Where the identified system, run from the first known state, meets its walls. */
+/** Impacts of the identified system, run forward from the first known state. */
 function forwardMarks(answer, seconds) {
   if (!answer?.forward) return [];
   const {tau, x} = answer.forward.impacts;
   return [{x: seconds(tau), y: mm(x), colour: "soft", shape: "dot", size: 1.4}];
 }
 
-/** The record, before anything is known of it; click: where one clicks on the acceleration. */
+/** Draws the record alone; click: handler of clicks on the acceleration. */
 export function drawRecord({t, a, x}, click) {
   const draw = (name, column, series, label, more) => {
     $(`figure-measured-${name}`).hidden = !column;
@@ -147,11 +147,11 @@ export function drawRecord({t, a, x}, click) {
 function drawExponents(answer) {
   const {exponents, slope} = answer;
   const {lambda1: y, low: from, high: to} = slope;
-  const told = [y, from, to].filter((v) => v != null);
+  const shown = [y, from, to].filter((v) => v != null);
   const range = exponentRange([exponents.qr?.history, exponents.raw_product?.history]);
   const common = {
     label: "λ",
-    range: [Math.min(range[0], ...told), Math.max(range[1], ...told)],
+    range: [Math.min(range[0], ...shown), Math.max(range[1], ...shown)],
     levels: [0],
   };
   $("figure-measured-raw").hidden = !exponents.raw_product;
@@ -164,7 +164,7 @@ function drawExponents(answer) {
   drawLines("raw", {...common, ...historyOf(exponents.raw_product, seconds)});
 }
 
-/** An estimator's exponents over the impacts, and as rings where they end. */
+/** Exponents of an estimator over time; rings mark the final values. */
 function historyOf(estimator, seconds) {
   if (!estimator?.history?.tau.length) return {series: [], data: [[]]};
   const {history, final: y} = estimator;
@@ -175,7 +175,7 @@ function historyOf(estimator, seconds) {
   return {series, data: [t, ...columns], marks};
 }
 
-/** R of each impact; one that is not consistent lies where it fits, or at the edge. */
+/** R of each impact. Inconsistent values lie at their place or at the edge of the plot. */
 function drawRestitution({impacts, restitution}) {
   const {time_s: t, R, side, status} = impacts;
   const of = (sign) => R.map((v, i) => (side[i] === sign && status[i] === "ok" ? v : null));
@@ -196,9 +196,9 @@ function drawRestitution({impacts, restitution}) {
 
 function drawSteps({impacts: {tau, time_s: t}, parameters}) {
   const half = Math.PI / parameters.Omega;
-  const steps = tau.map((v, i) => (v - tau[i - 1]) / half || null); // the first has none before it
+  const steps = tau.map((v, i) => (v - tau[i - 1]) / half || null); // none before the first
   drawLines("steps", {
-    series: [{label: "time since the last impact", colour: "c1", dots: 4}],
+    series: [{label: "time since the previous impact", colour: "c1", dots: 4}],
     data: [t, steps],
     log: true,
     range: rangeOf([steps, [0.5, 2]], {log: true}),
@@ -209,12 +209,12 @@ function drawSteps({impacts: {tau, time_s: t}, parameters}) {
 
 function drawSections({impacts, parameters}) {
   const x = mm(impacts.x);
-  const inSeconds = 1000 * parameters.derived.omega0; // mm/s of m per unit of tau
+  const inSeconds = 1000 * parameters.derived.omega0; // mm/s per m per unit of tau
   const points = (velocity) => ({x, y: velocity.map((v) => v * inSeconds)});
   const after = points(impacts.x_dot_after);
   const draw = (name, yLabel, groups) =>
     plots[name].draw({
-      pick: {...after, use: (i) => axis.point(impacts.time_s[i], "pick")},
+      pick: {...after, use: (i) => viewport.point(impacts.time_s[i], "pick")},
       groups,
       xLabel: "x (mm)",
       yLabel,

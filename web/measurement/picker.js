@@ -1,11 +1,11 @@
-// Which column of a file is which: chosen from their names, once a file is there. It has its place
-// before, so that nothing moves under a pointer.
+// Menus for the columns of a file. They are visible but disabled before a file is chosen, so that
+// the layout does not shift.
 import {$, element} from "../shared/dom.js";
 import {columnsOf} from "./record.js";
 
 const menus = {};
 
-/** choose(field, name): a column was chosen. */
+/** choose(field, name) is called when a column is chosen. */
 export function start(choose) {
   for (const quantity of ["time", "displacement", "acceleration"]) {
     const select = element("select", {
@@ -18,11 +18,11 @@ export function start(choose) {
   }
 }
 
-/** The columns of a file as the fields have them; of one without names there is nothing to choose. */
+/** Shows the columns of a file as selected by the fields; disabled for a file without names. */
 export function show({names}, fields) {
   const found = columnsOf(names, fields);
   for (const [quantity, select] of Object.entries(menus)) {
-    const nothing = new Option(found[quantity] < 0 ? "– none –" : "as named", "");
+    const nothing = new Option(found[quantity] < 0 ? "– none –" : "by name", "");
     select.replaceChildren(nothing, ...names.map((name) => new Option(name)));
     select.selectedIndex = found[quantity] + 1;
     select.disabled = !names.length;

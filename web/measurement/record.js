@@ -1,14 +1,16 @@
-// A record, read as the service reads it, to be drawn. What is at fault in it the service says.
+// Reads a record for drawing, by the same rules as the service, which reports the errors.
 import {nextTask} from "../shared/dom.js";
 import {firstFrom} from "../shared/search.js";
 
-const atOnce = 50000; // lines between two looks at the clock of the page
+const atOnce = 50000; // lines between two progress reports
 
-/** What no text holds. */
+/** Control characters that no text contains. */
 // biome-ignore lint/suspicious/noControlCharactersInRegex: it is these that are looked for
 const binary = /[\0-\x08\x0e-\x1a]/;
 
-/** The text of a file, whatever its encoding; its lines end by LF. Throws if it is none. */
+/**
+ * The text of a file in any of the usual encodings, with LF line ends. Throws for a binary file.
+ */
 async function textOf(file) {
   const bytes = new Uint8Array(await file.arrayBuffer());
   const begins = (first, second) => bytes[0] === first && bytes[1] === second;
@@ -23,11 +25,13 @@ async function textOf(file) {
     text = new TextDecoder("windows-1252").decode(bytes);
   }
   if (binary.test(text.slice(0, 100000)))
-    throw new Error("it is no text; scripts/to-csv makes CSV of .wav, .mat, .tdms and .uff files");
+    throw new Error(
+      "it is not a text file; scripts/to-csv converts .wav, .mat, .tdms and .uff files to CSV",
+    );
   return text.replace(/\r\n?/g, "\n");
 }
 
-/** The cells of a line with quotation marks, where a decimal comma becomes a point. */
+/** The cells of a line with quotation marks; a quoted decimal comma becomes a point. */
 function quotedCellsOf(line, separator) {
   const cells = [];
   for (let from = 0; from <= line.length; ) {
@@ -44,7 +48,7 @@ function quotedCellsOf(line, separator) {
 const asPoint = (cell) =>
   /^[\s+-]*\d*,\d*(e[+-]?\d+)?\s*$/i.test(cell) ? cell.replace(",", ".") : cell;
 
-/** The cells of a line without empty ones behind the last. */
+/** The cells of a line without trailing empty ones. */
 function cellsOf(line, separator) {
   let cells;
   if (separator === " ") cells = line.trim().split(/[ \t]+/);
@@ -54,9 +58,9 @@ function cellsOf(line, separator) {
   return cells;
 }
 
-const isCode = /^\s*[+-]?0[xob]/i; // which JavaScript takes for a number
+const isCode = /^\s*[+-]?0[xob]/i; // JavaScript would accept these as numbers
 
-/** A cell as a number, NaN for what is none. A decimal comma needs another separator. */
+/** A cell as a number, NaN if it is none. A decimal comma requires another separator. */
 function numberOf(cell, separator) {
   if (!cell.trim() || isCode.test(cell)) return NaN;
   return Number(separator === "," ? cell : cell.replaceAll(",", "."));
@@ -64,7 +68,7 @@ function numberOf(cell, separator) {
 
 const comment = /^\s*(#|%|\/\/)/;
 
-/** That by which the line is numbers, two or more; undefined: none. */
+/** The separator that splits the line into two or more numbers; undefined if there is none. */
 function separatorOfNumbers(line, said) {
   return (said ? [said] : [";", "\t", ",", " "]).find((separator) => {
     const cells = cellsOf(line, separator);
@@ -73,8 +77,8 @@ function separatorOfNumbers(line, said) {
 }
 
 /**
- * Names and, if they are there, units above `count` columns of numbers, from the lines there;
- * undefined: there are none.
+ * [names, units] from the lines above `count` columns of numbers; units can be missing. Returns
+ * undefined if there are no names.
  */
 function headingOf(above, count, separator) {
   const cells = (line) => cellsOf(line, separator).map((cell) => cell.trim());
@@ -94,10 +98,10 @@ function headingOf(above, count, separator) {
 }
 
 /**
- * A file of CSV: its text and {names, units, columns}, columns of numbers; lines that the service
- * would refuse are left out. heard(share): how much of it is read.
+ * Parses a CSV file: its text and {names, units, columns}, where columns hold numbers. Lines that
+ * the service would reject are skipped. onProgress(fraction) reports progress.
  */
-export async function parse(file, heard) {
+export async function parse(file, onProgress) {
   const text = await textOf(file);
   const above = {last: "", before: "", comment: ""};
   let said;
@@ -108,7 +112,7 @@ export async function parse(file, heard) {
   let lines = 0;
   for (const {0: line, index} of text.matchAll(/[^\n]+/g)) {
     if (++lines % atOnce === 0) {
-      heard(index / text.length);
+      onProgress(index / text.length);
       await nextTask();
     }
     if (!line.trim()) continue;
@@ -127,7 +131,7 @@ export async function parse(file, heard) {
       const count = cellsOf(line, separator).length;
       heading = headingOf(above, count, separator);
       if (!heading) break;
-      // A number takes two characters at least.
+      // A number takes at least two characters.
       const most = Math.ceil((text.length - index) / (2 * count)) + 1;
       columns = heading[0].map(() => new Float64Array(most));
     }
@@ -140,7 +144,7 @@ export async function parse(file, heard) {
   return {text, names, units, columns: columns.map((column) => column.slice(0, rows))};
 }
 
-/** What is measured: the names of its column, the first of them whole, others as they begin. */
+/** Usual column names by quantity: the first must match exactly, the others are prefixes. */
 const quantities = {
   time: ["time_s", "time", "t"],
   displacement: ["displacement_m", "displacement", "x"],
@@ -149,15 +153,15 @@ const quantities = {
   force: ["force_n", "force"],
 };
 
-/** The column that a field asks for, else that of one of the usual names; -1: none. */
-function find(names, asked, [whole, ...beginnings]) {
-  if (asked) return names.findIndex((name) => name.toLowerCase() === asked.toLowerCase());
+/** Index of the column named by a field or else by a usual name; -1 if missing. */
+function find(names, wanted, [whole, ...beginnings]) {
+  if (wanted) return names.findIndex((name) => name.toLowerCase() === wanted.toLowerCase());
   return [`${whole}$`, ...beginnings.map((text) => `${text}([_ ([]|$)`)]
     .map((text) => names.findIndex((name) => new RegExp(`^${text}`, "i").test(name)))
     .reduce((found, at) => (found < 0 ? at : found));
 }
 
-/** The columns that the fields and the names mean, by what is measured: their positions, or -1. */
+/** Index of the column of each quantity, or -1. */
 export const columnsOf = (names, fields) =>
   Object.fromEntries(
     Object.entries(quantities).map(([quantity, usual]) => [
@@ -175,9 +179,9 @@ const scales = new Map([
   ["m/s2", 1],
   ["g", 9.80665],
 ]);
-/** A unit as the service names it, if it is one. */
+/** A unit in the service's spelling, if it is one. */
 const spelling = (text) =>
-  (text.length > 32 ? "?" : text) // no unit is longer
+  (text.length > 32 ? "?" : text) // longer than any unit
     .toLowerCase()
     .replace(/[\u00b5\u03bc]/g, "u")
     .replace(/\u00b2/g, "2")
@@ -190,7 +194,6 @@ const otherUnits = new Set(
     " ",
   ),
 );
-/** Whether a cell is what stands in a row of units below the names. */
 const isUnit = (cell) => {
   const written = spelling(cell);
   return !written || scales.has(written) || otherUnits.has(written);
@@ -198,14 +201,14 @@ const isUnit = (cell) => {
 
 const unitAmong = (...texts) => texts.map(spelling).find((unit) => scales.has(unit));
 
-/** The unit that a column's name says, in brackets or behind a blank or underscore, or is. */
+/** The unit in a column's name: in brackets, after a space or underscore, or the whole name. */
 function unitIn(name) {
   const brackets = /[([]([^)\]]*)/.exec(name);
   const behind = [...name.matchAll(/[_ ]/g)].map(({index}) => name.slice(index + 1));
   return unitAmong(name, ...(brackets ? [brackets[1]] : behind));
 }
 
-/** Of each quantity that is there its column: {name, values, unit}, by what is measured. */
+/** Column of each quantity found: {name, values, unit}. */
 function partsOf({names, units, columns}, fields) {
   const found = Object.entries(columnsOf(names, fields)).filter(([, k]) => k >= 0);
   const part = (quantity, k) => ({
@@ -217,8 +220,9 @@ function partsOf({names, units, columns}, fields) {
 }
 
 /**
- * What the fields make of what was read: {t (s), x (mm), a (m/s^2)}, null for one that is not there.
- * Samples are left out whose time does not lie behind all before it: the plots need it so.
+ * The record selected by the fields: {t (s), x (mm), a (m/s^2)}, null for a missing quantity.
+ * Samples whose time is not later than all before are dropped, since the plots need ascending
+ * times.
  */
 export function recordOf(parsed, fields) {
   const {time, displacement, acceleration} = partsOf(parsed, fields);
@@ -236,7 +240,7 @@ export function recordOf(parsed, fields) {
   return {t: of(time, "s"), x: of(displacement, "m"), a: of(acceleration, "m/s2")};
 }
 
-/** The same as fields of /v1/identify, with the record in them, in its units. */
+/** Fields of /v1/identify with the record in its own units. */
 export function asJson(parsed, fields) {
   const parts = Object.entries(partsOf(parsed, fields));
   const units = parts.map(([quantity, {unit}]) => [`${quantity}_unit`, unit]);
@@ -245,8 +249,8 @@ export function asJson(parsed, fields) {
 }
 
 /**
- * The sample within reach of a moment where the acceleration lies farthest from what is around it:
- * where the eye sees the spike.
+ * Index of the sample within `reach` of a time whose acceleration deviates most from the local
+ * median: the visible spike. null without an acceleration.
  */
 export function spikeNear({t, a}, moment, reach) {
   const from = firstFrom(t, moment - reach);

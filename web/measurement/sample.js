@@ -1,14 +1,14 @@
-// The record of a run as two sensors see it: a displacement, and an acceleration in which each impact
-// is a half sine, both with a little noise. Its noise is the same each time.
+// A simulated record with two sensors: a displacement, and an acceleration in which each impact is
+// a half-sine pulse. Both have a little reproducible noise.
 import {Motion} from "../shared/motion.js";
 import {lastUpTo} from "../shared/search.js";
 
-const perCycle = 245; // samples: some 2 kHz at the paper's 8.35 Hz
+const perCycle = 245; // samples per cycle: about 2 kHz at the paper's 8.35 Hz
 const longest = 200000; // samples
-const settling = 20; // cycles that are left out: a laboratory starts its recorder later
-const pulse = 1 / 150; // of a cycle
+const settling = 20; // cycles skipped: a recorder is started later than the motion
+const pulse = 1 / 150; // duration in cycles
 
-// A linear congruential generator (Numerical Recipes), in [-1, 1).
+// Linear congruential generator (Numerical Recipes) with values in [-1, 1).
 function noiseFrom(seed) {
   let state = seed;
   return () => {
@@ -21,7 +21,7 @@ function noiseFrom(seed) {
 export function oscillatorOf({si, b, epsilon, Omega, derived}) {
   const own = si ?? {m1: 1, k1: 1, m2: epsilon, f: Omega / (2 * Math.PI)};
   const {m1, k1, m2, f} = own;
-  const c1 = 2 * derived.zeta * Math.sqrt(k1 * m1); // that of the motion, whatever it is named
+  const c1 = 2 * derived.zeta * Math.sqrt(k1 * m1); // of the motion, whichever field gave it
   return {m1, k1, c1, m2, f, b};
 }
 

@@ -1,9 +1,9 @@
-// The service's routes, relative to the page, so that it works behind a path prefix too.
-import {askForKey, hasKey, keyHeaders} from "./key.js";
+// Calls of the service. Routes are relative to the page, so they also work behind a path prefix.
+import {askForKey, currentKey, keyHeaders} from "./key.js";
 
 /**
- * A problem document (RFC 9457) as an Error: .errors holds {pointer, value, range, detail} for each
- * field at fault.
+ * A problem document (RFC 9457) as an Error. `errors` lists {pointer, value, range, detail} per
+ * invalid field.
  */
 export class Problem extends Error {
   constructor({detail, title, status, errors = []}) {
@@ -12,10 +12,10 @@ export class Problem extends Error {
   }
 }
 
-/** That there is no answer for now: the same request may be answered later. */
-export class Passing extends Error {}
+/** A temporary failure: the same request can succeed later. */
+export class TemporaryError extends Error {}
 
-/** An error's message, and of the faults those details that it does not say already. */
+/** The error's message, followed by the details of the faults that it does not contain. */
 export const wholeMessage = (error, faults) =>
   [error.message, ...faults.map((e) => e.detail).filter((d) => d !== error.message)].join("; ");
 
@@ -23,63 +23,86 @@ async function read(response) {
   const noJson = {title: `the server answered ${response.status} without JSON`};
   const body = await response.json().catch(() => null);
   if (!response.ok) throw new Problem({status: response.status, ...(body ?? noJson)});
-  if (body === null) throw new Passing("the answer broke off");
+  if (body === null) throw new TemporaryError("the response was cut off");
   return body;
 }
 
-/** The response to a request; if it was broken off, who did so knows. */
-export async function reach(path, options = {}) {
-  let response = await answer(path, options);
-  const isRefused = () => response.status === 401;
-  // What the browser had loaded before showed no key, nor what was sent while one was typed.
-  if (isRefused() && hasKey()) response = await answer(path, options);
-  while (isRefused() && (await askForKey())) response = await answer(path, options);
+/** Sends a request and returns its response. Asks for an API key while the service answers 401. */
+export async function sendRequest(path, options = {}) {
+  let sent = null; // no key: the browser may answer with what it preloaded
+  let response = await fetchWithKey(path, options);
+  // A key typed for another request in the meantime is tried before asking again.
+  while (response.status === 401 && (currentKey() !== sent || (await askForKey()))) {
+    sent = currentKey();
+    response = await fetchWithKey(path, options);
+  }
   return response;
 }
 
-async function answer(path, options) {
+async function fetchWithKey(path, options) {
   try {
     return await fetch(path, {...options, headers: {...options.headers, ...keyHeaders()}});
   } catch {
-    throw new Passing("the server does not answer");
+    throw new TemporaryError("the server does not answer");
   }
 }
 
-export const get = async (path) => read(await reach(path));
+export const get = async (path) => read(await sendRequest(path));
 
 const post = (path, body, signal, type = "application/json") =>
-  reach(path, {method: "POST", headers: {"Content-Type": type}, body, signal});
+  sendRequest(path, {method: "POST", headers: {"Content-Type": type}, body, signal});
 
-const computing = (path) => async (fields, signal) =>
+const postingJson = (path) => async (fields, signal) =>
   read(await post(path, JSON.stringify(fields), signal));
 
-export const simulate = computing("v1/simulate");
+export const simulate = postingJson("v1/simulate");
 
-/** query: the fields; record: a file of CSV, sent as it is. */
+/** Identifies a record: `query` holds the fields, `record` is a CSV file sent unchanged. */
 export const identify = async (query, record, signal) =>
   read(await post(`v1/identify?${query}`, record, signal, "text/csv"));
 
-/** The same with all in JSON. */
-export const identifyJson = computing("v1/identify");
+/** Identifies a record that is part of the JSON fields. */
+export const identifyJson = postingJson("v1/identify");
 
-/** A sweep's answer, a stream of lines. */
+/** Starts a sweep; returns its stream of JSON lines. */
 export async function sweep(request, signal) {
   const response = await post("v1/sweep", JSON.stringify(request), signal);
   return response.ok ? response.body : read(response);
 }
 
 const quoted = (text) => `'${text.replaceAll("'", "'\\''")}'`;
-/** The address of a route, for use elsewhere. */
-export const whole = (path) => new URL(path, location.href.split("?")[0]).href;
+export const absoluteUrl = (path) => new URL(path, location.href.split("?")[0]).href;
 
-/** A request for a terminal. */
+/** A curl command that posts `fields` as JSON. */
 export const asCurl = (path, fields, flags = "-s") =>
-  `curl ${flags} ${whole(path)} -d ${quoted(JSON.stringify(fields))}`;
+  `curl ${flags} ${absoluteUrl(path)} -d ${quoted(JSON.stringify(fields))}`;
 
-export const getAsCurl = (path, flags = "-s") => `curl ${flags} ${quoted(whole(path))}`;
+export const getAsCurl = (path, flags = "-s") => `curl ${flags} ${quoted(absoluteUrl(path))}`;
 
-/** A file as the body. */
+/** A curl command that posts the file `name`. */
 export function sendFileAsCurl(path, type, name, flags = "-s") {
-  const address = path.includes("?") ? quoted(whole(path)) : whole(path);
+  const address = path.includes("?") ? quoted(absoluteUrl(path)) : absoluteUrl(path);
   return `curl ${flags} ${address} -H 'Content-Type: ${type}' --data-binary ${quoted(`@${name}`)}`;
+}
+
+/**
+ * Yields {text, value} for each line of a stream. Lines and UTF-8 characters can be split across
+ * chunks.
+ */
+export async function* jsonLines(stream) {
+  const reader = stream.pipeThrough(new TextDecoderStream()).getReader();
+  let partial = "";
+  try {
+    for (;;) {
+      const {done, value = ""} = await reader.read().catch(() => {
+        throw new TemporaryError("the response was cut off");
+      });
+      const texts = `${partial}${value}`.split("\n");
+      partial = texts.pop();
+      for (const text of texts) if (text) yield {text, value: JSON.parse(text)};
+      if (done) return; // a last line without a line end is incomplete and dropped
+    }
+  } finally {
+    reader.cancel().catch(() => {});
+  }
 }

@@ -1,8 +1,8 @@
-// Colours by their names in the style sheet, so that they follow the colour scheme.
+// Colours by their name in the style sheet; they follow the colour scheme.
 
 const known = new Map();
 
-/** f: called when they are others: on a dark screen, a light one, on paper. */
+/** f() is called when the colours change: light or dark scheme, print. */
 export function onColours(f) {
   for (const scheme of ["(prefers-color-scheme: dark)", "print"])
     matchMedia(scheme).addEventListener("change", f);
@@ -17,8 +17,8 @@ export function colour(name) {
   return known.get(name);
 }
 
-/** Red, green and blue, 0 to 255, of #rrggbb. */
+/** [red, green, blue], 0 to 255, of #rrggbb. */
 export const hex = (text) => [1, 3, 5].map((i) => parseInt(text.slice(i, i + 2), 16));
 
-/** The same of a colour of the style sheet. */
+/** [red, green, blue] of a colour of the style sheet. */
 export const rgb = (name) => hex(colour(name));

@@ -1,13 +1,13 @@
-// How often points come to each pixel of a plot, as an image: a periodic orbit is a few full dots,
-// chaos a cloud.
+// Density plots: an image that counts the points at each pixel. A periodic orbit appears as a few
+// opaque dots, chaos as a cloud.
 import {rgb} from "./colours.js";
 import {element} from "./dom.js";
 import {clamp} from "./numbers.js";
 
-/** How often each pixel of the screen in a plot is met. */
+/** Number of points at each screen pixel of a plot. */
 class Counts {
   constructor(frame) {
-    this.ratio = devicePixelRatio; // asking for it takes longer than counting
+    this.ratio = devicePixelRatio; // read once: reading it is slower than counting
     [this.width, this.height] = [frame.width, frame.height].map((v) => this.pixels(v));
     this.counts = new Uint16Array(this.width * this.height);
     this.most = 8;
@@ -17,7 +17,7 @@ class Counts {
     return Math.round(v * this.ratio);
   }
 
-  /** Counts a rectangle of pixels, as far as it lies in the plot. */
+  /** Counts a rectangle of pixels, clipped to the plot. */
   add(left, top, right, bottom) {
     const [first, last] = [Math.max(left, 0), Math.min(right, this.width)];
     const end = Math.min(bottom, this.height);
@@ -30,8 +30,8 @@ class Counts {
 }
 
 /**
- * Of columns, [{from, to, values}], from and to in px from the frame's left edge; a broad one is
- * drawn in its middle.
+ * Counts the values of columns [{from, to, values}], where from and to are px from the left edge of
+ * the frame. Values of a broad column are drawn in its middle.
  */
 export function count(columns, frame) {
   const found = new Counts(frame);
@@ -51,7 +51,7 @@ export function count(columns, frame) {
   return found;
 }
 
-/** Of points in the plane of a frame, 2 px wide. */
+/** Counts points of the plane of a frame, each 2 px wide. */
 export function countPoints(x, y, frame) {
   const found = new Counts(frame);
   const {left, top} = frame.box;
@@ -64,7 +64,7 @@ export function countPoints(x, y, frame) {
   return found;
 }
 
-/** Counts as an image of one colour, more often as opacity. */
+/** An image of counts in one colour, whose opacity grows with the logarithm of the count. */
 export function density({counts, most, width, height}, name) {
   const image = new ImageData(width, height);
   const {data} = image;

@@ -1,13 +1,13 @@
-// Elements, built with less ceremony.
+// Short forms for creating and changing elements.
 
 export const $ = (id) => document.getElementById(id);
 
-/** Counts on a node what was done, for those who wait for it. */
+/** Counts completed work in a data attribute of a node; tests wait for it. */
 export const countUp = (node, what = "done") => {
   node.dataset[what] = Number(node.dataset[what] ?? 0) + 1;
 };
 
-/** Lets the page hear of other things before what is next. */
+/** Lets the browser handle pending events before the work continues. */
 export const nextTask = () =>
   new Promise((resolve) => {
     setTimeout(resolve);
@@ -19,40 +19,62 @@ export const element = (tag, properties = {}, ...children) => {
   return node;
 };
 
-/** One that does something; more: its other properties. */
+/** A button; `more` holds further properties. */
 export const button = (textContent, onclick, more) =>
   element("button", {type: "button", textContent, onclick, ...more});
 
-/** Hears of several events of a node: {type: what is called}. */
+/** Adds several event listeners: {type: listener}. */
 export const on = (node, handlers) => {
   for (const [type, f] of Object.entries(handlers)) node.addEventListener(type, f);
 };
 
-/** Those that have a value are set: what a node says of itself to those who cannot see it, and other attributes. */
+/** Sets attributes; null and undefined values are skipped. */
 export const attributes = (node, all) => {
   for (const [name, value] of Object.entries(all))
     if (value != null) node.setAttribute(name, value);
 };
 
-/** Shows those elements for which it holds, and hides the others: {id: whether}. */
+/** Shows or hides elements: {id: whether to show}. */
 export const reveal = (shown) => {
   for (const [id, is] of Object.entries(shown)) $(id).hidden = !is;
 };
 
-/** Texts of elements: {id: text}. */
-export const write = (texts) => {
+/** Sets the texts of elements: {id: text}. */
+export const setTexts = (texts) => {
   for (const [id, text] of Object.entries(texts)) $(id).textContent = text;
 };
 
-/** Presses that of several buttons which is(button). */
+/** Marks the pressed ones of several toggle buttons. */
 export const press = (buttons, is) => {
   for (const one of buttons) attributes(one, {"aria-pressed": is(one)});
 };
 
-/** What says something in a place: say(text, whether it is a fault). */
+/** Returns say(text, fault), which shows a message in the element `id`. */
 export const sayIn =
   (id) =>
   (text, fault = false) => {
     $(id).textContent = text;
     $(id).classList.toggle("fault", fault);
   };
+
+/** Selects an entry, or the first if there is no such value. */
+export function choose(menu, value) {
+  menu.value = value;
+  if (menu.selectedIndex < 0) menu.selectedIndex = 0;
+}
+
+/**
+ * Replaces the entries, [value, text] or [value] each. The selected value is kept where possible,
+ * unless `wish` names another.
+ */
+export function fillMenu(menu, entries, wish = menu.value) {
+  menu.replaceChildren(...entries.map(([value, text = value]) => new Option(text, value)));
+  choose(menu, wish);
+}
+
+/** On small screens the results of a tab lie below its form: scrolls to them. */
+export function scrollToResults(tab) {
+  const form = $(`${tab}-form`);
+  const results = $(`${tab}-results`);
+  if (results.offsetLeft < form.offsetLeft + form.offsetWidth) results.scrollIntoView();
+}

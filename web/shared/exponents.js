@@ -1,15 +1,15 @@
-// The exponents of an estimator as lines of a plot.
+// Lyapunov exponents of an estimator as lines of a plot.
 import {shortTo} from "./numbers.js";
 
 const names = ["lambda1", "lambda2", "lambda3", "lambda4"];
-// Told apart by more than their colour.
+// Lines differ in width and dashes, not only in colour.
 const styles = [{width: 2}, {}, {dash: [7, 3]}, {dash: [2, 3]}];
 
 const absent = (status, ended) => (ended && status === "minus_infinity" ? "−∞" : "");
 
 /**
- * {series, columns} of a history: the four exponents and, where it has one, its rounding floor. An
- * exponent that is minus infinity has no line any more, but a word.
+ * {series, columns} of a history: four exponents and, if present, the rounding floor. An exponent
+ * of minus infinity has no line; its legend shows −∞.
  */
 export function exponentSeries(history, status = []) {
   const series = styles.map((style, k) => ({
@@ -28,8 +28,8 @@ export function exponentSeries(history, status = []) {
 }
 
 /**
- * They differ by little once they have settled: the range that shows that, and what led there
- * leaves it.
+ * A common range for the exponents of several histories. It fits the settled values (the last three
+ * quarters); the initial transient is cut off.
  */
 export function exponentRange(histories) {
   const late = ({tau, ...columns}) =>

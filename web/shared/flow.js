@@ -1,8 +1,9 @@
-// The motion between events as the service has it: x'' = -k x - d x' + f sin(theta), theta' =
-// Omega, as a linear map of (x, x', sin theta, cos theta) over a time. Its Taylor series serves
-// every damping and resonance alike; longer times are made of powers of one step.
+// Motion of the oscillator between events, as in the service: x'' = -k x - d x' + f sin(theta),
+// theta' = Omega. The solution is a linear map of (x, x', sin theta, cos theta) over a time. Its
+// Taylor series covers all damping ratios and resonance without special cases; longer times are
+// composed of powers of the map over one step.
 
-const terms = 22; // of the series: 1/22! is below 1e-21
+const terms = 22; // of the series; 1/22! is below 1e-21
 
 const states = [
   [1, 0, 0, 0],
@@ -12,15 +13,15 @@ const states = [
 ];
 
 /**
- * The map of a state over a time, from what it makes of (x, x', sin, cos) alone: a function that
- * applies it to a state in place, thousands of times for a plot.
+ * Builds the linear map from `after`, which advances a state: it is applied to the four unit
+ * states. Returns a function that advances a state in place, fast enough for thousands of samples.
  */
 function mapOf(after) {
   const [[xx, vx], [xv, vv], [xs, vs, cos, minusSin], [xc, vc]] = states.map((state) =>
     after([...state]),
   );
   return (state) => {
-    const x = state[0]; // by its index: much faster than to take it apart
+    const x = state[0]; // indexing is much faster than destructuring here
     const v = state[1];
     const s = state[2];
     const c = state[3];
@@ -33,10 +34,10 @@ function mapOf(after) {
 }
 
 export class Flow {
-  /** Dimensionless stiffness and damping, forcing in m, Omega over omega0. */
+  /** Dimensionless stiffness and damping, forcing in m, Omega relative to omega0. */
   constructor(stiffness, damping, forcing, Omega) {
     Object.assign(this, {stiffness, damping, forcing, Omega});
-    /** As far as one series reaches. */
+    /** The longest time that one series covers. */
     this.cell = 0.5 / Math.max(1, Math.sqrt(stiffness), damping, Omega);
     this.maps = []; // over cell, 2 cell, 4 cell, ...
   }
@@ -46,7 +47,7 @@ export class Flow {
     return this.forcing * sin - this.stiffness * x - this.damping * v;
   }
 
-  /** A state a time 0 <= s <= cell later. */
+  /** The state a time 0 <= s <= cell later. */
   near(state, s) {
     const v0 = state[1];
     const sin0 = state[2];
@@ -55,10 +56,10 @@ export class Flow {
     const turn = Omega * s;
     const phase = [sin0 * forcing, cos0 * forcing];
     let a = state[0];
-    let b = v0 * s; // the last two terms of x
+    let b = v0 * s; // last two terms of x
     let x = a + b;
     let v = v0;
-    // f sin(theta + Omega s) by its terms: sin, cos, -sin, -cos, ...
+    // Terms of f sin(theta + Omega s): sin, cos, -sin, -cos, ...
     let forced = s * s;
     for (let n = 2; n < terms; ++n) {
       const sign = n & 2 ? 1 : -1;
@@ -75,7 +76,7 @@ export class Flow {
     return [x, v, sin0 * cos + cos0 * sin, cos0 * cos - sin0 * sin];
   }
 
-  /** A state any time s >= 0 later. */
+  /** The state any time s >= 0 later. */
   after(state, s) {
     const cells = Math.floor(s / this.cell);
     const now = cells ? [...state] : state;
@@ -84,7 +85,7 @@ export class Flow {
     return this.near(now, s - cells * this.cell);
   }
 
-  /** The map over any time s >= 0; the last one asked for is kept. */
+  /** The map over any time s >= 0; the last one is cached. */
   over(s) {
     if (this.last?.s !== s) this.last = {s, map: mapOf((state) => this.after(state, s))};
     return this.last.map;

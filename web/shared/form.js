@@ -1,30 +1,31 @@
-// The form, built from the field table of /v1/parameters. An empty input stands for the default
-// that its placeholder shows.
+// A form built from the field table of /v1/parameters. An empty input stands for its default, which
+// the placeholder shows.
 import {element} from "./dom.js";
 import {toNumber} from "./numbers.js";
-import {originText, resolved, standing} from "./origins.js";
 import {symbolOf} from "./quantities.js";
 import {unitShown} from "./units.js";
+import {equivalents, originText, resolved} from "./value_origins.js";
 
-// The groups of /v1/simulate: title, whether they are open at first, and what to know of them.
+// Groups of /v1/simulate: title, whether it is open at first, note.
 export const groups = {
   system: ["System", true],
   reduced: ["Reduced parameters", false],
   SI: [
     "SI parameters",
     false,
-    "A system of your own: m1, F and f, and one of each pair between them.",
+    "A user-defined system: m1, F and f, and one field of each pair in between.",
   ],
   start: ["Initial state", false],
   run: ["Run", true],
   output: ["Output", false],
 };
-// The preset has its own menu; the page needs every part that it draws, and shows no perturbed run.
+// The preset has a menu outside the form; the page chooses `include` and never shows a perturbed
+// run.
 const hidden = new Set(["preset", "include", "perturbation"]);
 
 const isObject = (value) => typeof value === "object" && value !== null;
 
-/** A value as a text that its input takes. */
+/** The text that an input shows for a value. */
 export function textOf(value) {
   if (Array.isArray(value)) return value.map(textOf).join(isObject(value[0]) ? "; " : ", ");
   if (!isObject(value)) return String(value);
@@ -33,13 +34,11 @@ export function textOf(value) {
     .join(", ");
 }
 
-/** What is said of names in the address that no field has. */
+/** Message about unknown names in the address. */
 export const unknownText = (names) =>
-  names.length
-    ? `the address names what this page does not know: ${names.map((n) => `"${n}"`).join(", ")}`
-    : "";
+  names.length ? `unknown names in the address: ${names.map((n) => `"${n}"`).join(", ")}` : "";
 
-/** A text as JSON wants it; what cannot be a number is sent as text, for the service to refuse. */
+/** A text as a JSON value. Text that is no number is sent unchanged, and the service rejects it. */
 const number = (text) => toNumber(text) ?? text.trim();
 const interval = (text) => text.split(text.includes(";") ? ";" : ",").map(number);
 function assignment(text) {
@@ -53,11 +52,11 @@ const listOf = (read) => (text) =>
     .split(";")
     .filter((part) => part.trim())
     .map(read);
-export const defaultSet = "default set"; // of starts, in place of a list
+export const defaultSet = "default set"; // value of `starts` in place of a list
 
-// What fields of a type but a number have of their own. Those that are no texts: how their input is
-// made, what it holds, undefined for the default, and how a value is set. Texts: how they are read,
-// and what stands in an empty one.
+// Types of fields other than number. Menus and check boxes: make(field) creates the input,
+// get(input, default) returns its value (undefined for the default), set(input, value) sets it.
+// Text inputs: read(text) parses the text, `hint` is the placeholder of an empty one.
 const types = {
   choice: {
     wide: true,
@@ -83,11 +82,11 @@ const types = {
     },
   },
   interval: {read: interval},
-  intervals: {wide: true, read: listOf(interval), hint: "none; as a,b; c,d"},
+  intervals: {wide: true, read: listOf(interval), hint: "none; e.g. 0,500; 500,1000"},
   states: {
     wide: true,
     read: (text) => (text.trim() === defaultSet ? defaultSet : listOf(state)(text)),
-    hint: "one; as x0=0.01; x0=0, y0=0.002",
+    hint: "one; e.g. x0=0.01; x0=0, y0=0.002",
   },
   text: {wide: true, read: (text) => text.trim()},
 };
@@ -96,8 +95,8 @@ const typeOf = ({type}) => types[type] ?? {};
 const textInput = (field) =>
   element("input", {type: "text", inputMode: typeOf(field).read ? "text" : "decimal"});
 
-// Two ways to say the same: where one is filled the other follows from it.
-const alternatives = Object.entries({...standing, cycles: "tau_end"});
+// Pairs of fields that express the same quantity: when one is filled, the other follows from it.
+const alternatives = Object.entries({...equivalents, cycles: "tau_end"});
 const others = Object.fromEntries(
   alternatives.flatMap(([a, b]) => [
     [a, b],
@@ -112,26 +111,26 @@ function rounded(value) {
 
 const factorOf = ({unit, type}) => (type === "number" ? unitShown(unit).factor : 1);
 
-/** A number times a factor, without the digits of rounding; what is no number stays as it is. */
+/** A number times a factor, without rounding digits; anything else is returned unchanged. */
 const times = (value, factor) =>
   factor === 1 || value === "" || !Number.isFinite(Number(value))
     ? value
     : Number((value * factor).toPrecision(15));
 
-/** On a small screen the groups are closed at first: what is looked at lies below them. */
-const folded = matchMedia("(max-width: 700px)").matches;
+/** On a small screen the groups are closed at first, because the results lie below them. */
+const smallScreen = matchMedia("(max-width: 700px)").matches;
 
 export class Form {
   inputs = new Map();
   errors = new Map();
   rows = new Map();
   parts = new Map();
-  exact = new Map(); // of numbers that are shown in other units: {text, value}
+  exact = new Map(); // of numbers shown in another unit: {text, value}
   replaced = [];
 
   /**
-   * prefix: of the ids, where a page has several forms; grouped: the groups to show, as in
-   * `groups`.
+   * prefix: prepended to ids, since a page can have several forms; grouped: the groups to show, as
+   * in `groups`.
    */
   constructor(container, fields, {prefix = "", grouped = groups} = {}) {
     this.prefix = prefix;
@@ -141,7 +140,7 @@ export class Form {
       const rows = this.fields.filter((f) => f.group === group).map((f) => this.row(f));
       const details = element(
         "details",
-        {open: open && !folded, id: `${prefix}group-${group}`},
+        {open: open && !smallScreen, id: `${prefix}group-${group}`},
         element("summary", {}, title),
         element("p", {className: "note"}, note),
         element("div", {className: "grid"}, ...rows),
@@ -149,7 +148,7 @@ export class Form {
       this.parts.set(group, details);
       container.append(details);
     }
-    container.addEventListener("input", () => this.greyOut());
+    container.addEventListener("input", () => this.updateDisabled());
   }
 
   row(field) {
@@ -157,10 +156,10 @@ export class Form {
     const {make = textInput, set, wide} = typeOf(field);
     const input = make(field);
     if (set) set(input, field.default);
-    else input.placeholder = this.standardOf(field);
+    else input.placeholder = this.placeholderOf(field);
     const error = element("p", {className: "error", id: `${this.prefix}error-${name}`});
     input.setAttribute("aria-describedby", error.id);
-    input.addEventListener("input", () => this.sayOrigin(name));
+    input.addEventListener("input", () => this.showOrigin(name));
     const {unit} = unitShown(field.unit);
     const shownUnit = element("span", {className: "unit"}, unit && `, ${unit}`);
     const named = element("span", {}, symbolOf(name).replaceAll("_", " "), shownUnit);
@@ -180,25 +179,25 @@ export class Form {
     return row;
   }
 
-  /** What an empty input stands for, before an answer tells. */
-  standardOf(field) {
+  /** Placeholder of an empty input before the first answer. */
+  placeholderOf(field) {
     const note = (field.default_note ?? "").split(":")[0];
     return note || textOf(this.shown(field.name, field.default ?? "")) || typeOf(field).hint || "";
   }
 
-  /** A value as it is shown; what is no number stays as it is. */
+  /** A value in the unit shown; anything but a number is returned unchanged. */
   shown(name, value) {
     return times(value, this.factors.get(name));
   }
 
-  /** A value is written to an input; the last digits that it does not show are kept. */
-  write(name, value) {
+  /** Sets an input and remembers the exact value, whose last digits the text may not show. */
+  setValue(name, value) {
     const text = textOf(this.shown(name, value));
     this.inputs.get(name).value = text;
     this.exact.set(name, {text, value});
   }
 
-  /** What an input of text holds, typed for JSON; undefined where it is empty. */
+  /** The value of a text input for JSON; undefined if it is empty. */
   read(field) {
     const {name} = field;
     const {value: text} = this.inputs.get(name);
@@ -210,7 +209,7 @@ export class Form {
     return times(number(text), 1 / this.factors.get(name));
   }
 
-  /** The fields that differ from their defaults, typed for JSON. */
+  /** Fields that differ from their defaults, for JSON. */
   values() {
     const values = this.fields.map((field) => {
       const input = this.inputs.get(field.name);
@@ -227,46 +226,46 @@ export class Form {
       const value = values[name];
       const {set} = typeOf(field);
       if (set) set(this.inputs.get(name), value ?? field.default);
-      else this.write(name, value ?? "");
-      if (value !== undefined && !folded) this.parts.get(field.group).open = true;
-      this.sayOrigin(name);
+      else this.setValue(name, value ?? "");
+      if (value !== undefined && !smallScreen) this.parts.get(field.group).open = true;
+      this.showOrigin(name);
     }
-    this.greyOut();
+    this.updateDisabled();
     this.showErrors([]);
   }
 
   /**
-   * Shows where each value comes from, and in what is empty the value itself. parameters: of an
-   * answer.
+   * Shows the origin of each value, and the value itself as placeholder of empty inputs.
+   * `parameters` belongs to an answer.
    */
   showOrigins(parameters) {
     const {values, origins} = resolved(parameters);
     for (const field of this.fields) {
       const {name} = field;
-      this.sayOrigin(name, origins[name]);
+      this.showOrigin(name, origins[name]);
       if (typeOf(field).set) continue;
       const value = values[name];
       this.inputs.get(name).placeholder =
-        value == null ? this.standardOf(field) : textOf(rounded(this.shown(name, value)));
+        value == null ? this.placeholderOf(field) : textOf(rounded(this.shown(name, value)));
     }
   }
 
-  /** Without an origin: what is there now is not of the last answer. */
-  sayOrigin(name, title = "") {
+  /** Shows an origin; without one the value is not that of the last answer. */
+  showOrigin(name, title = "") {
     const origin = this.rows.get(name).querySelector(".origin");
     Object.assign(origin, {textContent: originText(title), title});
   }
 
-  /** The fields of these names and only these are set by something else. */
+  /** Disables exactly the fields that are set elsewhere. */
   disable(names) {
     this.replaced = names;
-    this.greyOut();
+    this.updateDisabled();
   }
 
-  /** Another value than the last answer's. */
+  /** Sets a value and clears its origin. */
   replace(name, value) {
-    this.write(name, value);
-    this.sayOrigin(name);
+    this.setValue(name, value);
+    this.showOrigin(name);
   }
 
   filled(name) {
@@ -274,8 +273,8 @@ export class Form {
   }
 
   /**
-   * The empty fields that cannot be mixed with those that are filled, or named: a system is in SI
-   * or reduced.
+   * Empty fields that cannot be combined with the filled or `named` ones: a system is given either
+   * in SI or reduced.
    */
   unmixable(named = []) {
     const of = (group) => this.fields.filter((f) => f.group === group).map((f) => f.name);
@@ -285,8 +284,8 @@ export class Form {
     return si === reduced ? [] : of(si ? "reduced" : "SI").filter((name) => !this.filled(name));
   }
 
-  /** Greys out what something else sets, or what follows from another field. */
-  greyOut() {
+  /** Disables fields that are set elsewhere or follow from another field. */
+  updateDisabled() {
     for (const {name} of this.fields) {
       const other = others[name];
       const follows = this.filled(other) && !this.filled(name);
@@ -297,8 +296,8 @@ export class Form {
   }
 
   /**
-   * Errors of a problem document at their fields; returns those that belong to none. lead: to the
-   * first of them.
+   * Shows errors of a problem document at their fields and returns those without a field. lead:
+   * focus the first field at fault.
    */
   showErrors(errors, lead = true) {
     for (const {name} of this.fields) {

@@ -1,26 +1,25 @@
-// The axes of a plot: where its values lie in pixels, and what is written along them. It draws with
-// whatever has the methods of a canvas' context.
+// Frame of a plot: the mapping from values to pixels, grid lines and labels. Draws with any object
+// that has the methods of a canvas context.
 import {colour} from "./colours.js";
-import {ink, stroke, write, writeUpwards} from "./ink.js";
+import {drawText, drawTextUpwards, ink, stroke} from "./ink.js";
 import {clamp, minus, shortTo} from "./numbers.js";
 import {logTicks, ticks} from "./ticks.js";
 
 export const font = "11px system-ui, sans-serif";
-const letter = 3.4; // px of half a digit of it
+const letter = 3.4; // px, half the width of a digit
 
-/** Pixels of a value between two places. */
 function scaleOf({range, log}, from, to) {
   const at = log ? Math.log : (v) => v;
   const [low, high] = range.map(at);
   return (v) => from + ((at(v) - low) / (high - low)) * (to - from);
 }
 
-/** {at, text} of the labels, at most so many; in as many digits as tell one from the next. */
+/** Labels {at, text}, at most `most`, with enough digits to distinguish neighbours. */
 function labelsOf({range, log, factor = 1, labels}, most) {
   if (labels) return labels(...range);
   const [min, max] = range.map((v) => v * factor);
   const powers = log ? logTicks(min, max) : [];
-  const round = powers.length < 2; // all within a step of those
+  const round = powers.length < 2; // fewer than two powers of ten in range
   const list = round ? ticks(min, max, most) : powers;
   const step = list[1] - list[0];
   const text = (v) =>
@@ -30,14 +29,14 @@ function labelsOf({range, log, factor = 1, labels}, most) {
   return list.map((v) => ({at: v / factor, text: text(v)}));
 }
 
-/** Where a thin line fills a pixel. */
+/** The pixel position at which a thin line is sharp. */
 const sharp = (px) => Math.round(px) + 0.5;
 
 export class Frame {
   /**
-   * A plot of so many pixels. x, y: {range, log, label, factor, bare, labels}: what is in view,
-   * whether it is logarithmic, the axis' name, what its numbers are multiplied by, whether they are
-   * left out, and labels(min, max), [{at, text}], in place of round ones; beside: px at its right.
+   * width, height: px. x, y: {range, log, label, factor, bare, labels}: visible range, logarithmic
+   * scale, name of the axis, factor of its numbers, whether the labels are omitted, and labels(min,
+   * max), which returns [{at, text}] in place of round numbers. beside: px at the right.
    */
   constructor(width, height, x, y, beside = 10) {
     const [left, top, right] = [50, 5, width - beside];
@@ -48,13 +47,13 @@ export class Frame {
     Object.assign(this, {px: scaleOf(x, left, right), py: scaleOf(y, bottom, top)});
   }
 
-  /** Whether a place in pixels lies in the plot. */
+  /** True when a position in px lies in the plot. */
   holds(x, y) {
     const {left, top, right, bottom} = this.box;
     return x >= left && x <= right && y >= top && y <= bottom;
   }
 
-  /** Only what lies in the plot, or so many px around it, is drawn until the context is restored. */
+  /** Clips drawing to the plot, extended by `around` px, until the context is restored. */
   clip(c, around = 0) {
     const {left, top} = this.box;
     c.save();
@@ -85,10 +84,10 @@ export class Frame {
     c.font = font;
     ink(c, "grid");
     c.fillStyle = colour("soft");
-    const end = right + this.beside; // what is written about the last place stays within it
+    const end = right + this.beside; // keeps the last label inside the canvas
     const below = (text, at, down) => {
       const half = letter * text.length;
-      if (!x.bare) write(c, text, Math.min(at, end - half), bottom + down, "center", "top");
+      if (!x.bare) drawText(c, text, Math.min(at, end - half), bottom + down, "center", "top");
     };
     for (const {at, text} of labelsOf(x, clamp(Math.floor(this.width / 70), 2, 10))) {
       this.upright(c, at);
@@ -97,13 +96,13 @@ export class Frame {
     below(x.label ?? "", (left + right) / 2, 17);
     for (const {at, text} of labelsOf(y, clamp(Math.floor(this.height / 22), 2, 8))) {
       this.across(c, at);
-      write(c, text, left - 5, py(at), "right");
+      drawText(c, text, left - 5, py(at), "right");
     }
-    writeUpwards(c, y.label ?? "", 8, (top + bottom) / 2);
+    drawTextUpwards(c, y.label ?? "", 8, (top + bottom) / 2);
   }
 }
 
-/** The range of values with a margin on both sides; null where there are none. */
+/** The range of all values with a margin on both sides; null without values. */
 export function rangeOf(columns, log = false) {
   let min = Infinity;
   let max = -Infinity;
@@ -120,8 +119,8 @@ export function rangeOf(columns, log = false) {
 }
 
 /**
- * The size of a node, and draw() whenever it gets another one. It is kept: asking the browser costs
- * a layout each time.
+ * The size of a node; draw() is called when it changes. The size is cached because reading it
+ * forces a layout.
  */
 export class Size {
   constructor(node, draw) {
@@ -135,7 +134,7 @@ export class Size {
   }
 }
 
-/** A canvas of so many CSS pixels, emptied. */
+/** Clears a canvas, after resizing it to the given CSS pixels if necessary; returns its context. */
 export function blank(canvas, {width, height}) {
   const ratio = devicePixelRatio;
   const [w, h] = [Math.round(width * ratio), Math.round(height * ratio)];

@@ -1,93 +1,100 @@
-// Pointing at and zooming into a plot over an Axis, or over one for x and one for y: with a mouse,
-// with fingers, by keys.
-import {element, on} from "./dom.js";
-import {clamp} from "./numbers.js";
+// Pointing at and zooming into a plot with mouse, touch and keyboard. A plot has a viewport for
+// x and can have one for y.
+import {attributes, element, on} from "./dom.js";
+import {clamp, short} from "./numbers.js";
 
-const patience = 250; // ms in which a second click makes a double-click
+const doubleClickTime = 250; // ms within which a second click makes a double click
 const jitter = 4; // px that a click may move
-const slim = 20; // px: a drag that is no wider zooms along the other axis alone
+const slim = 20; // px: a drag thinner than this zooms along the other axis only
 
-// How the places of events, boxes and styles name a direction.
+// Properties of events, boxes and styles along each direction of the screen.
 const rightwards = {client: "clientX", start: "left", size: "width"};
 const upwards = {client: "clientY", start: "top", size: "height", turned: true};
 
-/** An axis along a direction of the screen. */
-class Way {
-  constructor(over, axis, direction) {
-    Object.assign(this, {over, axis, ...direction});
+/** A viewport along a direction of the screen. */
+class Direction {
+  constructor(over, viewport, direction) {
+    Object.assign(this, {over, viewport, ...direction});
   }
 
   /**
-   * Of an event: its place, px from the start of the plot, which is `all` px long; the share of what
-   * is in view that lies before it; the value of the axis there.
+   * Position of an event: `place` in px from the start of the plot, `all`: the length of the plot
+   * in px, `share`: the fraction of the visible range before it, `value` on the axis.
    */
   at(event) {
     const box = this.over.getBoundingClientRect();
     const all = box[this.size] || 1;
     const place = event[this.client] - box[this.start];
     const share = this.turned ? 1 - place / all : place / all;
-    return {all, place, share, value: this.axis.view[0] + share * this.axis.width};
+    return {all, place, share, value: this.viewport.range[0] + share * this.viewport.width};
   }
 
-  /** Pixels between two events. */
+  /** Distance of two events in px. */
   between(one, other) {
     return Math.abs(other[this.client] - one[this.client]);
   }
 }
 
 /**
- * click(x, reach, {top, y, touch}): where one clicks; reach: a few pixels in units of the axis; top:
- * px in the plot; y: of the axis across, where there is one.
+ * Calls click(x, reach, {top, y, touch}) on a click. reach: 6 px in units of the axis; top: px in
+ * the plot; y: value on the vertical axis, if there is one.
  */
-export function listen(over, axis, click, across = null) {
-  const x = new Way(over, axis, rightwards);
-  const y = new Way(over, across ?? axis, upwards);
-  // The axis across is first: who hears of the cursor along x reads where the other one is.
-  const plot = {over, axis, across, ways: across ? [y, x] : [x]};
+export function listen(over, viewport, click, across = null) {
+  const x = new Direction(over, viewport, rightwards);
+  const y = new Direction(over, across ?? viewport, upwards);
+  // The vertical axis moves first: listeners on the horizontal cursor read the vertical one.
+  const plot = {over, viewport, across, directions: across ? [y, x] : [x]};
   const where = (event, touch) => {
     const {value, all} = x.at(event);
     const {place: top, value: height} = y.at(event);
-    return [value, (6 / all) * axis.width, {top, y: height, touch}];
+    return [value, (6 / all) * viewport.width, {top, y: height, touch}];
   };
   followMouse(plot, where, click);
   followWheel(plot);
   followFingers(plot);
   over.addEventListener("dblclick", () => {
-    for (const way of plot.ways) way.axis.reset();
+    for (const direction of plot.directions) direction.viewport.reset();
   });
 }
 
-/** The cursor to where the pointer is. */
-function pointAt({ways}, event, by) {
-  for (const way of ways) way.axis.point(way.at(event).value, by);
+/** Moves the cursor to the pointer. */
+function pointAt({directions}, event, by) {
+  for (const direction of directions) direction.viewport.point(direction.at(event).value, by);
 }
 
 const ordered = (a, b) => (a < b ? [a, b] : [b, a]);
 const isMouse = (event) => event.pointerType === "mouse";
-const isZoomed = ({ways}) => ways.some((way) => way.axis.zoomed);
+const isZoomed = ({directions}) => directions.some((direction) => direction.viewport.zoomed);
 
-/** A drag zooms; its end is no click, nor is half of a double-click, which shows the whole. */
+/**
+ * A drag zooms and does not end in a click. A double click shows the full range and does not count
+ * as two clicks.
+ */
 function followMouse(plot, where, click) {
-  const {over, ways} = plot;
+  const {over, directions} = plot;
   const selection = element("div", {className: "selection", hidden: true});
   over.append(selection);
   let from = null;
   let waiting = 0;
-  const moved = (event) => Math.max(...ways.map((way) => way.between(from, event)));
-  const isAlong = (way, event) => way.between(from, event) >= Math.min(slim, moved(event));
+  const moved = (event) =>
+    Math.max(...directions.map((direction) => direction.between(from, event)));
+  const isAlong = (direction, event) =>
+    direction.between(from, event) >= Math.min(slim, moved(event));
   const select = (event) => {
     selection.hidden = moved(event) < jitter;
-    for (const way of ways) {
-      const {place, all} = way.at(event);
-      const [first, last] = isAlong(way, event) ? ordered(way.at(from).place, place) : [0, all];
-      selection.style[way.start] = `${first}px`;
-      selection.style[way.size] = `${last - first}px`;
+    for (const direction of directions) {
+      const {place, all} = direction.at(event);
+      const [first, last] = isAlong(direction, event)
+        ? ordered(direction.at(from).place, place)
+        : [0, all];
+      selection.style[direction.start] = `${first}px`;
+      selection.style[direction.size] = `${last - first}px`;
     }
   };
   on(over, {
     pointerdown(event) {
       from = event;
-      if (event.button === 0) over.setPointerCapture(event.pointerId); // of fingers, too
+      if (event.button === 0) over.setPointerCapture(event.pointerId); // applies to touch, too
     },
     pointermove(event) {
       if (!isMouse(event)) return;
@@ -97,44 +104,48 @@ function followMouse(plot, where, click) {
     pointerup(event) {
       if (selection.hidden) return;
       selection.hidden = true;
-      for (const way of ways)
-        if (isAlong(way, event)) way.axis.zoom(...ordered(way.at(from).value, way.at(event).value));
+      for (const direction of directions)
+        if (isAlong(direction, event))
+          direction.viewport.zoom(...ordered(direction.at(from).value, direction.at(event).value));
     },
     click(event) {
       clearTimeout(waiting);
       if (event.detail > 1 || (from && moved(event) > jitter)) return;
       const touch = Boolean(from) && !isMouse(from);
       pointAt(plot, event);
-      waiting = setTimeout(click, patience, ...where(event, touch));
+      waiting = setTimeout(click, doubleClickTime, ...where(event, touch));
     },
   });
 }
 
-/** The wheel zooms; one that would zoom out of the whole scrolls the page. Sideways it pans. */
+/**
+ * The wheel zooms; turned sideways it scrolls the plot. Zooming out of the full range scrolls the
+ * page.
+ */
 function followWheel(plot) {
-  const {over, axis, ways} = plot;
+  const {over, viewport, directions} = plot;
   const zoom = (event) => {
     const {deltaX, deltaY, deltaMode, shiftKey} = event;
     const sideways = Math.abs(deltaX) > Math.abs(deltaY) || shiftKey;
     if ((sideways || deltaY > 0) && !isZoomed(plot)) return;
     event.preventDefault();
     const lines = deltaMode ? 16 : 1;
-    if (sideways) axis.pan(((deltaX || deltaY) * lines) / over.clientWidth);
+    if (sideways) viewport.pan(((deltaX || deltaY) * lines) / over.clientWidth);
     else
-      for (const way of ways)
-        way.axis.zoomAt(way.at(event).value, Math.exp(-0.0022 * lines * deltaY));
+      for (const direction of directions)
+        direction.viewport.zoomAt(direction.at(event).value, Math.exp(-0.0022 * lines * deltaY));
   };
   over.addEventListener("wheel", zoom, {passive: false});
 }
 
-/** One finger moves what is in view, or the cursor where all is; two zoom. */
+/** One finger scrolls a zoomed plot, or else moves the cursor; two fingers zoom. */
 function followFingers(plot) {
-  const {over, across, ways} = plot;
+  const {over, across, directions} = plot;
   const fingers = new Map();
-  /** The middle of the fingers, and how far apart they are. */
+  /** Centre and distance of the fingers. */
   const span = () => {
     const [a, b = a] = fingers.values();
-    const apart = Math.hypot(...ways.map((way) => way.between(a, b)));
+    const apart = Math.hypot(...directions.map((direction) => direction.between(a, b)));
     const middle = (client) => (a[client] + b[client]) / 2;
     return {
       clientX: middle("clientX"),
@@ -143,12 +154,12 @@ function followFingers(plot) {
     };
   };
   const ends = (event) => fingers.delete(event.pointerId);
-  // What is not zoomed leaves a stroke upwards to the page.
+  // Vertical strokes scroll the page unless the plot is zoomed vertically.
   const leave = () => {
     over.style.touchAction = across?.zoomed ? "none" : "pan-y";
   };
   leave();
-  across?.onView(leave);
+  across?.onZoom(leave);
   on(over, {
     pointerdown(event) {
       if (!isMouse(event)) fingers.set(event.pointerId, event);
@@ -159,9 +170,9 @@ function followFingers(plot) {
       fingers.set(event.pointerId, event);
       const now = span();
       if (fingers.size < 2 && !isZoomed(plot)) return pointAt(plot, event, "pointer");
-      for (const way of ways) {
-        way.axis.pan(way.at(old).share - way.at(now).share);
-        way.axis.zoomAt(way.at(now).value, now.width / old.width);
+      for (const direction of directions) {
+        direction.viewport.pan(direction.at(old).share - direction.at(now).share);
+        direction.viewport.zoomAt(direction.at(now).value, now.width / old.width);
       }
     },
     pointerup: ends,
@@ -170,24 +181,24 @@ function followFingers(plot) {
 }
 
 /**
- * Keys on a plot: arrows move the cursor (with Shift faster), + and − zoom about it, Page Up and
- * Down pan, 0 and Escape show the whole, n and p go to the next and the last impact.
+ * Keys of a plot: arrows move the cursor (with Shift faster), + and − zoom about it, Page Up and
+ * Page Down scroll, 0 and Escape reset the zoom, n and p jump to the next and the previous impact.
  */
-export function followKeys(node, axis, impacts = () => []) {
-  const now = () => axis.cursor ?? axis.view[0];
-  const go = (to) => to !== undefined && axis.point(to);
-  const step = (event, way) => go(now() + way * (event.shiftKey ? 0.05 : 0.005) * axis.width);
-  const zoom = (factor) => axis.zoomAt(clamp(now(), ...axis.view), factor);
+export function followKeys(node, viewport, impacts = () => []) {
+  const now = () => viewport.cursor ?? viewport.range[0];
+  const go = (to) => to !== undefined && viewport.point(to);
+  const step = (event, sign) => go(now() + sign * (event.shiftKey ? 0.05 : 0.005) * viewport.width);
+  const zoom = (factor) => viewport.zoomAt(clamp(now(), ...viewport.range), factor);
   const acts = {
     ArrowLeft: (event) => step(event, -1),
     ArrowRight: (event) => step(event, 1),
-    Home: () => go(axis.view[0]),
-    End: () => go(axis.view[1]),
-    PageUp: () => axis.pan(-0.8),
-    PageDown: () => axis.pan(0.8),
+    Home: () => go(viewport.range[0]),
+    End: () => go(viewport.range[1]),
+    PageUp: () => viewport.pan(-0.8),
+    PageDown: () => viewport.pan(0.8),
     "+": () => zoom(1.5),
     "-": () => zoom(1 / 1.5),
-    0: () => axis.reset(),
+    0: () => viewport.reset(),
     n: () => go(impacts().find((t) => t > now())),
     p: () => go(impacts().findLast((t) => t < now())),
   };
@@ -198,4 +209,27 @@ export function followKeys(node, axis, impacts = () => []) {
     event.preventDefault();
     act(event);
   });
+}
+
+/**
+ * Names a plot for screen readers. A plot over a shared axis also gets the keys of followKeys and
+ * the slider role; moments() returns the impact times for n and p.
+ */
+export function makeAccessible(plot, name, moments, viewport = plot.viewport) {
+  const {container: node} = plot;
+  attributes(node, {"aria-label": name, role: viewport ? "slider" : "img"});
+  if (!viewport) return;
+  node.tabIndex = 0;
+  followKeys(node, viewport, moments);
+  const tell = () => {
+    const now = viewport.cursor ?? viewport.range[0];
+    attributes(node, {
+      "aria-valuemin": viewport.full[0],
+      "aria-valuemax": viewport.full[1],
+      "aria-valuenow": now,
+      "aria-valuetext": short(now),
+    });
+  };
+  tell();
+  viewport.onCursor((by) => by !== "play" && tell()); // not announced 60 times a second
 }

@@ -1,45 +1,45 @@
-// One computation at a time, of the newest request: the others are broken off or never begin.
-import {Passing} from "./api.js";
+// Runs one computation at a time, that of the newest request. Older ones are aborted or never
+// start.
+import {TemporaryError} from "./api.js";
 
-const patience = 120; // ms after which what is shown is marked as that of another request
-export const again = 2; // s after which a server that does not answer, or is busy, is asked again
+const staleDelay = 120; // ms after which an outdated result is marked as stale
+export const retryInterval = 2; // s between attempts while the service is unreachable or busy
 
-/** Some seconds, or until one does not want to wait any longer. */
+/** Waits some seconds, or until the signal is aborted. */
 const sleep = (seconds, signal) =>
   new Promise((resolve) => {
     setTimeout(resolve, seconds * 1000);
     signal.onabort = resolve;
   });
 
-/** Whether the same request may be answered later: there was no answer, or half of one. */
-export const passes = (error) => error instanceof Passing || error.status === 503;
+/** True for temporary failures: no answer, a broken answer or 503. */
+export const isTemporary = (error) => error instanceof TemporaryError || error.status === 503;
 
 export class Job {
   running = null;
   next = null;
 
   /**
-   * ask(request, signal): the answer, as a promise; show(answer, request, ms), which may take
-   * its time; fail(error, request);
-   * busy(is, cancelled): it computes for longer than a moment, or no longer; later(text): there is
-   * no answer for now, as the text says; both may be left out. A request that is there already is
-   * not begun again.
+   * ask(request, signal) returns the answer as a promise; show(answer, request, ms) can be
+   * asynchronous; fail(error, request) gets permanent errors. Optional: busy(is, cancelled), called
+   * when a computation takes longer than `staleDelay` and when it ends; later(text), called with a
+   * message while attempts fail temporarily. A request equal to the running one is ignored.
    */
   constructor(parts) {
     Object.assign(this, parts);
   }
 
   /**
-   * hasty: one of many that come while a slider is dragged. It lets the one before it come to its
-   * end, so that something is seen on the way.
+   * Starts a request. dragging: one of many requests of a slider; the running request is then
+   * completed, so that intermediate results are shown.
    */
-  start(request, {hasty = false} = {}) {
+  start(request, {dragging = false} = {}) {
     const {running} = this;
     const same = JSON.stringify(request) === running?.text;
     if (same && !this.next && !running.abort.signal.aborted) return;
     this.next = request;
     if (!running) this.run();
-    else if (!hasty || !running.answers) running.abort.abort();
+    else if (!dragging || !running.answers) running.abort.abort();
   }
 
   busy() {}
@@ -63,7 +63,7 @@ export class Job {
     const abort = new AbortController();
     const {signal} = abort;
     this.running = {abort, answers: true, text: JSON.stringify(request)};
-    const late = setTimeout(() => this.busy(true), patience);
+    const late = setTimeout(() => this.busy(true), staleDelay);
     const began = performance.now();
     let cancelled = false;
     try {
@@ -79,16 +79,16 @@ export class Job {
     }
   }
 
-  /** As long as there is no answer it is asked again. */
+  /** Repeats the request while it fails temporarily. */
   async answer(request, signal) {
     for (;;)
       try {
         return await this.ask(request, signal);
       } catch (error) {
-        if (signal.aborted || !passes(error)) throw error;
+        if (signal.aborted || !isTemporary(error)) throw error;
         this.running.answers = false;
-        this.later(`${error.message}; asking again every ${again} s`);
-        await sleep(again, signal);
+        this.later(`${error.message}; retrying every ${retryInterval} s`);
+        await sleep(retryInterval, signal);
       }
   }
 }

@@ -1,16 +1,17 @@
-// The key that a server asks for, kept as long as the tab is open.
+// The API key, kept until the browser tab is closed.
 import {element} from "./dom.js";
 
 const name = "vines-api-key";
-let asking = null; // one dialog, for all requests that wait for it
+let asking = null; // one dialog for all waiting requests
 
-export const hasKey = () => sessionStorage.getItem(name) !== null;
+export const currentKey = () => sessionStorage.getItem(name);
 
-/** The headers that show the key. */
-export const keyHeaders = () =>
-  hasKey() ? {Authorization: `Bearer ${sessionStorage.getItem(name)}`} : {};
+export const hasKey = () => currentKey() !== null;
 
-/** Whether a key was given, in place of one that is none. */
+/** The request headers with the key, if there is one. */
+export const keyHeaders = () => (hasKey() ? {Authorization: `Bearer ${currentKey()}`} : {});
+
+/** Asks for a key; resolves to true when one was typed. */
 export function askForKey() {
   asking ??= ask().finally(() => {
     asking = null;
@@ -23,17 +24,17 @@ async function ask() {
     type: "password",
     name: "key",
     required: true,
-    pattern: "\\s*[A-Za-z0-9._~+\\/=\\-]{16,}\\s*", // as the service takes them
+    pattern: "\\s*[A-Za-z0-9._~+\\/=\\-]{16,}\\s*", // the format that the service accepts
     title: "16 or more letters, digits or -._~+/=",
     autocomplete: "current-password",
   });
-  const wrong = hasKey() ? "The server does not know this key. " : "";
-  const use = element("button", {}, "Use it");
+  const wrong = hasKey() ? "The server does not accept this key. " : "";
+  const use = element("button", {}, "Use key");
   const dialog = element(
     "dialog",
     {},
-    element("h2", {}, "A key, please"),
-    element("p", {}, `${wrong}This server answers only those who have one.`),
+    element("h2", {}, "API key"),
+    element("p", {}, `${wrong}This server requires an API key.`),
     element("form", {method: "dialog"}, element("label", {}, "Key ", input, " ", use)),
   );
   document.body.append(dialog);

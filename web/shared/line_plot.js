@@ -1,11 +1,11 @@
-// Lines over an axis. What is drawn is what is in view.
+// Line plots over a shared axis. Only the visible part is drawn.
 import {element} from "./dom.js";
 import {Frame, rangeOf} from "./frame.js";
-import {ink, write} from "./ink.js";
+import {drawText, ink} from "./ink.js";
 import {short} from "./numbers.js";
-import {Panel} from "./panel.js";
 import {firstFrom, lastUpTo} from "./search.js";
 import {line, shade, symbols} from "./shapes.js";
+import {ZoomablePlot} from "./zoomable_plot.js";
 
 const columnsOf = (width) => Math.max(width - 60, 10);
 
@@ -13,29 +13,29 @@ const shortOrNone = (value) => (value === null ? "" : short(value));
 
 const naming = (x = "τ") => (typeof x === "string" ? {label: x, factor: 1} : x);
 
-export class LinePlot extends Panel {
-  /** axis: that of the plots it shares time with. */
-  constructor(container, axis) {
-    super(container, axis);
+export class LinePlot extends ZoomablePlot {
+  /** viewport: shared with other plots over the same time. */
+  constructor(container, viewport) {
+    super(container, viewport);
     this.legend = element("div", {className: "legend"});
     container.prepend(this.legend);
   }
 
   /**
-   * series: [{label, colour, dash, width, dots, text}], dots: their size, and no line unless there
-   * is a width; text(value, whether its line has ended): its legend in words; data: columns, or trace(from, to, columns): {data,
-   * dense} of what is in view, dense: the extremes of each pixel, and samples(from, to): the same as
-   * numbers to take away; unit: of them; span: [from, to] of the whole axis, if this plot is to say
-   * so; range: of y; log: of y; levels: of y, each in the colour levelColour or as {y, colour};
-   * lines: moments; bands: intervals, calm: those of the other shade; marks: [{x, y, colour, shape,
-   * size, width}] over the lines, x ascending; layers: [{from, to, colour}], of y, below them; x:
-   * {label, factor}, the name of the axis and what its numbers are multiplied by, or the name;
-   * label: that of y; bare: no labels of x; click(x, reach): called where one clicks, reach: a few
-   * pixels in units of x.
+   * series: [{label, colour, dash, width, dots, text}]; dots: size of dots in place of a line, or
+   * in addition to it if `width` is given; text(value, ended): value in the legend. Data: `data`,
+   * columns, or trace(from, to, columns), which returns {data, dense} for the visible range (dense:
+   * minimum and maximum of each pixel), and samples(from, to), the same as numbers for export.
+   * unit: of the values; span: [from, to] of the full axis, if this plot sets it; range, log,
+   * label: of y; levels: horizontal lines, numbers in levelColour or {y, colour}; lines: vertical
+   * lines; bands, calm: shaded intervals in two shades; marks: [{x, y, colour, shape, size, width}]
+   * over the lines, x ascending; layers: [{from, to, colour}], y ranges shaded below the lines; x:
+   * name of the axis or {label, factor}; bare: no labels along x; click(x, reach): reach is 6 px in
+   * units of x.
    */
   draw(options) {
     this.last = {...options, x: naming(options.x)};
-    if (options.span) this.axis.span(...options.span);
+    if (options.span) this.viewport.span(...options.span);
     this.writeLegend();
     this.refresh();
   }
@@ -49,19 +49,17 @@ export class LinePlot extends Panel {
     this.last?.click?.(...where);
   }
 
-  /**
-   * What is in view; alone: with the labels of x, whatever is below it, and the names of the lines.
-   */
+  /** alone: for export, with labels along x and the names of the lines. */
   prepare(width, height, alone = false) {
     if (!this.last) return null;
     const {x, label, log, range, bare, data, trace} = this.last;
-    const drawn = data ? {data} : trace(...this.axis.view, columnsOf(width));
-    const ofX = {...x, range: this.axis.view, bare: bare && !alone};
+    const drawn = data ? {data} : trace(...this.viewport.range, columnsOf(width));
+    const ofX = {...x, range: this.viewport.range, bare: bare && !alone};
     const ofY = {range: range ?? rangeOf(drawn.data.slice(1), log) ?? [0, 1], log, label};
     return {...drawn, alone, frame: new Frame(width, height, ofX, ofY)};
   }
 
-  /** Of a line whose extremes are drawn, pixel by pixel. */
+  /** Number of min-max columns of a dense line. */
   get columns() {
     return columnsOf(this.size.width);
   }
@@ -95,14 +93,14 @@ export class LinePlot extends Panel {
     if (!alone || series.length < 2) return;
     series.forEach(({label, colour}, k) => {
       ink(c, colour);
-      write(c, label, frame.box.left + 8 + 90 * k, frame.box.top + 4, "left", "top");
+      drawText(c, label, frame.box.left + 8 + 90 * k, frame.box.top + 4, "left", "top");
     });
   }
 
-  /** {names, columns}: the numbers of what is in view. */
+  /** {names, columns} of the visible range. */
   numbers() {
     const {series, x, data, samples, unit = ""} = this.last;
-    const [from, to] = this.axis.view;
+    const [from, to] = this.viewport.range;
     const [time, ...columns] = data ?? samples(from, to);
     const part = (column) =>
       Array.from(column.slice(firstFrom(time, from), lastUpTo(time, to) + 1));
@@ -112,24 +110,24 @@ export class LinePlot extends Panel {
     };
   }
 
-  /** Other marks and bands, and the zoom stays. */
+  /** Replaces marks and bands; the zoom is kept. */
   mark(marks, bands = []) {
     if (!this.last) return;
     Object.assign(this.last, {marks, bands});
     this.refresh();
   }
 
-  /** The cursor, and the values there. */
+  /** Shows the cursor and the values there. */
   point() {
     super.point();
-    if (this.last) this.tell(this.axis.cursor);
+    if (this.last) this.tell(this.viewport.cursor);
   }
 
   cursorText(cursor) {
     return short(cursor * this.last.x.factor);
   }
 
-  /** The names of the lines; none for a single one. */
+  /** The legend; empty for a single line. */
   writeLegend() {
     const {series} = this.last;
     const written = JSON.stringify(series);
@@ -147,12 +145,12 @@ export class LinePlot extends Panel {
     this.head = this.legend.offsetHeight;
   }
 
-  /** The values at a moment, of columns that are there. */
+  /** Shows the values at the cursor in the legend; only for plots with fixed columns. */
   tell(t) {
     const {series, data} = this.last;
     if (!data) return;
     const i = t === null ? -1 : lastUpTo(data[0], t);
-    const within = t > data[0][i] ? i + 1 : i; // a line that ends has no value behind its end
+    const within = t > data[0][i] ? i + 1 : i; // a line has no value after its end
     series.forEach(({text = shortOrNone}, k) => {
       const column = data[k + 1];
       const value = column[within] === null ? null : (column[i] ?? null);

@@ -1,36 +1,35 @@
-// The exact motion of a run, made anew from its impacts: the closed form between them takes a few
-// operations, so that a plot, however far one zooms, and the machine at any moment need no further
-// answer of the service.
+// Exact motion of a run, reconstructed from its impacts. Between events it has a closed form, so
+// any zoom level and any moment can be drawn without another request.
 import {Flow} from "./flow.js";
 import {lastUpTo} from "./search.js";
 
-// At least, of the faster of forcing and oscillator, so that no beat shows that is not there.
+// Samples per cycle of the faster of forcing and oscillator; fewer would show aliases.
 const samplesPerCycle = 16;
 
 export class Motion {
-  /** Of an answer of /v1/simulate with its impacts. */
+  /** answer: of /v1/simulate, with impacts. */
   constructor({parameters, impacts, sticking, status}) {
     const {epsilon, Omega, b, derived} = parameters;
     const {zeta, A, phi} = derived;
     Object.assign(this, {parameters, impacts, b, end: status.tau, cycle: (2 * Math.PI) / Omega});
-    /** Of forcing and oscillator the faster one's cycle. */
+    /** Period of the faster of forcing and oscillator. */
     this.shortest = Math.min(this.cycle, 2 * Math.PI);
     [this.free, this.stuck] = [1, 1 + epsilon].map(
       (mass) => new Flow(1 / mass, (2 * zeta) / mass, (epsilon * A) / mass, Omega),
     );
     this.pieces = [];
     this.begin(phi, sticking);
-    /** Moments at which the pieces begin. */
+    /** Start times of the pieces. */
     this.starts = Float64Array.from(this.pieces, (piece) => piece.tau);
   }
 
-  /** A piece, side: of the wall it is stuck to. */
+  /** Adds a piece; side: the wall it sticks to, or 0. */
   add(tau, state, y, yDot, side = 0) {
     const flow = side ? this.stuck : this.free;
     this.pieces.push({tau, state, y, y_dot: yDot, side, flow});
   }
 
-  /** Pieces {tau, state: [x, x', sin, cos], y, y_dot, side}. */
+  /** Splits the run into pieces {tau, state: [x, x', sin, cos], y, y_dot, side}. */
   begin(phi, {side: stuckTo, tau_start: from, tau_end: to}) {
     const {x0, x_dot0, y0, y_dot0} = this.parameters;
     const {tau, x, x_dot_after: xDot, y_dot_after: yDot, side, phase} = this.impacts;
@@ -47,11 +46,11 @@ export class Motion {
     stickBefore(Infinity);
   }
 
-  /** A stuck phase, and the flight after it. */
+  /** Adds a sticking phase and the flight after it. */
   stick(side, from, to) {
     const {state, y_dot: yDot} = this.stateOf(this.pieces.at(-1), from);
     const {epsilon} = this.parameters;
-    // What is left of the relative velocity is lost, as in an impact with R = 0.
+    // The remaining relative velocity is lost, as in an impact with R = 0.
     state[1] = (state[1] + epsilon * yDot) / (1 + epsilon);
     this.add(from, state, state[0] - side * this.b, state[1], side);
     if (to >= this.end) return;
@@ -59,7 +58,7 @@ export class Motion {
     this.add(to, left.state, left.y, left.y_dot);
   }
 
-  /** What a piece leads to at a later moment. */
+  /** State of a piece at a later time. */
   stateOf(piece, tau) {
     const s = tau - piece.tau;
     const state = piece.flow.after(piece.state, s);
@@ -68,7 +67,10 @@ export class Motion {
       : {state, y: piece.y + piece.y_dot * s, y_dot: piece.y_dot};
   }
 
-  /** {x, x_dot, x_ddot, y, y_dot, side} at a moment of the run, m per unit of tau, or of its square. */
+  /**
+   * {x, x_dot, x_ddot, y, y_dot, side} at a time of the run; m, m per unit of tau, m per unit of
+   * tau squared.
+   */
   at(tau) {
     const piece = this.pieces[Math.max(lastUpTo(this.starts, tau), 0)];
     const {state, y, y_dot} = this.stateOf(piece, tau);
@@ -76,18 +78,18 @@ export class Motion {
     return {x, x_dot, x_ddot: piece.flow.force(state), y, y_dot, side: piece.side};
   }
 
-  /** The largest |x| of the run, as its first trace over all of it has it. */
+  /** The largest |x| in the first trace over the whole run. */
   get reach() {
     if (!this.farthest) this.trace(0, this.end, 400);
     return this.farthest;
   }
 
-  /** The index of the last impact up to a moment, -1 before the first. */
+  /** Index of the last impact up to a time; -1 before the first. */
   impactBefore(tau) {
     return lastUpTo(this.impacts.tau, tau);
   }
 
-  /** The impact nearest to a moment; -1 where there is none. */
+  /** Index of the impact nearest to a time; -1 without impacts. */
   impactNear(tau) {
     const {tau: moments} = this.impacts;
     const i = this.impactBefore(tau);
@@ -96,14 +98,14 @@ export class Motion {
   }
 
   /**
-   * x and y - x, m, over [from, to] as lines of two points for each of `columns`: the motion itself
-   * where a column is short, and else, `dense`, its least and its largest value in the column.
+   * x and y - x in m over [from, to], two points per column. Short columns hold samples of the
+   * motion; otherwise (`dense`) each holds its minimum and maximum.
    */
   trace(from, to, columns) {
     const width = (to - from) / columns;
     const samples = Math.max(2, Math.ceil((width / this.shortest) * samplesPerCycle));
     const dense = samples > 2;
-    // The extremes lie well within their column: on its edge they would fall into the one before.
+    // Extremes are placed inside their column: at its edge they would fall into the previous one.
     const within = dense ? 0.5 : 0;
     const place = (_, k) => from + ((k + within) * width) / 2;
     const tau = Float64Array.from({length: 2 * columns}, place);
@@ -113,7 +115,7 @@ export class Motion {
       this.extremes(from, width / samples, samples, lines);
       for (const line of [lines.x, lines.gap])
         line.forEach((value, k) => {
-          if (!Number.isFinite(value)) line[k] = NaN; // beyond the run
+          if (!Number.isFinite(value)) line[k] = NaN; // outside the run
         });
     } else
       this.sample(from, width / 2, 2 * columns, (k, x, gap) => {
@@ -125,7 +127,7 @@ export class Motion {
     return lines;
   }
 
-  /** The extremes of each column of so many samples, and of the impacts, which reach the walls. */
+  /** Extremes of each column of `samples` samples, including the impacts, which reach the walls. */
   extremes(from, step, samples, {x, gap}) {
     const widen = (line, k, value) => {
       if (value < line[k]) line[k] = value;
@@ -146,10 +148,10 @@ export class Motion {
     }
   }
 
-  /** Calls use(k, x, y - x) for k = 0 .. count - 1 at from + k step; NaN outside of the run. */
+  /** Calls use(k, x, y - x) for k = 0 .. count - 1 at from + k step; NaN outside the run. */
   sample(from, step, count, use) {
     let i = Math.max(lastUpTo(this.starts, from), 0) - 1;
-    let next = -Infinity; // the moment at which the piece ends
+    let next = -Infinity; // end of the current piece
     let piece;
     let map;
     let state;

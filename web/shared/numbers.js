@@ -1,11 +1,11 @@
-// Numbers as texts, and texts as numbers.
+// Conversions between numbers and texts.
 
-/** A value, or the end of a range that it is beyond. */
+/** Limits a value to [least, most]. */
 export const clamp = (value, least, most) => Math.min(Math.max(value, least), most);
 
 export const minus = (text) => text.replace("-", "−");
 
-/** A function of a value as a text; a value that is not there has a dash. */
+/** Wraps a formatter: a missing value becomes a dash. */
 const orDash =
   (text) =>
   (value, ...more) =>
@@ -13,26 +13,26 @@ const orDash =
 
 const isSmall = (value) => value !== 0 && Math.abs(value) < 1e-3;
 
-/** Five digits at most. */
+/** At most five digits. */
 export const short = orDash((value) =>
   isSmall(value) || Math.abs(value) >= 1e5
     ? value.toExponential(2).replace(/\.?0+e\+?/, "e")
     : String(Number(value.toPrecision(5))),
 );
 
-/** The same with n digits at most. */
+/** At most n digits. */
 export const shortTo = (n, value) => short(value == null ? value : Number(value.toPrecision(n)));
 
-/** A length in m as one reads it, with n digits. */
+/** A length in m as text in mm, with n digits. */
 export const inMm = (metres, n = 4) =>
   metres == null ? short(metres) : `${shortTo(n, metres * 1000)} mm`;
 
-/** n digits behind the point, or three in all where that would show none. */
+/** n decimals, or three significant digits where those would show zeros only. */
 export const digits = orDash((value, n = 4) =>
   isSmall(value) ? value.toExponential(2) : value.toFixed(n),
 );
 
-/** Of a value and its error, to two digits of the error. */
+/** A value with its error, to two digits of the error. */
 export const withError = orDash((value, error, n) => {
   if (!error) return digits(value, n);
   const places = clamp(1 - Math.floor(Math.log10(error)), 0, 12);
@@ -43,10 +43,10 @@ export const percent = orDash(
   (value) => `${(value * 100).toFixed(value < 0.1 && value >= 0.0005 ? 1 : 0)} %`,
 );
 
-/** A number of things: 1 impact, 2 impacts. */
+/** A count with its noun: 1 impact, 2 impacts. */
 export const count = (n, noun) => `${n} ${noun}${Number(n) === 1 ? "" : "s"}`;
 
-/** A text as a number, with a point or a comma; null where it is none. */
+/** Parses a number with a decimal point or comma; null if it is none. */
 export function toNumber(text) {
   const written = text.trim().replace(/^([-+]?\d*),(\d+(?:e[-+]?\d+)?)$/i, "$1.$2");
   const value = Number(written.replace("−", "-"));

@@ -1,6 +1,6 @@
-// What all plots have in common: a canvas that is drawn anew whenever it gets another size, and over
-// it a ring about one point, which needs no new drawing. One that has no width, as in a closed part
-// of the page, is drawn when it gets one.
+// Base of all plots: a canvas that is redrawn when its size changes, and a ring around one point,
+// which moves without redrawing. A plot of width zero (in a closed <details>) is drawn when it gets
+// a width.
 import {element} from "./dom.js";
 import {blank, Size} from "./frame.js";
 
@@ -10,10 +10,9 @@ export class Plot {
   lit = [];
 
   /**
-   * container: the node whose size counts; layer: what the ring lies in. What is drawn is of who extends
-   * this: prepare(width, height, alone), {frame, ...}; and paint(c, what was prepared), c: a canvas'
-   * context, or what draws in its place. head: px above the canvas; offset: of the canvas in
-   * the ring's layer, px.
+   * container: the node whose size counts; layer: parent of the ring. Subclasses implement
+   * prepare(width, height, alone), which returns {frame, ...}, and paint(c, prepared) with a canvas
+   * context or an SvgPen. head: px above the canvas; offset: position of the canvas in `layer`, px.
    */
   constructor(canvas, container, layer) {
     Object.assign(this, {canvas, container});
@@ -26,7 +25,6 @@ export class Plot {
     this.refresh();
   }
 
-  /** Draws what is in view. */
   refresh() {
     const {width} = this.size;
     if (!width) return;
@@ -39,16 +37,16 @@ export class Plot {
     this.light(...this.lit);
   }
 
-  /** A canvas of so many px, and what lies over it, get their place. */
+  /** Positions the canvas; overridden by subclasses. */
   place() {}
 
-  /** All of it, for a picture of its own. */
+  /** Draws the plot for export. */
   paintAll(c, width, height) {
     const prepared = this.prepare(width, height, true);
     if (prepared) this.paint(c, prepared);
   }
 
-  /** Rings a point; none without one, or out of view. */
+  /** Rings a point; hides the ring without one or when the point is out of view. */
   light(x, y) {
     this.lit = [x, y];
     const {frame, ring} = this;

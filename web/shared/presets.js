@@ -1,6 +1,7 @@
-// What of a preset still holds where other fields are given, as the service has it.
+// Which fields of a preset stay valid when other fields are given; the same rules as in the
+// service.
 
-/** Masses, spring and damper. A preset's damping goes with them. */
+/** Masses, spring and damper. A preset's `damping` belongs to them. */
 const ownSystem = new Set([
   "epsilon",
   "lambda",
@@ -14,17 +15,17 @@ const ownSystem = new Set([
 ]);
 export const isOfSystem = (name) => ownSystem.has(name);
 
-/** A value as a query has it; intervals: a,b;c,d. */
+/** A value as text in a query; a list of intervals becomes a,b;c,d. */
 export const queryText = (value) => (Array.isArray(value?.[0]) ? value.join(";") : String(value));
 
 const ends = ["tau_end", "cycles"];
 
-/** Whether a field of /v1/parameters is one of the motion. */
+/** True for fields of /v1/parameters that affect the motion. */
 export const isOfMotion = (field) =>
   ["system", "reduced", "SI", "start"].includes(field?.group) || ends.includes(field?.name);
 
-/** The fields of a preset that hold beside the given ones. fieldOf: the table of fields by name. */
-export function holding(preset, given, fieldOf) {
+/** Fields of a preset that stay valid next to the given ones. fieldOf: the field table by name. */
+export function validFields(preset, given, fieldOf) {
   const replaced = Object.keys(given).filter(
     (name) => name !== "preset" && queryText(given[name]) !== queryText(preset[name]),
   );

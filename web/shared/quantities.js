@@ -1,5 +1,5 @@
-// What the points of a sweep tell: one table for menus, axes, colours and tooltips. Lengths are
-// drawn in mm.
+// Quantities of sweep points: one table for menus, axes, colours and tooltips. Lengths are shown in
+// mm.
 import {count, inMm, short, withError} from "./numbers.js";
 
 export const regimes = {
@@ -13,9 +13,9 @@ export const regimes = {
 };
 export const regimeColour = (regime) => `regime-${regime}`;
 export const verdicts = {chaotic: "chaotic", regular: "regular", not_decided: "not decided"};
-/** Where the ball touches nothing there is no verdict; nor of a free decay, which has impacts. */
+/** True for a motion without contact; a free decay also has no verdict, but has impacts. */
 export const untouched = ({verdict, z}) => verdict === null && !z;
-/** A ball that touches nothing has a colour of its own. */
+/** Colour name of a point's verdict. */
 export const verdictColour = (p) => {
   const {verdict} = p;
   if (untouched(p)) return "untouched";
@@ -25,8 +25,8 @@ export const verdictColour = (p) => {
 const mm = (metres) => (metres == null ? null : metres * 1000);
 
 /**
- * of: the value at a point, where it is not the point's own of that name; levels: lines across the
- * plot; free: the same without the absorber; diverging: its colours change sides at 0.
+ * of: the value at a point, by default the field of the same name; levels: horizontal lines; free:
+ * the value without the absorber; diverging: the colour scale is centred on 0.
  */
 export const quantities = {
   lambda1: {
@@ -39,7 +39,7 @@ export const quantities = {
   regime: {label: "", title: "regime", categories: Object.keys(regimes)},
   x_rms_ratio: {
     label: "rms of x / without absorber",
-    title: "rms of x over that without absorber",
+    title: "rms of x relative to that without absorber",
     levels: [1],
   },
   x_max: {
@@ -48,17 +48,21 @@ export const quantities = {
     of: (p) => mm(p.x_max),
     free: (p) => mm(p.x_free),
   },
-  share_impacts: {label: "share of the impacts", title: "dissipated by the impacts, share"},
-  synchronised: {label: "share synchronised", title: "contacts synchronised, share", levels: [1]},
+  share_impacts: {label: "fraction by impacts", title: "fraction dissipated by impacts"},
+  synchronised: {
+    label: "fraction synchronised",
+    title: "fraction of contacts synchronised",
+    levels: [1],
+  },
 };
-// Those of a sweep over one axis; their axis begins at 0.
-const besideLambda = ["z", "x_rms_ratio", "share_impacts", "x_max", "synchronised"];
-for (const name of besideLambda) quantities[name].from0 = true;
+// Quantities of the lowest diagram over one axis; their axis starts at 0.
+const oneAxisQuantities = ["z", "x_rms_ratio", "share_impacts", "x_max", "synchronised"];
+for (const name of oneAxisQuantities) quantities[name].from0 = true;
 for (const [name, quantity] of Object.entries(quantities)) quantity.of ??= (p) => p[name] ?? null;
 
 const reducedTo = ["x_max", "where", "z"];
 
-/** A quantity of a sweep's points; `where` is that of the axis that a reduction folds. */
+/** A quantity of a sweep's points; `where` is a value of the axis removed by a reduction. */
 export function quantityOf(name, data) {
   if (name !== "where") return quantities[name];
   const {symbol, unit, factor} = data.folded;
@@ -67,19 +71,19 @@ export function quantityOf(name, data) {
   return {label: unit ? `${title} (${unit})` : title, title, of};
 }
 
-/** What the menus of a sweep offer: [name, title] each. */
+/** Entries of the quantity menus: [name, title]. */
 export function menuOf(data) {
   const [whole, reduced] =
     data.axes.length > 1
       ? [Object.keys(quantities), [...reducedTo, "regime"]]
-      : [besideLambda, reducedTo];
+      : [oneAxisQuantities, reducedTo];
   const names = data.reduced ? reduced : whole;
   return names.map((name) => [name, quantityOf(name, data).title]);
 }
 
 /**
- * The best of the motions that a point was started to, or one that ends elsewhere, as a point of
- * its own; null where all end alike.
+ * The best motion of a point, or a different one from the second start, as a point; null when all
+ * starts lead to the same motion.
  */
 export function otherMotion(p) {
   const m = p?.depends_on_start ? (p.best ?? p.second_start) : null;
@@ -88,19 +92,19 @@ export function otherMotion(p) {
   return {...m, lambda, x_rms_ratio: p.x_rms ? (p.x_rms_ratio * m.x_rms) / p.x_rms : null};
 }
 
-/** The best motion of a point, whether or not the others are the same. */
+/** The best motion of a point, or the point itself. */
 export const bestMotion = (p) => otherMotion(p) ?? p;
 
 export const startNames = {
   middle: "middle",
   wall: "at the wall",
   moving: "moving",
-  untouched: "untouched",
+  untouched: "no contact",
   previous: "previous point",
   next: "next point",
 };
 
-/** A coordinate in mm of columns in m. */
+/** A coordinate shown in mm, from columns in m. */
 const length = (title, ...names) => ({
   title,
   label: `${title} (mm)`,
@@ -108,7 +112,7 @@ const length = (title, ...names) => ({
   value: (v) => v * 1000,
 });
 
-/** A velocity, after impacts or at any moment. */
+/** A velocity, after impacts or at any time. */
 const velocity = (of, after = "") => ({
   ...length(`${of}′${after && " after"}`, `${of}_dot${after}`),
   title: `${of}′${after && " after the impact"}`,
@@ -116,9 +120,9 @@ const velocity = (of, after = "") => ({
 });
 
 /**
- * The coordinates of a section. columns: what they are computed from, by value, which also gets
- * half a forcing period; seconds: its column in m/s, where there is one; least: the smallest that
- * is drawn, as chatter goes down to nothing.
+ * Coordinates of a section. columns: the columns they are computed from; value(v, half, second):
+ * the value, where half is half a forcing period; seconds: the column in m/s; least: the smallest
+ * value drawn, since chatter tends to zero.
  */
 export const coordinates = {
   impact: {
@@ -177,41 +181,44 @@ function period({period_cycles: cycles, impacts_per_period: impacts, symmetric})
   return `period ${counts}${symmetric ? ", symmetric" : ""}`;
 }
 
-/** A regime's type and description; that without impacts has no type. */
+/** Type and description of a regime; the one without impacts has no type. */
 export const regimeText = (regime) =>
   `${regime === "none" ? "" : `${regime}, `}${regimes[regime] ?? ""}`;
 
 const named = (regime) => (regime === "none" ? regimes.none : `Type ${regime}`);
 
-/** The largest |x| of a motion and where it lies on the axis that is folded, as where() names it. */
+/** The largest |x| of a motion and its place on the axis removed by a reduction. */
 const peakOf = (m, where) =>
   inMm(m.x_max) + (where && m.where != null ? ` at ${where(m.where)}` : "");
 
-/** The motions from several starts in words; where: names the place of a peak. */
+/** Motions from several starts as text; where(value) names the place of a peak. */
 function describeStarts(p, where) {
   const motion = (m) =>
     m.x_max == null ? "not measured" : `${peakOf(m, where)}, ${named(m.regime)}`;
   if (p.starts) return p.starts.map((m) => [startNames[m.start] ?? m.start, motion(m)]);
   const second = p.depends_on_start ? p.second_start : null;
-  return second ? [[`from the ${second.start}`, `elsewhere: ${motion(second)}`]] : [];
+  return second ? [[`from the ${second.start}`, `different: ${motion(second)}`]] : [];
 }
 
-/** The largest exponent and its standard error. */
+/** The largest exponent with its standard error. */
 const exponentText = ({lambda, status, standard_error: errors}) =>
   status?.[0] === "minus_infinity" ? "−∞" : withError(lambda[0], errors?.[0], 4);
 
-/** A motion that ends on an orbit is regular whatever it was on the way, which lambda1 still holds. */
+/**
+ * A motion that ends on an orbit is regular, even if the transient, which lambda1 includes, was
+ * not.
+ */
 function verdictText({verdict, periodic, lambda, standard_error: errors}) {
   const way = periodic && lambda?.[0] > 2 * (errors?.[0] ?? 0);
-  return way ? "regular in the end; λ₁ holds the way there" : verdicts[verdict];
+  return way ? "regular in the end; λ₁ includes the transient" : verdicts[verdict];
 }
 
 const wholePercent = (share) => `${(share * 100).toFixed(0)} %`;
 
-/** A point in words: [term, value] each. */
+/** Describes a point: [term, value]. */
 export function describe(p, where) {
   if (p.error) return [["failed", p.error]];
-  if (p.regime == null) return [["", "not measured: max_impacts ended it"]];
+  if (p.regime == null) return [["", "not measured: stopped at max_impacts"]];
   const {x_rms_ratio: ratio, share_impacts: share} = p;
   const rows = [
     ["regime", regimeText(p.regime)],
@@ -221,7 +228,7 @@ export function describe(p, where) {
     ["", verdictText(p)],
     ["rms of x", ratio == null ? inMm(p.x_rms, 5) : `${wholePercent(ratio)} of that without`],
     ["largest |x|", peakOf(p, where)],
-    ["without", p.x_free != null && inMm(p.x_free)],
+    ["without absorber", p.x_free != null && inMm(p.x_free)],
     ["by impacts", share != null && `${wholePercent(share)} of the dissipation`],
     ["sticks", p.sticks && String(p.sticks)],
   ];

@@ -1,14 +1,14 @@
-// Points in a plane, and curves, on a canvas. What lies under the pointer is told, and one point
-// can be ringed without a new drawing.
+// Scatter plots of points and curves on a canvas. Points can be picked with the pointer, and one
+// can be ringed without redrawing.
 import {countPoints, density} from "./density.js";
 import {on} from "./dom.js";
 import {Frame, font, rangeOf} from "./frame.js";
-import {ink, stroke, write} from "./ink.js";
+import {drawText, ink, stroke} from "./ink.js";
 import {Plot} from "./plot.js";
 import {symbol} from "./shapes.js";
 
-const many = 5000; // points from which on their density is drawn
-const reach = 14; // px within which a point is meant
+const many = 5000; // points above which the density is drawn
+const reach = 14; // px within which a point is picked
 
 export class ScatterPlot extends Plot {
   constructor(canvas) {
@@ -24,17 +24,18 @@ export class ScatterPlot extends Plot {
   }
 
   /**
-   * groups: [{x, y, colour, size, alpha, shape, label}], shape: ring, cross or else a dot; label: in
-   * its table; curves: [{x, y, colour, dash, label}]; levels: [{y, colour, label}]; extent: {x, y}, else that of the groups; equal:
-   * the same scale on both axes; xLabel, yLabel; empty: what to say if there are no points; pick:
-   * {x, y, use(i, clicked)}, the points that can be pointed at, and what is called then.
+   * groups: [{x, y, colour, size, alpha, shape, label}]; shape: "ring", "cross" or a square dot;
+   * label: name in the table; curves: [{x, y, colour, dash, label}]; levels: [{y, colour, label}];
+   * extent: {x, y}, default: range of the groups; equal: same scale on both axes; xLabel, yLabel;
+   * empty: text shown without points; pick: {x, y, use(i, clicked)}: points that can be picked, and
+   * the callback.
    */
   draw(options) {
     this.last = options;
     this.refresh();
   }
 
-  /** Without a frame where there are no points. */
+  /** Returns no frame when there are no points. */
   prepare(width, height) {
     if (!this.last) return null;
     const {groups, extent, equal, xLabel, yLabel} = this.last;
@@ -51,7 +52,7 @@ export class ScatterPlot extends Plot {
     if (!frame) {
       c.font = font;
       ink(c, "soft");
-      write(c, empty, width / 2, height / 2);
+      drawText(c, empty, width / 2, height / 2);
       return;
     }
     frame.draw(c);
@@ -67,12 +68,12 @@ export class ScatterPlot extends Plot {
     for (const {y, colour, label = ""} of levels) {
       ink(c, colour);
       frame.across(c, y);
-      write(c, label, frame.box.right - 4, frame.py(y) - 2, "right", "bottom");
+      drawText(c, label, frame.box.right - 4, frame.py(y) - 2, "right", "bottom");
     }
     c.restore();
   }
 
-  /** {names, columns}: the numbers of its points and curves, by group. */
+  /** {names, columns}: points and curves with their group. */
   numbers() {
     const {groups, curves = [], xLabel, yLabel} = this.last;
     const parts = [...groups, ...curves];
@@ -81,7 +82,7 @@ export class ScatterPlot extends Plot {
     return {names: [xLabel, yLabel, "group"], columns: [all("x"), all("y"), names]};
   }
 
-  /** The point nearest to the pointer, if it is near. */
+  /** Picks the point nearest to the pointer. */
   hover({offsetX, offsetY, type}) {
     const {pick} = this.last ?? {};
     if (!pick || !this.frame) return;
@@ -114,7 +115,7 @@ export class ScatterPlot extends Plot {
   }
 }
 
-/** The ranges widened so that a unit is as long on both axes. */
+/** Ranges extended so that a unit has the same length on both axes. */
 function sameScale(ranges, {width, height}) {
   const pixels = [width, height];
   const unit = Math.min(...ranges.map(([min, max], i) => pixels[i] / (max - min)));

@@ -1,6 +1,6 @@
-// Places in ascending values.
+// Binary search in ascending values.
 
-/** The first index whose value is not before what is looked for; their number if there is none. */
+/** The first index whose value is not before the wanted place; the length if there is none. */
 function place(values, isBefore) {
   let low = 0;
   let high = values.length;
@@ -12,8 +12,8 @@ function place(values, isBefore) {
   return low;
 }
 
-/** The first index whose value is not below a value; their number if there is none. */
+/** The first index whose value is at least `value`; the length if there is none. */
 export const firstFrom = (values, value) => place(values, (v) => v < value);
 
-/** The last index whose value is not above a value; -1 before the first. */
+/** The last index whose value is at most `value`; -1 if there is none. */
 export const lastUpTo = (values, value) => place(values, (v) => v <= value) - 1;

@@ -1,12 +1,15 @@
-// What plots draw: lines of many points, symbols of many places.
+// Lines of many points, symbols and shaded intervals.
 import {ink} from "./ink.js";
 import {clamp} from "./numbers.js";
 import {firstFrom, lastUpTo} from "./search.js";
 
-/** A line through points with ascending x; null and NaN break it. dense: there are many in a pixel. */
+/**
+ * A line through points with ascending x; null and NaN interrupt it. dense: several points per
+ * pixel.
+ */
 export function line(c, frame, x, y, {colour, width = 1, dash}, dense) {
   const [min, max] = frame.x.range;
-  // What is in view, and one more on either side.
+  // Visible points and one more on either side.
   const [from, to] = [
     Math.max(firstFrom(x, min) - 1, 0),
     Math.min(firstFrom(x, max) + 1, x.length),
@@ -19,7 +22,7 @@ export function line(c, frame, x, y, {colour, width = 1, dash}, dense) {
   end();
 }
 
-/** From point to point. */
+/** Connects points directly. */
 function path(c) {
   let broken = true;
   const add = (px, py) => {
@@ -30,12 +33,12 @@ function path(c) {
 }
 
 /**
- * The lowest and the highest of each pixel, down to the one before and up to it, so that no spike
- * is lost and nothing gapes.
+ * Draws minimum and maximum of each pixel, joined to the previous pixel, so that spikes stay
+ * visible and no gaps appear.
  */
 function envelope(c, width) {
   let column = null;
-  let low; // as pixels, downwards
+  let low; // px, downwards
   let high;
   let before = null;
   const end = () => {
@@ -59,7 +62,7 @@ function envelope(c, width) {
   return {add, end};
 }
 
-/** Adds a symbol to a path: a cross or else a ring; a square is filled at once. */
+/** Adds a symbol to a path: a cross or a circle; a square is filled immediately. */
 export function symbol(c, shape, x, y, r) {
   if (shape === "square") c.fillRect(x - r, y - r, 2 * r, 2 * r);
   else if (shape === "cross")
@@ -74,8 +77,8 @@ export function symbol(c, shape, x, y, r) {
 }
 
 /**
- * Symbols over ascending x, smaller where there are many. One beyond the range of y lies on its
- * edge, where it is cut off if it is clipped.
+ * Symbols at ascending x, smaller where there are many. Values out of range lie on the edge of the
+ * plot; `clipped` symbols are cut there.
  */
 export function symbols(c, frame, group, clipped = false) {
   const {x, y, colour, shape, size = 4, width = 1.3} = group;
@@ -84,8 +87,8 @@ export function symbols(c, frame, group, clipped = false) {
   const [from, to] = [firstFrom(x, min), lastUpTo(x, max) + 1];
   const room = Math.sqrt(frame.width / (3 * Math.max(to - from, 1)));
   const r = Math.max(size * Math.min(room, 1), 0.75);
-  const many = to - from > (shape === "dot" ? 100 : 2000); // a path of many discs takes long to fill
-  const drawn = new Set(); // half pixels: what falls on one again is not seen
+  const many = to - from > (shape === "dot" ? 100 : 2000); // filling a path of many discs is slow
+  const drawn = new Set(); // half pixels: a symbol on top of another is invisible
   frame.clip(c, clipped ? 0 : r);
   ink(c, colour, width);
   c.beginPath();
@@ -103,7 +106,7 @@ export function symbols(c, frame, group, clipped = false) {
   c.restore();
 }
 
-/** Intervals of x as one path, filled once: those that share a pixel do not darken it. */
+/** Fills intervals of x as one path, so that intervals in the same pixel do not darken it. */
 export function shade(c, frame, intervals, name) {
   const {left, right, top} = frame.box;
   ink(c, name);

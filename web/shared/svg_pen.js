@@ -1,11 +1,11 @@
-// Draws into SVG what a canvas' context would draw: as much of it as the plots use.
+// An SVG drawing with the part of the canvas context's interface that the plots use.
 import {attributes} from "./dom.js";
 
 const fixed = (v) => Number(v.toFixed(2));
 const anchors = {left: "start", center: "middle", right: "end"};
 const baselines = {top: "hanging", middle: "central", bottom: "text-after-edge"};
 
-/** An element; its numbers are rounded. */
+/** An SVG element; numbers are rounded to two decimals. */
 function svg(tag, all, ...children) {
   const node = document.createElementNS("http://www.w3.org/2000/svg", tag);
   const written = Object.entries(all).map(([name, v]) => [name, v?.toFixed ? fixed(v) : v]);
@@ -24,7 +24,6 @@ export class SvgPen {
   path = "";
   saved = [];
 
-  /** background: its colour. */
   constructor(width, height, background) {
     const viewBox = `0 0 ${width} ${height}`;
     this.root = this.group = svg("svg", {width, height, viewBox});
@@ -32,7 +31,6 @@ export class SvgPen {
     this.fillRect(0, 0, width, height);
   }
 
-  /** The drawing so far. */
   text() {
     return new XMLSerializer().serializeToString(this.root);
   }
@@ -45,7 +43,7 @@ export class SvgPen {
     Object.assign(this, this.saved.pop());
   }
 
-  /** What is drawn from here on, until what was saved is restored, lies in a group. */
+  /** Puts what follows into a group, until restore(). */
   within(all) {
     const group = svg("g", all);
     this.group.append(group);
@@ -74,7 +72,6 @@ export class SvgPen {
     this.path = "";
   }
 
-  /** A command of the path. */
   to(command, ...numbers) {
     this.path += command + numbers.map(fixed).join(" ");
   }
@@ -83,7 +80,7 @@ export class SvgPen {
     this.to("M", x, y);
   }
 
-  /** From where the path is; the first one begins it. */
+  /** Draws a line from the current point; the first call starts the path. */
   lineTo(x, y) {
     this.to(this.path ? "L" : "M", x, y);
   }
@@ -92,7 +89,7 @@ export class SvgPen {
     this.to("z");
   }
 
-  /** A whole circle. */
+  /** A full circle. */
   arc(x, y, r) {
     this.to("M", x + r, y);
     for (const to of [x - r, x + r]) this.to("A", r, r, 0, 0, 1, to, y);
@@ -104,7 +101,7 @@ export class SvgPen {
     this.closePath();
   }
 
-  /** An element, as opaque as all are for now. */
+  /** Adds an element with the current opacity. */
   add(tag, all, ...children) {
     const opacity = this.globalAlpha < 1 ? this.globalAlpha : null;
     this.group.append(svg(tag, {...all, opacity}, ...children));
@@ -136,7 +133,7 @@ export class SvgPen {
   }
 
   fillText(text, x, y) {
-    // Attributes each: the page's policy lets no picture have styles of its own.
+    // Separate attributes: the content security policy forbids inline styles.
     const [, weight, size, family] = /^(\d+ )?(\d+)px (.*)$/.exec(this.font);
     const font = {"font-weight": weight, "font-size": size, "font-family": family};
     const place = {

@@ -1,4 +1,4 @@
-// Where an axis has its labels.
+// Positions of axis labels.
 
 function multiples(step, min, max) {
   const list = [];
@@ -7,8 +7,8 @@ function multiples(step, min, max) {
 }
 
 /**
- * Round steps: 1, 2 or 5 times a power of ten, about `count` of them; smaller ones where those would
- * leave a single label, which tells no scale.
+ * Multiples of 1, 2 or 5 times a power of ten, about `count`. Smaller steps are used where only one
+ * label would remain, because one label shows no scale.
  */
 export function ticks(min, max, count) {
   const raw = (max - min) / count;
@@ -20,8 +20,8 @@ export function ticks(min, max, count) {
 }
 
 /**
- * Those of a logarithmic axis: powers of ten (not all, if there are many), and 2 and 5 between them
- * if there are few.
+ * Labels of a logarithmic axis: powers of ten (every n-th if there are many), with 2 and 5 between
+ * them if there are few.
  */
 export function logTicks(min, max) {
   const from = Math.floor(Math.log10(min));

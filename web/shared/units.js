@@ -1,12 +1,12 @@
-// The units in which an answer is shown. Where its system was given in SI: s, mm/s, m/s², N s and
-// J, or as one likes those of tau = omega0 t; else those of tau.
+// Units of the results. A system given in SI is shown in s, mm/s, m/s², N s and J or, by choice, in
+// units of tau = omega0 t. Other systems are shown in units of tau.
 import {attributes, button} from "./dom.js";
 
 const key = "vines-units";
 const tau = "τ";
 const seconds = "s, mm/s";
 
-/** What is remembered, where the browser lets us; else it holds for this page alone. */
+/** Accesses localStorage; without it the choice is lost with the page. */
 function remembered(f) {
   try {
     return f(localStorage);
@@ -16,21 +16,21 @@ function remembered(f) {
 }
 
 let chosen = remembered((store) => store.getItem(key)) === tau ? tau : seconds;
-const heard = [];
+const listeners = [];
 const buttons = [];
 
-/** Whether seconds are asked for, where there are any. */
+/** True when seconds are chosen; they apply to systems in SI only. */
 export const inSeconds = () => chosen === seconds;
 
-/** f: called when other units are chosen. */
-export const onUnits = (f) => heard.push(f);
+/** f() is called when the choice changes. */
+export const onUnits = (f) => listeners.push(f);
 
 function choose(units) {
   if (units === chosen) return;
   chosen = units;
   remembered((store) => store.setItem(key, units));
   showChosen();
-  for (const f of heard) f();
+  for (const f of listeners) f();
 }
 
 function showChosen() {
@@ -38,11 +38,11 @@ function showChosen() {
 }
 
 const titles = {
-  [seconds]: "as they are in SI",
-  [tau]: "time as τ = ω₀t, velocities per unit of it",
+  [seconds]: "SI units",
+  [tau]: "time τ = ω₀t, velocities per unit of τ",
 };
 
-/** Fills a container with the switch. */
+/** Adds the switch to a container. */
 export function unitsSwitch(container) {
   const own = Object.entries(titles).map(([units, title]) =>
     button(units, () => choose(units), {className: "small", title}),
@@ -52,10 +52,10 @@ export function unitsSwitch(container) {
   showChosen();
 }
 
-/** of(value): the value in `unit`. */
+/** of(value) converts a value to `unit`. */
 const quantity = (unit, factor) => ({unit, of: (v) => (v == null ? v : v * factor)});
 
-// Velocities per unit of tau are lengths, energies over m1 omega0² are squares of them.
+// A velocity per unit of tau is a length, an energy over m1 omega0² a squared length.
 const length = quantity("mm", 1000);
 const ofTau = {
   si: false,
@@ -68,10 +68,7 @@ const ofTau = {
   energy: quantity("mm²", 1e6),
 };
 
-/**
- * The units for an answer with these parameters. x: the axis of time; at(tau): a moment
- * in words.
- */
+/** Units for an answer with these parameters. x: the time axis; at(tau): a time as text. */
 export function unitsOf({si, derived: {omega0}}) {
   if (!si || !inSeconds()) return ofTau;
   return {
@@ -86,9 +83,7 @@ export function unitsOf({si, derived: {omega0}}) {
   };
 }
 
-/**
- * A unit of the service as the page has it, and by what values are multiplied: lengths are in mm.
- */
+/** The unit shown for a unit of the service, and the factor: lengths are shown in mm. */
 export function unitShown(unit = "") {
   const plain = unit === "dimensionless" ? "" : unit.replace("per unit of tau", "per τ");
   return /^m($|[ /])/.test(plain) ? {unit: `m${plain}`, factor: 1000} : {unit: plain, factor: 1};

@@ -1,12 +1,12 @@
-// What each plot says of itself: for which parameters it is, and in words what it shows.
-import {$, attributes, write} from "../shared/dom.js";
-import {captionOf} from "../shared/figure_menu.js";
+// Texts of the plots: the parameters, and a description in words.
+import {$, attributes, setTexts} from "../shared/dom.js";
+import {captionOf} from "../shared/export_dialog.js";
 import {count, inMm, percent, withError} from "../shared/numbers.js";
 import {regimes} from "../shared/quantities.js";
 import {run} from "./run.js";
 import {parameterLine} from "./sliders.js";
 
-/** What the plots of the first screen came to, by name. */
+/** Results per plot of the first screen. */
 function factsOf({energy, impacts, regime, exponents, parameters, status}) {
   const {qr, verdict} = exponents;
   const part = energy.window[1] < status.tau || energy.window[0] > 0;
@@ -14,10 +14,10 @@ function factsOf({energy, impacts, regime, exponents, parameters, status}) {
   const hits = count(impacts.tau.length, "impact");
   const lambda = qr?.final[0] == null ? "none" : withError(qr.final[0], qr.standard_error[0], 4);
   return {
-    x: `${end} at most ${inMm(energy.peak)}, rms ${inMm(energy.rms)}; ${hits} of the run`,
+    x: `${end} at most ${inMm(energy.peak)}, rms ${inMm(energy.rms)}; ${hits} in the run`,
     relative: `at ±${inMm(parameters.b)}; ${percent(regime.synchronised.share)} of the contacts synchronised`,
-    lambda: `the largest ends at ${lambda}${verdict ? `, ${verdict.replace("_", " ")}` : ""}`,
-    section: `${hits} of the run`,
+    lambda: `λ₁ ends at ${lambda}${verdict ? `, ${verdict.replace("_", " ")}` : ""}`,
+    section: `${hits} in the run`,
     manifold: regimes[regime.type] ?? regimes.none,
   };
 }
@@ -25,18 +25,18 @@ function factsOf({energy, impacts, regime, exponents, parameters, status}) {
 let caption = "";
 let facts = {};
 
-/** What a plot that is taken away says of itself. */
+/** Title, description, caption and file name of an exported plot. */
 export function aboutFigure(name) {
   const {title, notes} = captionOf($(`figure-${name}`));
   const summary = [`${title} ${notes}`, facts[name]].filter(Boolean).join(": ");
   return {title, summary, caption, name: `vines-${name}`};
 }
 
-/** Writes both to the figures of the first screen; system: what was computed, in a few words. */
+/** Describes the figures of the first screen; `system`: the parameters in brief. */
 export function describe(answer, system) {
   caption = parameterLine(answer.parameters);
   facts = factsOf(answer);
-  write({"key-stuck": answer.sticking.tau_start.length ? ", orange: stuck" : ""});
+  setTexts({"key-stuck": answer.sticking.tau_start.length ? ", orange: sticking" : ""});
   for (const figure of document.querySelectorAll("#instrument figure")) {
     const name = figure.id.replace("figure-", "");
     const params = figure.querySelector(".params");

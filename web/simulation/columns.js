@@ -1,22 +1,23 @@
-// Columns of an answer on their way into a plot.
+// Preparing columns of an answer for plots.
 import {run} from "./run.js";
 
 export const mm = (metres) => metres.map((v) => v * 1000);
 
 /** A column in other units. */
-export const over = (column, quantity) => column.map(quantity.of);
+export const inUnits = (column, quantity) => column.map(quantity.of);
 
-/** What a logarithmic axis can show. */
+/** null for values that a logarithmic axis cannot show. */
 export const positive = (v) => (v > 0 ? v : null);
 
-/** The largest |value|; 0 where there is none. */
-export const most = (values) => values.reduce((a, v) => Math.max(a, Math.abs(v) || 0), 0);
+/** The largest |value|; 0 without values. */
+export const largestMagnitude = (values) =>
+  values.reduce((a, v) => Math.max(a, Math.abs(v) || 0), 0);
 
 /**
- * Columns over tau without repeats of tau, as a line over it needs them, from the start of the run
- * to its end: plots over tau lie under each other.
+ * Columns over tau for a line plot: repeated times are removed, and the time range is extended to
+ * the whole run so that stacked plots align.
  */
-export function overRun(tau, columns) {
+export function alongRun(tau, columns) {
   const {end} = run.motion;
   let last = -Infinity;
   const keep = tau.map((t) => {
@@ -34,10 +35,7 @@ export function overRun(tau, columns) {
   return [padded(tau, 0, end), ...columns.map((column) => padded(column, null, null))];
 }
 
-/**
- * A range for a logarithmic axis that holds all values and 1; a value that is not positive has no
- * place on it.
- */
+/** A range of a logarithmic axis that holds 1 and all positive values. */
 export function logRange(columns) {
   const values = [1, ...columns.flat().filter((v) => v > 0)];
   const extreme = (of) => values.reduce((a, v) => of(a, v));

@@ -1,10 +1,9 @@
-// The plots of the details: the rest of what is known of a run, over the same time as the first
-// screen's or as sections.
+// Plots of the details: lines over the time axis of the first screen, and sections.
 import {reveal} from "../shared/dom.js";
 import {exponentRange} from "../shared/exponents.js";
 import {digits} from "../shared/numbers.js";
-import {logRange, mm, most, over, overRun, positive} from "./columns.js";
-import {exponentLines, halves} from "./plots.js";
+import {alongRun, inUnits, largestMagnitude, logRange, mm, positive} from "./columns.js";
+import {exponentLines, halves} from "./plot_group.js";
 import {pick, run} from "./run.js";
 
 const estimators = ["qr", "eigenvalues", "raw_product"];
@@ -19,7 +18,7 @@ export const overTime = [
 ];
 export const planes = ["portrait", "velocities", "stroboscopic", "multipliers"];
 
-/** The same for each of several names. */
+/** An object with of(name) for each name. */
 const each = (names, of) => Object.fromEntries(names.map((name) => [name, of(name)]));
 
 const soft = {y: 1, colour: "soft"};
@@ -36,22 +35,22 @@ function acceleration({tau, x_ddot: values}) {
 function impactsPerCycle({tau, z}) {
   return {
     series: [{label: "z", colour: "c4", width: 1.5}],
-    data: overRun(tau, [z]),
-    range: [0, Math.max(3.4, most(z) * 1.08)],
+    data: alongRun(tau, [z]),
+    range: [0, Math.max(3.4, largestMagnitude(z) * 1.08)],
     label: "impacts per cycle",
     levels: [1, 2, 3],
   };
 }
 
-/** All over the same range. */
+/** All estimators with the same range. */
 function exponentPlots(exponents) {
   const range = exponentRange(estimators.map((name) => exponents[name]?.history));
   return each(estimators, (name) => ({...exponentLines(exponents[name]), range}));
 }
 
 /**
- * Four moduli an impact. Those of a pair coincide: the later ones are smaller, so that the earlier
- * ones show around them.
+ * Four eigenvalue moduli per impact. The moduli of a pair coincide, so later ones are drawn smaller
+ * and the earlier ones remain visible.
  */
 function matrixPlot(name, eigenvalues) {
   const log = name === "T";
@@ -60,7 +59,7 @@ function matrixPlot(name, eigenvalues) {
   const least = columns[3].reduce((a, v) => Math.min(a, v), 1);
   return {
     series: ks.map((k) => ({label: `|μ${"₁₂₃₄"[k]}|`, colour: `c${k + 1}`, dots: 5.4 - k})),
-    data: overRun(eigenvalues.tau, log ? columns.map((one) => one.map(positive)) : columns),
+    data: alongRun(eigenvalues.tau, log ? columns.map((one) => one.map(positive)) : columns),
     log,
     range: log ? logRange(columns) : [least - 0.08, 1.06],
     label: `|μ| of ${name}`,
@@ -68,10 +67,10 @@ function matrixPlot(name, eigenvalues) {
   };
 }
 
-/** The states at the impacts, before and after them. */
+/** States at the impacts, before and after. */
 function impactPlanes(impacts) {
   const {velocity} = run.units;
-  const speeds = (name, when) => over(impacts[`${name}_dot_${when}`], velocity);
+  const speeds = (name, when) => inUnits(impacts[`${name}_dot_${when}`], velocity);
   const label = (symbol) => `${symbol} (${velocity.unit})`;
   const plane = (of) => ({
     groups: ["before", "after"].map((when) => ({...of(when), colour: when})),
@@ -93,7 +92,7 @@ function impactPlanes(impacts) {
 
 function stroboscopic({tau, x, x_dot: xDot}) {
   const {velocity} = run.units;
-  const points = {x: mm(x), y: over(xDot, velocity)};
+  const points = {x: mm(x), y: inUnits(xDot, velocity)};
   return {
     groups: halves(points, [["c1", () => true]]),
     xLabel: "x (mm)",
@@ -103,14 +102,14 @@ function stroboscopic({tau, x, x_dot: xDot}) {
   };
 }
 
-/** The time between impacts. Chatter falls below the axis. */
+/** Times between impacts. Chatter lies below the axis. */
 function differences({tau, time_difference: times}, Omega) {
   const inHalfPeriods = times.map((d) => (d === null ? null : (d * Omega) / Math.PI));
   return {
-    series: [{label: "time since the last impact", colour: "c1", dots: 3.5}],
-    data: overRun(tau, [inHalfPeriods]),
+    series: [{label: "time since the previous impact", colour: "c1", dots: 3.5}],
+    data: alongRun(tau, [inHalfPeriods]),
     log: true,
-    range: [0.1, Math.max(most(inHalfPeriods), 2) * 1.3],
+    range: [0.1, Math.max(largestMagnitude(inHalfPeriods), 2) * 1.3],
     label: "half periods",
     levels: [soft],
   };
@@ -133,7 +132,7 @@ function multiplierPlane({modulus, re, im}) {
 
 const mean = (values) => values.reduce((a, v) => a + v, 0) / values.length;
 
-/** A line of the slope in the middle of the logarithms that it was fitted to. */
+/** A line with the fitted slope through the centre of the fitted logarithms. */
 function fitted({tau, distance, slope: {lambda1, tau_start: from, tau_end: to}}) {
   const within = (t) => t >= from && t <= to;
   const part = tau.map((t, i) => [t, Math.log(distance[i])]);
@@ -142,10 +141,10 @@ function fitted({tau, distance, slope: {lambda1, tau_start: from, tau_end: to}})
   return tau.map((t) => (within(t) ? Math.exp(height + lambda1 * (t - middle)) : null));
 }
 
-/** How a run that starts a little off departs, beside what the linear theory says. */
+/** Distance of a slightly perturbed run, compared with the linear theory. */
 function divergence(perturbation) {
   const {tau, distance, predicted, slope} = perturbation;
-  const beyond = 10 * most(distance); // of no use any more
+  const beyond = 10 * largestMagnitude(distance); // the prediction grows without bound
   const plot = {
     series: [
       {label: "distance", colour: "c1", width: 1.4},
@@ -166,10 +165,10 @@ function divergence(perturbation) {
   return plot;
 }
 
-/** What each plot draws, by name; in the units of the run that is shown. */
+/** Options of each plot by name, in the units of the run. */
 export function detailsOptions(answer) {
   const {series, exponents, regime, eigenvalues, section, parameters} = answer;
-  const orbit = regime.periodic && regime.contacts > 0; // a free flight is one, too
+  const orbit = regime.periodic && regime.contacts > 0; // not for periodic free flight
   reveal({"figure-multipliers": orbit});
   return {
     acceleration: acceleration(series),

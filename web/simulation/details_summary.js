@@ -1,27 +1,25 @@
-// What a run came to, in words and numbers: cards of the window and of the whole run, the windows'
-// table and where the energy went.
-import {cards} from "../shared/cards.js";
-import {$, element, reveal, write} from "../shared/dom.js";
+// Results of a run as text and numbers: cards of the window and the whole run, the table of
+// windows, and the energy balance.
+
+import {$, element, reveal, setTexts} from "../shared/dom.js";
 import {clamp, count, digits, inMm, minus, percent, shortTo} from "../shared/numbers.js";
 import {verdicts} from "../shared/quantities.js";
-import {tableOf} from "../shared/table.js";
-import {most} from "./columns.js";
+import {cards, tableOf} from "../shared/tables.js";
+import {largestMagnitude} from "./columns.js";
 
-/** How many exponents of an estimator are positive. */
+/** Number of positive exponents of an estimator. */
 const positives = (estimator) =>
   estimator?.final[0] == null ? null : estimator.final.filter((v) => v > 0).length;
 
-/** An exponent in a word where it has no value. */
 const exponent = ({final, status}, k) => (status[k] === "minus_infinity" ? "−∞" : digits(final[k]));
 
 function regimeCard({type, description, capture}, units) {
   const name = type === "none" ? "none" : `Type ${type}`;
   if (!capture?.chaotic_before) return ["regime", name, description];
-  const when = capture.tau === null ? "behind the run's end" : `at ${units.at(capture.tau)}`;
+  const when = capture.tau === null ? "after the end of the run" : `at ${units.at(capture.tau)}`;
   return ["regime", name, `${description}; captured ${when} after a chaotic transient`];
 }
 
-/** How the impacts follow each other, in words. */
 function rhythm(r) {
   if (!r.contacts) return "";
   if (!r.periodic) return `${percent(r.synchronised.share)} of the contacts synchronised`;
@@ -29,7 +27,7 @@ function rhythm(r) {
   const sticks = r.sticks_per_period;
   const parts = [
     `period ${count(r.period_cycles, "cycle")}: ${count(r.impacts_per_period, "impact")}`,
-    chatter && `${chatter} of chatter`,
+    chatter && `${count(chatter, "chatter impact")}`,
     sticks && count(sticks, "stick"),
     r.symmetric ? "symmetric" : "asymmetric",
     !r.stable && "unstable",
@@ -38,8 +36,8 @@ function rhythm(r) {
 }
 
 function verdictCard({verdict, verdict_reason: given}, r) {
-  const told = given?.replace("lambda1", "λ₁").replace("= -", "= −");
-  const reason = told ?? "needs the estimator qr";
+  const text = given?.replace("lambda1", "λ₁").replace("= -", "= −");
+  const reason = text ?? "requires the estimator qr";
   const name = verdicts[verdict] ?? "–";
   if (!r.periodic || !r.contacts || verdict !== "not_decided") return ["verdict", name, reason];
   const orbit = `a ${r.stable ? "stable" : "unstable"} periodic orbit`;
@@ -53,26 +51,28 @@ function lambdaCard({qr}, {time}) {
   return ["λ₁ (qr)", qr ? digits(qr.final[0]) : "–", remark + unit];
 }
 
-/** How many are positive by each estimator: by qr that says something only where it is decided. */
+/**
+ * Number of positive exponents per estimator; the one of qr is meaningful only if the verdict is
+ * decided.
+ */
 function positivesCard({qr, raw_product: product, verdict}) {
   const exact = positives(qr);
   const raw = positives(product);
   const differs = `${raw} by the raw product`;
   const remark = raw === null || raw === exact ? "" : differs;
   const open = verdict === "not_decided" ? "not decided" : "–";
-  const decided = {regular: "none that lasts", chaotic: String(exact ?? "–")};
+  const decided = {regular: "none in the long run", chaotic: String(exact ?? "–")};
   const shown = decided[verdict] ?? open;
   return ["positive exponents (qr)", shown, remark];
 }
 
 function residualCard({qr, sum_rule_residual: residual, impacts}) {
   if (residual != null) return ["sum rule residual", minus(residual.toExponential(1))];
-  return ["sum rule residual", "–", qr && impacts > 1 ? "not defined after a stick" : ""];
+  return ["sum rule residual", "–", qr && impacts > 1 ? "undefined after sticking" : ""];
 }
 
 const median = (values) => values.toSorted((a, b) => a - b)[values.length >> 1];
 
-/** A value in a unit of the answer. */
 const inUnit = (value, {of, unit}) => `${shortTo(3, of(value))} ${unit}`;
 
 function forcingCard({si, derived}) {
@@ -81,40 +81,38 @@ function forcingCard({si, derived}) {
 }
 
 function impactSpeedCard({relative_speed: speed, impulse}, {velocity, impulse: blow}) {
-  const highest = shortTo(3, velocity.of(most(speed)));
+  const highest = shortTo(3, velocity.of(largestMagnitude(speed)));
   const remark = `median; at most ${highest}; impulse ${inUnit(median(impulse.map(Math.abs)), blow)}`;
   return ["impact speed", inUnit(median(speed), velocity), speed.length ? remark : ""];
 }
 
-/** Where there is one. */
+/** Empty if the amplitude without absorber is unknown. */
 function amplitudeCards({without_absorber: {amplitude: free}, peak}) {
-  const remark = `with it |x| comes to ${inMm(peak)}`;
+  const remark = `with absorber: |x| up to ${inMm(peak)}`;
   return free == null ? [] : [["amplitude without absorber", inMm(free), remark]];
 }
 
-/** What a laboratory measures. */
 const engineeringCards = ({impacts, series, parameters}, units) => [
   forcingCard(parameters),
   impactSpeedCard(impacts, units),
   [
     "peak acceleration",
-    inUnit(most(series.x_ddot), units.acceleration),
+    inUnit(largestMagnitude(series.x_ddot), units.acceleration),
     "of m₁ between the impacts",
   ],
 ];
 
-/** What the cards of the window refer to. */
+/** Title of the window's cards. */
 function windowTitle({window, impacts}, {at}, asked) {
-  if (!window)
-    return asked ? "Of the window, which has no impacts" : "Of the run, which has no impacts";
-  const whole = asked ? "Of the window" : "Of the whole run, from its first impact to its last";
+  if (!window) return asked ? "Window without impacts" : "Run without impacts";
+  const whole = asked ? "Window" : "Whole run, first to last impact";
   return `${whole}: ${at(window[0])} to ${at(window[1]).replace(/^.*= /, "")}, ${count(impacts, "impact")}`;
 }
 
 export function summarise(answer, units) {
   const {exponents, regime, energy, impacts, sticking, parameters} = answer;
   const stuck = sticking.side.length;
-  write({"summary-title": windowTitle(exponents, units, parameters.window)});
+  setTexts({"summary-title": windowTitle(exponents, units, parameters.window)});
   cards($("summary"), [
     regimeCard(regime, units),
     ["impacts per cycle, z", digits(regime.z, 3), rhythm(regime)],
@@ -122,19 +120,18 @@ export function summarise(answer, units) {
     lambdaCard(exponents, units),
     positivesCard(exponents),
     residualCard(exponents),
-    ["taken by the impacts", percent(energy.share_impacts), "of the energy that is dissipated"],
+    ["dissipated by impacts", percent(energy.share_impacts), "of all dissipation"],
     ["rms of x", percent(energy.rms_ratio), "of that without absorber"],
     ...amplitudeCards(energy),
   ]);
   cards($("summary-run"), [
     ["impacts", String(impacts.tau.length), "chatter included"],
-    ["stuck phases", String(stuck), stuck ? "shaded in the plots" : ""],
+    ["sticking phases", String(stuck), stuck ? "shaded in the plots" : ""],
     ["damping ζ", digits(parameters.derived.zeta, 5), parameters.damping.replaceAll("_", " ")],
     ...(units.si ? engineeringCards(answer, units) : []),
   ]);
 }
 
-/** The exponents of each window asked for. */
 export function tabulate(windows = [], {time}) {
   reveal({"figure-windows": windows.length});
   const span = time.unit ? ["from (s)", "to (s)"] : ["τ from", "to"];
@@ -149,14 +146,14 @@ export function tabulate(windows = [], {time}) {
   $("windows").replaceChildren(...tableOf(names, rows));
 }
 
-/** A bar as long as its share of the whole. */
+/** A bar whose length is a fraction of the whole. */
 function bar(share, className) {
   const node = element("span", {className});
   node.style.width = `${clamp(share, 0, 1) * 100}%`;
   return node;
 }
 
-/** One amount beside another, as bars of one scale. */
+/** Two amounts as bars of the same scale. */
 function compare(term, withAbsorber, without) {
   const whole = Math.max(withAbsorber, without) || 1;
   const line = (name, value, className) => [
@@ -173,17 +170,17 @@ function compare(term, withAbsorber, without) {
   );
 }
 
-/** Where the energy came from, and how a free decay went. */
+/** Energy supplied, and the decay times of a free decay. */
 function energyNote({input, at_start: start, decay}, units) {
   const supply = [
     input && `${inUnit(input, units.energy)} from the base`,
-    start && `${inUnit(start, units.energy)} there at the start`,
+    start && `${inUnit(start, units.energy)} at the start`,
   ];
   const parts = [supply.filter(Boolean).join(", "), ...(decay ? decayTimes(decay, units) : [])];
   return parts.filter(Boolean).join("; ");
 }
 
-/** When a half and a tenth of a free decay's energy are left, with the absorber and without it. */
+/** Times at which half and a tenth of the energy are left, with and without the absorber. */
 function decayTimes(decay, {at}) {
   const moment = (tau, before = "") => (tau == null ? "not in this run" : before + at(tau));
   const line = ([what, name]) => {
@@ -198,8 +195,8 @@ function decayTimes(decay, {at}) {
 }
 
 /**
- * What was supplied (by the base, or there at the start) went into the damper, the impacts, or is
- * still there.
+ * The energy balance: energy supplied by the base or present at the start is dissipated by the
+ * damper and the impacts, or is left at the end.
  */
 export function accountEnergy(energy, units) {
   const {damper, impacts, at_end: left, without_absorber: without} = energy;

@@ -1,19 +1,19 @@
-// The machine itself, to scale, at one moment of the run: spring and damper, oscillator, walls, the
-// free mass and where it just came from; a flash at an impact.
+// Drawing of the machine to scale at the cursor: spring, damper, oscillator, walls, and the ball
+// with a short trail; impacts flash.
 import {$} from "../shared/dom.js";
 import {blank, font, Size} from "../shared/frame.js";
-import {ink, stroke, write} from "../shared/ink.js";
+import {drawText, ink, stroke} from "../shared/ink.js";
 import {clamp} from "../shared/numbers.js";
-import {axis, run} from "./run.js";
+import {run, viewport} from "./run.js";
 
-const flashes = 0.12; // cycles that a flash lasts
-const ghosts = [0.12, 0.08, 0.04, 0]; // cycles back at which the mass is shown
+const flashDuration = 0.12; // cycles
+const trail = [0.12, 0.08, 0.04, 0]; // positions of the trail, cycles ago
 
 const anchor = 14; // px
 const top = 30; // px of the cavity
 const ball = 11; // px
-const words = 76; // px of the mass' name, which stays over the cavity
-const rim = 14; // px of the oscillator's body beyond its walls
+const nameWidth = 76; // px of the ball's name, which stays over the cavity
+const rim = 14; // px of the oscillator outside its walls
 
 function spring(c, to, y) {
   const turns = 8;
@@ -27,7 +27,6 @@ function spring(c, to, y) {
   stroke(c, [[anchor, y], [anchor + ends, y], ...coils, [to - ends, y], [to, y]]);
 }
 
-/** A piston in its cylinder. */
 function damper(c, to, y) {
   const piston = anchor + 0.55 * (to - anchor);
   const [from, end] = [piston - 14, piston + 10];
@@ -70,7 +69,7 @@ function body(c, left, right, floor) {
   c.stroke();
 }
 
-/** The wall at which the mass was met last: a few rays. */
+/** Rays at the wall of the last impact. */
 function flash(c, x, y, inwards, share) {
   c.globalAlpha = 1 - share;
   ink(c, "flash", 2.5);
@@ -84,15 +83,15 @@ function flash(c, x, y, inwards, share) {
 
 function label(c, name, ...text) {
   ink(c, name);
-  write(c, ...text);
+  drawText(c, ...text);
 }
 
 const canvas = $("machine");
 const size = new Size(canvas, redraw);
 
-/** At the cursor. */
+/** Draws the state at the cursor. */
 export function redraw() {
-  const {cursor} = axis;
+  const {cursor} = viewport;
   const {width, height} = size;
   if (!run || cursor === null || !width) return;
   const {motion} = run;
@@ -118,11 +117,11 @@ export function redraw() {
   if (motion.parameters.G) label(c, "soft", "↔ base", 4, 8, "left", "middle");
   c.font = "italic 13px system-ui";
   label(c, "accent", "oscillator x", px(x), top - 14, "center", "bottom");
-  const reach = Math.min(words / 2, (right - left) / 2);
+  const reach = Math.min(nameWidth / 2, (right - left) / 2);
   const middle = clamp(px(y), left + reach, right - reach);
-  label(c, "mass", "free mass y", middle, top + 1, "center", "bottom");
+  label(c, "mass", "ball y", middle, top + 1, "center", "bottom");
   c.font = font;
-  const [at, opposite] = right - left > 2 * words ? ["y − x = −b", "y − x = b"] : ["−b", "b"];
+  const [at, opposite] = right - left > 2 * nameWidth ? ["y − x = −b", "y − x = b"] : ["−b", "b"];
   label(c, "plus", at, left, bottom + 3, "left", "top");
   label(c, "minus", opposite, right, bottom + 3, "right", "top");
 }
@@ -137,11 +136,11 @@ function cavity(c, left, right, bottom) {
   fill("minus", right + 3, 3);
 }
 
-/** Now, and before, where it is paler: as it came through the cavity, which is at x now. */
+/** The ball and its trail, relative to the current position of the cavity. */
 function mass(c, px, x, level) {
   ink(c, "mass");
-  ghosts.forEach((cycles, k) => {
-    const moment = axis.cursor - cycles * run.motion.cycle;
+  trail.forEach((cycles, k) => {
+    const moment = viewport.cursor - cycles * run.motion.cycle;
     if (moment < 0) return;
     c.globalAlpha = cycles ? 0.1 + 0.08 * k : 1;
     c.beginPath();
@@ -151,11 +150,10 @@ function mass(c, px, x, level) {
   });
 }
 
-/** The flash of the last impact, while it lasts. */
 function impact(c, wall, level) {
   const {impacts, cycle} = run.motion;
-  const i = run.motion.impactBefore(axis.cursor);
+  const i = run.motion.impactBefore(viewport.cursor);
   const side = impacts.side[i];
-  const share = (axis.cursor - impacts.tau[i]) / (flashes * cycle);
+  const share = (viewport.cursor - impacts.tau[i]) / (flashDuration * cycle);
   if (share < 1) flash(c, wall(side) - side * (ball + 2), level, side, share);
 }

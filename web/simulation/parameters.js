@@ -1,11 +1,11 @@
-// The parameters of a run as a table: each with its symbol, value, unit and where it comes from.
+// Table of a run's parameters: symbol, value, unit and origin.
 import {$, element} from "../shared/dom.js";
 import {groups} from "../shared/form.js";
 import {inMm, minus} from "../shared/numbers.js";
-import {resolved} from "../shared/origins.js";
 import {symbolOf} from "../shared/quantities.js";
+import {resolved} from "../shared/value_origins.js";
 
-// Those that are no fields of a request: symbol, unit and what they follow from.
+// Derived parameters: symbol, unit and what they follow from.
 const derived = {
   zeta: ["ζ", "", "epsilon, lambda, damping"],
   omega0: ["ω₀", "rad/s", "k1, m1"],
@@ -24,26 +24,25 @@ function precise(value) {
   return String(value).replaceAll("_", " ");
 }
 
-/** A unit behind a value, and a length in m in mm, too. */
+/** The unit after a value, and a length in m also in mm. */
 function unitText(value, unit) {
   if (!unit || unit === "dimensionless") return "";
   const isLength = unit === "m" && typeof value === "number" && value !== 0;
   return ` ${unit.replace("tau", "τ")}${isLength ? ` (${inMm(value, 5)})` : ""}`;
 }
 
-/** Nothing where it is but the name again. */
 function symbolText(name) {
   if (name === "damping_ratio") return "c₁/\u200b(2m₁ω₀)";
   const symbol = symbolOf(name);
   return symbol === name && name.length > 1 ? "" : symbol;
 }
 
-/** A name that may break after its underscores. */
+/** A name that can be broken after its underscores. */
 const breakable = (name) => name.split(/(?<=_)/).flatMap((part) => [part, element("wbr")]);
 
 export function listParameters(parameters, fieldOf) {
   const {values, origins} = resolved(parameters);
-  const all = {...parameters.derived, ...values, R: null}; // each wall has a row of its own
+  const all = {...parameters.derived, ...values, R: null}; // each wall has its own row
   const row = (name) => {
     const {unit, description = ""} = fieldOf[name] ?? {};
     const [symbol, ownUnit, from] = derived[name] ?? [symbolText(name), unit, ""];

@@ -1,26 +1,26 @@
-// A run that is kept beside those that follow, to compare them with it. The address holds its query.
+// The pinned run, compared with the runs that follow. The address holds its query.
 import {get} from "../shared/api.js";
-import {$, reveal, write} from "../shared/dom.js";
+import {$, reveal, setTexts} from "../shared/dom.js";
 import {Motion} from "../shared/motion.js";
-import * as instrument from "./instrument.js";
+import * as mainPlots from "./main_plots.js";
 import {toQuery} from "./request.js";
 import {run} from "./run.js";
 import {parameterLine} from "./sliders.js";
 
 let pinned = null; // {query, answer, motion}
 
-/** The query of the run that is pinned, null where there is none. */
+/** The query of the pinned run; null without one. */
 export const query = () => pinned?.query ?? null;
 
 function keep(other) {
   pinned = other;
   const there = other?.answer ? other : null;
   reveal({swap: there, unpin: there});
-  write({"pinned-run": there ? `pinned: ${parameterLine(there.answer.parameters)}` : ""});
-  instrument.pin(there);
+  setTexts({"pinned-run": there ? `pinned: ${parameterLine(there.answer.parameters)}` : ""});
+  mainPlots.pin(there);
 }
 
-/** Pins the run of a query, or none; ask: what of it is needed. */
+/** Pins the run of a query, or none; ask: the parts to request. */
 export async function restore(wanted, ask) {
   if (wanted === query()) return;
   keep(wanted === null ? null : {query: wanted});
@@ -32,13 +32,13 @@ export async function restore(wanted, ask) {
     const answer = await get(`v1/simulate?${all}`);
     if (query() === wanted) keep({query: wanted, answer, motion: new Motion(answer)});
   } catch (error) {
-    write({"pinned-run": `the run to compare with: ${error.message}`});
+    setTexts({"pinned-run": `the pinned run cannot be shown: ${error.message}`});
   }
 }
 
-/** changed(): another run is pinned, or none; show(query): shows the run of a query. */
+/** changed() is called when another run is pinned or unpinned; show(query) shows a run. */
 export function start(changed, show) {
-  const keepShown = () => keep(run && {...run, query: toQuery(run.asked)});
+  const keepShown = () => keep(run && {...run, query: toQuery(run.fields)});
   $("pin").onclick = () => {
     keepShown();
     changed();

@@ -1,18 +1,18 @@
-// Time that goes by: plays what is in view, over and over, at so many cycles a second; a click of
-// each impact if one asks for it.
-import {$, attributes, write} from "../shared/dom.js";
+// The player: moves the cursor through the visible range in a loop, at a number of cycles per
+// second, optionally with a knock at each impact.
+import {$, attributes, setTexts} from "../shared/dom.js";
 import {count, shortTo} from "../shared/numbers.js";
 import * as machine from "./machine.js";
-import {axis, run} from "./run.js";
+import {run, viewport} from "./run.js";
 
-const patience = 150; // ms that it stands still after an edit
-const speeds = [0.1, 0.25, 0.5, 1, 2, 5, 20]; // forcing cycles a second
+const holdTime = 150; // ms of pause after an edit
+const speeds = [0.1, 0.25, 0.5, 1, 2, 5, 20]; // forcing cycles per second
 
 let frame = 0;
 let held = 0;
 let audio = null;
 
-/** A short knock, the louder the harder; strength: 0 to 1. */
+/** A short knock; strength: 0 to 1. */
 function knock(strength) {
   const {currentTime: now, destination} = audio;
   const tone = new OscillatorNode(audio, {frequency: 900});
@@ -31,28 +31,28 @@ export function start() {
   $("restart").onclick = () => restart("restart");
   $("sound").onclick = toggleSound;
   $("scrub").oninput = () => {
-    const [from, to] = axis.view;
-    axis.point(from + ($("scrub").value / 1000) * (to - from), "scrub");
+    const [from, to] = viewport.range;
+    viewport.point(from + ($("scrub").value / 1000) * (to - from), "scrub");
   };
-  axis.onCursor(pointed);
-  axis.onView(showPlace);
+  viewport.onCursor(cursorMoved);
+  viewport.onZoom(showPlace);
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) play();
 }
 
-/** Another run is there. */
+/** Called when another run is shown. */
 export function show() {
-  if (inView(axis.cursor)) axis.point(axis.cursor, "show");
+  if (inView(viewport.cursor)) viewport.point(viewport.cursor, "show");
   else restart("show");
 }
 
-const inView = (moment) => moment !== null && axis.holds(moment);
+const inView = (moment) => moment !== null && viewport.holds(moment);
 
-/** To where something is about to happen: just before the first impact in view. */
+/** Moves the cursor half a cycle before the first impact in view. */
 function restart(by) {
-  const [from] = axis.view;
+  const [from] = viewport.range;
   const {motion} = run;
   const first = motion.impacts.tau[motion.impactBefore(from) + 1];
-  axis.point(inView(first) ? Math.max(first - motion.cycle / 2, from) : from, by);
+  viewport.point(inView(first) ? Math.max(first - motion.cycle / 2, from) : from, by);
 }
 
 function play() {
@@ -74,7 +74,7 @@ function pause() {
 }
 
 function showButton(text, label) {
-  write({play: text});
+  setTexts({play: text});
   attributes($("play"), {"aria-label": label});
 }
 
@@ -84,48 +84,48 @@ function toggleSound() {
   attributes($("sound"), {"aria-pressed": audio !== null});
 }
 
-/** Stands still for a moment: there is more to do than to play. */
+/** Pauses briefly while a slider is dragged. */
 export function hold() {
-  held = performance.now() + patience;
+  held = performance.now() + holdTime;
 }
 
 function advance(seconds) {
-  if (!run || seconds > 1) return; // another tab was in front
+  if (!run || seconds > 1) return; // the browser tab was in the background
   if (performance.now() < held) return;
-  const {cursor} = axis;
+  const {cursor} = viewport;
   const next = cursor + seconds * $("speed").value * run.motion.cycle;
   if (!inView(next)) return restart("play");
-  hear(cursor, next);
-  axis.point(next, "play");
+  knockBetween(cursor, next);
+  viewport.point(next, "play");
 }
 
-function hear(from, to) {
+function knockBetween(from, to) {
   const {impacts} = run.motion;
   const i = run.motion.impactBefore(to);
   if (audio?.state === "running" && impacts.tau[i] > from)
     knock(impacts.relative_speed_ratio[i] / 2);
 }
 
-function pointed(by) {
-  if (!run || (frame && by === "pointer")) return; // it goes its own way
+function cursorMoved(by) {
+  if (!run || (frame && by === "pointer")) return; // a playing cursor ignores the pointer
   machine.redraw();
   showPlace();
 }
 
-/** What moment it is, in words, for all; where on the way, for the eye. */
+/** Shows the moment as text and on the scrub bar. */
 function showPlace() {
-  const {cursor} = axis;
+  const {cursor} = viewport;
   if (!run || cursor === null) return;
   const {motion, units} = run;
   const {velocity} = units;
-  const [from, to] = axis.view;
+  const [from, to] = viewport.range;
   const {y_dot: speed, side} = motion.at(cursor);
   const how = side
-    ? "stuck to the wall"
+    ? "sticking to the wall"
     : `y′ = ${shortTo(3, velocity.of(speed))} ${velocity.unit}`;
   const impacts = count(motion.impactBefore(cursor) + 1, "impact");
   const text = `${units.at(cursor)} · ${impacts} so far · ${how}`;
-  if ($("moment").textContent !== text) write({moment: text});
+  if ($("moment").textContent !== text) setTexts({moment: text});
   $("scrub").value = ((cursor - from) / (to - from)) * 1000;
   if (!frame) attributes($("scrub"), {"aria-valuetext": text});
 }

@@ -1,10 +1,10 @@
-// The request of the form: which preset it stands on, what of it differs, and how an address says
-// it.
+// The request of the form: its preset, the fields that differ from it, and its conversion to and
+// from a query.
 import {textOf} from "../shared/form.js";
-import {holding, isOfMotion, isOfSystem, queryText} from "../shared/presets.js";
+import {isOfMotion, isOfSystem, queryText, validFields} from "../shared/presets.js";
 import {differenceText, parameterLine} from "./sliders.js";
 
-/** What a text of a query stands for: a list of lists, a list, or a text. */
+/** Parses a query text: a list of lists, a list, or a text. */
 function queryValue(text) {
   if (text.includes(";")) {
     const parts = text.split(";").filter((part) => part.trim());
@@ -13,7 +13,7 @@ function queryValue(text) {
   return text.includes(",") ? text.split(",") : text;
 }
 
-/** The entries of an object for which it holds. */
+/** The entries of an object that pass a test. */
 const only = (object, is) => Object.fromEntries(Object.entries(object).filter(is));
 
 export class Request {
@@ -27,33 +27,30 @@ export class Request {
     return this.presets.find((p) => p.name === this.name);
   }
 
-  /**
-   * The preset of a name, or none, and the fields given beside it; without both the form keeps what
-   * it shows.
-   */
+  /** Selects a preset, or none, with further fields; without either, the form keeps its values. */
   choose(name, fields) {
     this.name = this.presets.some((p) => p.name === name) ? name : "";
     this.dampingChosen = "damping" in {...fields};
     if (this.preset || fields) this.form.set({...this.held({...fields}), ...fields});
-    this.greyOut();
+    this.updateDisabled();
   }
 
   leave() {
     this.name = "";
-    this.greyOut();
+    this.updateDisabled();
   }
 
-  /** Over a preset in SI a reduced field can be changed; a system of one's own is one or the other. */
-  greyOut() {
+  /** A preset in SI can be combined with reduced fields; a user-defined system cannot. */
+  updateDisabled() {
     this.form.disable(this.preset ? [] : this.form.unmixable());
   }
 
-  /** What of the preset holds beside a request's fields. */
+  /** Fields of the preset that stay valid next to those of a request. */
   held(request) {
-    return holding(this.preset?.parameters ?? {}, request, this.fieldOf);
+    return validFields(this.preset?.parameters ?? {}, request, this.fieldOf);
   }
 
-  /** The fields that are not the preset's. */
+  /** Fields that differ from the preset. */
   differing(request) {
     const base = this.held(request);
     const differs = ([name, value]) =>
@@ -61,14 +58,14 @@ export class Request {
     return only(request, differs);
   }
 
-  /** Whether the motion, or what is shown of it, is no more the preset's. */
+  /** True when the motion, or the part of it that is analysed, is no longer that of the preset. */
   get edited() {
     const changed = this.differing(this.form.values());
     const isShown = (name) => /^window|^max_imp/.test(name) || isOfMotion(this.fieldOf[name]);
     return Object.keys(changed).some(isShown);
   }
 
-  /** What a request that was asked stands on, and what of the motion differs from that, in words. */
+  /** A request as text: its preset and the differing fields of the motion. */
   textOf({preset: name, ...differing}, parameters) {
     const preset = this.presets.find((p) => p.name === name);
     const names = Object.keys(differing).filter((field) => isOfMotion(this.fieldOf[field]));
@@ -78,8 +75,8 @@ export class Request {
   }
 
   /**
-   * A preset's name stands for its fields, so it does not fit a request that has emptied one of
-   * them. A default is not in the request.
+   * True when a field of the preset was emptied, so that its name no longer describes the request.
+   * Defaults are not part of a request.
    */
   emptied(request) {
     return Object.entries(this.held(request)).some(
@@ -87,23 +84,20 @@ export class Request {
     );
   }
 
-  /**
-   * What to send: the preset's name in place of those values that are its own, so that one that
-   * differs changes alone.
-   */
-  asked() {
+  /** The fields to send: the preset's name with the differing fields, or all fields. */
+  fields() {
     const request = this.form.values();
     if (this.preset && this.emptied(request)) this.leave();
     return this.preset ? {preset: this.name, ...this.differing(request)} : request;
   }
 
-  /** Of a request what is the system's and its start; not how long it runs, or what is told. */
+  /** The fields of the system and its initial state, without the length and output of the run. */
   systemOf(request) {
     const is = (field) => isOfMotion(field) && field.group !== "run";
     return only(request, ([name]) => is(this.fieldOf[name]));
   }
 
-  /** Fills the form with a query; returns the names that are no fields. */
+  /** Fills the form from a query; returns the unknown names. */
   read(query) {
     const rest = new URLSearchParams(query);
     const named = rest.get("preset") ?? (rest.size ? "" : "fig3");
@@ -116,10 +110,10 @@ export class Request {
   }
 
   /**
-   * The damping of the paper's numbers and its windows go with its system: they make way for a
-   * system of one's own, unless they were chosen. Returns what went, in words.
+   * The closed-form damping and the windows belong to the paper's system. They are reset for a
+   * user-defined system, unless the user chose them. Returns the changes as text.
    */
-  makeWay(base) {
+  resetPaperFields(base) {
     const {form} = this;
     const gone = [];
     const input = (name) => form.inputs.get(name);
@@ -137,26 +131,25 @@ export class Request {
   }
 
   /**
-   * Something was typed over a preset. Reduced fields over one in SI change it where it is: both
-   * cannot be mixed. Returns what became of it, in words.
+   * Handles a field edited over a preset. A field of the system replaces the preset, except a
+   * reduced field over a preset in SI, which changes the preset's system. Returns the changes as
+   * text.
    */
-  typedOver(name) {
+  fieldEdited(name) {
     const {preset, form} = this;
     const base = preset?.parameters ?? {};
     const filled = form.filled(name);
     const own = preset && filled && isOfSystem(name);
-    const gone = own ? this.makeWay(base) : [];
+    const gone = own ? this.resetPaperFields(base) : [];
     const replaced = own && !("m1" in base && this.fieldOf[name].group === "reduced");
     if (replaced || (name in base && !filled)) this.name = "";
-    this.greyOut();
-    return replaced
-      ? [`A system of your own, in place of ${preset.source}`, ...gone].join("; ")
-      : "";
+    this.updateDisabled();
+    return replaced ? [`User-defined system in place of ${preset.source}`, ...gone].join("; ") : "";
   }
 }
 
-/** A request as the address has it; that of defaults alone names no preset, and says so. */
-export function toQuery(asked) {
-  const entries = Object.entries(asked).map(([name, v]) => [name, queryText(v)]);
+/** A request as a query; one of defaults only has an empty preset. */
+export function toQuery(fields) {
+  const entries = Object.entries(fields).map(([name, v]) => [name, queryText(v)]);
   return String(new URLSearchParams(entries.length ? entries : {preset: ""}));
 }

@@ -1,17 +1,17 @@
-// The run that is shown, and the axis of its time, which all of its plots share.
-import {Axis} from "../shared/axis.js";
+// The run shown, and the time axis shared by its plots.
+import {Viewport} from "../shared/viewport.js";
 
-export const axis = new Axis();
+export const viewport = new Viewport();
 
-/** {asked, answer, motion, units, more}; more: what a second answer brings, once it is there. */
+/** {fields, answer, motion, units, deferred}; deferred: the second answer, once it has arrived. */
 export let run = null;
 
 export function setRun(newest) {
   run = newest;
 }
 
-/** The cursor goes to a moment that is pointed at in a plane; to one out of view by a click alone. */
+/** Moves the cursor to a time picked in a plane; a click also scrolls to it. */
 export function pick(tau, clicked) {
-  if (clicked) axis.reveal(tau);
-  if (axis.holds(tau)) axis.point(tau, "pick");
+  if (clicked) viewport.reveal(tau);
+  if (viewport.holds(tau)) viewport.point(tau, "pick");
 }

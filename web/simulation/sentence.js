@@ -1,15 +1,14 @@
-// What a run came to, in one sentence.
+// The result of a run in one sentence.
 import {$, element} from "../shared/dom.js";
 import {count, digits, percent, withError} from "../shared/numbers.js";
 import {regimes} from "../shared/quantities.js";
 import {valueText} from "./sliders.js";
 
-/** How the motion goes, and whether it is chaotic; of what both tell, only what they agree on. */
-const untouched = ({tau}) => (tau.length ? "no impacts in the window" : "the mass meets no wall");
+const untouched = ({tau}) => (tau.length ? "no impacts in the window" : "the ball meets no wall");
 
 function motionText({regime, exponents, energy, impacts: all}, units) {
   const {type, periodic, capture, period_cycles: cycles, impacts_per_period: impacts} = regime;
-  if (energy.peak === 0) return "x rests: no forcing, no impact";
+  if (energy.peak === 0) return "at rest: no forcing, no impact";
   if (type === "none")
     return regime.description === "no impacts" ? untouched(all) : regime.description;
   const name = `${regimes[type] ?? regime.description} (${type})`;
@@ -24,12 +23,12 @@ function motionText({regime, exponents, energy, impacts: all}, units) {
   return verdict && verdict !== "not_decided" ? `${name}, ${verdict}` : name;
 }
 
-/** Of an orbit, from its largest multiplier: what the exponent of the run tends to. */
+/** The exponent of the orbit that the run converges to, from its largest multiplier. */
 function orbitText({multipliers, period_cycles: cycles}, {Omega}) {
   const [largest] = multipliers?.modulus ?? [];
   if (largest === undefined) return "";
   const lambda = (Math.log(largest) * Omega) / (2 * Math.PI * cycles);
-  return `λ₁ = ${largest ? digits(lambda, 4) : "−∞"} on it`;
+  return `λ₁ = ${largest ? digits(lambda, 4) : "−∞"} on this orbit`;
 }
 
 function lambdaText({qr, verdict}, regime, parameters) {
@@ -42,7 +41,7 @@ function lambdaText({qr, verdict}, regime, parameters) {
 const amplitudeText = ({rms_ratio: ratio}) =>
   ratio == null ? "" : `rms x ${percent(ratio)} of that without the absorber`;
 
-/** slider: whose value the sentence begins with. */
+/** slider: its value begins the sentence. */
 export function showSentence(answer, slider, units) {
   const {exponents, regime, energy, parameters} = answer;
   const rest = [lambdaText(exponents, regime, parameters), amplitudeText(energy)]

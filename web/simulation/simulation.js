@@ -1,80 +1,89 @@
-// The tab of one simulation: what one turns goes to the service as one request, and what it answers
-// is shown at once. The address is the request, and what is in view.
+// The simulation tab: every change is sent as one request and its answer shown immediately. The
+// address holds the request and the visible range.
+
 import {Problem, simulate, wholeMessage} from "../shared/api.js";
-import {showRemarks} from "../shared/cards.js";
-import {formsOf} from "../shared/copies.js";
-import {$, attributes, button, countUp, nextTask, reveal, sayIn, write} from "../shared/dom.js";
+import {
+  $,
+  attributes,
+  button,
+  countUp,
+  nextTask,
+  press,
+  reveal,
+  sayIn,
+  setTexts,
+} from "../shared/dom.js";
+import {copy, formsOf} from "../shared/export.js";
 import {Form, unknownText} from "../shared/form.js";
 import {Job} from "../shared/job.js";
 import {Motion} from "../shared/motion.js";
-import {copy} from "../shared/take_away.js";
+import {showRemarks} from "../shared/tables.js";
 import {onUnits, unitsOf, unitsSwitch} from "../shared/units.js";
 import {describe} from "./captions.js";
-import * as chips from "./chips.js";
 import * as details from "./details.js";
-import * as instrument from "./instrument.js";
 import * as machine from "./machine.js";
-import {mark} from "./matches.js";
-import * as phone from "./phone.js";
+import * as mainPlots from "./main_plots.js";
 import * as pin from "./pin.js";
 import * as player from "./player.js";
+import * as presetMenu from "./preset_menu.js";
 import {Request, toQuery} from "./request.js";
-import {axis, run, setRun} from "./run.js";
+import {run, setRun, viewport} from "./run.js";
 import {showSentence} from "./sentence.js";
 import * as sliders from "./sliders.js";
 import * as strip from "./strip.js";
 
-// What every turn of a slider asks for, and what follows once it rests.
-const first = {include: ["impacts", "exponents", "regime", "energy"], exponents: ["qr"]};
-const second = {include: ["exponents", "eigenvalues", "manifold"], exponents: ["raw_product"]};
+// Parts requested for every slider movement, and parts requested once it rests.
+const firstParts = {include: ["impacts", "exponents", "regime", "energy"], exponents: ["qr"]};
+const deferredParts = {
+  include: ["exponents", "eigenvalues", "manifold"],
+  exponents: ["raw_product"],
+};
 
-const large = 20000; // impacts
-const rest = 100; // ms without an edit before what follows is asked for
+const large = 20000; // impacts above which a run is drawn in several tasks
+const idle = 100; // ms without an edit before the deferred parts are requested
 
 let request;
-let touched = "b";
+let lastMoved = "b";
 let shown = null;
 let wantedView = null;
 let remembered = () => {};
-let resting = 0;
+let deferring = 0;
 
 const say = sayIn("message");
 
-/** Whether what is shown is of another request. */
+/** Marks the results as those of another request. */
 const setStale = (is) => $("results").classList.toggle("stale", is);
 
-// What is computed.
-
 const job = new Job({
-  ask: (asked, signal) => simulate({...asked, ...first}, signal),
+  ask: (fields, signal) => simulate({...fields, ...firstParts}, signal),
   show: present,
-  fail: refuse,
+  fail: showError,
   busy(is, cancelled) {
     if (is || cancelled) setStale(true);
     attributes($("results"), {"aria-busy": is});
     reveal({cancel: is});
     if (is && !$("message").classList.contains("fault")) say("computing …");
-    else if (cancelled) say("cancelled: what is shown is the run before");
+    else if (cancelled) say("cancelled: the previous run is shown");
   },
   later: (text) => say(text, true),
 });
 
-const more = new Job({
-  ask: (asked, signal) => simulate({...asked, ...second}, signal),
-  show(answer, asked) {
-    if (asked !== run.asked) return;
-    run.more = answer;
+const deferredJob = new Job({
+  ask: (fields, signal) => simulate({...fields, ...deferredParts}, signal),
+  show(answer, fields) {
+    if (fields !== run.fields) return;
+    run.deferred = answer;
     remark(run.answer, answer);
-    instrument.showMore();
+    mainPlots.showDeferred();
     details.follow();
     countUp($("results"));
   },
   fail: (error) => say(`T, the raw product and the manifold are missing: ${error.message}`, true),
 });
 
-function refuse(error) {
+function showError(error) {
   setStale(true);
-  if (!run) write({sentence: "Nothing is computed yet."});
+  if (!run) setTexts({sentence: "No results yet."});
   if (!(error instanceof Problem)) return say(wholeMessage(error, []), true);
   const left = request.form.showErrors(error.errors, false);
   const turned = sliders.showErrors(error.errors);
@@ -82,13 +91,13 @@ function refuse(error) {
   say(turned.length ? turned.join("; ") : wholeMessage(error, left), true);
 }
 
-/** What is first in view: the window, where there is one that ends before the run. */
+/** The range first in view: the window, if it ends well before the run. */
 function homeOf({parameters, status}) {
   const to = parameters.window?.[1];
   return to && to < 0.9 * status.tau ? [0, to] : [0, status.tau];
 }
 
-/** What there is to know of a run beside its sentence: why it is not decided, and the service's warnings. */
+/** Shows the remarks: the reason for an undecided verdict, and warnings. */
 function remark({exponents: {verdict, verdict_reason: why}, regime, warnings}, more = {}) {
   const open = verdict === "not_decided" && !regime.periodic;
   const all = [...warnings, ...(more.warnings ?? [])];
@@ -99,66 +108,67 @@ function showOrigins() {
   if ($("more").open) request.form.showOrigins(run.answer.parameters);
 }
 
-/** A run with many impacts is drawn in several tasks, between which the page hears of other things. */
-async function present(answer, asked) {
+/** Draws a run; a large one in several tasks, between which the browser handles events. */
+async function present(answer, fields) {
   const pause = answer.impacts.tau.length > large ? nextTask : null;
   if (pause) await pause();
-  const fresh = run === null || asked.fresh;
-  setRun({asked, answer, motion: new Motion(answer), units: unitsOf(answer.parameters)});
-  say(unknownText(asked.unknown));
+  const fresh = run === null || fields.fresh;
+  setRun({fields, answer, motion: new Motion(answer), units: unitsOf(answer.parameters)});
+  say(unknownText(fields.unknown));
   setStale(false);
   request.form.showErrors([]);
   showOrigins();
   remark(answer);
   reveal({units: answer.parameters.si});
-  axis.span(0, answer.status.tau, homeOf(answer), fresh);
-  if (wantedView) axis.view = wantedView;
+  viewport.span(0, answer.status.tau, homeOf(answer), fresh);
+  if (wantedView) viewport.range = wantedView;
   wantedView = null;
-  reveal({whole: axis.away});
+  reveal({whole: viewport.changed});
   for (const step of drawing(fresh)) {
     if (pause) await pause();
     if (run.answer !== answer) return;
     step();
   }
   countUp($("results"), "shown");
-  clearTimeout(resting);
-  resting = setTimeout(() => more.start(asked), rest);
+  clearTimeout(deferring);
+  deferring = setTimeout(() => deferredJob.start(fields), idle);
 }
 
-/** What shows the run, in the units that are chosen, step by step. */
+/** The steps that draw the run in the chosen units. */
 function drawing(fresh = false) {
-  const {answer, asked, units} = run;
-  const slider = sliders.sliderOf(touched, answer.parameters);
+  const {answer, fields, units} = run;
+  const slider = sliders.sliderOf(lastMoved, answer.parameters);
   const tell = () => {
-    sliders.show(answer.parameters, {fresh, dragged: asked.dragged}, slider);
+    sliders.show(answer.parameters, {fresh, dragged: fields.dragged}, slider);
     showSentence(answer, slider, units);
   };
   const end = () => {
     player.show();
-    describe(answer, request.textOf(asked, answer.parameters));
-    mark(request.edited ? null : request.preset);
-    strip.show(request.systemOf(asked), answer.parameters, slider);
+    describe(answer, request.textOf(fields, answer.parameters));
+    presetMenu.markPlots(request.edited ? null : request.preset);
+    strip.show(request.systemOf(fields), answer.parameters, slider);
   };
-  return [tell, ...instrument.drawing(), end];
+  return [tell, ...mainPlots.drawing(), end];
 }
 
-// What is asked.
-
-/** How the newest request is sent. hasty: while a slider is dragged; fresh: not by turning one. */
-function send({hasty = false, fresh = false, unknown = []} = {}) {
-  const asked = request.asked();
-  const about = {fresh, unknown, dragged: hasty};
-  for (const [name, value] of Object.entries(about)) Object.defineProperty(asked, name, {value});
-  chips.mark(request.name, request.edited);
-  if (hasty) player.hold();
-  remember(toQuery(asked), hasty);
-  job.start(asked, {hasty});
+/**
+ * Sends the form. dragging: while a slider is dragged; fresh: not changed by a slider; unknown: names
+ * in the address.
+ */
+function send({dragging = false, fresh = false, unknown = []} = {}) {
+  const fields = request.fields();
+  const about = {fresh, unknown, dragged: dragging};
+  for (const [name, value] of Object.entries(about)) Object.defineProperty(fields, name, {value});
+  presetMenu.markChip(request.name, request.edited);
+  if (dragging) player.hold();
+  remember(toQuery(fields), dragging);
+  job.start(fields, {dragging});
 }
 
-/** Back undoes an edit. */
+/** Updates the address; Back undoes an edit. */
 function remember(query, soon) {
   if (query === shown) {
-    if (!soon) remembered(); // an edit has come to its end
+    if (!soon) remembered(); // the edit is complete
     return;
   }
   const edit = shown !== null;
@@ -166,36 +176,36 @@ function remember(query, soon) {
   remembered({edit, soon});
 }
 
-/** A slider or the strip's marker was turned. */
-function turn(fields, slider, hasty) {
-  touched = slider.name;
+/** Called when a slider or the strip's marker moves. */
+function sliderMoved(fields, slider, dragging) {
+  lastMoved = slider.name;
   const {form} = request;
   if (slider.name === "zeta") request.dampingChosen = true;
   const entries = Object.entries(fields);
   for (const [name, value] of entries) form.replace(name, value ?? "");
-  request.greyOut();
+  request.updateDisabled();
   note("");
-  send({hasty});
+  send({dragging});
 }
 
-/** What a preset says of itself holds as long as it is not changed. */
+/** Shows the preset's note, or that the preset was changed. */
 function note(text) {
   const {preset, edited} = request;
   const changed = preset && edited ? `${preset.source}, changed` : (preset?.note ?? "");
-  write({"preset-note": text || changed});
+  setTexts({"preset-note": text || changed});
 }
 
 function choosePreset(name) {
-  touched = "b";
+  lastMoved = "b";
   request.choose(name);
   note("");
   send({fresh: true});
 }
 
-/** The query of the run that is asked for, and what of it is in view; null before the first. */
+/** The query of the requested run with its visible range; null before the first. */
 export function query() {
   if (shown === null) return null;
-  const view = wantedView ?? (axis.away ? axis.view : null);
+  const view = wantedView ?? (viewport.changed ? viewport.range : null);
   const pinned = pin.query();
   const more = [
     view && `view=${viewText(view)}`,
@@ -204,77 +214,77 @@ export function query() {
   return [shown, ...more].filter(Boolean).join("&");
 }
 
-/** As many digits as a ten-thousandth of what is in view. */
+/** Digits for a ten-thousandth of the range. */
 function viewText([from, to]) {
   const places = Math.max(0, 4 - Math.floor(Math.log10(to - from)));
   return [from, to].map((t) => Number(t.toFixed(Math.min(places, 15)))).join(",");
 }
 
-/** Shows what a query asks for; without one the paper's Fig. 3. */
+/** Shows the run of a query; by default the paper's Fig. 3. */
 export function open(given) {
   const rest = new URLSearchParams(given);
   const view = rest.get("view")?.split(",").map(Number);
   const pinned = rest.get("pinned");
   for (const name of ["view", "pinned"]) rest.delete(name);
-  pin.restore(pinned, first);
+  pin.restore(pinned, firstParts);
   if (String(rest) === shown) return;
   const isView = view?.length === 2 && view[0] < view[1];
   wantedView = isView ? view : null;
   const unknown = request.read(rest);
   if (view && !isView) unknown.push(`view=${new URLSearchParams(given).get("view")}`);
-  touched = "b";
+  lastMoved = "b";
   note("");
-  shown = toQuery(request.asked());
+  shown = toQuery(request.fields());
   send({fresh: true, unknown});
-  remembered(); // as the page itself writes it
+  remembered(); // in canonical form
 }
 
 export function redraw() {
-  instrument.redraw();
+  mainPlots.redraw();
   details.redraw();
   strip.redraw();
   machine.redraw();
 }
 
 /**
- * tables: of /v1/parameters, and presets; changed({edit}): there is another query; measure(answer):
- * identifies the run.
+ * fields: of /v1/parameters; presets; changed({edit}): called when the query changes;
+ * measure(answer): opens the run in Measurement.
  */
 export function start({fields, presets: list}, changed, {measure}) {
   remembered = changed;
   const form = new Form($("fields"), fields);
   request = new Request(form, fields, list);
-  instrument.start();
+  mainPlots.start();
   player.start();
   const refused = (text, {label}) => {
     setStale(true);
-    say(`${label}: “${text}” is no number`, true);
+    say(`${label}: “${text}” is not a number`, true);
   };
-  const old = () => run && toQuery(run.asked) !== shown;
-  sliders.start(turn, refused, (differs) => setStale(differs || old()));
+  const old = () => run && toQuery(run.fields) !== shown;
+  sliders.start(sliderMoved, refused, (differs) => setStale(differs || old()));
   details.start(request.fieldOf);
-  chips.start(list, choosePreset);
+  presetMenu.start(list, choosePreset);
   pin.start(changed, (other) => {
     request.read(other);
     send();
   });
-  phone.start();
+  startSmallScreen();
   listen(form, measure);
 }
 
 function listen(form, measure) {
   for (const [name, input] of form.inputs) {
-    input.oninput = () => note(request.typedOver(name));
+    input.oninput = () => note(request.fieldEdited(name));
     input.onchange = () => {
       if (name === "damping") request.dampingChosen = true;
       send();
     };
   }
-  axis.onView(() => {
-    reveal({whole: axis.away});
+  viewport.onZoom(() => {
+    reveal({whole: viewport.changed});
     remembered({soon: true});
   });
-  $("whole").onclick = () => axis.reset();
+  $("whole").onclick = () => viewport.reset();
   $("more").ontoggle = () => {
     if (run) showOrigins();
     if ($("more").open) $("more").scrollIntoView({block: "nearest"});
@@ -292,9 +302,25 @@ function listen(form, measure) {
   };
   $("cancel").onclick = () => job.cancel();
   $("measure-this").onclick = () => run && measure(run.answer);
-  const forms = formsOf("v1/simulate", () => request.asked());
+  const forms = formsOf("v1/simulate", () => request.fields());
   for (const [name, text] of Object.entries(forms)) {
     const title = `copy this run as ${name}`;
     $("copies").append(button(name, () => copy(text(), say), {className: "small", title}));
   }
+}
+
+/** On small screens: one plot at a time, and the parameters in a sheet. */
+function startSmallScreen() {
+  const buttons = document.querySelectorAll("#switch button");
+  for (const one of buttons)
+    one.onclick = () => {
+      $("instrument").dataset.plot = one.dataset.plot;
+      press(buttons, (b) => b === one);
+    };
+  buttons[0].click();
+  $("sheet").onclick = () => {
+    const open = $("form").classList.toggle("open");
+    attributes($("sheet"), {"aria-expanded": open});
+    setTexts({sheet: `All ${open ? "▾" : "▴"}`});
+  };
 }

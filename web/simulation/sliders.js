@@ -1,13 +1,12 @@
-// The few parameters that one turns: a slider, a number and its unit each. What they set are fields
-// of the form.
+// The main parameters, each with a slider, a number and a unit. They set fields of the form.
 import {$, attributes, element} from "../shared/dom.js";
 import {inMm, short, shortTo, toNumber} from "../shared/numbers.js";
 import {symbolOf} from "../shared/quantities.js";
 
 /**
- * of(parameters): the value in the field's unit; fields(value, parameters): what it sets, and null
- * for what makes way; rangeOf(parameters): of the slider, in its unit; about: what it is, where it
- * depends on the system aboutOf(parameters), and textOf(parameters) its value in words.
+ * of(parameters): value in the field's unit; fields(value, parameters): fields to set, null to
+ * clear one; rangeOf(parameters): in the slider's unit; about: description, or aboutOf(parameters)
+ * where it depends on the system; textOf(parameters): the value as text.
  */
 const slider = (name, label, about, more) => ({
   name,
@@ -22,10 +21,10 @@ const slider = (name, label, about, more) => ({
 });
 
 const mm = {unit: "mm", factor: 1000};
-/** What the damping ratio is over lambda, eq. (3) or as the paper's closed form has it. */
+/** zeta divided by lambda: eq. (3), or the paper's closed form. */
 const zetaOver = ({epsilon, damping}) => (damping === "closed_form" ? epsilon : epsilon / 2);
 
-const clearance = slider("b", "Clearance", "half the free path of the mass", {
+const clearance = slider("b", "Clearance", "half-width of the cavity", {
   ...mm,
   rangeOf: () => [1, 45],
 });
@@ -43,9 +42,9 @@ const restitution = slider("R", "Restitution", "of both walls", {
 const reduced = [
   clearance,
   restitution,
-  slider("G", "Forcing", "amplitude of the base over ε", {...mm, rangeOf: () => [0, 40]}),
-  slider("Omega", "Frequency", "over the oscillator's own", {rangeOf: () => [0.9, 1.1]}),
-  slider("zeta", "Damping", "ratio of the oscillator's damping", {
+  slider("G", "Forcing", "amplitude of the base divided by ε", {...mm, rangeOf: () => [0, 40]}),
+  slider("Omega", "Frequency", "relative to the natural frequency", {rangeOf: () => [0.9, 1.1]}),
+  slider("zeta", "Damping", "damping ratio of the oscillator", {
     symbol: "ζ",
     rangeOf: () => [0, 0.04],
     of: ({derived}) => derived.zeta,
@@ -71,18 +70,18 @@ const si = [
 ];
 const slidersOf = (parameters) => (parameters.si ? si : reduced);
 
-/** The slider of a name for a system. */
+/** A slider by name; clearance if the system has none of that name. */
 export const sliderOf = (name, parameters) =>
   slidersOf(parameters).find((s) => s.name === name) ?? clearance;
-/** Its value in a system, in the slider's unit. */
+/** The value in the slider's unit. */
 export const valueAt = ({of, factor}, parameters) => factor * of(parameters);
-/** The fields that it sets for a value in its unit. */
+/** Fields to set for a value in the slider's unit. */
 export const fieldsOf = ({fields, factor}, value, parameters) =>
   fields(Number((value / factor).toPrecision(12)), parameters);
 
 const holds = ([least, most], value) => value >= least && value <= most;
 
-/** [least, most] in the slider's unit; it holds the value. */
+/** [least, most] in the slider's unit; extended if it does not contain the value. */
 function rangeOf({rangeOf: usual, ...rest}, parameters) {
   const value = valueAt(rest, parameters);
   const range = usual(parameters);
@@ -91,13 +90,13 @@ function rangeOf({rangeOf: usual, ...rest}, parameters) {
   return [0, Math.ceil((2 * value) / power) * power];
 }
 
-/** A value in the slider's unit as its number shows it: as many digits as its steps have. */
+/** A value in the slider's unit, with the digits of its steps. */
 export function written(value, [least, most]) {
   const places = 2 - Math.floor(Math.log10(most - least || 1));
   return value.toFixed(Math.min(Math.max(places, 0), 8));
 }
 
-/** A value in its unit: as its number shows it, or in more digits where that is not all of it. */
+/** A value in its unit, with further digits if it lies between steps. */
 function textAt(one, parameters, range = rangeOf(one, parameters)) {
   const value = valueAt(one, parameters);
   const short = written(value, range);
@@ -108,19 +107,19 @@ function textAt(one, parameters, range = rangeOf(one, parameters)) {
   return String(Math.abs(four - value) <= fine ? four : Number(value.toPrecision(6)));
 }
 
-/** A slider's value in words: b = 22.0 mm; of walls that differ both. */
+/** A value as text, for example b = 22.0 mm; both values of differing walls. */
 export const valueText = (one, parameters) =>
   one.textOf?.(parameters) || `${one.symbol} = ${textAt(one, parameters)} ${one.unit}`.trim();
 
-/** What of the fields differs from elsewhere, in words: the sliders' with their values. */
+/** Changed fields as text; sliders with their values. */
 export function differenceText(names, parameters) {
   const setBy = (name) => slidersOf(parameters).find((s) => name in s.fields(0, parameters));
   const text = (name) =>
-    setBy(name) ? valueText(setBy(name), parameters) : `other ${symbolOf(name)}`;
+    setBy(name) ? valueText(setBy(name), parameters) : `changed ${symbolOf(name)}`;
   return [...new Set(names.map(text))].join(", ");
 }
 
-/** The parameters that matter, in a line, and the start, where it is not the default one. */
+/** The main parameters as text, and the initial state if it was given. */
 export function parameterLine(parameters) {
   const values = slidersOf(parameters).map((one) => valueText(one, parameters));
   const isOwn = (name) => parameters.origin[name] !== "default";
@@ -130,21 +129,19 @@ export function parameterLine(parameters) {
   );
 }
 
-// What is shown.
-
 const rows = new Map(); // {node, number, range, note, span} of each slider
 let shown; // parameters
 let change;
 let refuse;
 let typing;
 
-/** The range that a slider has now. */
+/** The current range of a slider. */
 export const spanOf = (one) => rows.get(one).span;
 
 /**
- * changed(fields, slider, hasty): fields to set, null to empty one; hasty: more are to come.
- * refused(text, slider): of what is no number; typed(whether it is another number than that shown),
- * while one types.
+ * changed(fields, slider, dragging): fields to set, null to clear one; dragging: it is being
+ * dragged. refused(text, slider): the text is no number; typed(differs): while typing, whether the
+ * number differs from the one shown.
  */
 export function start(changed, refused, typed) {
   change = changed;
@@ -153,8 +150,8 @@ export function start(changed, refused, typed) {
 }
 
 /**
- * fresh: another system or run than one that was turned to; dragged: the ranges stay as they are;
- * last: the slider turned last.
+ * fresh: the run was not reached with a slider; dragged: ranges stay unchanged; last: the slider
+ * moved last.
  */
 export function show(parameters, {fresh, dragged}, last) {
   shown = parameters;
@@ -185,8 +182,8 @@ function rowOf(one) {
   const range = element("input", {
     type: "range",
     ariaLabel: `${label} ${symbol}`,
-    oninput: () => turnTo(one, Number(range.value), true),
-    onchange: () => turnTo(one, Number(range.value), false),
+    oninput: () => moveSlider(one, Number(range.value), true),
+    onchange: () => moveSlider(one, Number(range.value), false),
   });
   const note = element("small");
   title.title = one.about;
@@ -213,7 +210,7 @@ function set(one, row, fresh, dragged) {
   row.note.textContent = one.aboutOf?.(shown) || one.about;
 }
 
-/** Marks the sliders whose values are refused; what is said of them, in their units. */
+/** Marks sliders with invalid values; returns messages in their units. */
 export function showErrors(errors) {
   const of = ({pointer}) => [...rows].find(([one]) => one.name === pointer.slice(1));
   return errors.filter(of).map((error) => {
@@ -225,11 +222,11 @@ export function showErrors(errors) {
   });
 }
 
-/** value: in the slider's unit, to be rounded as its number shows it. */
-export function turnTo(one, value, hasty) {
+/** Sets a slider to a value, rounded as its number shows it. */
+export function moveSlider(one, value, dragging) {
   const {number, span} = rows.get(one);
   number.value = written(value, span);
-  apply(one, Number(number.value), hasty);
+  apply(one, Number(number.value), dragging);
 }
 
 function typed(one, input) {
@@ -239,6 +236,6 @@ function typed(one, input) {
   else apply(one, value, false);
 }
 
-function apply(one, value, hasty) {
-  change(fieldsOf(one, value, shown), one, hasty);
+function apply(one, value, dragging) {
+  change(fieldsOf(one, value, shown), one, dragging);
 }

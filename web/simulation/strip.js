@@ -1,30 +1,29 @@
-// Where the regimes lie along the parameter that was turned last: a band of them and lambda1 over
-// it, filled coarse to fine by a sweep in the background. Its marker is the slider.
-import {sweep} from "../shared/api.js";
-import {$, attributes, countUp, element, write} from "../shared/dom.js";
+// The regime strip: regimes and lambda1 along the parameter moved last, computed by a sweep from
+// coarse to fine. Its marker acts as the slider.
+import {jsonLines, sweep} from "../shared/api.js";
+import {$, attributes, countUp, element, setTexts} from "../shared/dom.js";
 import {blank, Frame, font, Size} from "../shared/frame.js";
-import {ink, stroke, write as writeText} from "../shared/ink.js";
-import {again, passes} from "../shared/job.js";
-import {jsonLines} from "../shared/json_lines.js";
+import {drawText, ink, stroke} from "../shared/ink.js";
+import {isTemporary, retryInterval} from "../shared/job.js";
 import {clamp, digits, withError} from "../shared/numbers.js";
 import {regimeColour, regimeText, verdictColour, verdicts} from "../shared/quantities.js";
 import {run} from "./run.js";
-import {fieldsOf, spanOf, turnTo, valueAt, written} from "./sliders.js";
+import {fieldsOf, moveSlider, spanOf, valueAt, written} from "./sliders.js";
 
-const cycles = 300; // measured at each point, after
-const transient = 150; // cycles
-const points = 257; // the service computes them coarse to fine
-const pause = 180; // ms without an edit before it begins
-const band = 13; // px
+const cycles = 300; // measured at each point
+const transient = 150; // cycles discarded before
+const points = 257; // computed coarse to fine
+const pause = 180; // ms without an edit before it starts
+const band = 13; // px, height of the regime band
 
 const canvas = $("strip");
 const marker = element("div", {className: "marker"});
 const size = new Size(canvas, redraw);
 let parameters;
-let slider; // that was turned last
-let range; // of it
+let slider; // the one moved last
+let range; // of the slider
 let key = null;
-let found = []; // points by their places
+let found = []; // points by position
 let stale = false;
 let abort;
 let waiting = 0;
@@ -32,7 +31,7 @@ let drawing = 0;
 let frame = null;
 let pointed = false;
 
-/** A run that is shown: what of its request is the system's, its parameters, and the slider. */
+/** Updates the strip for a run: system fields of its request, parameters, slider. */
 export function show(system, shown, turned) {
   parameters = shown;
   slider = turned;
@@ -48,20 +47,20 @@ export function show(system, shown, turned) {
   clearTimeout(waiting);
   stale = true;
   waiting = setTimeout(fill, pause, base, parameter);
-  write({"strip-trouble": ""});
+  setTexts({"strip-trouble": ""});
   const {symbol, unit} = slider;
-  write({"strip-parameter": unit ? `${symbol} (${unit})` : symbol});
+  setTexts({"strip-parameter": unit ? `${symbol} (${unit})` : symbol});
   redraw();
 }
 
-/** The place of entry i, in the slider's unit. */
+/** Value at position i, in the slider's unit. */
 function at(i) {
   const [from, to] = range;
-  const least = 0.002 * (to - from); // where 0 is no value: no clearance, no forcing
+  const least = 0.002 * (to - from); // 0 is invalid for a clearance or forcing
   return Math.max(from + ((to - from) * i) / (points - 1), from || least);
 }
 
-/** The entry nearest to a value. */
+/** The position nearest to a value. */
 function nearest(value) {
   const [from, to] = range;
   return Math.round(clamp((value - from) / (to - from), 0, 1) * (points - 1));
@@ -70,7 +69,8 @@ function nearest(value) {
 async function fill(base, parameter) {
   abort = new AbortController();
   const {signal} = abort;
-  // What is shown is a system; what its neighbours' faults are is said of each of them alone.
+  // The marker's point comes first: its errors are reported for the whole sweep; errors of other
+  // points only at those points.
   const sequence = [...new Set([nearest(valueAt(slider, parameters)), ...Array(points).keys()])];
   const values = sequence.map((i) => fieldsOf(slider, at(i), parameters)[parameter]);
   try {
@@ -78,7 +78,7 @@ async function fill(base, parameter) {
     const stream = await sweep(body, signal);
     found = [];
     stale = false;
-    write({"strip-trouble": ""});
+    setTexts({"strip-trouble": ""});
     for await (const {value} of jsonLines(stream)) {
       if (signal.aborted) return;
       if (value.type !== "point" || value.error) continue;
@@ -89,8 +89,8 @@ async function fill(base, parameter) {
   } catch (error) {
     if (signal.aborted) return;
     found = [];
-    write({"strip-trouble": error.message});
-    if (passes(error)) waiting = setTimeout(fill, again * 1000, base, parameter);
+    setTexts({"strip-trouble": error.message});
+    if (isTemporary(error)) waiting = setTimeout(fill, retryInterval * 1000, base, parameter);
   }
   redraw();
 }
@@ -110,7 +110,7 @@ export function redraw() {
   place();
 }
 
-/** Stretches of a regime; each point that is there reaches to the middle between its neighbours. */
+/** Intervals of equal regime; borders lie midway between points. */
 function stretches() {
   const there = Object.keys(found).map(Number);
   const list = [];
@@ -124,7 +124,7 @@ function stretches() {
   return list;
 }
 
-/** With its name under it, where there is room for it. */
+/** Draws an interval, with its name if it fits. */
 function drawStretch(c, {regime, from, to}) {
   const [left, right] = [from, to].map((i) => frame.px(at(i)));
   ink(c, regime ? regimeColour(regime) : "nothing");
@@ -132,12 +132,12 @@ function drawStretch(c, {regime, from, to}) {
   if (!regime || regime === "none" || right - left < 18) return;
   ink(c, "text");
   c.font = `600 ${font}`;
-  writeText(c, regime, (left + right) / 2, frame.box.top + 2, "center", "top");
+  drawText(c, regime, (left + right) / 2, frame.box.top + 2, "center", "top");
 }
 
 const lambdaOf = (p) => p?.lambda?.[0];
 
-/** Without the few that lie far off. */
+/** The range of lambda1 without outliers. */
 function rangeOfExponents() {
   const values = found.map(lambdaOf).filter((v) => v != null);
   values.sort((a, b) => a - b);
@@ -167,7 +167,7 @@ function drawExponents(c) {
   });
 }
 
-/** The marker at the value; its neighbour in words. */
+/** Moves the marker and describes its point. */
 function place() {
   if (!frame) return;
   const value = valueAt(slider, parameters);
@@ -183,12 +183,12 @@ function place() {
 }
 
 /**
- * Beside the title: what is under the pointer, or else how the point at the marker, which has left
- * its first cycles behind, differs from the run above.
+ * Text next to the title: the value under the pointer or, without one, how the point at the marker
+ * (after its transient) differs from the run above.
  */
 function tell(event) {
   pointed = Boolean(event);
-  write({"strip-tip": event ? textAt(valueUnder(event)) : differenceText()});
+  setTexts({"strip-tip": event ? textAt(valueUnder(event)) : differenceText()});
 }
 
 function differenceText() {
@@ -202,7 +202,7 @@ function differenceText() {
   return `at the marker, after ${transient} cycles: ${words(there)}; the run above: ${words(own)}`;
 }
 
-/** A value and what is there, in words. */
+/** A value and its point as text. */
 function textAt(value) {
   const {symbol, unit} = slider;
   const where = `${symbol} = ${written(value, range)} ${unit}`.trim();
@@ -218,10 +218,8 @@ function textAt(value) {
   return `${where}: ${parts.filter(Boolean).join(", ")}`;
 }
 
-// As a slider.
-
-const turn = (value, hasty) => turnTo(slider, clamp(value, at(0), range[1]), hasty);
-/** The value under the pointer; a pixel is as long everywhere. */
+const turn = (value, dragging) => moveSlider(slider, clamp(value, at(0), range[1]), dragging);
+/** The value under the pointer. */
 function valueUnder({offsetX}) {
   const [from, to] = range;
   return from + ((offsetX - frame.box.left) / frame.width) * (to - from);

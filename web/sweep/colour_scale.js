@@ -1,10 +1,10 @@
-// The colours of a map's values, and the bar that tells them.
+// Colour scales of maps, and the bar that shows them.
 import {colour, hex} from "../shared/colours.js";
 import {font} from "../shared/frame.js";
 import {short} from "../shared/numbers.js";
 import {ticks} from "../shared/ticks.js";
 
-/** The colour at share t in [0, 1] between stops. */
+/** The colour at fraction t in [0, 1] of a list of colour stops. */
 function between(list, t) {
   const at = Math.min(Math.max(t, 0), 1) * (list.length - 1);
   const i = Math.min(Math.floor(at), list.length - 2);
@@ -21,11 +21,11 @@ function rounded(v) {
   return Number((Math.sign(v) * step * power).toPrecision(3));
 }
 
-const spare = 0.02; // of the values at either end may lie beyond the scale
+const spare = 0.02; // fraction of the values at either end that can lie beyond the scale
 
 /**
- * The ends of the colours of some values, round ones: a few values may lie beyond, so that one that
- * is far off leaves the others their colours.
+ * Round ends of the colour scale of some values. A few outliers can lie beyond the ends, so that
+ * they do not flatten the colours of the others.
  */
 export function endsOf({diverging, from0}, values) {
   const sorted = Float64Array.from(values).sort();
@@ -43,9 +43,9 @@ export function endsOf({diverging, from0}, values) {
 }
 
 /**
- * {at(value): its colour as bytes, share(value): its place in [0, 1] or beyond, ends, stops, beyond:
- * [whether values were asked for that lie below it, above it]}. A diverging one has 0 in its middle,
- * and its sides have scales of their own.
+ * {at(value): colour as bytes, share(value): position in [0, 1] or beyond, ends, stops, beyond:
+ * [whether at() got values below the scale, above it]}. A diverging scale has 0 in its middle and
+ * independent scales on both sides.
  */
 export function scaleOf({diverging}, ends) {
   const [low, high] = ends;
@@ -65,9 +65,8 @@ export function scaleOf({diverging}, ends) {
   return {stops, share, ends, beyond, at};
 }
 
-export const barWidth = 86; // px beside the map
+export const barWidth = 86; // px next to the map
 
-/** The bar, its numbers and title. */
 export function drawBar(c, {box, height}, {stops, share, ends: [low, high], beyond}, title) {
   const left = box.right + 12;
   const width = 12;

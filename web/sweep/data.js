@@ -1,16 +1,15 @@
-// The points of a sweep, where they lie, and the lines they came in.
+// The points of a sweep: their axes, and receiving them as lines of JSON.
+
+import {jsonLines, sweep, TemporaryError} from "../shared/api.js";
 import {defaultSet} from "../shared/form.js";
 import {coordinates} from "../shared/quantities.js";
 
-/** The positions of values in their order. */
+/** The indices that sort `values`. */
 export const ascending = (values) => values.map((_, i) => i).sort((a, b) => values[a] - values[b]);
 
 const same = (v) => v;
 
-/**
- * The borders between ascending places and around them: the middles between each and the next. An
- * only one has some room around it.
- */
+/** Borders of the cells of ascending places: the midpoints, and one beyond each end. */
 function borders(at, log) {
   const room = log ? 0.1 : Math.abs(at[0]) * 0.1 || 1;
   const [first, second = first + room] = at;
@@ -20,9 +19,9 @@ function borders(at, log) {
 }
 
 /**
- * An axis in ascending order: position k shows entry order[k] of the request's axis. at: its places,
- * logarithms where it is logarithmic, and the borders between and around them; to(value): a place;
- * from(place): a value.
+ * An axis in ascending order; position k shows entry order[k] of the requested axis. at: places
+ * (logarithms on a logarithmic axis); borders: of their cells; to(value): a place; from(place): a
+ * value.
  */
 function arrange({parameter, values}, scale) {
   const order = ascending(values);
@@ -35,8 +34,8 @@ function arrange({parameter, values}, scale) {
 }
 
 /**
- * A line of a reduction, and each motion in it, as a point whose largest |x| is the peak: `where`
- * along the axis that is folded.
+ * A line of a reduction, and each motion in it, as a point whose largest |x| is the peak; `where`
+ * is the peak's value of the reduced parameter.
  */
 function unfold({worst, best, starts, ...line}, parameter) {
   const peak = ({x_peak, x_free_peak, ...rest}) => ({
@@ -49,23 +48,23 @@ function unfold({worst, best, starts, ...line}, parameter) {
   return {...peak(line), ...motions};
 }
 
-/** Half a forcing period, pi/Omega, of a point's fields. */
+/** Half a forcing period, pi/Omega, from the fields of a point. */
 function halfPeriod({Omega, f, f0, k1, m1}) {
-  const natural = f0 ?? Math.sqrt(k1 / m1) / (2 * Math.PI); // in Hz
+  const natural = f0 ?? Math.sqrt(k1 / m1) / (2 * Math.PI); // Hz
   return Math.PI / (Omega ?? (f ? f / natural : 1));
 }
 
-const enough = 500; // lines that are kept as texts before they go into a Blob
+const enough = 500; // lines collected as strings before they become a Blob
 
-/** The points of a sweep; as JSON it is its request. */
+/** The points of a sweep. Serialises as its request. */
 export class SweepData {
-  axes = null; // those that are left
+  axes = null; // those that remain after a reduction
   parameters = null;
   warnings = new Set();
   points = [];
   received = 0;
-  slice = null; // of the third axis of another sweep, the one that this sweep is a part of
-  views = null; // of its axes, what this sweep is of; such a part is no file
+  slice = null; // position on the third axis that a refinement belongs to
+  ranges = null; // visible ranges that a refinement covers; null for a sweep that can be downloaded
   blobs = [];
   texts = [];
 
@@ -74,10 +73,10 @@ export class SweepData {
     const {section = "none", starts, reduce = "", carry_state: carried = "none"} = request;
     this.section = section;
     this.defaultSet = starts === defaultSet;
-    this.states = Array.isArray(starts) && starts.length ? starts : [{}]; // to start from
-    // The parameter of the axis that is folded.
+    this.states = Array.isArray(starts) && starts.length ? starts : [{}]; // initial states
+    // Parameter of the axis that is reduced.
     this.reduced = /^(?:max|min) over (.+)$/.exec(reduce)?.[1] ?? null;
-    this.carried = carried !== "none"; // each point begins where its neighbour ended
+    this.carried = carried !== "none"; // each point starts from its neighbour's final state
   }
 
   toJSON() {
@@ -99,7 +98,7 @@ export class SweepData {
   take(line, text) {
     if (line.type === "start") {
       for (const warning of line.warnings) this.warnings.add(warning);
-      if (this.axes) return; // of a stream that brings the rest
+      if (this.axes) return; // a further stream with the missing points
       this.begin(line);
     } else if (line.type === "point") {
       if (this.points[line.index]) return;
@@ -107,15 +106,15 @@ export class SweepData {
       ++this.received;
     } else {
       if (line.type === "warning") this.warnings.add(line.message);
-      return; // progress and the end are not part of the result
+      return; // progress and end lines are not part of the result
     }
-    if (this.views) return;
+    if (this.ranges) return;
     this.texts.push(text, "\n");
     if (this.texts.length > 2 * enough)
       this.blobs = [...this.blobs, new Blob(this.texts.splice(0))];
   }
 
-  /** The axes, and places for the points. */
+  /** Takes the axes from the first line. */
   begin({axes, parameters, points}) {
     const arranged = axes.map((axis, i) => arrange(axis, this.request.axes[i].scale));
     this.axes = arranged.filter((axis) => axis.parameter !== this.reduced);
@@ -124,8 +123,7 @@ export class SweepData {
   }
 
   /**
-   * A point with the coordinates of its section as columns of floats; over two axes there is no
-   * place for them.
+   * Converts a section to columns of floats; over two axes it is dropped, since no plot shows it.
    */
   trim(point) {
     if (this.reduced) return unfold(point, this.reduced);
@@ -148,8 +146,8 @@ export class SweepData {
   }
 
   /**
-   * The index of the point at positions k, l, m of the (ascending) axes. The first axis counts
-   * fastest, then the starts, then the others.
+   * Index of the point at positions k, l, m of the ascending axes. The first axis varies fastest,
+   * then the starts, then the other axes.
    */
   index(k = 0, l = 0, start = 0, m = 0) {
     const [first, second, third] = this.axes;
@@ -159,7 +157,7 @@ export class SweepData {
     return (before * this.starts + start) * size(first) + entry(first, k);
   }
 
-  /** The fields of /v1/simulate of a point; best: of its best motion, where it has several. */
+  /** Fields of /v1/simulate for a point; best: for its best motion, where it has several. */
   fields(index, best = false) {
     const all = this.points[index];
     const point = (best && all?.best) || all;
@@ -182,8 +180,22 @@ export class SweepData {
     };
   }
 
-  /** What has come, as lines of JSON. */
   file() {
     return new Blob([...this.blobs, ...this.texts], {type: "application/x-ndjson"});
   }
+}
+
+/**
+ * Requests the points that data (a SweepData) lacks. onLine(line) gets each line until the request
+ * is aborted. Throws if the stream ends early.
+ */
+export async function receive(data, signal, onLine) {
+  const missing = data.received ? {indices: data.missing()} : {};
+  for await (const {text, value} of jsonLines(await sweep({...data.request, ...missing}, signal))) {
+    if (value.type === "error")
+      throw new (value.status === 503 ? TemporaryError : Error)(value.detail);
+    data.take(value, text);
+    if (!signal.aborted) onLine(value);
+  }
+  if (!data.complete) throw new TemporaryError("the response ended early");
 }

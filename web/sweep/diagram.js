@@ -1,4 +1,4 @@
-// The diagrams over the axis of a sweep, one class each: what they draw, and of what values.
+// The diagrams over the single axis of a sweep.
 import {colour} from "../shared/colours.js";
 import {count, density} from "../shared/density.js";
 import {rangeOf} from "../shared/frame.js";
@@ -15,13 +15,13 @@ import {
   verdicts,
 } from "../shared/quantities.js";
 import {inSeconds} from "../shared/units.js";
-import {quarters} from "./axes.js";
-import {SweepPanel} from "./view.js";
+import {phaseLabels} from "./axis_labels.js";
+import {SweepPlot} from "./sweep_view.js";
 
 const startColours = ["c1", "before", "c2", "c4", "c3"];
 const startColour = (s) => startColours[s % startColours.length];
 
-/** Corners of the symbols of the starts but for the first, a disc: how many, and where they begin. */
+/** Symbols of the starts after the first (a disc): number of corners and first angle. */
 const polygons = [
   [0, 0],
   [4, Math.PI / 4],
@@ -30,7 +30,6 @@ const polygons = [
   [3, Math.PI / 2],
 ];
 
-/** The symbol of a start as a path. */
 function trace(c, start, x, y, r) {
   const [n, turn] = polygons[start % polygons.length];
   c.beginPath();
@@ -42,18 +41,18 @@ function trace(c, start, x, y, r) {
   c.closePath();
 }
 
-/** The values of another motion of a point, of those of the point. */
-const ofOther = (of) => (p) => {
+/** Applies `of` to the best or second motion of a point. */
+const ofOtherMotion = (of) => (p) => {
   const m = otherMotion(p);
   return m && of(m);
 };
 
-/** How many of some points are of each regime: [regime, number]. */
+/** Number of points of each regime: [regime, number]. */
 export const countRegimes = (points) =>
   Object.keys(regimes).map((regime) => [regime, points.filter((p) => p?.regime === regime).length]);
 
-/** view: SweepPlots, whose points are drawn. Who extends this has y(), as of a Frame, and draw(). */
-class Diagram extends SweepPanel {
+/** A plot of `view`, the DiagramView. Subclasses implement y() (as in Frame) and draw(). */
+class Diagram extends SweepPlot {
   prepare(width, height) {
     return this.view.byStart ? {frame: this.frameOf(width, height)} : null;
   }
@@ -66,25 +65,25 @@ class Diagram extends SweepPanel {
     c.restore();
   }
 
-  /** The value of a point that is drawn as one; null of one that has many. */
+  /** The value of a point drawn as a single dot; null if it has several. */
   drawn() {
     return null;
   }
 
-  /** The values of all points, a list of each, for a range. */
+  /** Values of all points, a list of each, for the range. */
   values(of) {
     return this.view.places().map(({p}) => of(p));
   }
 
-  /** The colour of a start, or what a single one has in its place. */
+  /** Colour of a start; `alone` if there is only one. */
   tint(start, alone) {
     return this.view.several ? startColour(start) : alone;
   }
 
-  /** Of the dots: smaller where there are many. */
+  /** Radius of the dots; smaller where there are many. */
   radius(frame) {
     const {data, several} = this.view;
-    const room = (frame.width / Math.max(this.view.seen().length / data.starts, 1)) * 0.62;
+    const room = (frame.width / Math.max(this.view.visiblePlaces().length / data.starts, 1)) * 0.62;
     return Math.max(1.3, Math.min(3.4, room)) * (several ? 1.15 : 1);
   }
 
@@ -95,7 +94,9 @@ class Diagram extends SweepPanel {
     for (const level of levels) frame.across(c, level);
   }
 
-  /** Where the points of a start lie: {p, v, x, y}, v null where one failed or has no value. */
+  /**
+   * Positions of a start's points: {p, v, x, y}; v is null for a failed point or without a value.
+   */
   spots(frame, start, of) {
     return this.view.byStart[start].map(({p, value}) => {
       const v = p.error ? null : (of(p) ?? null);
@@ -103,7 +104,7 @@ class Diagram extends SweepPanel {
     });
   }
 
-  /** A line through the points of a start; one without the value breaks it. */
+  /** A line through the points of a start; missing values interrupt it. */
   line(c, frame, start, of, name, {width = 1, alpha = 1, dash = []} = {}) {
     c.setLineDash(dash);
     Object.assign(c, {strokeStyle: colour(name), lineWidth: width, globalAlpha: alpha});
@@ -119,15 +120,15 @@ class Diagram extends SweepPanel {
   }
 
   /**
-   * The best of a point's motions, or one from another start that ends elsewhere, as rings on a
-   * thin line; several starts have none.
+   * The best motion of each point, or one from another start that differs, as rings on a thin line.
+   * Not drawn for several starts.
    */
   rings(c, frame, of) {
     if (this.view.several) return;
     const r = this.radius(frame);
-    this.line(c, frame, 0, ofOther(of), "best", {alpha: 0.6});
+    this.line(c, frame, 0, ofOtherMotion(of), "best", {alpha: 0.6});
     c.lineWidth = 1.5;
-    for (const {v, x, y} of this.spots(frame, 0, ofOther(of))) {
+    for (const {v, x, y} of this.spots(frame, 0, ofOtherMotion(of))) {
       if (v === null) continue;
       trace(c, 0, x, y, r);
       c.stroke();
@@ -154,7 +155,7 @@ class Diagram extends SweepPanel {
     }
   }
 
-  /** Neighbours of the same regime as one stretch: f(regime, from, to) in pixels. */
+  /** Merges neighbours of the same regime: f(regime, from, to) in px. */
   stretches(frame, start, f) {
     const {from: value} = this.view.data.axes[0];
     const {left, right} = frame.box;
@@ -172,7 +173,7 @@ class Diagram extends SweepPanel {
     }
   }
 
-  /** The regimes as a narrow strip along the top, a lane for each start. */
+  /** Regimes as a narrow strip along the top, a row for each start. */
   strip(c, frame) {
     for (const s of this.view.starts())
       this.stretches(frame, s, (regime, from, to) => {
@@ -182,15 +183,12 @@ class Diagram extends SweepPanel {
   }
 }
 
-/** A column of a point's section, as seen in SweepData. */
+/** A column of a point's section, from SweepData. */
 const section = (p, column) => p.section?.[column] ?? [];
 
-/**
- * How often the section comes to each pixel, as opacity: a periodic orbit is a few full dots, chaos
- * a cloud.
- */
+/** Density of the section: periodic orbits are a few opaque dots, chaos is a cloud. */
 export class SectionDiagram extends Diagram {
-  /** The coordinate that is drawn, and its column; velocities may be in mm/s. */
+  /** The coordinate drawn and its column; velocities can be in mm/s. */
   shown() {
     const {data, choice} = this.view;
     const name = choice.coordinate;
@@ -203,7 +201,7 @@ export class SectionDiagram extends Diagram {
     const {column, range, log, least = -Infinity, turns, label} = this.shown();
     const large = (p) => section(p, column).filter((v) => !(v <= least));
     const held = range ?? rangeOf(this.values(large), {log}) ?? (log ? [0.1, 10] : [-1, 1]);
-    return {range: held, log, label, labels: turns && quarters};
+    return {range: held, log, label, labels: turns && phaseLabels};
   }
 
   draw(c, frame) {
@@ -254,7 +252,7 @@ export class LambdaDiagram extends Diagram {
       const error = errorOf(p);
       return first === null
         ? []
-        : [first - error, first + error, lambda(1)(p), ofOther(lambda(0))(p)];
+        : [first - error, first + error, lambda(1)(p), ofOtherMotion(lambda(0))(p)];
     };
     return {range: rangeOf([[0], ...this.values(held)]), label: "λ"};
   }
@@ -292,7 +290,7 @@ export class LambdaDiagram extends Diagram {
   }
 }
 
-export class OtherDiagram extends Diagram {
+export class QuantityDiagram extends Diagram {
   quantity() {
     return quantityOf(this.view.choice.quantity, this.view.data);
   }
@@ -303,14 +301,14 @@ export class OtherDiagram extends Diagram {
 
   y() {
     const {of, levels = [], free = () => null, from0, label} = this.quantity();
-    const held = (p) => [of(p), free(p), ofOther(of)(p)];
+    const held = (p) => [of(p), free(p), ofOtherMotion(of)(p)];
     const [min, max] = rangeOf([from0 ? [0] : [], ...this.values(held)]) ?? [-1, 1];
     if (!from0) return {range: [min, max], label};
     const most = Math.max(max, Math.min(levels[0] ?? 0, max * 1.5)) * 1.02;
     return {range: [0, most], label};
   }
 
-  /** Pale bands with the regimes' numbers; several starts have none: theirs may differ. */
+  /** Pale bands labelled with the regimes; omitted for several starts, whose regimes can differ. */
   bands(c, frame) {
     if (this.view.several) return;
     const {top} = frame.box;
@@ -350,15 +348,15 @@ export class OtherDiagram extends Diagram {
 
   about() {
     const counts = countRegimes(this.view.byStart[0].map(({p}) => p)).filter(([, n]) => n);
-    const told = counts.map(([regime, n]) => `${regime === "none" ? regimes.none : regime}: ${n}`);
+    const texts = counts.map(([regime, n]) => `${regime === "none" ? regimes.none : regime}: ${n}`);
     const {title} = this.quantity();
-    return {title: `Regimes and ${title}`, summary: `points of each regime: ${told.join(", ")}`};
+    return {title: `Regimes and ${title}`, summary: `points of each regime: ${texts.join(", ")}`};
   }
 }
 
-/** The keys of the starts: their symbol and state. */
-export const startKey = (state, s, naming) => ({
+/** Legend entry of a start: its symbol and state. */
+export const startKey = (state, s, labels) => ({
   className: `key start start${s % startColours.length}`,
   style: `color: var(--${startColour(s)})`,
-  textContent: `${s + 1}: ${naming.fields(state)}`,
+  textContent: `${s + 1}: ${labels.fields(state)}`,
 });

@@ -1,8 +1,8 @@
-// A sweep, and over it what was computed once more, finer, where one zoomed in.
+// A sweep and its refinements: finer sweeps of ranges that were zoomed into.
 
-const most = 4; // sweeps over each other
+const most = 4; // sweeps kept
 
-/** Where the points of one axis lie, of one start, in ascending order. */
+/** Points of a start on a single axis, ascending. */
 function placesOf(data, start) {
   const [axis] = data.axes;
   return axis.at.flatMap((at, k) => {
@@ -17,24 +17,23 @@ export class Layers {
   constructor(base) {
     this.base = base;
     this.all = [base];
-    this.ends = {}; // of the colours of a map, by its quantity
+    this.ends = {}; // ends of a map's colour scale, by quantity
   }
 
-  /** A finer sweep on top. */
   add(data) {
-    if (this.all.includes(data)) return; // a stream that brings the rest
+    if (this.all.includes(data)) return; // a further stream of the same sweep
     this.all.push(data);
     if (this.all.length > most) this.all.splice(1, 1);
   }
 
-  /** Those whose points lie over a slice of the third axis, the coarsest first. */
+  /** Layers that show a position of the third axis, the coarsest first. */
   over(slice) {
     return this.all.filter((data) => data.axes && (data.slice ?? slice) === slice);
   }
 
   /**
-   * Of a single axis: the points of a start that have come, in ascending order, with the borders
-   * between them: {at, low, high, value, p, data, index, start}.
+   * Points of a start on a single axis, in ascending order, with the borders of their cells: {at,
+   * low, high, value, p, data, index, start}.
    */
   places(start) {
     const list = this.all.flatMap((data) => (data.axes ? placesOf(data, start) : []));

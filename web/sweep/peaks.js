@@ -1,24 +1,23 @@
-// The largest |x| of each motion over a whole axis, as a table: of a reduction that leaves no axis,
-// and of the default set over one.
+// Table of the largest |x| from each start over a whole axis: for a reduction that leaves no axis,
+// and for the default set of starts over one axis.
 import {$, reveal} from "../shared/dom.js";
 import {regimeText, startNames, symbolOf, verdicts} from "../shared/quantities.js";
-import {tableOf} from "../shared/table.js";
+import {tableOf} from "../shared/tables.js";
 
 const names = {...startNames, free: "without the absorber"};
 
-/** The motions of a point from each start of the default set, and that without the absorber. */
+/** Motions of a point from each start of the default set, and the one without the absorber. */
 const motionsOf = (p) => [
   ...(p?.starts ?? []),
   ...(p?.x_free == null ? [] : [{start: "free", x_max: p.x_free}]),
 ];
 
-/** Those of all points along the axis of a sweep. */
 const alongAxis = (data) =>
   data.axes[0].values
     .flatMap((where, k) => motionsOf(data.points[data.index(k)]).map((m) => ({...m, where})))
     .filter((m) => m.x_max != null);
 
-/** Of a sweep that is reduced to nothing but its starts. */
+/** Motions of a sweep whose only axis is reduced. */
 function ofStarts(data) {
   const points = data.points.filter((p) => p && !p.error);
   const nameOf = (p) => (data.starts > 1 ? `start ${p.start + 1}` : "this start");
@@ -26,7 +25,6 @@ function ofStarts(data) {
   return [...own, ...motionsOf(points[0])];
 }
 
-/** A motion in words. */
 const cellsOf = (m, numberOf) => [
   names[m.start] ?? m.start,
   m.x_max == null ? "–" : (m.x_max * 1000).toFixed(1),
@@ -35,8 +33,8 @@ const cellsOf = (m, numberOf) => [
   verdicts[m.verdict] ?? "–",
 ];
 
-/** Shows the peaks, where a sweep has them. naming: of its axes. */
-export function showPeaks(data, naming) {
+/** Shows the table if the sweep has peaks; `labels` gives the texts. */
+export function showPeaks(data, labels) {
   const {reduced, axes, defaultSet, request} = data;
   const bare = reduced && !axes.length;
   const shown = bare || (defaultSet && axes.length === 1 && !reduced);
@@ -45,11 +43,11 @@ export function showPeaks(data, naming) {
   const parameter = reduced ?? axes[0].parameter;
   const which = request.reduce?.startsWith("min") ? "Smallest" : "Largest";
   $("sweep-peaks-title").textContent = `${which} |x| over ${symbolOf(parameter)}, from each start`;
-  const peaks = new Map(); // the highest of each start, the highest of all first
+  const peaks = new Map(); // the highest of each start, in descending order
   const motions = bare ? ofStarts(data) : alongAxis(data);
   for (const m of motions.sort((a, b) => (b.x_max ?? -1) - (a.x_max ?? -1)))
     if (!peaks.has(m.start)) peaks.set(m.start, m);
-  const head = ["start", "largest |x| (mm)", `at ${naming.label(parameter)}`, "regime", "verdict"];
-  const rows = [...peaks.values()].map((m) => cellsOf(m, (v) => naming.text(parameter, v)));
+  const head = ["start", "largest |x| (mm)", `at ${labels.label(parameter)}`, "regime", "verdict"];
+  const rows = [...peaks.values()].map((m) => cellsOf(m, (v) => labels.text(parameter, v)));
   $("sweep-peaks").replaceChildren(...tableOf(head, rows));
 }

@@ -1,12 +1,11 @@
-// Where one zooms into a sweep it is computed once more for what is in view, with as many points.
+// Refinement: the visible range of a zoomed sweep is computed again with the same number of points.
 import {Job} from "../shared/job.js";
-import {SweepData} from "./data.js";
-import {receive} from "./stream.js";
+import {receive, SweepData} from "./data.js";
 
-const pause = 350; // ms of rest before it begins
+const pause = 350; // ms without zooming before it starts
 const mostPoints = 20000;
 
-/** An axis of a request, over what is in view: the middles of so many cells, within the whole. */
+/** An axis of the request for a visible range: centres of `count` cells, inside the full range. */
 function axisOf(given, {from: value, at}, [low, high], count) {
   const half = (high - low) / count / 2;
   const inside = (place) => Math.min(Math.max(place, at[0]), at.at(-1));
@@ -15,7 +14,7 @@ function axisOf(given, {from: value, at}, [low, high], count) {
 }
 
 export class Refiner {
-  /** drawn(): more points are there; settled(): all that were asked for are; say(text). */
+  /** drawn(): points were received; settled(): all points were received; say(text). */
   constructor({drawn, settled, say}) {
     Object.assign(this, {drawn, say, view: null, waiting: 0});
     this.job = new Job({
@@ -29,7 +28,7 @@ export class Refiner {
     });
   }
 
-  /** A SweepView that shows another sweep, or null. */
+  /** Follows a SweepView with a new sweep; null: none. */
   follow(view) {
     this.view = view;
     this.stop();
@@ -41,40 +40,40 @@ export class Refiner {
     this.say("");
   }
 
-  /** Something else is in view. */
-  look() {
+  /** Called when the visible range changes. */
+  schedule() {
     clearTimeout(this.waiting);
     this.waiting = setTimeout(() => this.begin(), pause);
   }
 
   begin() {
     if (!this.view) return;
-    const {layers, data, axes, choice} = this.view;
+    const {layers, data, viewports, choice} = this.view;
     if (!data.complete || data.carried) return;
-    const counts = countsOf(data, axes.length);
-    // As dense in view as what would be asked for, or almost.
+    const counts = countsOf(data, viewports.length);
+    // True when a layer has at least 60 % of the density that a new request would have.
     const covers = (finer) =>
-      axes.every(({view: [from, to], whole}, i) => {
-        const [first, last] = finer.views?.[i] ?? whole;
+      viewports.every(({range: [from, to], full}, i) => {
+        const [first, last] = finer.ranges?.[i] ?? full;
         const inside = (finer.axes[i].at.length * (to - from)) / (last - first);
         return first <= from && to <= last && inside >= 0.6 * counts[i];
       });
     const there = layers.over(choice.slice).findLast(covers);
-    if (!axes.some(({zoomed}) => zoomed) || there?.complete) this.stop();
-    else this.job.start(there ?? this.finer(counts)); // what is missing, unless it runs already
+    if (!viewports.some(({zoomed}) => zoomed) || there?.complete) this.stop();
+    else this.job.start(there ?? this.finer(counts)); // unless it is running already
   }
 
-  /** A sweep of what is in view: of the third axis the value that is shown. */
+  /** A sweep of the visible range; of the third axis only the slice shown. */
   finer(counts) {
-    const {data, axes, choice} = this.view;
+    const {data, viewports, choice} = this.view;
     const request = data.request.axes.map((given) => {
       const i = data.axes.findIndex(({parameter}) => parameter === given.parameter);
       const {parameter, values} = data.axes[i] ?? {};
-      if (axes[i]) return axisOf(given, data.axes[i], axes[i].view, counts[i]);
+      if (viewports[i]) return axisOf(given, data.axes[i], viewports[i].range, counts[i]);
       return i < 0 ? given : {parameter, values: [values[choice.slice]]};
     });
     const finer = new SweepData({...data.request, axes: request});
-    finer.views = axes.map(({view}) => view);
+    finer.ranges = viewports.map(({range}) => range);
     if (data.axes[2]) finer.slice = choice.slice;
     return finer;
   }
@@ -83,13 +82,13 @@ export class Refiner {
     await receive(data, signal, ({type}) => {
       if (type === "start") this.view.layers.add(data);
       if (type !== "point") return;
-      this.say(`finer where you look: ${data.received} of ${data.total} points`);
+      this.say(`refining: ${data.received} of ${data.total} points`);
       this.drawn();
     });
   }
 }
 
-/** As many points along each axis that is drawn as before, or fewer where that would be too many. */
+/** The number of points along each visible axis as before, or fewer to stay within mostPoints. */
 function countsOf({axes, starts}, n) {
   const counts = axes.slice(0, n).map(({at}) => at.length);
   const product = counts.reduce((a, b) => a * b, starts);

@@ -1,38 +1,46 @@
-// The tab of a sweep: form in, a stream of points out, drawn as they come. Its query is the request
-// and what the menus show.
+// The sweep tab: the form starts a stream of points, drawn while they arrive. The query holds the
+// request and the menus.
 import {asCurl, wholeMessage} from "../shared/api.js";
-import {showRemarks} from "../shared/cards.js";
-import {$, countUp, element, reveal, sayIn, write} from "../shared/dom.js";
+import {
+  $,
+  choose,
+  countUp,
+  element,
+  fillMenu,
+  reveal,
+  sayIn,
+  scrollToResults,
+  setTexts,
+} from "../shared/dom.js";
+import {copy, save} from "../shared/export.js";
 import {Job} from "../shared/job.js";
 import {coordinates, menuOf, otherMotion, regimes, symbolOf} from "../shared/quantities.js";
-import {copy, save} from "../shared/take_away.js";
+import {showRemarks} from "../shared/tables.js";
 import {onUnits, unitsSwitch} from "../shared/units.js";
-import {Naming} from "./axes.js";
-import {SweepData} from "./data.js";
+import {AxisLabels} from "./axis_labels.js";
+import {receive, SweepData} from "./data.js";
 import {countRegimes, startKey} from "./diagram.js";
-import {SweepPlots} from "./diagrams.js";
+import {DiagramView} from "./diagram_view.js";
 import {Layers} from "./layers.js";
-import {SweepMap} from "./map.js";
-import {choose, fillMenu} from "./menu.js";
+import {MapView} from "./map_view.js";
 import {showPeaks} from "./peaks.js";
 import {Refiner} from "./refine.js";
-import {receive} from "./stream.js";
 import {examples, SweepForm} from "./sweep_form.js";
 
-const cyclesOfPoint = 272; // of the simulation of a point: the paper's tau of 1709
+const cyclesOfPoint = 272; // for the simulation of a point; tau = 1709 as in the paper
 
 let form;
-let naming;
+let labels;
 let views; // by the number of axes
 let refiner;
 let data = null;
-let view = null; // that of the sweep; null where no axis is left
-let wanted = {}; // what the menus are to show of the next sweep, by their name in the query
+let view = null; // view of the sweep; null if no axis remains
+let wanted = {}; // menu values for the next sweep, by name in the query
 let changed = () => {};
 
 const say = sayIn("sweep-message");
 
-// The menus that are in the query, by their name there. Their first entry needs no mention.
+// Menus by their name in the query. The first entry is the default and not mentioned there.
 const menus = {
   coordinate: $("sweep-coordinate"),
   beside: $("sweep-quantity"),
@@ -49,7 +57,7 @@ const choice = () => ({
   slice: Number(sliceMenu.value),
 });
 
-/** What of a query is the request, in an order of its own. */
+/** The part of a query that is the request, in canonical order. */
 function requestOf(query) {
   const request = new URLSearchParams(query);
   for (const name of [...Object.keys(menus), "view"]) request.delete(name);
@@ -57,10 +65,10 @@ function requestOf(query) {
   return request;
 }
 
-/** The request of the sweep that is shown, as a query; null before the first. */
+/** The request of the sweep shown, as a query; null before the first. */
 const shown = () => data && String(SweepForm.toQuery(data.request));
 
-/** The query of the sweep that is shown, or null before the first. */
+/** The query of the sweep shown; null before the first. */
 export function query() {
   if (!data) return null;
   const menu = Object.entries(menus)
@@ -72,13 +80,16 @@ export function query() {
 
 const grouped = (n) => String(n).replace(/\B(?=(\d{3})+$)/g, " ");
 
-/** What the form says is another request: how large it is, which example, and what it is not. */
+/**
+ * Shows the size of the requested sweep and its example, and marks the results as stale if the form
+ * differs.
+ */
 function compare() {
   const {counts, starts, points, cycles} = form.size();
   const factors = [...counts, ...(starts > 1 ? [`${starts} starts`] : [])];
   const product = factors.length > 1 ? `${factors.join(" × ")} = ` : "";
   const size = `${product}${grouped(points)} points, ${grouped(cycles)} cycles`;
-  write({"sweep-size": Number.isFinite(points) ? size : ""});
+  setTexts({"sweep-size": Number.isFinite(points) ? size : ""});
   const own = SweepForm.toQuery(form.request());
   $("sweep-example").value = exampleOf(own);
   $("sweep-results").classList.toggle("stale", data && String(own) !== shown());
@@ -99,10 +110,10 @@ function progress({per_second: rate, seconds_left: left}) {
 
 function showCount(more = "") {
   Object.assign($("sweep-bar"), {max: data.total || 1, value: data.received});
-  write({"sweep-rate": `${grouped(data.received)} of ${grouped(data.total)} points${more}`});
+  setTexts({"sweep-rate": `${grouped(data.received)} of ${grouped(data.total)} points${more}`});
 }
 
-// At most ten drawings a second, and no more than a fifth of the time.
+// Redraws at most ten times a second, using at most a fifth of the time.
 let waiting = 0;
 let cost = 0;
 function drawSoon() {
@@ -114,13 +125,13 @@ function draw() {
   waiting = 0;
   const began = performance.now();
   view?.refresh(choice());
-  showPeaks(data, naming);
+  showPeaks(data, labels);
   showParts();
   showRegimes();
   cost = performance.now() - began;
 }
 
-/** No more points come for now, or others are shown. */
+/** Draws a complete or interrupted sweep, or another choice. */
 function settle() {
   if (!data) return;
   draw();
@@ -128,7 +139,7 @@ function settle() {
   showRemarks("sweep-remarks", [...data.warnings]);
 }
 
-/** What of the results is there, and its words. */
+/** Shows the parts that the sweep has, and their texts. */
 function showParts() {
   const {axes, section, defaultSet, starts, parameters, reduced} = data;
   const third = axes[2];
@@ -147,21 +158,20 @@ function showParts() {
     "sweep-start-of": several || defaultSet, // of a map
     "sweep-slice-of": third,
     "sweep-starts": several,
-    "sweep-verdicts": !several, // the colours are those of the starts, then
+    "sweep-verdicts": !several, // the colours then distinguish the starts
     "sweep-motions": overOne && apart,
     "sweep-worst": defaultSet,
   });
-  write({
+  setTexts({
     "sweep-where": section === "impact" ? "at impact:" : "once a cycle:",
-    "sweep-start-word": defaultSet ? "of the start that is" : "from start",
+    "sweep-start-word": defaultSet ? "start:" : "from start",
     "sweep-slice-word": third ? `where ${symbolOf(third.parameter)} =` : "",
     "sweep-other": defaultSet
-      ? "the best, where they end apart"
-      : "from another start, where it was tried and ends elsewhere",
+      ? "best start, where the motions differ"
+      : "from a second start, where the motion differs",
   });
 }
 
-/** The regimes, and how many points are of each. */
 function showRegimes() {
   const item = ([regime, n]) => {
     const none = regime === "none";
@@ -176,8 +186,8 @@ function showRegimes() {
   $("sweep-regimes").replaceChildren(...countRegimes(data.points).map(item));
 }
 
-/** The menus of a sweep that has just begun; those that it does not show are empty. */
-function offer() {
+/** Fills the menus for a new sweep; unused ones are empty. */
+function fillMenus() {
   const {section, defaultSet, axes} = data;
   const titles = Object.entries(coordinates[section] ?? {}).map(([name, {title}]) => [name, title]);
   const entries = {coordinate: titles, [axes.length > 1 ? "map" : "beside"]: menuOf(data)};
@@ -190,19 +200,19 @@ function offer() {
   const {parameter, values} = axes[2] ?? {values: []};
   fillMenu(
     sliceMenu,
-    values.map((v, m) => [m, naming.value(parameter, v)]),
+    values.map((v, m) => [m, labels.value(parameter, v)]),
   );
 }
 
-/** The plots of a sweep that has just begun, still empty. */
+/** Shows the empty diagrams of a new sweep. */
 function present(fresh) {
   const edit = data && !fresh.ends;
   data = fresh;
-  data.folded = data.reduced && naming.of(data.reduced);
+  data.folded = data.reduced && labels.of(data.reduced);
   view = views[data.axes.length];
   form.base.showOrigins(data.parameters);
-  offer();
-  const key = (state, s) => element("li", {}, element("span", startKey(state, s, naming)));
+  fillMenus();
+  const key = (state, s) => element("li", {}, element("span", startKey(state, s, labels)));
   $("sweep-starts").replaceChildren(...data.states.map(key));
   view?.show(new Layers(data));
   refiner.follow(view);
@@ -221,11 +231,11 @@ function busy(is) {
   });
 }
 
-/** What is worth saying of a complete sweep. */
+/** Failed and truncated points of a complete sweep, as text. */
 function remarks() {
   const found = new Map();
   for (const {error, reason} of data.points) {
-    const early = reason && reason !== "complete" && "ended early, at max_impacts";
+    const early = reason && reason !== "complete" && "stopped at max_impacts";
     const what = error ? `failed: ${error}` : early;
     if (what) found.set(what, (found.get(what) ?? 0) + 1);
   }
@@ -233,7 +243,7 @@ function remarks() {
 }
 
 const job = new Job({
-  ask: (into, signal) => receive(into, signal, (line) => hear(into, line)),
+  ask: (into, signal) => receive(into, signal, (line) => receiveLine(into, line)),
   show: finish,
   fail(error) {
     stop(wholeMessage(error, form.showErrors(error.errors ?? [])), true);
@@ -245,14 +255,13 @@ const job = new Job({
   later: (text) => say(text, true),
 });
 
-/** The points that `into` still lacks. */
 function complete(into) {
   refiner.stop();
   busy(true);
   job.start(into);
 }
 
-function hear(into, line) {
+function receiveLine(into, line) {
   if (line.type === "start") {
     if (data !== into) present(into);
     say("");
@@ -261,7 +270,6 @@ function hear(into, line) {
   else drawSoon();
 }
 
-/** Some points do not come. */
 function stop(why, fault) {
   say(why, fault);
   if (data) showCount();
@@ -271,18 +279,11 @@ function stop(why, fault) {
 function finish() {
   say(remarks());
   settle();
-  refiner.look();
+  refiner.schedule();
   countUp($("sweep-results"));
 }
 
-/** Where the plots lie below the form, one who asks for them is led there. */
-function lead() {
-  const panel = $("sweep-form");
-  const results = $("sweep-results");
-  if (results.offsetLeft < panel.offsetLeft + panel.offsetWidth) results.scrollIntoView();
-}
-
-/** ends: what is to be in view, of a sweep that comes from the address. */
+/** ends: the range to show, for a sweep from the address. */
 function run(ends) {
   form.showErrors([]);
   compare();
@@ -290,24 +291,23 @@ function run(ends) {
 }
 
 const isSame = (one, other) => String(requestOf(one)) === String(requestOf(other));
-const exampleOf = (asked) => examples.findIndex(([, example]) => isSame(example, asked));
+const exampleOf = (given) => examples.findIndex(([, example]) => isSame(example, given));
 
-/** Runs what a query asks for, or the first example where it names no sweep. */
-function ask(asked, ends) {
-  const named = requestOf(asked);
+/** Runs the sweep of a query, or the first example if it names none. */
+function ask(given, ends) {
+  const named = requestOf(given);
   const request = String(named) ? named : requestOf(examples[0][1]);
-  const standard = Object.keys(menus).map((name) => [name, ""]); // the first
-  wanted = Object.fromEntries([...standard, ...asked]);
+  const standard = Object.keys(menus).map((name) => [name, ""]); // the first entry
+  wanted = Object.fromEntries([...standard, ...given]);
   form.setQuery(request, exampleOf(request) >= 0);
   run(ends);
 }
 
-/** Shows what a query asks for. */
 export function open(given) {
   const numbers = given.get("view")?.split(",").map(Number) ?? [];
   const ends = numbers.every(Number.isFinite) ? numbers : [];
   if (data && isSame(given, shown())) {
-    // The sweep that is there, as another entry of the history had it.
+    // The same sweep with other menus: Back or Forward.
     for (const [name, menu] of Object.entries(menus)) choose(menu, given.get(name));
     view?.zoomTo(ends);
     chooseFromMenu();
@@ -322,33 +322,36 @@ function download() {
 }
 
 /**
- * tables: the answer of /v1/parameters; tell: called when there is another query; simulate(fields):
- * shows the run of a point.
+ * tables: the answer of /v1/parameters; tell: called when the query changes; simulate(fields):
+ * opens the simulation of a point.
  */
 export function start(tables, tell, {simulate}) {
   changed = tell;
   form = new SweepForm($("sweep-fields"), tables, compare);
-  naming = new Naming((parameter) => form.parameters.get(parameter)?.unit);
+  labels = new AxisLabels((parameter) => form.parameters.get(parameter)?.unit);
   const openPoint = ({data: of, index, best}) =>
     simulate({...of.fields(index, best), cycles: cyclesOfPoint});
-  const plots = new SweepPlots($("sweep-stack"), naming, openPoint);
-  const map = new SweepMap($("sweep-map"), naming, openPoint);
-  views = [null, plots, map, map];
+  const diagrams = new DiagramView($("sweep-stack"), labels, openPoint);
+  const map = new MapView($("sweep-map"), labels, openPoint);
+  views = [null, diagrams, map, map];
   refiner = new Refiner({
     drawn: drawSoon,
     settled: () => {
       settle();
       countUp($("sweep-results"), "refined");
     },
-    say: (text) => write({"sweep-refined": text}),
+    say: (text) => setTexts({"sweep-refined": text}),
   });
-  for (const axis of [...plots.axes, ...map.axes])
-    axis.onView(() => {
+  for (const viewport of [...diagrams.viewports, ...map.viewports])
+    viewport.onZoom(() => {
       changed({soon: true});
-      refiner.look();
+      refiner.schedule();
     });
   reveal({"sweep-keys": false});
-  fillMenu($("sweep-example"), [["-1", "own sweep"], ...examples.map(([title], i) => [i, title])]);
+  fillMenu($("sweep-example"), [
+    ["-1", "custom sweep"],
+    ...examples.map(([title], i) => [i, title]),
+  ]);
   unitsSwitch($("sweep-units"));
   onUnits(settle);
   listen();
@@ -356,7 +359,7 @@ export function start(tables, tell, {simulate}) {
 
 function chooseFromMenu() {
   settle();
-  refiner.look();
+  refiner.schedule();
   changed();
 }
 
@@ -365,12 +368,12 @@ function listen() {
   $("sweep-example").onchange = ({target}) => {
     if (!examples[target.value]) return;
     ask(new URLSearchParams(examples[target.value][1]));
-    lead();
+    scrollToResults("sweep");
   };
   $("sweep-form").onsubmit = (event) => {
     event.preventDefault();
     run();
-    lead();
+    scrollToResults("sweep");
   };
   $("sweep-cancel").onclick = () => job.cancel();
   $("sweep-resume").onclick = () => complete(data);

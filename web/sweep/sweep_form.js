@@ -1,16 +1,15 @@
-// The form of a sweep: its axes, how each point is run, and what all points share; and the same as
-// a query.
-import {element, write} from "../shared/dom.js";
+// The form of a sweep: axes, run of each point, shared fields; and its conversion to and from a
+// query.
+import {element, fillMenu, setTexts} from "../shared/dom.js";
 import {defaultSet, Form, groups, textOf, unknownText} from "../shared/form.js";
 import {isOfSystem} from "../shared/presets.js";
 import {unitShown} from "../shared/units.js";
-import {fillMenu} from "./menu.js";
 
 const none = "none";
 const axisNames = ["axis1", "axis2", "axis3"];
 const ends = ["from", "to"];
 
-// Sweeps to begin with: title and query. The first is shown when nothing is asked for.
+// Examples: title and query. The first is shown by default.
 export const examples = [
   [
     "Regimes over b, the range of Table 3",
@@ -47,8 +46,8 @@ export const examples = [
 ];
 
 /**
- * The fields of an axis: the server's, with the parameters to choose from; one that may be absent
- * has none of them at first.
+ * Fields of an axis, from the service's table, with a menu of the parameters. An optional axis
+ * starts without a parameter.
  */
 function axisFields(fields, parameters, optional) {
   const choices = [...(optional ? [none] : []), ...parameters];
@@ -59,7 +58,7 @@ function axisFields(fields, parameters, optional) {
     .map((f) => ({...f, ...(f.name === "parameter" ? menu : text(f))}));
 }
 
-/** The fields of how a point is run. What there is to reduce depends on the axes. */
+/** Fields for the run of a point. The choices of `reduce` depend on the axes. */
 function runFields(fields, base) {
   const own = fields.filter((f) => ["integer", "choice"].includes(f.type));
   const reduce = {choices: [none], default: none};
@@ -77,7 +76,10 @@ function noteOf({description, unit: own}) {
 
 const standardOf = (form, name) => form.fields.find((f) => f.name === name).default;
 
-/** Where an axis is at fault as a whole: an end that is no such parameter has this value. */
+/**
+ * The field to blame for an error of a whole axis: the end with the value at fault, or the
+ * parameter.
+ */
 function faultOf(axis, value) {
   const values = axis.values();
   return ends.find((name) => values[name] === value) ?? "parameter";
@@ -112,24 +114,24 @@ export class SweepForm {
     });
   }
 
-  /** All of it before the container hears of it, which adapts the rest. */
+  /** These handlers run before the listener of the container, which calls adapt(). */
   listen() {
     for (const [i, axis] of this.axes.entries())
       axis.inputs.get("parameter").oninput = () => this.chooseParameter(i);
     for (const [name, input] of this.base.inputs)
       input.oninput = () => {
         if (name === "damping") this.dampingChosen = true;
-        else if (isOfSystem(name) && this.base.filled(name)) this.makeWay();
+        else if (isOfSystem(name) && this.base.filled(name)) this.resetDamping();
       };
   }
 
-  /** A box that fills in the default set of starts. */
+  /** A check box that fills in the default set of starts. */
   offerDefaultSet() {
     const input = this.run.inputs.get("starts");
     const box = element("input", {type: "checkbox", id: "sweep-default-set"});
     const title =
-      "at rest in the middle, at a wall, moving, and on from both neighbours: " +
-      "the worst and the best of them are told";
+      "from the middle, a wall, moving, and both neighbours' final states; " +
+      "the worst and the best motion are shown";
     const text = `${defaultSet}: worst and best of several`;
     const label = element("label", {className: "check", title}, box, text);
     this.run.errors.get("starts").before(label);
@@ -140,35 +142,35 @@ export class SweepForm {
   }
 
   /**
-   * The damping of the paper's numbers goes with its system: it makes way for another one, unless
-   * it was chosen.
+   * The closed-form damping belongs to the paper's system. It is reset for another system, unless
+   * the user chose it.
    */
-  makeWay() {
+  resetDamping() {
     const standard = standardOf(this.base, "damping");
     if (this.dampingChosen || this.base.inputs.get("damping").value === standard) return;
     this.base.replace("damping", standard);
-    write({"sweep-note": `A system of your own: damping is ${standard}`});
+    setTexts({"sweep-note": `User-defined system: damping is ${standard}`});
   }
 
-  /** The parameters of the axes, none for one that is absent. */
+  /** Parameters of the axes; "none" for a missing axis. */
   swept() {
     return this.axes.map((axis) => axis.inputs.get("parameter").value);
   }
 
   /**
-   * The limits that were there are of another parameter. A map has no place for a section, which
-   * would be most of the answer.
+   * Clears the ends, which belong to the previous parameter. A map does not show a section, which
+   * would be most of the answer, so it is turned off.
    */
   chooseParameter(i) {
     const parameter = this.swept()[i];
     for (const name of ends) this.axes[i].replace(name, "");
     if (i > 0 && parameter !== none) this.run.inputs.get("section").value = none;
-    if (isOfSystem(parameter)) this.makeWay();
+    if (isOfSystem(parameter)) this.resetDamping();
   }
 
   /**
-   * What depends on the parameters chosen: their ranges, and the fields that they take the place
-   * of; reduce: the reduction to choose, if it is another.
+   * Adapts ranges, units and disabled fields to the chosen parameters. reduce: the reduction to
+   * select, if it changes.
    */
   adapt(reduce) {
     const swept = this.swept();
@@ -186,8 +188,8 @@ export class SweepForm {
   }
 
   /**
-   * What can be reduced, and what the default set and a reduction leave no place for: they tell of
-   * several motions.
+   * Adapts the reductions, and disables fields that cannot be combined with the default set of
+   * starts or with a reduction, both of which report several motions.
    */
   adaptRun(swept, reduce) {
     const {inputs} = this.run;
@@ -217,8 +219,8 @@ export class SweepForm {
   }
 
   /**
-   * A request as the address has it: an axis is parameter,from,to,count and its scale unless it is
-   * linear; all else as in a form.
+   * A request as a query: an axis is parameter,from,to,count and, unless linear, its scale; other
+   * fields as in a form.
    */
   static toQuery({base, axes, ...run}) {
     const query = new URLSearchParams();
@@ -230,14 +232,17 @@ export class SweepForm {
     return query;
   }
 
-  /** Sets what a query asks for. example: it is one of the examples, whose damping nobody chose. */
+  /**
+   * Fills the form from a query. example: the query is an example, whose damping was not chosen by
+   * the user.
+   */
   setQuery(query, example) {
     this.dampingChosen = !example && query.has("damping");
     const fields = Object.fromEntries(query);
     const isKnown = (name) =>
       axisNames.includes(name) || [this.base, this.run].some((form) => form.inputs.has(name));
     const unknown = Object.keys(fields).filter((name) => !isKnown(name));
-    write({"sweep-note": unknownText(unknown)});
+    setTexts({"sweep-note": unknownText(unknown)});
     this.base.set(fields);
     this.run.set(fields);
     const given = axisNames.filter((name) => fields[name]).map((name) => fields[name].split(","));
@@ -249,10 +254,10 @@ export class SweepForm {
     this.adapt(fields.reduce);
   }
 
-  /** Errors of a problem document at their fields; returns those that belong to none. */
+  /** Shows errors of a problem document at their fields; returns those without a field. */
   showErrors(errors) {
     const placed = errors.map((error) => [error, ...this.placeOf(error)]);
-    // The last one leads to its first fault.
+    // The last form focuses its first invalid field.
     return [this.base, this.run, ...this.axes.toReversed()].flatMap((form) =>
       form.showErrors(
         placed
@@ -273,11 +278,11 @@ export class SweepForm {
     return name === "max_impacts" ? [this.run, name] : [this.base, name];
   }
 
-  /** How many points there will be, as far as the fields tell. */
+  /** The number of points and cycles, as far as the fields are filled. */
   size() {
-    const {axes, starts: asked, ...run} = this.request();
-    const several = asked === defaultSet;
-    const starts = several ? 1 : asked?.length || 1;
+    const {axes, starts: given, ...run} = this.request();
+    const several = given === defaultSet;
+    const starts = several ? 1 : given?.length || 1;
     const counts = axes.map((axis) => axis.count ?? NaN);
     const points = counts.reduce((a, n) => a * n, starts);
     const cyclesOf = (name) => run[name] ?? standardOf(this.run, name);

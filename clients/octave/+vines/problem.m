@@ -1,25 +1,25 @@
-function told = problem(latest)
+function result = problem(latest)
   % PROBLEM = vines.problem()
   %
-  % Why the latest request that failed has no answer, or not all of it:
+  % Details of the latest failed request:
   %
   %   try
   %     vines.simulate('b', -1);
   %   catch
-  %     told = vines.problem();
-  %     told.errors(1)            % field 'b', value -1, range [1e-9; 1000], detail
+  %     p = vines.problem();
+  %     p.errors(1)               % field 'b', value -1, range [1e-9; 1000], detail
   %   end
   %
-  % status    as of HTTP, whichever way was asked; 0 where neither service nor program said one
+  % status    HTTP status, for the program too; 0 if there is none
   % detail    a sentence
-  % errors    each field at fault: field (within others a path, as axes/0/from), value, range
+  % errors    the invalid fields: field (a path if nested, such as axes/0/from), value, range
   %           ([minimum; maximum], or the choices, or NaN), detail
-  % lacking, retry_after    of 503: what the service has no more of, and seconds after which to ask
-  % request_id              by which the service's log names the request
-  % points, missing         of a sweep: what came, and the indices of what did not
+  % lacking, retry_after    for 503: the exhausted resource, and the seconds to wait
+  % request_id              identifies the request in the service's log
+  % points, missing         for a sweep: the points received, and the indices of the others
   persistent kept
   if nargin > 0
     kept = latest;
   end
-  told = kept;
+  result = kept;
 end

@@ -1,24 +1,26 @@
-function [points, course] = sweep(varargin)
+function [points, info] = sweep(varargin)
   % POINTS = vines.sweep(NAME, VALUE, ...)
   % POINTS = vines.sweep(EACH, NAME, VALUE, ...)
-  % [POINTS, COURSE] = vines.sweep(...)
+  % [POINTS, INFO] = vines.sweep(...)
   %
-  % The same over one to three parameters. Fields are those of docs/api.md, in pairs or in a struct:
+  % Simulates runs over one to three parameters. For the fields, in pairs or in a struct, see
+  % docs/api.md:
   %
   %   axis = struct('parameter', 'b', 'from', 0.01, 'to', 0.05, 'count', 41);
   %   points = vines.sweep('axes', axis);
   %   plot([points.b], [points.x_rms_ratio])
   %
-  % POINTS is an array of structs in the order of their index. Where some lack a key it is [] there.
+  % POINTS is an array of structs in the order of their index. A key that a point lacks is [].
   %
-  % EACH is called as EACH(POINT, COURSE) with each point as it comes, from a service coarse to fine
-  % over the axes. An error in it, or Ctrl-C, ends the computing.
+  % EACH is called as EACH(POINT, INFO) with each point as it arrives; a service sends the points
+  % from coarse to fine over the axes. An error in EACH, or Ctrl-C, stops the computation.
   %
-  % COURSE has done and total, the points that came and that were asked for; missing, the indices of
-  % the others; start, the sweep's first line; progress, a service's latest word; warnings.
+  % INFO has done and total, the numbers of points received and requested; missing, the indices of
+  % the others; start, the sweep's first line; progress, the service's latest progress report;
+  % warnings.
   %
-  % Errors: those of vines.simulate, and vines:incomplete where not all points came. vines.problem()
-  % has those that did in points then, and missing: ask for the rest by 'indices', missing.
+  % Errors: those of vines.simulate, and vines:incomplete if points are missing. vines.problem()
+  % then has the received ones in points, and missing: request the rest with 'indices', missing.
   each = [];
   if nargin > 0 && isa(varargin{1}, 'function_handle')
     each = varargin{1};
@@ -33,5 +35,5 @@ function [points, course] = sweep(varargin)
     end
   end
   request = struct('route', 'sweep', 'body', vines.internal.json(given));
-  [points, course] = vines.internal.follow(request, each, indices(:)');
+  [points, info] = vines.internal.follow_sweep(request, each, indices(:)');
 end

@@ -11,12 +11,12 @@
     found = vines.identify("record.csv", preset="fig20", b=0.015)
     print(found.restitution.plus.R, found.verdict)
 
-The functions ask the service at the address in VINES_URL, with the key in VINES_KEY if there is
-one; without VINES_URL the program `vines` on the PATH, or that in VINES_PROGRAM. `Service` and
+The functions send requests to the service at the address in VINES_URL, with the key in VINES_KEY if
+set. Without VINES_URL they run the program in VINES_PROGRAM, or `vines` on the PATH. `Service` and
 `Program` have the same three functions.
 
-`help(vines.SimulateFields)`, `SweepFields` and `IdentifyFields` have each field with its unit,
-range and default; `help(vines.Answer)` says what answers are.
+`help(vines.SimulateFields)`, `SweepFields` and `IdentifyFields` list the fields with unit, range
+and default; `help(vines.Answer)` describes answers.
 """
 
 from __future__ import annotations
@@ -68,8 +68,8 @@ __all__ = [
 
 
 def client() -> Client:
-    """That of the environment: VINES_URL and VINES_KEY, else VINES_PROGRAM, else `vines` on the
-    PATH."""
+    """The client chosen by the environment: the service at VINES_URL with VINES_KEY, else the
+    program VINES_PROGRAM, else `vines` on the PATH."""
     url = os.environ.get("VINES_URL")
     if url:
         return Service(url, os.environ.get("VINES_KEY") or None)
@@ -77,12 +77,12 @@ def client() -> Client:
 
 
 def simulate(**fields: Unpack[SimulateFields]) -> Answer:
-    """`Client.simulate` of the environment's client."""
+    """`Client.simulate` of the client chosen by the environment."""
     return client().simulate(**fields)
 
 
 def sweep(**fields: Unpack[SweepFields]) -> Sweep:
-    """`Client.sweep` of the environment's client."""
+    """`Client.sweep` of the client chosen by the environment."""
     return client().sweep(**fields)
 
 
@@ -92,5 +92,5 @@ def identify(
     impacts: Columns | Answer | pandas.DataFrame | None = None,
     **fields: Unpack[IdentifyFields],
 ) -> Answer:
-    """`Client.identify` of the environment's client."""
+    """`Client.identify` of the client chosen by the environment."""
     return client().identify(record, impacts=impacts, **fields)

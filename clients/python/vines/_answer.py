@@ -1,4 +1,4 @@
-"""An answer: its keys as attributes and items, its lists of numbers as arrays."""
+"""Answers: keys as attributes and items, lists of numbers as arrays."""
 
 from __future__ import annotations
 
@@ -19,18 +19,17 @@ if TYPE_CHECKING:
 
 
 class Answer:
-    """An object of an answer.
+    """An answer, or an object in it.
 
     ``answer.status.reason`` is ``answer["status"]["reason"]`` and ``answer["status.reason"]``. A
-    key that Python does not take as a name has an underscore behind it as an attribute:
-    ``point.lambda_``.
+    key that is a Python keyword has a trailing underscore as an attribute: ``point.lambda_``.
 
-    Lists of numbers are NumPy arrays where there is NumPy, else lists; null in them is NaN. Four
-    exponents over time are an array of n x 4, matrices are n x 4 x 4. Null elsewhere is None.
+    Lists of numbers are NumPy arrays if NumPy is installed, else lists; null in them is NaN,
+    elsewhere None. Four exponents over time are an n x 4 array, matrices n x 4 x 4.
 
     Lengths are in m, ``tau`` is time over 1/omega0 (dimensionless), velocities are in m per unit of
-    tau, accelerations in m per unit of tau squared; of a system in SI their twins beside them in s,
-    m/s, m/s^2, N s or J. docs/api.md lists each key with its unit.
+    tau, accelerations in m per unit of tau squared. For a system given in SI units the answer also
+    has their SI counterparts in s, m/s, m/s^2, N s or J. docs/api.md lists each key with its unit.
     """
 
     __slots__ = ("_members",)
@@ -39,7 +38,7 @@ class Answer:
         self._members = {name: _value(name, value) for name, value in members.items()}
 
     def __getitem__(self, path: str) -> Any:
-        """The value of a key, or of a path of keys with points; KeyError where there is none."""
+        """Value of a key, or of a path of keys separated by dots. Raises KeyError."""
         if path in self._members:
             return self._members[path]
         value: Any = self
@@ -50,7 +49,7 @@ class Answer:
         return value
 
     def __getattr__(self, name: str) -> Any:
-        if name.startswith("__") or name == "_members":  # what copy and pickle look for
+        if name.startswith("__") or name == "_members":  # copy and pickle look these up
             raise AttributeError(name)
         for own in (name, name.removesuffix("_")):
             if own in self._members:
@@ -83,41 +82,41 @@ class Answer:
         self._members = members
 
     def keys(self) -> list[str]:
-        """The names in it, so that ``dict(answer)`` is a dict of it."""
+        """The keys; with them ``dict(answer)`` works."""
         return list(self._members)
 
     def plain(self) -> dict[str, Any]:
-        """All of it as dicts and lists that ``json.dump`` takes; NaN is None again."""
+        """The answer as dicts and lists for ``json.dump``; NaN is None again."""
         return {name: plain(value) for name, value in self._members.items()}
 
     def frame(self, path: str = "") -> pandas.DataFrame:
-        """The lists of the object at `path` as columns of a pandas DataFrame.
+        """DataFrame with the lists of the object at `path` as columns.
 
-        Four numbers a row are four columns, ``J1`` to ``J4``; a matrix is 16, by rows, ``T11`` to
-        ``T44``: as the service's CSV has them. ValueError where the object has no lists, or lists
-        of several lengths; ImportError without pandas.
+        As in the service's CSV, a list of four numbers per row gives four columns, ``J1`` to
+        ``J4``, and a matrix 16, row by row, ``T11`` to ``T44``. Raises ValueError if the object has
+        no lists or lists of different lengths, ImportError without pandas.
         """
         owner = self[path] if path else self
         if not isinstance(owner, Answer):
-            raise ValueError(f"{path} is no object with lists")
+            raise ValueError(f"{path} is not an object with lists")
         lists = {name: v for name, v in owner._members.items() if _is_list(v)}
         lengths = {len(v) for v in lists.values()}
         if len(lengths) != 1:
-            told = ", ".join(f"{name}: {len(v)}" for name, v in lists.items())
-            raise ValueError(f"{path or 'the answer'} is not one table of lists ({told})")
+            found = ", ".join(f"{name}: {len(v)}" for name, v in lists.items())
+            raise ValueError(f"{path or 'the answer'} is not one table of lists ({found})")
         return frame_of({k: c for name, v in lists.items() for k, c in _columns(name, v)})
 
 
 def frame_of(columns: Any) -> pandas.DataFrame:
-    """A pandas DataFrame. ImportError without pandas."""
+    """A pandas DataFrame. Raises ImportError without pandas."""
     import pandas
 
     return pandas.DataFrame(columns)
 
 
 def plain(value: Any) -> Any:
-    """`value` as JSON has it: answers, mappings and data frames as dicts, arrays and series as
-    lists, NaN as None. ValueError for an infinite number."""
+    """`value` as JSON values: answers, mappings and data frames as dicts, arrays and series as
+    lists, NaN as None. Raises ValueError for an infinite number."""
     if isinstance(value, Answer):
         return value.plain()
     if isinstance(value, Mapping) or (hasattr(value, "keys") and hasattr(value, "columns")):
@@ -134,7 +133,7 @@ def plain(value: Any) -> Any:
 
 
 def body_of(fields: Mapping[str, Any]) -> bytes:
-    """The body of a request."""
+    """Body of a request, as JSON."""
     return json.dumps(plain(fields), allow_nan=False).encode()
 
 
@@ -155,12 +154,12 @@ def _numbers(value: list[Any]) -> Any:
         return _with_nan(value)
     try:
         return numpy.array(value if _is_whole(value) else _with_nan(value))
-    except ValueError:  # rows of several lengths, or null in place of one
+    except ValueError:  # rows of different lengths, or a row that is null
         return [_numbers(v) if isinstance(v, list) else math.nan if v is None else v for v in value]
 
 
 def _is_whole(value: list[Any]) -> bool:
-    """Whether these are integers alone, such as the sides of impacts."""
+    """True for a list of integers only, such as the sides of impacts."""
     return bool(value) and all(type(v) is int for v in value)
 
 
@@ -175,7 +174,7 @@ def _is_list(value: Any) -> bool:
 
 
 def _columns(name: str, rows: Any) -> Iterator[tuple[str, Any]]:
-    """A list as one column, four, or sixteen."""
+    """A list as one column, or as several if its entries are lists."""
     first = rows[0] if len(rows) else None
     if first is None or not _is_list(first):
         yield name, rows

@@ -1,4 +1,4 @@
-"""The three requests, whichever way they go."""
+"""The three requests, independent of how they are sent."""
 
 from __future__ import annotations
 
@@ -23,25 +23,25 @@ Columns = Mapping[str, Iterable[float]]
 
 
 class Client(ABC):
-    """What answers requests: a `Service` or the `Program`."""
+    """Base class of `Service` and `Program`."""
 
     def simulate(self, **fields: Unpack[SimulateFields]) -> Answer:
-        """One run. `SimulateFields` has each field with its unit, range and default.
+        """Simulates one run. `SimulateFields` lists the fields with unit, range and default.
 
-        Where it does not come to its end ``answer.status.reason`` is ``max_impacts``, ``deadline``
-        or ``interrupted`` in place of ``tau_end``, and a warning `PartialAnswer` says so. Raises
+        If the run ends early, ``answer.status.reason`` is ``max_impacts``, ``deadline`` or
+        ``interrupted`` instead of ``tau_end``, and the warning `PartialAnswer` is issued. Raises
         `Problem`.
         """
         answer = Answer(self._simulate(body_of(_named(fields))))
         if answer.status.reason != "tau_end":
-            told = f"{answer.status.reason}: {answer.status.message}"
-            warnings.warn(told, PartialAnswer, stacklevel=_caller())
+            message = f"{answer.status.reason}: {answer.status.message}"
+            warnings.warn(message, PartialAnswer, stacklevel=_caller())
         return answer
 
     def sweep(self, **fields: Unpack[SweepFields]) -> Sweep:
-        """The same over one to three parameters: an iterator of points. `SweepFields` has each
-        field. Raises `Problem` at once where the request is at fault, and `Incomplete` behind the
-        last point that came where some did not."""
+        """Simulates runs over one to three parameters; returns an iterator of points. `SweepFields`
+        lists the fields. Raises `Problem` at once for an invalid request, and `Incomplete` after
+        the last received point if others are missing."""
         given = _named(fields)
         indices = given.get("indices")
         if indices is not None:
@@ -55,17 +55,18 @@ class Client(ABC):
         impacts: Columns | Answer | pandas.DataFrame | None = None,
         **fields: Unpack[IdentifyFields],
     ) -> Answer:
-        """Exponents from a measurement. `IdentifyFields` has each field.
+        """Identifies impacts, restitution and exponents from a measurement. `IdentifyFields` lists
+        the fields.
 
-        ``record`` is a file of columns as measuring programs write them, or columns by their names,
-        ``time_s``, ``displacement_m``, ``acceleration_m_s2``; a unit in a name is obeyed.
-        ``impacts`` are columns of impacts in place of a record, as a simulation gives them. Raises
-        `Problem`, and OSError for a file that cannot be read.
+        ``record`` is the path of a text file with columns, or a mapping from names such as
+        ``time_s``, ``displacement_m``, ``acceleration_m_s2`` to columns; the unit in a name is
+        respected. ``impacts``, as in a simulation's answer, replace a record. Raises `Problem`, and
+        OSError for a file that cannot be read.
         """
         given = _named(fields)
         if isinstance(record, (str, os.PathLike)):
             if impacts is not None:
-                raise TypeError("identify takes a record or impacts, not both")
+                raise TypeError("identify accepts either a record or impacts")
             return Answer(self._identify_file(pathlib.Path(record).read_bytes(), _query(given)))
         if record is not None:
             given["record"] = record
@@ -87,14 +88,14 @@ class Client(ABC):
 
 
 def _named(fields: Mapping[str, Any]) -> dict[str, Any]:
-    """By the service's names: a word of Python's own stands with an underscore behind it."""
+    """Fields by the service's names: a Python keyword has a trailing underscore."""
     if "format" in fields:
-        raise TypeError("answers come as objects: there is no format to choose")
+        raise TypeError("answers are objects: format cannot be chosen")
     return {name.removesuffix("_"): value for name, value in fields.items()}
 
 
 def _query(fields: Mapping[str, Any]) -> str:
-    """Fields as in a URL: lists are separated by commas."""
+    """Fields as a URL query; the elements of lists are separated by commas."""
     return urllib.parse.urlencode(
         {name: _text(plain(value)) for name, value in fields.items()}, safe=","
     )
@@ -102,12 +103,12 @@ def _query(fields: Mapping[str, Any]) -> str:
 
 def _text(value: Any) -> str:
     if isinstance(value, dict):
-        raise TypeError("beside a file there is no field that is an object")
+        raise TypeError("with a file, no field can be an object")
     return ",".join(map(_text, value)) if isinstance(value, list) else str(value)
 
 
 def _caller() -> int:
-    """How far up the caller of `simulate` is: the package's functions pass the request on."""
+    """Stack level of the first caller outside this package, for warnings."""
     depth = 1
     while sys._getframe(depth).f_globals.get("__package__") == __package__:
         depth += 1

@@ -1,4 +1,4 @@
-"""Why a request has no answer, or not all of it."""
+"""Errors and warnings of requests."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from typing import Any
 
 @dataclass(frozen=True)
 class FieldError:
-    """A field at fault."""
+    """An invalid field."""
 
     field: str
-    """Its name; of a field within others its path, as in ``axes/0/from``."""
+    """Its name, or its path if nested, such as ``axes/0/from``."""
     value: Any
-    """As it was given."""
+    """The given value."""
     range: list[Any] | None
     """[minimum, maximum], or the choices, or None."""
     detail: str
-    """A sentence."""
+    """Description of the error."""
 
 
 class Problem(Exception):
-    """A request that the service or the program could not answer."""
+    """A request that the service or the program refused or could not answer."""
 
     def __init__(
         self,
@@ -37,39 +37,39 @@ class Problem(Exception):
     ) -> None:
         super().__init__(status, detail)
         self.status = status
-        """As of HTTP, whichever way was asked; 0 where neither said one."""
+        """HTTP status, for the program too; 0 if there is none."""
         self.detail = detail
-        """A sentence."""
+        """Description of the error."""
         self.title = title
         self.errors = errors
-        """Each field at fault."""
+        """The invalid fields."""
         self.lacking = lacking
-        """Of 503: what the service has no more of."""
+        """For 503: the exhausted resource."""
         self.request_id = request_id
-        """By which the service's log names the request."""
+        """Identifies the request in the service's log."""
         self.retry_after = retry_after
-        """Of 503: seconds after which to ask again."""
+        """For 503: seconds to wait before the next attempt."""
 
     def __str__(self) -> str:
-        # Where one field is at fault the document's detail is that field's.
+        # With one invalid field, the document's detail is the field's detail.
         faults = [e.detail for e in self.errors if e.detail != self.detail]
-        told = "; ".join([self.detail, *faults])
-        return f"{self.status}: {told}" if self.status else told
+        text = "; ".join([self.detail, *faults])
+        return f"{self.status}: {text}" if self.status else text
 
 
 class Incomplete(Problem):
-    """A sweep whose points did not all come. Those that came are good; ``missing`` of the sweep
-    are the ``indices`` to ask for."""
+    """A sweep with missing points. The received ones are valid; request the others with
+    ``indices=sweep.missing``."""
 
 
 class PartialAnswer(UserWarning):
-    """A simulation that did not come to its end: its ``status`` says why, and how far it came."""
+    """A simulation that ended early; its ``status`` gives the reason and the time reached."""
 
 
 def problem_of(
     document: object, *, status: int = 0, text: str = "", retry_after: float | None = None
 ) -> Problem:
-    """The problem of a problem document (RFC 9457); of `status` and `text` where it is none."""
+    """Problem from a problem document (RFC 9457), or from `status` and `text` if it is none."""
     if not isinstance(document, Mapping) or "detail" not in document:
         return Problem(status, text.strip() or "no reason was given", retry_after=retry_after)
     return Problem(
@@ -85,6 +85,6 @@ def problem_of(
 
 def _field_error(error: Mapping[str, Any]) -> FieldError:
     pointer = str(error.get("pointer", ""))
-    # RFC 6901 escapes these two in the names that a pointer consists of.
+    # RFC 6901 escapes / and ~ in the names of a pointer.
     field = pointer.removeprefix("/").replace("~1", "/").replace("~0", "~")
     return FieldError(field, error.get("value"), error.get("range"), str(error.get("detail", "")))

@@ -1,4 +1,4 @@
-"""The way to answers by the program `vines`, without a service."""
+"""Client that runs the program `vines`, without a service."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ from ._sweep import Lines
 _COMPLETE = 0
 _USABLE = 3
 
-# The last line of a sweep; how it ended is told by the exit code, with what stderr has to say.
+# The last line of a sweep. It is skipped: the exit code and stderr give the result.
 _DONE = b'{"type":"done"'
 
-# Seconds in which the program ends when it is told to.
+# Time limit in s for the program to end after SIGTERM.
 _STOP = 5.0
 
 
 class Program(Client):
-    """The program, which computes on this machine, without the limits of a service.
+    """Computes on this machine, without the limits of a service.
 
-    ``path`` is that of the program, or its name on the PATH; ``threads`` those of a sweep, 0: one
-    for each core. Requests raise FileNotFoundError where there is none.
+    ``path`` is the program's path, or its name on the PATH; ``threads`` is the number of threads of
+    a sweep, 0: one per core. Requests raise FileNotFoundError if the program is missing.
     """
 
     def __init__(self, path: str | os.PathLike[str] = "vines", threads: int = 0) -> None:
@@ -75,14 +75,14 @@ class Program(Client):
         found = shutil.which(self._path)
         if found is None:
             raise FileNotFoundError(
-                f"there is no program {self._path}: put it on the PATH, name it in VINES_PROGRAM, "
-                "or name a service in VINES_URL"
+                f"program {self._path} was not found: put it on the PATH, name it in "
+                "VINES_PROGRAM, or name a service in VINES_URL"
             )
         return found
 
 
 def _end(code: int, said: IO[bytes]) -> Iterator[dict[str, Any]]:
-    """What the program said when it ended, as a service's stream has it."""
+    """Lines at the end of a service's stream, made from the program's exit code and stderr."""
     said.seek(0)
     text = said.read()
     if code == _COMPLETE:
@@ -93,7 +93,7 @@ def _end(code: int, said: IO[bytes]) -> Iterator[dict[str, Any]]:
         yield {"type": "error", "status": 0, "detail": _sentence(text)}
     else:
         problem = _problem(code, text)
-        # A request at fault is none that broke off.
+        # With a status the request was refused; without one the sweep was interrupted.
         raise problem if problem.status else Incomplete(0, problem.detail)
 
 

@@ -1,4 +1,4 @@
-"""The way to answers by the HTTP service."""
+"""Client of an HTTP service."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ from ._sweep import Lines
 
 
 class Service(Client):
-    """A running service.
+    """Sends requests to a running service.
 
-    ``url`` is its address, as ``http://127.0.0.1:8080``; ``key`` what it asks for where it runs
-    with ``--api-key-file``; ``timeout`` the seconds without a byte after which a request is given up.
-    Requests raise ConnectionError or TimeoutError where it cannot be reached.
+    ``url`` is its address, such as ``http://127.0.0.1:8080``; ``key`` is the API key, for a service
+    with ``--api-key-file``; ``timeout`` is the longest time in s without data. Requests raise
+    ConnectionError or TimeoutError if the service cannot be reached.
     """
 
     def __init__(self, url: str, key: str | None = None, timeout: float = 600) -> None:
         scheme = urllib.parse.urlsplit(url).scheme
         if scheme not in ("http", "https"):
-            raise ValueError(f"{url} is no http:// or https:// address")
+            raise ValueError(f"{url} is not an http:// or https:// address")
         self._url = url.rstrip("/")
         self._key = key
         self._timeout = timeout
         self._opener = urllib.request.build_opener(_NoRedirect)
 
     def __repr__(self) -> str:
-        return f"Service({self._url!r})"  # a key is not for a log
+        return f"Service({self._url!r})"  # without the key, which must not get into logs
 
     def _simulate(self, body: bytes) -> Any:
         return self._answer("/v1/simulate", body)
@@ -49,7 +49,7 @@ class Service(Client):
                 for line in response:
                     yield json.loads(line)
             except (OSError, http.client.HTTPException, ValueError) as broken:
-                raise Incomplete(0, f"the stream broke off: {broken!r}") from broken
+                raise Incomplete(0, f"the stream was interrupted: {broken!r}") from broken
         yield {"type": "error", "status": 0, "detail": "the stream ended early"}
 
     def _answer(self, target: str, body: bytes, kind: str = "application/json") -> Any:
@@ -57,7 +57,7 @@ class Service(Client):
             try:
                 return json.loads(response.read())
             except http.client.HTTPException as broken:
-                raise ConnectionError(f"{self._url}: the answer broke off") from broken
+                raise ConnectionError(f"{self._url}: the answer was interrupted") from broken
 
     def _post(
         self, target: str, body: bytes, kind: str = "application/json"
@@ -77,11 +77,11 @@ class Service(Client):
                 raise TimeoutError(f"{self._url} did not answer in {self._timeout} s") from lost
             raise ConnectionError(f"{self._url} cannot be reached: {lost.reason}") from lost
         except http.client.HTTPException as broken:
-            raise ConnectionError(f"{self._url} is no HTTP service: {broken!r}") from broken
+            raise ConnectionError(f"{self._url} is not an HTTP service: {broken!r}") from broken
 
 
 class _NoRedirect(urllib.request.HTTPRedirectHandler):
-    """The service sends nobody elsewhere; a key would go along."""
+    """Refuses redirects. The service sends none, and the key would be sent to the new address."""
 
     def redirect_request(self, *_: Any) -> None:
         return None

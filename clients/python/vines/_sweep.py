@@ -1,4 +1,4 @@
-"""The points of a sweep, as they come."""
+"""Iteration over the points of a sweep as they arrive."""
 
 from __future__ import annotations
 
@@ -16,35 +16,36 @@ Lines = Generator[dict[str, Any], None, None]
 
 
 class Sweep(Iterator[Answer]):
-    """An iterator of a sweep's points, in the order in which they come: from a service coarse to
-    fine over the axes; ``point.index`` says the place. It raises `Incomplete` where not all of them came.
+    """Iterator of a sweep's points in the order of arrival; a service sends them from coarse to
+    fine over the axes. ``point.index`` is the position in the sweep. Raises `Incomplete` at the end
+    if points are missing.
 
-    Closing it, by ``close()``, by leaving a ``with`` block or by forgetting it, ends the computing.
+    ``close()``, the end of a ``with`` block, or deleting the iterator stops the computation.
     """
 
     def __init__(self, lines: Lines, indices: list[int] | None) -> None:
-        """Reads the first line: raises what the request is at fault for."""
+        """Reads the first line. Raises `Problem` for an invalid request."""
         self._lines = lines
         self.done = 0
-        """Points that have come."""
+        """Number of points received."""
         self.progress: Answer | None = None
-        """The service's latest word: ``done``, ``of``, ``per_second``, ``seconds_left``."""
+        """Latest progress report: ``done``, ``of``, ``per_second``, ``seconds_left``."""
         self.warnings: list[str] = []
-        """Sentences; all of them at the end."""
+        """Sentences; complete only at the end."""
         first = next(lines, None)
         if first is None or first.get("type") != "start":
             lines.close()
-            raise Incomplete(0, "the sweep ended before it began")
+            raise Incomplete(0, "the sweep ended before its first line")
         self.start = Answer(first)
-        """Its first line: ``axes`` with their ``values``, ``parameters`` of the first point."""
+        """First line: ``axes`` with their ``values``, ``parameters`` of the first point."""
         self.warnings.extend(self.start.warnings)
         self._left = dict.fromkeys(range(first["points"]) if indices is None else indices)
         self.total = len(self._left)
-        """Points asked for."""
+        """Number of points requested."""
 
     @property
     def missing(self) -> list[int]:
-        """The indices of the points that have not come, for the field ``indices``."""
+        """Indices of the points not received, for the field ``indices``."""
         return list(self._left)
 
     def __next__(self) -> Answer:
@@ -62,24 +63,24 @@ class Sweep(Iterator[Answer]):
                     self._end(int(line.get("status", 0)), str(line.get("detail", "")))
                 case "done":
                     self._end()
-        # Nothing is left of a sweep that was closed or has been read to its end.
+        # The sweep was closed or has been read to its end.
         raise StopIteration
 
     def _end(self, status: int = 0, detail: str = "") -> None:
         self.close()
         if not self._left and not status:
             return
-        came = f"{self.done} of {self.total} points came"
-        raise Incomplete(status, f"{detail}; {came}" if detail else came)
+        received = f"received {self.done} of {self.total} points"
+        raise Incomplete(status, f"{detail}; {received}" if detail else received)
 
     def close(self) -> None:
-        """Ends the computing; no more points come."""
+        """Stops the computation; no more points arrive."""
         self._lines.close()
 
     def frame(self) -> pandas.DataFrame:
-        """The points that are still to come, all of them, as a pandas DataFrame by their index: a
-        row each, four exponents as ``lambda1`` to ``lambda4``. Objects and lists of other lengths
-        stay what they are. ImportError without pandas."""
+        """Waits for all remaining points and returns them as a pandas DataFrame sorted by index,
+        one row per point, with the four exponents as columns ``lambda1`` to ``lambda4``. Objects
+        and other lists are kept unchanged. Raises ImportError without pandas."""
         rows = [_row(point) for point in self]
         frame = frame_of(rows)
         return frame.set_index("index").sort_index() if rows else frame

@@ -1,30 +1,30 @@
 // CBOR (RFC 8949), lists of numbers as typed arrays (RFC 8746).
 #include <bit>
 
-#include "api/broken_off.hpp"
+#include "api/cancellation.hpp"
+#include "api/format/answer_list.hpp"
 #include "api/format/encode.hpp"
-#include "api/format/list.hpp"
 
 namespace vines::api {
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little);  // as the tags say
+static_assert(std::endian::native == std::endian::little);  // required by the tags below
 
-// RFC 8949, 3.1: what kind of item it is.
+// RFC 8949, 3.1: the item's major type.
 enum class Major : unsigned { bytes = 2, array = 4, object = 5 };
 
 // RFC 8746, 2.1.
 constexpr std::uint8_t float64_tag = 86, int32_tag = 78;
 constexpr char tag_of_one_byte = '\xd8';
 
-// What an answer takes without its lists, about.
+// Approximate size of an answer without its lists, in bytes.
 constexpr std::size_t room_beside_lists = 8192;
 
-/// Writes one value after the other, and frees each list that is written.
+/// Encodes values and frees each list once it is encoded.
 class CborBytes {
 public:
-    CborBytes(const std::function<bool()>& gives_up, std::size_t room) : wanted_(gives_up) {
+    CborBytes(const std::function<bool()>& gives_up, std::size_t room) : cancel_(gives_up) {
         bytes_.reserve(room);
     }
 
@@ -36,8 +36,8 @@ public:
                 put(part);
             }
         } else if (value.is_binary()) {
-            wanted_.look();
-            put_list(*List::of(value));
+            cancel_.poll();
+            put_list(*AnswerList::of(value));
             value = nullptr;
         } else if (value.is_array() && !value.empty() && value[0].is_object()) {
             put_head(Major::array, value.size());
@@ -49,7 +49,7 @@ public:
     std::string end() { return std::move(bytes_); }
 
 private:
-    /// The shortest form (3.1, 4.2.1).
+    /// The shortest encoding of a count (RFC 8949, 3.1, 4.2.1).
     void put_head(Major major, std::uint64_t count) {
         const unsigned kind = static_cast<unsigned>(major) << 5;
         if (count < 24) {
@@ -72,19 +72,19 @@ private:
         std::uint8_t* const end = reinterpret_cast<std::uint8_t*>(bytes_.data()) + bytes_.size();
         nan_for_null({end - numbers.size(), numbers.size()});
     }
-    /// An array with an item for each so many bytes.
+    /// An array of `bytes.size() / size` items.
     template <class PutItem>
     void put_items(std::span<const std::uint8_t> bytes, std::size_t size, PutItem put_item) {
         put_head(Major::array, bytes.size() / size);
         for (std::size_t at = 0; at < bytes.size(); at += size) {
-            wanted_.step();
+            cancel_.step();
             put_item(bytes.subspan(at, size));
         }
     }
     void put_rows(std::span<const std::uint8_t> rows) {
         put_items(rows, sizeof(Quadruple), [this](auto row) { put_doubles(row); });
     }
-    void put_list(const List& list) {
+    void put_list(const AnswerList& list) {
         switch (list.packing()) {
             case Packed::numbers: return put_doubles(list.bytes());
             case Packed::quadruples: return put_rows(list.bytes());
@@ -99,16 +99,16 @@ private:
         }
     }
 
-    StillWanted wanted_;
+    CancelCheck cancel_;
     std::string bytes_;
 };
 
 }  // namespace
 
 std::string cbor_bytes(Json answer, const std::function<bool()>& gives_up) {
-    // Four bytes stand before each row of a list, beside its 32.
+    // Each 32-byte row of a list has a head of 4 bytes.
     std::size_t room = room_beside_lists;
-    visit_lists(answer, [&room](const std::string&, const List& list) {
+    visit_lists(answer, [&room](const std::string&, const AnswerList& list) {
         room += list.bytes().size() / 8 * 9;
     });
     CborBytes bytes(gives_up, room);

@@ -1,40 +1,43 @@
-// CSV: the one table of an answer.
+// CSV: the table of an answer.
+
 #include <fmt/format.h>
 
 #include <array>
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <string>
+#include <utility>
 
-#include "api/broken_off.hpp"
+#include "api/cancellation.hpp"
+#include "api/format/answer_list.hpp"
 #include "api/format/encode.hpp"
-#include "api/format/list.hpp"
-#include "api/number_text.hpp"
+#include "api/json_text.hpp"
 #include "api/problem.hpp"
-#include "api/schema/joined.hpp"
+#include "api/schema/field.hpp"
 
 namespace vines::api {
 
 namespace {
 
-struct ToldColumn {
+struct TableColumn {
     std::string name;
-    List list;
+    AnswerList list;
 };
 
 /// An object of lists of one length.
-struct ToldTable {
+struct Table {
     std::string path;
-    std::vector<ToldColumn> columns;
+    std::vector<TableColumn> columns;
 };
 
-/// The object itself, where it is one, and those in it.
-void add_tables(const Json& object, const std::string& path, std::vector<ToldTable>& tables) {
-    ToldTable table{.path = path, .columns = {}};
+/// Adds the object, if it is a table, and the tables in it.
+void add_tables(const Json& object, const std::string& path, std::vector<Table>& tables) {
+    Table table{.path = path, .columns = {}};
     bool is_table = !path.empty() && !object.empty();
     for (const auto& [name, value] : object.items()) {
         if (value.is_object()) add_tables(value, path.empty() ? name : path + "." + name, tables);
-        std::optional<List> list = List::of(value);
+        std::optional<AnswerList> list = AnswerList::of(value);
         is_table = is_table && list &&
                    (table.columns.empty() || list->size() == table.columns[0].list.size());
         if (is_table) table.columns.push_back({name, std::move(*list)});
@@ -42,24 +45,24 @@ void add_tables(const Json& object, const std::string& path, std::vector<ToldTab
     if (is_table) tables.push_back(std::move(table));
 }
 
-/// Problem 422 unless there is one.
-ToldTable only_table(const Json& answer) {
-    std::vector<ToldTable> tables;
+/// The table of an answer. Problem 422 unless it has exactly one.
+Table only_table(const Json& answer) {
+    std::vector<Table> tables;
     add_tables(answer, "", tables);
     if (tables.size() == 1) return std::move(tables[0]);
     std::vector<std::string> paths;
-    for (const ToldTable& t : tables) paths.push_back(t.path);
+    for (const Table& t : tables) paths.push_back(t.path);
     const std::string which =
         tables.empty() ? "none" : fmt::format("{}: {}", tables.size(), joined(paths));
     refuse(
         {{"/fields", nullptr, Json(paths),
-          "CSV is one table, lists of one length, which fields names, as in fields=impacts or "
-          "fields=matrices.tau,matrices.T; this answer has " +
+          "CSV is one table, lists of equal length, selected by fields, for example fields=impacts "
+          "or fields=matrices.tau,matrices.T; this answer has " +
               which}});
 }
 
 /// lambda1 ... lambda4 of four numbers, J11 ... J44 of a matrix.
-void put_csv_names(const ToldColumn& column, std::string& text) {
+void put_csv_names(const TableColumn& column, std::string& text) {
     const std::size_t width = column.list.width();
     for (std::size_t k = 0; k < width; ++k) {
         if (k > 0) text += ',';
@@ -85,7 +88,7 @@ void put_csv_word(const std::string& word, std::string& text) {
     text += '"';
 }
 
-void put_csv_entry(const List& list, std::size_t row, std::string& text) {
+void put_csv_entry(const AnswerList& list, std::size_t row, std::string& text) {
     if (list.packing() == Packed::no) return put_csv_word(list.words()[row], text);
     const std::uint8_t* const entry = list.bytes().data() + row * entry_size(list.packing());
     if (list.packing() == Packed::flags) {
@@ -107,25 +110,67 @@ void put_csv_entry(const List& list, std::size_t row, std::string& text) {
 }  // namespace
 
 std::string csv_text(const Json& answer, const std::function<bool()>& gives_up) {
-    const ToldTable table = only_table(answer);
+    const Table table = only_table(answer);
     std::string text;
-    for (const ToldColumn& column : table.columns) {
+    for (const TableColumn& column : table.columns) {
         if (!text.empty()) text += ',';
         put_csv_names(column, text);
     }
     text += '\n';
-    StillWanted wanted(gives_up);
+    CancelCheck cancel(gives_up);
     for (std::size_t row = 0; row < table.columns[0].list.size(); ++row) {
-        wanted.step();
+        cancel.step();
         const std::size_t begins = text.size();
-        for (const ToldColumn& column : table.columns) {
+        for (const TableColumn& column : table.columns) {
             if (&column != table.columns.data()) text += ',';
             put_csv_entry(column.list, row, text);
         }
-        if (text.size() == begins) text += "\"\"";  // readers leave an empty line out
+        if (text.size() == begins) text += "\"\"";  // CSV readers skip an empty line
         text += '\n';
     }
     return text;
+}
+
+namespace {
+
+// Lists of four are numbered: the exponents, their statuses and errors.
+constexpr std::size_t exponents = 4;
+
+/// Integers and flags as text, which a list of doubles would not preserve.
+Json as_cell(const Json& value) {
+    if (value.is_boolean()) return value.get<bool>() ? "true" : "false";
+    return value.is_number_integer() ? Json(std::to_string(value.get<long long>())) : value;
+}
+
+void put(Json& columns, const std::string& name, std::size_t row, const Json& value) {
+    Json& column = columns[name];
+    while (column.size() < row) column.push_back(nullptr);
+    column.push_back(as_cell(value));
+}
+
+/// A point's values, and those of nested objects.
+void put_line(Json& columns, const Json& object, const std::string& before, std::size_t row) {
+    for (const auto& [name, value] : object.items()) {
+        if (name == "type" || name == "section") continue;
+        if (value.is_object()) {
+            put_line(columns, value, before + name + ".", row);
+        } else if (!value.is_array()) {
+            put(columns, before + name, row, value);
+        } else if (value.size() == exponents && !value[0].is_structured()) {
+            for (std::size_t k = 0; k < exponents; ++k)
+                put(columns, before + name + std::to_string(k + 1), row, value[k]);
+        }
+    }
+}
+
+}  // namespace
+
+Json sweep_table(const std::vector<Json>& points) {
+    Json columns = Json::object();
+    for (std::size_t row = 0; row < points.size(); ++row) put_line(columns, points[row], "", row);
+    for (auto& [name, column] : columns.items())
+        while (column.size() < points.size()) column.push_back(nullptr);
+    return {{"points", std::move(columns)}};
 }
 
 }  // namespace vines::api

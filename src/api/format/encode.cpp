@@ -2,17 +2,17 @@
 
 #include <utility>
 
-#include "api/broken_off.hpp"
+#include "api/cancellation.hpp"
 
 namespace vines::api {
 
 const FormatName& name_of(Format format) {
-    return format_names[static_cast<std::size_t>(format)];  // they stand in this order
+    return format_names[static_cast<std::size_t>(format)];  // in the order of the enum
 }
 
 namespace {
 
-// Of a provenance, about, beside what was asked for.
+// Approximate size of a provenance without the request, in bytes.
 constexpr std::size_t room_for_provenance = 1024;
 
 std::string sealed_text(
@@ -20,9 +20,9 @@ std::string sealed_text(
     const std::function<bool()>& gives_up) {
     std::string text;
     text.reserve(room_for_lists(answer) + room_for_provenance);
-    const StillWanted wanted(gives_up);
+    const CancelCheck cancel(gives_up);
     write_sealed(answer, provenance, [&](std::string_view piece) {
-        wanted.look();
+        cancel.poll();
         text += piece;
     });
     return text;

@@ -1,9 +1,10 @@
-// An answer as bytes, in the format that its reader wants.
+// Encodes an answer as JSON, CSV, CBOR or npz.
 #pragma once
 
 #include <array>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "api/provenance.hpp"
 #include "api/schema/json.hpp"
@@ -12,7 +13,7 @@ namespace vines::api {
 
 enum class Format { json, csv, cbor, npz };
 
-/// What a format is called in a request, and in the headers Accept and Content-Type.
+/// A format's name in requests, and its media type in the headers Accept and Content-Type.
 struct FormatName {
     Format format;
     const char* word;
@@ -25,24 +26,28 @@ inline constexpr std::array<FormatName, 4> format_names = {
      {Format::npz, "npz", "application/x-npz"}}};
 const FormatName& name_of(Format format);
 
-/// All lists are there. With its provenance, which has a sha256 in JSON alone, but for CSV. Problem
-/// 422 where the format cannot hold this answer. gives_up(): asked now and then while it is
-/// written; true: BrokenOff.
+/// Encodes an answer without streamed lists. Its provenance is added, except in CSV; only JSON has
+/// the sha256. Problem 422 where the format cannot hold this answer. gives_up() is called now and
+/// then; throws Cancelled once it returns true.
 std::string encoded(
     Json answer, Format format, const std::optional<Provenance>& provenance,
     const std::function<bool()>& gives_up = {});
 
-/// One table: lists of one length in one object, a column each; of four numbers or a matrix
-/// several, with the number of each behind its name. Null is an empty cell. Problem 422 where the
-/// answer has none, or more than one, which it names.
+/// One table: an object of lists of equal length, one column each. A list of exponents has four
+/// columns, a list of matrices sixteen; their numbers follow the name. Null is an empty cell.
+/// Problem 422 naming the tables if the answer does not have exactly one.
 std::string csv_text(const Json& answer, const std::function<bool()>& gives_up = {});
 
-/// Lists of numbers as typed arrays (float64, int32, little-endian), null in them as NaN; of four
-/// numbers or a matrix arrays of such.
+/// CBOR with lists of numbers as typed arrays (float64, int32, little-endian) and null in them as
+/// NaN. Lists of exponents or matrices are arrays of typed arrays.
 std::string cbor_bytes(Json answer, const std::function<bool()>& gives_up = {});
 
-/// A ZIP archive: for each list PATH.npy (float64, int32, bool or text), null in it as NaN, and
+/// A ZIP archive: PATH.npy for each list (float64, int32, bool or text; null is NaN), and
 /// answer.json with the rest.
 std::string npz_bytes(Json answer, const std::function<bool()>& gives_up = {});
+
+/// {points: {index, b, lambda1, ..., second_start.x_max, ...}}: lists of equal length for
+/// csv_text(), null where a point lacks the value. Sections and lists of starts are left out.
+Json sweep_table(const std::vector<Json>& points);
 
 }  // namespace vines::api

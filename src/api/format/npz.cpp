@@ -1,14 +1,14 @@
-// An archive of arrays as NumPy reads it (numpy.load): a .npy file for each list of the answer, and
-// answer.json with what is none.
+// The .npz format of NumPy (numpy.load): a .npy file for each list of the answer, and answer.json
+// with the rest.
 #include <fmt/format.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <cstring>
 
-#include "api/broken_off.hpp"
+#include "api/cancellation.hpp"
+#include "api/format/answer_list.hpp"
 #include "api/format/encode.hpp"
-#include "api/format/list.hpp"
 #include "api/json_text.hpp"
 
 namespace vines::api {
@@ -19,14 +19,14 @@ void put_little(std::string& to, std::uint64_t number, int bytes) {
     for (int k = 0; k < bytes; ++k) to += static_cast<char>(number >> (8 * k) & 0xff);
 }
 
-/// A ZIP archive of files that are stored as they are (APPNOTE, 4.3).
+/// A ZIP archive of uncompressed files (PKWARE APPNOTE, 4.3).
 class Archive {
 public:
     void add(const std::string& name, const std::string& content) {
         const auto crc = ::crc32(
             0, reinterpret_cast<const Bytef*>(content.data()), static_cast<uInt>(content.size()));
         std::string common;
-        put_little(common, 20, 2);          // version that is needed
+        put_little(common, 20, 2);          // version needed to extract
         put_little(common, 0x0800, 2);      // names in UTF-8
         put_little(common, 0, 2);           // stored
         put_little(common, 0x00210000, 4);  // 1980-01-01: the same answer has the same bytes
@@ -60,7 +60,7 @@ private:
     std::size_t number_ = 0;
 };
 
-/// The NPY format, version 1.0: its header is filled up to a multiple of 64 bytes.
+/// The NPY format, version 1.0. The header is padded to a multiple of 64 bytes.
 std::string npy(const std::string& type, const std::string& shape, std::string_view data) {
     std::string header =
         fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': {}, }}", type, shape);
@@ -72,7 +72,7 @@ std::string npy(const std::string& type, const std::string& shape, std::string_v
     return file + header + '\n' + std::string(data);
 }
 
-std::string shape_of(const List& list) {
+std::string shape_of(const AnswerList& list) {
     switch (list.packing()) {
         case Packed::quadruples: return fmt::format("({}, 4)", list.size());
         case Packed::matrices: return fmt::format("({}, 4, 4)", list.size());
@@ -80,8 +80,8 @@ std::string shape_of(const List& list) {
     }
 }
 
-/// Words of ASCII, as all are here, in UCS-4.
-std::string npy_of_words(const List& list) {
+/// Strings in UCS-4. All strings of lists are ASCII.
+std::string npy_of_words(const AnswerList& list) {
     std::size_t longest = 1;
     for (const std::string& word : list.words()) longest = std::max(longest, word.size());
     std::string data;
@@ -91,7 +91,7 @@ std::string npy_of_words(const List& list) {
     return npy(fmt::format("<U{}", longest), shape_of(list), data);
 }
 
-std::string npy_of(const List& list) {
+std::string npy_of(const AnswerList& list) {
     if (list.packing() == Packed::no) return npy_of_words(list);
     const auto file = [&list](const char* type, std::span<const std::uint8_t> bytes) {
         return npy(
@@ -108,7 +108,7 @@ std::string npy_of(const List& list) {
     }
 }
 
-/// What is in arrays of its own.
+/// Removes the lists, which have their own files.
 void take_out_lists(Json& object) {
     std::vector<std::string> lists;
     for (auto& [name, value] : object.items()) {
@@ -121,10 +121,10 @@ void take_out_lists(Json& object) {
 }  // namespace
 
 std::string npz_bytes(Json answer, const std::function<bool()>& gives_up) {
-    const StillWanted wanted(gives_up);
+    const CancelCheck cancel(gives_up);
     Archive archive;
-    visit_lists(answer, [&](const std::string& path, const List& list) {
-        wanted.look();
+    visit_lists(answer, [&](const std::string& path, const AnswerList& list) {
+        cancel.poll();
         if (path.find('.') != std::string::npos) archive.add(path + ".npy", npy_of(list));
     });
     take_out_lists(answer);

@@ -1,17 +1,18 @@
-#include "api/openapi/examples.hpp"
-
-#include "api/answers/asked.hpp"
-
+// Examples: requests that are valid as they stand, and real responses, copied from the service.
 #include <algorithm>
 #include <iterator>
 #include <string_view>
+
+#include "api/format/answer_request.hpp"
+#include "api/openapi/parts.hpp"
 
 namespace vines::api::document {
 
 namespace {
 
 struct Example {
-    std::string_view of, json;
+    std::string_view name;  ///< of the operation or the schema
+    std::string_view json;
 };
 
 constexpr Example requests[] = {
@@ -19,24 +20,24 @@ constexpr Example requests[] = {
     {"manifold_by_query", R"({"preset": "fig11", "points": 5})"},
     {"simulate", R"({
         "figure": {
-            "summary": "energies of the paper's Fig. 11",
+            "summary": "energies in Fig. 11 of the paper",
             "value": {"preset": "fig11", "include": ["energy"]}},
         "machine": {
             "summary": "a platform of 12 kg with an absorber of 1 % of its mass, in SI",
             "value": {"m1": 12, "f0": 14, "damping_ratio": 0.006, "mass_ratio": 0.01, "F": 0.0004,
                 "f": 14, "R": 0.4, "b": 0.03, "include": ["impacts", "exponents", "regime"]}},
         "perturbed": {
-            "summary": "beside a run that starts a little off",
+            "summary": "two runs with slightly different starts",
             "value": {"b": 0.022, "tau_end": 400, "perturbation": {"size": 1e-8}}}})"},
     {"manifold", R"({
-        "default": {"summary": "of Table 1", "value": {"points": 3}}})"},
+        "default": {"summary": "system of Table 1", "value": {"points": 3}}})"},
     {"sweep", R"({
         "half-widths": {
-            "summary": "four half-widths of the cavity",
+            "summary": "four clearances",
             "value": {"base": {"damping": "closed_form"}, "cycles": 500,
                 "axes": [{"parameter": "b", "from": 0.006, "to": 0.015, "count": 4}]}},
         "worst motion": {
-            "summary": "the largest motion between 13 and 15 Hz, whatever the start",
+            "summary": "the largest motion between 13 and 15 Hz over all starts",
             "value": {"base": {"m1": 12, "f0": 14, "damping_ratio": 0.006, "mass_ratio": 0.01,
                 "F": 0.0004, "R": 0.4, "b": 0.03}, "starts": "default set",
                 "reduce": "max over f", "cycles": 200,
@@ -163,17 +164,17 @@ constexpr Example answers[] = {
         [108.00058474171746], "time_start_s": [1.403385], "time_end_s": [2.058772]}, "duration":
         34.380776128740806, "window_s": [1.403385, 2.058772]}, "slope": {"lambda1": null, "low":
         null, "high": null}, "verdict": "not_decided", "verdict_reason":
-        "the record is too short to say: the slope's 90 % interval holds the oscillator's )json"
-     R"json(own damping zeta, or there are too few impacts (24 for chaotic; for regular )json"
-     R"json(200, or 80 whose jumps are alike: a chaotic motion may be in step for a )json"
-     R"json(while)", "warnings": []})json"},
+        "the record is too short for a verdict: the slope's 90 % interval contains the )json"
+     R"json(oscillator's own damping zeta, or there are too few impacts (chaotic needs 24; )json"
+     R"json(regular needs 200, or 80 with similar jumps, since a chaotic motion can be )json"
+     R"json(synchronised for a while)", "warnings": []})json"},
     {"Version", R"json(
         {"name": "vines", "version": "0.2.0", "commit": "fcd41c5a1b2c", "compiler": "g++ 12.2.0"}
     )json"},
     {"Status", R"({"status": "ok"})"},
 };
 
-/// Answers that tell what they were made of.
+/// Responses with provenance, which is made here: it holds the commit.
 struct SealedAnswer {
     const char *schema, *operation, *route;
 };
@@ -183,9 +184,9 @@ constexpr SealedAnswer sealed_answers[] = {
     {"Identification", "identify", "/v1/identify"}};
 
 template <std::size_t n>
-Json example_of(const Example (&table)[n], std::string_view of) {
+Json example_of(const Example (&table)[n], std::string_view name) {
     for (const Example& example : table)
-        if (example.of == of) return Json::parse(example.json);
+        if (example.name == name) return Json::parse(example.json);
     return nullptr;
 }
 
@@ -200,7 +201,8 @@ Json answer_example(const char* schema) {
         [schema](const SealedAnswer& answer) { return answer.schema == std::string_view(schema); });
     if (sealed == std::end(sealed_answers)) return example;
     const Json request = request_example(sealed->operation).begin()->at("value");
-    const Asked asked = read_asked(sealed->route, request, {request.dump(), false});
+    const AnswerRequest asked =
+        read_answer_request(sealed->route, request, {request.dump(), false});
     example["provenance"] = describe(asked.provenance, sha256(example.dump()));
     return example;
 }

@@ -1,33 +1,32 @@
 // The parts `exponents` and `windows` of a simulation, and `exponents` of a measurement.
-#include "api/openapi/exponents.hpp"
-
-#include "api/openapi/schemas.hpp"
-#include "api/openapi/twins.hpp"
-#include "api/openapi/words.hpp"
+#include "api/openapi/parts.hpp"
 
 namespace vines::api::document {
 
 Json four_exponents() { return list_of(or_null(number()), 4); }
 
-Json four_statuses() { return list_of(word_of_any<Status>(), 4); }
+Json four_statuses() { return list_of(enum_schema<Status>(), 4); }
 
 Keys final_keys() {
     return {
         {"final", four_exponents(),
-         "four exponents at the window's end, descending, per unit of tau"},
+         "four exponents at the end of the window, descending, per unit of tau"},
         {"status", four_statuses(),
-         "of each: ok, minus_infinity (rank was lost at a stick or by R = 0), not_converged"}};
+         "for each exponent: ok, minus_infinity (a sticking phase or R = 0 reduced the rank), "
+         "not_converged"}};
 }
 
 namespace {
 
-/// Of a window of a run with its histories, of one of `windows` without, of a measurement.
+/// The three kinds of windows: of a run, with histories; an entry of `windows`, without; of a
+/// measurement.
 enum class Of { run, windows, measurement };
 
 Keys history_keys() {
     Keys keys = {{"tau", numbers(), "every impact, or every second, fourth, ..."}};
     for (const char* name : {"lambda1", "lambda2", "lambda3", "lambda4"})
-        keys.push_back({name, list_of(or_null(number())), "of the window up to there"});
+        keys.push_back(
+            {name, list_of(or_null(number())), "exponent from the window's start to tau"});
     return keys;
 }
 
@@ -36,31 +35,35 @@ Keys estimator_keys(Of of, const Keys& of_history = {}) {
     if (of != Of::measurement)
         keys.push_back(
             {"slope", or_null(number()),
-             "how lambda1(tau) tau grows over tau without the first tenth of the impacts; null of "
-             "fewer than 24 impacts, or where lambda1 is not converged"});
+             "slope of lambda1(tau) tau over tau, without the first tenth of the impacts; null "
+             "with fewer than 24 impacts, or if lambda1 is not converged"});
     if (of != Of::windows)
-        keys.push_back({"history", object_of(history_keys() + of_history), "of each up to there"});
+        keys.push_back(
+            {"history", object_of(history_keys() + of_history),
+             "each exponent as a function of time"});
     return keys;
 }
 
 Json qr(Of of) {
     return object_of(
         estimator_keys(of) +
-        Keys{{"standard_error", four_exponents(), "of each: its standard error"}});
+        Keys{{"standard_error", four_exponents(), "standard error of each exponent"}});
 }
 
-/// Of a measurement that falls into stretches it has a window of its own.
+/// The window of one estimator: a record with gaps has several stretches.
 Keys own_window(Of of) {
     if (of != Of::measurement) return {};
-    return {{"window", or_null(interval()), "of the longest stretch"}};
+    return {{"window", or_null(interval()), "the longest stretch"}};
 }
 
 Json raw_product(Of of) {
     const Keys floors = {
-        {"rounding_floor", list_of(or_null(number())), "of the window up to there"}};
+        {"rounding_floor", list_of(or_null(number())),
+         "rounding floor from the window's start to tau"}};
     return object_of(
         estimator_keys(of, floors) + own_window(of) +
-        Keys{{"rounding_floor", or_null(number()), "below which all is rounding"}});
+        Keys{
+            {"rounding_floor", or_null(number()), "exponents below this value are rounding only"}});
 }
 
 Keys window_keys() {
@@ -68,9 +71,10 @@ Keys window_keys() {
         {"window", or_null(interval()),
          "from the first impact at or after tau_s to the last at or before tau_e; null without an "
          "impact"},
-        {"impacts", whole(), "in it"},
+        {"impacts", whole(), "number of impacts in the window"},
         {"sum_rule_residual", or_null(number()),
-         "by how much qr misses, or may miss, the sum rule"}};
+         "error of qr in the sum rule of the exponents, or the bound of its rounding errors if "
+         "that exceeds 1e-6"}};
 }
 
 Keys estimators(Of of) {
@@ -87,19 +91,22 @@ Keys estimators(Of of) {
 Keys verdict_keys() {
     return {
         optional(
-            {"verdict", word_of_any<Verdict>(),
-             "chaotic, regular, not_decided, or null where there is nothing to judge; with qr, as "
-             "the next two"}),
+            {"verdict", enum_schema<Verdict>(),
+             "chaotic, regular, not_decided, or null if there is no motion to judge; present with "
+             "qr, as the next two keys"}),
         optional({"verdict_sigmas", or_null(number()), "lambda1 over its standard error"}),
-        optional({"verdict_reason", text(), "what the verdict rests on, a sentence"})};
+        optional({"verdict_reason", text(), "reason for the verdict, a sentence"})};
 }
 
 Keys stretch_keys() {
-    const Json stretches =
-        object_of({{"tau_start", numbers(), "of each"}, {"tau_end", numbers(), "of each"}});
+    const Json stretches = object_of(
+        {{"tau_start", numbers(), "start of each stretch"},
+         {"tau_end", numbers(), "end of each stretch"}});
     return {
-        optional({"duration", number(), "of all known stretches together, in tau"}),
-        optional({"stretches", stretches, "those without an impact left out, or a gap"})};
+        optional({"duration", number(), "total length of the stretches, in tau"}),
+        optional(
+            {"stretches", stretches,
+             "the parts of the record without a gap and without an excluded impact"})};
 }
 
 }  // namespace
@@ -107,7 +114,7 @@ Keys stretch_keys() {
 void add_exponents(Json& schemas) {
     schemas["Exponents"] = with_si(object_of(window_keys() + verdict_keys() + estimators(Of::run)));
     schemas["WindowExponents"] = with_si(object_of(
-        Keys{{"asked", interval(), "the window as asked for"}} + window_keys() + verdict_keys() +
+        Keys{{"asked", interval(), "requested window"}} + window_keys() + verdict_keys() +
         estimators(Of::windows)));
     schemas["MeasuredExponents"] =
         with_si(object_of(window_keys() + estimators(Of::measurement) + stretch_keys()));

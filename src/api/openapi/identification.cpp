@@ -1,10 +1,5 @@
-// The answer of /v1/identify.
-#include "api/openapi/exponents.hpp"
-#include "api/openapi/schemas.hpp"
-#include "api/openapi/systems.hpp"
-#include "api/openapi/twins.hpp"
-#include "api/openapi/words.hpp"
-#include "api/schema/tables.hpp"
+// The response of /v1/identify.
+#include "api/openapi/parts.hpp"
 
 namespace vines::api::document {
 
@@ -12,42 +7,44 @@ namespace {
 
 Json signal() {
     const Json forcing = object_of(
-        {{"f", number(), "by that channel, Hz"},
-         {"F", number(), "amplitude of the base, m, or of one that would act as the force does"},
+        {{"f", number(), "forcing frequency in that channel, Hz"},
+         {"F", number(),
+          "amplitude of the base, m; for a force, that of the equivalent base motion"},
          {"phase", number(),
-          "by which the oscillator's motion shows the forcing later than the channel, rad"}});
+          "phase lag of the forcing in the oscillator's motion after that in the channel, rad"}});
     return object_of(
-        {{"samples", whole(), "number of them"},
-         {"sampling_rate", number(), "Hz"},
-         {"noise_displacement", or_null(number()), "standard deviation of what the fit leaves, m"},
-         {"noise_acceleration", or_null(number()),
-          "standard deviation of what the fit leaves, m/s^2"},
+        {{"samples", whole(), "number of samples"},
+         {"sampling_rate", number(), "sampling rate, Hz"},
+         {"noise_displacement", or_null(number()), "standard deviation of the residuals, m"},
+         {"noise_acceleration", or_null(number()), "standard deviation of the residuals, m/s^2"},
          {"misfit",
           object_of(
-              {{"displacement", or_null(number()), "1 if all is explained"},
-               {"acceleration", or_null(number()), "1 if all is explained"}}),
-          "what is left over what of it is noise, of any colour, and no missed motion"},
+              {{"displacement", or_null(number()), "1 if the model explains all motion"},
+               {"acceleration", or_null(number()), "1 if the model explains all motion"}}),
+          "residuals over their noise part: the noise can have any colour, the remainder is "
+          "motion that the model does not explain"},
          {"pulse_s", number(),
-          "length of the pulse by which an impact shows in the acceleration; 0 where too few are "
-          "seen"},
+          "length of the pulse of an impact in the acceleration; 0 if too few pulses are visible"},
          {"pulse_delay_s", or_null(number()),
-          "from the impact to its pulse's highest point; null where too few are seen"},
+          "time from an impact to the peak of its pulse; null if too few pulses are visible"},
          {"pulse_spoils_s", interval(),
-          "from when to when, about an impact, the acceleration shows a pulse and its ringing"},
-         {"pulses_unseen", whole(), "impacts that no pulse shows, but a kink of the displacement"},
-         {"G", number(), "of the forcing, m"},
+          "interval around an impact in which pulse and ringing spoil the acceleration"},
+         {"pulses_unseen", whole(),
+          "impacts without a visible pulse, found by a kink of the displacement"},
+         {"G", number(), "amplitude of the base over epsilon, m"},
          {"force_sin", number(),
           "the forcing is force_sin sin(Omega tau) + force_cos cos(Omega tau), m"},
-         {"force_cos", number(), "of the forcing, m"},
-         {"forcing", or_null(forcing), "null without a channel of the base or of a force"}});
+         {"force_cos", number(), "see force_sin, m"},
+         {"forcing", or_null(forcing),
+          "forcing by the channel of the base or of a force; null without one"}});
 }
 
-/// What can be fixed is what is fitted.
+/// Every fitted quantity can be fixed: the keys are the choices of `fixed`.
 Json fitted() {
     const Json value = object_of(
         {{"value", or_null(number()), "in SI"},
-         {"standard_error", or_null(number()), "null of what is fixed"},
-         {"fixed", flag(), "taken as given"}});
+         {"standard_error", or_null(number()), "null if fixed"},
+         {"fixed", flag(), "true: the given value is used, not fitted"}});
     Keys keys;
     for (const std::string& name : find(identify_fields(), "fixed")->choices)
         keys.push_back({name, value, ""});
@@ -58,64 +55,64 @@ Keys impact_keys() {
     const Json some = list_of(or_null(number()));
     return {
         {"x", some, "displacement, m"},
-        {"x_dot_before", some, "from the fit"},
-        {"x_dot_after", some, "from the fit"},
-        {"x_ddot_before", some, "from the fit"},
-        {"y_dot_before", some, "from the flights, eq. (43)"},
-        {"y_dot_after", some, "from the flights, eq. (43)"},
-        {"R", some, "from eq. (4); null at the first and the last"},
-        {"momentum_error", some, "of x' + epsilon y', over the median jump of x'"},
+        {"x_dot_before", some, "velocity of the oscillator, from the fit"},
+        {"x_dot_after", some, "velocity of the oscillator, from the fit"},
+        {"x_ddot_before", some, "acceleration of the oscillator, from the fit"},
+        {"y_dot_before", some, "velocity of the ball, from its flights, eq. (43)"},
+        {"y_dot_after", some, "velocity of the ball, from its flights, eq. (43)"},
+        {"R", some, "restitution coefficient, eq. (4); null for the first and the last impact"},
+        {"momentum_error", some, "error of x' + epsilon y', over the median jump of x'"},
         {"status", list_of(text()),
-         "ok, R is not known, hidden, or why it is left out of the exponents"}};
+         "ok, R is not known, hidden, or the reason why the exponents exclude the impact"}};
 }
 
 Json identified_impacts() {
     return object_of(
-        Keys{{"tau", numbers(), "moment"}, {"side", list_of(side()), "wall"}} + impact_keys());
+        Keys{{"tau", numbers(), "time"}, {"side", list_of(side()), "wall"}} + impact_keys());
 }
 
 Json restitution() {
     const Json wall = object_of(
-        {{"R", or_null(number()), "fitted; of a list of impacts their median"},
-         {"standard_error", or_null(number()), "of that"},
-         {"impacts", whole(), "how many"}});
-    return object_of({{"plus", wall, "of the wall at +b"}, {"minus", wall, "of the wall at -b"}});
+        {{"R", or_null(number()), "fitted; for a list of impacts, their median"},
+         {"standard_error", or_null(number()), "standard error of R"},
+         {"impacts", whole(), "number of impacts"}});
+    return object_of({{"plus", wall, "the wall at +b"}, {"minus", wall, "the wall at -b"}});
 }
 
 Json fitted_motion() {
     return object_of(
-        {{"tau", numbers(), "moment"},
-         {"x", numbers(), "m"},
+        {{"tau", numbers(), "time"},
+         {"x", numbers(), "displacement of the oscillator, m"},
          {"x_dot", numbers(), "velocity of the oscillator"},
-         {"x_ddot", numbers(), "without the pulses by which impacts show in an acceleration"}});
+         {"x_ddot", numbers(), "acceleration of the oscillator, without the pulses of impacts"}});
 }
 
 Json direct() {
     return object_of(
-        {{"impacts", object_of(impact_keys()), "those of impacts, in the same order"},
-         {"restitution", reference("Restitution"), "of each wall"},
+        {{"impacts", object_of(impact_keys()), "the same impacts, in the same order"},
+         {"restitution", reference("Restitution"), "restitution coefficients"},
          {"lambda", four_exponents(),
-          "by qr, without the impacts whose status here speaks against them"},
+          "four exponents by qr, without the impacts that status excludes here"},
          optional(
              {"exponents", reference("MeasuredExponents"),
-              "if include has direct_exponents: of the same impacts, whatever their status "
-              "here"})});
+              "if include has direct_exponents: exponents from the impacts that the fit uses, "
+              "whatever their status here"})});
 }
 
 Json forward_run() {
     const Json impacts = object_of(
-        {{"tau", numbers(), "moment"},
+        {{"tau", numbers(), "time"},
          {"side", list_of(side()), "wall"},
          {"x", numbers(), "displacement, m"},
          {"x_dot_after", numbers(), "velocity of the oscillator"}});
     return object_of(
-        {{"start", number(), "tau from which it runs"},
-         {"impacts", impacts, "of that run"},
-         {"lambda", four_exponents(), "by qr"}});
+        {{"start", number(), "tau at the start of the run"},
+         {"impacts", impacts, "impacts of the run"},
+         {"lambda", four_exponents(), "four exponents by qr"}});
 }
 
 Key of_record(const std::string& name, const Json& schema, const std::string& description) {
-    return optional({name, schema, "of a record: " + description});
+    return optional({name, schema, "for a record: " + description});
 }
 
 Keys record_keys() {
@@ -123,13 +120,13 @@ Keys record_keys() {
         of_record("signal", reference("Signal"), "noise, misfit, pulse, forcing"),
         of_record(
             "fitted", reference("Fitted"),
-            "what it says of its sensors, of the forcing's frequency and of the oscillator"),
+            "fitted properties of the sensors, of the forcing and of the oscillator"),
         of_record(
             "motion", reference("FittedMotion"),
-            "if include has it, the fitted motion at its samples"),
+            "if include has motion, the fitted motion at the samples"),
         of_record(
             "direct", or_null(reference("DirectEstimate")),
-            "the paper's estimate beside it, where it has both sensors"),
+            "estimate by the paper's method, for comparison; null without both sensors"),
         of_record(
             "forward", or_null(reference("ForwardRun")),
             "a run of the identified system from the first known state")};
@@ -140,25 +137,27 @@ Json identification() {
         sealed_keys("System") + record_keys() +
         Keys{
             {"impacts", reference("IdentifiedImpacts"), "every impact, with a status"},
-            {"sticking", reference("Sticking"), "every stuck phase"},
-            {"restitution", reference("Restitution"), "of each wall"},
+            {"sticking", reference("Sticking"), "every sticking phase"},
+            {"restitution", reference("Restitution"), "restitution coefficient of each wall"},
             {"b_fitted",
              object_of(
-                 {{"b", or_null(number()), "m; null where the momentum fits none"},
+                 {{"b", or_null(number()),
+                   "clearance, m; null if momentum conservation determines none"},
                   {"standard_error", or_null(number()),
-                   "m; null where the mass took no part in the fit"}}),
-             "the b that the momentum fits best"},
-            {"exponents", reference("MeasuredExponents"), "of the sequence of impacts"},
+                   "m; null if the fit does not include the ball"}}),
+             "the b that conserves momentum best"},
+            {"exponents", reference("MeasuredExponents"),
+             "Lyapunov exponents of the sequence of impacts"},
             {"slope",
              object_of(
-                 {{"lambda1", or_null(number()), "growth of lambda1(tau) tau in the long run"},
-                  {"low", or_null(number()), "of its 90 % interval"},
-                  {"high", or_null(number()), "of its 90 % interval"}}),
-             "how lambda1(tau) tau grows"},
-            {"verdict", word_of_any<Verdict>(),
-             "chaotic, regular, not_decided; null where the impacts die out, for no forcing keeps "
-             "them up"},
-            {"verdict_reason", text(), "a sentence"}});
+                 {{"lambda1", or_null(number()), "long-term slope of lambda1(tau) tau"},
+                  {"low", or_null(number()), "lower end of its 90 % interval"},
+                  {"high", or_null(number()), "upper end of its 90 % interval"}}),
+             "growth of lambda1(tau) tau"},
+            {"verdict", enum_schema<Verdict>(),
+             "chaotic, regular, not_decided; null if the impacts die out because there is no "
+             "forcing"},
+            {"verdict_reason", text(), "reason for the verdict, a sentence"}});
 }
 
 }  // namespace

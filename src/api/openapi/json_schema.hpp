@@ -1,9 +1,11 @@
-// JSON Schema (2020-12) in a few words: what the keys of an answer hold.
+// JSON Schema (2020-12): short names for the schemas of which the document is made.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
+#include "api/schema/enum_names.hpp"
 #include "api/schema/json.hpp"
 
 namespace vines::api::document {
@@ -11,22 +13,22 @@ namespace vines::api::document {
 Json text();
 Json flag();
 Json number();
-/// 0 or more.
+/// An integer >= 0.
 Json whole();
-Json constant(const std::string& word);
-Json one_of(const std::vector<std::string>& words);
+Json constant(const std::string& value);
+Json one_of(const std::vector<std::string>& values);
 Json list_of(Json items);
-/// Of so many entries.
+/// A list of exactly `length` entries.
 Json list_of(Json items, int length);
-/// Of numbers: a column of an answer.
+/// A list of numbers: a column of a response.
 Json numbers();
 /// [from, to].
 Json interval();
 Json or_null(Json schema);
-/// Of a schema among the components.
+/// A reference to a schema of the components.
 Json reference(const std::string& name);
 
-/// A key of an object, and what it means.
+/// A key of an object and its meaning.
 struct Key {
     std::string name;
     Json schema;
@@ -35,13 +37,33 @@ struct Key {
 };
 using Keys = std::vector<Key>;
 
-/// One that is not in every answer.
+/// The same key, not required.
 Key optional(Key key);
 Keys operator+(Keys keys, const Keys& more);
 
 /// An object with these keys and no others.
 Json object_of(const Keys& keys);
-/// A name for each of the keys is known by the answer alone.
+/// An object with arbitrary keys.
 Json map_of(Json values);
+
+/// The names of an enumeration; nullable if one of its values is null in JSON.
+template <class Enum>
+Json enum_schema() {
+    const auto table = enum_names<Enum>();
+    const bool has_null =
+        std::any_of(table.begin(), table.end(), [](const auto& entry) { return !entry.name; });
+    const Json schema = one_of(enum_choices<Enum>());
+    return has_null ? or_null(schema) : schema;
+}
+
+/// I to VI, or none.
+Json regime_name();
+/// 1 or -1.
+Json side();
+
+/// The schema with its SI counterparts, as add_si() adds them to a response.
+Json with_si(Json schema);
+/// The schema of `energy` with its counterparts in J, as add_joules() adds them.
+Json with_joules(Json schema);
 
 }  // namespace vines::api::document

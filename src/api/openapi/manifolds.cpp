@@ -1,8 +1,5 @@
-// The part `manifold`, and the answer of /v1/manifold.
-#include "api/openapi/schemas.hpp"
-#include "api/openapi/systems.hpp"
-#include "api/openapi/twins.hpp"
-#include "api/openapi/words.hpp"
+// The part `manifold` of a simulation, and the response of /v1/manifold.
+#include "api/openapi/parts.hpp"
 
 namespace vines::api::document {
 
@@ -11,54 +8,57 @@ namespace {
 Json manifold_point() {
     return object_of(
         {{"C", number(), "amplitude of the oscillator, m"},
-         {"V", number(), "speed of the free mass, m per unit of tau"}});
+         {"V", number(), "speed of the ball, m per unit of tau"}});
 }
 
 Keys branch_keys() {
     return {
         {"C", numbers(), "amplitudes of the oscillator, m"},
-        {"V", numbers(), "speeds of the free mass, m per unit of tau"}};
+        {"V", numbers(), "speeds of the ball, m per unit of tau"}};
 }
 
 Keys manifold_keys() {
     return {
-        {"R", number(), "of both walls"},
-        {"Omega", number(), "of the system"},
-        {"b", number(), "of the system, m"},
-        {"fold", manifold_point(), "where C is smallest"},
-        {"activation_amplitude", number(), "that C: below it the absorber cannot be activated, m"},
+        {"R", number(), "restitution coefficient of both walls"},
+        {"Omega", number(), "forcing frequency over omega0"},
+        {"b", number(), "clearance, m"},
+        {"fold", manifold_point(), "the point with the smallest C"},
+        {"activation_amplitude", number(),
+         "C at the fold, m: below it the absorber cannot be activated"},
         {"symmetry_breaking", or_null(manifold_point()),
-         "where the impacts become asymmetric; null where the motion ends before"},
+         "the point at which the impacts become asymmetric; null if the second contact comes "
+         "first"},
         {"second_contact", manifold_point(),
-         "where the mass meets the wall it comes from a second time: the motion ends"},
+         "the point at which the ball meets the same wall a second time: this motion ends there"},
         {"stable_ends_by", one_of({"symmetry_breaking", "second_contact"}), "which comes first"},
-        {"stable", object_of(branch_keys()), "from the fold to the end of stability"},
-        {"unstable", object_of(branch_keys()), "below the fold"},
-        {"asymmetric", object_of(branch_keys()), "beyond the symmetry breaking"},
+        {"stable", object_of(branch_keys()), "branch from the fold to the end of stability"},
+        {"unstable", object_of(branch_keys()), "branch below the fold"},
+        {"asymmetric", object_of(branch_keys()), "branch beyond the symmetry breaking"},
         {"free_amplitude", or_null(number()),
-         "steady amplitude without the absorber, m; null undamped at resonance"},
+         "steady amplitude without the absorber, m; null if undamped at resonance"},
         {"b_at_free_amplitude", or_null(number()),
-         "puts the fold there, m: the limit of activation, no advice"}};
+         "the b that puts the fold at free_amplitude, m: the limit of activation, not a "
+         "recommendation"}};
 }
 
 Json recommendation() {
     return object_of(
-        {{"b", number(), "half-width of the cavity, m"},
-         {"fold_share", number(), "the fold's amplitude over free_amplitude"},
-         {"x_rms_ratio", number(), "rms of x over that without the absorber, from that start"},
-         {"x_max", number(), "largest modulus of x, m, from that start"},
-         {"regime", regime_name(), "of the motion from that start"},
-         {"start", text(), "of the default set, from which the motion is the worst"}});
+        {{"b", number(), "clearance, m"},
+         {"fold_share", number(), "amplitude at the fold over free_amplitude"},
+         {"x_rms_ratio", number(), "rms of x over that without the absorber, for the worst start"},
+         {"x_max", number(), "maximum of |x|, m, for the worst start"},
+         {"regime", regime_name(), "regime, for the worst start"},
+         {"start", text(), "the worst start of the default set"}});
 }
 
-/// Of a run with walls that differ there are the half cycles alone.
+/// A run whose walls differ has the half cycles only.
 Keys run_keys() {
     Keys keys;
     for (const Key& key : manifold_keys()) keys.push_back(optional(key));
     const Keys points = {{"tau", numbers(), "end of each half cycle"}};
     keys.push_back(
         {"points", object_of(points + branch_keys()),
-         "the run: largest modulus of x and mean modulus of y' in each half cycle"});
+         "the run: maximum of |x| and mean of |y'| in each half cycle"});
     return keys;
 }
 
@@ -67,10 +67,10 @@ Keys run_keys() {
 void add_manifolds(Json& schemas) {
     const Keys recommended = {
         {"recommended", or_null(recommendation()),
-         "the b whose worst motion has the smallest rms of x; null where none of those tried "
-         "reduces the motion, or where the time limit was over before"}};
+         "the b whose worst motion has the smallest rms of x; null if no b reduces the motion, or "
+         "if the time limit ended the search"}};
     const Key manifold = {
-        "manifold", reference("SlowManifold"), "its fold, branches and ends, and a recommended b"};
+        "manifold", reference("SlowManifold"), "fold, branches, end points, and a recommended b"};
     schemas["SlowManifold"] = with_si(object_of(manifold_keys() + recommended));
     schemas["RunManifold"] = with_si(object_of(run_keys()));
     schemas["Manifold"] = object_of(sealed_keys("System") + Keys{manifold});

@@ -1,8 +1,6 @@
 #include "api/openapi/openapi.hpp"
 
-#include "api/openapi/paths.hpp"
-#include "api/openapi/responses.hpp"
-#include "api/openapi/schemas.hpp"
+#include "api/openapi/parts.hpp"
 #include "api/version.hpp"
 
 namespace vines::api {
@@ -29,7 +27,7 @@ Json components() {
          {{"api_key",
            {{"type", "http"},
             {"scheme", "bearer"},
-            {"description", "a key, where the server asks for one"}}}}}};
+            {"description", "an API key, if the server requires one"}}}}}};
 }
 
 }  // namespace
@@ -45,10 +43,10 @@ Json openapi() {
            "nonlinear energy sink"},
           {"description",
            "Lengths are in m. Time is tau = omega0 t, dimensionless; velocities are in m per unit "
-           "of tau, accelerations in m per unit of tau squared. With a system in SI each such "
-           "number has a twin in s, m/s, m/s^2, N s or J beside it. Answers hold columns, not "
-           "rows. A number that does not exist is null."}}},
-        {"servers", {{{"url", "/"}, {"description", "the service that this document is of"}}}},
+           "of tau, accelerations in m per unit of tau squared. For a system in SI each such "
+           "number also has an SI counterpart in s, m/s, m/s^2, N s or J. Responses hold columns, "
+           "not rows. A number that does not exist is null."}}},
+        {"servers", {{{"url", "/"}, {"description", "the service that sent this document"}}}},
         {"security", {Json::object(), {{"api_key", Json::array()}}}},
         {"tags", document::tags()},
         {"paths", document::paths()},

@@ -1,6 +1,9 @@
-// The OpenAPI 3.1 document. Requests are made from the field tables, twins in SI from the table of
-// twins, so that it cannot say anything else than what requests are read and answers made by; the
-// keys of answers are held against real ones by tests/http/openapi.test.mjs.
+// The OpenAPI 3.1 document of the service (GET /v1/openapi.json, `vines openapi`).
+//
+// Request schemas are made from the field tables (api/schema/tables.hpp), SI counterparts from the
+// table that responses are made from (api/si_columns.hpp): both always agree with the program. The
+// other keys of responses are written by hand in this folder, one file per response, and compared
+// with real responses by tests/openapi/openapi.test.mjs.
 #pragma once
 
 #include "api/schema/json.hpp"

@@ -1,14 +1,10 @@
-#include "api/openapi/paths.hpp"
-
+// The operations of the document.
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "api/format/encode.hpp"
-#include "api/openapi/examples.hpp"
-#include "api/openapi/json_schema.hpp"
-#include "api/openapi/requests.hpp"
-#include "api/openapi/responses.hpp"
+#include "api/openapi/parts.hpp"
 
 namespace vines::api::document {
 
@@ -18,11 +14,11 @@ constexpr const char *json_type = "application/json", *lines_type = "application
 
 struct Operation {
     const char *id, *tag, *summary, *description;
-    const char* schema;  ///< of its answer; null: text
+    const char* schema;  ///< of the response; null for plain text
     const char* type = json_type;
-    bool computes = false;  ///< takes fields, waits for a place, tells its time
-    bool has_form = false;  ///< takes form_fields(), too
-    bool is_open = false;   ///< takes no key
+    bool computes = false;  ///< takes fields, can be queued, sends Server-Timing
+    bool has_form = false;  ///< also takes form_fields()
+    bool is_open = false;   ///< needs no key
 };
 
 Json content_of(const Operation& o) {
@@ -37,7 +33,7 @@ Json content_of(const Operation& o) {
     return content;
 }
 
-/// With 200 before all others.
+/// The response 200 and those of the error statuses; `others`: statuses of this operation alone.
 Json responses(const Operation& o, const std::vector<int>& others, bool reads) {
     std::vector<std::string> headers;
     if (reads) headers.push_back("ETag");
@@ -47,7 +43,7 @@ Json responses(const Operation& o, const std::vector<int>& others, bool reads) {
          {{"description", o.description},
           {"headers", headers_of(headers)},
           {"content", content_of(o)}}}};
-    std::vector<int> statuses = any_statuses();
+    std::vector<int> statuses = common_statuses();
     statuses.insert(statuses.end(), others.begin(), others.end());
     if (reads) statuses.push_back(304);
     if (o.computes) statuses.insert(statuses.end(), {413, 422, 503});
@@ -67,7 +63,6 @@ Json operation_of(const Operation& o, const std::vector<int>& others, bool reads
     return operation;
 }
 
-/// `others`: statuses beside those of all.
 Json get(const Operation& o, const std::vector<int>& others = {}) {
     Json operation = operation_of(o, others, true);
     operation["parameters"] = Json::array({{{"$ref", "#/components/parameters/If-None-Match"}}});
@@ -93,13 +88,13 @@ Json post(const Operation& o, const char* request) {
 Json simulate_path() {
     Operation o = {
         "simulate", "simulation", "One run",
-        "Parameters in; trajectory, impacts, exponents out: what was asked for by include, and of "
-        "that what fields name.",
+        "Computes trajectory, impacts and exponents from the parameters. include selects the parts "
+        "of the response, fields selects keys within them.",
         "Simulation"};
     o.computes = o.has_form = true;
     Operation by_query = o;
     by_query.id = "simulate_by_query";
-    by_query.summary = "One run, its fields in the query";
+    by_query.summary = "One run, with the fields in the query";
     return {
         {"get", get_by_query(by_query, simulate_fields())}, {"post", post(o, "SimulateRequest")}};
 }
@@ -107,13 +102,13 @@ Json simulate_path() {
 Json manifold_path() {
     Operation o = {
         "manifold", "simulation", "The slow invariant manifold",
-        "The slow invariant manifold of the same parameters, and a recommended b. It needs the "
-        "same R at both walls.",
+        "The slow invariant manifold for the same parameters, and a recommended b. Both walls must "
+        "have the same R.",
         "Manifold"};
     o.computes = o.has_form = true;
     Operation by_query = o;
     by_query.id = "manifold_by_query";
-    by_query.summary = "The slow invariant manifold, its fields in the query";
+    by_query.summary = "The slow invariant manifold, with the fields in the query";
     return {
         {"get", get_by_query(by_query, manifold_fields())}, {"post", post(o, "ManifoldRequest")}};
 }
@@ -121,21 +116,21 @@ Json manifold_path() {
 Json sweep_path() {
     Operation o = {
         "sweep", "sweep", "Many runs over one to three parameters, as a stream",
-        "A line of JSON each, as it comes: start, then points in any order, progress every 200 "
-        "ms, perhaps a warning, and done or error.",
+        "A stream of JSON lines: start, then points in any order, progress every 200 ms, sometimes "
+        "a warning, and finally done or error.",
         "SweepLine"};
     o.type = lines_type;
     o.computes = true;
     return {{"post", post(o, "SweepRequest")}};
 }
 
-/// JSON with all in the body, or a file of columns with the fields in the query.
+/// The body is JSON with all fields, or a file of columns with the fields in the query.
 Json identify_path() {
     Operation o = {
         "identify", "measurement", "Exponents from a measurement",
-        "Impacts, restitution, exponents and a verdict from a record of the oscillator, or from a "
-        "list of impacts. As CSV, or text, the body is a file of columns and the fields are in "
-        "the query; as JSON all is in the body.",
+        "Determines impacts, restitution, exponents and a verdict from a record of the oscillator "
+        "or from a list of impacts. A CSV or text body is a file of columns, with the fields in "
+        "the query; a JSON body holds both.",
         "Identification"};
     o.computes = o.has_form = true;
     Json operation = post(o, "IdentifyRequest");
@@ -144,8 +139,8 @@ Json identify_path() {
         {"schema",
          {{"type", "string"},
           {"description",
-           "columns, by default time_s, displacement_m, acceleration_m_s2, as measuring programs "
-           "and spreadsheets write them; at least 100 samples"}}}};
+           "columns, by default time_s, displacement_m, acceleration_m_s2, as written by "
+           "measurement programs and spreadsheets; at least 100 samples"}}}};
     for (const char* type : {"text/csv", "text/plain"})
         operation["requestBody"]["content"][type] = file;
     return {{"post", std::move(operation)}};
@@ -155,7 +150,7 @@ Json read_path(const char* id, const char* summary, const char* description, con
     return {{"get", get({id, "service", summary, description, schema}, {503})}};
 }
 
-/// Answered however busy the server is, and to anyone.
+/// Answered without a key and without queueing.
 Json open_path(
     const char* id, const char* summary, const char* description, const char* schema,
     const std::vector<int>& others = {}) {
@@ -167,8 +162,8 @@ Json open_path(
 Json metrics_path() {
     Operation o = {
         "metrics", "service", "Metrics",
-        "What the service counts, in the text that Prometheus reads: requests, waits, refusals, "
-        "sweeps, impacts, the process and the build. It is answered however busy the server is.",
+        "Metrics in the Prometheus text format: requests, waits, refusals, sweeps, impacts, the "
+        "process and the build. Answered without queueing.",
         nullptr};
     o.type = "text/plain; version=0.0.4; charset=utf-8";
     return {{"get", get(o)}};
@@ -191,13 +186,16 @@ Json paths() {
                             "presets", "Presets of the paper",
                             "One preset for each figure and table of the paper.", "Presets")},
         {"/v1/openapi.json",
-         read_path("openapi", "This document", "The OpenAPI 3.1 document of all this.", "OpenApi")},
-        {"/healthz", open_path("healthz", "Alive", "The process answers.", "Status")},
-        {"/livez",
-         open_path("livez", "Alive, as Kubernetes asks", "The process answers.", "Status")},
-        {"/readyz", open_path(
-                        "readyz", "Ready", "The service takes work; 503 once it is about to stop.",
-                        "Status", {503})},
+         read_path(
+             "openapi", "This document", "The OpenAPI 3.1 document of this service.", "OpenApi")},
+        {"/healthz", open_path("healthz", "Alive", "The process is running.", "Status")},
+        {"/livez", open_path(
+                       "livez", "Alive, under the name used by Kubernetes",
+                       "The process is running.", "Status")},
+        {"/readyz",
+         open_path(
+             "readyz", "Ready", "The service accepts work; 503 when it is about to stop.", "Status",
+             {503})},
         {"/version",
          open_path("version", "Version", "Name, version, commit and compiler.", "Version")},
         {"/metrics", metrics_path()},
@@ -206,10 +204,10 @@ Json paths() {
 
 Json tags() {
     return {
-        {{"name", "simulation"}, {"description", "one run, and the manifold of its system"}},
+        {{"name", "simulation"}, {"description", "one run, and the manifold of a system"}},
         {{"name", "sweep"}, {"description", "many runs"}},
-        {{"name", "measurement"}, {"description", "what a record of the oscillator says"}},
-        {{"name", "service"}, {"description", "what the service says of itself"}},
+        {{"name", "measurement"}, {"description", "evaluation of a measured record"}},
+        {{"name", "service"}, {"description", "information about the service"}},
         {{"name", "health"}, {"description", "for probes; no key is needed"}}};
 }
 
@@ -218,7 +216,7 @@ Json parameter_components() {
         {"If-None-Match",
          {{"name", "If-None-Match"},
           {"in", "header"},
-          {"description", "ETag of an answer that is known"},
+          {"description", "ETag of a cached response"},
           {"schema", text()}}}};
 }
 

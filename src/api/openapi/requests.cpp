@@ -1,7 +1,5 @@
-#include "api/openapi/requests.hpp"
-
-#include "api/openapi/json_schema.hpp"
-#include "api/openapi/schemas.hpp"
+// Request schemas and query parameters, made from the field tables that requests are checked with.
+#include "api/openapi/parts.hpp"
 
 namespace vines::api::document {
 
@@ -9,7 +7,7 @@ namespace {
 
 Json request_of(const FieldTable& fields, const std::vector<std::string>& required = {});
 
-/// Without what it means.
+/// The schema of the value alone, without description, range and default.
 Json value_schema(const Field& f) {
     switch (f.type) {
         case FieldType::number: return number();
@@ -31,10 +29,10 @@ Json value_schema(const Field& f) {
 }
 
 std::string description_of(const Field& f) {
-    std::string words = f.description;
-    if (!f.unit.empty()) words += " (" + f.unit + (f.symbol.empty() ? "" : ", " + f.symbol) + ")";
-    if (!f.fallback_note.empty()) words += "; default: " + f.fallback_note;
-    return words;
+    std::string all = f.description;
+    if (!f.unit.empty()) all += " (" + f.unit + (f.symbol.empty() ? "" : ", " + f.symbol) + ")";
+    if (!f.fallback_note.empty()) all += "; default: " + f.fallback_note;
+    return all;
 }
 
 Json schema_of(const Field& f) {
@@ -75,42 +73,41 @@ void add_query(
         std::string description = description_of(f);
         if (f.type == FieldType::intervals) {
             schema = text();
-            description += "; as from,to;from,to";
+            description += "; written as from,to;from,to";
         }
         Json parameter = {
             {"name", prefix + f.name}, {"in", "query"}, {"description", std::move(description)}};
-        // Separated by commas.
-        if (schema["type"] == "array") parameter["explode"] = false;
+        if (schema["type"] == "array") parameter["explode"] = false;  // separated by commas
         parameter["schema"] = std::move(schema);
         if (example.contains(prefix + f.name)) parameter["example"] = example[prefix + f.name];
         list.push_back(std::move(parameter));
     }
 }
 
-/// As a simulation or an identification gives them, or what a laboratory knows of them: of other
-/// columns nothing is read.
+/// The columns of `impacts` in a simulation or an identification; a laboratory can leave out those
+/// it does not measure. Other columns are permitted and ignored.
 Json impact_columns() {
     const Json some = list_of(or_null(number()));
     Keys keys = {
-        optional({"tau", numbers(), "moment; or time_s"}),
-        optional({"time_s", numbers(), "moment, of a system in SI"}),
+        optional({"tau", numbers(), "time; or use time_s"}),
+        optional({"time_s", numbers(), "time in s, for a system in SI"}),
         optional({"x", numbers(), "displacement of the oscillator, m"}),
-        optional({"side", list_of(number()), "1 or -1; else by the jump of x'"}),
-        optional({"phase", numbers(), "of the forcing; else it is fitted to the list"})};
+        optional({"side", list_of(number()), "1 or -1; default: from the jump of x'"}),
+        optional({"phase", numbers(), "phase of the forcing; default: fitted to the list"})};
     for (const char* when : {"before", "after"})
-        for (const auto& [name, twin] :
+        for (const auto& [name, si_name] :
              {std::pair("x_dot_", "x_velocity_"), std::pair("y_dot_", "y_velocity_")}) {
-            const bool of_mass = name[0] == 'y';
-            const Json values = of_mass ? some : numbers();
-            const std::string what = of_mass ? "velocity of the free mass; else of the flights"
+            const bool is_ball = name[0] == 'y';
+            const Json values = is_ball ? some : numbers();
+            const std::string what = is_ball ? "velocity of the ball; default: from its flights"
                                              : "velocity of the oscillator";
             keys.push_back(optional({std::string(name) + when, values, what}));
-            keys.push_back(
-                optional({std::string(twin) + when, values, what + ", of a system in SI, m/s"}));
+            keys.push_back(optional(
+                {std::string(si_name) + when, values, what + "; in m/s, for a system in SI"}));
         }
-    keys.push_back(optional({"x_ddot_before", numbers(), "where phase is not known"}));
-    keys.push_back(
-        optional({"x_acceleration_before", numbers(), "where phase is not known, m/s^2"}));
+    keys.push_back(optional(
+        {"x_ddot_before", numbers(), "acceleration of the oscillator, if phase is unknown"}));
+    keys.push_back(optional({"x_acceleration_before", numbers(), "the same in m/s^2"}));
     Json schema = object_of(keys);
     schema["additionalProperties"] = true;
     schema["required"] = {"x"};
@@ -123,10 +120,10 @@ Json identify_request() {
     properties["record"] = map_of(numbers());
     properties["record"]["description"] =
         "columns: time_s, displacement_m, acceleration_m_s2; a unit in a name (displacement_mm, "
-        "time (ms)) is obeyed";
+        "time (ms)) is applied";
     properties["impacts"] = impact_columns();
     properties["impacts"]["description"] =
-        "columns as in the answer of /v1/simulate, in place of a record";
+        "columns as in impacts of /v1/simulate, instead of a record";
     return request;
 }
 

@@ -1,59 +1,62 @@
-#include "api/openapi/responses.hpp"
-
+// Statuses and headers that operations have in common.
 #include <algorithm>
 
-#include "api/openapi/json_schema.hpp"
+#include "api/openapi/parts.hpp"
 #include "api/problem.hpp"
 
 namespace vines::api::document {
 
 namespace {
 
-/// A status that is no answer to what was asked, and a detail as it may come with it.
+/// An error status, its description, and an example of `detail`.
 struct Refusal {
     int status;
-    bool of_any;  ///< of every operation
+    bool is_common;  ///< possible for every operation
     const char *description, *detail;
 };
 constexpr Refusal refusals[] = {
     {400, true,
-     "no JSON object, a name twice, deeper than 16 levels or more than 1000 names in an object, a "
-     "POST with a query (but for CSV), no single whole number as Content-Length",
+     "the body is not a JSON object, repeats a name, nests deeper than 16 levels or has more than "
+     "1000 names in an object; a POST has a query (unless the body is CSV); Content-Length is not "
+     "one whole number",
      "a POST takes its fields from the body; the query must be empty"},
-    {401, true, "the server asks for a key",
-     "this server asks for a key, in the header \"Authorization: Bearer KEY\""},
-    {403, true, "a page of another origin sends it",
-     "a page of another origin may not use this server"},
-    {404, true, "there is nothing at this path", "there is nothing at /v1/simulat"},
-    {405, true, "the path takes other methods: they are in Allow", "/v1/sweep takes POST, not GET"},
-    {406, false, "no format that Accept names",
-     "the answer comes as one of application/json, text/csv, application/cbor, application/x-npz"},
-    {408, true, "the request did not come to its end in time",
-     "the request did not come to its end in time"},
-    {411, true, "a body in chunks, or without a Content-Length",
-     "send a body with its Content-Length"},
+    {401, true, "the server requires an API key",
+     "this server requires an API key, in the header \"Authorization: Bearer KEY\""},
+    {403, true, "the request comes from a page of another origin",
+     "pages of other origins may not use this server"},
+    {404, true, "no such path", "there is nothing at /v1/simulat"},
+    {405, true, "method not allowed for this path; Allow lists the methods",
+     "/v1/sweep takes POST, not GET"},
+    {406, false, "no format that Accept allows",
+     "Accept lists none of this server's formats: application/json, text/csv, application/cbor, "
+     "application/x-npz"},
+    {408, true, "the request was not complete in time",
+     "the request did not arrive completely in time"},
+    {411, true, "chunked body, or no Content-Length", "send a body with its Content-Length"},
     {413, false,
-     "the body, or the answer, is larger than the server takes, or holds more than it takes; or a "
-     "record, or to read a body, is more work than its deadline allows",
+     "body or response exceeds a limit of the server, in bytes or in number of values; or the time "
+     "limit ended the reading of the body or the evaluation of a record",
      "the body is larger than 1048576 bytes"},
-    {414, true, "its target is too long", "the request's target is longer than 8192 bytes"},
-    {415, true, "a compressed body, or multipart/", "send the body uncompressed"},
-    {416, true, "a Range was asked for",
+    {414, true, "request target too long", "the request's target is longer than 8192 bytes"},
+    {415, true, "compressed body, or multipart/", "send the body uncompressed"},
+    {416, true, "Range header",
      "this service does not send parts of an answer; leave out the Range header"},
-    {417, true, "an Expect that is not 100-continue",
-     "this service can meet no expectation but 100-continue"},
-    {421, true, "the Host is none of the server's names",
-     "this server is not example.com: if that is its name, start it with --allow-host "
+    {417, true, "Expect header other than 100-continue",
+     "the only supported expectation is 100-continue"},
+    {421, true, "Host is not a name of this server",
+     "this server does not answer for example.com; to allow it, start the server with --allow-host "
      "example.com"},
-    {422, false, "fields, or a record, at fault: an entry in errors for each field",
+    {422, false, "invalid fields or record; errors has an entry for each field",
      "b must lie in [1e-09, 1000.0] m"},
-    {431, true, "its head is too long", "the request has more than 100 headers"},
-    {500, true, "the server failed; its log says why", "the server failed; its log says why"},
+    {431, true, "header section too long", "the request has more than 100 headers"},
+    {500, true, "the server failed; the reason is in its log",
+     "the server failed; the reason is in its log"},
     {503, false,
-     "as many requests (or sweeps) as the server takes are in work and waiting, or it is about to "
-     "stop: lacking says which",
-     "as many requests as the server takes are waiting already; try again in a second"},
-    {505, true, "it is neither HTTP/1.1 nor HTTP/1.0", "this service speaks HTTP/1.1 and HTTP/1.0"},
+     "the queue of requests (or sweeps) is full, or the server is stopping: lacking names the "
+     "reason",
+     "the queue for computing is full; try again in a second"},
+    {505, true, "HTTP version other than 1.1 and 1.0",
+     "this service supports HTTP/1.1 and HTTP/1.0"},
 };
 
 /// "BadRequest" for 400.
@@ -89,7 +92,7 @@ Json response_of(const Refusal& r) {
 Json response_components() {
     Json components = {
         {component_of(304),
-         {{"description", "If-None-Match holds the answer's ETag"},
+         {{"description", "If-None-Match contains the ETag of the response"},
           {"headers", headers_of({"ETag"})}}}};
     for (const Refusal& r : refusals) components[component_of(r.status)] = response_of(r);
     return components;
@@ -100,17 +103,17 @@ Json header_components() {
         return Json{{"description", description}, {"schema", std::move(schema)}};
     };
     return {
-        {"X-Request-ID",
-         header(
-             "by which the server's log names the request: that of the request's own header of "
-             "this name, or the trace-id of traceparent, else 16 digits",
-             text())},
-        {"Server-Timing",
-         header("ms of each part of the work: queue, parse, solve, encode", text())},
-        {"ETag", header("of this answer: ask again with If-None-Match and get 304", text())},
-        {"Retry-After", header("seconds after which to come back", whole())},
-        {"WWW-Authenticate", header("that a bearer's key is asked for", text())},
-        {"Allow", header("the methods that the path takes", text())}};
+        {"X-Request-ID", header(
+                             "name of the request in the server's log: the request's own "
+                             "X-Request-ID, or the trace-id "
+                             "of its traceparent, or 16 generated digits",
+                             text())},
+        {"Server-Timing", header("time in ms for each step: queue, parse, solve, encode", text())},
+        {"ETag",
+         header("identifies this response; a later request with If-None-Match gets 304", text())},
+        {"Retry-After", header("seconds after which to retry", whole())},
+        {"WWW-Authenticate", header("the server requires a bearer key", text())},
+        {"Allow", header("methods that the path allows", text())}};
 }
 
 Json responses_of(const std::vector<int>& statuses) {
@@ -123,10 +126,10 @@ Json responses_of(const std::vector<int>& statuses) {
     return responses;
 }
 
-std::vector<int> any_statuses() {
+std::vector<int> common_statuses() {
     std::vector<int> statuses;
     for (const Refusal& r : refusals)
-        if (r.of_any) statuses.push_back(r.status);
+        if (r.is_common) statuses.push_back(r.status);
     return statuses;
 }
 

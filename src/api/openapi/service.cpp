@@ -1,7 +1,6 @@
-// What the service says of itself, and problems.
-#include "api/openapi/schemas.hpp"
-#include "api/openapi/words.hpp"
-#include "api/schema/field_error.hpp"
+// Responses about the service itself, and problems.
+#include "api/openapi/parts.hpp"
+#include "api/schema/check.hpp"
 
 namespace vines::api::document {
 
@@ -9,18 +8,18 @@ namespace {
 
 Json field_schema() {
     return object_of(
-        {{"name", text(), "by which a request gives it"},
-         {"type", word_of_any<FieldType>(), "in a query lists are separated by commas"},
-         {"group", text(), "under which a form shows it"},
-         {"unit", text(), "empty: it has none"},
-         {"symbol", text(), "of the model; may be empty"},
-         {"description", text(), "what it means"},
-         {"default", Json::object(), "null with a note where it is no plain value"},
-         optional({"default_note", text(), "where it follows from other fields"}),
-         optional({"minimum", number(), "of a number"}),
-         optional({"maximum", number(), "of a number"}),
-         optional({"choices", list_of(text()), "where it has some"}),
-         optional({"fields", list_of(reference("Field")), "of an object: its own"})});
+        {{"name", text(), "name of the field"},
+         {"type", enum_schema<FieldType>(), "type; lists in a query are separated by commas"},
+         {"group", text(), "heading under which a form shows the field"},
+         {"unit", text(), "unit; empty if the field has none"},
+         {"symbol", text(), "symbol in the model; can be empty"},
+         {"description", text(), "meaning"},
+         {"default", Json::object(), "default; null with default_note if it is not a plain value"},
+         optional({"default_note", text(), "how the default follows from other fields"}),
+         optional({"minimum", number(), "smallest value of a number"}),
+         optional({"maximum", number(), "largest value of a number"}),
+         optional({"choices", list_of(text()), "permitted values of a choice"}),
+         optional({"fields", list_of(reference("Field")), "sub-fields of an object"})});
 }
 
 Json parameters() {
@@ -28,60 +27,62 @@ Json parameters() {
     return object_of(
         {{"model",
           object_of(
-              {{"equations", list_of(text()), "of motion, and of an impact"},
-               {"symbols", map_of(text()), "the meaning of each"},
-               {"sketch", text(), "a file of the page"}}),
-          "of the machine"},
-         {"fields", fields, "of /v1/simulate"},
-         {"manifold_fields", fields, "of /v1/manifold"},
-         {"sweep_fields", fields, "of /v1/sweep"},
-         {"axis_fields", fields, "of an axis of a sweep"},
-         {"identify_fields", fields, "of /v1/identify"},
-         {"form_fields", fields, "of the answer's form, beside those of the others"}});
+              {{"equations", list_of(text()), "equations of motion and of an impact"},
+               {"symbols", map_of(text()), "meaning of each symbol"},
+               {"sketch", text(), "file name of the page's sketch"}}),
+          "the mechanical model"},
+         {"fields", fields, "fields of /v1/simulate"},
+         {"manifold_fields", fields, "fields of /v1/manifold"},
+         {"sweep_fields", fields, "fields of /v1/sweep"},
+         {"axis_fields", fields, "fields of an axis of a sweep"},
+         {"identify_fields", fields, "fields of /v1/identify"},
+         {"form_fields", fields,
+          "format of the response: fields of simulate, manifold and identify"}});
 }
 
 Json presets_schema() {
     const Json preset = object_of(
-        {{"name", text(), "for the field preset"},
+        {{"name", text(), "value for the field preset"},
          {"source", text(), "figure or table of the paper"},
-         {"doi", text(), "of the paper"},
-         {"title", text(), "what it shows"},
-         {"note", text(), "what of it holds; may be empty"},
-         {"parameters", reference("SimulateRequest"), "the fields that it stands for"}});
+         {"doi", text(), "DOI of the paper"},
+         {"title", text(), "what the figure or table shows"},
+         {"note", text(), "remark on how the preset reproduces it; can be empty"},
+         {"parameters", reference("SimulateRequest"), "fields that the preset sets"}});
     return object_of(
-        {{"citation", text(), "of the paper"},
-         {"doi", text(), "of the paper"},
-         {"presets", list_of(preset), "one for each figure and table"}});
+        {{"citation", text(), "citation of the paper"},
+         {"doi", text(), "DOI of the paper"},
+         {"presets", list_of(preset), "one preset for each figure and table"}});
 }
 
 Json version_schema() {
     return object_of(
-        {{"name", constant("vines"), "of the program"},
-         {"version", text(), "of the release"},
-         {"commit", text(), "it was built from; empty where that is not known"},
-         {"compiler", text(), "that built it"}});
+        {{"name", constant("vines"), "name of the program"},
+         {"version", text(), "version of the release"},
+         {"commit", text(), "commit of the source; empty if unknown"},
+         {"compiler", text(), "compiler and its version"}});
 }
 
 Json problem() {
-    const Json word_or_number = {{"type", {"string", "number", "null"}}};
+    const Json string_or_number = {{"type", {"string", "number", "null"}}};
     const Json error = object_of(
         {{"pointer", text(), "JSON Pointer to the field"},
-         {"value", Json::object(), "as given"},
-         {"range", or_null(list_of(word_or_number)), "[minimum, maximum], or the choices, or null"},
+         {"value", Json::object(), "value in the request"},
+         {"range", or_null(list_of(string_or_number)),
+          "[minimum, maximum], or the choices, or null"},
          {"detail", text(), "a sentence"}});
     Json errors = list_of(error);
     errors["maxItems"] = most_errors;
     return object_of(
-        {{"type", constant("about:blank"), "the status says what it is"},
-         {"title", text(), "the HTTP status in words"},
-         {"status", {{"type", "integer"}, {"minimum", 400}, {"maximum", 599}}, "the HTTP status"},
+        {{"type", constant("about:blank"), "the status has the meaning that HTTP gives it"},
+         {"title", text(), "reason phrase of the HTTP status"},
+         {"status", {{"type", "integer"}, {"minimum", 400}, {"maximum", 599}}, "HTTP status"},
          {"detail", text(), "a sentence"},
          {"request_id", text(),
-          "by which the server's log names the request; also in the header X-Request-ID"},
+          "name of the request in the server's log; also in the header X-Request-ID"},
          optional(
              {"lacking", one_of({"computing", "memory", "stopping", "sweeps", "threads"}),
-              "of a 503: what there is no more of"}),
-         optional({"errors", std::move(errors), "of a 422: each field at fault, up to 20"})});
+              "with 503: the exhausted resource, or stopping"}),
+         optional({"errors", std::move(errors), "with 422: each invalid field, up to 20"})});
 }
 
 }  // namespace
@@ -95,7 +96,7 @@ void add_service(Json& schemas) {
         {"type", "object"},
         {"required", {"openapi", "paths"}},
         {"properties", {{"openapi", text()}, {"paths", {{"type", "object"}}}}}};
-    schemas["Status"] = object_of({{"status", constant("ok"), "it is well"}});
+    schemas["Status"] = object_of({{"status", constant("ok"), "the service is healthy"}});
     schemas["Problem"] = problem();
 }
 

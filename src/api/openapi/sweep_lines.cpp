@@ -1,19 +1,11 @@
-// The lines of /v1/sweep.
-#include <algorithm>
-
-#include "api/openapi/columns.hpp"
-#include "api/openapi/exponents.hpp"
-#include "api/openapi/schemas.hpp"
-#include "api/openapi/systems.hpp"
-#include "api/openapi/twins.hpp"
-#include "api/openapi/words.hpp"
-#include "api/schema/tables.hpp"
+// The lines of the response of /v1/sweep.
+#include "api/openapi/parts.hpp"
 
 namespace vines::api::document {
 
 namespace {
 
-/// A value under the name of each parameter that can be swept.
+/// An optional key for each parameter that can be swept.
 Keys swept_keys(const Json& value, const std::string& description) {
     Keys keys;
     for (const Field& f : sweep_base_fields())
@@ -21,67 +13,70 @@ Keys swept_keys(const Json& value, const std::string& description) {
     return keys;
 }
 
-Keys place_keys() {
+Keys index_keys() {
     return {
         {"type", constant("point"), ""},
         {"index", whole(),
-         "its place: counts along the first axis fastest, then the starts, then the other axes"}};
+         "number of the point: the first axis varies fastest, then the starts, then the other "
+         "axes"}};
 }
 
 Json start_state() {
     return object_of(
-        {{"x0", number(), "m"},
-         {"x_dot0", number(), "m per unit of tau"},
-         {"y0", number(), "m"},
-         {"y_dot0", number(), "m per unit of tau"}});
+        {{"x0", number(), "displacement of the oscillator, m"},
+         {"x_dot0", number(), "velocity of the oscillator, m per unit of tau"},
+         {"y0", number(), "displacement of the ball, m"},
+         {"y_dot0", number(), "velocity of the ball, m per unit of tau"}});
 }
 
-/// As fields of a simulation.
+/// The initial state in the fields of a simulation.
 Key state_key(const std::string& description) {
     return optional({"state", start_state(), description});
 }
 
-Key start_of_list() { return optional({"start", whole(), "which of several starts, from 0"}); }
+Key start_of_list() {
+    return optional({"start", whole(), "index of the start, from 0, if there are several"});
+}
 
 Key start_of_line() {
     const Json either = {{"anyOf", {whole(), text()}}};
     return optional(
         {"start", either,
-         "which of several starts, from 0; of the default set the name of the worst"});
+         "index of the start, from 0, if there are several; with the default set the name of the "
+         "worst start"});
 }
 
 Key depends() {
-    return optional({"depends_on_start", flag(), "whether they end in different motions"});
+    return optional({"depends_on_start", flag(), "true if the starts end in different motions"});
 }
 
-/// Of a point whose transient did not end all are null.
+/// All are null for a point whose transient did not end.
 Keys measured_keys() {
     const Json count = or_null(whole()), value = or_null(number());
     return {
         {"lambda", or_null(four_exponents()), "four exponents by qr"},
-        {"status", or_null(four_statuses()), "of each"},
-        {"standard_error", or_null(four_exponents()), "of each"},
-        {"verdict", word_of_any<Verdict>(),
-         "on what the motion ends in; null without forcing or where the ball is not met in the "
+        {"status", or_null(four_statuses()), "status of each exponent"},
+        {"standard_error", or_null(four_exponents()), "standard error of each exponent"},
+        {"verdict", enum_schema<Verdict>(),
+         "verdict on the final motion; null without forcing, or if the ball meets no wall in the "
          "end"},
         {"z", value, "contacts per cycle"},
         {"regime", or_null(regime_name()), "I to VI, or none"},
-        {"periodic", or_null(flag()), "whether a stable orbit attracts the motion"},
-        {"period_cycles", count, "its period in forcing cycles"},
-        {"impacts_per_period", count, "contacts"},
-        {"symmetric", or_null(flag()),
-         "whether half a period later the motion is its mirror image"},
+        {"periodic", or_null(flag()), "true if a stable orbit attracts the motion"},
+        {"period_cycles", count, "period in forcing cycles"},
+        {"impacts_per_period", count, "contacts per period"},
+        {"symmetric", or_null(flag()), "true if a shift by half a period gives the mirror image"},
         {"capture_cycle", value,
-         "when the orbit captured it; null: not periodic, or still on its way"},
-        {"multiplier", value, "largest modulus of a Floquet multiplier"},
-        {"synchronised", value, "share of the contacts in synchronised stretches"},
-        {"x_max", value, "largest modulus of x, m"},
-        {"x_rms", value, "m"},
+         "cycle in which the orbit captured the motion; null if not periodic or not yet captured"},
+        {"multiplier", value, "largest modulus of the Floquet multipliers"},
+        {"synchronised", value, "fraction of the contacts that lie in synchronised stretches"},
+        {"x_max", value, "maximum of |x|, m"},
+        {"x_rms", value, "rms of x, m"},
         {"x_rms_ratio", value, "x_rms over that of the steady motion without the absorber"},
         {"x_free", value, "steady amplitude without the absorber, m"},
-        {"share_impacts", value, "of the dissipated energy"},
-        {"impacts", count, "number of them"},
-        {"sticks", count, "number of them"}};
+        {"share_impacts", value, "fraction of the energy that impacts dissipate"},
+        {"impacts", count, "number of impacts"},
+        {"sticks", count, "number of sticking phases"}};
 }
 
 Json point_section() {
@@ -91,87 +86,98 @@ Json point_section() {
 }
 
 Json measured_point() {
-    const Keys own = place_keys() + Keys{start_of_line()} + measured_keys();
+    const Keys own = index_keys() + Keys{start_of_line()} + measured_keys();
     Keys swept;
-    for (const Key& key : swept_keys(number(), "where it is swept"))
-        // That name holds the exponents: axes of the line start tells the value.
+    for (const Key& key : swept_keys(number(), "value at this point, if swept"))
+        // The key lambda holds the exponents; a swept lambda is in `axes` of the line start.
         if (key.name != "lambda") swept.push_back(key);
     return object_of(
         own + swept +
         Keys{
-            state_key("of the default set: from where the worst motion begins"),
+            state_key("with the default set: initial state of the worst motion"),
             {"reason", one_of({"complete", "max_impacts", "transient_max_impacts"}),
              "transient_max_impacts: the transient did not end, and all results are null"},
             optional(
                 {"carried",
                  {{"type", "boolean"}, {"const", false}},
-                 "where a neighbour to go on from had no state at a whole cycle: the point starts "
-                 "afresh"}),
-            optional({"section", point_section(), "with section: points of a bifurcation diagram"}),
+                 "present if the neighbour has no state at a whole cycle: the point starts from "
+                 "the initial state of base"}),
+            optional(
+                {"section", point_section(), "if section is set: points of a bifurcation diagram"}),
             optional(
                 {"second_start", reference("SweepMotion"),
-                 "at about 16 points of a sweep with one start: the motion from another"}),
-            optional({"worst", reference("SweepMotion"), "of the default set, by x_max"}),
-            optional({"best", reference("SweepMotion"), "of the default set, by x_max"}),
+                 "at about 16 points of a sweep with one start: the motion from a second start"}),
             optional(
-                {"starts", list_of(reference("SweepMotion")), "of the default set: all motions"}),
+                {"worst", reference("SweepMotion"),
+                 "with the default set: the motion with the largest x_max"}),
+            optional(
+                {"best", reference("SweepMotion"),
+                 "with the default set: the motion with the smallest x_max"}),
+            optional(
+                {"starts", list_of(reference("SweepMotion")), "with the default set: all motions"}),
             depends()});
 }
 
 Json faulty_point() {
     return object_of(
-        place_keys() + Keys{start_of_list()} + swept_keys(number(), "where it is swept") +
-        Keys{{"error", text(), "in place of all results: the point is no system, a sentence"}});
+        index_keys() + Keys{start_of_list()} +
+        swept_keys(number(), "value at this point, if swept") +
+        Keys{
+            {"error", text(),
+             "a sentence, instead of all results: the parameters of the point are invalid"}});
 }
 
 Json motion() {
     return object_of(
-        {{"start", text(), "its name in the default set"},
-         {"state", start_state(), "from where it begins, as fields of a simulation"},
-         optional({"x_max", number(), "largest modulus of x, m"}),
-         optional({"x_rms", number(), "m"}),
-         optional({"regime", regime_name(), "as of a point"}),
-         optional({"verdict", word_of_any<Verdict>(), "as of a point"}),
-         optional({"z", number(), "as of a point"}),
-         optional({"lambda1", or_null(number()), "as of a point"}),
+        {{"start", text(), "name of the start in the default set"},
+         {"state", start_state(), "initial state, as fields of a simulation"},
+         optional({"x_max", number(), "maximum of |x|, m"}),
+         optional({"x_rms", number(), "rms of x, m"}),
+         optional({"regime", regime_name(), "as for a point"}),
+         optional({"verdict", enum_schema<Verdict>(), "as for a point"}),
+         optional({"z", number(), "as for a point"}),
+         optional({"lambda1", or_null(number()), "largest exponent by qr"}),
          optional(
              {"reason", constant("transient_max_impacts"),
-              "in place of the results, where its transient did not end"})});
+              "instead of the results: the transient did not end"})});
 }
 
 Keys peak_keys() {
     return swept_keys(
-               or_null(number()), "where it is swept; of the reduced axis, where x_peak is") +
+               or_null(number()),
+               "value at this point, if swept; for the reduced axis, the value at x_peak") +
            Keys{
-               {"x_peak", or_null(number()), "the largest (or smallest) x_max, m"},
-               state_key("of the default set: from where that motion begins"),
-               optional({"regime", regime_name(), "of the point where it is"}),
-               optional({"verdict", word_of_any<Verdict>(), "of the point where it is"}),
-               optional({"z", number(), "of the point where it is"}),
-               optional({"x_rms", number(), "of the point where it is, m"})};
+               {"x_peak", or_null(number()),
+                "largest (or smallest) x_max along the reduced axis, m"},
+               state_key("with the default set: initial state of that motion"),
+               optional({"regime", regime_name(), "regime at x_peak"}),
+               optional({"verdict", enum_schema<Verdict>(), "verdict at x_peak"}),
+               optional({"z", number(), "contacts per cycle at x_peak"}),
+               optional({"x_rms", number(), "rms of x at x_peak, m"})};
 }
 
 Json reduced_point() {
     return object_of(
-        place_keys() + Keys{start_of_line()} + peak_keys() +
+        index_keys() + Keys{start_of_line()} + peak_keys() +
         Keys{
-            {"reduce", text(), "as asked for"},
+            {"reduce", text(), "as requested"},
             {"x_free_peak", or_null(number()),
-             "the same of the steady motion without the absorber, m"},
-            {"points", whole(), "how many it stands for"},
-            {"points_missing", whole(), "how many of them have no result"},
-            optional({"worst", reference("SweepPeak"), "of the worst motion of each point"}),
-            optional({"best", reference("SweepPeak"), "of the best motion of each point"}),
-            optional({"starts", list_of(reference("SweepPeak")), "of each start"}),
+             "largest (or smallest) steady amplitude without the absorber, m"},
+            {"points", whole(), "number of points along the reduced axis"},
+            {"points_missing", whole(), "number of these points without a result"},
+            optional({"worst", reference("SweepPeak"), "peak over the worst motion at each point"}),
+            optional({"best", reference("SweepPeak"), "peak over the best motion at each point"}),
+            optional({"starts", list_of(reference("SweepPeak")), "peak of each start"}),
             depends()});
 }
 
-/// What all of them have stands outside, too: without it generators of clients pass it over.
+/// One of three schemas. Their common keys are repeated at the top level: generators of clients
+/// ignore them otherwise.
 Json point_line_schema() {
-    Json line = object_of(place_keys());
+    Json line = object_of(index_keys());
     line.erase("additionalProperties");
     line["description"] =
-        "its results, or a fault in place of them; with reduce a line for all points along the "
+        "the results of a point, or its error; with reduce, one line for all points along the "
         "reduced axis";
     line["oneOf"] = {
         reference("SweepResult"), reference("SweepFault"), reference("SweepReduction")};
@@ -180,28 +186,30 @@ Json point_line_schema() {
 
 Json start_line_schema() {
     const Json axis = object_of(
-        {{"parameter", text(), "its name"}, {"values", numbers(), "all of them, in their order"}});
+        {{"parameter", text(), "name of the parameter"},
+         {"values", numbers(), "its values, in order"}});
     return object_of(
         answer_keys("System") +
         Keys{
             {"type", constant("start"), ""},
-            {"commit", text(), "of the program; empty where that is not known"},
-            {"points", whole(), "lines of the whole sweep"},
-            {"of", whole(), "lines asked for by indices"},
-            {"cycles", number(), "of all runs together, transients included"},
-            {"axes", list_of(axis), "each axis with its values"},
-            {"request", reference("SweepRequest"), "as given, without indices"}});
+            {"commit", text(), "commit of the program; empty if unknown"},
+            {"points", whole(), "number of lines of the whole sweep"},
+            {"of", whole(), "number of lines requested by indices"},
+            {"cycles", number(), "forcing cycles of all runs together, including transients"},
+            {"axes", list_of(axis), "axes with their values"},
+            {"request", reference("SweepRequest"), "the request, without indices"}});
 }
 
 Json progress_line_schema() {
     return object_of(
         {{"type", constant("progress"), ""},
-         {"done", whole(), "lines"},
-         {"of", whole(), "lines"},
-         {"per_second", number(), "lines"},
-         {"seconds_left", or_null(number()), "by the runs; null before the first is done"},
-         {"runs", whole(), "runs done, about"},
-         {"runs_of", whole(), "runs to do, about"}});
+         {"done", whole(), "lines sent"},
+         {"of", whole(), "lines in total"},
+         {"per_second", number(), "lines per second"},
+         {"seconds_left", or_null(number()),
+          "estimate from the completed runs; null before the first"},
+         {"runs", whole(), "completed runs, approximately"},
+         {"runs_of", whole(), "runs in total, approximately"}});
 }
 
 Json error_line_schema() {
@@ -209,13 +217,13 @@ Json error_line_schema() {
         {{"type", constant("error"), ""},
          {"status",
           {{"type", "integer"}, {"enum", {500, 503}}},
-          "503: the server is stopping or computes no longer for one sweep, ask again for the "
-          "indices that are missing; 500: it failed"},
-         {"detail", text(), "the same in words"},
+          "503: the server is stopping, or the sweep reached its time limit: request the missing "
+          "indices again; 500: the server failed"},
+         {"detail", text(), "reason, a sentence"},
          {"points", whole(), "lines sent"}});
 }
 
-/// One of the schemas of these names, by the property `type`.
+/// One of these schemas, selected by the key `type`: {value of type, name of the schema}.
 Json by_type(const std::vector<std::pair<std::string, std::string>>& schemas) {
     Json any = Json::array(), mapping = Json::object();
     for (const auto& [type, name] : schemas) {
@@ -243,8 +251,8 @@ void add_sweep_lines(Json& schemas) {
     schemas["SweepFault"] = faulty_point();
     schemas["SweepReduction"] = reduced_point();
     schemas["SweepMotion"] = motion();
-    schemas["SweepPeak"] =
-        object_of(Keys{optional({"start", text(), "its name in the default set"})} + peak_keys());
+    schemas["SweepPeak"] = object_of(
+        Keys{optional({"start", text(), "name of the start in the default set"})} + peak_keys());
     schemas["SweepProgress"] = progress_line_schema();
     schemas["SweepWarning"] =
         object_of({{"type", constant("warning"), ""}, {"message", text(), "a sentence"}});

@@ -2,17 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
-#include "api/schema/echo.hpp"
-#include "api/schema/joined.hpp"
-#include "api/schema/nearest_name.hpp"
 #include "api/schema/tables.hpp"
 
 namespace vines::api {
 
 namespace {
 
-/// Each window's exponents are computed and given on their own.
+/// Every window costs a computation of the exponents and a part of the response.
 constexpr std::size_t most_windows = 1000;
 
 std::string pointer(const std::string& name) {
@@ -25,20 +23,20 @@ std::string pointer(const std::string& name) {
     return escaped;
 }
 
-/// What a fault says may be given.
+/// FieldError::range of this field.
 Json range_of(const Field& f) {
     if (f.range) return Json::array({f.range->minimum, f.range->maximum});
     if (!f.choices.empty()) return f.choices;
     return nullptr;
 }
 
-/// One field, and where its faults go.
+/// A field and the list to which its errors are appended.
 struct Checked {
     const Field& field;
     std::vector<FieldError>& errors;
 
-    /// `where`: below the field, as a JSON Pointer.
-    void fault(const std::string& where, const Json& value, const std::string& detail) const {
+    /// Appends an error; `where`: JSON Pointer relative to the field.
+    void fail(const std::string& where, const Json& value, const std::string& detail) const {
         errors.push_back(
             {pointer(field.name) + where, beginning_of(value), range_of(field),
              field.name + " " + detail});
@@ -48,7 +46,7 @@ struct Checked {
                std::find(field.choices.begin(), field.choices.end(), value.get<std::string>()) !=
                    field.choices.end();
     }
-    /// Each element, with its place below the field.
+    /// Calls check(pointer relative to the field, element) for each element.
     template <class Check>
     void each(const Json& array, Check check) const {
         for (std::size_t i = 0; i < array.size() && errors.size() < most_errors; ++i)
@@ -57,79 +55,81 @@ struct Checked {
 };
 
 void check_number(const Checked& c, const Json& value) {
-    if (!value.is_number()) return c.fault("", value, "must be a number");
+    if (!value.is_number()) return c.fail("", value, "must be a number");
     const double v = value.get<double>();
     const auto [minimum, maximum] = *c.field.range;
     const std::string& unit = c.field.unit;
     if (!(v >= minimum && v <= maximum))
-        c.fault(
+        c.fail(
             "", value,
             "must lie in [" + Json(minimum).dump() + ", " + Json(maximum).dump() + "]" +
                 (unit.empty() || unit == dimensionless ? "" : " " + unit));
     else if (c.field.type == FieldType::integer && v != std::floor(v))
-        c.fault("", value, "must be a whole number");
+        c.fail("", value, "must be a whole number");
 }
 
 void check_choice(const Checked& c, const Json& value) {
-    if (!value.is_string()) c.fault("", value, "must be a word");
+    if (!value.is_string()) c.fail("", value, "must be a string");
     else if (!c.field.choices.empty() && !c.is_choice(value))
-        c.fault("", value, "must be one of " + joined(c.field.choices));
+        c.fail("", value, "must be one of " + joined(c.field.choices));
 }
 
 void check_choices(const Checked& c, const Json& value) {
-    if (!value.is_array()) return c.fault("", value, "must be an array of words");
+    if (!value.is_array()) return c.fail("", value, "must be an array of strings");
     c.each(value, [&](const std::string& where, const Json& element) {
         if (c.field.choices.empty()) {
-            if (!element.is_string()) c.fault(where, element, "must hold words");
+            if (!element.is_string()) c.fail(where, element, "must hold only strings");
         } else if (!c.is_choice(element)) {
-            c.fault(where, element, "may hold " + joined(c.field.choices));
+            c.fail(where, element, "must hold only " + joined(c.field.choices));
         }
     });
 }
 
 void check_interval(const Checked& c, const std::string& where, const Json& v) {
     if (!v.is_array() || v.size() != 2 || !v[0].is_number() || !v[1].is_number())
-        return c.fault(where, v, "must be two numbers, [from, to]");
-    if (!(v[0].get<double>() >= 0)) c.fault(where + "/0", v[0], "must not begin before 0");
-    if (!(v[0].get<double>() < v[1].get<double>())) c.fault(where, v, "must begin before it ends");
+        return c.fail(where, v, "must be two numbers, [from, to]");
+    if (!(v[0].get<double>() >= 0)) c.fail(where + "/0", v[0], "must not begin before 0");
+    if (!(v[0].get<double>() < v[1].get<double>())) c.fail(where, v, "must begin before it ends");
 }
 
 void check_intervals(const Checked& c, const Json& value) {
     if (!value.is_array())
-        return c.fault("", value, "must be an array of intervals, [[from, to], ...]");
+        return c.fail("", value, "must be an array of intervals, [[from, to], ...]");
     if (value.size() > most_windows)
-        return c.fault("", value.size(), "may hold " + std::to_string(most_windows) + " intervals");
+        return c.fail(
+            "", value.size(), "must hold at most " + std::to_string(most_windows) + " intervals");
     c.each(value, [&](const std::string& where, const Json& element) {
         check_interval(c, where, element);
     });
 }
 
 void check_integers(const Checked& c, const Json& value) {
-    if (!value.is_array()) return c.fault("", value, "must be an array of whole numbers");
+    if (!value.is_array()) return c.fail("", value, "must be an array of whole numbers");
     c.each(value, [&](const std::string& where, const Json& element) {
         if (!element.is_number_integer() || element < 0)
-            c.fault(where, element, "must hold whole numbers from 0 on");
+            c.fail(where, element, "must hold only whole numbers >= 0");
     });
 }
 
 void check_numbers(const Checked& c, const Json& value) {
-    if (!value.is_array()) return c.fault("", value, "must be an array of numbers");
+    if (!value.is_array()) return c.fail("", value, "must be an array of numbers");
     c.each(value, [&](const std::string& where, const Json& element) {
-        if (!element.is_number()) c.fault(where, element, "must hold numbers");
+        if (!element.is_number()) c.fail(where, element, "must hold only numbers");
     });
 }
 
-/// What stands in the objects has a table of its own.
+/// The reader of the request checks the objects themselves, with their own table.
 void check_objects(const Checked& c, const Json& value) {
-    const std::vector<std::string>& words = c.field.choices;
+    const std::vector<std::string>& choices = c.field.choices;
     if (!value.is_array() && !c.is_choice(value))
-        c.fault(
-            "", value, "must be an array" + (words.empty() ? "" : " or \"" + joined(words) + "\""));
+        c.fail(
+            "", value,
+            "must be an array" + (choices.empty() ? "" : " or \"" + joined(choices) + "\""));
 }
 
-/// What stands in an object has a table of its own: the field's, or one that its reader knows.
+/// The sub-fields are checked by the field's own table, or by the reader of the request.
 void check_object(const Checked& c, const Json& value) {
-    if (!value.is_object()) return c.fault("", value, "must be an object");
+    if (!value.is_object()) return c.fail("", value, "must be an object");
     if (c.field.fields.empty()) return;
     for (FieldError& e : check(c.field.fields, value)) {
         e.pointer = pointer(c.field.name) + e.pointer;
@@ -157,6 +157,31 @@ std::string unknown_field(const FieldTable& table, const std::string& name) {
     return "unknown field" + (nearest.empty() ? "" : "; did you mean " + nearest + "?");
 }
 
+constexpr std::size_t longest_text = 2 * longest_echo;
+
+/// Visits values depth first until `left` of them are copied: the text of each has at least two
+/// bytes.
+Json beginning(const Json& value, std::size_t& left) {
+    if (left > 0) --left;
+    if (value.is_string()) {
+        const std::string_view text = value.get_ref<const std::string&>();
+        return std::string(text.substr(0, longest_text));
+    }
+    if (value.is_array()) {
+        Json part = Json::array();
+        for (std::size_t k = 0; k < value.size() && left > 0; ++k)
+            part.push_back(beginning(value[k], left));
+        return part;
+    }
+    if (!value.is_object()) return value;
+    Json::object_t part;
+    for (const auto& [name, member] : value.get_ref<const Json::object_t&>()) {
+        if (left == 0) break;
+        part.emplace_back(name.substr(0, longest_text), beginning(member, left));
+    }
+    return part;
+}
+
 }  // namespace
 
 std::vector<FieldError> check(const FieldTable& table, const Json& object) {
@@ -169,6 +194,11 @@ std::vector<FieldError> check(const FieldTable& table, const Json& object) {
                 {pointer(name), beginning_of(value), nullptr, unknown_field(table, name)});
     }
     return errors;
+}
+
+Json beginning_of(const Json& value) {
+    std::size_t left = longest_echo;
+    return beginning(value, left);
 }
 
 }  // namespace vines::api

@@ -1,15 +1,36 @@
-// A request's object held against a table of fields.
+// The check of a request's object against a table of fields, and the errors that it reports.
 #pragma once
 
+#include <cstddef>
+#include <string>
 #include <vector>
 
 #include "api/schema/field.hpp"
-#include "api/schema/field_error.hpp"
+#include "api/schema/json.hpp"
 
 namespace vines::api {
 
-/// The faults that show field by field, up to most_errors: unknown names, wrong types, out of
-/// range, NaN.
+/// One invalid field of a request.
+struct FieldError {
+    std::string pointer;  ///< JSON Pointer to the field
+    Json value;           ///< value in the request, abbreviated by beginning_of()
+    Json range;           ///< [minimum, maximum], a list of choices, or null
+    std::string detail;   ///< a sentence
+};
+
+/// Errors listed per request; further ones are only counted, so that the response to a long request
+/// stays short.
+inline constexpr std::size_t most_errors = 20;
+
+/// The errors that each field shows on its own, up to most_errors: unknown name, wrong type, value
+/// out of range, NaN.
 std::vector<FieldError> check(const FieldTable& table, const Json& object);
+
+/// Bytes of an invalid value that a response repeats.
+inline constexpr std::size_t longest_echo = 200;
+
+/// The first part of a value: its text agrees with that of the whole value over the first
+/// 2 longest_echo bytes. Takes time and memory independent of the size of the value.
+Json beginning_of(const Json& value);
 
 }  // namespace vines::api

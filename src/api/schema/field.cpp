@@ -1,6 +1,13 @@
 #include "api/schema/field.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <utility>
 
 namespace vines::api {
 
@@ -8,6 +15,98 @@ const Field* find(const FieldTable& table, const std::string& name) {
     const auto field =
         std::find_if(table.begin(), table.end(), [&](const Field& f) { return f.name == name; });
     return field == table.end() ? nullptr : &*field;
+}
+
+namespace {
+
+/// Longer names are not compared, which would take time: the longest field name has 19 characters.
+constexpr std::size_t longest_name = 64;
+
+/// Levenshtein distance, ignoring case.
+std::size_t distance(const std::string& a, const std::string& b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        std::size_t diagonal = row[0]++;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const bool same = std::tolower(static_cast<unsigned char>(a[i - 1])) ==
+                              std::tolower(static_cast<unsigned char>(b[j - 1]));
+            const std::size_t next = std::min({row[j] + 1, row[j - 1] + 1, diagonal + !same});
+            diagonal = std::exchange(row[j], next);
+        }
+    }
+    return row.back();
+}
+
+}  // namespace
+
+std::string nearest_name(std::span<const std::string> names, const std::string& name) {
+    if (name.size() > longest_name) return "";
+    const auto nearest = std::min_element(
+        names.begin(), names.end(),
+        [&](const auto& a, const auto& b) { return distance(name, a) < distance(name, b); });
+    // One typing error per three letters, at least one.
+    const std::size_t errors = std::max<std::size_t>(1, name.size() / 3);
+    return distance(name, *nearest) <= errors ? *nearest : "";
+}
+
+std::string nearest_name(const FieldTable& table, const std::string& name) {
+    std::vector<std::string> names;
+    for (const Field& field : table) names.push_back(field.name);
+    return nearest_name(names, name);
+}
+
+namespace {
+
+/// The finite number that the whole text spells; otherwise the text itself.
+Json number_or_text(const std::string& text) {
+    double value;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+        return text;
+    return value;
+}
+
+Json numbers_of(const std::string& text) {
+    Json array = Json::array();
+    for (const std::string& part : split(text, ',')) array.push_back(number_or_text(part));
+    return array;
+}
+
+}  // namespace
+
+std::vector<std::string> split(const std::string& text, char separator) {
+    std::vector<std::string> parts;
+    for (std::size_t from = 0, at; !text.empty(); from = at + 1) {
+        at = text.find(separator, from);
+        parts.push_back(text.substr(from, at - from));
+        if (at == std::string::npos) break;
+    }
+    return parts;
+}
+
+Json value_of_text(FieldType type, const std::string& text) {
+    switch (type) {
+        case FieldType::number:
+        case FieldType::integer: return number_or_text(text);
+        case FieldType::choice: return text;
+        case FieldType::choices: return split(text, ',');
+        case FieldType::interval:
+        case FieldType::numbers: return numbers_of(text);
+        case FieldType::intervals: {
+            Json array = Json::array();
+            for (const std::string& part : split(text, ';')) array.push_back(numbers_of(part));
+            return array;
+        }
+        case FieldType::integers:
+        case FieldType::object:
+        case FieldType::objects: return text;  // cannot be written in a query
+    }
+    return nullptr;
+}
+
+std::string joined(const std::vector<std::string>& items) {
+    return fmt::format("{}", fmt::join(items, ", "));
 }
 
 }  // namespace vines::api

@@ -1,8 +1,10 @@
-// A field of a request. Parsing, validation, defaults, GET /v1/parameters, the OpenAPI document and
-// the page's form all follow from the tables of fields (tables.hpp).
+// A field of a request: its name, type, range, unit, default and description, and how its value is
+// written in a query. Parsing, checks, defaults, GET /v1/parameters, the OpenAPI document, the
+// command line and the page's form all follow from the tables of fields (tables.hpp).
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,16 +16,16 @@ enum class FieldType {
     number,
     integer,
     choice,     ///< one of the choices
-    choices,    ///< an array of them (in a query: separated by commas)
+    choices,    ///< an array of choices (in a query: separated by commas)
     interval,   ///< [from, to] (in a query: separated by a comma)
-    intervals,  ///< an array of them (in a query: separated by semicolons)
+    intervals,  ///< an array of intervals (in a query: separated by semicolons)
     integers,   ///< an array of whole numbers
     numbers,    ///< an array of numbers (in a query: separated by commas)
-    object,     ///< fields of their own (in a query: name.field each)
-    objects     ///< an array of such
+    object,     ///< an object with sub-fields (in a query: name.field for each)
+    objects     ///< an array of objects
 };
 
-/// Both ends belong to it.
+/// A closed interval.
 struct Range {
     double minimum, maximum;
 };
@@ -32,20 +34,35 @@ struct Field {
     std::string name;
     FieldType type = FieldType::number;
     std::string group = "", unit = "", symbol = "", description = "";
-    /// What holds when the field is left out; null where that follows from other fields.
+    /// The default; null if it follows from other fields.
     Json fallback = nullptr;
-    std::string fallback_note = "";   ///< and from which
-    std::optional<Range> range = {};  ///< of a number or integer: each has one
-    /// Of a choice or of choices, none: any word. Of objects: words that may stand in place of the
-    /// array.
+    std::string fallback_note = "";   ///< how the default follows from other fields
+    std::optional<Range> range = {};  ///< every number and integer has one
+    /// The permitted values of a choice or of choices; empty: any string. For objects: strings that
+    /// are permitted in place of the array.
     std::vector<std::string> choices = {};
-    /// Of an object that is checked with the others: its own.
+    /// Sub-fields of an object; empty if the reader of the request checks them.
     std::vector<Field> fields = {};
 };
 
 using FieldTable = std::vector<Field>;
 
-/// Null where the table has no field of this name.
+/// The field of this name; null if the table has none.
 const Field* find(const FieldTable& table, const std::string& name);
+
+/// The name, of those known, that a mistyped name probably stands for; empty if none is similar.
+/// Names and table must not be empty.
+std::string nearest_name(std::span<const std::string> names, const std::string& name);
+std::string nearest_name(const FieldTable& table, const std::string& name);
+
+/// The value of a field of this type that a query's text stands for. Text that cannot be read as
+/// this type stays a string, in whole or in part, which check() reports.
+Json value_of_text(FieldType type, const std::string& text);
+
+/// The parts of a separated list; none for an empty text.
+std::vector<std::string> split(const std::string& text, char separator);
+
+/// "one, two, three", for a sentence.
+std::string joined(const std::vector<std::string>& items);
 
 }  // namespace vines::api

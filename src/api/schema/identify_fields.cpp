@@ -1,21 +1,21 @@
-// The table of /v1/identify: what of /v1/simulate holds for a record, and how to read its columns.
+// The table of /v1/identify: the fields of /v1/simulate that apply to a record, and how to read the
+// columns of the record.
+#include "api/schema/enum_names.hpp"
 #include "api/schema/tables.hpp"
-#include "api/schema/words.hpp"
 
 namespace vines::api {
 
 namespace {
 
-/// A field of /v1/simulate as a record sees it: some of the system is measured, not assumed.
+/// A field of /v1/simulate, adapted to a record: some of the system is measured, not given.
 Field of_record(Field f) {
-    if (f.name == "F" || f.name == "G") f.description += "; of a record it is fitted";
+    if (f.name == "F" || f.name == "G") f.description += "; fitted if there is a record";
     if (f.name == "R") {
         f.fallback = nullptr;
-        f.fallback_note = "estimated, each wall's from its impacts";
+        f.fallback_note = "estimated for each wall from its impacts";
     }
     if (f.name == "m1" || f.name == "k1")
-        f.fallback_note =
-            "required for a record, or a preset: they give omega0, by which time is scaled";
+        f.fallback_note = "required for a record, unless a preset gives it: omega0 scales the time";
     return f;
 }
 
@@ -25,28 +25,29 @@ FieldTable column_rows() {
          .type = FieldType::choice,
          .group = "record",
          .description = "name of the column of time",
-         .fallback_note = "time_s, or one that begins with time or t"},
+         .fallback_note = "time_s, or the first name that begins with time or t"},
         {.name = "displacement_column",
          .type = FieldType::choice,
          .group = "record",
          .description = "name of the column of displacement",
-         .fallback_note = "displacement_m, or one that begins with displacement or x"},
+         .fallback_note = "displacement_m, or the first name that begins with displacement or x"},
         {.name = "acceleration_column",
          .type = FieldType::choice,
          .group = "record",
          .description = "name of the column of acceleration",
-         .fallback_note = "acceleration_m_s2, or one that begins with acceleration or a"},
+         .fallback_note =
+             "acceleration_m_s2, or the first name that begins with acceleration or a"},
         {.name = "base_acceleration_column",
          .type = FieldType::choice,
          .group = "record",
-         .description = "name of the column of the base's acceleration, which tells the forcing",
-         .fallback_note = "base_acceleration_m_s2, or one that begins with base_acceleration; none "
-                          "is needed"},
+         .description = "name of the column of the base's acceleration, which gives the forcing",
+         .fallback_note = "base_acceleration_m_s2, or the first name that begins with "
+                          "base_acceleration; optional"},
         {.name = "force_column",
          .type = FieldType::choice,
          .group = "record",
-         .description = "name of the column of a force on m1 that drives it, in place of the base",
-         .fallback_note = "force_N, or one that begins with force; none is needed"},
+         .description = "name of the column of a force on m1 that drives it instead of the base",
+         .fallback_note = "force_N, or the first name that begins with force; optional"},
     };
 }
 
@@ -55,35 +56,35 @@ FieldTable unit_rows() {
         {.name = "time_unit",
          .type = FieldType::choice,
          .group = "record",
-         .description = "unit of time, where neither the column's name nor a row of units says one",
+         .description = "unit of time, unless the column's name or a row of units gives one",
          .fallback = "s",
          .choices = {"s", "ms"}},
         {.name = "displacement_unit",
          .type = FieldType::choice,
          .group = "record",
          .description =
-             "unit of displacement, where neither the column's name nor a row of units says one",
+             "unit of displacement, unless the column's name or a row of units gives one",
          .fallback = "m",
          .choices = {"m", "mm", "um"}},
         {.name = "acceleration_unit",
          .type = FieldType::choice,
          .group = "record",
          .description =
-             "unit of acceleration, where neither the column's name nor a row of units says one",
+             "unit of acceleration, unless the column's name or a row of units gives one",
          .fallback = "m/s2",
          .choices = {"m/s2", "g"}},
         {.name = "base_acceleration_unit",
          .type = FieldType::choice,
          .group = "record",
-         .description = "unit of the base's acceleration, where neither the column's name nor a "
-                        "row of units says one",
+         .description =
+             "unit of the base's acceleration, unless the column's name or a row of units "
+             "gives one",
          .fallback = "m/s2",
          .choices = {"m/s2", "g"}},
         {.name = "force_unit",
          .type = FieldType::choice,
          .group = "record",
-         .description =
-             "unit of the force, where neither the column's name nor a row of units says one",
+         .description = "unit of the force, unless the column's name or a row of units gives one",
          .fallback = "N",
          .choices = {"N", "kN"}},
     };
@@ -94,7 +95,7 @@ FieldTable impact_rows() {
         {.name = "threshold",
          .group = "record",
          .unit = "standard deviations of the noise",
-         .description = "height from which on a spike of the acceleration may be an impact",
+         .description = "smallest height at which a spike of the acceleration can be an impact",
          .fallback = 6,
          .range = Range{3, 1000}},
         {.name = "impact_times_s",
@@ -102,13 +103,13 @@ FieldTable impact_rows() {
          .group = "record",
          .unit = "s",
          .description =
-             "moments of the impacts, from an edited list: then they are not searched for",
-         .fallback_note = "found from the record"},
+             "times of the impacts, for example an edited list; replaces their detection",
+         .fallback_note = "detected in the record"},
     };
 }
 
 std::vector<std::string> fixable() {
-    std::vector<std::string> names = all_words<Unknown>();
+    std::vector<std::string> names = enum_choices<Unknown>();
     names.insert(names.begin() + 1, {"F", "phase"});
     return names;
 }
@@ -119,9 +120,9 @@ Field phase_row() {
         .group = "record",
         .unit = "rad",
         .description =
-            "of the base, which moves by F sin(2 pi f t + phase), t as in the record: where it is "
-            "fixed",
-        .fallback_note = "fitted; where it is fixed that of a channel of the forcing",
+            "phase of the base, which moves by F sin(2 pi f t + phase), t as in the record; used "
+            "if fixed contains phase",
+        .fallback_note = "fitted; if fixed, the phase of the forcing channel",
         .range = Range{-7, 7}};
 }
 
@@ -131,8 +132,8 @@ Field fixed_row() {
         .type = FieldType::choices,
         .group = "record",
         .description =
-            "what of a record is not fitted but taken as given: f, F, phase, omega0, zeta, b and R "
-            "by the other fields, a sensor without fault",
+            "quantities that are not fitted to the record: f, F, phase, omega0, zeta, b and R keep "
+            "the values of the other fields, a sensor counts as free of errors",
         .fallback = Json::array(),
         .choices = fixable()};
 }
@@ -143,9 +144,8 @@ Field include_row() {
         .type = FieldType::choices,
         .group = "output",
         .description =
-            "parts of the answer beside the usual ones, of a record: motion, the fitted "
-            "motion at its samples; direct_exponents, those of the paper's direct "
-            "estimate with their histories",
+            "additional parts of the response for a record: motion, the fitted motion at the "
+            "samples; direct_exponents, exponents with histories by the direct method of the paper",
         .fallback = Json::array(),
         .choices = {"motion", "direct_exponents"}};
 }

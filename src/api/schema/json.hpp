@@ -1,11 +1,11 @@
-// The JSON of requests and answers.
+// The JSON type of requests and responses.
 #pragma once
 
 #include <nlohmann/json.hpp>
 
 namespace vines::api {
 
-/// Keeps the order in which names come: an answer reads as it was written.
+/// Keeps the order of the keys.
 using Json = nlohmann::ordered_json;
 
 }  // namespace vines::api

@@ -1,7 +1,6 @@
-#include "api/schema/parameters.hpp"
-
+// GET /v1/parameters: the model with its symbols, and the tables of fields as JSON.
+#include "api/schema/enum_names.hpp"
 #include "api/schema/tables.hpp"
-#include "api/schema/words.hpp"
 
 namespace vines::api {
 
@@ -10,7 +9,7 @@ namespace {
 Json describe(const FieldTable& table) {
     Json list = Json::array();
     for (const Field& f : table) {
-        Json entry = {{"name", f.name},       {"type", word_of(f.type)},
+        Json entry = {{"name", f.name},       {"type", enum_name(f.type)},
                       {"group", f.group},     {"unit", f.unit},
                       {"symbol", f.symbol},   {"description", f.description},
                       {"default", f.fallback}};
@@ -26,7 +25,7 @@ Json describe(const FieldTable& table) {
     return list;
 }
 
-/// What the symbols are: eq. (1) of the paper, in SI and reduced.
+/// Equation (1) of the paper, in SI and reduced, and the meaning of each symbol.
 Json describe_model() {
     return {
         {"equations",
@@ -34,20 +33,19 @@ Json describe_model() {
           "while |x - y| < b, derivatives in t (s)",
           "x'' + 2 zeta x' + x = epsilon G sin(Omega tau) + epsilon^2 lambda G Omega cos(Omega "
           "tau), y'' = 0 while |x - y| < b, derivatives in tau = omega0 t",
-          "at |x - y| = b: x' + epsilon y' is kept, x' - y' is reversed and shrunk by R"}},
+          "at |x - y| = b: x' + epsilon y' is conserved, x' - y' is reversed and multiplied by R"}},
         {"symbols",
          {{"x",
-           "displacement of the linear oscillator (mass m1) from rest, absolute: that of an "
-           "observer who does not move with the base"},
+           "absolute displacement of the linear oscillator (mass m1) from rest, in a frame that "
+           "does not move with the base"},
           {"y",
-           "displacement of the free mass m2, absolute, from where x - y = 0 in the middle of its "
-           "cavity"},
+           "absolute displacement of the ball (mass m2); x - y = 0 in the middle of the cavity"},
           {"F",
-           "amplitude of the base in m: it moves by F sin(2 pi f t) and carries spring k1 and "
+           "amplitude of the base in m, which moves by F sin(2 pi f t) and carries spring k1 and "
            "damper c1; F = epsilon G"},
           {"b",
-           "half-width of the cavity: its free length is 2 b and the diameter of the ball, with "
-           "walls where x - y = b (side 1) and x - y = -b (side -1)"},
+           "clearance: half-width of the cavity, whose length is 2 b plus the diameter of the "
+           "ball; the walls are at x - y = b (side 1) and x - y = -b (side -1)"},
           {"omega0", "sqrt(k1/m1), rad/s"},
           {"epsilon", "m2/m1"},
           {"lambda", "c1/(m2 omega0)"},

@@ -1,46 +1,53 @@
-// The rows of the table of /v1/simulate, of which those of the other routes are made.
+// The tables of /v1/simulate, of /v1/manifold, and of the response's format.
+//
+// The rows of /v1/simulate are grouped as a form shows them; the other routes select rows from them
+// (is_of_system, sweep_base_fields, identify_fields). Ranges of physical quantities are those of
+// the core (parameter_ranges), defaults are Table 1 of the paper.
+#include <algorithm>
+#include <iterator>
 #include <numbers>
 #include <stdexcept>
 
+#include "api/schema/enum_names.hpp"
 #include "api/schema/tables.hpp"
-#include "api/schema/words.hpp"
 #include "core/motion/parameters.hpp"
 
 namespace vines::api {
 
 namespace {
 
-/// That of the core's parameter or initial state of this name.
+/// The range of the core's parameter or initial state of this name.
 Range core_range(const std::string& name) {
     for (const ParameterRange& r : parameter_ranges())
         if (r.name == name) return {r.minimum, r.maximum};
     throw std::logic_error("no core parameter " + name);
 }
 
-// Wider than any machine: these ranges only keep the arithmetic far from overflow and from a
-// division by zero. The core checks the reduced parameters that follow.
+// Wider than any real system: these ranges only prevent overflow and division by zero. The core
+// checks the reduced parameters that result.
 constexpr Range any_mass{1e-9, 1e9}, any_absorber_mass{1e-12, 1e9}, any_frequency{1e-9, 1e9},
     any_stiffness{1e-9, 1e15}, any_damping{0, 1e12}, any_amplitude{0, 1e3}, any_velocity{-1e9, 1e9};
 
-const char* const whole = "none: a system in SI is given as a whole, or a preset for the rest";
+const char* const whole = "none: give all SI fields, or a preset for the rest";
 const char* const from_si = "from the SI fields if any is given";
 const char* const speed = "m per unit of tau";
 
 FieldTable system_rows() {
-    const Parameters table_1;  // of the paper: the defaults
+    const Parameters table_1;  // the defaults
     return {
         {.name = "preset",
-         // Any word: the reader of the request answers an unknown one with the list.
+         // Any string: the reader of the request reports an unknown preset with the list of
+         // presets.
          .type = FieldType::choice,
          .group = "system",
-         .description = "start from a figure or table of the paper (GET /v1/presets); each other "
-                        "field replaces its own value alone",
+         .description = "figure or table of the paper (GET /v1/presets); each other field that is "
+                        "given replaces one value of the preset",
          .fallback_note = "none"},
         {.name = "b",
          .group = "system",
          .unit = "m",
          .symbol = "b",
-         .description = "half-width of the cavity in which the free mass moves",
+         .description = "clearance: half-width of the cavity in which the ball moves",
          .fallback = table_1.b,
          .range = core_range("b")},
         {.name = "R",
@@ -55,30 +62,30 @@ FieldTable system_rows() {
          .group = "system",
          .unit = dimensionless,
          .symbol = "R+",
-         .description = "restitution coefficient of the wall met where x - y = +b",
+         .description = "restitution coefficient of the wall at x - y = +b",
          .fallback_note = "R",
          .range = core_range("R_plus")},
         {.name = "R_minus",
          .group = "system",
          .unit = dimensionless,
          .symbol = "R-",
-         .description = "restitution coefficient of the wall met where x - y = -b",
+         .description = "restitution coefficient of the wall at x - y = -b",
          .fallback_note = "R",
          .range = core_range("R_minus")},
         {.name = "damping",
          .type = FieldType::choice,
          .group = "system",
          .symbol = "zeta",
-         .description = "equation_of_motion: zeta = epsilon lambda/2, eqs. (1), (6), (17), what c1 "
-                        "means; closed_form: zeta = epsilon lambda, eqs. (8)-(11), (19), (20), "
-                        "what the paper's numbers were computed with",
-         .fallback = word(table_1.damping),
-         .choices = all_words<Damping>()},
+         .description = "equation_of_motion: zeta = epsilon lambda/2, eqs. (1), (6), (17), the "
+                        "physical damper c1; closed_form: zeta = epsilon lambda, eqs. (8)-(11), "
+                        "(19), (20), used for the numbers in the paper",
+         .fallback = enum_json(table_1.damping),
+         .choices = enum_choices<Damping>()},
     };
 }
 
 FieldTable reduced_rows() {
-    const Parameters table_1;  // of the paper: the defaults
+    const Parameters table_1;  // the defaults
     return {
         {.name = "epsilon",
          .group = "reduced",
@@ -122,49 +129,49 @@ FieldTable si_rows() {
          .group = "SI",
          .unit = "kg",
          .symbol = "m1",
-         .description = "mass of the linear oscillator; SI and reduced fields cannot be mixed",
+         .description = "mass of the linear oscillator; SI and reduced fields exclude each other",
          .fallback_note = whole,
          .range = any_mass},
         {.name = "f0",
          .group = "SI",
          .unit = "Hz",
          .symbol = "f0",
-         .description = "its natural frequency sqrt(k1/m1)/(2 pi), in place of k1",
+         .description = "natural frequency of the oscillator, sqrt(k1/m1)/(2 pi), instead of k1",
          .fallback_note = "from k1",
          .range = any_frequency},
         {.name = "k1",
          .group = "SI",
          .unit = "N/m",
          .symbol = "k1",
-         .description = "its stiffness",
+         .description = "stiffness of the oscillator",
          .fallback_note = whole,
          .range = any_stiffness},
         {.name = "damping_ratio",
          .group = "SI",
          .unit = dimensionless,
          .symbol = "c1/(2 m1 omega0)",
-         .description = "its damping ratio, in place of c1",
+         .description = "damping ratio of the oscillator, instead of c1",
          .fallback_note = "from c1",
          .range = Range{0, 10}},
         {.name = "c1",
          .group = "SI",
          .unit = "N s/m",
          .symbol = "c1",
-         .description = "its damping",
+         .description = "damping of the oscillator",
          .fallback_note = whole,
          .range = any_damping},
         {.name = "mass_ratio",
          .group = "SI",
          .unit = dimensionless,
          .symbol = "m2/m1",
-         .description = "mass of the absorber over m1, in place of m2",
+         .description = "mass ratio m2/m1, instead of m2",
          .fallback_note = "from m2",
          .range = core_range("epsilon")},
         {.name = "m2",
          .group = "SI",
          .unit = "kg",
          .symbol = "m2",
-         .description = "mass of the absorber",
+         .description = "mass of the ball",
          .fallback_note = whole,
          .range = any_absorber_mass},
         {.name = "F",
@@ -197,35 +204,35 @@ FieldTable start_rows() {
          .group = "start",
          .unit = speed,
          .symbol = "x'(0)",
-         .description = "its velocity",
+         .description = "velocity of the linear oscillator at tau = 0",
          .fallback = 0,
          .range = core_range("x_dot0")},
         {.name = "x_velocity0",
          .group = "start",
          .unit = "m/s",
          .symbol = "dx/dt(0)",
-         .description = "the same in m/s, for a system in SI",
+         .description = "x_dot0 in m/s, for a system in SI",
          .fallback_note = "from x_dot0",
          .range = any_velocity},
         {.name = "y0",
          .group = "start",
          .unit = "m",
          .symbol = "y(0)",
-         .description = "displacement of the free mass; |x0 - y0| <= b",
+         .description = "displacement of the ball at tau = 0; |x0 - y0| <= b",
          .fallback_note = "0.95 b",
          .range = core_range("y0")},
         {.name = "y_dot0",
          .group = "start",
          .unit = speed,
          .symbol = "y'(0)",
-         .description = "its velocity",
+         .description = "velocity of the ball at tau = 0",
          .fallback = 0,
          .range = core_range("y_dot0")},
         {.name = "y_velocity0",
          .group = "start",
          .unit = "m/s",
          .symbol = "dy/dt(0)",
-         .description = "the same in m/s, for a system in SI",
+         .description = "y_dot0 in m/s, for a system in SI",
          .fallback_note = "from y_dot0",
          .range = any_velocity},
     };
@@ -236,7 +243,7 @@ FieldTable perturbation_rows() {
         return Field{
             .name = name,
             .unit = unit,
-            .description = std::string("is added to ") + of_start,
+            .description = std::string("difference added to ") + of_start,
             .fallback = 0,
             .range = core_range(of_start)};
     };
@@ -247,12 +254,12 @@ FieldTable perturbation_rows() {
         component("y_dot", speed, "y_dot0"),
         {.name = "seed",
          .type = FieldType::integer,
-         .description = "of a random direction in (x', x, y', y), the same on every machine; with "
-                        "size",
+         .description = "seed of a random direction in (x', x, y', y), the same on every computer; "
+                        "only with size",
          .fallback = 1,
-         .range = Range{0, 9007199254740992}},  // 2^53: every whole number up to there is a double
+         .range = Range{0, 9007199254740992}},  // 2^53: doubles hold every whole number up to it
         {.name = "size",
-         .description = "Euclidean length of that difference",
+         .description = "Euclidean length of the random difference",
          .fallback_note = "none",
          .range = Range{1e-18, 1e3}},
     };
@@ -264,13 +271,13 @@ FieldTable run_rows() {
          .group = "run",
          .unit = dimensionless,
          .symbol = "tau",
-         .description = "how long to run; not together with cycles",
-         .fallback = 1709,  // the first window of Table 2 ends before it
+         .description = "length of the run; not together with cycles",
+         .fallback = 1709,  // beyond the end of the first window of Table 2
          .range = Range{1e-6, longest_run}},
         {.name = "cycles",
          .group = "run",
          .unit = dimensionless,
-         .description = "how many forcing cycles of 2 pi/Omega to run",
+         .description = "length of the run in forcing cycles of 2 pi/Omega",
          .fallback_note = "from tau_end",
          .range = Range{1e-6, 1e6}},
         {.name = "window",
@@ -278,23 +285,24 @@ FieldTable run_rows() {
          .group = "run",
          .unit = dimensionless,
          .symbol = "[tau_s, tau_e]",
-         .description = "the exponents are taken from the first impact at or after tau_s to the "
-                        "last at or before tau_e; regime, energy, section, eigenvalues and "
-                        "manifold are those of the window, too",
+         .description =
+             "interval for exponents, regime, energy, section, eigenvalues, matrices and "
+             "manifold; the exponents refer to the part from its first to its last impact",
          .fallback_note = "the whole run"},
         {.name = "windows",
          .type = FieldType::intervals,
          .group = "run",
          .unit = dimensionless,
          .symbol = "[[tau_s, tau_e], ...]",
-         .description = "more windows, for which the exponents are given without histories",
+         .description = "additional windows for the exponents, without histories",
          .fallback = Json::array()},
         {.name = "perturbation",
          .type = FieldType::object,
          .group = "run",
-         .description = "a second run that starts a little off, and how its distance from the "
-                        "first one grows: either the difference {x, x_dot, y, y_dot} of the start, "
-                        "or a random one {seed, size}",
+         .description =
+             "second run with a slightly different start, and its distance from the first "
+             "run; the difference of the starts is {x, x_dot, y, y_dot}, or a random "
+             "one by {seed, size}",
          .fallback_note = "none",
          .fields = perturbation_rows()},
     };
@@ -306,7 +314,7 @@ FieldTable output_rows() {
         {.name = "include",
          .type = FieldType::choices,
          .group = "output",
-         .description = "parts of the answer",
+         .description = "parts of the response",
          .fallback = Json::array({"series", "impacts", "exponents"}),
          .choices =
              {"series", "impacts", "exponents", "eigenvalues", "matrices", "section", "energy",
@@ -333,17 +341,41 @@ FieldTable output_rows() {
         {.name = "max_points",
          .type = FieldType::integer,
          .group = "output",
-         .description = "longest series and histories; a longer series gets a larger step, longer "
-                        "histories are thinned",
+         .description = "maximum length of series and histories; longer series get a larger step, "
+                        "longer histories are thinned",
          .fallback = 20000,
          .range = Range{256, 1000000}},
         {.name = "max_impacts",
          .type = FieldType::integer,
          .group = "output",
-         .description = "end the run after so many impacts",
+         .description = "number of impacts after which the run ends",
          .fallback = 100000,
          .range = Range{1, 2000000}},
     };
+}
+
+FieldTable make_manifold_fields() {
+    FieldTable table;
+    std::copy_if(
+        simulate_fields().begin(), simulate_fields().end(), std::back_inserter(table),
+        is_of_system);
+    table.push_back(
+        {.name = "V_max",
+         .group = "output",
+         .unit = speed,
+         .symbol = "V",
+         .description = "largest speed of the ball on the branch beyond the symmetry breaking; the "
+                        "branch ends earlier if the motion does",
+         .fallback_note = "twice the speed at the symmetry breaking",
+         .range = Range{1e-12, 1e6}});
+    table.push_back(
+        {.name = "points",
+         .type = FieldType::integer,
+         .group = "output",
+         .description = "points on each branch",
+         .fallback = 200,
+         .range = Range{2, 100000}});
+    return table;
 }
 
 }  // namespace
@@ -356,6 +388,32 @@ const FieldTable& simulate_fields() {
             all.insert(all.end(), rows.begin(), rows.end());
         return all;
     }();
+    return table;
+}
+
+const FieldTable& manifold_fields() {
+    static const FieldTable table = make_manifold_fields();
+    return table;
+}
+
+const FieldTable& form_fields() {
+    static const FieldTable table = {
+        {.name = "format",
+         .type = FieldType::choice,
+         .group = "answer",
+         .description =
+             "format of the response: json; csv: one table; cbor: with typed arrays (RFC "
+             "8746); npz: arrays for numpy.load",
+         .fallback_note = "the format that the header Accept requests, otherwise json",
+         .choices = {"json", "csv", "cbor", "npz"}},
+        {.name = "fields",
+         .type = FieldType::choices,
+         .group = "answer",
+         .description =
+             "keys to keep in the response: names, or paths with dots as in impacts.tau; "
+             "version, status, warnings and provenance are always kept. Other keys are "
+             "not computed, unless include requests them",
+         .fallback_note = "everything"}};
     return table;
 }
 

@@ -1,8 +1,8 @@
-// The tables of /v1/sweep: its own fields, and those of `base`, of an axis and of a start.
+// The tables of /v1/sweep: its own fields, those of `base`, of an axis and of a start.
 #include <numbers>
 
+#include "api/schema/enum_names.hpp"
 #include "api/schema/tables.hpp"
-#include "api/schema/words.hpp"
 
 namespace vines::api {
 
@@ -20,51 +20,52 @@ FieldTable make_sweep_fields() {
         {.name = "axes",
          .type = FieldType::objects,
          .group = "sweep",
-         .description = "one to three: {parameter, from, to, count, scale} or {parameter, values}; "
-                        "the index of a point counts along the first axis fastest",
+         .description = "one to three axes: {parameter, from, to, count, scale} or {parameter, "
+                        "values}; along the first axis the index of a point varies fastest",
          .fallback_note = "required"},
         {.name = "starts",
          .type = FieldType::objects,
          .group = "sweep",
-         .description = "initial states {x0, x_dot0, y0, y_dot0}, each run at every point, to show "
+         .description = "initial states {x0, x_dot0, y0, y_dot0}, each run at every point, to find "
                         "coexisting attractors; or \"default set\": at rest in the middle, at a "
-                        "wall, moving, and the last states of both neighbours on the first axis, "
-                        "of which a line tells the worst and the best by x_max",
+                        "wall, moving, and the final states of both neighbours on the first axis; "
+                        "lines then give the worst and the best motion by x_max",
          .fallback = Json::array(),
          .choices = {default_set_of_starts}},
         {.name = "cycles",
          .type = FieldType::integer,
          .group = "sweep",
          .unit = dimensionless,
-         .description = "forcing cycles that are measured at each point",
+         .description = "number of measured forcing cycles at each point",
          .fallback = 1000,
          .range = Range{1, 1e6}},
         {.name = "transient_cycles",
          .type = FieldType::integer,
          .group = "sweep",
          .unit = dimensionless,
-         .description = "forcing cycles run before them",
+         .description = "number of transient forcing cycles before the measured ones",
          .fallback = 200,
          .range = Range{0, 1e6}},
         {.name = "carry_state",
          .type = FieldType::choice,
          .group = "sweep",
-         .description = "none: each point starts afresh; up, down: from the last state of its "
-                        "neighbour on the first axis, in ascending or descending order of the "
-                        "axis' entries",
-         .fallback = word(Carry::none),
-         .choices = all_words<Carry>()},
+         .description =
+             "none: each point starts from the initial state of base; up, down: from the final "
+             "state of its neighbour on the first axis, in ascending or descending "
+             "order of the axis' entries",
+         .fallback = enum_json(Carry::none),
+         .choices = enum_choices<Carry>()},
         {.name = "section",
          .type = FieldType::choice,
          .group = "sweep",
          .description = "points for a bifurcation diagram: at impact or at whole forcing cycles",
-         .fallback = word(SectionKind::none),
-         .choices = all_words<SectionKind>()},
+         .fallback = enum_json(SectionKind::none),
+         .choices = enum_choices<SectionKind>()},
         {.name = "section_points",
          .type = FieldType::integer,
          .group = "sweep",
          .unit = dimensionless,
-         .description = "the last so many points of the section are given at each point",
+         .description = "number of section points per point of the sweep: the last ones",
          .fallback = 100,
          .range = Range{1, 100000}},
         {.name = "section_phase",
@@ -74,30 +75,31 @@ FieldTable make_sweep_fields() {
          .fallback = 0,
          .range = Range{0, 2 * std::numbers::pi}},
         {.name = "reduce",
-         // Any word: which ones there are follows from the axes.
+         // Any string: the valid ones follow from the axes.
          .type = FieldType::choice,
          .group = "sweep",
-         .description = "\"max over f\": of the points along that axis only the largest x_max and "
-                        "where it is, as x_peak; or \"min over f\"",
-         .fallback_note = "none: a line for each point"},
+         .description =
+             "\"max over f\": one line for all points along the axis f, with the largest "
+             "x_max as x_peak and its place; or \"min over f\"",
+         .fallback_note = "none: one line for each point"},
         {.name = "indices",
          .type = FieldType::integers,
          .group = "sweep",
-         .description = "only these points: those that a broken stream did not bring",
+         .description = "only these points, for example those missing from an interrupted stream",
          .fallback_note = "all"},
     };
 }
 
-/// An axis' ends: any number but those next to overflow, for the parameter has a range of its own.
+/// Range of an axis: the parameter has a range of its own, this one only prevents overflow.
 constexpr Range any_number{-1e300, 1e300};
 
 FieldTable make_axis_fields() {
     return {
         {.name = "parameter",
-         // Any word: the reader of the axis answers an unknown one with the list.
+         // Any string: the reader of the axis reports an unknown parameter with the list.
          .type = FieldType::choice,
          .group = "axis",
-         .description = "any number of system, reduced, SI or start",
+         .description = "name of a numeric field of system, reduced, SI or start",
          .fallback_note = "required"},
         {.name = "from",
          .group = "axis",
@@ -124,13 +126,13 @@ FieldTable make_axis_fields() {
         {.name = "values",
          .type = FieldType::numbers,
          .group = "sweep",
-         .description = "the values themselves, in place of from, to, count, scale",
+         .description = "values, instead of from, to, count, scale",
          .fallback_note = "from, to, count"},
     };
 }
 
-template <class Wanted>
-FieldTable of_simulate(Wanted wanted) {
+template <class AnalysisRequest>
+FieldTable of_simulate(AnalysisRequest wanted) {
     FieldTable table;
     for (const Field& f : simulate_fields())
         if (wanted(f)) table.push_back(f);

@@ -4,38 +4,63 @@
 #include <cassert>
 #include <cmath>
 
-#include "core/stability/windows.hpp"
+#include "core/stability/exponent_statistics.hpp"
+#include "core/stability/lyapunov.hpp"
 
 namespace vines {
 
+WindowExponents window_exponents(
+    const Interval& asked, TransferProduct&& product, const Growth& growth, const Regime& regime) {
+    const Judgement judgement = judge(growth, regime, product.start_tau());
+    const double start = product.start_tau();
+    const ExponentSlopes slopes{
+        coarse_slope(product.qr_history(), start),
+        coarse_slope(product.eigenvalues_history(), start),
+        coarse_slope(product.raw_product_history(), start)};
+    return {asked, std::move(product), growth, slopes, judgement};
+}
+
+void add_warnings(
+    const TransferProduct& product, const ExponentOptions& shown, bool histories,
+    std::vector<Warning>& warnings) {
+    if (histories && shown.raw_product && product.impacts() > 1 &&
+        std::isnan(product.raw_product()[0]))
+        warnings.push_back(warning::RawProductOverflows{});
+    if (product.sum_rule_residual() > most_residual)
+        warnings.push_back(warning::SumRuleMissed{
+            product.start_tau(), product.end_tau(), product.sum_rule_residual()});
+    if (!histories) return;
+    if (product.impacts() < 2) warnings.push_back(warning::NoExponents{});
+    if (product.rank() < 4) warnings.push_back(warning::RankLost{product.rank()});
+}
+
 namespace {
 
-/// Points on each branch of the manifold beside a run: a smooth curve on a screen.
+/// Points on each branch of the manifold: a smooth curve on a screen.
 constexpr std::size_t manifold_points = 200;
 
 const std::vector<double> decay_shares = {0.5, 0.1};
 
-/// A cycle's samples are further apart where the series would be too long.
-double series_step(const Wanted& w) {
+double series_step(const AnalysisRequest& w) {
     const double asked = w.parameters.cycle() / w.samples_per_cycle;
     return std::max(asked, w.tau_end / static_cast<double>(w.most_points - 1));
 }
 
-/// Most responses have fewer impacts per cycle.
+/// Upper estimate for most responses; sizes a reservation only.
 constexpr double many_impacts_per_cycle = 4;
 
-std::size_t impacts_expected(const Wanted& w) {
+std::size_t impacts_expected(const AnalysisRequest& w) {
     const double expected = many_impacts_per_cycle * (w.tau_end / w.parameters.cycle() + 1);
     return static_cast<std::size_t>(
         std::min({expected, static_cast<double>(w.max_impacts), static_cast<double>(w.most_kept)}));
 }
 
-/// Verdict and regime rest on qr, whether or not it is shown.
-bool is_judged(const Wanted& w) {
+/// Verdict and regime need the exponents by qr, whether or not these are shown.
+bool needs_verdict(const AnalysisRequest& w) {
     return w.parts.regime || w.parts.exponents || !w.windows.empty();
 }
 
-ExponentOptions main_estimators(const Wanted& w) {
+ExponentOptions main_estimators(const AnalysisRequest& w) {
     const ExponentOptions& e = w.estimators;
     return {
         .qr = true,
@@ -44,18 +69,17 @@ ExponentOptions main_estimators(const Wanted& w) {
         .history = e.history};
 }
 
-ExponentOptions window_estimators(const Wanted& w) {
+ExponentOptions window_estimators(const AnalysisRequest& w) {
     ExponentOptions options = w.estimators;
-    // It is not shown; slopes rest on it.
+    // The history is not shown; the slopes are computed from it.
     options.history = std::min(options.history, shortest_history);
     return options;
 }
 
 }  // namespace
 
-/// All that one pass over the motion is observed by.
 struct AnalysisRun::Observers {
-    explicit Observers(const Wanted& w)
+    explicit Observers(const AnalysisRequest& w)
         : series(series_step(w)),
           impacts(w.most_listed, w.most_kept),
           section(w.window.from, w.window.to, w.most_points),
@@ -69,19 +93,19 @@ struct AnalysisRun::Observers {
           decay(w.parameters, w.window.from, decay_shares),
           rhythm(w.parameters, w.window, w.parts.regime ? w.most_points : 0),
           half_cycles(w.parameters, w.window.from, w.window.to, w.most_points) {
-        // Lists that move while they grow take longer than the flights. What is not used of their
-        // room takes no memory.
+        // Growing lists without a reservation cost more time than the flights. Reserved memory that
+        // is never written takes no RAM.
         if (w.parts.series) series.expect(w.tau_end);
         if (w.parts.impacts) impacts.entries.reserve(impacts_expected(w));
         for (const Interval& window : w.windows) windows.add(window.from, window.to);
         if (w.parts.energy) energy.emplace(w.parameters, w.window.from, w.window.to);
-        if (w.perturbation)  // what is left of it once the start is rounded
+        if (w.perturbation)  // the difference after rounding of the start
             compared.emplace(
                 w.parameters, series_step(w),
                 difference_of(displaced(w.start, *w.perturbation), w.start));
     }
 
-    std::vector<Observer*> wanted(const Wanted& w) {
+    std::vector<Observer*> wanted(const AnalysisRequest& w) {
         std::vector<Observer*> list = {&sticks, &touches};
         auto observe = [&](bool wanted, auto&... observer) {
             if (wanted) (list.push_back(&observer), ...);
@@ -89,7 +113,7 @@ struct AnalysisRun::Observers {
         observe(w.parts.series, series);
         observe(w.parts.impacts || w.parts.section, impacts);
         observe(w.parts.section, section, stroboscopic);
-        observe(is_judged(w), lyapunov, whole_cycles, rhythm);
+        observe(needs_verdict(w), lyapunov, whole_cycles, rhythm);
         observe(!w.windows.empty(), windows);
         observe(w.parts.moduli || w.parts.matrices, transfers);
         if (energy) list.push_back(&*energy);
@@ -100,25 +124,25 @@ struct AnalysisRun::Observers {
     }
 
     SeriesRecord series;
-    ImpactList impacts;
+    ImpactCollector impacts;
     SectionRecord section;
     StickRecord sticks;
-    TouchRecord touches;
+    GrazingRecord touches;
     Lyapunov lyapunov;
-    Windows windows;
+    WindowedExponents windows;
     TransferRecord transfers;
     StroboscopicRecord whole_cycles, stroboscopic;
-    std::optional<Energy> energy;  // its tables take their time
+    std::optional<Energy> energy;  // constructed only on request: its tables take time
     Decay decay;
     Rhythm rhythm;
     HalfCycles half_cycles;
     std::optional<ComparedRun> compared;
 };
 
-/// From observers to the parts of the result, in its order: each function is one part.
+/// Turns the observers' records into the result; one function per part, in its order.
 class AnalysisRun::Conclusion {
 public:
-    Conclusion(const Wanted& w, const Interrupt& interrupt, Observers& o, Analysis& a)
+    Conclusion(const AnalysisRequest& w, const Interrupt& interrupt, Observers& o, Analysis& a)
         : w_(w),
           interrupt_(interrupt),
           o_(o),
@@ -129,8 +153,8 @@ public:
         if (w_.parts.series) series();
         if (w_.parts.series || w_.perturbation) thinning();
         lists();
-        if (is_judged(w_)) judge_motion();
-        if (w_.parts.impacts || w_.parts.section) grazing();
+        if (needs_verdict(w_)) judge_motion();
+        if (w_.parts.impacts || w_.parts.section) nearly_tangent();
         transfers();
         if (w_.parts.section) sections();
         if (w_.parts.energy) energy();
@@ -147,14 +171,14 @@ private:
         a_.series = std::move(o_.series.series);
     }
 
-    /// Of the series, and of a perturbed one.
+    /// Warns if the series (and a perturbed one) is coarser than requested.
     void thinning() {
         const double step = series_step(w_), cycle = w_.parameters.cycle();
         if (step > cycle / w_.samples_per_cycle)
             warn(warning::SeriesThinned{cycle / step, w_.samples_per_cycle, w_.most_points});
     }
 
-    /// The last entries of a list, and a warning where there were more.
+    /// Last entries of a list; warns if it had more.
     template <class Entry>
     std::vector<Entry> last_of(LastOf<Entry>& list, const char* name) {
         trim_to_last(list.entries, w_.most_listed);
@@ -168,11 +192,11 @@ private:
         if (w_.parts.impacts) a_.touches = last_of(o_.touches, "touches");
         a_.stick_count = o_.sticks.seen;
         a_.sticks = last_of(o_.sticks, "sticks");
-        if (!a_.touches.empty()) warn(warning::Touched{});
+        if (!a_.touches.empty()) warn(warning::GrazingContact{});
     }
 
     void impacts() {
-        ImpactList& list = o_.impacts;
+        ImpactCollector& list = o_.impacts;
         list.finish();
         const ImpactRange listed = list.listed();
         if (w_.parts.impacts && listed.first > 0)
@@ -183,8 +207,8 @@ private:
         a_.typical_speed = list.typical_speed;
     }
 
-    /// The regime, which looks at the growth of the deviations, and the exponents of all windows,
-    /// whose verdicts look at the regime.
+    /// Finds the regime, which needs the growth of the deviations; then the exponents of all
+    /// windows, whose verdicts need the regime.
     void judge_motion() {
         const Growth growth = growth_of(o_.lyapunov.product());
         find_regime(growth);
@@ -216,11 +240,10 @@ private:
         }
     }
 
-    /// Impacts next to a tangent contact, which shift the eigenvalues of every product that they
-    /// are in.
-    void grazing() {
+    /// Warns of impacts close to grazing, which shift the eigenvalues of all products with them.
+    void nearly_tangent() {
         long count = 0;
-        const ImpactList::NearlyTangent* nearest = nullptr;
+        const ImpactCollector::NearlyTangent* nearest = nullptr;
         for (const auto& i : o_.impacts.nearly_tangent) {
             if (i.tau < w_.window.from || i.tau > w_.window.to) continue;
             ++count;
@@ -246,7 +269,7 @@ private:
         }
     }
 
-    /// Those of T take their time: once it is late, only the last impacts have them.
+    /// Computes the moduli. Those of T take long: when time is up, only the last impacts have them.
     void moduli(std::span<const ImpactTransfer> transfers) {
         constexpr std::size_t per_look = 256;
         TransferModuli& m = a_.moduli.emplace();
@@ -332,13 +355,13 @@ private:
             warn(warning::ListCut{"perturbed impacts", seen, p.impacts.size()});
     }
 
-    const Wanted& w_;
+    const AnalysisRequest& w_;
     const Interrupt& interrupt_;
     Observers& o_;
     Analysis& a_;
 };
 
-AnalysisRun::AnalysisRun(const Wanted& w, const Interrupt& interrupt)
+AnalysisRun::AnalysisRun(const AnalysisRequest& w, const Interrupt& interrupt)
     : wanted_(w),
       interrupt_(interrupt),
       observers_(std::make_unique<Observers>(wanted_)) {
@@ -363,7 +386,7 @@ Analysis AnalysisRun::conclude(const Outcome& outcome) {
     return a;
 }
 
-Analysis analyse(const Wanted& wanted, const Interrupt& interrupt) {
+Analysis analyse(const AnalysisRequest& wanted, const Interrupt& interrupt) {
     AnalysisRun run(wanted, interrupt);
     return run.conclude(simulate(run.plan()));
 }

@@ -5,31 +5,28 @@
 
 #include "core/motion/elementary.hpp"
 #include "core/motion/random.hpp"
-#include "core/motion/special_values.hpp"
 #include "core/stability/lyapunov.hpp"
 
 namespace vines {
 
 namespace {
 
-/// A chatter in the cycle behind the end may be long; nothing rests on more of it.
+/// Bounds a long chatter in the cycle after the end; later impacts change nothing.
 constexpr long most_ahead = 1000;
-/// Directions nearer to the middle of the ball that they are drawn from are drawn anew: there few
-/// of the numbers' bits are left.
+/// Vectors this close to the centre of the unit ball are drawn again: few of their bits are random.
 constexpr double least_drawn = 1e-3;
 
 Eigen::Vector4d vector_of(const State& s) { return {s.x_dot, s.x, s.y_dot, s.y}; }
 
 State state_of(const Eigen::Vector4d& v) { return {v(0), v(1), v(2), v(3)}; }
 
-/// J(s) d (18).
+/// J(s) d, eq. (18); carried_over() also in sticking phases, for the centre of mass.
 Eigen::Vector4d carried_free(const Flow& flow, double s, double epsilon, Eigen::Vector4d d) {
     carry(d, {flow.transfer(s), s, 0, 1, false}, epsilon);
     return d;
 }
-/// The same; where stuck, of the centre of mass.
 Eigen::Vector4d carried_over(const Stretch& stretch, double s, double epsilon, Eigen::Vector4d d) {
-    carry(d, {stretch.flow.transfer(s), s, 0, 1, stretch.stuck_side != 0}, epsilon);
+    carry(d, {stretch.flow.transfer(s), s, 0, 1, stretch.sticking_side != 0}, epsilon);
     return d;
 }
 
@@ -114,10 +111,10 @@ void ComparedRun::look_ahead(const Outcome& outcome) {
          .tau_start = outcome.tau},
         observers);
     auto from = ahead.contacts.begin();
-    // A stick that reaches over the end is told twice.
-    const bool stuck =
+    // A sticking phase that spans the end is recorded by both runs.
+    const bool sticking =
         !contacts.empty() && contacts.back().stick && contacts.back().release >= outcome.tau;
-    if (stuck && from != ahead.contacts.end() && from->stick && from->tau <= outcome.tau) {
+    if (sticking && from != ahead.contacts.end() && from->stick && from->tau <= outcome.tau) {
         contacts.back().release = from->release;
         ++from;
     }
@@ -126,22 +123,21 @@ void ComparedRun::look_ahead(const Outcome& outcome) {
 
 namespace {
 
-/// A time in which one run has had a contact that the other has not.
-struct Lag {
+/// Interval in which one run has had a contact that the other has not had yet.
+struct ContactGap {
     double from, to;
-    /// The impact that one has had; none where one of them comes to a stick, and the plain
-    /// difference is taken.
+    /// The impact that one run has had; null while one of them settles into sticking, where the
+    /// plain difference is used.
     const ComparedContact* impact;
-    bool of_reference;  ///< whether it is the reference's
+    bool of_reference;  ///< the impact is the reference's
 };
 
-/// Which contacts of two runs belong together.
-class Correspondence {
+class ContactPairing {
 public:
     using Contacts = std::vector<ComparedContact>;
 
-    /// `end`: of what is compared. Contacts behind it are known of both.
-    Correspondence(const Contacts& reference, const Contacts& second, double end)
+    /// `end` of the comparison. Contacts after it are known for both runs.
+    ContactPairing(const Contacts& reference, const Contacts& second, double end)
         : contacts_{&reference, &second},
           end_(end) {
         while (!parted && has(0) && has(1)) {
@@ -150,35 +146,35 @@ public:
         }
         for (const int run : {0, 1})
             while (!parted && has(run)) {
-                if (!at(run).stick) part(at(run).tau);
+                if (!at(run).stick) separate(at(run).tau);
                 ++next_[run];
             }
     }
 
-    std::vector<Lag> lags;         ///< both ends ascend
-    std::optional<double> parted;  ///< up to the end
+    std::vector<ContactGap> gaps;  ///< ascending in both ends
+    std::optional<double> parted;  ///< within the comparison
 
 private:
     bool has(int run) const { return next_[run] < contacts_[run]->size(); }
     const ComparedContact& at(int run) const { return (*contacts_[run])[next_[run]]; }
 
-    void part(double tau) {
-        // What is behind the end parts nothing before it, and ends the comparison all the same.
+    void separate(double tau) {
+        // A mismatch after the end does not separate the runs before it, but ends the pairing.
         if (!parted && tau <= end_) parted = tau;
         next_[0] = contacts_[0]->size(), next_[1] = contacts_[1]->size();
     }
 
     void pair() {
         const int first = at(0).tau <= at(1).tau ? 0 : 1, later = 1 - first;
-        if (!correspond(first, later)) return part(at(first).tau);
-        lags.push_back({at(first).tau, at(later).tau, &at(first), first == 0});
+        if (!correspond(first, later)) return separate(at(first).tau);
+        gaps.push_back({at(first).tau, at(later).tau, &at(first), first == 0});
         ++next_[0], ++next_[1];
     }
 
-    /// On one side, and the later one nearer to the first than to what follows the first: else it
-    /// is that one which it belongs to. In a chatter one run may be several impacts ahead; only
-    /// there the next impact on the same side can be near, for where the wall does not press the
-    /// mass leaves it for a part of a cycle.
+    /// True if both are on one side and the later one is nearer to the first than to the impact
+    /// that follows the first; otherwise it corresponds to that one. In a chatter one run can be
+    /// several impacts ahead; only there can the next impact on the same side be near, for where
+    /// the wall does not press, the ball leaves it for part of a cycle.
     bool correspond(int first, int later) const {
         if (at(first).side != at(later).side) return false;
         if (next_[first] + 1 == contacts_[first]->size()) return true;
@@ -187,12 +183,11 @@ private:
         return at(later).tau - at(first).tau <= std::abs(following.tau - at(later).tau);
     }
 
-    /// One run sticks, and the other one does, too, once what it has left of the chatter is over;
-    /// or it does not, for the wall has stopped to press it: then the stick is short and parts
-    /// nothing.
+    /// One run sticks. The other sticks too, after the rest of its chatter; or it does not, since
+    /// the wall no longer presses: then the sticking phase is short and does not separate the runs.
     void settle() {
-        const int stuck = at(0).stick ? 0 : 1, other = 1 - stuck;
-        const ComparedContact& stick = at(stuck);
+        const int sticking = at(0).stick ? 0 : 1, other = 1 - sticking;
+        const ComparedContact& stick = at(sticking);
         double from = stick.tau, to = stick.release;
         const auto belongs = [&] { return has(other) && at(other).side == stick.side; };
         for (; belongs() && !at(other).stick && at(other).pressed && at(other).tau < stick.release;
@@ -203,8 +198,8 @@ private:
             to = std::max(stick.tau, at(other).tau);
             ++next_[other];
         }
-        lags.push_back({from, to, nullptr, false});
-        ++next_[stuck];
+        gaps.push_back({from, to, nullptr, false});
+        ++next_[sticking];
     }
 
     const Contacts* const contacts_[2];
@@ -212,7 +207,7 @@ private:
     std::size_t next_[2] = {0, 0};
 };
 
-/// An impact's run, continued as if it had not struck.
+/// State of a run continued as if impact `c` had not happened.
 State continued(const Parameters& p, const Flow& flow, const ComparedContact& c, double tau) {
     const double s = tau - c.tau;
     const Oscillation o = flow.after(c.before, s);
@@ -221,29 +216,28 @@ State continued(const Parameters& p, const Flow& flow, const ComparedContact& c,
 
 State state_at(const Series& s, std::size_t i) { return {s.x_dot[i], s.x[i], s.y_dot[i], s.y[i]}; }
 
-/// Distances and lengths of the tangent vector into `result`; true at the moments at which the two
-/// may be held against each other.
+/// Writes distances and tangent lengths into `result`. Returns true at comparable samples.
 std::vector<char> measure_distances(
-    const Parameters& p, const ComparedRun& reference, const std::vector<Lag>& lags,
+    const Parameters& p, const ComparedRun& reference, const std::vector<ContactGap>& gaps,
     Perturbation& result) {
     const auto flow = Flow::shared_free(p);
     std::vector<char> comparable;
-    auto lag = lags.begin();
+    auto gap = gaps.begin();
     for (std::size_t i = 0; i < result.series.tau.size(); ++i) {
         const double tau = result.series.tau[i];
         State own = state_at(reference.series(), i), other = state_at(result.series, i);
         double tangent = reference.tangent[i];
         const bool together = !result.parted || tau < *result.parted;
         bool settling = false;
-        while (lag != lags.end() && lag->to <= tau) ++lag;
-        if (together && lag != lags.end() && lag->from <= tau) {
-            settling = lag->impact == nullptr;
-            if (lag->impact) {
-                (lag->of_reference ? own : other) = continued(p, *flow, *lag->impact, tau);
-                if (lag->of_reference)
+        while (gap != gaps.end() && gap->to <= tau) ++gap;
+        if (together && gap != gaps.end() && gap->from <= tau) {
+            settling = gap->impact == nullptr;
+            if (gap->impact) {
+                (gap->of_reference ? own : other) = continued(p, *flow, *gap->impact, tau);
+                if (gap->of_reference)
                     tangent = carried_free(
-                                  *flow, tau - lag->impact->tau, p.epsilon,
-                                  vector_of(lag->impact->deviation))
+                                  *flow, tau - gap->impact->tau, p.epsilon,
+                                  vector_of(gap->impact->deviation))
                                   .norm();
             }
         }
@@ -254,7 +248,7 @@ std::vector<char> measure_distances(
     return comparable;
 }
 
-/// The slope of the line through points (x, y), by least squares; NaN where they make none.
+/// Least-squares slope through points (x, y); NaN if they define none.
 double slope_through(const std::vector<double>& x, const std::vector<double>& y) {
     const double n = static_cast<double>(x.size());
     double mean_x = 0, mean_y = 0, products = 0, squares = 0;
@@ -266,7 +260,7 @@ double slope_through(const std::vector<double>& x, const std::vector<double>& y)
     return products / squares;
 }
 
-/// qr from the first impact to the last of an interval.
+/// lambda1 by qr from the first to the last impact in `tau`.
 double lambda1_over(
     const Parameters& p, const State& start, const Interval& tau, const Limits& limits) {
     Lyapunov lyapunov(p, tau.from, tau.to, qr_alone);
@@ -277,7 +271,8 @@ double lambda1_over(
     return outcome.reason == End::stopped ? nan : lyapunov.product().qr()[0];
 }
 
-/// Where the distance agrees with the linear theory, from the start on, and how it grows there.
+/// Finds the interval, from the start on, in which the distance agrees with the linear theory, and
+/// the growth there.
 void find_linear_stretch(
     const Parameters& p, const State& start, const std::vector<ComparedContact>& contacts,
     const std::vector<char>& comparable, const Limits& limits, Perturbation& r) {
@@ -297,17 +292,18 @@ void find_linear_stretch(
         if (r.linear_impacts++ == 0) first_impact = c.tau;
     }
     if (r.linear_impacts < fewest_linear_impacts) return;
-    std::vector<double> moments, logs;
+    std::vector<double> times, log_distances;
     for (std::size_t i = 0; i < end; ++i)
         if (comparable[i] && tau[i] >= first_impact) {
-            moments.push_back(tau[i]);
-            logs.push_back(elementary::log(r.distance[i]));
+            times.push_back(tau[i]);
+            log_distances.push_back(elementary::log(r.distance[i]));
         }
     const Interval stretch{first_impact, r.linear_until};
-    r.linear = {stretch, slope_through(moments, logs), lambda1_over(p, start, stretch, limits)};
+    r.linear = {
+        stretch, slope_through(times, log_distances), lambda1_over(p, start, stretch, limits)};
 }
 
-/// Cuts a series down to its moments that the reference has, too: rounding may move the last.
+/// Cuts a series to the times it shares with the reference: rounding can shift the last one.
 void keep_common(Series& s, const Series& reference) {
     const auto common =
         std::mismatch(s.tau.begin(), s.tau.end(), reference.tau.begin(), reference.tau.end());
@@ -320,15 +316,15 @@ void keep_common(Series& s, const Series& reference) {
 Perturbation perturbation_of(
     const Parameters& p, const State& start, const State& difference, ComparedRun& reference,
     const Outcome& outcome, Limits limits, double step) {
-    const State beside = displaced(start, difference);
+    const State perturbed = displaced(start, difference);
     ComparedRun second(p, step, {});
     Observer* const observers[] = {&second};
     limits.tau_end = outcome.tau;
     Perturbation r{};
-    r.start = difference_of(beside, start);
-    r.outcome = outcome.tau > 0 ? simulate(p, beside, limits, observers)
-                                : Outcome{outcome.reason, outcome.tau, beside, 0};
-    // One that ended before has no sample at its end, but where it has come nowhere.
+    r.start = difference_of(perturbed, start);
+    r.outcome = outcome.tau > 0 ? simulate(p, perturbed, limits, observers)
+                                : Outcome{outcome.reason, outcome.tau, perturbed, 0};
+    // A run that ended early has no sample at its end, unless it is empty otherwise.
     if (r.outcome.tau == outcome.tau || second.series().tau.empty()) second.finish(r.outcome);
     for (const ComparedContact& c : second.contacts)
         if (!c.stick) r.impacts.push_back({c.tau, c.side});
@@ -336,9 +332,9 @@ Perturbation perturbation_of(
     second.look_ahead(r.outcome);
     r.series = second.take_series();
     keep_common(r.series, reference.series());
-    const Correspondence both(reference.contacts, second.contacts, r.outcome.tau);
+    const ContactPairing both(reference.contacts, second.contacts, r.outcome.tau);
     r.parted = both.parted;
-    const std::vector<char> comparable = measure_distances(p, reference, both.lags, r);
+    const std::vector<char> comparable = measure_distances(p, reference, both.gaps, r);
     find_linear_stretch(p, start, reference.contacts, comparable, limits, r);
     return r;
 }

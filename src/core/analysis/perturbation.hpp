@@ -1,16 +1,17 @@
-// A second run that starts a little off, beside the run itself: the trajectory difference of Fig. 2
-// and eqs. (13) to (15), and what the linear theory says of its length.
+// Trajectory difference (Fig. 2, eqs. (13) to (15)): a second run that starts slightly displaced,
+// and the linear theory's prediction of its distance.
 //
-// The distance is the Euclidean length of the difference of both states, (x', x, y', y), taken
-// through impacts. Between the two moments at which both runs have their k-th impact the plain
-// difference is of the size of the velocities' jump and says nothing of how far they have diverged.
-// There the run that has struck first is continued as if it had not struck yet: up to the second
-// moment that is delta Phi^- of Fig. 2, behind it delta Phi^+, and no sample has to be left out.
-// The tangent vector is taken the same way.
+// The distance is the Euclidean length of the difference of the states (x', x, y', y), taken
+// through impacts. Between the times of the two runs' k-th impacts the plain difference has the
+// size of the velocity jump and does not measure their divergence. There the run that struck first
+// is continued as if it had not struck: up to the second time the difference is delta Phi^- of Fig.
+// 2, afterwards delta Phi^+, and no sample is left out. The tangent vector is treated in the same
+// way.
 //
-// Of a chatter the k-th impacts belong together as well, however many one run is ahead. Where it
-// ends in a stick, what one of them still has left of it before it sticks belongs to the stick: by
-// then the plain difference is as small as the deviation, and it is taken until both are stuck.
+// The k-th impacts of a chatter correspond as well, even if one run is several impacts ahead. If
+// the chatter ends in a sticking phase, the impacts that one run still has before it sticks belong
+// to the sticking phase: the plain difference is then as small as the deviation, and is used until
+// both runs stick.
 #pragma once
 
 #include <cstdint>
@@ -22,36 +23,35 @@
 
 namespace vines {
 
-/// A perturbed run and its reference agree with the linear theory while the distance is that of the
-/// tangent vector to this share.
+/// Largest relative difference between the distance and the tangent vector's length for which both
+/// count as agreeing with the linear theory.
 inline constexpr double linear_share = 0.1;
-/// A slope over fewer impacts would be that of single ones.
+/// Fewer impacts give the slope of single impacts, not of the motion.
 inline constexpr long fewest_linear_impacts = 3;
 
-/// A random direction of length `size` in the space of (x', x, y', y): the same on every machine.
+/// Random direction of length `size` in the space of (x', x, y', y); identical on every machine.
 State random_difference(std::uint64_t seed, double size);
 State displaced(const State& start, const State& difference);
 State difference_of(const State& to, const State& from);
-/// Euclidean, in (x', x, y', y).
-double length_of(const State& difference);
+double length_of(const State& difference);  ///< Euclidean length in (x', x, y', y)
 
-/// A contact as two runs are compared by it: an impact, or a stick that begins.
+/// A contact as used to compare two runs: an impact, or the begin of a sticking phase.
 struct ComparedContact {
     double tau;
     int side;
     bool stick;
-    bool pressed;         ///< of an impact: whether its wall presses (side x'' > 0)
-    double release;       ///< of a stick: its end
-    Oscillation before;   ///< of an impact: the oscillator before it
-    double y_dot_before;  ///< of an impact: the free mass before it
-    State deviation;      ///< of an impact: the tangent vector before it, if one is carried
+    bool pressed;         ///< impact: the wall presses the ball (side x'' > 0)
+    double release;       ///< sticking phase: its end
+    Oscillation before;   ///< impact: the oscillator before it
+    double y_dot_before;  ///< impact: the ball before it
+    State deviation;      ///< impact: the tangent vector before it, if carried
 };
 
-/// Writes down the contacts of a run, and carries a tangent vector from its start on, by J (18),
-/// (19) and M (26), (27), or the projection of a stick.
+/// Records the contacts of a run and carries a tangent vector along it, by J (18), (19), by M (26),
+/// (27), or by the projection of a sticking phase.
 class ComparedContacts : public Observer {
 public:
-    /// `deviation`: the tangent vector at the start; zero where none is asked for.
+    /// `deviation`: the tangent vector at the start; zero if not needed.
     ComparedContacts(const Parameters& parameters, const State& deviation);
     void on_stretch(const Stretch&) override;
     void on_impact(const Impact&) override;
@@ -65,8 +65,8 @@ protected:
     Eigen::Vector4d deviation_;
 };
 
-/// The same, with the motion and the length of the tangent vector at tau = 0, step, 2 step, ... and
-/// at the end of the run.
+/// ComparedContacts that also samples the motion and the tangent vector's length at tau = 0, step,
+/// 2 step, ... and at the end of the run.
 class ComparedRun : public ComparedContacts {
 public:
     ComparedRun(const Parameters& parameters, double step, const State& deviation)
@@ -74,47 +74,47 @@ public:
           series_(step) {}
     void on_stretch(const Stretch&) override;
     void finish(const Outcome& outcome);
-    /// Follows the contacts for a cycle more: what the other run has just before the end, this one
-    /// may have just behind it.
+    /// Records the contacts of one more cycle: an impact of the other run just before the end can
+    /// have its counterpart just after it.
     void look_ahead(const Outcome& outcome);
 
     const Series& series() const { return series_.series; }
     Series take_series() { return std::move(series_.series); }
-    std::vector<double> tangent;  ///< lengths, at the moments of the series
+    std::vector<double> tangent;  ///< lengths, at the times of the series
 
 private:
     SeriesRecord series_;
 };
 
-/// The stretch in which the distance follows the linear theory, from the reference's first impact
-/// on, and how ln(distance) grows over it, per unit of tau.
+/// Interval over which the distance follows the linear theory, from the reference's first impact
+/// on, and the growth of ln(distance) over it, per unit of tau.
 struct LinearStretch {
     Interval tau;
     double slope;    ///< of ln(distance), by least squares
-    double lambda1;  ///< qr, from the stretch's first impact to its last; NaN if interrupted
+    double lambda1;  ///< by qr, from the interval's first impact to its last; NaN if interrupted
 };
 
 struct Perturbation {
-    State start;      ///< the difference that the second run starts with
+    State start;      ///< initial difference of the second run
     Outcome outcome;  ///< of the second run
-    Series series;    ///< of the second run, at the reference's moments
-    std::vector<TangentContact> impacts;
-    /// At the moments of the series: the distance as above, and the length of the tangent vector.
+    Series series;    ///< of the second run, at the reference's times
+    std::vector<GrazingEvent> impacts;
+    /// At the times of the series: the distance as defined above, and the tangent vector's length.
     std::vector<double> distance, tangent;
-    /// The moment from which on the impacts of both no longer correspond (one meets the other wall,
-    /// or has an impact that the other never has), and the distance is the plain one; none where
-    /// they do to the end.
+    /// Time from which the impacts of both runs no longer correspond (opposite walls, or an impact
+    /// that the other run never has) and the distance is the plain one. Empty if they correspond to
+    /// the end.
     std::optional<double> parted;
     std::optional<LinearStretch> linear;
-    /// How far the linear theory holds, and over how many impacts of the reference.
+    /// End of the agreement with the linear theory, and the reference's impacts up to there.
     double linear_until;
     long linear_impacts;
 };
 
-/// The run from displaced(start, difference) beside `reference`, which has observed the run from
-/// `start` with their difference as its tangent vector and is finish()ed; `outcome` is that run's.
-/// Both starts lie in the cavity. limits: of the second run, which ends with the first one at the
-/// latest.
+/// Compares the run from displaced(start, difference) with `reference`, a finished observer of the
+/// run from `start` that carried the difference as its tangent vector; `outcome` is that run's.
+/// Both starts must lie in the cavity. `limits` apply to the second run, which ends no later than
+/// the first.
 Perturbation perturbation_of(
     const Parameters& parameters, const State& start, const State& difference,
     ComparedRun& reference, const Outcome& outcome, Limits limits, double step);

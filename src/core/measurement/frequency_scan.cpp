@@ -1,34 +1,36 @@
-#include "core/measurement/frequency_scan.hpp"
+// Search for the forcing's frequency: the joint fit converges only if the phase slips by less than
+// a cycle over the record, and in a long record a small frequency error slips by many.
+#include "core/measurement/joint_fit.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
-#include "core/measurement/followed_flow.hpp"
+#include "core/measurement/interval_motion.hpp"
 #include "core/motion/elementary.hpp"
-#include "core/motion/special_values.hpp"
 
 namespace vines {
 
 namespace {
 
-// So far on either side of the given frequency, relative.
+// Search range on either side of the given frequency, relative.
 constexpr double widest = 0.01;
-// Between two that are tried the phase slips so much from the record's middle to its ends.
+// Step of the search: the phase slip between the record's middle and its ends, rad.
 constexpr double slip = 0.4;
-// Within a piece the slip of the phase is neglected: no longer than so many cycles.
+// Longest piece, in cycles: within a piece the phase slip is neglected.
 constexpr double longest_piece_cycles = 1.5;
-// Of the evidence for any forcing another frequency must have more by so much than the given one.
+// Another frequency must explain more than the given one by this fraction.
 constexpr double least_gain = 0.02;
 
-/// What a piece of the record says of the forcing there, whatever the piece starts from: S f = h.
+/// Equations S f = h for the forcing from one piece of the record, with the piece's initial state
+/// eliminated.
 struct PieceEquations {
-    double tau;  ///< its middle
+    double tau;  ///< middle of the piece
     Eigen::Matrix2d S;
     Eigen::Vector2d h;
 };
 
-/// Of one piece the normal equations in its start and the forcing.
+/// Normal equations of one piece in its initial state and the forcing.
 struct StartAndForce {
     Eigen::Matrix4d N = Eigen::Matrix4d::Zero();
     Eigen::Vector4d g = Eigen::Vector4d::Zero();
@@ -40,7 +42,7 @@ struct StartAndForce {
         ++samples;
     }
     PieceEquations without_start(double tau) const {
-        // Far below what a sample adds, about one over its variance, and above zero.
+        // Far below the contribution of one sample, about one over its variance, and above zero.
         constexpr double ridge = 1e-9;
         const Eigen::Matrix2d start =
             (N.topLeftCorner<2, 2>() + ridge * Eigen::Matrix2d::Identity()).inverse();
@@ -51,14 +53,14 @@ struct StartAndForce {
     }
 };
 
-/// Starts of the pieces: the impacts, and more where they are far apart.
+/// Starts of the pieces: the impacts, and further ones where impacts are far apart.
 std::vector<double> pieces_of(
-    const MeasuredRecord& r, const std::vector<double>& moments, double longest) {
+    const MeasuredRecord& r, const std::vector<double>& times, double longest) {
     std::vector<double> starts = {r.tau.front()};
     const auto reach = [&](double to) {
         while (to - starts.back() > longest) starts.push_back(starts.back() + longest);
     };
-    for (const double tau : moments) {
+    for (const double tau : times) {
         reach(tau);
         if (tau > starts.back()) starts.push_back(tau);
     }
@@ -72,7 +74,7 @@ std::vector<PieceEquations> equations_of(
     const Parameters& p = in.parameters;
     const Flow flow(1, 2 * p.zeta(), 1, p.Omega);
     const double middle = 0.5 * (r.tau.front() + r.tau.back());
-    // An offset is none of the forcing's.
+    // The median removes the sensor's offset.
     const double x_offset = r.x.empty() ? 0 : median(r.x),
                  a_offset = r.x_ddot.empty() ? 0 : median(r.x_ddot);
     std::vector<PieceEquations> all;
@@ -90,8 +92,8 @@ std::vector<PieceEquations> equations_of(
             if (!r.x.empty() && !in.bad_x[k])
                 equations.add(
                     {m[0].x, m[1].x, m[2].x, m[3].x}, r.x[k] - x_offset, in.statistics.x.noise);
-            // Nearly all of an acceleration without pulses lies within the displacement's; without
-            // one it must do, and its pulses are as good as noise.
+            // With a displacement the acceleration adds almost nothing. Without one it is used with
+            // its pulses, which act as noise.
             if (r.x.empty())
                 equations.add(
                     {m[0].x_ddot, m[1].x_ddot, m[2].x_ddot, m[3].x_ddot}, r.x_ddot[k] - a_offset,
@@ -104,13 +106,13 @@ std::vector<PieceEquations> equations_of(
     return all;
 }
 
-/// How much of the sum of squares a forcing whose phase runs ahead by `faster` explains.
+/// Part of the sum of squares explained by a forcing whose phase advances by `faster` per tau.
 double explained(const std::vector<PieceEquations>& pieces, double faster, double middle) {
     Eigen::Matrix2d S = Eigen::Matrix2d::Zero();
     Eigen::Vector2d h = Eigen::Vector2d::Zero();
     for (const PieceEquations& piece : pieces) {
         const double a = faster * (piece.tau - middle);
-        // sin and cos of the nominal phase by those of the faster one.
+        // Rotates from the nominal phase to the faster one.
         Eigen::Matrix2d turn;
         turn << elementary::cos(a), -elementary::sin(a), elementary::sin(a), elementary::cos(a);
         S += turn.transpose() * piece.S * turn;
@@ -123,13 +125,13 @@ double explained(const std::vector<PieceEquations>& pieces, double faster, doubl
 }  // namespace
 
 double scanned_frequency(
-    const JointFitInput& in, const std::vector<double>& moments, IdentificationProgress& progress) {
+    const JointFitInput& in, const std::vector<double>& times, IdentificationProgress& progress) {
     const MeasuredRecord& r = in.record;
     const Parameters& p = in.parameters;
     const double middle = 0.5 * (r.tau.front() + r.tau.back()),
                  length = r.tau.back() - r.tau.front();
     const std::vector<PieceEquations> pieces =
-        equations_of(in, pieces_of(r, moments, longest_piece_cycles * p.cycle()), progress);
+        equations_of(in, pieces_of(r, times, longest_piece_cycles * p.cycle()), progress);
     const double step = slip / (0.5 * length);
     const int steps = static_cast<int>(widest * p.Omega / step) + 1;
     const double given = explained(pieces, 0, middle);

@@ -13,10 +13,10 @@ namespace vines {
 namespace {
 
 constexpr double fewest_cycles = 5, least_explained = 0.75;
-// A crossing counts once the signal has gone that share of its deviation to the other side.
+// A crossing counts once the signal passes the mean by this fraction of its standard deviation.
 constexpr double hysteresis = 0.5;
-// The first frequency is right to a crossing in all of them; pieces of so few cycles then tell its
-// phase apart, and four times that long ones the rest.
+// The crossings give the frequency to about one crossing in the whole record. Pieces of this many
+// cycles resolve the remaining phase drift, and pieces four times as long refine it.
 constexpr double cycles_of_piece = 4;
 constexpr int refinements = 6;
 constexpr double longer = 4;
@@ -27,7 +27,7 @@ double deviation_of(const std::vector<double>& values, double mean) {
     return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-/// By its upward crossings; 0 of too few.
+/// From the upward mean crossings; 0 with too few.
 double rough_omega(
     const std::vector<double>& time, const std::vector<double>& values, double mean, double level) {
     double first = 0, last = 0;
@@ -44,12 +44,12 @@ double rough_omega(
     return 2 * std::numbers::pi * static_cast<double>(crossings - 1) / (last - first);
 }
 
-struct Fitted {
-    Eigen::Vector3d by;  ///< of sine, cosine and 1
-    double squares;      ///< what is left
+struct HarmonicFit {
+    Eigen::Vector3d by;  ///< coefficients of sine, cosine and 1
+    double squares;      ///< sum of squared residuals
 };
 
-Fitted fit(
+HarmonicFit fit_harmonic(
     const std::vector<double>& time, const std::vector<double>& values, double omega,
     std::size_t from, std::size_t to) {
     Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
@@ -66,7 +66,7 @@ Fitted fit(
     return {by, squares - by.dot(right)};
 }
 
-/// By how much omega is off: the phase of pieces of so much time moves with it.
+/// Correction of omega, from the phase drift between pieces of length `piece`.
 double omega_off(
     const std::vector<double>& time, const std::vector<double>& values, double omega,
     double piece) {
@@ -74,9 +74,9 @@ double omega_off(
     for (std::size_t from = 0; from < time.size();) {
         std::size_t to = from + 1;
         while (to < time.size() && time[to] < time[from] + piece) ++to;
-        // A last, shorter one says little.
+        // A shorter last piece is ignored.
         if (to == time.size() && from > 0) break;
-        const Fitted f = fit(time, values, omega, from, to);
+        const HarmonicFit f = fit_harmonic(time, values, omega, from, to);
         const double angle = elementary::atan2(f.by(1), f.by(0));
         if (n > 0) turned += std::remainder(angle - last, 2 * std::numbers::pi);
         else turned = angle;
@@ -107,7 +107,7 @@ std::optional<Harmonic> harmonic_of(
         omega += omega_off(time, about, omega, piece);
         if (piece * longer < duration / longer) piece *= longer;
     }
-    const Fitted all = fit(time, about, omega, 0, time.size());
+    const HarmonicFit all = fit_harmonic(time, about, omega, 0, time.size());
     if (!(all.squares < (1 - least_explained) * n * deviation * deviation)) return std::nullopt;
     return Harmonic{omega, all.by(0), all.by(1)};
 }

@@ -1,4 +1,4 @@
-// The one harmonic of a channel that shows how the oscillator is driven: its base, or a force.
+// The dominant harmonic of a channel that shows the excitation: base acceleration or force.
 #pragma once
 
 #include <functional>
@@ -7,16 +7,16 @@
 
 namespace vines {
 
-/// offset + sin sin(omega t) + cos cos(omega t), t as it is given.
+/// The function offset + sin sin(omega t) + cos cos(omega t), in the given unit of time.
 struct Harmonic {
     double omega;  ///< per unit of time
     double sin, cos;
 };
 
-/// Its frequency from how often the signal crosses its mean, then from how the phase of shorter
-/// pieces moves. None where one harmonic explains less than three quarters of the signal, or there
-/// are fewer than five cycles. look(): called before
-/// each pass through the samples; what it throws ends this.
+/// Fits one harmonic. The frequency comes from the mean crossings first, then from the phase drift
+/// between shorter pieces. Empty if the harmonic explains less than three quarters of the signal,
+/// or with fewer than five cycles. look() is called before each pass through the samples; an
+/// exception it throws passes through.
 std::optional<Harmonic> harmonic_of(
     const std::vector<double>& time, const std::vector<double>& values,
     const std::function<void()>& look = {});

@@ -4,34 +4,77 @@
 #include <array>
 #include <cmath>
 
-#include "core/motion/special_values.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines {
 
+IdentifiedSystem::IdentifiedSystem(const Parameters& p, const UnknownValues& v, double tau_zero)
+    : values_(v),
+      flows_(v, false),
+      own_(p),
+      faster_(std::sqrt(v[Unknown::stiffness])),
+      phase_(elementary::atan2(v[Unknown::force_cos], v[Unknown::force_sin])),
+      tau_zero_(tau_zero) {
+    own_.Omega /= faster_;
+    own_.lambda = std::max(0.0, v[Unknown::damping] / (faster_ * p.epsilon));
+    own_.G = G_of(own_, v[Unknown::force_sin], v[Unknown::force_cos]) / (faster_ * faster_);
+}
+
+// simulate() counts the forcing's phase from eq. (3); the measurement has its own phase.
+double IdentifiedSystem::start_of(double tau) const {
+    return std::fmod(
+        faster_ * (tau - tau_zero_) + (phase_ - own_.phi()) / own_.Omega, own_.cycle());
+}
+
+Outcome IdentifiedSystem::run(
+    double tau, const State& s, Limits limits, std::span<Observer* const> observers) const {
+    limits.tau_start = start_of(tau);
+    limits.tau_end = limits.tau_start + faster_ * (limits.tau_end - tau);
+    return simulate(own_, {s.x_dot / faster_, s.x, s.y_dot / faster_, s.y}, limits, observers);
+}
+
+OscillatorMotion IdentifiedSystem::free_motion(const Release& from, double tau) const {
+    return IntervalMotion(flows_, values_, tau_zero_, {from.tau, from.x, from.x_dot})
+        .at(tau - from.tau, false)
+        .value;
+}
+
+Impact IdentifiedSystem::measured(Impact i, double tau) const {
+    i.tau = measured_time(i.tau, tau);
+    for (double* v :
+         {&i.x_dot_before, &i.x_dot_after, &i.y_dot_before, &i.y_dot_after,
+          &i.relative_speed_before, &i.relative_speed_after})
+        *v *= faster_;
+    i.x_ddot_before *= faster_ * faster_;
+    return i;
+}
+
 namespace {
 
-// A contact of a run is an impact that is shown if no more tau lies between them.
+// Largest distance between an impact of the run and the measured one: in tau, plus this fraction of
+// the time since the start.
 constexpr double same_moment = 0.1, same_share = 0.01;
-// Nor is its jump of x' off by more than that share.
+// Tolerance of the jump of x', relative.
 constexpr double same_jump = 0.2;
-// An impact that is shown may stand for those that are hidden no farther from it.
-constexpr double beside = 0.5;
-// A run goes on over impacts that are weaker than so many tolerances: they tell it less than it
-// knows.
+// A doubtful impact can be an artefact of hidden contacts within this tau.
+constexpr double artefact_range = 0.5;
+// A run continues over impacts weaker than this many tolerances: they determine the motion less
+// precisely than the run does.
 constexpr double strong = 6;
-// Of a chatter that comes to rest the impacts below that many tolerances are told as one.
-constexpr double weakest_told = 0.4;
-// Of a run: a chatter that comes to rest has some fifty.
+// The impacts at the end of a chatter below this many tolerances are reported as one.
+constexpr double weakest_reported = 0.4;
+// Limit for one run: a chatter has about fifty impacts.
 constexpr long most_impacts = 120;
-// Where that many runs, and most of them, lead nowhere, the system is not the one that is measured.
+// The search ends when this many more runs have failed than succeeded: the system is not the
+// measured one.
 constexpr int many_runs = 100;
 
-/// The contacts of a run, in its own tau.
-class Contacts : public Observer {
+/// Records the contacts of a run, in the run's own tau.
+class RunContacts : public Observer {
 public:
     void on_impact(const Impact& i) override { impacts.push_back({i}); }
     void on_stretch(const Stretch& s) override {
-        if (s.stuck_side != 0) {
+        if (s.sticking_side != 0) {
             const Oscillation end = s.flow.after(s.start, s.duration);
             stuck_ = Release{s.tau + s.duration, end.x, end.x_dot};
         }
@@ -48,37 +91,37 @@ private:
     std::optional<Release> stuck_;
 };
 
-class Finder {
+class HiddenContactSearch {
 public:
-    Finder(
-        const IdentifiedSystem& system, const HidingPlaces& places,
+    HiddenContactSearch(
+        const IdentifiedSystem& system, const HiddenContactLimits& limits,
         const std::vector<IdentifiedImpact>& impacts, const std::vector<char>& doubtful)
         : system_(system),
-          places_(places),
+          limits_(limits),
           impacts_(impacts),
           doubtful_(doubtful) {}
 
     std::vector<HiddenContacts> find(const std::function<void()>& look) const {
         std::vector<HiddenContacts> all;
-        // The run that leads to an impact knows better than the flight what comes to it.
-        double comes = nan;
+        // y' before the impact according to the run that reached it; more precise than the flight.
+        double y_dot_before = nan;
         int led = 0, failed = 0;
         for (std::size_t i = 0; i + 1 < impacts_.size() && failed < many_runs + led;) {
             if (look) look();
             std::size_t next = i + 1;
-            if (std::isnan(comes) && i > 0)
-                comes = flight_velocity(system_.own().b, impacts_[i - 1], impacts_[i]);
-            const std::vector<Velocities> ways = velocities_after(i, comes);
-            comes = nan;
-            for (const Velocities& after : ways) {
-                // The first one that the run leads to by one way is trusted.
+            if (std::isnan(y_dot_before) && i > 0)
+                y_dot_before = flight_velocity(system_.own().b, impacts_[i - 1], impacts_[i]);
+            const std::vector<Velocities> possible = velocities_after(i, y_dot_before);
+            y_dot_before = nan;
+            for (const Velocities& after : possible) {
+                // Takes the first velocities whose run reaches an impact.
                 auto found = between(i, after);
                 found ? ++led : ++failed;
                 if (!found) continue;
                 next = found->to;
                 if (hides(*found)) {
                     find_ends(*found);
-                    comes = found->y_dot_before;
+                    y_dot_before = found->y_dot_before;
                     all.push_back(std::move(*found));
                 }
                 break;
@@ -89,18 +132,18 @@ public:
     }
 
 private:
-    /// The last impacts of each chatter that comes to rest.
+    /// Marks the last impacts of each chatter that ends in a sticking phase.
     void find_ends(HiddenContacts& h) const {
         bool rests = false;
         for (std::size_t k = h.impacts.size(); k-- > 0;) {
             RunImpact& r = h.impacts[k];
             rests = r.release || (rests && r.impact.side == h.impacts[k + 1].impact.side);
-            rests = rests && !r.shown && strength(r.impact) < weakest_told * places_.tolerance;
+            rests = rests && !r.shown && strength(r.impact) < weakest_reported * limits_.tolerance;
             r.comes_to_rest = rests;
         }
     }
 
-    /// Whether anything, or what is shown is not there.
+    /// Whether the run has contacts that are not measured, or lacks measured ones.
     static bool hides(const HiddenContacts& h) {
         return h.release || h.to - h.from != h.impacts.size() + 1 ||
                std::any_of(h.impacts.begin(), h.impacts.end(), [](const RunImpact& r) {
@@ -109,12 +152,12 @@ private:
     }
 
     bool is_firm(std::size_t i) const { return doubtful_.empty() || !doubtful_[i]; }
-    /// Whether an impact that is shown stands for what is hidden beside it.
+    /// Whether measured impact i can be an artefact of hidden contacts nearby.
     bool stands_for(std::size_t i, const HiddenContacts& hidden) const {
         if (is_firm(i)) return false;
         const double tau = impacts_[i].tau;
         const auto near = [&](double from, const std::optional<Release>& r) {
-            return tau > from - beside && tau < (r ? r->tau : from) + beside;
+            return tau > from - artefact_range && tau < (r ? r->tau : from) + artefact_range;
         };
         return near(impacts_[hidden.from].tau, hidden.release) ||
                std::any_of(hidden.impacts.begin(), hidden.impacts.end(), [&](const RunImpact& h) {
@@ -125,36 +168,37 @@ private:
     struct Velocities {
         double x_dot, y_dot;
     };
-    /// After an impact to which the mass comes so, most trusted first. The motion before it, and
-    /// the flight, know nothing of what may be hidden soon after it; its jump may be wrong by that.
-    std::vector<Velocities> velocities_after(std::size_t i, double comes) const {
+    /// Possible velocities after an impact that the mass reaches with y' = `y_dot_before`, most
+    /// reliable first. The motion and the flight before the impact are not affected by contacts
+    /// hidden soon after it; its jump can be.
+    std::vector<Velocities> velocities_after(std::size_t i, double y_dot_before) const {
         const IdentifiedImpact& m = impacts_[i];
         const Parameters& p = system_.own();
         const double R = p.restitution(m.side), share = p.epsilon * (1 + R) / (1 + p.epsilon),
                      meets = (m.x_dot_before - m.x_dot_after) / share;
         std::vector<Velocities> all;
-        const double met = m.x_dot_before - comes, x_dot = m.x_dot_before - share * met;
+        const double met = m.x_dot_before - y_dot_before, x_dot = m.x_dot_before - share * met;
         if (m.side * met > 0) all.push_back({x_dot, x_dot + R * met});
         if (m.side * meets > 0) all.push_back({m.x_dot_after, m.x_dot_after + R * meets});
         return all;
     }
 
-    /// The end of the longest run from a moment.
+    /// Latest end of a run from `tau`.
     double end_after(double tau) const {
-        const double end = std::min(tau + places_.longest, impacts_.back().tau + same_moment);
+        const double end = std::min(tau + limits_.longest, impacts_.back().tau + same_moment);
         const auto gap = std::upper_bound(
-            places_.gaps.begin(), places_.gaps.end(), tau,
+            limits_.gaps.begin(), limits_.gaps.end(), tau,
             [](double t, const TimeGap& g) { return t < g.to; });
-        return gap == places_.gaps.end() ? end : std::min(end, gap->from);
+        return gap == limits_.gaps.end() ? end : std::min(end, gap->from);
     }
 
-    /// What comes between an impact, which both masses leave so, and the next one that is shown, if
-    /// the run leads to one; to a strong one, if it can.
+    /// Contacts between an impact and the next measured one that the run reaches; prefers a
+    /// strong one.
     std::optional<HiddenContacts> between(std::size_t from, const Velocities& after) const {
         const double tau = impacts_[from].tau, end = end_after(tau),
                      next = std::min(
                          end, may_be_apart(tau, impacts_[from + 1].tau) + impacts_[from + 1].tau);
-        // Most lead to the very next one.
+        // Most runs reach the very next impact.
         auto near = between(from, after, next);
         if (end <= next || (near && is_strong(near->to))) return near;
         auto far = between(from, after, end);
@@ -164,7 +208,7 @@ private:
         std::size_t from, const Velocities& after, double end) const {
         const IdentifiedImpact& m = impacts_[from];
         if (!(end > m.tau)) return std::nullopt;
-        Contacts run;
+        RunContacts run;
         Observer* const observers[] = {&run};
         system_.run(
             m.tau, {after.x_dot, m.x, after.y_dot, m.x - m.side * system_.own().b},
@@ -178,7 +222,7 @@ private:
             const double apart = may_be_apart(m.tau, next.impact.tau);
             for (; shown < impacts_.size() && impacts_[shown].tau < next.impact.tau - apart;
                  ++shown)
-                // It does not come where it is shown.
+                // The run has no impact where one is measured.
                 if (!stands_for(shown, hidden)) return found;
             if (shown == impacts_.size()) return found;
             const bool is_there = impacts_[shown].tau < next.impact.tau + apart &&
@@ -191,7 +235,7 @@ private:
                 if (is_strong(shown)) return found;
             }
             if (is_there) next.shown = shown++;
-            else if (strength(next.impact) > places_.tolerance && ++unseen > places_.most_seen)
+            else if (strength(next.impact) > limits_.tolerance && ++unseen > limits_.most_seen)
                 return found;
             hidden.impacts.push_back(next);
         }
@@ -200,9 +244,9 @@ private:
 
     bool is_strong(std::size_t i) const {
         return std::abs(impacts_[i].x_dot_after - impacts_[i].x_dot_before) >
-               strong * places_.tolerance;
+               strong * limits_.tolerance;
     }
-    /// By how much a run's contact and one that is shown may be.
+    /// Largest distance between an impact of the run and the measured one.
     static double may_be_apart(double from, double to) {
         return same_moment + same_share * (to - from);
     }
@@ -210,17 +254,17 @@ private:
 
     std::optional<Release> measured(const std::optional<Release>& r, double tau) const {
         if (!r) return r;
-        return Release{system_.moment(r->tau, tau), r->x, r->x_dot * system_.faster()};
+        return Release{system_.measured_time(r->tau, tau), r->x, r->x_dot * system_.faster()};
     }
 
-    /// Whether the next impact of the run is like the one that is shown, and the oscillator comes
-    /// from what was last to its state. `x_dot`: after the first one.
+    /// Whether the next impact of the run agrees with the measured one, and the free motion from
+    /// the last contact leads to its state. `x_dot`: after the first impact.
     bool leads_to(
         const HiddenContacts& hidden, double x_dot, const IdentifiedImpact& shown,
         const Impact& next) const {
         const double jump = shown.x_dot_after - shown.x_dot_before;
         if (std::abs(next.x_dot_after - next.x_dot_before - jump) >
-            places_.tolerance + same_jump * std::abs(jump))
+            limits_.tolerance + same_jump * std::abs(jump))
             return false;
         const IdentifiedImpact& from = impacts_[hidden.from];
         Release last{from.tau, from.x, x_dot};
@@ -231,12 +275,12 @@ private:
         }
         if (!(last.tau < shown.tau)) return false;
         const OscillatorMotion end = system_.free_motion(last, shown.tau);
-        return std::abs(end.x - shown.x) < places_.tolerance &&
-               std::abs(end.x_dot - shown.x_dot_before) < places_.tolerance;
+        return std::abs(end.x - shown.x) < limits_.tolerance &&
+               std::abs(end.x_dot - shown.x_dot_before) < limits_.tolerance;
     }
 
     const IdentifiedSystem& system_;
-    const HidingPlaces& places_;
+    const HiddenContactLimits& limits_;
     const std::vector<IdentifiedImpact>& impacts_;
     const std::vector<char>& doubtful_;
 };
@@ -256,13 +300,14 @@ IdentifiedImpact as_identified(const RunImpact& r) {
 }  // namespace
 
 std::vector<HiddenContacts> hidden_contacts(
-    const IdentifiedSystem& system, const HidingPlaces& places,
+    const IdentifiedSystem& system, const HiddenContactLimits& limits,
     const std::vector<IdentifiedImpact>& impacts, const std::vector<char>& doubtful,
     const std::function<void()>& look) {
-    return Finder(system, places, impacts, doubtful).find(look);
+    return HiddenContactSearch(system, limits, impacts, doubtful).find(look);
 }
 
-long put_in(const std::vector<HiddenContacts>& hidden, std::vector<IdentifiedImpact>& impacts) {
+long insert_hidden(
+    const std::vector<HiddenContacts>& hidden, std::vector<IdentifiedImpact>& impacts) {
     std::vector<IdentifiedImpact> all;
     auto next = hidden.begin();
     for (std::size_t i = 0; i < impacts.size(); ++i) {

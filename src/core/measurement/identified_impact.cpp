@@ -4,27 +4,27 @@
 #include <cmath>
 
 #include "core/measurement/robust.hpp"
-#include "core/motion/special_values.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines {
 
 namespace {
 
-// What an impact of a real measurement may miss R in [0, 1] and the balance of momentum by, before
-// it is left out. Where the others keep momentum better than that, ten times their scatter is
-// enough: flown over two missing impacts it is off by a third.
+// Tolerances for R outside [0, 1] and for the momentum balance of a real impact. If the others
+// conserve momentum better, ten times their scatter is the limit: an impact flown over two missing
+// ones is off by a third.
 constexpr double R_tolerance = 0.15, momentum_tolerance = 0.35, least_momentum_tolerance = 0.1;
 constexpr double momentum_sigmas = 10;
-// What a flight may miss of its speed, and of the way between the walls.
+// Tolerance of a flight: of its speed, and of the distance between the walls.
 constexpr double flight_tolerance = 0.1;
 
-/// `since`: the time since the impact before it; `tolerance`: of the momentum.
+/// `since`: time since the previous impact; `tolerance`: of the momentum balance.
 ImpactFault fault_of(const IdentifiedImpact& i, double since, double pulse, double tolerance) {
     if (since < pulse) return ImpactFault::too_close;
     if (!std::isnan(i.y_dot_before) && !(i.side * (i.x_dot_before - i.y_dot_before) > 0))
         return ImpactFault::moves_away;
     if (std::isnan(i.x_dot_before) || std::isnan(i.x_dot_after)) return ImpactFault::no_velocity;
-    // The first and the last: the flight on one side is not known, and R with it.
+    // R is unknown at the first and the last impact, which have a flight on one side only.
     if (std::isnan(i.R)) return ImpactFault::none;
     if (i.R < -R_tolerance || i.R > 1 + R_tolerance) return ImpactFault::R_impossible;
     if (!(std::abs(i.momentum_error) < tolerance)) return ImpactFault::momentum_lost;
@@ -73,8 +73,8 @@ bool flight_fits(
            std::abs(way - flown) < flight_tolerance * p.b;
 }
 
-std::vector<StuckPhase> stuck_phases(const std::vector<IdentifiedImpact>& impacts) {
-    std::vector<StuckPhase> all;
+std::vector<StickingPhase> sticking_phases(const std::vector<IdentifiedImpact>& impacts) {
+    std::vector<StickingPhase> all;
     int chatter = 0;
     for (std::size_t k = 0; k < impacts.size(); ++k) {
         const IdentifiedImpact& i = impacts[k];

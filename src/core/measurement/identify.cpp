@@ -5,49 +5,50 @@
 #include <compare>
 
 #include "core/measurement/robust.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines {
 
 namespace {
 
-// Where the impacts themselves do not agree on b to half of it, it is not their b.
+// Largest scatter of the impacts' values of b, relative.
 constexpr double b_scatter = 0.5;
-// The given b may miss the fitted one by this share of it, or by so many standard errors.
+// Tolerance of the given b relative to the fitted one, or in standard errors.
 constexpr double b_tolerance = 0.03, b_sigmas = 5;
-// By less it hardly matters: walls are set to a tenth of a millimetre.
+// Smaller differences are ignored: walls are set to a tenth of a millimetre.
 constexpr double least_of_b = 0.003;
-// Nobody measures one as badly as that: it is something else that is wrong.
+// Larger differences indicate another problem: no one measures b that badly.
 constexpr double most_of_b = 0.5;
-// Of what laboratories do to a record (tests/laboratory) no effect that leaves as many pulses
-// without an impact leaves a tenth of the impacts without a pulse, none scatters R by more than
-// .006, the momentum by more than .018 of the typical jump. A motion that sticks in each cycle,
-// taken for one that does not, does one or the other.
+// Among the effects of tests/laboratory, none that leaves this many pulses without an impact leaves
+// a tenth of the impacts without a pulse; none scatters R by more than .006, or the momentum by
+// more than .018 of the typical jump. A motion that sticks in each cycle, evaluated as one that
+// does not, does either.
 constexpr double most_unseen = 0.15, most_dropped = 0.02, most_R_scatter = 0.035,
                  most_momentum_scatter = 0.06;
 
-/// y' of each flight is offset - b rate: y = x - side b at both of its ends (43).
+/// y' of each flight is offset - b rate, from y = x - side b at both of its ends (43).
 struct Flight {
     double offset, rate;
     double y_dot(double b) const { return offset - b * rate; }
 };
 
-/// A b, and what it weighs.
+/// A value of b with its weight.
 struct WeightedB {
     double b, weight;
     auto operator<=>(const WeightedB&) const = default;
 };
 
-/// x' + epsilon y' is kept at every impact, and y' is linear in b: what each impact says of it.
+/// Values of b from each impact: x' + epsilon y' is conserved, and y' is linear in b.
 std::vector<WeightedB> b_of_impacts(
     const Parameters& p, const std::vector<FittedImpact>& m, const std::vector<Flight>& flights) {
-    std::vector<WeightedB> said;
+    std::vector<WeightedB> estimates;
     for (std::size_t i = 1; i < flights.size(); ++i) {
         const double rate = flights[i].rate - flights[i - 1].rate;
         const double b =
             (m[i].jump() / p.epsilon + flights[i].offset - flights[i - 1].offset) / rate;
-        if (std::isfinite(b)) said.push_back({b, std::abs(rate)});
+        if (std::isfinite(b)) estimates.push_back({b, std::abs(rate)});
     }
-    return said;
+    return estimates;
 }
 
 double weighted_median(std::vector<WeightedB> values) {
@@ -60,24 +61,24 @@ double weighted_median(std::vector<WeightedB> values) {
     return middle == values.end() ? nan : middle->b;
 }
 
-/// The weighted median of what each impact says.
+/// Weighted median of the impacts' values of b.
 void fit_b(
     const Parameters& p, const std::vector<FittedImpact>& m, const std::vector<Flight>& flights,
     Identification& found) {
-    const std::vector<WeightedB> said = b_of_impacts(p, m, flights);
-    if (said.empty()) {
+    const std::vector<WeightedB> estimates = b_of_impacts(p, m, flights);
+    if (estimates.empty()) {
         found.b_fault = BFault::no_flight;
         return;
     }
-    const double b = weighted_median(said);
+    const double b = weighted_median(estimates);
     std::vector<double> off;
-    for (const WeightedB& s : said) off.push_back(s.b - b);
+    for (const WeightedB& s : estimates) off.push_back(s.b - b);
     if (!(b > 0)) found.b_fault = BFault::negative;
     else if (!(robust_deviation(off) < b_scatter * b)) found.b_fault = BFault::scattered;
     else found.b_fitted = b;
 }
 
-/// `sides`: of the impacts. Over a gap nothing is known of a flight.
+/// `sides`: walls of the impacts. Flights across a gap are unknown.
 std::vector<Flight> flights_of(
     const std::vector<FittedImpact>& m, const std::vector<int>& sides,
     const std::vector<TimeGap>& gaps) {
@@ -132,8 +133,9 @@ Identification identify_impacts(const Parameters& p, const FoundImpacts& f) {
     return found;
 }
 
-double b_of(const Parameters& p, const FoundImpacts& f, const Identification& said) {
-    const bool fitted = f.with_mass && !f.fit.fixed[Unknown::b] && said.b_fault == BFault::none;
+double b_of(const Parameters& p, const FoundImpacts& f, const Identification& with_given) {
+    const bool fitted =
+        f.with_mass && !f.fit.fixed[Unknown::b] && with_given.b_fault == BFault::none;
     const double b = f.fit.values[Unknown::b], off = std::abs(b - p.b);
     const bool contradicts = off > b_sigmas * f.fit.errors[Unknown::b] && off > least_of_b * p.b &&
                              off < most_of_b * p.b;
@@ -147,8 +149,8 @@ bool b_agrees(const Parameters& p, const Identification& i) {
 
 namespace {
 
-/// An impact may show no pulse, and what looks like a pulse may be none; where both are many, the
-/// impacts are not where the pulses are.
+/// Some impacts have no pulse and some pulses are not impacts; if both are frequent, the impacts
+/// are not at the pulses.
 bool pulses_disagree(const FoundImpacts& f) {
     const auto n = static_cast<double>(f.fit.impacts.size());
     return static_cast<double>(f.unseen) > most_unseen * n &&
@@ -178,6 +180,59 @@ std::vector<Doubt> doubts_of(
     if (impacts_differ(identification)) doubts.push_back(Doubt::impacts_differ);
     if (!b_agrees(p, identification)) doubts.push_back(Doubt::b_disagrees);
     return doubts;
+}
+
+namespace {
+
+// Time of a difference, in tau: over longer times x'' changes, over shorter ones the noise of x
+// dominates.
+constexpr double difference_span = 0.2;
+
+/// Motion at an impact, seen from one side.
+struct SideEstimate {
+    double x, x_dot, x_ddot;
+};
+
+/// At tau, from the sample next to the pulse (`near`) and one further away (`far`).
+SideEstimate side_estimate(
+    const MeasuredRecord& r, double tau, std::ptrdiff_t near, std::ptrdiff_t far) {
+    const auto last = static_cast<std::ptrdiff_t>(r.tau.size()) - 1;
+    near = std::clamp<std::ptrdiff_t>(near, 0, last);
+    far = std::clamp<std::ptrdiff_t>(far, 0, last);
+    const double a = r.tau[near], b = r.tau[far], x_ddot = r.x_ddot[near];
+    const double x_dot =
+        near == far ? nan : (r.x[near] - r.x[far]) / (a - b) + x_ddot * (tau - 0.5 * (a + b));
+    const double s = tau - a;
+    return {r.x[near] + x_dot * s - 0.5 * x_ddot * s * s, x_dot, x_ddot};
+}
+
+}  // namespace
+
+std::vector<FittedImpact> direct_motion(
+    const MeasuredRecord& r, const std::vector<double>& impacts, double pulse) {
+    std::vector<FittedImpact> motions;
+    const auto sample = [&](double tau) {
+        return std::lower_bound(r.tau.begin(), r.tau.end(), tau) - r.tau.begin();
+    };
+    for (std::size_t i = 0; i < impacts.size(); ++i) {
+        // Excludes the pulses of neighbouring impacts.
+        const double earliest = i > 0 ? impacts[i - 1] + 0.5 * pulse : r.tau.front(),
+                     latest = i + 1 < impacts.size() ? impacts[i + 1] - 0.5 * pulse : r.tau.back();
+        const double tau = impacts[i], begin = tau - 0.5 * pulse, end = tau + 0.5 * pulse;
+        const SideEstimate before = side_estimate(
+                               r, tau, sample(begin) - 1,
+                               sample(std::max(earliest, begin - difference_span))),
+                           after = side_estimate(
+                               r, tau, sample(end),
+                               sample(std::min(latest, end + difference_span)) - 1);
+        FittedImpact motion{};
+        motion.tau = tau;
+        motion.x = 0.5 * (before.x + after.x);
+        motion.x_dot_before = before.x_dot, motion.x_dot_after = after.x_dot;
+        motion.x_ddot_before = before.x_ddot, motion.x_ddot_after = after.x_ddot;
+        motions.push_back(motion);
+    }
+    return motions;
 }
 
 }  // namespace vines

@@ -1,16 +1,17 @@
-// Exponents from a measurement of the linear oscillator (section 5 of the paper).
+// Identification from a measurement of the linear oscillator (section 5 of the paper).
 //
-// The joint fit (unknowns.hpp, joint_fit.hpp) says how the oscillator moves on both sides of each
-// impact that was found (search.hpp). The jumps of x' and the flight of the mass between its
-// contacts, y = x - side b, give y', R and the transfer matrices; R and b of all are the fit's,
-// where the mass took part in it.
+// The joint fit (unknowns.hpp, joint_fit.hpp) gives the oscillator's motion on both sides of each
+// detected impact (search.hpp). The jumps of x' and the flights of the mass between its contacts, y
+// = x - side b, give y', R and the transfer matrices; if the mass was part of the fit, R and b are
+// the fitted ones.
 //
-// All in dimensionless time: tau = omega0 t, velocities in m per unit of tau, accelerations in m
-// per unit of tau^2.
+// Dimensionless time: tau = omega0 t, velocities in m per unit of tau, accelerations in m per unit
+// of tau^2.
 #pragma once
 
 #include <vector>
 
+#include "core/measurement/joint_fit.hpp"
 #include "core/measurement/measured_exponents.hpp"
 #include "core/measurement/search.hpp"
 
@@ -19,48 +20,56 @@ namespace vines {
 /// Why no b is fitted.
 enum class BFault {
     none,
-    no_flight,  ///< no impact has one on the other wall before or after it
-    negative,   ///< it would be
-    scattered   ///< the impacts say different ones
+    no_flight,  ///< no impact has a neighbour on the other wall
+    negative,   ///< b would be negative
+    scattered   ///< the impacts give different values
 };
 
 struct Identification {
     std::vector<IdentifiedImpact> impacts;
     Restitution plus, minus;
-    /// The b with which the momentum balance fits best, m; NaN where it fits none. Its standard
-    /// error; NaN where the mass took no part in the fit: impacts are not wrong independently.
+    /// The b that satisfies the momentum balance best, m; NaN if none does. Its standard error; NaN
+    /// if the mass was not part of the fit, since the impacts' errors are not independent.
     double b_fitted = nan, b_error = nan;
     BFault b_fault = BFault::none;
 };
-/// b and epsilon from the parameters; R of each side is that of its impacts. `pulse`: how long one
-/// lasts: two impacts closer than that are one that was picked twice. Over a gap no flight is
-/// known.
+/// Uses b and epsilon of the parameters; R of each wall comes from its impacts. `pulse`: length of
+/// a pulse in tau; two impacts closer than that are one detected twice. Flights across a gap are
+/// unknown.
 Identification identify_impacts(
     const Parameters& parameters, const std::vector<FittedImpact>& motions,
     const std::vector<int>& sides, const std::vector<TimeGap>& gaps, double pulse);
-/// The same of what was found, with R and b of the fit.
+/// The same for detected impacts, with R and b of the fit.
 Identification identify_impacts(const Parameters& parameters, const FoundImpacts& found);
 
-/// The given b; the fitted one where the record contradicts, and b is not fixed. `said`: by the
-/// impacts with the given one.
-double b_of(const Parameters& parameters, const FoundImpacts& found, const Identification& said);
+/// The b to use: the fitted one if the record contradicts the given one and b is not fixed.
+/// `with_given`: identification with the given b.
+double b_of(
+    const Parameters& parameters, const FoundImpacts& found, const Identification& with_given);
 
-/// Whether a b is the one that the momentum fits, to 3 % or five standard errors; true where it
-/// fits none.
+/// Whether the given b agrees with the momentum balance, within 3 % or five standard errors; true
+/// if no b is fitted.
 bool b_agrees(const Parameters& parameters, const Identification& identification);
 
-/// Why no verdict can rest on a record.
+/// Why a record permits no verdict.
 enum class Doubt {
-    not_settled,      ///< the search for impacts: FoundImpacts::settled
+    not_settled,      ///< the search for impacts did not converge: FoundImpacts::settled
     unexplained,      ///< the fitted motion does not explain the record
-    pulses_disagree,  ///< many pulses are no impacts, as many impacts have no pulse
-    impacts_differ,   ///< R, or what is missing of the momentum, from impact to impact
-    b_disagrees,      ///< the impacts' momentum does not fit the given b
-    no_forcing        ///< of a list: none leads from each impact to the next
+    pulses_disagree,  ///< many pulses without an impact, and many impacts without a pulse
+    impacts_differ,   ///< R or the momentum error scatters between impacts
+    b_disagrees,      ///< the momentum balance contradicts the given b
+    no_forcing        ///< for a list: no forcing leads from each impact to the next
 };
-/// Empty if nothing speaks against a verdict.
+/// Empty if a verdict is possible.
 std::vector<Doubt> doubts_of(
     const Parameters& parameters, const FoundImpacts& refined,
     const Identification& identification);
+
+/// Direct estimate (section 5 of the paper) of the motion at known impacts: x' from differences of
+/// x next to the pulse, extrapolated to the impact with x'' of the sample there. Needs both
+/// sensors. It amplifies the noise of x and serves for comparison. Sets only the motion of the
+/// impacts.
+std::vector<FittedImpact> direct_motion(
+    const MeasuredRecord& record, const std::vector<double>& impacts, double pulse);
 
 }  // namespace vines

@@ -6,7 +6,7 @@ namespace vines {
 
 namespace {
 
-// Derivatives by stiffness and damping are differences over that.
+// Finite difference for the derivatives by stiffness and damping.
 constexpr double difference = 1e-6;
 
 std::array<Oscillation, 4> parts_of(double angle) {
@@ -62,9 +62,9 @@ MotionRow IntervalMotion::at(double s, bool with_acceleration) {
     return row;
 }
 
-/// The phase of the forcing runs ahead: all of it by as much as it did until the start, and what
-/// has acted since then by two thirds of the time, about, as if the response to it grew evenly.
-/// That is near enough for a step: an interval is far shorter than a record.
+/// A higher frequency advances the phase of the forcing: fully for the time until the start, and by
+/// about two thirds of the time since then, as if the response grew linearly. This approximation
+/// suffices for a Gauss-Newton step, since an interval is far shorter than the record.
 OscillatorMotion IntervalMotion::by_frequency(
     const std::array<OscillatorMotion, 4>& parts, double s) const {
     const double ahead = since_middle_ + 2.0 / 3 * s, by_sin = -start_[3] * ahead,

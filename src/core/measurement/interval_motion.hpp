@@ -1,57 +1,112 @@
-// The motion between two impacts, with its derivatives by its start and by what moves the
-// oscillator.
+// The motion of the oscillator between two impacts, with its derivatives by the initial state, the
+// forcing and the oscillator's parameters.
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 
-#include "core/measurement/followed_flow.hpp"
 #include "core/measurement/unknowns.hpp"
+#include "core/motion/flow.hpp"
 
 namespace vines {
 
-/// One interval between impacts: its start, after the impact.
-struct FittedInterval {
-    double tau, x, x_dot;
-    bool is_stuck = false;  ///< the free mass moves with the oscillator
+/// Displacement x and its derivatives by tau.
+struct OscillatorMotion {
+    double x, x_dot, x_ddot;
 };
 
-/// The oscillator with the values as they are, and with k and c each a little larger.
+/// N motions. The flow must outlive this object.
+template <std::size_t N>
+class FollowedFlow {
+public:
+    FollowedFlow(const Flow& flow, const std::array<Oscillation, N>& start)
+        : flow_(flow),
+          start_(start),
+          far_(start) {}
+
+    /// Motions at a time s >= 0 after the start; x'' is 0 unless `with_acceleration`.
+    std::array<OscillatorMotion, N> at(double s, bool with_acceleration) {
+        int looks = 0;
+        for (; s >= flow_.reach(); s -= flow_.reach()) ++looks;
+        const int cell = static_cast<int>(s / flow_.cell());
+        if (looks != looks_ || cell != cell_) look_up(looks, cell);
+        const double d = std::max(0.0, s - cell * flow_.cell());
+        std::array<OscillatorMotion, N> motions;
+        for (std::size_t k = 0; k < N; ++k) {
+            const auto [x, x_dot] = series_[k].at(d);
+            motions[k] = {x, x_dot, 0};
+            if (!with_acceleration) continue;
+            const Oscillation& o = near_[k];
+            const double sine =
+                o.sin_theta == 0 && o.cos_theta == 0 ? 0 : flow_.rotated(o, d).sin_theta;
+            motions[k].x_ddot = flow_.acceleration({x, x_dot, sine, 0});
+        }
+        return motions;
+    }
+
+private:
+    void look_up(int looks, int cell) {
+        if (looks < looks_) far_ = start_, looks_ = 0;
+        for (; looks_ < looks; ++looks_)
+            for (Oscillation& part : far_) part = flow_.at(part, Flow::cells);
+        cell_ = cell;
+        for (std::size_t k = 0; k < N; ++k) {
+            near_[k] = flow_.at(far_[k], cell);
+            series_[k] = flow_.short_series(near_[k]);
+        }
+    }
+
+    const Flow& flow_;
+    const std::array<Oscillation, N> start_;
+    // Motions after `looks_` table lengths, and at the start of the current cell.
+    std::array<Oscillation, N> far_, near_{};
+    std::array<Flow::ShortSeries, N> series_;  // within the cell
+    int looks_ = 0, cell_ = -1;
+};
+
+/// An interval between impacts, with its state after the impact.
+struct FittedInterval {
+    double tau, x, x_dot;
+    bool sticks = false;  ///< the free mass moves with the oscillator
+};
+
+/// Flows of the oscillator: with the values themselves, and with k and c each slightly increased.
 struct OscillatorFlows {
-    /// `oscillator_moves`: whether derivatives by k and c are asked for. `mass`: that is moved,
-    /// over m1.
+    /// `oscillator_moves`: whether derivatives by k and c are needed. `mass`: moving mass divided
+    /// by m1.
     OscillatorFlows(const UnknownValues& values, bool oscillator_moves, double mass = 1);
 
     bool oscillator_moves;
-    double force, phase, Omega;  ///< of the forcing: amplitude, m, and phase in tau_m
+    double force, phase, Omega;  ///< amplitude of the forcing, m, and its phase at tau_m
     Flow parts, by_stiffness, by_damping;
 };
 
-/// Those of the two kinds of interval.
+/// Flows of both kinds of interval: free, and sticking.
 struct IntervalFlows {
     IntervalFlows(const UnknownValues& values, bool oscillator_moves, double epsilon)
         : free(values, oscillator_moves),
           stuck(values, oscillator_moves, 1 + epsilon) {}
-    const OscillatorFlows& of(const FittedInterval& i) const { return i.is_stuck ? stuck : free; }
+    const OscillatorFlows& of(const FittedInterval& i) const { return i.sticks ? stuck : free; }
 
     OscillatorFlows free, stuck;
 };
 
-/// A motion and its derivatives by its start and by what moves it.
+/// A motion with its derivatives.
 struct MotionRow {
     OscillatorMotion value;
-    std::array<OscillatorMotion, 4> parts;  ///< by x and x' at the start, f_s and f_c
+    std::array<OscillatorMotion, 4> parts;  ///< derivatives by x and x' at the start, f_s and f_c
     OscillatorMotion by_Omega, by_stiffness, by_damping;
 };
 
-/// The motion in one interval. The flows outlive it.
+/// The motion in one interval. The flows must outlive this object.
 class IntervalMotion {
 public:
     IntervalMotion(
         const OscillatorFlows& flows, const UnknownValues& values, double tau_middle,
         const FittedInterval& interval);
 
-    /// At a time s >= 0 after its start. `with_acceleration`: else x'' is none.
+    /// Motion at a time s >= 0 after the start; x'' is 0 unless `with_acceleration`.
     MotionRow at(double s, bool with_acceleration);
 
 private:
@@ -66,8 +121,8 @@ private:
 
 using UnknownRow = Eigen::Matrix<double, 1, sensed_unknowns>;
 
-/// Sets the derivatives of one of x, x' and x'' by the start and by all unknowns that move the
-/// oscillator; by the others 0.
+/// Derivatives of one of x, x', x'' by the initial state and by the unknowns; 0 for unknowns that
+/// do not affect the motion.
 void take_derivatives(
     const MotionRow& row, double OscillatorMotion::* member, Eigen::RowVector2d& by_start,
     UnknownRow& by_unknowns);

@@ -1,5 +1,9 @@
-// The normal equations of a joint fit. Their unknowns: two for each interval, one for each impact's
-// moment, and those of the record.
+// Normal equations of a joint fit. Unknowns: two for each interval, the time of each impact, and
+// those of the record.
+//
+// Equations of the free mass in the joint fit: it flies with constant velocity from contact to
+// contact, y = x - side b at both ends (43); each impact conserves x' + epsilon y' (36) and has the
+// R of its wall (4). They couple the times of neighbouring impacts.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +18,7 @@ class JointEquations {
 public:
     using GlobalMatrix = Eigen::Matrix<double, unknowns, unknowns>;
 
-    /// Of one interval's samples in its start, with their part in the unknowns.
+    /// Samples of one interval: its own block, and its coupling with the record's unknowns.
     struct OfInterval {
         Eigen::Matrix2d N = Eigen::Matrix2d::Zero();
         Eigen::Matrix<double, 2, sensed_unknowns> C =
@@ -31,23 +35,22 @@ public:
         bool solved;
     };
 
-    /// `ridge`: added to the diagonal of the intervals, so that what no sample says anything of
-    /// stays as it is.
+    /// `ridge`: added to the diagonal of the intervals, so that undetermined unknowns do not move.
     JointEquations(std::size_t intervals, double ridge);
 
-    /// A sample of an interval: its derivatives, what is left of it, and its weight.
+    /// Adds a sample of an interval: derivatives, residual and weight.
     void add(
         std::size_t interval, const Eigen::RowVector2d& by_start, const UnknownRow& by_unknowns,
         double left, double weight);
-    /// A residual of few unknowns.
+    /// Adds a residual that depends on few unknowns.
     void add(const std::vector<Term>& row, double left, double weight);
-    /// A prior: an unknown's value is left by so much.
+    /// Adds a prior: `left` is the prior mean minus the value.
     void add_prior(std::size_t unknown, double left, double weight);
 
     Eigen::Index start_of(std::size_t interval) const {
         return 2 * static_cast<Eigen::Index>(interval);
     }
-    Eigen::Index moment_of(std::size_t impact) const {
+    Eigen::Index time_of(std::size_t impact) const {
         return 2 * intervals_ + static_cast<Eigen::Index>(impact);
     }
     Eigen::Index unknown_at(std::size_t unknown) const {
@@ -58,7 +61,7 @@ public:
     }
     std::vector<OfInterval>& own() { return own_; }
 
-    /// Once. No step where the matrix has no factorisation.
+    /// Call once. The step is zero if the matrix has no factorisation.
     Solution solve();
 
 private:
@@ -67,7 +70,7 @@ private:
     const double ridge_;
     const Eigen::Index intervals_, size_;
     std::vector<OfInterval> own_;
-    // Of the samples in the unknowns alone.
+    // Contribution of the samples to the record's unknowns alone.
     Eigen::Matrix<double, sensed_unknowns, sensed_unknowns> N_ =
         Eigen::Matrix<double, sensed_unknowns, sensed_unknowns>::Zero();
     Eigen::Matrix<double, sensed_unknowns, 1> g_ =
@@ -75,5 +78,43 @@ private:
     std::vector<Eigen::Triplet<double>> triplets_;
     Eigen::VectorXd right_;
 };
+
+/// Wall of each border of a fit, +1 or -1, including the wall that a mass leaves at a release; 0
+/// for a gap.
+using Sides = std::vector<int>;
+
+/// An impact between two intervals: the motion before it is the end of the first one.
+struct FittedBorder {
+    bool flies;     ///< an impact without a sticking phase after it
+    double tau, x;  ///< start of the second interval
+    double x_dot_before, x_dot_after, x_ddot_before, x_ddot_after;
+    /// Derivative of x_dot_before by the first interval's start.
+    Eigen::RowVector2d before_by_start;
+    UnknownRow before_by_unknowns;
+};
+
+/// Residuals of momentum and restitution at an impact, in m per unit of tau.
+struct MassResidual {
+    std::size_t impact;
+    double momentum, restitution;
+    double jump, approach;  ///< jump of x', and x' - y' before the impact
+};
+/// Residuals of the impacts whose flights on both sides are known.
+std::vector<MassResidual> mass_residuals(
+    double epsilon, const Sides& sides, const std::vector<FittedBorder>& impacts,
+    const UnknownValues& values);
+
+/// Standard deviations of both residuals: their scatter, with a lower bound since no wall is
+/// perfectly constant.
+struct MassScatter {
+    double momentum, restitution;
+};
+MassScatter scatter_of(const std::vector<MassResidual>& residuals);
+
+/// Adds the equations of one impact. Weights are inverse variances.
+void add_mass_rows(
+    double epsilon, const Sides& sides, const std::vector<FittedBorder>& impacts,
+    const UnknownValues& values, const FixedUnknowns& fixed, const MassResidual& residual,
+    double momentum_weight, double restitution_weight, JointEquations& equations);
 
 }  // namespace vines

@@ -1,99 +1,104 @@
-// The motion of the oscillator in a record whose impacts are about known, and all that the record
-// says of the sensors: one sparse least-squares problem (unknowns.hpp), solved by Gauss and Newton.
+// Fit of the oscillator's motion to a record with approximately known impacts, together with the
+// sensors' errors: one sparse least-squares problem (unknowns.hpp), solved by Gauss-Newton steps.
 #pragma once
 
 #include <vector>
 
 #include "core/measurement/interval_motion.hpp"
-#include "core/measurement/mass_rows.hpp"
+#include "core/measurement/joint_equations.hpp"
 #include "core/measurement/measured_record.hpp"
 #include "core/measurement/progress.hpp"
-#include "core/measurement/record_statistics.hpp"
 #include "core/measurement/unknowns.hpp"
 
 namespace vines {
 
-/// What parts two intervals.
+/// Separates two intervals.
 enum class Border {
     impact,
-    gap,     ///< of the record, over which nothing is known: behind it the motion starts anew
-    release  ///< the mass leaves the wall that it stuck to
+    gap,     ///< gap of the record: the motion restarts after it
+    release  ///< the mass leaves the wall
 };
 
-/// An impact as the fit is given it, or what else parts two intervals.
-struct ImpactMoment {
+/// An impact, or another border between intervals, as input of the fit.
+struct ImpactTime {
     double tau;
     Border border;
-    bool sticks;  ///< the mass stays on the wall, up to the next one, a release
-    /// By its pulse, and the standard error of that; infinite where no pulse tells it.
+    bool sticks;  ///< the mass sticks to the wall until the next border, a release
+    /// Time according to its pulse, and its standard error; infinite without a usable pulse.
     double pulse_tau, pulse_error;
-    /// What of the acceleration its pulse spoils: so much before and after tau.
+    /// Time before and after tau in which the pulse spoils the acceleration.
     double spoiled_before, spoiled_after;
 };
 
-/// The motion at an impact, from both sides.
+/// Motion at an impact, before and after it.
 struct FittedImpact {
     double tau;
     Border border;
     double x, x_dot_before, x_dot_after, x_ddot_before, x_ddot_after;
-    // Of the intervals beside it, each fitted by itself:
-    double x_jump, x_jump_error;  ///< by how much x jumps, and its standard error
+    // Results of the adjacent intervals, each fitted separately:
+    double x_jump, x_jump_error;  ///< jump of x, and its standard error
     double x_dot_jump_error;      ///< standard error of the jump of x'
 
     double jump() const { return x_dot_after - x_dot_before; }
     bool is_impact() const { return border == Border::impact; }
 };
 
-/// Positions in m, derivatives in tau.
+/// Positions in m, derivatives by tau.
 struct JointFit {
     double tau_middle = 0, length = 1;  ///< of the record
     double epsilon = 0;
-    UnknownValues values{}, errors{};  ///< standard errors, with the misfit in them
-    FixedUnknowns fixed{};             ///< those that were not fitted
-    KnownForcing forcing;              ///< what of it was not
+    UnknownValues values{}, errors{};  ///< standard errors, increased by the misfit
+    FixedUnknowns fixed{};             ///< unknowns that were not fitted
+    KnownForcing forcing;              ///< given amplitude and phase of the forcing
     std::vector<FittedInterval> intervals;
-    std::vector<FittedImpact> impacts;  ///< one fewer
-    /// What is left of each sample: of the displacement on its own scale, of the acceleration the
-    /// pulses and the noise. Empty without that sensor.
-    std::vector<double> x_left, a_left;
-    double noise_x = 0, noise_a = 0;  ///< standard deviations of that; NaN without the sensor
-    /// That over what of it has nothing to do with the motion (left_over.hpp): 1 if all is
-    /// explained.
+    std::vector<FittedImpact> impacts;  ///< one fewer than intervals
+    /// Residual of each sample: of the displacement in the sensor's own scale, of the acceleration
+    /// with pulses and noise. Empty without the sensor.
+    std::vector<double> x_residual, a_residual;
+    /// Standard deviations of the residuals; NaN without the sensor.
+    double noise_x = 0, noise_a = 0;
+    /// Standard deviation of the residual divided by that of its part unrelated to the motion
+    /// (joint_fit_residual.cpp): 1 if the fit explains everything.
     double misfit_x = 0, misfit_a = 0;
     bool converged = false;
 };
 
-/// The displacement is early or late by no more than this, in tau.
+/// Bound on the delay of the displacement, either sign, in tau.
 inline constexpr double largest_delay = 0.15;
 
-/// What of a record is to be fitted.
+/// Input of the joint fit.
 struct JointFitInput {
     const Parameters& parameters;
     const MeasuredRecord& record;
     const RecordStatistics& statistics;
-    /// Samples that say nothing: clipped, dropped out, odd. One entry for each sample of a channel
-    /// that is there.
+    /// Unusable samples: clipped, dropped out, outliers. One entry for each sample of an existing
+    /// channel.
     const std::vector<char>& bad_x;
     const std::vector<char>& bad_a;
-    /// What of the displacement an impact spoils, before and after it.
+    /// Time before and after an impact in which the displacement is spoiled.
     double x_spoiled = 0;
     FixedUnknowns fixed{};
     KnownForcing forcing = {};
-    const Sides* sides = nullptr;  ///< of the impacts: the mass takes part; null: it does not
-    bool one_step = false;         ///< of a fit from another one: what it would come to, about
+    const Sides* sides = nullptr;  ///< walls of the borders: the mass takes part; null: it does not
+    bool one_step = false;         ///< take one step from a previous fit: approximates its result
 };
 
-/// `impacts`: in order, within the record; JointFit::impacts has an entry for each. `values`: where
-/// the steps begin. `before`: a fit of the same impacts, whose motion they begin with; null: at
-/// rest.
+/// `impacts`: in order, within the record; JointFit::impacts has an entry for each. `values`:
+/// initial values. `before`: a fit of the same impacts whose motion is the initial one; null: start
+/// at rest.
 JointFit fit_jointly(
-    const JointFitInput& input, const std::vector<ImpactMoment>& impacts,
-    const UnknownValues& values, const JointFit* before, IdentificationProgress& progress);
+    const JointFitInput& input, const std::vector<ImpactTime>& impacts, const UnknownValues& values,
+    const JointFit* before, IdentificationProgress& progress);
 
-/// Whether the fitted motion leaves no more of the sensors' signals than their noise.
+/// The Omega within 1 % of the given one at which a forcing of constant amplitude and phase
+/// explains the record best. `times`: of the impacts.
+double scanned_frequency(
+    const JointFitInput& input, const std::vector<double>& times, IdentificationProgress& progress);
+
+/// Whether the residuals are no larger than the sensors' noise.
 bool explains(const JointFit& fit);
 
-/// The fitted motion at moments of the record, ascending; at that of an impact, after it.
-std::vector<OscillatorMotion> motion_at(const JointFit& fit, const std::vector<double>& moments);
+/// Fitted motion at ascending times of the record; at an impact, the motion after it.
+std::vector<OscillatorMotion> motion_at(const JointFit& fit, const std::vector<double>& times);
 
 }  // namespace vines

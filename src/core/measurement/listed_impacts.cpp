@@ -13,17 +13,17 @@ namespace vines {
 
 namespace {
 
-// A flight over a missing impact is far off: it counts less, the more so (Huber), and once the
-// others are known not at all.
+// Number of reweighted rounds. A flight over a missing impact deviates strongly: it gets less
+// weight (Huber), and is ignored in the later rounds.
 constexpr int rounds = 12, rounds_with_all = 6;
 constexpr double counted_in_full = 1.5, ignored = 6;
-// The motion from one impact to the next holds another one where it misses that by so much of the
-// typical jump of x', and by so many times what it misses elsewhere.
+// A motion between two impacts hides another one if it deviates by this fraction of the median jump
+// of x' and by this many times the typical deviation.
 constexpr double hidden_share = 0.05, hidden_sigmas = 10;
-// A gap of so many typical flights is none of them.
+// Longest time a run may take, in typical flights: anything longer is a gap in the list.
 constexpr double longest_flights = 40;
 
-/// What the forcing has to explain of x or x' at the end of a flight.
+/// Equation for the forcing from x or x' at the end of a flight.
 struct Row {
     Eigen::RowVector2d by_forcing;
     double value;
@@ -52,7 +52,7 @@ std::vector<Row> rows_of(
 
 }  // namespace
 
-void take_flights(const Parameters& p, std::vector<IdentifiedImpact>& impacts) {
+void set_flight_velocities(const Parameters& p, std::vector<IdentifiedImpact>& impacts) {
     for (std::size_t i = 1; i < impacts.size(); ++i) {
         IdentifiedImpact &from = impacts[i - 1], &to = impacts[i];
         const double y_dot = flight_velocity(p.b, from, to);
@@ -61,7 +61,7 @@ void take_flights(const Parameters& p, std::vector<IdentifiedImpact>& impacts) {
     }
 }
 
-ListedForcing take_forcing(
+ListedForcing fit_forcing(
     const Parameters& p, std::vector<IdentifiedImpact>& impacts,
     const std::function<void()>& asked) {
     const std::function<void()> look = asked ? asked : [] {};
@@ -98,12 +98,12 @@ ListedForcing take_forcing(
 
 namespace {
 
-/// As the impacts of a list show it.
+/// The system with R of each wall from the listed impacts.
 Parameters listed_system(
     const Parameters& parameters, const std::vector<IdentifiedImpact>& impacts) {
     Parameters p = parameters;
     std::vector<IdentifiedImpact> copy = impacts;
-    take_flights(p, copy);
+    set_flight_velocities(p, copy);
     complete_impacts(p, copy, 0);
     const double plus = restitution_of(copy, 1).R, minus = restitution_of(copy, -1).R;
     if (std::isfinite(plus)) p.R_plus = std::clamp(plus, 0.0, 1.0);
@@ -111,7 +111,7 @@ Parameters listed_system(
     return p;
 }
 
-HidingPlaces hiding_places(
+HiddenContactLimits hidden_contact_limits(
     const ListedForcing& forcing, const std::vector<IdentifiedImpact>& impacts) {
     std::vector<double> jumps, speeds, flights;
     for (std::size_t i = 0; i < impacts.size(); ++i) {
@@ -128,14 +128,15 @@ HidingPlaces hiding_places(
 
 }  // namespace
 
-long restore_impacts(
+long insert_missing_impacts(
     const Parameters& p, const ListedForcing& forcing, std::vector<IdentifiedImpact>& impacts,
     const std::function<void()>& look) {
     UnknownValues values = given_unknowns(p);
     values[Unknown::force_sin] = forcing.sin, values[Unknown::force_cos] = forcing.cos;
     const IdentifiedSystem system(listed_system(p, impacts), values, 0);
-    return put_in(
-        hidden_contacts(system, hiding_places(forcing, impacts), impacts, {}, look), impacts);
+    return insert_hidden(
+        hidden_contacts(system, hidden_contact_limits(forcing, impacts), impacts, {}, look),
+        impacts);
 }
 
 }  // namespace vines

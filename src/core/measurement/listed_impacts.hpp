@@ -1,5 +1,5 @@
-// What a list of impacts leaves open, from what it says: the mass flies with one velocity between
-// its contacts, and the oscillator moves from impact to impact by one forcing.
+// Completes a list of impacts: between contacts the mass flies with constant velocity, and one
+// forcing moves the oscillator from impact to impact.
 #pragma once
 
 #include <functional>
@@ -9,27 +9,27 @@
 
 namespace vines {
 
-/// y' before and after each impact where they are NaN: of the flights, eq. (43). The first one's
-/// before and the last one's after stay unknown.
-void take_flights(const Parameters& parameters, std::vector<IdentifiedImpact>& impacts);
+/// Sets y' before and after each impact where it is NaN, from the flights, eq. (43). It stays
+/// unknown before the first and after the last impact.
+void set_flight_velocities(const Parameters& parameters, std::vector<IdentifiedImpact>& impacts);
 
 /// f_s sin(Omega tau) + f_c cos(Omega tau), m.
 struct ListedForcing {
     double sin, cos;
-    /// By what the impacts' states miss the motion under it: the typical one, over the typical
-    /// speed of the oscillator.
+    /// Median deviation of the impacts' states from the motion under this forcing, divided by the
+    /// median speed of the oscillator.
     double misfit;
 };
-/// The forcing that leads from each impact to the next, by least squares; x'' before an impact,
-/// where it is NaN, is set to what follows from it, eq. (2). At least two impacts with x and x'.
-/// look(): called for each impact, some times; what it throws ends this.
-ListedForcing take_forcing(
+/// Fits the forcing that leads from each impact to the next (least squares) and sets x'' before an
+/// impact, where it is NaN, by eq. (2). Needs at least two impacts with x and x'. look() is called
+/// several times for each impact; an exception it throws passes through.
+ListedForcing fit_forcing(
     const Parameters& parameters, std::vector<IdentifiedImpact>& impacts,
     const std::function<void()>& look = {});
 
-/// Puts in what a list misses (hidden_contacts.hpp), with R of each wall as its impacts have it.
-/// Returns how many impacts. look() as above.
-long restore_impacts(
+/// Inserts impacts missing from the list (hidden_contacts.hpp), with the R of each wall that the
+/// listed impacts have. Returns the number of impacts added. look() as above.
+long insert_missing_impacts(
     const Parameters& parameters, const ListedForcing& forcing,
     std::vector<IdentifiedImpact>& impacts, const std::function<void()>& look = {});
 

@@ -1,52 +1,76 @@
-// Exponents of a sequence of impacts with gaps in it.
+// Lyapunov exponents of a sequence of impacts with gaps.
 //
-// The transfer matrix of a stretch is only known where each impact in it is. So the impacts fall
-// into stretches that are known throughout. `qr` adds up the growth of the deviations over them and
-// divides by the time that they last together; they are carried over a gap, for along the
-// motion the growing directions change little from impact to impact. (With 10 % of the impacts
-// lost, lambda1 comes out 2 % smaller; started anew behind each gap, 50 % larger.) A product over a
-// gap does not exist: `eigenvalues` and `raw_product` are of the longest stretch.
+// The transfer matrix of a stretch is known only if every impact in it is known, so the impacts are
+// divided into known stretches. `qr` adds the growth over all stretches and divides by their total
+// duration; the deviations are carried across gaps, because the growing directions change little
+// from impact to impact. (With 10 % of the impacts missing lambda1 is 2 % too small; restarted
+// after each gap it would be 50 % too large.) No matrix product across a gap exists: `eigenvalues`
+// and `raw_product` use the longest stretch.
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "core/measurement/identified_impact.hpp"
 #include "core/measurement/measured_record.hpp"
-#include "core/measurement/measured_slope.hpp"
+#include "core/stability/lyapunov.hpp"
 #include "core/stability/verdict.hpp"
 
 namespace vines {
 
-/// From an impact to another, by their indices, with every flight between known.
+/// Slow state of the oscillator: (x, x') rotated back by the forcing's angle, divided by a
+/// typical amplitude. It hardly changes during a cycle.
+using SlowState = Eigen::Vector2d;
+SlowState slow_state(double x, double x_dot, double forcing_angle);
+
+/// Growth rate of a measured sum of logarithms in the long run, with a confidence interval.
+///
+/// The growth follows the amplitude modulation of the oscillator, so a short record shows more or
+/// less of it depending on the part of a modulation in which it begins and ends. That part is a
+/// function of the slow state at both ends: it is fitted to the growth over about half a modulation
+/// and subtracted. The remaining steps are nearly independent; their remaining correlation is taken
+/// from their spectrum at frequency zero.
+struct MeasuredSlope {
+    double value;      ///< per unit of tau
+    double low, high;  ///< 90 % interval; NaN with too few steps
+};
+
+/// Slope of the first exponent of a history from `tau_start` on, without its first tenth. `states`:
+/// one for each entry; only their differences count. The result does not depend on the requested
+/// length of the history.
+MeasuredSlope measured_slope(
+    const ExponentHistory& history, double tau_start, const std::vector<SlowState>& states);
+
+/// From one impact to another (indices), with all flights between them known.
 struct KnownStretch {
     std::size_t first, last;
 };
 
 struct Continuity {
-    std::vector<KnownStretch> stretches;  ///< of two impacts or more
+    std::vector<KnownStretch> stretches;  ///< of at least two impacts
     long left_out = 0;                    ///< impacts with a fault
-    /// Flights between two others that do not fit, or over a gap of the record.
+    /// Flights between two good impacts that do not fit or cross a gap.
     long missing = 0;
-    double share = 0;  ///< of both, of all impacts with the missing ones
+    double share = 0;  ///< fraction left out or missing, of all impacts including the missing ones
 
-    /// With more of them the rest is no fair sample of the motion.
+    /// Above this fraction the rest is not representative of the motion.
     static constexpr double most = 0.05;
 };
-/// A gap is one where an impact could hide: longer than a tenth of a typical flight.
+/// Only gaps longer than a tenth of a typical flight count: an impact could hide in them.
 Continuity continuity_of(
     const Parameters& parameters, const std::vector<IdentifiedImpact>& impacts,
     const std::vector<TimeGap>& gaps);
 
-/// Of the estimators that are asked for those of all stretches, and those of the longest alone.
+/// Splits requested estimators into those for all stretches and those for the longest one.
 ExponentOptions of_all_stretches(const ExponentOptions& asked);
 ExponentOptions of_longest_stretch(const ExponentOptions& asked);
 
-/// The oscillator between impacts, in the tau of the omega0 that was given: x'' + damping x' +
-/// stiffness x is the forcing.
+/// The oscillator between impacts, in tau of the given omega0: x'' + damping x' + stiffness x =
+/// forcing.
 struct MeasuredOscillator {
     double stiffness, damping;
 
-    /// As the parameters have it.
+    /// With the given parameters.
     static MeasuredOscillator given(const Parameters& p) { return {1, 2 * p.zeta()}; }
     double zeta() const { return 0.5 * damping; }  ///< per unit of tau
 };
@@ -58,51 +82,51 @@ public:
         const std::vector<IdentifiedImpact>& impacts, const std::vector<KnownStretch>& stretches,
         const ExponentOptions& options);
 
-    /// `qr` alone, of all stretches, on a clock that stands still outside of them.
+    /// `qr` over all stretches; its clock stops between stretches.
     const TransferProduct& all() const { return all_; }
-    /// `eigenvalues` and `raw_product`, of the longest stretch.
+    /// `eigenvalues` and `raw_product` of the longest stretch.
     const TransferProduct& longest() const { return longest_; }
-    /// The moment of the record at which the clock of all() showed this.
+    /// Record time at which the clock of all() showed `clock`.
     double moment(double clock) const;
-    /// What the sum of logarithms of qr's first exponent grows by.
+    /// Slope of the sum of logarithms of qr's first exponent.
     MeasuredSlope slope() const;
 
 private:
-    struct Start {
+    struct StretchStart {
         double clock, tau;
     };
-    /// At an impact; it stands still over a gap, as the clock does.
-    struct Slow {
+    /// State at an impact; unchanged across a gap, like the clock.
+    struct SlowAt {
         double clock;
         SlowState state;
     };
     TransferProduct all_, longest_;
-    std::vector<Start> starts_;
-    std::vector<Slow> slow_;
+    std::vector<StretchStart> starts_;
+    std::vector<SlowAt> slow_;
 };
 
-/// What the growth of deviations says.
+/// Conclusions from the growth of deviations.
 struct IdentifiedExponents {
     MeasuredSlope slope;
-    /// Chaotic: slope.low is above the oscillator's own damping zeta; regular: slope.high is below
-    /// it, of a representative record.
+    /// Chaotic if slope.low exceeds the oscillator's damping zeta; regular if slope.high is below
+    /// it and the record is representative.
     Verdict verdict;
-    bool weakens = false;  ///< not decided for that, though it is forced
+    bool weakens = false;  ///< not decided for this reason, although forced
 };
-/// Whether a slope below zeta can be said of the motion, and not of a stretch in which a chaotic
-/// one is in step. Of windows of 100 impacts of Table 4's system at b = 11 mm 142 of 506 look
-/// regular, of 150 still 2 of 335, of 170 and more none. But in none of 80 are the jumps of the
-/// second half alike to 2 %, in none of 150 to 9 %, as those of a periodic motion soon are: nine in
-/// ten of them, against the typical jump at their wall. (Six b from 10.8 to 13 mm, some 30,000
-/// windows of 80 to 200 impacts.)
+/// Whether a slope below zeta characterises the motion, and not a synchronised stretch of a chaotic
+/// one. In windows of 100 impacts of Table 4's system at b = 11 mm 142 of 506 look regular, of 150
+/// impacts 2 of 335, of 170 or more none. In windows of 80 impacts, however, the jumps of the
+/// second half never agree within 2 %, in windows of 150 never within 9 %, while those of a
+/// periodic motion soon do (nine in ten jumps, relative to the typical jump at their wall). From
+/// six b between 10.8 and 13 mm, about 30,000 windows of 80 to 200 impacts.
 bool is_representative(const std::vector<IdentifiedImpact>& impacts);
-/// Whether from quarter to quarter of the impacts' time the largest jump falls, to less than half
-/// in all. Without forcing the motion dies out then; a forced one may be in a transient, or in the
-/// falling part of a modulation. Of windows of 30 impacts of Table 4's system at b = 15, 18 and 22
-/// mm 80 of 677 weaken.
+/// Whether the largest jump falls from quarter to quarter of the record, to less than half overall.
+/// An unforced motion then dies out; a forced one can be in a transient or in the falling part of a
+/// modulation. In windows of 30 impacts of Table 4's system at b = 15, 18 and 22 mm 80 of 677
+/// weaken.
 bool weakens(const std::vector<IdentifiedImpact>& impacts);
-/// Whether the forcing is none, or too weak to keep up the motion that the last quarter of the
-/// impacts shows.
+/// Whether the forcing is zero, or too weak to sustain the motion in the last quarter of the
+/// impacts.
 bool is_unforced(const Parameters& parameters, const std::vector<IdentifiedImpact>& impacts);
 IdentifiedExponents judge_exponents(
     const MeasuredOscillator& oscillator, const MeasuredExponents& exponents, bool representative);

@@ -4,23 +4,23 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/motion/elementary.hpp"
 #include "core/motion/record.hpp"
-#include "core/motion/special_values.hpp"
 
 namespace vines {
 
 namespace {
 
-/// Far above what a record of minutes holds.
+/// Far above the impacts in a record of minutes.
 constexpr long most_forward_impacts = 100000;
 
-/// R of each wall that has impacts; rounding may have moved one beyond what an R can be.
+/// Takes R of each wall that has impacts, clamped to the range of an R.
 void take_restitution(Parameters& p, const Identification& found) {
     if (std::isfinite(found.plus.R)) p.R_plus = std::clamp(found.plus.R, 0.0, 1.0);
     if (std::isfinite(found.minus.R)) p.R_minus = std::clamp(found.minus.R, 0.0, 1.0);
 }
 
-/// The stretches without the passages to impacts whose relative speed is not known.
+/// The stretches, split at impacts whose relative speed is unknown.
 std::vector<KnownStretch> with_speeds(
     const std::vector<IdentifiedImpact>& impacts, const std::vector<KnownStretch>& stretches) {
     std::vector<KnownStretch> known;
@@ -33,7 +33,7 @@ std::vector<KnownStretch> with_speeds(
     return known;
 }
 
-/// `stretches`: those of the fit, with what was hidden.
+/// `stretches`: those of the fit, including hidden impacts.
 std::optional<DirectEstimate> direct_estimate(
     const Measurement& m, double b, const MeasuredOscillator& oscillator,
     const FoundImpacts& refined, const std::vector<HiddenContacts>& hidden,
@@ -41,13 +41,13 @@ std::optional<DirectEstimate> direct_estimate(
     if (m.record.x.empty() || m.record.x_ddot.empty()) return std::nullopt;
     Parameters p = m.parameters;
     p.b = b;
-    std::vector<double> moments;
-    for (const FittedImpact& i : refined.fit.impacts) moments.push_back(i.tau);
+    std::vector<double> times;
+    for (const FittedImpact& i : refined.fit.impacts) times.push_back(i.tau);
     const double pulse = refined.pulse.length();
     Identification found = identify_impacts(
-        p, direct_motion(m.record, moments, pulse), refined.side, refined.gaps, pulse);
+        p, direct_motion(m.record, times, pulse), refined.side, refined.gaps, pulse);
     if (!m.R_given) take_restitution(p, found);
-    put_in(hidden, found.impacts);
+    insert_hidden(hidden, found.impacts);
     complete_impacts(p, found.impacts, pulse);
     const MeasuredExponents faultless(
         p, oscillator, found.impacts,
@@ -81,7 +81,7 @@ std::optional<ForwardRun> forward_run(
     return ForwardRun{first.tau, std::move(impacts.entries), lambda};
 }
 
-/// What a record's impacts say; `p` gets what is fitted of Omega, b and G.
+/// Identifies a record's impacts; `p` receives the fitted Omega, b and G.
 Identification identified(const FoundImpacts& refined, Parameters& p) {
     const UnknownValues& v = refined.fit.values;
     p.Omega = v[Unknown::Omega];
@@ -94,7 +94,7 @@ Identification identified(const FoundImpacts& refined, Parameters& p) {
     return found;
 }
 
-/// What is known of the impacts without a record.
+/// Identification of listed impacts, without a record.
 Identification of_impacts(const std::vector<IdentifiedImpact>& impacts) {
     Identification found;
     found.impacts = impacts;
@@ -109,7 +109,7 @@ double Measurement::step() const {
     return (record.tau.back() - record.tau.front()) / static_cast<double>(record.tau.size() - 1);
 }
 
-MeasurementResult conclude(const Measurement& m, const IdentificationWatch& watch) {
+MeasurementResult evaluate_measurement(const Measurement& m, const IdentificationWatch& watch) {
     IdentificationProgress progress(watch);
     assert(m.is_record() || m.impacts.size() >= 2);
     Parameters p = m.parameters;
@@ -120,7 +120,10 @@ MeasurementResult conclude(const Measurement& m, const IdentificationWatch& watc
     if (m.is_record()) {
         refined = find_impacts(
             p, m.record,
-            {.sigmas = m.threshold, .moments = m.moments, .fixed = m.fixed, .forcing = m.forcing},
+            {.sigmas = m.threshold,
+             .times = m.impact_times,
+             .fixed = m.fixed,
+             .forcing = m.forcing},
             progress);
         const JointFit& fit = refined->fit;
         if (fit.impacts.size() < 2) throw TooFewImpacts{static_cast<long>(fit.impacts.size())};
@@ -135,8 +138,8 @@ MeasurementResult conclude(const Measurement& m, const IdentificationWatch& watc
     std::vector<HiddenContacts> hidden;
     if (refined) {
         system.emplace(p, refined->fit.values, refined->fit.tau_middle);
-        hidden = hidden_contacts(*system, refined->hiding, found.impacts);
-        put_in(hidden, found.impacts);
+        hidden = hidden_contacts(*system, refined->hidden_contact_limits, found.impacts);
+        insert_hidden(hidden, found.impacts);
         complete_impacts(p, found.impacts, refined->pulse.length());
     }
     progress.reach(IdentificationStage::exponents);

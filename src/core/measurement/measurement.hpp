@@ -1,77 +1,77 @@
-// A measurement and all that is concluded from it: the impacts, R, the exponents, the verdict, and
-// two things to hold them against (the paper's direct estimate, and a run of what was identified).
+// Evaluation of a measurement: impacts, R, exponents and the verdict, with two results for
+// comparison (the paper's direct estimate, and a run of the identified system).
 //
-// The measurement is a record of the oscillator, or a list of impacts with their states. All in
-// dimensionless time, as in identify.hpp.
+// A measurement is a record of the oscillator, or a list of impacts with their states.
+// Dimensionless as in identify.hpp.
 #pragma once
 
 #include <optional>
 
-#include "core/measurement/direct_motion.hpp"
 #include "core/measurement/identify.hpp"
 
 namespace vines {
 
 struct Measurement {
-    Parameters parameters;  ///< R only where R_given; of a record G is fitted
+    Parameters parameters;  ///< R is used only if R_given; for a record G is fitted
     bool R_given = false;
-    MeasuredRecord record = {};        ///< empty where the impacts are given with their states
-    std::vector<double> moments = {};  ///< tau of impacts that are known; empty: find them
-    std::vector<IdentifiedImpact> impacts = {};  ///< completed, in place of a record
-    std::vector<Doubt> doubts = {};              ///< about those
+    MeasuredRecord record = {};             ///< empty if the impacts are given with their states
+    std::vector<double> impact_times = {};  ///< known times of impacts, in tau; empty: detect them
+    std::vector<IdentifiedImpact> impacts = {};  ///< with complete_impacts(); replaces a record
+    std::vector<Doubt> doubts = {};              ///< known doubts about these impacts
     double threshold = 6;      ///< of a spike, in standard deviations of the noise
-    FixedUnknowns fixed = {};  ///< what of a record is not fitted
+    FixedUnknowns fixed = {};  ///< unknowns of the fit that keep their given values
     KnownForcing forcing = {};
     ExponentOptions estimators = {};
-    ExponentOptions direct_estimators = qr_alone;  ///< of the paper's direct estimate
+    ExponentOptions direct_estimators = qr_alone;  ///< for the paper's direct estimate
 
     bool is_record() const { return impacts.empty(); }
-    double step() const;  ///< of the record: the mean time between two samples
+    double step() const;  ///< mean sampling interval of the record, in tau
 };
 
-/// Thrown of a record in which fewer than two impacts are seen.
+/// Thrown for a record with fewer than two visible impacts.
 struct TooFewImpacts {
     long seen;
 };
 
-/// The paper's estimate beside ours: velocities by differences, and what follows from them.
+/// The paper's direct estimate: velocities from differences, and the results that follow.
 struct DirectEstimate {
     Identification found;
-    Exponents lambda;  ///< qr, without the impacts at fault
-    /// Of the impacts that MeasurementResult::exponents takes, at fault or not: the two then differ
-    /// by the estimate of the velocities alone.
+    Exponents lambda;  ///< qr, without faulty impacts
+    /// From the same impacts as MeasurementResult::exponents, faulty ones included: the two differ
+    /// only in the velocities.
     std::vector<KnownStretch> stretches;
     MeasuredExponents exponents;
 };
 
-/// The run of the identified system from the state after the first impact whose state is known,
-/// over the record's time.
+/// Run of the identified system over the record's time, from the state after the first impact whose
+/// state is known.
 struct ForwardRun {
     double start;                 ///< tau of that impact
-    std::vector<Impact> impacts;  ///< their tau is the record's
+    std::vector<Impact> impacts;  ///< in the record's tau
     Exponents lambda;             ///< qr
 };
 
 struct MeasurementResult {
-    /// With R of each wall, and of a record with the fitted Omega and G, and b where it
-    /// contradicts.
+    /// With the R of each wall; for a record also with the fitted Omega and G, and with the fitted
+    /// b if it contradicts the given one.
     Parameters parameters;
     Identification found;
     MeasuredOscillator oscillator;
-    std::optional<FoundImpacts> refined;  ///< of a record
+    std::optional<FoundImpacts> refined;  ///< for a record
     Continuity continuity;
     MeasuredExponents exponents;
     IdentifiedExponents judged;
-    std::vector<Doubt> doubts;  ///< why the measurement bears no verdict
+    std::vector<Doubt> doubts;  ///< reasons why no verdict is possible
     std::optional<DirectEstimate> direct;
     std::optional<ForwardRun> forward;
 
-    /// Whether so many impacts are left out or missing that no verdict can rest on the others.
+    /// Whether too many impacts are excluded or missing for a verdict.
     bool is_incomplete() const { return continuity.share > Continuity::most; }
 };
 
-/// `impacts` in place of a record: at least two. Throws TooFewImpacts, and IdentificationStopped
-/// where the watch says so.
-MeasurementResult conclude(const Measurement& measurement, const IdentificationWatch& watch = {});
+/// Needs at least two `impacts` or a record. Throws TooFewImpacts, and IdentificationStopped if the
+/// watch requests it.
+MeasurementResult evaluate_measurement(
+    const Measurement& measurement, const IdentificationWatch& watch = {});
 
 }  // namespace vines

@@ -1,4 +1,4 @@
-// How far an identification has come, and whether it is to end.
+// Progress and cancellation of an identification.
 #pragma once
 
 #include <cstddef>
@@ -7,18 +7,18 @@
 
 namespace vines {
 
-/// In their order: spikes are looked for, then impacts are refined round by round, then exponents
-/// and what they are compared with are computed.
+/// Stages in order: spikes are detected, impacts are refined round by round, exponents and
+/// comparisons are computed.
 enum class IdentificationStage { spikes, impacts, exponents };
 
-/// Of whoever waits for it.
+/// Callbacks of the caller.
 struct IdentificationWatch {
-    std::function<bool()> stop = {};  ///< asked often; true ends it
-    /// Told as a stage begins, or a round of it (from 1 on; 0: there are none).
+    std::function<bool()> stop = {};  ///< called often; true ends the identification
+    /// Called at the start of a stage, or of one of its rounds (from 1; 0: no rounds).
     std::function<void(IdentificationStage, int round)> reached = {};
 };
 
-/// Thrown where the watch says stop.
+/// Thrown when the watch requests a stop.
 struct IdentificationStopped {
     IdentificationStage stage;
     int round;
@@ -36,8 +36,8 @@ public:
     void look() const {
         if (watch_.stop && watch_.stop()) throw at_;
     }
-    /// For the inner loops: looks now and then. work: how much there is until the next call, in
-    /// units of some hundred operations.
+    /// For inner loops: calls look() now and then. work: amount since the last call, in units of a
+    /// few hundred operations.
     void tick(std::size_t work = 1) {
         ticks_ += work;
         if (ticks_ < ticks_per_look) return;

@@ -1,33 +1,218 @@
-#include "core/measurement/pulse_signal.hpp"
+// The impact pulses in an acceleration, after subtraction of the oscillator's motion.
+//
+// With a displacement, the motion is fitted to it: between impacts x'' is a linear combination of
+// x, x' and the forcing. Without one, or where it is unusable, the motion is the smooth background
+// of the acceleration: a parabola through the neighbours of each sample, without those in a pulse.
+// The pulses are masked in rounds, first by a running median, then by the parabola.
+#include "core/measurement/candidates.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
-#include "core/measurement/background.hpp"
 #include "core/measurement/robust.hpp"
 #include "core/motion/elementary.hpp"
-#include "core/motion/special_values.hpp"
 
 namespace vines {
 
 namespace {
 
-// A stretch holds so many cycles of the oscillator; within it a frequency that is off by .3 % slips
-// by .15 rad.
+struct SmoothBackground {
+    std::vector<double> residual;  ///< the acceleration minus its smooth part, one for each sample
+    double noise;                  ///< standard deviation of the residual outside pulses
+};
+
+// The background is nearly a sine of frequency 1 (in tau): over +-.25 a parabola fits it to 2e-4.
+// The neighbourhood holds at least 9 samples on each side, because pulses may cover half of them.
+constexpr double background_least = 0.25;
+constexpr int background_samples = 9;
+// Minimum number of unmasked samples for a parabola.
+constexpr int parabola_samples = 5;
+// Samples further off than this many standard deviations of the noise, and their neighbours, are
+// masked.
+constexpr double masking_sigmas = 4;
+// Limit on the masking rounds, in case two masks alternate.
+constexpr int masking_rounds = 8;
+
+/// Samples [from, to) within `reach` of a sample that moves forward.
+struct Neighbourhood {
+    std::size_t from = 0, to = 0;
+
+    void move_to(std::size_t k, const std::vector<double>& tau, double reach) {
+        while (tau[k] - tau[from] > reach) ++from;
+        while (to < tau.size() && tau[to] - tau[k] <= reach) ++to;
+    }
+};
+
+/// Sorted values without NaN.
+class OrderedValues {
+public:
+    void add(double value) {
+        if (!std::isnan(value)) values_.insert(place_of(value), value);
+    }
+    void remove(double value) {
+        if (!std::isnan(value)) values_.erase(place_of(value));
+    }
+    /// NaN without values.
+    double median() const {
+        if (values_.empty()) return nan;
+        const std::size_t middle = values_.size() / 2;
+        return values_.size() % 2 ? values_[middle] : 0.5 * (values_[middle] + values_[middle - 1]);
+    }
+
+private:
+    std::vector<double>::iterator place_of(double value) {
+        return std::lower_bound(values_.begin(), values_.end(), value);
+    }
+    std::vector<double> values_;
+};
+
+/// Work of one pass through a neighbourhood, for IdentificationProgress::tick.
+std::size_t work_of(const Neighbourhood& near) { return 1 + (near.to - near.from) / 64; }
+
+/// Deviation from the median of the neighbourhood: the first approximation.
+std::vector<double> without_median(
+    const MeasuredRecord& r, double reach, IdentificationProgress& progress) {
+    std::vector<double> residual(r.tau.size());
+    OrderedValues values;
+    Neighbourhood near;
+    for (std::size_t k = 0; k < r.tau.size(); ++k) {
+        const Neighbourhood before = near;
+        near.move_to(k, r.tau, reach);
+        for (std::size_t j = before.from; j < std::min(before.to, near.from); ++j) {
+            progress.tick(work_of(near));
+            values.remove(r.x_ddot[j]);
+        }
+        for (std::size_t j = std::max(before.to, near.from); j < near.to; ++j) {
+            progress.tick(work_of(near));
+            values.add(r.x_ddot[j]);
+        }
+        residual[k] = r.x_ddot[k] - values.median();
+    }
+    return residual;
+}
+
+/// Least-squares parabola through samples, as normal equations N z = g.
+struct ParabolaEquations {
+    double count = 0, s = 0, s_squared = 0, s_cubed = 0, s_fourth = 0;
+    Eigen::Vector3d g = Eigen::Vector3d::Zero();
+
+    void add(double at, double value) {
+        const double squared = at * at;
+        count += 1;
+        s += at;
+        s_squared += squared;
+        s_cubed += at * squared;
+        s_fourth += squared * squared;
+        g += Eigen::Vector3d(value, at * value, squared * value);
+    }
+    /// Value at 0.
+    double solve() const {
+        Eigen::Matrix3d N;
+        N << count, s, s_squared, s, s_squared, s_cubed, s_squared, s_cubed, s_fourth;
+        return N.ldlt().solve(g)(0);
+    }
+};
+
+/// Residual of the acceleration: each sample minus the parabola through its unmasked neighbours.
+class BackgroundFit {
+public:
+    BackgroundFit(const MeasuredRecord& r, double reach, IdentificationProgress& progress)
+        : r_(r),
+          reach_(reach),
+          progress_(progress),
+          residual_(r.tau.size(), 0) {}
+
+    const std::vector<double>& residual() const { return residual_; }
+
+    /// Applies another mask; only samples with a neighbour at which the masks differ are
+    /// recomputed.
+    void mask(std::vector<char> masked) {
+        const std::vector<char> before = std::exchange(masked_, std::move(masked));
+        Neighbourhood near;
+        std::size_t changed = 0;
+        for (std::size_t k = 0; k < r_.tau.size(); ++k) {
+            near.move_to(k, r_.tau, reach_);
+            progress_.tick(work_of(near));
+            changed = std::max(changed, near.from);
+            while (changed < near.to && !before.empty() && masked_[changed] == before[changed])
+                ++changed;
+            if (changed < near.to) residual_[k] = residual_at(k, near);
+        }
+    }
+
+    const std::vector<char>& masked() const { return masked_; }
+
+private:
+    /// 0 if too few neighbours are unmasked.
+    double residual_at(std::size_t k, const Neighbourhood& near) const {
+        ParabolaEquations equations;
+        for (std::size_t j = near.from; j < near.to; ++j)
+            if (!masked_[j]) equations.add((r_.tau[j] - r_.tau[k]) / reach_, r_.x_ddot[j]);
+        return equations.count >= parabola_samples ? r_.x_ddot[k] - equations.solve() : 0;
+    }
+
+    const MeasuredRecord& r_;
+    const double reach_;
+    IdentificationProgress& progress_;
+    std::vector<char> masked_;
+    std::vector<double> residual_;
+};
+
+double noise_outside(const std::vector<char>& masked, const std::vector<double>& residual) {
+    std::vector<double> quiet;
+    for (std::size_t k = 0; k < residual.size(); ++k)
+        if (!masked[k]) quiet.push_back(residual[k]);
+    return robust_deviation(std::move(quiet));
+}
+
+/// Samples above the noise, each with its neighbours.
+std::vector<char> mask_of(const std::vector<double>& residual, double noise) {
+    const std::size_t n = residual.size();
+    std::vector<char> masked(n, 0);
+    for (std::size_t k = 0; k < n; ++k)
+        if (std::abs(residual[k]) > masking_sigmas * noise)
+            for (std::size_t j = k > 0 ? k - 1 : 0; j <= std::min(k + 1, n - 1); ++j) masked[j] = 1;
+    return masked;
+}
+
+/// Subtracts a parabola through the neighbours of each sample outside pulses. Needs x_ddot.
+SmoothBackground smooth_background(const MeasuredRecord& r, IdentificationProgress& progress) {
+    const std::size_t n = r.tau.size();
+    const double reach = std::max(background_least, background_samples * sample_interval(r));
+    SmoothBackground found{{}, ThirdDifferences(r.tau, r.x_ddot).noise()};
+    std::vector<double> residual = without_median(r, reach, progress);
+    const double coarse = std::max(found.noise, robust_deviation(residual));
+    std::vector<char> masked(n, 0);
+    for (std::size_t k = 0; k < n; ++k) masked[k] = std::abs(residual[k]) > masking_sigmas * coarse;
+    residual = {};
+    BackgroundFit background(r, reach, progress);
+    for (int round = 0; round < masking_rounds; ++round) {
+        background.mask(std::move(masked));
+        found.noise = noise_outside(background.masked(), background.residual());
+        masked = mask_of(background.residual(), found.noise);
+        if (masked == background.masked()) break;
+    }
+    found.noise = std::max(found.noise, least_noise_of(r.x_ddot));
+    found.residual = background.residual();
+    return found;
+}
+
+// Cycles of the oscillator in a stretch: a frequency error of .3 % slips by .15 rad within it.
 constexpr double stretch_cycles = 8;
-// Its weights are fitted so often, each time with those samples weighed less that stand out by
-// more than so many deviations.
+// Number of reweighted fits; samples further off than this many standard deviations get less
+// weight.
 constexpr int fits = 12;
 constexpr double off_motion = 2;
 constexpr Eigen::Index columns = 6;
-// x' at a sample is a difference over so much on both sides, in tau: what noise it magnifies is
-// weighed by how late the displacement is.
+// x' at a sample is a difference over this tau on both sides. The difference amplifies noise, but
+// its coefficient is small: damping and the displacement's delay.
 constexpr double difference_reach = 0.1;
 constexpr std::size_t fewest_samples_of_stretch = 40;
 
-/// Samples [from, to) of a record, and the motion that they show.
+/// Samples [from, to) of a record with the measured motion.
 class SampledStretch {
 public:
     SampledStretch(
@@ -71,7 +256,7 @@ public:
                 N.noalias() += weight * rows_.row(k).transpose() * rows_.row(k);
                 g.noalias() += weight * a_(k) * rows_.row(k).transpose();
             }
-            // x and x' are a thousandth of the others.
+            // The columns of x and x' are about a thousandth of the others.
             const Eigen::Matrix<double, columns, 1> size =
                 N.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
             Eigen::Matrix<double, columns, columns> scaled =
@@ -84,7 +269,7 @@ public:
         return left;
     }
 
-    /// Whether the displacement says what the motion is there.
+    /// Whether the displacement is usable at sample k of the stretch.
     bool is_known(std::size_t k) const { return known_[k]; }
 
 private:
@@ -133,7 +318,7 @@ PulseSignal pulse_signal(
         }
         from = to;
     }
-    // Where the displacement says nothing the acceleration has to stand for itself.
+    // Where the displacement is unusable, the smooth part of the acceleration replaces it.
     if (std::count(unknown.begin(), unknown.end(), 1) > 0) {
         const SmoothBackground background = smooth_background(r, progress);
         for (std::size_t k = 0; k < n; ++k)

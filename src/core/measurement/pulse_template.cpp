@@ -6,30 +6,123 @@
 #include <cmath>
 
 #include "core/motion/elementary.hpp"
-#include "core/motion/special_values.hpp"
 
 namespace vines {
 
 namespace {
 
-// Points of a template within a step between samples.
+// Search range for a pulse before and after its impact, in tau: a filter can delay it, a resonance
+// rings on.
+constexpr double farthest_before = 0.25, farthest_after = 2.5;
+// Longest quiet time within a ringing, in tau: the ringing can beat with the sampling.
+constexpr double longest_silence = 0.25;
+// Bins are one step wide but limited in number, since the sampling can be far denser than
+// any pulse.
+constexpr double most_extent_bins = 4096;
+// Quantile of the absolute values in a bin, that quantile of white noise in standard deviations,
+// and the factor above it that counts as signal.
+constexpr double looked_at = 0.8, of_noise = 1.28, stands_out = 1.4;
+// Number of bins of half a step around an impact for the residual of x, and the fewest samples of a
+// bin; half of white noise lies within .67 standard deviations.
+constexpr std::size_t kink_bins = 12, fewest_of_kink_bin = 9;
+constexpr double half_within = 0.6745, kink_stands_out = 1.5;
+
+/// Absolute residuals, binned by the time since the impact, from -before on.
+class ResidualBins {
+public:
+    ResidualBins(const JointFit& fit, const MeasuredRecord& r, double step)
+        : width_(std::max(step, farthest_after / most_extent_bins)) {
+        for (std::size_t i = 0; i < fit.impacts.size(); ++i) {
+            if (!fit.impacts[i].is_impact()) continue;
+            const double tau = fit.impacts[i].tau;
+            const double end =
+                i + 1 < fit.impacts.size() ? fit.impacts[i + 1].tau - farthest_before : infinity;
+            const double begin = i > 0 ? 0.5 * (fit.impacts[i - 1].tau + tau) : -infinity;
+            for (std::size_t k = first_index(r, std::max(begin, tau - farthest_before));
+                 k < r.tau.size() && r.tau[k] < std::min(end, tau + farthest_after); ++k) {
+                const auto bin =
+                    static_cast<std::size_t>((r.tau[k] - tau + farthest_before) / width_);
+                if (bin >= moduli_.size()) moduli_.resize(bin + 1);
+                moduli_[bin].push_back(std::abs(fit.a_residual[k]));
+            }
+        }
+    }
+    std::size_t size() const { return moduli_.size(); }
+    double width() const { return width_; }
+    double begin(std::size_t bin) const {
+        return static_cast<double>(bin) * width_ - farthest_before;
+    }
+    bool stands_out_from(double noise, std::size_t bin) const {
+        return moduli_[bin].size() > 3 &&
+               quantile_of_moduli(moduli_[bin], looked_at) > stands_out * of_noise * noise;
+    }
+
+private:
+    const double width_;
+    std::vector<std::vector<double>> moduli_;
+};
+
+}  // namespace
+
+PulseExtent pulse_extent(const JointFit& fit, const MeasuredRecord& r, double step) {
+    const ResidualBins bins(fit, r, step);
+    // Noise of the background outside pulses: the quieter half of the record.
+    const double noise = robust_deviation(fit.a_residual);
+    PulseExtent extent{step, step};
+    double silent_since = 0;
+    for (std::size_t b = 0; b < bins.size(); ++b) {
+        const double begin = bins.begin(b);
+        if (begin > 0 && begin - silent_since > longest_silence) break;
+        if (!bins.stands_out_from(noise, b)) continue;
+        if (begin < 0) extent.before = std::max(extent.before, -begin);
+        extent.after = std::max(extent.after, begin + bins.width());
+        silent_since = std::max(silent_since, begin + bins.width());
+    }
+    return extent;
+}
+
+double kink_extent(
+    const JointFit& fit, const MeasuredRecord& r, const std::vector<char>& bad_x, double step) {
+    const double bin = 0.5 * step, late = fit.values[Unknown::x_delay],
+                 reach = static_cast<double>(kink_bins) * bin;
+    std::vector<std::vector<double>> left(kink_bins);
+    for (const FittedImpact& i : fit.impacts) {
+        if (!i.is_impact()) continue;
+        const double tau = i.tau + late;
+        for (std::size_t k = first_index(r, tau - reach);
+             k < r.tau.size() && r.tau[k] < tau + reach; ++k) {
+            const auto b = static_cast<std::size_t>(std::abs(r.tau[k] - tau) / bin);
+            if (b < left.size() && !bad_x[k]) left[b].push_back(std::abs(fit.x_residual[k]));
+        }
+    }
+    const double noise = robust_deviation(fit.x_residual);
+    double extent = 0;
+    for (std::size_t b = 0; b < left.size(); ++b)
+        if (left[b].size() >= fewest_of_kink_bin &&
+            median(left[b]) > kink_stands_out * half_within * noise)
+            extent = static_cast<double>(b + 1) * bin;
+    return extent;
+}
+
+namespace {
+
+// Points of a template per sampling step.
 constexpr int points_per_step = 8;
 constexpr std::size_t most_points = 1200;
-// Smoothness of a template: its second differences count as much as that share of a sample.
+// Smoothness of a template: weight of its squared second differences, relative to a sample.
 constexpr double smoothness = 0.02;
-// Fits of a curve, the later ones with samples counting less that lie so many scatters off it.
+// Number of reweighted fits; samples further off than this many scatters get less weight.
 constexpr int curve_rounds = 3;
-constexpr double odd_scatters = 2.5;
-// Templates are made of so many impacts at least.
+constexpr double outlier_scatters = 2.5;
+// Minimum number of impacts for a template.
 constexpr std::size_t fewest_impacts = 8;
-// Moments that are tried on either side of an impact, over one and a half steps.
-constexpr int moments_tried = 48;
+// Number of trial times on either side of an impact, and their range in steps.
+constexpr int trial_times = 48;
 constexpr double reach_steps = 1.5;
-// A pulse that tells its moment no better than to so many steps tells nothing: one over that
-// squared.
+// Least information of a useful pulse, in 1/step^2: its standard error is at most one step.
 constexpr double least_information = 1;
 
-/// What is left of the acceleration at a time since an impact, per unit of its jump.
+/// Residual of the acceleration after an impact, per unit of its jump.
 struct PulseSample {
     double since, value, weight;
 };
@@ -42,14 +135,14 @@ std::vector<PulseSample> samples_of(
     for (std::size_t i = 0; i < fit.impacts.size(); ++i) {
         if (!fit.impacts[i].is_impact()) continue;
         const double tau = fit.impacts[i].tau, jump = fit.impacts[i].jump();
-        // Not where the impacts beside it spoil it.
+        // Excludes samples spoiled by the neighbouring impacts.
         const double start = i > 0 ? fit.impacts[i - 1].tau + extent.after : -infinity,
                      end = i + 1 < fit.impacts.size() ? fit.impacts[i + 1].tau - extent.before
                                                       : infinity;
         for (std::size_t k = first_index(r, std::max(start, tau + begin));
              k < r.tau.size() && r.tau[k] < std::min(end, tau + begin + length); ++k) {
             if (bad_a[k]) continue;
-            samples.push_back({r.tau[k] - tau - begin, fit.a_left[k] / jump, jump * jump});
+            samples.push_back({r.tau[k] - tau - begin, fit.a_residual[k] / jump, jump * jump});
             total += jump * jump;
         }
     }
@@ -58,10 +151,10 @@ std::vector<PulseSample> samples_of(
     return samples;
 }
 
-/// A curve by its values at even points, straight between them.
-class Curve {
+/// A piecewise linear curve through equidistant points.
+class TemplateCurve {
 public:
-    Curve(std::size_t points, double spacing)
+    TemplateCurve(std::size_t points, double spacing)
         : spacing_(spacing),
           value_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(points))) {}
 
@@ -74,8 +167,8 @@ public:
         for (const PulseSample& s : samples) left.push_back(left_of(s));
         return std::max(robust_deviation(std::move(left)), 1e-300);
     }
-    /// The smooth curve nearest to the samples, of which those count less that are further off than
-    /// others. Says whether there is one.
+    /// Fits the smooth curve to the samples; outliers get less weight. False if there is no
+    /// solution.
     bool fit(const std::vector<PulseSample>& samples, double scatter) {
         const Eigen::Index n = value_.size();
         std::vector<Eigen::Triplet<double>> triplets;
@@ -83,7 +176,7 @@ public:
         for (const PulseSample& s : samples) {
             const auto [k, share] = place_of(s);
             const double off = std::max(std::abs(left_of(s)), 1e-300),
-                         weight = s.weight * std::min(1.0, odd_scatters * scatter / off);
+                         weight = s.weight * std::min(1.0, outlier_scatters * scatter / off);
             const double by[2] = {1 - share, share};
             for (Eigen::Index a = 0; a < 2; ++a) {
                 right(k + a) += weight * by[a] * s.value;
@@ -119,7 +212,7 @@ private:
                     triplets.emplace_back(
                         k - 1 + a, k - 1 + b,
                         smoothness * second_difference[a] * second_difference[b]);
-        // Where there is no sample, nor one on either side.
+        // Regularises points without samples nearby.
         for (Eigen::Index k = 0; k < value_.size(); ++k) triplets.emplace_back(k, k, 1e-9);
     }
 
@@ -127,55 +220,56 @@ private:
     Eigen::VectorXd value_;
 };
 
-/// Moments of an impact about a centre: what each leaves of the pulse and of x, in variances.
-class TriedMoments {
+/// Trial times of an impact around a centre, each with the sum of squares that remains of pulse and
+/// x.
+class TrialTimes {
 public:
-    /// `other`: the centre of others that these are compared with, by the same samples.
-    TriedMoments(
+    /// `other`: the centre of the alternative; both use the same samples.
+    TrialTimes(
         const PulseTemplate& pulse, const JointFit& fit, const FittedImpact& i, double centre,
         double other, double reach, const MeasuredRecord& r, const std::vector<char>& bad_a,
         double step)
         : impact_(i),
           centre_(centre),
           reach_(reach),
-          // x tells the moment, too: where its two intervals meet.
+          // The displacement gives the time too: where its two intervals meet.
           kink_rate_(i.jump() / i.x_jump_error) {
         const double jump = i.jump(),
-                     // What single pulses are off by adds to the noise.
+                     // The scatter of single pulses adds to the noise.
             noise = elementary::hypot(fit.noise_a, jump * pulse.scatter()),
                      around = 4 * step + 1.5 * pulse.length();
         const std::size_t first = first_index(r, std::min(centre, other) - around);
         const double last = std::max(centre, other) + around;
-        for (int k = -moments_tried; k <= moments_tried; ++k) {
-            const double tau = moment_of(k);
-            // x_before - x_after at that moment.
+        for (int k = -trial_times; k <= trial_times; ++k) {
+            const double tau = time_of(k);
+            // x_before - x_after at that time.
             const double x_jump = i.x_jump / i.x_jump_error - kink_rate_ * (tau - i.tau);
             double sum = std::isfinite(x_jump) ? x_jump * x_jump : 0;
             for (std::size_t s = first; s < r.tau.size() && r.tau[s] < last; ++s) {
                 if (bad_a[s]) continue;
-                const double off = (fit.a_left[s] - jump * pulse.at(r.tau[s] - tau)) / noise;
-                // An odd sample counts no more than a few.
+                const double off = (fit.a_residual[s] - jump * pulse.at(r.tau[s] - tau)) / noise;
+                // Limits the weight of an outlier.
                 sum += std::min(off * off, 25.0);
             }
-            misfits_[static_cast<std::size_t>(k + moments_tried)] = sum;
+            misfits_[static_cast<std::size_t>(k + trial_times)] = sum;
         }
         least_ = *std::min_element(misfits_.begin(), misfits_.end());
     }
 
     double least() const { return least_; }
 
-    PulseMoment moment(double step) const {
+    PulseTime time(double step) const {
         double weight = 0, first = 0, second = 0;
-        for (int k = -moments_tried; k <= moments_tried; ++k) {
+        for (int k = -trial_times; k <= trial_times; ++k) {
             const double likelihood = elementary::exp(
-                -0.5 * (misfits_[static_cast<std::size_t>(k + moments_tried)] - least_));
-            const double moved = reach_ * k / moments_tried;
+                -0.5 * (misfits_[static_cast<std::size_t>(k + trial_times)] - least_));
+            const double moved = reach_ * k / trial_times;
             weight += likelihood, first += likelihood * moved, second += likelihood * moved * moved;
         }
         const double mean = first / weight,
                      variance = std::max(second / weight - mean * mean, 0.0) +
-                                reach_ * reach_ / (12.0 * moments_tried * moments_tried);
-        // The joint fit knows of x itself: what the pulse alone adds.
+                                reach_ * reach_ / (12.0 * trial_times * trial_times);
+        // The joint fit uses x itself, so its information is subtracted here.
         const double of_x = std::isfinite(kink_rate_) ? kink_rate_ * kink_rate_ : 0;
         const double added = 1 / variance - of_x;
         if (!std::isfinite(mean) || !(added > least_information / (step * step)))
@@ -187,11 +281,11 @@ public:
     }
 
 private:
-    double moment_of(int k) const { return centre_ + reach_ * k / moments_tried; }
+    double time_of(int k) const { return centre_ + reach_ * k / trial_times; }
 
     const FittedImpact& impact_;
     const double centre_, reach_, kink_rate_;
-    std::array<double, 2 * moments_tried + 1> misfits_{};
+    std::array<double, 2 * trial_times + 1> misfits_{};
     double least_;
 };
 
@@ -208,7 +302,7 @@ PulseTemplate::PulseTemplate(
     spacing_ = length / static_cast<double>(points - 1);
     const std::vector<PulseSample> samples = samples_of(fit, r, bad_a, begin_, length, extent);
     if (samples.empty()) return;
-    Curve curve(points, spacing_);
+    TemplateCurve curve(points, spacing_);
     scatter_ = infinity;
     for (int round = 0; round < curve_rounds; ++round) {
         if (!curve.fit(samples, scatter_)) return;
@@ -231,7 +325,7 @@ double PulseTemplate::length() const {
     auto first = top, last = top;
     while (first != value_.begin() && *(first - 1) > 0.5 * *top) --first;
     while (last + 1 != value_.end() && *(last + 1) > 0.5 * *top) ++last;
-    // Half a sine is above half of its height over two thirds of its length.
+    // A half sine is above half its height for two thirds of its length.
     return 1.5 * spacing_ * static_cast<double>(last - first + 1);
 }
 
@@ -240,17 +334,17 @@ double PulseTemplate::delay() const {
     return begin_ + spacing_ * static_cast<double>(top - value_.begin());
 }
 
-PulseMoment pulse_moment(
+PulseTime pulse_time(
     const PulseTemplate& pulse, const JointFit& fit, std::size_t impact, double other,
     const MeasuredRecord& r, const std::vector<char>& bad_a, double step) {
     const FittedImpact& i = fit.impacts[impact];
     if (pulse.empty()) return {i.tau, infinity};
     const double reach = reach_steps * step;
-    const TriedMoments about_fit(pulse, fit, i, i.tau, other, reach, r, bad_a, step);
-    const PulseMoment by_fit = about_fit.moment(step);
+    const TrialTimes about_fit(pulse, fit, i, i.tau, other, reach, r, bad_a, step);
+    const PulseTime by_fit = about_fit.time(step);
     if (std::abs(other - i.tau) < reach) return by_fit;
-    const TriedMoments about_other(pulse, fit, i, other, i.tau, reach, r, bad_a, step);
-    return about_other.least() < about_fit.least() ? about_other.moment(step) : by_fit;
+    const TrialTimes about_other(pulse, fit, i, other, i.tau, reach, r, bad_a, step);
+    return about_other.least() < about_fit.least() ? about_other.time(step) : by_fit;
 }
 
 }  // namespace vines

@@ -1,16 +1,31 @@
-// The pulse by which an impact shows in a measured acceleration, whatever the sensor, its filter
-// and its mounting make of it: read from the record, the average of all pulses laid over each
-// other.
+// The pulse of an impact as the sensors show it: for how long it spoils the samples, its shape, and
+// the time of an impact according to it.
+//
+// The template contains all effects of sensor, filter and mounting: it is the average of all pulses
+// of the record, aligned at their impacts.
 #pragma once
 
-#include "core/measurement/extents.hpp"
+#include "core/measurement/joint_fit.hpp"
 
 namespace vines {
 
-/// The acceleration of a pulse per unit of the jump of x', over the time since the impact.
+/// Time before and after an impact, in tau, both >= 0.
+struct PulseExtent {
+    double before, after;
+};
+
+/// Extent of the pulses in the acceleration.
+PulseExtent pulse_extent(const JointFit& fit, const MeasuredRecord& record, double step);
+
+/// Extent of the kinks in the displacement, on either side: the sensor's filter rounds the kink, or
+/// the contact lasts.
+double kink_extent(
+    const JointFit& fit, const MeasuredRecord& record, const std::vector<char>& bad_x, double step);
+
+/// Pulse acceleration per unit jump of x', as a function of the time since the impact.
 class PulseTemplate {
 public:
-    /// Of none.
+    /// Empty template.
     PulseTemplate() = default;
     PulseTemplate(
         const JointFit& fit, const MeasuredRecord& record, const std::vector<char>& bad_a,
@@ -18,11 +33,11 @@ public:
 
     bool empty() const { return value_.empty(); }
     double at(double s) const;
-    /// What single pulses are off by, per unit of the jump: standard deviation.
+    /// Standard deviation of single pulses from the template, per unit jump.
     double scatter() const { return scatter_; }
-    /// As long as a half sine with the same width at half of its height, in tau.
+    /// Length of a half sine with the same width at half height, in tau.
     double length() const;
-    /// From the impact to the pulse's highest point, in tau.
+    /// Time from the impact to the pulse's maximum, in tau.
     double delay() const;
 
 private:
@@ -30,13 +45,12 @@ private:
     std::vector<double> value_;
 };
 
-/// Where the pulse of an impact lies: the moment that fits best, and its standard error; an
-/// infinite one if there is none to be seen. It is looked for about the fitted moment and about
-/// another one.
-struct PulseMoment {
+/// Time of an impact according to its pulse: best fit and standard error, which is infinite if no
+/// pulse is visible. The search covers the neighbourhoods of the fitted time and of `other`.
+struct PulseTime {
     double tau, error;
 };
-PulseMoment pulse_moment(
+PulseTime pulse_time(
     const PulseTemplate& pulse, const JointFit& fit, std::size_t impact, double other,
     const MeasuredRecord& record, const std::vector<char>& bad_a, double step);
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/motion/special_values.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines {
 
@@ -28,7 +28,7 @@ double quantile_of_moduli(std::vector<double> v, double share) {
 
 double robust_deviation(std::vector<double> v) {
     for (double& x : v) x = std::abs(x);
-    // Of a normal distribution half lies within 1/1.4826 standard deviations.
+    // Half of a normal distribution lies within 1/1.4826 standard deviations.
     return 1.4826 * median(std::move(v));
 }
 
@@ -42,7 +42,7 @@ ThirdDifferences::ThirdDifferences(const std::vector<double>& tau, const std::ve
     const double step = (tau.back() - tau.front()) / static_cast<double>(tau.size() - 1);
     scaled_.reserve(v.size() - 3);
     for (std::size_t i = 0; i + 3 < v.size(); ++i) {
-        // One sample may be missing among the four.
+        // Allows one missing sample among the four.
         if (tau[i + 3] - tau[i] > 4.5 * step) {
             scaled_.push_back(nan);
             continue;

@@ -1,38 +1,39 @@
-// Statistics that a few odd values do not move. What is NaN does not count.
+// Robust statistics: outliers hardly change them. NaN values are ignored.
 #pragma once
 
 #include <vector>
 
 namespace vines {
 
-/// NaN of nothing.
+/// Median; NaN without values.
 double median(std::vector<double> values);
 
-/// The `share` quantile of the moduli; NaN of nothing.
+/// The `share` quantile of the absolute values; NaN without values.
 double quantile_of_moduli(std::vector<double> values, double share);
 
-/// Standard deviation of the bulk about zero, whatever the outliers.
+/// Standard deviation about zero, estimated from the median of the absolute values.
 double robust_deviation(std::vector<double> values);
 
-/// Standard error of the median of values that lie about it by `off`: of n values of a normal
-/// distribution it scatters by 1.25 times what their mean would.
+/// Standard error of a median; `off`: deviations of the values from it. For n normally distributed
+/// values the median scatters 1.25 times as much as their mean.
 double error_of_median(const std::vector<double>& off);
 
-/// White noise of a smooth signal from its third differences, whose variance is 20 times that of
-/// the noise at equal steps: a parabola leaves none. Divided differences, so that steps may differ;
-/// not over gaps.
+/// White noise of a smooth signal, from its third differences: they remove a parabola, and at equal
+/// steps their variance is 20 times that of the noise. Divided differences allow unequal steps.
+/// Differences across gaps are ignored.
 class ThirdDifferences {
 public:
-    /// `tau` and `values` of equal length.
+    /// `tau` and `values` have equal length.
     ThirdDifferences(const std::vector<double>& tau, const std::vector<double>& values);
 
-    /// NaN of fewer than four values.
+    /// Standard deviation of the noise; NaN with fewer than four values.
     double noise() const { return robust_deviation(scaled_); }
-    /// Where four neighbours are not `spoiled`, which has an entry for each value.
+    /// The same from those differences whose four values are not marked in `spoiled` (one entry for
+    /// each value).
     double noise(const std::vector<char>& spoiled) const;
 
 private:
-    std::vector<double> scaled_;  // such that each has the variance of the noise; NaN over gaps
+    std::vector<double> scaled_;  // scaled to the variance of the noise; NaN across gaps
 };
 
 }  // namespace vines

@@ -1,5 +1,5 @@
-// From a record to its impacts: where they are about, then the joint fit, then those that were
-// overlooked and those that are none, until nothing changes.
+// Search for the impacts of a record: initial candidates, a joint fit, then rounds that drop false
+// impacts and add overlooked ones until nothing changes.
 #pragma once
 
 #include "core/measurement/hidden_contacts.hpp"
@@ -10,27 +10,28 @@ namespace vines {
 
 struct FoundImpacts {
     JointFit fit;
-    bool with_mass = false;     ///< the mass took part in the fit: its R and b are fitted
-    std::vector<int> side;      ///< of each impact: sign of x - y at the wall
-    std::vector<TimeGap> gaps;  ///< of the record, in which an impact could hide
+    bool with_mass = false;     ///< the mass was part of the fit: its R and b are fitted
+    std::vector<int> side;      ///< wall of each impact: sign of x - y
+    std::vector<TimeGap> gaps;  ///< gaps of the record that can hide an impact
     PulseTemplate pulse;
     PulseExtent extent{0, 0};
-    long unseen = 0;              ///< impacts whose pulse is not seen
-    std::vector<double> dropped;  ///< moments of pulses, or given ones, at which x' does not jump
-    HidingPlaces hiding;
-    bool settled = false;  ///< the last round neither dropped nor added one
+    long unseen = 0;              ///< impacts without a visible pulse
+    std::vector<double> dropped;  ///< times of pulses, or given times, without a jump of x'
+    HiddenContactLimits hidden_contact_limits;
+    bool settled = false;  ///< the last round neither dropped nor added an impact
 };
 
-struct SearchOptions {
-    double sigmas = 6;                 ///< of a spike of the acceleration, over its noise
-    std::vector<double> moments = {};  ///< tau of impacts that are known: no others are looked for
+struct ImpactSearchOptions {
+    /// Threshold of a spike in the acceleration, in standard deviations of the noise.
+    double sigmas = 6;
+    std::vector<double> times = {};  ///< known times of impacts, in tau: no others are searched
     FixedUnknowns fixed = {};
     KnownForcing forcing = {};
 };
 
-/// Fewer than two impacts where nothing looks like one. Throws IdentificationStopped.
+/// Fewer than two impacts if nothing resembles one. Throws IdentificationStopped.
 FoundImpacts find_impacts(
-    const Parameters& parameters, const MeasuredRecord& record, const SearchOptions& options,
+    const Parameters& parameters, const MeasuredRecord& record, const ImpactSearchOptions& options,
     IdentificationProgress& progress);
 
 }  // namespace vines

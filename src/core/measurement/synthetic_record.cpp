@@ -13,16 +13,16 @@ namespace vines {
 
 namespace {
 
-/// About as large as a pulse: m and m/s^2.
+/// About the size of a pulse: m and m/s^2.
 constexpr double outlier_x = 5e-4, outlier_a = 10;
 
-/// The oscillator at any moment from the first stretch on.
+/// State of the oscillator at any time from the first stretch on.
 class TrueOscillator {
 public:
     explicit TrueOscillator(const TrueMotion& m)
         : motion_(m),
           free_(Flow::free(m.parameters)),
-          stuck_(Flow::stuck(m.parameters)) {}
+          stuck_(Flow::sticking(m.parameters)) {}
     double x(double tau) const {
         const TrueStretch& s = stretch(tau);
         return flow(s).after(s.start, tau - s.tau).x;
@@ -40,20 +40,20 @@ private:
             [](double t, const TrueStretch& s) { return t < s.tau; });
         return *(after - 1);
     }
-    const Flow& flow(const TrueStretch& s) const { return s.is_stuck ? stuck_ : free_; }
+    const Flow& flow(const TrueStretch& s) const { return s.sticks ? stuck_ : free_; }
 
     const TrueMotion& motion_;
     const Flow free_, stuck_;
 };
 
-/// Of a long flight only its first stretch.
+/// Collects stretches; a long flight is represented by its first one.
 class TrueStretches : public Observer {
 public:
     void on_impact(const Impact&) override { begins_ = true; }
     void on_release(double) override { begins_ = true; }
     void on_stretch(const Stretch& s) override {
-        const bool is_stuck = s.stuck_side != 0;
-        if (begins_ || all.back().is_stuck != is_stuck) all.push_back({s.tau, s.start, is_stuck});
+        const bool sticks = s.sticking_side != 0;
+        if (begins_ || all.back().sticks != sticks) all.push_back({s.tau, s.start, sticks});
         begins_ = false;
     }
     std::vector<TrueStretch> all;
@@ -62,7 +62,7 @@ private:
     bool begins_ = true;
 };
 
-/// The motion at the samples, the displacement late, without the pulses.
+/// Motion at the samples, with the displacement's delay, without pulses.
 MeasuredRecord sampled(const TrueMotion& motion, const Sensors& s) {
     const TrueOscillator oscillator(motion);
     const double step = motion.omega0 / s.rate, delay = s.delay * motion.omega0;
@@ -77,20 +77,20 @@ MeasuredRecord sampled(const TrueMotion& motion, const Sensors& s) {
     return r;
 }
 
-/// The half sine of area 1 by which the accelerometer shows an impact at 0, or what its resonance
-/// makes of that, at any moment in s.
+/// Response of the accelerometer to an impact at time 0 (s): a half sine of area 1, filtered by its
+/// resonance if there is one.
 class PulseShape {
 public:
     explicit PulseShape(const Sensors& s) : pulse_(s.pulse), ringing_(s.ringing > 0) {
         if (!ringing_) return;
-        // z'' = w^2 (half sine - z) - 2 d w z' in steps far shorter than pulse and period.
+        // z'' = w^2 (half sine - z) - 2 d w z', in steps far shorter than pulse and period.
         const double w = 2 * std::numbers::pi * s.ringing, d = s.ringing_damping;
         step_ = std::min(1 / s.ringing, pulse_) / 200;
         double z = 0, z_dot = 0;
         const double end = pulse_ + elementary::log(1e5) / (d * w);
         for (double t = -0.5 * pulse_; t < end; t += step_) {
             response_.push_back(z);
-            // Semi-implicit: it keeps the amplitude of the undamped part.
+            // Semi-implicit: preserves the amplitude of the undamped part.
             z_dot += step_ * (w * w * (half_sine(t + 0.5 * step_) - z) - 2 * d * w * z_dot);
             z += step_ * z_dot;
         }
@@ -121,7 +121,7 @@ private:
     std::vector<double> response_;
 };
 
-/// Adds the pulse of each impact, or of those that are not missed.
+/// Adds the pulse of each impact that is not missed.
 void add_pulses(
     const TrueMotion& motion, const Sensors& s, std::mt19937_64& engine, MeasuredRecord& r) {
     const PulseShape shape(s);
@@ -149,13 +149,13 @@ void rescale(MeasuredRecord& r, const Sensors& s, double per_second_squared) {
     }
 }
 
-/// Standard normal, by Box and Muller.
+/// Standard normal (Box-Muller).
 double normal(std::mt19937_64& engine) {
     const double u = uniform(engine, 1e-300, 1), v = uniform(engine, 0, 1);
     return std::sqrt(-2 * elementary::log(u)) * elementary::cos(2 * std::numbers::pi * v);
 }
 
-/// `noise_a`: per unit of tau squared, as that of outliers below.
+/// `noise_a` per unit of tau squared, like outliers below.
 void add_noise(double noise_x, double noise_a, std::mt19937_64& engine, MeasuredRecord& r) {
     for (std::size_t k = 0; k < r.tau.size(); ++k) {
         r.x[k] += noise_x * normal(engine);
@@ -163,7 +163,7 @@ void add_noise(double noise_x, double noise_a, std::mt19937_64& engine, Measured
     }
 }
 
-/// Fourth-order Butterworth low pass by the bilinear transform, in place; `corner` over the
+/// Fourth-order Butterworth low pass (bilinear transform), in place; `corner` relative to the
 /// sampling rate.
 void low_pass(std::vector<double>& v, double corner) {
     const double angle = std::numbers::pi * corner,
@@ -207,7 +207,7 @@ void drop_out(const Sensors& s, std::mt19937_64& engine, MeasuredRecord& r) {
     }
 }
 
-/// Those that are left of the samples.
+/// Removes the lost samples.
 MeasuredRecord without_lost(const MeasuredRecord& all, const Sensors& s, std::mt19937_64& engine) {
     MeasuredRecord rest;
     for (std::size_t k = 0; k < all.tau.size(); ++k) {
@@ -237,7 +237,7 @@ TrueMotion true_motion(
     simulate(p, default_state(p), {.tau_end = end, .max_impacts = all}, observers);
 
     std::erase_if(impacts.entries, [&](const Impact& i) { return i.tau <= begin; });
-    std::erase_if(sticks.entries, [&](const StuckPhase& s) { return s.tau_end <= begin; });
+    std::erase_if(sticks.entries, [&](const StickingPhase& s) { return s.tau_end <= begin; });
     const auto first = std::find_if(
         stretches.all.begin() + 1, stretches.all.end(),
         [&](const TrueStretch& s) { return s.tau > begin; });

@@ -1,5 +1,5 @@
-// Records of a computed motion as a laboratory's measuring chain delivers them, each effect by
-// itself or several together: what identification is tried on.
+// Synthetic records: a computed motion as seen through a laboratory's measuring chain, with any
+// combination of its errors. Test data for identification.
 #pragma once
 
 #include <cstdint>
@@ -9,62 +9,61 @@
 
 namespace vines {
 
-/// The oscillator from `tau` on, until the next one begins.
+/// Motion of the oscillator from `tau` until the next stretch begins.
 struct TrueStretch {
     double tau;
     Oscillation start;
-    bool is_stuck;  ///< with the mass on a wall: it moves by another law
+    bool sticks;  ///< the mass sticks to a wall (another equation of motion)
 };
 
-/// The motion of an oscillator with its absorber over the time of a record.
+/// The motion of an oscillator with its absorber during a record.
 struct TrueMotion {
     Parameters parameters;
-    double omega0;                ///< rad/s: the sensors' time is in s
-    double begin;                 ///< tau at the record's first sample; 0 is where all was at rest
-    double seconds;               ///< that the record lasts
-    std::vector<Impact> impacts;  ///< within the record
-    std::vector<StuckPhase> sticks;      ///< that end within it
-    std::vector<TrueStretch> stretches;  ///< from the last one on that begins before `begin`
-    /// Of the impacts within the record: what a perfect identification would give.
+    double omega0;                      ///< rad/s; the sensors' times are in s
+    double begin;                       ///< tau of the first sample; the system starts at rest at 0
+    double seconds;                     ///< length of the record
+    std::vector<Impact> impacts;        ///< within the record
+    std::vector<StickingPhase> sticks;  ///< those that end within the record
+    std::vector<TrueStretch> stretches;  ///< starting with the last one that begins before `begin`
+    /// Exponents of the true impacts: result of a perfect identification.
     TransferProduct exponents;
 };
 
-/// From Table 1's start (default_state), measured from `settling` s on for so many seconds.
+/// Motion from Table 1's initial state (default_state); the record starts after `settling` s.
 TrueMotion true_motion(
     const Parameters& parameters, double omega0, double settling, double seconds,
     const ExponentOptions& estimators = qr_alone);
 
-/// What the sensors, the amplifier and the cables do to the true motion. What is left at its
-/// default does nothing, but for the pulses and the noise.
+/// Errors of sensors, amplifiers and cables. Defaults are neutral, except for pulses and noise.
 struct Sensors {
-    double rate = 2048;                     ///< Hz
-    double pulse = 0.8e-3;                  ///< s: each impact is a half sine of the acceleration
+    double rate = 2048;     ///< Hz
+    double pulse = 0.8e-3;  ///< s; each impact shows as a half sine of the acceleration
     double noise_x = 2e-6, noise_a = 0.05;  ///< standard deviations, m and m/s^2
-    std::uint64_t seed = 5;                 ///< of all that is random
+    std::uint64_t seed = 5;                 ///< of all random effects
     double offset = 0, drift = 0;           ///< of the displacement: m, and m over the record
-    double offset_a = 0, drift_a = 0;  ///< of the acceleration: m/s^2, and that over the record
-    double delay = 0;                  ///< s by which the displacement is late
-    double gain = 0;                   ///< error of the displacement's scale, relative
-    /// Share of the channel's largest modulus that is cut off.
+    double offset_a = 0, drift_a = 0;  ///< of the acceleration: m/s^2, and m/s^2 over the record
+    double delay = 0;                  ///< delay of the displacement, s
+    double gain = 0;                   ///< scale error of the displacement, relative
+    /// Clipped fraction of the channel's largest absolute value.
     double clip_x = 0, clip_a = 0;
-    /// Corners of fourth-order Butterworth filters of the channels, over the rate.
+    /// Corner frequencies of fourth-order Butterworth filters, divided by the rate.
     double low_pass_x = 0, low_pass_a = 0;
-    /// The accelerometer's own resonance, Hz, and its damping ratio: it rings after each pulse.
+    /// Resonance of the accelerometer, Hz, and its damping ratio: it rings after each pulse.
     double ringing = 0, ringing_damping = 0.02;
-    /// Share of the pulses that come in two, and the second one's share of the area, so many s
-    /// after the first.
+    /// Fraction of pulses that are double, the second pulse's fraction of the area, and its delay,
+    /// s.
     double double_hits = 0, second_hit = 0.3, second_hit_delay = 1.5e-3;
-    /// So many stretches, each of so many s, in turn of each channel, that read 0.
+    /// Number of stretches (alternating between channels) that read 0, and their length, s.
     int dropouts = 0;
     double dropout = 0.02;
-    int outliers = 0;  ///< single samples, in turn of each channel, far off
-    /// Share of the impacts that the acceleration does not show.
+    int outliers = 0;  ///< single samples far off, alternating between channels
+    /// Fraction of impacts without a pulse.
     double missed_pulses = 0;
-    double lost_samples = 0;       ///< share of the samples that are missing, at random
-    double gap_from = 0, gap = 0;  ///< s: a stretch that is missing
+    double lost_samples = 0;       ///< fraction of samples missing at random
+    double gap_from = 0, gap = 0;  ///< s: a missing stretch
 };
 
-/// What they make of it; tau is the motion's.
+/// The record that these sensors deliver; tau is the motion's.
 MeasuredRecord synthetic_record(const TrueMotion& motion, const Sensors& sensors);
 
 }  // namespace vines

@@ -3,17 +3,16 @@
 #include <algorithm>
 
 #include "core/motion/elementary.hpp"
-#include "core/motion/special_values.hpp"
 
 namespace vines {
 
 namespace {
 
-// Of the given values, relative: masses and springs are weighed and measured to better than that,
-// a damping hardly.
+// Relative priors of given values: masses and springs are measured more precisely than that,
+// dampings hardly.
 constexpr double stiffness_prior = 0.02, damping_prior = 0.5, least_damping_prior = 1e-3;
 constexpr double frequency_prior = 0.02;
-// A displacement's scale is right to a tenth, and late by a fraction of a cycle.
+// The displacement's scale is known to a tenth, its delay to a fraction of a cycle.
 constexpr double gain_prior = 0.1, delay_prior = 0.1;
 
 }  // namespace

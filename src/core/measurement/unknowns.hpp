@@ -1,29 +1,27 @@
-// The model of a record: states, unknowns, residuals, priors.
+// Model of a record: states, unknowns, residuals, priors.
 //
-// The oscillator moves by x'' + c x' + k x = f_s sin(Omega (tau - tau_m)) + f_c cos(Omega (tau -
-// tau_m)) between impacts, eq. (2), with tau = omega0 t of the omega0 that was given: so k = 1 and
-// c = 2 zeta but for what was given wrong. tau_m is the record's middle. Each interval between two
-// impacts has a state (x, x') at its start; each impact has a moment.
+// Between impacts the oscillator follows x'' + c x' + k x = f_s sin(Omega (tau - tau_m)) + f_c
+// cos(Omega (tau - tau_m)), eq. (2), with tau = omega0 t for the given omega0 and tau_m the middle
+// of the record; with exact given values k = 1 and c = 2 zeta. Each interval between two impacts
+// has an initial state (x, x'); each impact has a time.
 //
-// The sensors show, of a sample at tau, with u = (tau - tau_m)/(length of the record):
+// The sensors show, for a sample at tau, with u = (tau - tau_m)/(length of the record):
 //
 //     displacement  X = x_gain x(tau - x_delay) + x_offset + x_drift u + noise
 //     acceleration  A = x''(tau) + a_offset + a_drift u + pulses of the impacts + noise
 //
-// An interval in which the mass sticks to a wall has the law of both masses as one, (1 + epsilon)
-// x''
-// + c x' + k x; it ends where nothing accelerates the two, with x and x' continuous.
+// While the mass sticks to a wall both masses move as one: (1 + epsilon) x'' + c x' + k x equals
+// the forcing. The phase ends where x'' = 0, with x and x' continuous.
 //
-// Residuals: those of all samples that no pulse spoils; at each impact that x is continuous, and
-// its moment by its pulse. Once the impacts are known, those of the mass (mass_rows.hpp): between
-// impacts it flies with one velocity from wall to wall, eq. (43), at each impact x' + epsilon y' is
-// kept (36), and R of each wall is one, eq. (4). What no sample shows, impacts too weak and stuck
-// phases, follows from a run of what is identified so far (hidden_contacts.hpp); then all is fitted
-// anew.
+// Residuals: all samples outside pulses; at each impact the continuity of x, and its time according
+// to its pulse. Once the impacts are known, those of the mass follow (joint_equations.hpp): between
+// impacts it flies with constant velocity from wall to wall, eq. (43), each impact conserves x' +
+// epsilon y', eq. (36), and each wall has one R, eq. (4). Contacts that no sample shows, weak
+// impacts and sticking phases, follow from a run of the system identified so far
+// (hidden_contacts.hpp); then everything is fitted again.
 //
-// Priors: what was given of k and c is known to stiffness_prior and damping_prior, the clocks of
-// the two channels agree to delay_prior, and so on. They are wide: what a record says is far
-// sharper.
+// Priors: the given k and c are known to stiffness_prior and damping_prior, the clocks of both
+// channels agree to delay_prior, and so on. They are wide: the record is far more precise.
 #pragma once
 
 #include <array>
@@ -34,7 +32,7 @@
 
 namespace vines {
 
-/// What holds for the whole record.
+/// Unknowns common to the whole record.
 enum class Unknown {
     force_sin,  ///< f_s, m
     force_cos,  ///< f_c, m
@@ -42,26 +40,26 @@ enum class Unknown {
     x_drift,    ///< m over the record
     a_offset,   ///< m per unit of tau squared
     a_drift,
-    x_gain,   ///< of the displacement against the acceleration
-    x_delay,  ///< of the displacement behind the acceleration, in tau
+    x_gain,   ///< scale of the displacement relative to the acceleration
+    x_delay,  ///< delay of the displacement relative to the acceleration, in tau
     Omega,
-    stiffness,  ///< k: of the oscillator's own frequency, squared, over the given one's
+    stiffness,  ///< k: squared ratio of the oscillator's frequency to the given omega0
     damping,    ///< c
-    // Of the mass:
+    // Unknowns of the mass:
     b,        ///< m
-    R_plus,   ///< of the wall at +b
-    R_minus,  ///< at -b
-    /// By how much the moments that the pulses tell are late, in tau: a template was laid over
-    /// impacts that were only about known.
+    R_plus,   ///< wall at +b
+    R_minus,  ///< wall at -b
+    /// Delay of the impact times from pulses, in tau: the template was aligned with approximate
+    /// impact times.
     pulse_lag
 };
 inline constexpr std::size_t unknowns = 15;
-/// The first ones, those that a sample depends on.
+/// The first unknowns: those on which a sample depends.
 inline constexpr std::size_t sensed_unknowns = 11;
 
 inline Unknown restitution_at(int side) { return side > 0 ? Unknown::R_plus : Unknown::R_minus; }
 
-/// A value of each of them, or an error.
+/// One value, or one error, for each unknown.
 class UnknownValues : public std::array<double, unknowns> {
 public:
     using std::array<double, unknowns>::operator[];
@@ -69,7 +67,7 @@ public:
     double operator[](Unknown u) const { return (*this)[static_cast<std::size_t>(u)]; }
 };
 
-/// Which of them stay as they are.
+/// Marks the unknowns that keep their values.
 class FixedUnknowns : public std::array<bool, unknowns> {
 public:
     using std::array<bool, unknowns>::operator[];
@@ -77,19 +75,19 @@ public:
     bool operator[](Unknown u) const { return (*this)[static_cast<std::size_t>(u)]; }
 };
 
-/// What is known of the forcing f sin(Omega tau + phase), if anything.
+/// Given parameters of the forcing f sin(Omega tau + phase).
 struct KnownForcing {
     std::optional<double> amplitude = {};  ///< f, m
     std::optional<double> phase = {};
 };
 
-/// Of sensors without a fault, and the oscillator as it is given.
+/// Values for ideal sensors and the given oscillator.
 UnknownValues given_unknowns(const Parameters& parameters);
-/// The amplitude f of eq. (2)'s forcing, m.
+/// Amplitude f of the forcing in eq. (2), m.
 double forcing_of(const Parameters& parameters);
-/// G of a forcing f_s sin(Omega tau) + f_c cos(Omega tau), eq. (3).
+/// G of a forcing f_s sin(Omega tau) + f_c cos(Omega tau), eq. (3), m.
 double G_of(const Parameters& parameters, double force_sin, double force_cos);
-/// Standard deviations of the priors; infinite where there is none.
+/// Standard deviations of the priors; infinite without a prior.
 UnknownValues priors(const Parameters& parameters);
 
 }  // namespace vines

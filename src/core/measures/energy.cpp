@@ -10,11 +10,10 @@ namespace vines {
 
 namespace {
 
-// Nobody waits for a decay that takes longer, in tau.
-constexpr double longest_decay = 1e6;
+constexpr double longest_decay = 1e6;  // decays that take longer are not reported, tau
 
-// A moment is bisected to some ulps of tau.
-constexpr double moment_rounding = 1e-15;
+// Relative tolerance of the bisection: a few ulps of tau.
+constexpr double time_rounding = 1e-15;
 
 }  // namespace
 
@@ -37,13 +36,13 @@ void Energy::on_stretch(const Stretch& stretch) {
     const double from = std::max(0.0, tau_start_ - stretch.tau),
                  to = std::min(stretch.duration, tau_end_ - stretch.tau);
     if (!(from < to)) return;
-    const bool is_stuck = stretch.stuck_side != 0;
-    if (is_stuck && !stuck_) stuck_.emplace(Flow::shared_stuck(parameters_));
+    const bool is_stuck = stretch.sticking_side != 0;
+    if (is_stuck && !stuck_) stuck_.emplace(Flow::shared_sticking(parameters_));
     const Law& law = is_stuck ? *stuck_ : free_;
     const Oscillation begin = from > 0 ? stretch.flow.after(stretch.start, from) : stretch.start;
     if (duration_ == 0) start_ = energy_of(begin, is_stuck ? begin.x_dot : stretch.y_dot);
     const bool in_closed_form = law.antiderivative && duration_ >= law.antiderivative->settled();
-    // Where a stretch goes on by the law of the one before F cancels.
+    // F cancels between stretches that follow the same law.
     if (duration_ == 0 || last_.is_stuck != is_stuck || last_.in_closed_form != in_closed_form) {
         sum_ = integrals();
         if (in_closed_form) sum_ -= law.antiderivative->at(begin);
@@ -58,7 +57,8 @@ void Energy::on_stretch(const Stretch& stretch) {
 void Energy::on_impact(const Impact& i) {
     if (i.tau > tau_end_) return;
     const Oscillation after = {i.x, i.x_dot_after, i.sin_theta, i.cos_theta};
-    // Belongs to what was before, as does the rounding of a stretch that ended a trifle later.
+    // This impact, and the rounding of a stretch that ended slightly late, belong to the time
+    // before the window.
     if (i.tau <= tau_start_) {
         sum_ = {};
         duration_ = peak_ = 0;
@@ -149,12 +149,11 @@ Unattached unattached(const Parameters& p, const State& start, double tau_start,
 
 namespace {
 
-/// Where an energy that does not rise falls to a level between 0 and `high`, after tau_start: by
-/// bisection.
+/// Time after tau_start at which a non-increasing energy reaches `level`; bisects 0 to `high`.
 template <class EnergyAt>
-double moment_of(EnergyAt energy_at, double level, double high, double tau_start) {
+double crossing_time(EnergyAt energy_at, double level, double high, double tau_start) {
     double low = 0;
-    while (high - low > moment_rounding * (tau_start + high)) {
+    while (high - low > time_rounding * (tau_start + high)) {
         const double middle = 0.5 * (low + high);
         if (middle <= low || middle >= high) break;
         (energy_at(middle) > level ? low : high) = middle;
@@ -175,13 +174,13 @@ void Decay::on_stretch(const Stretch& stretch) {
     if (from > stretch.duration) return;
     auto energy_at = [&](double s) { return energy_of(parameters_, stretch.at(s)); };
     if (!at_start_) at_start_ = energy_at(std::max(0.0, from));
-    if (*at_start_ == 0) return;  // a system at rest has no share to lose
+    if (*at_start_ == 0) return;  // at rest: no energy to lose
     const double end = energy_at(stretch.duration);
     for (std::size_t k = 0; k < shares_.size(); ++k) {
         const double level = shares_[k] * *at_start_;
         if (!tau[k] && end <= level)
-            tau[k] =
-                std::max(tau_start_, moment_of(energy_at, level, stretch.duration, stretch.tau));
+            tau[k] = std::max(
+                tau_start_, crossing_time(energy_at, level, stretch.duration, stretch.tau));
     }
 }
 
@@ -199,7 +198,7 @@ std::vector<std::optional<double>> unattached_decay(
         const double level = shares[k] * energy_at(0);
         double high = 1;
         while (energy_at(high) > level && high < longest_decay) high *= 2;
-        if (high < longest_decay) tau[k] = moment_of(energy_at, level, high, tau_start);
+        if (high < longest_decay) tau[k] = crossing_time(energy_at, level, high, tau_start);
     }
     return tau;
 }

@@ -1,5 +1,4 @@
-// Where the energy goes: input of the forcing, damper, impacts, what is stored; amplitudes of the
-// linear oscillator.
+// Energy balance (forcing, damper, impacts, stored energy) and amplitudes of the linear oscillator.
 //
 // Energies are per unit of m1, in m^2 (time is dimensionless): E = x'^2/2 + x^2/2 + epsilon y'^2/2.
 #pragma once
@@ -13,7 +12,7 @@
 
 namespace vines {
 
-/// The energy balance and the amplitude of x over [tau_start, tau_end].
+/// Observer of the energy balance and the amplitude of x over [tau_start, tau_end].
 class Energy : public Observer {
 public:
     Energy(const Parameters& parameters, double tau_start, double tau_end);
@@ -22,10 +21,9 @@ public:
     void on_impact(const Impact&) override;
 
     double duration() const { return duration_; }
-    /// Work of the forcing epsilon A sin(theta) on x'.
-    double input() const;
-    double damper() const;  ///< dissipated by 2 zeta x'
-    /// Dissipated in impacts: (1 - R^2)(x'- - y'-)^2 epsilon/(2 (1 + epsilon)) each.
+    double input() const;   ///< work of the forcing epsilon A sin(theta) on x'
+    double damper() const;  ///< dissipated by the damper, 2 zeta x'
+    /// Dissipated by impacts: (1 - R^2)(x'- - y'-)^2 epsilon/(2 (1 + epsilon)) each.
     double impacts() const { return impacts_; }
     double stored() const { return at_end() - at_start(); }
     double at_start() const { return start_; }
@@ -37,18 +35,18 @@ public:
 private:
     const Parameters parameters_;
     const double tau_start_, tau_end_;
-    /// One law of motion, and what integrates along it.
+    /// An equation of motion (free or sticking) with its integration rules.
     struct Law {
         explicit Law(std::shared_ptr<const Flow> flow);
 
         std::shared_ptr<const Flow> flow;
         std::shared_ptr<const Quadrature> quadrature;
-        std::optional<Antiderivative> antiderivative;  ///< in its place, once a window is long
+        /// Replaces the quadrature once a window is long.
+        std::optional<Antiderivative> antiderivative;
     };
     const Law free_;
-    std::optional<Law> stuck_;  // from the first stretch of a stick on
-    Integrals sum_;             // less F at the end, where F is
-    /// The last stretch, or after an impact the state behind it.
+    std::optional<Law> stuck_;  // set at the first sticking phase
+    Integrals sum_;             // minus F at the end, if in closed form
     struct Last {
         Oscillation begin;
         double duration, y_dot;
@@ -62,43 +60,43 @@ private:
     double energy_of(const Oscillation& o, double y_dot) const;
 };
 
-/// The energy balance of a window, and the amplitudes of x in it. Energies per unit of m1, in m^2.
+/// Energy balance of a window and amplitudes of x in it. Energies per unit of m1, in m^2.
 struct EnergyBalance {
-    Interval window;  ///< what of it the run has reached
+    Interval window;  ///< the part that the run reached
     double input, damper, impacts, stored, residual, at_start, at_end;
-    std::optional<double> share_impacts;  ///< of what is dissipated; none where nothing is
-    double rms, peak;                     ///< of x, m
+    /// Impacts over all dissipation; empty without dissipation.
+    std::optional<double> share_impacts;
+    double rms, peak;  ///< of x, m
 };
 EnergyBalance balance_of(
     const Parameters& parameters, const Energy& energy, const Interval& window);
 
-/// None where there is nothing positive to divide by.
+/// of/to; empty unless `to` is positive.
 std::optional<double> ratio(double of, double to);
 
-/// E of a state.
 double energy_of(const Parameters& parameters, const State& state);
 
-/// The linear oscillator without its absorber, forced as it is, from a start over [tau_start,
-/// tau_end].
+/// Amplitudes of the linear oscillator without absorber, with the same forcing and start, over
+/// [tau_start, tau_end].
 struct Unattached {
     double rms, peak;  ///< of x over the interval, m
-    /// epsilon A/sqrt((1 - Omega^2)^2 + 4 zeta^2 Omega^2) once it is steady, m; none undamped at
-    /// resonance.
+    /// epsilon A/sqrt((1 - Omega^2)^2 + 4 zeta^2 Omega^2), steady, m; empty at undamped resonance.
     std::optional<double> amplitude;
 };
 Unattached unattached(
     const Parameters& parameters, const State& start, double tau_start, double tau_end);
-/// Its rms alone, from tau = 0 on: the cheaper part.
+/// Only the rms, from tau = 0 on, m: the cheaper part.
 double unattached_rms(const Parameters& parameters, const State& start, double duration);
 std::optional<double> free_amplitude(const Parameters& parameters);
 
-/// When the energy of a free decay (G = 0) first falls to a share of what it was at tau_start.
+/// Observer of the times at which the energy of a free decay (G = 0) first falls to given fractions
+/// of its value at tau_start.
 class Decay : public Observer {
 public:
     Decay(const Parameters& parameters, double tau_start, std::vector<double> shares);
     void on_stretch(const Stretch&) override;
 
-    /// One for each share; none where the run ended before.
+    /// One per fraction; empty if the run ended before.
     std::vector<std::optional<double>> tau;
 
 private:
@@ -108,7 +106,7 @@ private:
     const std::vector<double> shares_;
 };
 
-/// The same of the linear oscillator without its absorber; none where it is undamped or at rest.
+/// The same times for the linear oscillator without absorber; empty if it is undamped or at rest.
 std::vector<std::optional<double>> unattached_decay(
     const Parameters& parameters, const State& start, double tau_start,
     const std::vector<double>& shares);

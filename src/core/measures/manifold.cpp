@@ -15,7 +15,7 @@ namespace {
 
 constexpr double quarter_turn = std::numbers::pi / 2;
 
-// The last half cycle of a window may end behind it by rounding: share of tau_end.
+// Rounding can move the end of a window's last half cycle past the window, relative to tau_end.
 constexpr double window_rounding = 1e-12;
 
 double k_of(double R) { return (1 - R) / (1 + R); }
@@ -42,13 +42,12 @@ ManifoldPoint manifold_symmetry_breaking(double R, double Omega, double b) {
 }
 
 ManifoldPoint manifold_second_contact(double R, double Omega, double b) {
-    // Half the moment of the contact, where tan(u) = (1 + R) u; tan(u)/u >= 1 + u^2/3 bounds it
-    // from above.
+    // Half the contact's time, where tan(u) = (1 + R) u; tan(u)/u >= 1 + u^2/3 bounds it above.
     double below = 0, u = std::min(quarter_turn, std::sqrt(3 * R));
     for (double middle = u / 2; middle > below && middle < u; middle = below + (u - below) / 2)
         (elementary::sin(middle) < (1 + R) * middle * elementary::cos(middle) ? below : u) = middle;
-    // The minimum itself, (1 - k cos t)/sin t there, written so that nothing cancels; with R = 0
-    // the mass stays on the wall from t = 0 on.
+    // The minimum itself, (1 - k cos t)/sin t, written without cancellation; with R = 0 the ball
+    // stays on the wall from t = 0 on.
     const double sin_u = elementary::sin(u),
                  q = u > 0 ? (R / (1 + R) + k_of(R) * sin_u * sin_u) / (sin_u * elementary::cos(u))
                            : 0;
@@ -65,7 +64,6 @@ std::vector<ManifoldPoint> manifold_branch(
     double R, double Omega, double b, double from, double to, std::size_t count) {
     std::vector<ManifoldPoint> points;
     for (std::size_t i = 0; i < count; ++i) {
-        // Exact at both ends.
         const double V =
             std::lerp(from, to, static_cast<double>(i) / static_cast<double>(count - 1));
         points.push_back({manifold_C(R, Omega, b, V), V});
@@ -127,8 +125,8 @@ void HalfCycles::pass(const Stretch& stretch, double from, double to) {
     if (!(from < to)) return;
     const Oscillation begin = stretch.flow.after(stretch.start, from);
     peak_ = peak_beyond(peak_, stretch.flow, begin, to - from);
-    path_ += stretch.stuck_side == 0 ? std::abs(stretch.y_dot) * (to - from)
-                                     : path_length(stretch.flow, begin, to - from);
+    path_ += stretch.sticking_side == 0 ? std::abs(stretch.y_dot) * (to - from)
+                                        : path_length(stretch.flow, begin, to - from);
 }
 
 }  // namespace vines

@@ -1,22 +1,21 @@
-// The slow invariant manifold: two symmetric impacts per forcing cycle in the limit epsilon -> 0.
+// Slow invariant manifold: two symmetric impacts per forcing cycle in the limit epsilon -> 0.
 //
-// The oscillator then moves as x = C sin(Omega tau + ...) and the free mass flies with speed V from
-// wall to wall, one half period pi/Omega each. From the flight, 2 (b - x_i) = V pi/Omega at the
-// impact; from the restitution, x'_i = k V with k = (1 - R)/(1 + R). So, with W = V/Omega,
+// The oscillator then moves as x = C sin(Omega tau + ...), and the ball flies with speed V from
+// wall to wall in one half period pi/Omega. The flight gives 2 (b - x_i) = V pi/Omega at the
+// impact, the restitution x'_i = k V with k = (1 - R)/(1 + R). With W = V/Omega,
 //
 //     C^2 = (pi W/2 - b)^2 + k^2 W^2,
 //
 // which for Omega = 1 is the manifold of Gourc et al. (2015). Linearised, half a cycle followed by
-// the mirroring (x, y) -> (-x, -y) has the determinant R^2 and the trace
-// 2 R + (1 + R)^2 (pi b/(2 W) - pi^2/4). An eigenvalue is 1 at the fold and -1, where the two
-// impacts lose their symmetry, at W = (pi/2) b/(pi^2/4 - 1), for every R. The manifold is stable
-// between the two.
+// the reflection (x, y) -> (-x, -y) has determinant R^2 and trace 2 R + (1 + R)^2 (pi b/(2 W) -
+// pi^2/4). An eigenvalue is 1 at the fold and -1, where the impacts lose their symmetry, at W =
+// (pi/2) b/(pi^2/4 - 1), for every R. The manifold is stable between the two.
 //
 // It exists as long as the flight meets no wall before its end. With t = Omega tau since the impact
-// and q = -x_i/W = pi/2 - b/W, the mass stays off the wall that it has left while
-// q (1 - cos t) < t - k sin t, and off the other one while q (1 - cos t) < t + k sin t, which
-// follows. So the limit is q = min of (t - k sin t)/(1 - cos t) over 0 < t < pi. The derivative
-// vanishes where tan(t/2) = (1 + R) t/2, which has one root, for tan(u)/u rises from 1 without
+// and q = -x_i/W = pi/2 - b/W, the ball stays off the wall that it has left while q (1 - cos t) < t
+// - k sin t, and off the other one while q (1 - cos t) < t + k sin t, which follows from the first.
+// The limit is therefore q = min of (t - k sin t)/(1 - cos t) over 0 < t < pi. Its derivative
+// vanishes where tan(t/2) = (1 + R) t/2, which has one root, since tan(u)/u rises from 1 without
 // bound. Up to R = .0867 this second contact comes before the loss of symmetry.
 #pragma once
 
@@ -28,25 +27,24 @@
 
 namespace vines {
 
-/// C in m, V in m per unit of tau.
+/// Amplitude C of the oscillator in m, speed V of the ball in m per unit of tau.
 struct ManifoldPoint {
     double C, V;
 };
 
-/// C on the manifold for a speed V >= 0 of the free mass.
+/// C on the manifold for a speed V >= 0 of the ball.
 double manifold_C(double R, double Omega, double b, double V);
-/// Where C is smallest, C = b k/sqrt(pi^2/4 + k^2): below this amplitude the absorber cannot be
-/// activated.
+/// Smallest C, b k/sqrt(pi^2/4 + k^2): below this amplitude the absorber cannot be activated.
 ManifoldPoint manifold_fold(double R, double Omega, double b);
-/// Where the symmetric impacts become unstable to asymmetric ones.
+/// The point at which the symmetric impacts become unstable to asymmetric ones.
 ManifoldPoint manifold_symmetry_breaking(double R, double Omega, double b);
-/// Where the mass touches the wall that it comes from a second time before it reaches the other:
-/// beyond there are no two symmetric impacts per cycle. There is such a point for every R.
+/// The point at which the ball meets the wall that it comes from a second time before it reaches
+/// the other. Beyond it two symmetric impacts per cycle do not exist. Every R has such a point.
 ManifoldPoint manifold_second_contact(double R, double Omega, double b);
-/// The b whose fold lies at amplitude C; 0 for R = 1, where the fold is at C = 0 for every b.
+/// The b whose fold lies at amplitude C, m; 0 for R = 1, where every fold is at C = 0.
 double manifold_b(double R, double C);
 
-/// `count` points from V_from to V_to, evenly spaced in V.
+/// `count` points from V_from to V_to, equidistant in V.
 std::vector<ManifoldPoint> manifold_branch(
     double R, double Omega, double b, double V_from, double V_to, std::size_t count);
 
@@ -54,18 +52,18 @@ std::vector<ManifoldPoint> manifold_branch(
 struct Manifold {
     double R, Omega, b;
     ManifoldPoint fold;
-    std::optional<ManifoldPoint> symmetry_breaking;  ///< none where the second contact comes first
+    std::optional<ManifoldPoint> symmetry_breaking;  ///< empty if the second contact comes first
     ManifoldPoint second_contact;
     std::vector<ManifoldPoint> stable, unstable, asymmetric;
-    /// The amplitude that the oscillator has without absorber, and the b whose fold lies there.
+    /// Steady amplitude of the oscillator without absorber, and the b whose fold lies there.
     std::optional<double> free_amplitude, b_at_free_amplitude;
 };
-/// Of walls with one R, with `points` points on each branch that there is, up to V_max (0: twice
-/// the speed of the symmetry breaking) or to where the motion ends.
+/// Manifold of a system with R_plus = R_minus, with `points` points on each existing branch, up to
+/// V_max (0: twice the speed of the symmetry breaking) or to the end of the motion's existence.
 Manifold manifold_of(const Parameters& parameters, double V_max, std::size_t points);
 
-/// What a run has in place of (C, V): in each half cycle of the forcing, the largest |x| and the
-/// mean of |y'|. It keeps up to half more than the last `most` of them.
+/// Observer of a run's counterparts of (C, V): in each half cycle of the forcing the largest |x|
+/// and the mean of |y'|. Keeps the last `most` of them, and up to half as many more.
 class HalfCycles : public Observer {
 public:
     HalfCycles(
@@ -80,7 +78,7 @@ private:
     void pass(const Stretch& stretch, double from, double to);
     const double half_cycle_, tau_end_;
     const std::size_t most_;
-    long next_;  // the half cycle at hand ends at next_ half_cycle_
+    long next_;  // the current half cycle ends at next_ half_cycle_
     double peak_ = 0, path_ = 0, begun_;
 };
 

@@ -7,14 +7,14 @@
 #include <numbers>
 
 #include "core/motion/elementary.hpp"
-#include "core/motion/last_used.hpp"
+#include "core/motion/small_cache.hpp"
 
 namespace vines {
 
 namespace {
 
-// Gauss-Legendre on [0, 1] with five nodes: right for polynomials up to degree 9. Over one cell, 2
-// pi/42 of the faster frequency, what it leaves of x'^2 is below 1e-16.
+// Gauss-Legendre on [0, 1] with five nodes: exact for polynomials up to degree 9. Over one cell, 2
+// pi/42 of the faster frequency, its error of x'^2 is below 1e-16.
 struct Node {
     double at, weight;
 };
@@ -27,12 +27,11 @@ constexpr std::array<Node, 5> gauss = {
 
 Eigen::Vector4d vector(const Oscillation& o) { return {o.x, o.x_dot, o.sin_theta, o.cos_theta}; }
 
-// What decays or turns more slowly than this, per unit of tau, would have to be waited for longer
-// than runs last.
+// A slower decay or rotation, per unit of tau, would need windows longer than any run.
 constexpr double slowest = 1e-3;
 
-/// The slowest rate at which products of two of the four components change, but for sin^2 + cos^2,
-/// which stays: sums of two eigenvalues of L.
+/// Slowest rate at which products of two of the four components change, except the constant sin^2 +
+/// cos^2: sums of two eigenvalues of L.
 double slowest_rate(const Flow::Coefficients& c) {
     const auto [stiffness, damping, forcing, Omega] = c;
     const double half = 0.5 * damping, turning = stiffness - half * half;
@@ -45,7 +44,7 @@ double slowest_rate(const Flow::Coefficients& c) {
 using Wide = long double;
 using WideForm = Eigen::Matrix<Wide, 4, 4>;
 
-/// The places of a symmetric form's ten entries.
+/// Indices of the ten entries of a symmetric form.
 constexpr std::array<std::array<int, 2>, 10> places = {
     {{0, 0}, {0, 1}, {0, 2}, {0, 3}, {1, 1}, {1, 2}, {1, 3}, {2, 2}, {2, 3}, {3, 3}}};
 
@@ -59,7 +58,7 @@ WideForm symmetric(int place) {
 }  // namespace
 
 std::optional<Antiderivative> Antiderivative::of(const Flow& flow) {
-    thread_local LastUsed<Flow::Coefficients, std::optional<Antiderivative>> antiderivatives;
+    thread_local SmallCache<Flow::Coefficients, std::optional<Antiderivative>> antiderivatives;
     return *antiderivatives.get(flow.coefficients(), [&flow] { return solved_for(flow); });
 }
 
@@ -70,7 +69,7 @@ std::optional<Antiderivative> Antiderivative::solved_for(const Flow& flow) {
     const auto [stiffness, damping, forcing, Omega] = c;
     WideForm L;
     L << 0, 1, 0, 0, -stiffness, -damping, forcing, 0, 0, 0, 0, Omega, 0, 0, -Omega, 0;
-    // The entries of P and the rate; of P the part sin^2 + cos^2, which is constant, is left out.
+    // Unknowns: the entries of P, without its constant part sin^2 + cos^2, and the rate.
     Eigen::Matrix<Wide, 11, 11> system = Eigen::Matrix<Wide, 11, 11>::Zero();
     for (int k = 0; k < 10; ++k) {
         const WideForm P = symmetric(k), changes = L.transpose() * P + P * L;
@@ -114,7 +113,7 @@ Integrals Antiderivative::across(const Oscillation& after, double x_dot_before) 
 
 Quadrature::Quadrature(const Flow& flow) : flow_(flow) {
     const Oscillation unit[4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
-    // The forms of one cell, in the state at its start.
+    // The forms of one cell, in terms of the state at its start.
     Forms cell{Form::Zero(), Form::Zero(), Form::Zero()};
     for (const Node& node : gauss) {
         const double d = node.at * flow.cell(), weight = node.weight * flow.cell();
@@ -140,12 +139,12 @@ Quadrature::Quadrature(const Flow& flow) : flow_(flow) {
 }
 
 std::shared_ptr<const Quadrature> Quadrature::shared(const Flow& flow) {
-    thread_local LastUsed<Flow::Coefficients, Quadrature> quadratures;
+    thread_local SmallCache<Flow::Coefficients, Quadrature> quadratures;
     return quadratures.get(flow.coefficients(), [&flow] { return Quadrature(flow); });
 }
 
 Integrals Quadrature::over_part(const Oscillation& start, double duration) const {
-    const Flow::Series series = flow_.series(start);
+    const Flow::TaylorSeries series = flow_.series(start);
     Integrals sum;
     for (const Node& node : gauss) {
         const Oscillation o = flow_.along(series, start, node.at * duration);

@@ -4,31 +4,28 @@
 #include <cmath>
 #include <limits>
 
-#include "core/motion/special_values.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines {
 
 namespace {
 
-// States that differ by less, in units of their scale, may be a return; Newton's method decides. A
-// run that is chaotic by its exponents comes as close as that by chance, all the time.
-constexpr double near_return = 0.1, near_return_of_chaos = 1e-3;
-// So many returns are tried, the first one whatever its length, the others while they add up to so
-// many cycles.
+// Distance, in units of the states' scale, below which two states can be a return; Newton's method
+// decides. A run that is chaotic by its exponents comes that close by chance all the time.
+constexpr double near_return = 0.1, near_return_if_chaotic = 1e-3;
+// Limits of the attempts: the first return is tried whatever its period, the others while their
+// periods add up to at most this many cycles.
 constexpr int most_attempts = 8;
 constexpr std::size_t most_attempted_cycles = 1024;
-// Of an irregular response z is a mean over a finite run.
+// z of an irregular response is a mean over a finite run.
 constexpr double irregular_margin = 0.02;
-// How far a run that is near a return but not on an orbit is followed further, in cycles, round by
-// round.
+// Continuations, in cycles, of a run that is near a return but not on an orbit.
 constexpr int follow_rounds[] = {150, 300, 600, 1200};
-// A run of whole cycles goes on by this share, so that the rounding of its end does not cut off the
-// last of them.
+// Whole cycles are run slightly longer, so that rounding does not cut off the last one.
 constexpr double past_last_cycle = 1e-12;
-// A run has been captured once it stays this close to the orbit.
+// A run counts as captured while it stays this close to the orbit.
 constexpr double captured_within = 0.1;
 
-/// How often the masses meet in the window, and in which rhythm.
 void count_contacts(Regime& r, const RegimeEvidence& e) {
     e.rhythm.finish({e.tau_start, e.tau_end});
     const Synchrony& synchrony = e.rhythm.synchrony;
@@ -46,17 +43,17 @@ void count_contacts(Regime& r, const RegimeEvidence& e) {
             static_cast<double>(synchrony.in_stretches) / static_cast<double>(r.contacts);
 }
 
-/// Those at whole cycles up to tau_end.
+/// States at whole cycles up to tau_end.
 std::span<const State> states_before(const StroboscopicRecord& record, double tau_end) {
     std::size_t end = record.states.size();
     while (end > 0 && record.tau(end - 1) > tau_end) --end;
     return std::span(record.states).first(end);
 }
 
-/// Numbers of cycles after which the last state may have returned: the closest returns first; of
-/// those that are about equally close, as all multiples of a period are, the shortest.
+/// Possible periods, in cycles: the closest returns first; among about equally close ones, such as
+/// all multiples of a period, the shortest first.
 std::vector<std::size_t> returns(std::span<const State> states, const State& scale, double near) {
-    constexpr double rounding = 1e-10;  // closer than this all are equally close
+    constexpr double rounding = 1e-10;  // closer returns all count as equally close
     struct Return {
         int decade;
         std::size_t cycles;
@@ -81,8 +78,8 @@ std::vector<std::size_t> returns(std::span<const State> states, const State& sca
     return cycles;
 }
 
-/// The attracting periodic orbit that the last of the states is next to. `tried` tells whether a
-/// return came close, so that there may be an orbit.
+/// Attracting periodic orbit near the last state. `tried` is set if a return came close, so that an
+/// orbit is possible.
 std::optional<PeriodicOrbit> orbit_at_end(
     const Parameters& p, std::span<const State> states, const State& scale, double near,
     const std::function<bool()>& stop, bool& tried) {
@@ -103,7 +100,7 @@ std::optional<PeriodicOrbit> orbit_at_end(
     return std::nullopt;
 }
 
-/// Which of the orbit's states at whole cycles is next to a state.
+/// Index of the orbit's state at a whole cycle that is closest to s.
 std::size_t phase_of(const State& s, std::span<const State> along, const State& scale) {
     std::size_t best = 0;
     for (std::size_t k = 1; k < along.size(); ++k)
@@ -111,16 +108,16 @@ std::size_t phase_of(const State& s, std::span<const State> along, const State& 
     return best;
 }
 
-/// As orbit_at_end(). A run may end while it slowly leaves an unstable orbit for a stable one
-/// nearby, to which Newton's method does not go from there: then the motion is followed on, and an
-/// orbit found later counts if the run's end was next to it already.
+/// Attracting periodic orbit at the end of a run. A run can end while it slowly leaves an unstable
+/// orbit for a stable one nearby that Newton's method does not reach from there: then the motion is
+/// continued, and an orbit found later counts if the run's end was already near it.
 std::optional<PeriodicOrbit> orbit_of(
     const Parameters& p, std::span<const State> states, const State& scale,
     const RegimeEvidence& e) {
     const bool chaotic = e.by_exponents == Verdict::chaotic;
     bool tried = false;
     if (auto orbit = orbit_at_end(
-            p, states, scale, chaotic ? near_return_of_chaos : near_return, e.stop, tried))
+            p, states, scale, chaotic ? near_return_if_chaotic : near_return, e.stop, tried))
         return orbit;
     if (chaotic) return std::nullopt;
     State s = states.back();
@@ -143,10 +140,9 @@ std::optional<PeriodicOrbit> orbit_of(
     return std::nullopt;
 }
 
-/// The whole cycles of a run beside an orbit that it is next to at one of them.
-class BesideOrbit {
+class OrbitComparison {
 public:
-    BesideOrbit(
+    OrbitComparison(
         const Parameters& p, const PeriodicOrbit& orbit, const State& scale, long k,
         const State& state)
         : along_(whole_cycle_states(p, orbit)),
@@ -154,11 +150,13 @@ public:
           period_(static_cast<long>(along_.size())),
           phase_(static_cast<long>(phase_of(state, along_, scale)) - k % period_ + period_) {}
 
-    /// How far the state at the k-th is from where the orbit is then.
-    double apart(long k, const State& state) const {
+    /// Distance of the state at cycle k from the orbit's state at the same phase.
+    double distance_at(long k, const State& state) const {
         return distance(state, along_[static_cast<std::size_t>((phase_ + k) % period_)], scale_);
     }
-    bool is_next(long k, const State& state) const { return apart(k, state) < captured_within; }
+    bool is_near(long k, const State& state) const {
+        return distance_at(k, state) < captured_within;
+    }
 
 private:
     const std::vector<State> along_;
@@ -166,13 +164,13 @@ private:
     const long period_, phase_;
 };
 
-/// Which of the first whole cycles of a run is the last that is not next to the orbit that attracts
-/// it at the end. Once it is on that it stays there.
-class LastApart : public Stroboscope {
+/// Finds the last of the first whole cycles of a run that is not near the orbit that attracts its
+/// end. Once on the orbit, the run stays there.
+class OrbitArrival : public Stroboscope {
 public:
-    LastApart(const Parameters& p, const BesideOrbit& beside, long before)
+    OrbitArrival(const Parameters& p, const OrbitComparison& comparison, long before)
         : Stroboscope(p),
-          beside_(beside),
+          comparison_(comparison),
           before_(before) {}
     long cycle = -1;
     bool arrived = false;
@@ -180,28 +178,27 @@ public:
 private:
     void take(long k, const State& state) override {
         if (k >= before_ || arrived) return;
-        const double apart = beside_.apart(k, state);
+        const double apart = comparison_.distance_at(k, state);
         if (!(apart < captured_within)) cycle = k;
         arrived = apart < on_the_orbit;
     }
-    const BesideOrbit& beside_;
+    const OrbitComparison& comparison_;
     const long before_;
 };
 
-/// The moment of the first whole cycle from which on the run stays next to the orbit; none where it
-/// is not there at its end.
+/// Time of the first whole cycle from which on the run stays near the orbit; empty if never.
 std::optional<double> captured_from(
     const Parameters& p, const State& start, const PeriodicOrbit& orbit,
     std::span<const State> states, const State& scale, const RegimeEvidence& e) {
     const long first = e.stroboscopic.first(), end = first + static_cast<long>(states.size());
-    const BesideOrbit beside(p, orbit, scale, end - 1, states.back());
+    const OrbitComparison comparison(p, orbit, scale, end - 1, states.back());
     long from = end;
-    while (from > first && beside.is_next(from - 1, states[from - 1 - first])) --from;
+    while (from > first && comparison.is_near(from - 1, states[from - 1 - first])) --from;
     if (from == end) return std::nullopt;
-    // It was there already at the first that is kept: those before it come of a second run. Where
-    // that is stopped, the first that is kept stands.
+    // The first kept state is already near: a second run examines the states before it. If that run
+    // is interrupted, the time of the first kept state stands.
     if (from == first && first > 0) {
-        LastApart last(p, beside, first);
+        OrbitArrival last(p, comparison, first);
         Observer* const observers[] = {&last};
         const Limits limits{
             .tau_end = e.stroboscopic.tau_of(first),
@@ -213,7 +210,6 @@ std::optional<double> captured_from(
     return e.stroboscopic.tau_of(from);
 }
 
-/// When the run came to the orbit, and its exponents before and after.
 Capture capture_by(
     const Parameters& p, const State& start, std::span<const State> states, const State& scale,
     const RegimeEvidence& e, const PeriodicOrbit& orbit, bool exponents_before) {
@@ -260,9 +256,9 @@ Regime regime_of(
     r.forced = p.G > 0;
     count_contacts(r, e);
     const std::span<const State> states = states_before(e.stroboscopic, e.tau_end);
-    // The first in the window only says whether there are any.
+    // The first state in the window only shows that the window has any.
     if (r.forced && states.size() > 1 && e.stroboscopic.tau(states.size() - 2) >= e.tau_start) {
-        // Of the last part: a transient may have been larger.
+        // Scale of the last part: a transient can have been larger.
         const State scale = scale_of(p, states.last(std::min(states.size(), longest_period)));
         r.orbit = orbit_of(p, states, scale, e);
         r.search_stopped = !r.orbit && e.stop && e.stop();
@@ -277,12 +273,10 @@ Regime regime_of(
 
 namespace {
 
-/// Why a motion that an orbit captured is not decided.
 VerdictReason undecided_by(const Capture& capture) {
     return capture.chaotic_before ? VerdictReason::transient : VerdictReason::not_known_before;
 }
 
-/// Why growth is not enough for chaos.
 VerdictReason undecided_by(const Growth& g) {
     const double error = verdict_sigmas * g.standard_error[0];
     if (std::isnan(error)) return VerdictReason::no_error;

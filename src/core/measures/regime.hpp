@@ -1,4 +1,10 @@
-// Response regimes I to VI (section 4 of the paper) with the evidence for each.
+// Response regimes I to VI (section 4 of the paper), their evidence, and the verdict chaotic or
+// regular.
+//
+// A response is periodic if an attracting periodic orbit is found near the end of the run: close
+// returns of the state at whole cycles are refined by Newton's method. Then the type follows from
+// the orbit's contacts per cycle and its symmetry. Other responses are classified by contacts per
+// cycle and by the longest synchronised stretch (rhythm.hpp).
 #pragma once
 
 #include <array>
@@ -12,87 +18,84 @@
 
 namespace vines {
 
-/// none: no impact at all, or no forcing. I: sparse, irregular. II: strongly modulated, stretches
-/// of two impacts per cycle between others. III: two symmetric impacts per cycle, periodic. IV: two
-/// asymmetric ones, periodic. V: any other periodic response. VI: any other irregular response.
+/// Response types. none: no impact at all, or no forcing. I: sparse, irregular. II: strongly
+/// modulated, stretches of two impacts per cycle between others. III: two symmetric impacts per
+/// cycle, periodic. IV: two asymmetric ones, periodic. V: any other periodic response. VI: any
+/// other irregular response.
 enum class RegimeType { none, I, II, III, IV, V, VI };
 
-/// How a run comes to the periodic orbit that attracts it.
+/// Capture of a run by the periodic orbit that attracts it.
 struct Capture {
-    /// From when on it stays next to it, or later where the time to look was over; none: it ends
-    /// before that, and following it further showed where it goes.
+    /// Time from which the run stays near the orbit (or later, if the search ran out of time).
+    /// Empty if the run ends before that; continuing it showed where it goes.
     std::optional<double> tau;
-    /// By qr, from the run's first impact to tau, or to its end; NaN where there is too little.
+    /// By qr, from the run's first impact to tau or to its end; NaN with too few impacts.
     Exponents before;
     Exponents after;  ///< from the Floquet multipliers
-    /// By verdict_by_exponents(): the run was chaotic and then captured, not just settling; none:
-    /// not known.
+    /// The run was chaotic before the capture, by verdict_by_exponents(), and not just settling.
+    /// Empty: not known.
     std::optional<bool> chaotic_before;
 };
 
 struct Regime {
     RegimeType type = RegimeType::none;
-    /// False for a free decay (G = 0), which is none of the regimes.
-    bool forced = true;
-    long contacts = 0;  ///< in the window
-    /// Contacts per forcing cycle: of the orbit if periodic, else from the first to the last.
+    bool forced = true;  ///< false for a free decay (G = 0), which has no regime
+    long contacts = 0;   ///< in the window
+    /// Contacts per forcing cycle: of the orbit if periodic, else between first and last contact.
     double z = 0;
-    double z_overall = 0;  ///< from the first to the last, in any case
-    // Lists, as far as RegimeEvidence::rhythm makes them.
+    double z_overall = 0;  ///< from the first to the last contact, in any case
+    // Lists, as far as RegimeEvidence::rhythm keeps them.
     std::vector<double> moving_tau, moving_z;  ///< over 10 cycles around tau
-    std::vector<double> cycles_with;           ///< share of cycles with 0, 1, 2, ... contacts
-    std::vector<SynchronyStretch> stretches;   ///< the last of them
-    long stretch_count = 0;                    ///< of all
-    double synchronised = 0;                   ///< share of the contacts in synchronised stretches
-    long longest_synchronised = 0;             ///< half cycles of the longest
-    std::optional<PeriodicOrbit> orbit;        ///< the stable orbit that the run has come to
-    std::optional<Capture> capture;            ///< with it
-    /// The search for an orbit was ended by RegimeEvidence::stop.
-    bool search_stopped = false;
+    std::vector<double> cycles_with;           ///< fraction of cycles with 0, 1, 2, ... contacts
+    std::vector<SynchronyStretch> stretches;   ///< the last ones
+    long stretch_count = 0;                    ///< including stretches not listed
+    double synchronised = 0;                   ///< fraction of contacts in synchronised stretches
+    long longest_synchronised = 0;             ///< half cycles of the longest synchronised stretch
+    std::optional<PeriodicOrbit> orbit;        ///< the stable orbit that the run approaches
+    std::optional<Capture> capture;            ///< set together with orbit
+    bool search_stopped = false;  ///< RegimeEvidence::stop ended the search for an orbit
 };
 
-// A period that the run may have closed: in cycles.
+// Longest period that is searched for, cycles.
 inline constexpr std::size_t longest_period = 512;
-/// The search for an orbit looks at so many states of the run's end, and one before them.
+/// States at the run's end that the search for an orbit needs, including one before them.
 inline constexpr std::size_t fewest_states = longest_period + 2;
-/// So many are kept of a run: 2 MB. What an orbit captured earlier is run once more to find out
-/// when.
+/// States kept of a run (2 MB). If the capture was earlier, the run is repeated to date it.
 inline constexpr std::size_t kept_states = 1 << 16;
 
-/// What a run must have been observed by.
 struct RegimeEvidence {
-    Rhythm& rhythm;  ///< of the window; regime_of() finishes it
-    /// From tau = 0 to the window's end, or of that the last fewest_states or more.
+    Rhythm& rhythm;  ///< of the window; regime_of() calls its finish()
+    /// From tau = 0 to the window's end, or at least its last fewest_states states.
     const StroboscopicRecord& stroboscopic;
-    double tau_start, tau_end;  ///< the window to be judged; tau_end within the run
-    /// Chaotic: a run that is not periodic yet is not followed further.
+    double tau_start, tau_end;  ///< the window; tau_end lies within the run
+    /// If chaotic, a run that is not periodic yet is not continued.
     Verdict by_exponents = Verdict::not_decided;
-    std::function<bool()> stop = {};  ///< as in Limits: ends the search for an orbit
+    std::function<bool()> stop = {};  ///< ends the search for an orbit, see Limits::stop
 };
 
-/// `exponents_before`: also those before a capture, for which the run is repeated up to there;
-/// else, or where the time for it was over, they are NaN.
+/// Regime of a run. With `exponents_before` also the exponents before a capture, which repeats the
+/// run up to there; otherwise, or if time ran out, they are NaN.
 Regime regime_of(
     const Parameters& parameters, const State& start, const RegimeEvidence& evidence,
     bool exponents_before = true);
 
-/// What a verdict rests on.
+/// Reason for a verdict.
 enum class VerdictReason {
     growth,    ///< chaotic: by the window's own exponents
     on_orbit,  ///< regular: the window begins on the stable orbit
-    /// Regular: the motion settles on a stable orbit, which it was not chaotic before.
+    /// Regular: the motion settles on a stable orbit and was not chaotic before.
     settling,
     free_decay,  ///< none: no forcing, so the motion dies out
     untouched,   ///< none: the motion ends without impacts
-    /// Not decided: a chaotic transient and the orbit that captured it share the window.
+    /// Not decided: the window holds both a chaotic transient and the orbit that captured it.
     transient,
-    /// Not decided: an orbit captured the motion, but there was no time to look at what came
-    /// before.
+    /// Not decided: an orbit captured the motion, but time ran out before the part before the
+    /// capture could be examined.
     not_known_before,
     no_error,          ///< not decided: too few impacts for a standard error
     within_error,      ///< not decided: lambda1 lies within its error
-    little_growth,     ///< not decided: leaving one unstable orbit could grow as much
-    algebraic_growth,  ///< not decided: the growth slows down as that beside a torus does
+    little_growth,     ///< not decided: departure from one unstable orbit could grow as much
+    algebraic_growth,  ///< not decided: the growth slows down as it does near a torus
     negative,          ///< not decided: lambda1 is negative, but no stable orbit was found
 };
 struct Judgement {
@@ -100,7 +103,7 @@ struct Judgement {
     VerdictReason reason;
 };
 
-/// The verdict on a window of a run, from the window's own exponents and from where the run went.
+/// Verdict on a window, from the window's own exponents and from the regime of the run.
 Judgement judge(const Growth& growth, const Regime& regime, double tau_start);
 
 const char* name_of(RegimeType type);

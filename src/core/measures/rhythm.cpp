@@ -9,18 +9,18 @@ namespace vines {
 
 namespace {
 
-// Fig. 9's synchronised parts: at b = 34 and 40 mm there are none, at 31 mm and below there are
-// (shared border of Types I and II); the border does not move between 10 and 20 %.
+// Tolerance of the interval, relative to half a cycle. It reproduces Fig. 9's synchronised parts
+// and the border of Types I and II: no such parts at b = 34 and 40 mm, some at 31 mm and below. The
+// border does not move between 10 and 20 %.
 constexpr double synchrony_tolerance = 0.15;
 constexpr int moving_cycles = 10;
 
-/// A phase of the forcing cycle that contacts stay away from, in parts of the cycle: there cycles
-/// are cut for counting.
+/// Phase of the forcing cycle, in parts of it, that contacts avoid: cycles are cut there.
 int quiet_position(const CyclePositions& positions) {
     constexpr int bins = CyclePositions::parts / 2;
     std::array<long, bins> count{};
     positions.each([&](std::int64_t at) { ++count[at % CyclePositions::parts / 2]; });
-    // The middle of the longest run of bins with the fewest contacts (a run may go over the end).
+    // Middle of the longest run of bins with the fewest contacts (cyclic).
     const long fewest = *std::min_element(count.begin(), count.end());
     int best = 0, best_length = 0;
     for (int from = 0; from < bins; ++from) {
@@ -31,19 +31,19 @@ int quiet_position(const CyclePositions& positions) {
     return 2 * best + best_length;
 }
 
-/// Rounded down.
+/// Whole cycles, rounded down.
 long whole_cycles(std::int64_t positions) {
     const std::int64_t parts = CyclePositions::parts, before = positions < 0 ? parts - 1 : 0;
     return static_cast<long>((positions - before) / parts);
 }
 
-/// Takes the numbers of contacts in one cycle after the other.
+/// Counts contacts cycle by cycle.
 class CycleCounter {
 public:
-    /// Of the moving z one entry in `every` is kept.
+    /// Keeps one of `every` entries of the moving z.
     CycleCounter(CycleCounts& counts, std::size_t every) : counts_(counts), every_(every) {}
 
-    /// `middle`: of the cycles that the moving z is taken over, if this is the last of them.
+    /// `middle` of the cycles of the moving z that end with this one.
     void add(int contacts, double middle) {
         auto& with = counts_.cycles_with;
         if (with.size() <= static_cast<std::size_t>(contacts)) with.resize(contacts + 1, 0);
@@ -70,7 +70,7 @@ private:
 
 }  // namespace
 
-bool Synchrony::in_step(const CountedContact& next) const {
+bool Synchrony::is_synchronised(const CountedContact& next) const {
     return next.side != last_.side &&
            std::abs(next.tau - last_.tau - half_cycle_) < synchrony_tolerance * half_cycle_;
 }
@@ -78,7 +78,7 @@ bool Synchrony::in_step(const CountedContact& next) const {
 void Synchrony::add(const CountedContact& contact) {
     if (contacts == 0) {
         alternating_from_ = free_from_ = {contact.tau, 0};
-    } else if (!in_step(contact)) {
+    } else if (!is_synchronised(contact)) {
         end_alternation();
         alternating_from_ = {contact.tau, contacts};
     }
@@ -137,8 +137,8 @@ void Rhythm::count(const CountedContact& contact) {
 }
 
 void Rhythm::finish(const Interval& reached) {
-    tell_held();
-    // Of a window that the run does not reach its end is left: a moment.
+    flush_contacts();
+    // A window that the run does not reach has shrunk to one instant at the run's end.
     if (before_ && before_->tau >= reached.from) count(*before_);
     synchrony.finish();
     reached_ = reached;

@@ -1,67 +1,68 @@
-// The rhythm in which the two masses meet, counted while a run goes on: no list of its contacts is
-// kept.
+// Rhythm of the contacts: contacts per cycle, and stretches synchronised with the forcing.
+//
+// All numbers are counted during the run; no list of contacts is kept. A contact is an impact, or a
+// whole chatter that ends in sticking. A stretch is synchronised if its contacts alternate sides at
+// intervals within 15 % of half a forcing period; stretches that are too short to be more than
+// chance do not count.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <vector>
 
-#include "core/motion/contacts.hpp"
 #include "core/motion/record.hpp"
 
 namespace vines {
 
-/// A stretch of contacts that alternate sides at intervals within 15 % of half a forcing period
-/// (synchronised: the paper's "area2" in Fig. 9), or what lies between two of them.
+/// A synchronised stretch (the paper's "area2" in Fig. 9), or the interval between two of them.
 struct SynchronyStretch {
     double tau_start, tau_end;
     bool synchronised;
     long contacts;
 };
 
-// Two impacts per cycle over two cycles: a shorter alternation happens by chance.
+// Half cycles of the shortest stretch, two cycles: shorter alternations happen by chance.
 inline constexpr long shortest_stretch = 4;
 
-/// Contacts one after the other, parted into stretches.
+/// Divides a sequence of contacts into stretches.
 class Synchrony {
 public:
     Synchrony(double half_cycle, std::size_t most_stretches)
         : stretches(most_stretches),
           half_cycle_(half_cycle) {}
     void add(const CountedContact& contact);
-    /// Behind the last contact.
-    void finish();
+    void finish();  ///< call after the last contact
 
     LastOf<SynchronyStretch> stretches;
     long contacts = 0;
-    long in_stretches = 0;  ///< of the contacts, in synchronised ones
-    long longest = 0;       ///< half cycles of the longest synchronised alternation
+    long in_stretches = 0;  ///< contacts in synchronised stretches
+    long longest = 0;       ///< half cycles of the longest synchronised stretch
 
 private:
-    /// A contact by its number.
+    /// A contact with its number.
     struct Mark {
         double tau = 0;
         long number = 0;
     };
-    bool in_step(const CountedContact& next) const;
+    bool is_synchronised(const CountedContact& next) const;
     void end_alternation();
     void desynchronised(const Mark& to);
 
     const double half_cycle_;
     Mark alternating_from_;
-    Mark free_from_;  // the first contact that no stretch has yet
+    Mark free_from_;  // first contact not yet in a stretch
     CountedContact last_{};
 };
 
-/// The 128th of a forcing cycle in which each contact lies: a byte for each, and one more behind a
-/// pause of a cycle.
+/// Positions of the contacts in units of 1/128 forcing cycle, stored as differences: one byte per
+/// contact, and one more after a pause of a cycle.
 class CyclePositions {
 public:
     static constexpr int parts = 128;
 
-    /// At tau/cycle, no earlier than the one before.
+    /// Adds a contact at tau/cycle, not before the previous one.
     void add(double cycles);
-    /// Gives each as a number of parts since tau = 0.
+    /// Passes each position, in parts since tau = 0, to `take`.
     template <class Take>
     void each(Take take) const {
         std::int64_t position = 0, step = 0;
@@ -77,33 +78,32 @@ public:
     }
 
 private:
-    // Steps are written by seven bits a byte, the lowest first; all but the last have the eighth
-    // bit set.
+    // A difference is written in groups of seven bits, the lowest first; all but its last byte have
+    // the eighth bit set.
     static constexpr int bits = 7, low_bits = 127;
     std::vector<std::uint8_t> bytes_;
     std::int64_t last_ = 0;
 };
 
-/// How the contacts are spread over the forcing cycles.
+/// Distribution of the contacts over the forcing cycles.
 struct CycleCounts {
-    std::vector<double> moving_tau, moving_z;  ///< contacts per cycle, over 10 of them around tau
-    std::vector<double> cycles_with;           ///< share of cycles with 0, 1, 2, ... contacts
+    std::vector<double> moving_tau, moving_z;  ///< contacts per cycle, over 10 cycles around tau
+    std::vector<double> cycles_with;           ///< fraction of cycles with 0, 1, 2, ... contacts
 };
 
-/// Of the contacts in a window.
+/// Observer of the rhythm of the contacts in a window.
 class Rhythm : public ContactStream {
 public:
-    /// `most_listed`: of the lists that grow with the run. 0: none of them is made.
+    /// `most_listed`: maximum length of the lists that grow with the run; 0: no lists.
     Rhythm(const Parameters& parameters, const Interval& window, std::size_t most_listed);
 
-    /// Once, after the run: what it reached of the window.
+    /// Call once, after the run, with the part of the window that the run reached.
     void finish(const Interval& reached);
 
-    /// Contacts per cycle, from the first to the last.
-    double z() const;
-    /// From a cycle before the first contact on. The moving z is thinned to most_listed entries.
+    double z() const;  ///< contacts per cycle, from the first to the last contact
+    /// Starts one cycle before the first contact; the moving z is thinned to most_listed entries.
     CycleCounts cycle_counts() const;
-    /// No more than most_listed.
+    /// The last stretches, at most most_listed.
     std::vector<SynchronyStretch> last_stretches();
 
     long contacts() const { return synchrony.contacts; }
@@ -119,7 +119,7 @@ private:
     const std::size_t most_listed_;
     Interval reached_{};
     double first_ = 0, last_ = 0;
-    std::optional<CountedContact> before_;  // the last one before the window
+    std::optional<CountedContact> before_;  // the last contact before the window
     CyclePositions positions_;
 };
 

@@ -1,5 +1,5 @@
-// Numbers of twice the digits, as unevaluated sums of two doubles. What is made of + - * / alone is
-// the same on every machine, and can be computed by the compiler.
+// Double-double arithmetic: unevaluated sums of two doubles, about 106 bits. It uses only + - * /,
+// so that results are the same on every machine and can be computed at compile time.
 #pragma once
 
 namespace vines {
@@ -21,7 +21,8 @@ constexpr DoubleDouble exact_sum(double a, double b) {
     return {high, (a - (high - of_b)) + (b - of_b)};
 }
 
-/// A number to 26 bits (Veltkamp's split); what is left has 26, too. Products of such are exact.
+/// The leading 26 bits of a number (Veltkamp's split); the remainder has at most 26 bits. Products
+/// of such parts are exact.
 constexpr double head_of(double a) {
     const double shifted = a * 0x8000001p0;
     return shifted - (shifted - a);
@@ -34,7 +35,7 @@ constexpr DoubleDouble exact_product(double a, double b) {
     return {high, ((a_head * b_head - high) + a_head * b_tail + a_tail * b_head) + a_tail * b_tail};
 }
 
-/// Sum, product and quotient to about 2^-102.
+/// Sum, product and quotient with a relative error of about 2^-102.
 constexpr DoubleDouble operator+(const DoubleDouble& a, const DoubleDouble& b) {
     const DoubleDouble sum = exact_sum(a.high, b.high);
     return ordered_sum(sum.high, sum.low + (a.low + b.low));

@@ -7,20 +7,19 @@
 #include <cstdint>
 
 #include "core/motion/double_double.hpp"
-#include "core/motion/special_values.hpp"
 
-// All go the same way: the argument is reduced to one of a table, whose value is known to twice the
-// digits, and a small rest r. The result is a large part, which is exact, and a small one of
-// ordinary doubles, at most 2^-7 of it, whose few roundings so weigh less than 2^-6 of an ulp.
-// Series end where the first term that is left out is below 2^-62 of the result. The tables are
-// computed by the compiler.
+// All functions use the same method. The argument is reduced to a table point, whose function value
+// is known to twice the precision of double, and a small remainder r. The result is an exact large
+// part plus a small part in ordinary doubles, at most 2^-7 of it, so that the few roundings of the
+// small part contribute less than 2^-6 ulp. Each series ends where the first omitted term is below
+// 2^-62 of the result. The compiler computes the tables.
 
 namespace vines::elementary {
 
 namespace {
 
-/// 2 artanh(numerator/denominator), ln of (denominator + numerator)/(denominator - numerator), for
-/// a quotient up to 1/3: its 34th term is below 2^-109.
+/// 2 artanh(numerator/denominator), which is ln((denominator + numerator)/(denominator -
+/// numerator)), for a quotient up to 1/3: the 34th term is below 2^-109.
 constexpr DoubleDouble logarithm_by_series(double numerator, double denominator) {
     const DoubleDouble u = DoubleDouble{numerator} / DoubleDouble{denominator}, square = u * u;
     DoubleDouble sum;
@@ -30,9 +29,9 @@ constexpr DoubleDouble logarithm_by_series(double numerator, double denominator)
 
 constexpr DoubleDouble ln_2 = logarithm_by_series(1, 3);
 
-/// To a multiple of 2^-42: eleven digits before the point are left for sums of such to be exact.
+/// Rounds the high part to a multiple of 2^-42: eleven bits before the point remain for exact sums.
 constexpr DoubleDouble on_grid(const DoubleDouble& a) {
-    constexpr double shift = 0x1.8p10;  // whose ulp is 2^-42
+    constexpr double shift = 0x1.8p10;  // its ulp is 2^-42
     const double high = (a.high + shift) - shift;
     return {high, (a.high - high) + a.low};
 }
@@ -41,14 +40,14 @@ constexpr DoubleDouble ln_2_on_grid = on_grid(ln_2);
 
 constexpr std::uint64_t mantissa_bits = 52, bits_of_1 = std::uint64_t{0x3ff} << mantissa_bits;
 
-// ln x = k ln 2 + ln c + ln(z/c), x = 2^k z. A table's cell holds 2^45 doubles; the first, 76 and a
-// half of them below 1, begins at 0.703. The cell about 1 has c = 1, so that nothing cancels there.
+// ln x = k ln 2 + ln c + ln(z/c), x = 2^k z. A table cell covers 2^45 doubles; the first cell
+// begins at 0.703, 76.5 cells below 1. The cell around 1 has c = 1, so that nothing cancels there.
 constexpr int cell_bits = 45, log_cells = 128, cells_below_1 = 76;
 constexpr std::uint64_t cell_size = std::uint64_t{1} << cell_bits,
                         least_z = bits_of_1 - cells_below_1 * cell_size - cell_size / 2;
 
 struct LogCell {
-    double inverse;  // 1/c, of 11 bits: its product with 42 bits is exact
+    double inverse;  // 1/c in 11 bits: its product with 42 bits is exact
     DoubleDouble logarithm;
 };
 
@@ -64,14 +63,14 @@ constexpr auto log_table = [] {
     return table;
 }();
 
-/// ln x as an unevaluated sum, to 2^-69 and 2^-62 of it; `bits`: those of x, which is normal; `k`:
-/// of powers of two that x was multiplied by.
+/// ln x as an unevaluated sum, with relative errors of 2^-69 and 2^-62. `bits` are those of a
+/// normal number x; k is the power of two by which x was multiplied beforehand.
 inline DoubleDouble log_parts(std::uint64_t bits, int k) {
     const std::uint64_t from_least = bits - least_z;
     k = static_cast<int>(static_cast<std::int64_t>(from_least) >> mantissa_bits) - k;
     const LogCell& cell = log_table[(from_least >> cell_bits) % log_cells];
     const std::uint64_t z = bits - (from_least & ~std::uint64_t{0} << mantissa_bits);
-    // r = z/c - 1, |r| < 0.0052: exact in two parts, for those of z have 42 and 11 bits.
+    // r = z/c - 1, |r| < 0.0052, exact in two parts because the parts of z have 42 and 11 bits.
     const double z_head = std::bit_cast<double>(z & ~std::uint64_t{0x7ff}),
                  z_tail = std::bit_cast<double>(z) - z_head;
     const auto [r, r_low] = ordered_sum(z_head * cell.inverse - 1, z_tail * cell.inverse);
@@ -80,7 +79,7 @@ inline DoubleDouble log_parts(std::uint64_t bits, int k) {
                  rest = square * ((-1. / 2 + r * (1. / 3)) +
                                   square * ((-1. / 4 + r * (1. / 5)) +
                                             square * ((-1. / 6 + r * (1. / 7)) - square / 8)));
-    // Zero or larger than r.
+    // Zero, or larger than r.
     const double coarse = k * ln_2_on_grid.high + cell.logarithm.high;
     const auto [high, low] = ordered_sum(coarse, r);
     return {high, (low + (r_low + k * ln_2_on_grid.low + cell.logarithm.low)) + rest};
@@ -93,7 +92,7 @@ bool is_positive_normal(std::uint64_t bits) {
     return bits - least_normal < bits_of_infinity - least_normal;
 }
 
-/// That of a number, positive and finite.
+/// The same for any positive finite number.
 DoubleDouble log_parts(double x) {
     const auto bits = std::bit_cast<std::uint64_t>(x);
     return bits >= least_normal ? log_parts(bits, 0)
@@ -118,7 +117,7 @@ namespace {
 
 // e^x = 2^(n/128) e^r
 constexpr int exp_steps = 128;
-// Its head has 26 bits: times n, which is below 2^18, it is exact.
+// The head has 26 bits: multiplied by n, which is below 2^18, it is exact.
 constexpr double exp_step_head = head_of(ln_2.high) / exp_steps,
                  exp_step_rest = ((ln_2.high - head_of(ln_2.high)) + ln_2.low) / exp_steps;
 
@@ -126,7 +125,7 @@ constexpr auto exp_table = [] {
     std::array<DoubleDouble, exp_steps> table;
     for (int i = 0; i < exp_steps; ++i) {
         const DoubleDouble r = ln_2 * DoubleDouble{1.0 * i / exp_steps};
-        // The term behind the 27th is below 2^-110.
+        // The term after the 27th is below 2^-110.
         DoubleDouble sum = {1};
         for (int n = 27; n > 0; --n)
             sum = DoubleDouble{1} + sum * r / DoubleDouble{static_cast<double>(n)};
@@ -135,7 +134,7 @@ constexpr auto exp_table = [] {
     return table;
 }();
 
-/// The whole number next to x, |x| < 2^51.
+/// Nearest integer, |x| < 2^51.
 double nearest_whole(double x) {
     constexpr double shift = 0x1.8p52;
     return (x + shift) - shift;
@@ -143,7 +142,7 @@ double nearest_whole(double x) {
 
 /// e^(x + low), |low| at most an ulp of x.
 double exp_of(double x, double low) {
-    // The ends, beyond which the result is infinite or 0.
+    // Beyond these limits the result is infinite or 0.
     if (!(x < 710)) return x > 0 ? infinity : x;
     if (x < -746) return 0;
     constexpr double steps_per_unit = exp_steps / ln_2.high;
@@ -154,7 +153,7 @@ double exp_of(double x, double low) {
         r + r * r * (1. / 2 + r * (1. / 6 + r * (1. / 24 + r * (1. / 120 + r * (1. / 720)))));
     const DoubleDouble& start = exp_table[whole & (exp_steps - 1)];
     const double result = start.high + (start.low + start.high * growth);
-    // 2^k in two factors, for 2^1024 and 2^-1075 are no doubles.
+    // 2^k as two factors, because 2^1024 and 2^-1075 are not doubles.
     const int first = k / 2;
     const auto power_of_2 = [](int power) {
         return std::bit_cast<double>(bits_of_1 + (static_cast<std::uint64_t>(power) << 52));
@@ -172,7 +171,7 @@ double pow(double x, double y) {
     if (x == 0 || x == infinity) return (x > 0) == (y > 0) ? infinity : 0;
     const DoubleDouble sum = log_parts(x), logarithm = ordered_sum(sum.high, sum.low);
     const double rough = logarithm.high * y;
-    // Beyond the ends of exp, where the parts of the product might overflow.
+    // Beyond the limits of exp, where the parts of the product could overflow.
     if (!(std::abs(rough) < 800)) return rough > 0 ? infinity : 0;
     const DoubleDouble product = exact_product(logarithm.high, y);
     return exp_of(product.high, product.low + logarithm.low * y);
@@ -188,14 +187,14 @@ constexpr int turn_steps = 64, right_angle = turn_steps / 4;
 constexpr double steps_per_radian = turn_steps / (2 * pi[0]);
 constexpr double angle_step[3] = {pi[0] / 32, pi[1] / 32, pi[2] / 32};
 
-/// A number as 26 bits and what is left.
+/// A number as its leading 26 bits and the remainder.
 struct HeadAndRest {
     double head = 0, rest = 0;
     constexpr double value() const { return head + rest; }
 };
 
-/// sin or cos of an angle up to pi/4 by its series, from the first term on: the term behind the
-/// 14th is below 2^-107.
+/// Series of sin (first = 1) or cos (first = 0) up to pi/4: the term after the 14th is below
+/// 2^-107.
 constexpr DoubleDouble sine_series(const DoubleDouble& angle, int first) {
     const DoubleDouble minus_square = DoubleDouble{-1} * angle * angle;
     DoubleDouble sum = {1};
@@ -225,18 +224,17 @@ struct ReducedAngle {
     DoubleDouble rest;  // |rest| <= step/2 = 0.0491
 };
 
-/// For less than 1024 steps, to 2^-95: the products with parts of 26 bits are exact. x is so near
-/// to n steps that the first difference is, too.
+/// For fewer than 1024 steps, error 2^-95: products with 26-bit parts are exact, and so is the
+/// first difference because x is close to n steps.
 inline ReducedAngle less_few_steps(double x, double n) {
     constexpr double first = head_of(angle_step[0]), second = angle_step[0] - first;
     const DoubleDouble near = exact_sum(x - n * first, -n * second);
     return {static_cast<std::int64_t>(n), ordered_sum(near.high, near.low - n * angle_step[1])};
 }
 
-/// For any number of steps, to 2^-62 of the rest as long as they are less than 2^35.
+/// For any number of steps; error 2^-62 of the remainder below 2^35 steps.
 ReducedAngle less_many_steps(double x) {
-    // So far the number of steps, and with it what the third part of pi leaves out, is small
-    // enough.
+    // Up to this limit the error of truncating pi after three parts is small enough.
     constexpr double furthest = 0x1p47;
     if (!(std::abs(x) < infinity)) return {0, {nan, 0}};
     if (std::abs(x) > furthest) x = std::fmod(x, 2 * pi[0]);
@@ -270,7 +268,7 @@ inline double sine_at(std::int64_t steps, const DoubleDouble& r) {
         square * (-1. / 6 + square * (1. / 120 + square * (-1. / 5040 + square / 362880)));
     const double cosine_less =
         square * (-1. / 2 + square * (1. / 24 + square * (-1. / 720 + square / 40320)));
-    // sin a is 0 or the larger.
+    // sin a is 0 or the larger term.
     const DoubleDouble large = ordered_sum(sine.head, cosine.head * r_head);
     const double small = sine.rest + cosine.head * r_rest + cosine.rest * r.high +
                          cosine.value() * (r.high * sine_less) + sine.value() * cosine_less;
@@ -280,7 +278,7 @@ inline double sine_at(std::int64_t steps, const DoubleDouble& r) {
 }  // namespace
 
 double sin(double x) {
-    // x - x^3/6 is x; 0 keeps its sign.
+    // Here x - x^3/6 rounds to x; 0 keeps its sign.
     if (std::abs(x) < 0x1p-28) return x;
     const ReducedAngle angle = reduced(x);
     return sine_at(angle.steps, angle.rest);
@@ -302,7 +300,7 @@ constexpr auto atan_table = [] {
         const DoubleDouble further =
             DoubleDouble{atan_steps} / DoubleDouble{1.0 * (atan_steps * atan_steps + i * (i - 1))};
         const DoubleDouble minus_square = DoubleDouble{-1} * further * further;
-        // Up to 1/64: the term behind the ninth is below 2^-110.
+        // Argument up to 1/64: the term after the ninth is below 2^-110.
         DoubleDouble sum;
         for (int n = 17; n > 0; n -= 2)
             sum = sum * minus_square + DoubleDouble{1} / DoubleDouble{1.0 * n};
@@ -311,11 +309,10 @@ constexpr auto atan_table = [] {
     return table;
 }();
 
-// Below this share of the other, the smaller side of a right angle changes no digit.
+// Below this fraction of the other leg, a leg of a right triangle does not change the result.
 constexpr double least_side = 0x1p-60;
 
-/// A power of two that takes the larger of two sides, and with it the smaller, to where products
-/// and their low parts are in the range of double.
+/// A power of two that scales products of both legs and their low parts into the range of double.
 double scale_of(double larger) {
     return larger > 0x1p400 ? 0x1p-600 : larger < 0x1p-400 ? 0x1p600 : 1;
 }
@@ -323,7 +320,7 @@ double scale_of(double larger) {
 /// base + sign atan(opposite/adjacent), 0 < opposite <= adjacent.
 double angle_from(const DoubleDouble& base, int sign, double opposite, double adjacent) {
     const double whole = nearest_whole(opposite / adjacent * atan_steps), t = whole / atan_steps;
-    // Exact, for t has 7 bits: no product with 26 rounds.
+    // Exact because t has 7 bits: no product with a 26-bit part is rounded.
     const DoubleDouble along = exact_product(t, adjacent), up = exact_product(t, opposite);
     const DoubleDouble q = (DoubleDouble{opposite} + DoubleDouble{-along.high, -along.low}) /
                            (DoubleDouble{adjacent} + up);  // |q| <= 1/128
@@ -336,7 +333,7 @@ double angle_from(const DoubleDouble& base, int sign, double opposite, double ad
     return sum.high + (sum.low + (first.low + small));
 }
 
-/// That of the positive quadrant, or with x < 0 of the next one: 0 <= y, |x| <= infinity.
+/// The angle in the first quadrant, or for x < 0 in the second: y >= 0, infinities allowed.
 double angle_above(double y, double x) {
     constexpr DoubleDouble half_turn = {pi[0], pi[1]}, quarter = {pi[0] / 2, pi[1] / 2};
     const double width = std::abs(x);

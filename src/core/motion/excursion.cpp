@@ -9,40 +9,40 @@ namespace {
 
 bool signs_differ(double a, double b) { return (a < 0) != (b < 0); }
 
-/// x where x' = 0 within 0 < d < width from `left`, x' being of opposite signs at the two ends and
-/// x'' of one sign between them. Newton's steps with an acceleration that is right to 1e-5 of
-/// itself; the last one is taken by its parabola, of which 1e-18 is left out.
-double turning_value(const Flow& flow, const Oscillation& left, double width, double x_dot_end) {
+/// x at the zero of x' in 0 < d < width from `left`; x' has opposite signs at the two ends and x''
+/// has one sign between them. Newton iteration with an acceleration accurate to 1e-5; the last step
+/// follows the parabola, whose relative error is 1e-18.
+double extremum_value(const Flow& flow, const Oscillation& left, double width, double x_dot_end) {
     constexpr double last_step = 1e-5;
-    const Flow::Near series = flow.near_series(left);
+    const Flow::ShortSeries series = flow.short_series(left);
     const double a = flow.acceleration(left), rate = flow.jerk(left), snap = flow.snap(left);
     double d = width * left.x_dot / (left.x_dot - x_dot_end);
     for (int step = 0;; ++step) {
         const auto [x, x_dot] = series.at(d);
         const double ahead = -x_dot / (a + d * (rate + 0.5 * d * snap));
         if (std::abs(ahead) <= last_step * width) return x + 0.5 * ahead * x_dot;
-        // Hardly any acceleration: then x hardly changes.
+        // With almost no acceleration x hardly changes.
         if (step == 8 || !(std::abs(ahead) <= width)) return x;
         d = std::clamp(d + ahead, 0.0, width);
     }
 }
 
-/// Visits x at the turning points within a cell or a part of one, from `left` to `right`: one, or
-/// where x'' changes its sign between them two.
+/// Visits the extrema of x in a cell or part of a cell, from `left` to `right`: at most one, or two
+/// if x'' changes sign in between.
 template <class Visit>
-void visit_turns(
+void visit_extrema(
     const Flow& flow, const Oscillation& left, double width, const Oscillation& right,
     const Visit& visit) {
     const auto part = [&](const Oscillation& from, double length, const Oscillation& to) {
         if (length > 0 && signs_differ(from.x_dot, to.x_dot))
-            visit(turning_value(flow, from, length, to.x_dot));
+            visit(extremum_value(flow, from, length, to.x_dot));
     };
     const double a = flow.acceleration(left), b = flow.acceleration(right);
     if (!signs_differ(a, b)) return part(left, width, right);
-    // x'' = 0 by a step of the secant and one of Newton's: x' hardly changes beside it.
-    const Flow::Near series = flow.near_series(left);
+    // x'' = 0 by one secant and one Newton step: x' hardly changes near that point.
+    const Flow::ShortSeries series = flow.short_series(left);
     const auto at = [&](double d) {
-        Oscillation o = flow.turned(left, d);
+        Oscillation o = flow.rotated(left, d);
         const auto [x, x_dot] = series.at(d);
         o.x = x, o.x_dot = x_dot;
         return o;
@@ -56,10 +56,10 @@ void visit_turns(
     part(middle, width - d, right);
 }
 
-/// One look at the grid: the flight from o on, for a part of the flow's reach.
-class Look {
+/// Search for the peak over one grid length: the motion from o, for at most the reach of the flow.
+class PeakSearch {
 public:
-    Look(double known, const Flow& flow, const Oscillation& o, double part)
+    PeakSearch(double known, const Flow& flow, const Oscillation& o, double part)
         : known_(std::max(known, std::abs(o.x))),
           flow_(flow),
           o_(o),
@@ -70,8 +70,8 @@ public:
 
     double peak() {
         if (bounds_.x <= known_) return known_;
-        // x differs from its chord over a width w by at most M2 w^2/8: blocks of cells, the cells
-        // of those blocks, and within those cells the turning point.
+        // x differs from its chord over a width w by at most M2 w^2/8. The search narrows down from
+        // blocks of cells to cells to the extremum inside a cell.
         const double width = Flow::block * h_, more = bounds_.x_ddot * (width * width / 8);
         double left = o_.x;
         const int blocks = cells_ / Flow::block;
@@ -79,53 +79,53 @@ public:
             const Flow::Block ends = flow_.relative_positions_apart(o_, 0, 0, from);
             for (int i = 0; i < Flow::block && from + i < blocks; ++i) {
                 if (std::max(std::abs(left), std::abs(ends[i])) + more > known_)
-                    block((from + i) * Flow::block, left, ends[i], more);
+                    search_block((from + i) * Flow::block, left, ends[i], more);
                 left = ends[i];
             }
         }
-        if (cells_ % Flow::block != 0) cells(blocks * Flow::block, left, cells_ % Flow::block);
-        rest();
+        if (cells_ % Flow::block != 0)
+            search_cells(blocks * Flow::block, left, cells_ % Flow::block);
+        search_remainder();
         return known_;
     }
 
 private:
-    /// Far from the middle the spring outdoes all else: then x'' does not vanish, and x' vanishes
-    /// once, if it changes its sign.
-    void block(int from, double left, double right, double more) {
+    /// Far from the middle the spring force dominates: x'' has no zero there, and x' at most one.
+    void search_block(int from, double left, double right, double more) {
         const double stiffness = flow_.coefficients()[0],
                      rest = bounds_.x_ddot - stiffness * bounds_.x,
                      least = std::min(std::abs(left), std::abs(right)) - more;
         if (signs_differ(left, right) || stiffness * least <= rest)
-            return cells(from, left, Flow::block);
+            return search_cells(from, left, Flow::block);
         known_ = std::max({known_, std::abs(left), std::abs(right)});
         double before = flow_.speed_at(o_, from);
         if (!signs_differ(before, flow_.speed_at(o_, from + Flow::block))) return;
         for (int k = from + 1; k <= from + Flow::block; ++k) {
             const double now = flow_.speed_at(o_, k);
-            if (signs_differ(before, now)) return once(flow_.roughly_at(o_, k - 1), now);
+            if (signs_differ(before, now)) return single_extremum(flow_.roughly_at(o_, k - 1), now);
             before = now;
         }
     }
 
-    /// A cell within which x' falls to zero: x comes no further than it would at its speed now.
-    void once(const Oscillation& left, double x_dot_end) {
+    /// A cell in which x' falls to zero: the motion goes no further than with its present speed.
+    void single_extremum(const Oscillation& left, double x_dot_end) {
         if (std::abs(left.x) + std::abs(left.x_dot) * h_ > known_)
-            visit(turning_value(flow_, left, h_, x_dot_end));
+            visit(extremum_value(flow_, left, h_, x_dot_end));
     }
 
-    void cells(int from, double left, int count) {
+    void search_cells(int from, double left, int count) {
         const Flow::Block ends = flow_.relative_positions(o_, 0, 0, from + 1);
         const double more = bounds_.x_ddot * (h_ * h_ / 8);
         for (int i = 0; i < count; ++i) {
             visit(ends[i]);
             if (std::max(std::abs(left), std::abs(ends[i])) + more > known_)
-                turns(flow_.roughly_at(o_, from + i), h_, flow_.roughly_at(o_, from + i + 1));
+                extrema(flow_.roughly_at(o_, from + i), h_, flow_.roughly_at(o_, from + i + 1));
             left = ends[i];
         }
     }
 
-    /// Behind the last whole cell.
-    void rest() {
+    /// The part after the last whole cell.
+    void search_remainder() {
         const double d = part_ - cells_ * h_;
         if (!(d > 0)) return;
         const Oscillation left = flow_.roughly_at(o_, cells_);
@@ -133,11 +133,11 @@ private:
             return;
         const Oscillation right = flow_.after(left, d);
         visit(right.x);
-        turns(left, d, right);
+        extrema(left, d, right);
     }
 
-    void turns(const Oscillation& left, double width, const Oscillation& right) {
-        visit_turns(flow_, left, width, right, [this](double x) { visit(x); });
+    void extrema(const Oscillation& left, double width, const Oscillation& right) {
+        visit_extrema(flow_, left, width, right, [this](double x) { visit(x); });
     }
     void visit(double x) { known_ = std::max(known_, std::abs(x)); }
 
@@ -153,10 +153,10 @@ private:
 
 double peak_beyond(double known, const Flow& flow, Oscillation o, double duration) {
     for (; duration > flow.reach(); duration -= flow.reach()) {
-        known = Look(known, flow, o, flow.reach()).peak();
+        known = PeakSearch(known, flow, o, flow.reach()).peak();
         o = flow.at(o, Flow::cells);
     }
-    return Look(known, flow, o, std::max(0.0, duration)).peak();
+    return PeakSearch(known, flow, o, std::max(0.0, duration)).peak();
 }
 
 double path_length(const Flow& flow, Oscillation o, double duration) {
@@ -171,12 +171,12 @@ double path_length(const Flow& flow, Oscillation o, double duration) {
         Oscillation left = o;
         for (int k = 1; k <= cells; ++k) {
             const Oscillation right = flow.at(o, k);
-            visit_turns(flow, left, flow.cell(), right, visit);
+            visit_extrema(flow, left, flow.cell(), right, visit);
             left = right;
         }
         const double d = std::max(0.0, part - cells * flow.cell());
         o = flow.after(left, d);
-        visit_turns(flow, left, d, o, visit);
+        visit_extrema(flow, left, d, o, visit);
         visit(o.x);
         duration -= part;
     }

@@ -1,13 +1,11 @@
-// The search of flight_lanes.hpp, compiled once for each instruction set: the file that includes
-// this one says how many lanes a vector has (vines_lanes). It knows nothing of the processor beside
-// that: sums, products, roots and comparisons of vectors are the compiler's, each rounded as IEEE
-// has it, none fused. Comments on why it is done so stand in fast_contact.cpp, whose steps these
-// are.
+// Vectorised search for contacts, compiled once per instruction set: the including file sets the
+// number of doubles per vector (vines_vector_width). Nothing else depends on the processor: sums,
+// products, roots and comparisons of vectors come from the compiler, each rounded as IEEE 754
+// requires and none fused. The steps are those of fast_contact.cpp, which explains them.
 #include <cstddef>
 
-#include "core/motion/flight_lanes.hpp"
-#include "core/motion/search_limits.hpp"
-#include "core/motion/vector_lanes.inl"
+#include "core/motion/flight_batch.hpp"
+#include "core/motion/simd_vector.inl"
 
 namespace vines {
 
@@ -17,7 +15,7 @@ Real halley(Real f, Real first, Real half_second) {
     return -f * first / (first * first - f * half_second);
 }
 
-/// The state of the oscillator in each lane.
+/// States of the oscillator, one per vector element.
 struct Oscillations {
     Real x, x_dot, sin_theta, cos_theta;
 };
@@ -25,9 +23,9 @@ struct Oscillations {
 /// The columns of FlowTables::rows.
 constexpr int row_x = 0, row_x_dot = 4, row_cos = 8, row_sin = 9, row_length = 10;
 
-class Search {
+class VectorSearch {
 public:
-    Search(FlightLanes& flights, int from)
+    VectorSearch(FlightBatch& flights, int from)
         : flights_(flights),
           from_(from),
           tables_(*flights.tables),
@@ -54,20 +52,20 @@ public:
     }
 
     void run() {
-        // From block to block to the first that is not empty as a whole, then from cell to cell of
-        // it; where those are, on to the blocks behind it.
+        // Advance block by block to the first one not proven empty, then test its cells; where all
+        // are empty, continue with the next block.
         Mask flying = ~Mask{};
         do {
-            const Mask stopped = march(flying);
-            flying = any(stopped) ? look(stopped) : Mask{};
+            const Mask stopped = skip_empty_blocks(flying);
+            flying = any(stopped) ? search_block(stopped) : Mask{};
         } while (any(flying));
-        if (any(crosses_)) cross();
+        if (any(crosses_)) find_crossing();
         if (flights_.transfers && any(crosses_)) transfer();
         report();
     }
 
 private:
-    using Column = FlightLanes::Column;
+    using Column = FlightBatch::Column;
     Real column(const Column& c) const { return load(c + from_); }
 
     Real inside(Real wide) const { return b_ - M2_ * (wide * wide / 8) - eta_; }
@@ -81,17 +79,17 @@ private:
     Real relative_position(Part part, Real time) const {
         return state_part(part) - (y_ + time * y_dot_);
     }
-    /// What a state has become, from its parts.
+    /// A component of the state from the responses to its four parts.
     template <class Part>
     Real state_part(Part part) const {
         return part(0) * lo_.x + part(1) * lo_.x_dot + part(2) * lo_.sin_theta +
                part(3) * lo_.cos_theta;
     }
-    /// Rows of the lanes' tables, each at a grid point of its own.
+    /// Table rows, at a separate grid point per vector element.
     struct Rows {
         const double* of[width];
-        Real operator()(int column, int behind = 0) const {
-            return gather(of, column + behind * row_length);
+        Real operator()(int column, int rows_ahead = 0) const {
+            return gather(of, column + rows_ahead * row_length);
         }
     };
     Rows rows_at(Real k) const {
@@ -101,8 +99,9 @@ private:
         return rows;
     }
 
-    /// On to the first block behind block_ that is not proven empty. Gives the lanes that have one.
-    Mask march(Mask flying) {
+    /// Advances to the first block after block_ not proven empty; returns the elements that found
+    /// one.
+    Mask skip_empty_blocks(Mask flying) {
         const Real wide = flow_block * h_, least = inside(wide), reach = all(tables_.reach);
         const Real last = select(less(limit_, reach), limit_ / wide, all(flow_blocks - 1));
         Real left = select(leaves_wall_, b_, lo_.x - y_), at{};
@@ -126,28 +125,27 @@ private:
         return stopped;
     }
 
-    /// The cells of each lane's block. Gives the lanes in which all of them are empty.
-    Mask look(Mask lanes) {
+    /// Tests the cells of each element's block. Returns the elements whose cells are all empty.
+    Mask search_block(Mask active) {
         const Real least = inside(h_), beyond = b_ - eta_;
         const auto give_up = [&](Mask where) {
-            open_ |= lanes & where;
-            lanes &= ~where;
+            undecided_ |= active & where;
+            active &= ~where;
         };
-        Real left = block_left_, k = select(lanes, flow_block * block_, Real{});
+        Real left = block_left_, k = select(active, flow_block * block_, Real{});
         const Rows rows = rows_at(k);
         give_up(equal(k, Real{}) & ~leaves_wall_ & at_most(beyond, absolute(left)));
         for (int i = 0; i < flow_block; ++i, k += 1) {
             const Real right = relative_position(
                 [&rows, i](int part) { return rows(row_x + part, i + 1); }, (k + 1) * h_);
-            const Mask behind_wall = leaves_wall_ & equal(k, Real{});
-            if (i == 0 && any(behind_wall)) give_up(behind_wall & ~leaves(right, h_, least));
-            const Mask seen = lanes & ~behind_wall,
-                       crossing = seen & at_most(beyond, absolute(right));
+            const Mask at_wall = leaves_wall_ & equal(k, Real{});
+            if (i == 0 && any(at_wall)) give_up(at_wall & ~leaves(right, h_, least));
+            const Mask seen = active & ~at_wall, crossing = seen & at_most(beyond, absolute(right));
             crosses_ |= crossing;
             cell_ = select(crossing, k, cell_);
             left_ = select(crossing, left, left_);
             right_ = select(crossing, right, right_);
-            lanes &= ~crossing;
+            active &= ~crossing;
             const Mask empty = less(absolute(left), least) & less(absolute(right), least),
                        unclear = seen & ~crossing & ~empty;
             if (any(unclear)) {
@@ -157,10 +155,10 @@ private:
             }
             left = right;
         }
-        return lanes;
+        return active;
     }
 
-    /// At the left end of each lane's crossing cell.
+    /// State at the left end of the crossing cell.
     Oscillations at_crossing() const {
         const Rows rows = rows_at(select(crosses_, cell_, Real{}));
         const Real cos = rows(row_cos), sin = rows(row_sin);
@@ -181,11 +179,11 @@ private:
                forcing_ * Omega_ * Omega_ * o.sin_theta;
     }
 
-    /// The Taylor series of x and x' about the crossing cell's left end.
-    struct Near {
-        Real x[near_terms], x_dot[near_terms];
+    /// Taylor series of x and x' about the left end of the crossing cell.
+    struct ShortSeries {
+        Real x[short_terms], x_dot[short_terms];
         static Real value(const Real* c, Real d) {
-            static_assert(near_terms == 12);
+            static_assert(short_terms == 12);
             const Real q = d * d, q_squared = q * q, q_fourth = q_squared * q_squared;
             const auto half = [=](int odd) {
                 return c[odd] + c[2 + odd] * q + (c[4 + odd] + c[6 + odd] * q) * q_squared +
@@ -194,29 +192,29 @@ private:
             return half(0) + d * half(1);
         }
     };
-    /// Of a motion that begins as one part of the state, of size 1 and alone.
-    Near near_series(int part) const {
-        Near n;
-        for (int k = 0; k < near_terms; ++k) {
-            n.x[k] = all(tables_.near_x[part][k]);
-            n.x_dot[k] = all(tables_.near_x_dot[part][k]);
+    /// Response to one part of the state with size 1.
+    ShortSeries short_series(int part) const {
+        ShortSeries n;
+        for (int k = 0; k < short_terms; ++k) {
+            n.x[k] = all(tables_.short_x[part][k]);
+            n.x_dot[k] = all(tables_.short_x_dot[part][k]);
         }
         return n;
     }
-    Near near_series(const Oscillations& o) const {
-        Near n;
-        for (int k = 0; k < near_terms; ++k) {
+    ShortSeries short_series(const Oscillations& o) const {
+        ShortSeries n;
+        for (int k = 0; k < short_terms; ++k) {
             const auto sum = [&o, k](const double* const(&columns)[4]) {
                 return all(columns[0][k]) * o.x + all(columns[1][k]) * o.x_dot +
                        all(columns[2][k]) * o.sin_theta + all(columns[3][k]) * o.cos_theta;
             };
-            n.x[k] = sum(tables_.near_x);
-            n.x_dot[k] = sum(tables_.near_x_dot);
+            n.x[k] = sum(tables_.short_x);
+            n.x_dot[k] = sum(tables_.short_x_dot);
         }
         return n;
     }
 
-    Oscillations turned(const Oscillations& o, Real d) const {
+    Oscillations rotated(const Oscillations& o, Real d) const {
         const Real a = Omega_ * d, q = a * a;
         const Real cos =
             1 + q * (-1.0 / 2 +
@@ -230,14 +228,14 @@ private:
         const Real shrink = 1.5 - 0.5 * (new_sin * new_sin + new_cos * new_cos);
         return {o.x, o.x_dot, new_sin * shrink, new_cos * shrink};
     }
-    Oscillations turned_little(const Oscillations& o, Real d) const {
+    Oscillations rotated_little(const Oscillations& o, Real d) const {
         const Real a = Omega_ * d, cos = 1 - 0.5 * a * a;
         return {
             o.x, o.x_dot, o.sin_theta * cos + o.cos_theta * a, o.cos_theta * cos - o.sin_theta * a};
     }
 
-    /// The contact of every lane whose x - y is monotone in its crossing cell.
-    void cross() {
+    /// The contact of every element whose x - y is monotone in its crossing cell.
+    void find_crossing() {
         const Real wall = select(less(Real{}, right_), all(1), all(-1)), f0 = wall * left_ - b_,
                    fh = wall * right_ - b_;
         const Oscillations o = at_crossing();
@@ -254,14 +252,15 @@ private:
             f0 + d * (f1 + d * (f2 + d * (f3 + d * (f4 + d * f5)))),
             f1 + d * (2 * f2 + d * (3 * f3 + d * (4 * f4 + d * (5 * f5)))),
             f2 + d * (3 * f3 + d * (6 * f4 + d * (10 * f5))));
-        const Near series = near_series(o);
+        const ShortSeries series = short_series(o);
         const Real y_left = y_ + y_dot_ * (cell_ * h_);
         Mask found{};
         Real x{}, x_dot{}, step{};
         for (int i = 0; i < most_crossing_steps; ++i) {
             going &= less(Real{}, d) & at_most(d, h_ + little_step * h_);
             if (!any(going)) break;
-            const Real new_x = Near::value(series.x, d), new_x_dot = Near::value(series.x_dot, d);
+            const Real new_x = ShortSeries::value(series.x, d),
+                       new_x_dot = ShortSeries::value(series.x_dot, d);
             const Real new_step = halley(
                 wall * (new_x - (y_left + y_dot_ * d)) - b_, wall * (new_x_dot - y_dot_),
                 f2 + 0.5 * wall * d * (third + 0.5 * d * fourth));
@@ -278,7 +277,7 @@ private:
         keep(s, wall, state_after(o, d, x, x_dot, step));
     }
 
-    /// The transfer matrix of the flight, as Flow::transfer() has it.
+    /// Transfer matrix of the flight, computed as in Flow::transfer().
     void transfer() {
         const Real s = select(crosses_, column(flights_.s), Real{});
         Real k = s / h_;
@@ -287,8 +286,9 @@ private:
         const Rows rows = rows_at(k);
         const Real a11 = rows(row_x_dot + 1), a12 = rows(row_x_dot), a21 = rows(row_x + 1),
                    a22 = rows(row_x);
-        const Near unforced = near_series(1);
-        const Real u = Near::value(unforced.x, d), u_dot = Near::value(unforced.x_dot, d);
+        const ShortSeries unforced = short_series(1);
+        const Real u = ShortSeries::value(unforced.x, d),
+                   u_dot = ShortSeries::value(unforced.x_dot, d);
         const Real t12 = -stiffness_ * u, t22 = u_dot + damping_ * u;
         store(flights_.a11 + from_, u_dot * a11 + t12 * a21);
         store(flights_.a12 + from_, u_dot * a12 + t12 * a22);
@@ -296,12 +296,12 @@ private:
         store(flights_.a22 + from_, u * a12 + t22 * a22);
     }
 
-    /// By the series' x and x' at d, and over the last step by its Taylor polynomial.
+    /// x and x' of the series at d, carried over the last step by the Taylor polynomial.
     Oscillations state_after(const Oscillations& o, Real d, Real x, Real x_dot, Real step) const {
-        Oscillations at = turned(o, d);
+        Oscillations at = rotated(o, d);
         at.x = x, at.x_dot = x_dot;
         const Real a = acceleration(at), rate = jerk(at);
-        at = turned_little(at, step);
+        at = rotated_little(at, step);
         at.x = x + step * (x_dot + 0.5 * step * a);
         at.x_dot = x_dot + step * (a + 0.5 * step * rate);
         return at;
@@ -318,32 +318,32 @@ private:
     }
 
     void report() {
-        // What began to cross and is not found is open.
+        // A crossing that was begun but not found is undecided.
         for (int i = 0; i < width; ++i)
-            flights_.found[from_ + i] = crosses_[i]                 ? FlightLanes::contact
-                                        : open_[i] || cell_[i] >= 0 ? FlightLanes::open
-                                                                    : FlightLanes::none;
+            flights_.result[from_ + i] = crosses_[i]                      ? FlightBatch::contact
+                                         : undecided_[i] || cell_[i] >= 0 ? FlightBatch::undecided
+                                                                          : FlightBatch::none;
     }
 
-    FlightLanes& flights_;
+    FlightBatch& flights_;
     const int from_;
     const FlowTables& tables_;
-    // As in Flight of fast_contact.cpp: mirrored so that the wall that is left is at x - y = b.
+    // Mirrored as in fast_contact.cpp: the wall being left is at x - y = b.
     const Mask leaves_wall_;
     const Real mirror_;
     const Real b_, limit_, w_, y_, y_dot_;
     const Oscillations lo_;
     const Real h_, stiffness_, damping_, forcing_, Omega_;
     Real M2_, M3_, eta_;
-    Mask open_{}, crosses_{};
-    // The block at hand and x - y at its left end.
+    Mask undecided_{}, crosses_{};
+    // Current block and x - y at its left end.
     Real block_ = all(-1), block_left_{};
-    // The crossing cell and x - y at its ends.
+    // Crossing cell and x - y at its ends.
     Real cell_ = all(-1), left_{}, right_{};
 };
 
-void search_lanes(FlightLanes& flights) {
-    for (int from = 0; from < flights.count; from += width) Search(flights, from).run();
+void search_batch(FlightBatch& flights) {
+    for (int from = 0; from < flights.count; from += width) VectorSearch(flights, from).run();
 }
 
 }  // namespace

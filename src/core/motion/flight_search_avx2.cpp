@@ -1,4 +1,4 @@
-#define vines_lanes 4
+#define vines_vector_width 4
 #include "core/motion/flight_search.inl"
 
-vines::NamedSearch vines::avx2_search() { return {"AVX2", search_lanes}; }
+vines::NamedBatchSearch vines::avx2_search() { return {"AVX2", search_batch}; }

@@ -1,4 +1,4 @@
-#define vines_lanes 8
+#define vines_vector_width 8
 #include "core/motion/flight_search.inl"
 
-vines::NamedSearch vines::avx512_search() { return {"AVX-512", search_lanes}; }
+vines::NamedBatchSearch vines::avx512_search() { return {"AVX-512", search_batch}; }

@@ -1,4 +1,4 @@
-#define vines_lanes 2
+#define vines_vector_width 2
 #include "core/motion/flight_search.inl"
 
-vines::NamedSearch vines::baseline_search() { return {"baseline", search_lanes}; }
+vines::NamedBatchSearch vines::baseline_search() { return {"baseline", search_batch}; }

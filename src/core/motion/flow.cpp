@@ -5,31 +5,31 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/motion/last_used.hpp"
+#include "core/motion/small_cache.hpp"
 
 namespace vines {
 
 namespace {
 
-// 42 cells a period (2 pi/h) keep the empty-cell proof of guard.hpp sharp: its margin M2 h^2/8 is
-// .3 % of the amplitude.
+// 42 cells per period (2 pi/h) keep the empty-cell proof of contact_search.hpp sharp: its margin M2
+// h^2/8 is 0.3 % of the amplitude.
 constexpr double cells_per_period = 42;
 
-// Taylor terms of the flow over a cell, whose width times the fastest rate is .15: the first one
-// left out is below 1e-49.
+// Taylor terms of the flow over a cell; its width times the fastest rate is 0.15, and the first
+// omitted term is below 1e-49.
 constexpr int cell_terms = 26;
 
-// In extended precision: the tables are right to the last ulp of double.
+// Extended precision makes the tables accurate to the last ulp of double.
 using Real = long double;
 struct RealState {
     Real x, x_dot, sin, cos;
 };
-/// What four states become that each have one part only: a matrix by its columns.
+/// A matrix by columns: the states that grow from the four unit states.
 using RealColumns = std::array<RealState, 4>;
 
 constexpr RealColumns unit_states = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
 
-/// The n-th Taylor coefficient of the state from the one before.
+/// The n-th Taylor coefficient of the state from the previous one.
 RealState next_term(const Flow::Coefficients& c, const RealState& t, int n) {
     const Real stiffness = c[0], damping = c[1], forcing = c[2], Omega = c[3];
     return {
@@ -37,9 +37,9 @@ RealState next_term(const Flow::Coefficients& c, const RealState& t, int n) {
         Omega * t.cos / n, -Omega * t.sin / n};
 }
 
-/// What a state becomes over a cell; gives the Taylor coefficients of its x.
+/// The state after one cell; sets the Taylor coefficients of its x.
 RealState over_cell(
-    const Flow::Coefficients& c, const RealState& start, double cell, Flow::Series& series) {
+    const Flow::Coefficients& c, const RealState& start, double cell, Flow::TaylorSeries& series) {
     RealState term = start, sum = start;
     Real power = 1;
     series(0) = (double)term.x;
@@ -80,11 +80,11 @@ Flow::Flow(double stiffness, double damping, double forcing, double Omega)
     for (int j = 0; j < 4; ++j)
         cell[j] = over_cell(coefficients(), unit_states[j], cell_, parts[j]->series);
     for (Response* part : parts) {
-        part->near.x = part->series.head<2 * near_pairs>();
-        for (int n = 0; n < 2 * near_pairs; ++n)
+        part->near.x = part->series.head<2 * short_pairs>();
+        for (int n = 0; n < 2 * short_pairs; ++n)
             part->near.x_dot[n] = (n + 1) * part->series[n + 1];
     }
-    // So that a block of grid points, or of blocks' ends, may begin at the last cell.
+    // A block of grid points, or of block ends, may begin at the last cell.
     for (int k = 0; k <= cells + block * block; ++k) {
         for (int j = 0; j < 4; ++j) {
             parts[j]->x.push_back((double)state[j].x);
@@ -108,7 +108,7 @@ Flow::Coefficients Flow::free_coefficients(const Parameters& p) {
 namespace {
 
 // The same force on both masses.
-Flow::Coefficients stuck_coefficients(const Parameters& p) {
+Flow::Coefficients sticking_coefficients(const Parameters& p) {
     const double mass = 1 + p.epsilon;
     return {1 / mass, 2 * p.zeta() / mass, p.epsilon * p.A() / mass, p.Omega};
 }
@@ -116,20 +116,20 @@ Flow::Coefficients stuck_coefficients(const Parameters& p) {
 Flow of(const Flow::Coefficients& c) { return Flow(c[0], c[1], c[2], c[3]); }
 
 std::shared_ptr<const Flow> shared(const Flow::Coefficients& c) {
-    thread_local LastUsed<Flow::Coefficients, Flow> flows;
+    thread_local SmallCache<Flow::Coefficients, Flow> flows;
     return flows.get(c, [&c] { return of(c); });
 }
 
 }  // namespace
 
 Flow Flow::free(const Parameters& p) { return of(free_coefficients(p)); }
-Flow Flow::stuck(const Parameters& p) { return of(stuck_coefficients(p)); }
+Flow Flow::sticking(const Parameters& p) { return of(sticking_coefficients(p)); }
 
 std::shared_ptr<const Flow> Flow::shared_free(const Parameters& p) {
     return shared(free_coefficients(p));
 }
-std::shared_ptr<const Flow> Flow::shared_stuck(const Parameters& p) {
-    return shared(stuck_coefficients(p));
+std::shared_ptr<const Flow> Flow::shared_sticking(const Parameters& p) {
+    return shared(sticking_coefficients(p));
 }
 
 FlowTables Flow::tables() const {
@@ -145,20 +145,20 @@ FlowTables Flow::tables() const {
         .apart = {},
         .time_apart = time_apart_.data(),
         .rows = rows_.front().x.data(),
-        .near_x = {},
-        .near_x_dot = {}};
+        .short_x = {},
+        .short_x_dot = {}};
     const Response* const parts[4] = {&of_x_, &of_x_dot_, &of_sin_, &of_cos_};
     for (int j = 0; j < 4; ++j) {
         t.apart[j] = parts[j]->x_apart.data();
-        t.near_x[j] = parts[j]->near.x.data();
-        t.near_x_dot[j] = parts[j]->near.x_dot.data();
+        t.short_x[j] = parts[j]->near.x.data();
+        t.short_x_dot[j] = parts[j]->near.x_dot.data();
     }
     return t;
 }
 
 namespace {
 
-/// One Newton step keeps a phasor's length 1 over millions of turns.
+/// One Newton step keeps the phasor's length at 1 over millions of rotations.
 void keep_length(Oscillation& o) {
     const double shrink = 1.5 - 0.5 * (o.sin_theta * o.sin_theta + o.cos_theta * o.cos_theta);
     o.sin_theta *= shrink;
@@ -174,8 +174,8 @@ Oscillation Flow::at(const Oscillation& o, int k) const {
     return next;
 }
 
-Oscillation Flow::turned(const Oscillation& o, double d) const {
-    // cos and sin of 0 <= a <= 2 pi/42 by their series: the first terms left out are below 1e-18.
+Oscillation Flow::rotated(const Oscillation& o, double d) const {
+    // cos and sin of 0 <= a <= 2 pi/42 by their series; the first omitted terms are below 1e-18.
     const double a = Omega_ * d, q = a * a;
     const double cos =
         1 + q * (-1.0 / 2 +
@@ -190,9 +190,8 @@ Oscillation Flow::turned(const Oscillation& o, double d) const {
     return next;
 }
 
-SeriesValue value_at(const Flow::Series& c, double d) {
-    // Even and odd coefficients apart: two short chains of operations for each value instead of a
-    // long one.
+SeriesValue value_at(const Flow::TaylorSeries& c, double d) {
+    // Even and odd coefficients separately: two short dependency chains instead of a long one.
     static_assert(Flow::degree % 2 == 1);
     const double q = d * d;
     constexpr int n = Flow::degree;
@@ -211,8 +210,8 @@ SeriesValue value_at(const Flow::Series& c, double d) {
     return {x[0] + d * x[1], v[0] + d * v[1], a[0] + d * a[1]};
 }
 
-Oscillation Flow::along(const Series& c, const Oscillation& o, double d) const {
-    Oscillation next = turned(o, d);
+Oscillation Flow::along(const TaylorSeries& c, const Oscillation& o, double d) const {
+    Oscillation next = rotated(o, d);
     const SeriesValue value = value_at(c, d);
     next.x = value.x;
     next.x_dot = value.x_dot;
@@ -225,13 +224,13 @@ Oscillation Flow::after(Oscillation o, double s) const {
     const int k = static_cast<int>(s / cell_);
     o = at(o, k);
     const double d = std::max(0.0, s - k * cell_);
-    Oscillation next = turned(o, d);
-    const auto [x, x_dot] = near_series(o).at(d);
+    Oscillation next = rotated(o, d);
+    const auto [x, x_dot] = short_series(o).at(d);
     next.x = x, next.x_dot = x_dot;
     return next;
 }
 
-// The oscillator's block of J, eq. (19).
+// Block (x', x) of J, eq. (19).
 Transfer Flow::transfer(double s) const {
     assert(s >= 0);
     const auto after = [](const Transfer& t, const Transfer& j) -> Transfer {
@@ -247,8 +246,8 @@ Transfer Flow::transfer(double s) const {
     for (; s >= reach(); s -= reach()) ++reaches;
     const int k = static_cast<int>(s / cell_);
     const double d = std::max(0.0, s - k * cell_);
-    // Within a cell: with u the unforced motion from (x', x) = (1, 0), that from (0, 1) is
-    // u' + damping u.
+    // In a cell: if u is the unforced motion from (x', x) = (1, 0), that from (0, 1) is u' +
+    // damping u.
     const auto [u, u_dot] = of_x_dot_.near.at(d);
     Transfer j = after({u_dot, -stiffness_ * u, u, u_dot + damping_ * u}, row(k));
     for (; reaches > 0; --reaches) j = after(j, row(cells));

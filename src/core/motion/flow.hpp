@@ -1,12 +1,12 @@
-// The motion between events: a harmonically forced linear oscillator, alone (free) or with the
-// absorber's mass glued to it (stuck), as a function of the time s since the last event.
+// Motion between events: a harmonically forced linear oscillator, alone (free) or with the ball at
+// rest on its wall (sticking), as a function of the time s since the last event.
 //
 // Instead of the closed form (8)-(11), which divides by omega_d and by the distance to resonance,
-// the flow is kept as the exponential of the matrix of (x, x', sin theta, cos theta): a table of it
-// on a grid of s, and a Taylor series within a cell. That is the same function, to the last ulp,
-// for every zeta >= 0 and every Omega: undamped, at resonance (secular growth), critically damped
-// and overdamped need no case of their own. No absolute time enters; the forcing phase is carried
-// as the phasor (sin theta, cos theta), so it is reduced modulo 2 pi by construction.
+// the flow is stored as the exponential of the matrix of (x, x', sin theta, cos theta): a table on
+// a grid of s, and a Taylor series within a cell. It equals the closed form to the last ulp for
+// every zeta >= 0 and every Omega: undamped, at resonance (secular growth), critically damped and
+// overdamped motion need no special case. Absolute time does not occur; the forcing phase is the
+// phasor (sin theta, cos theta) and is thereby reduced modulo 2 pi.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,13 +15,12 @@
 #include <memory>
 #include <vector>
 
-#include "core/motion/flight_lanes.hpp"
+#include "core/motion/flight_batch.hpp"
 #include "core/motion/parameters.hpp"
-#include "core/motion/search_limits.hpp"
 
 namespace vines {
 
-/// The linear oscillator's state and the phasor of the forcing phase theta = Omega tau + phi.
+/// State of the linear oscillator and phasor of the forcing phase theta = Omega tau + phi.
 struct Oscillation {
     double x, x_dot;
     double sin_theta, cos_theta;
@@ -35,44 +34,43 @@ struct Transfer {
 /// x'' = -stiffness x - damping x' + forcing sin(theta), theta' = Omega.
 class Flow {
 public:
-    /// The grid reaches 3 periods of the faster of forcing and oscillator.
+    /// The grid covers 3 periods of the faster of forcing and oscillator.
     static constexpr int cells = flow_cells;
-    /// Of the Taylor series within a cell: its remainder is below 1e-20 of the motion.
+    /// Degree of the Taylor series within a cell; its remainder is below 1e-20 of the motion.
     static constexpr int degree = 13;
     static constexpr int block =
         flow_block;  ///< grid points that relative_positions() evaluates at once
-    using Series = Eigen::Array<double, degree + 1, 1>;
+    using TaylorSeries = Eigen::Array<double, degree + 1, 1>;
     using Block = Eigen::Array<double, block, 1>;
 
-    /// Stiffness, damping, forcing, Omega: all that a flow depends on.
+    /// Stiffness, damping, forcing, Omega: they determine a flow.
     using Coefficients = std::array<double, 4>;
 
     Flow(double stiffness, double damping, double forcing, double Omega);
 
-    /// The oscillator of eq. (2), where the absorber's mass flies freely.
+    /// The oscillator of eq. (2), while the ball flies freely.
     static Flow free(const Parameters& parameters);
-    /// Both masses as one: (1 + epsilon) x'' + 2 zeta x' + x = epsilon A sin(theta).
-    static Flow stuck(const Parameters& parameters);
+    /// Both masses moving as one: (1 + epsilon) x'' + 2 zeta x' + x = epsilon A sin(theta).
+    static Flow sticking(const Parameters& parameters);
 
-    /// The same, as the thread has made them before where it can: a table serves all systems of one
-    /// forcing and damping, and every run of one system.
+    /// The same from the thread's cache: one table serves all systems of equal forcing and damping.
     static std::shared_ptr<const Flow> shared_free(const Parameters& parameters);
-    static std::shared_ptr<const Flow> shared_stuck(const Parameters& parameters);
+    static std::shared_ptr<const Flow> shared_sticking(const Parameters& parameters);
 
     static Coefficients free_coefficients(const Parameters& parameters);
     Coefficients coefficients() const { return {stiffness_, damping_, forcing_, Omega_}; }
     double cell() const { return cell_; }  ///< width h of a cell
-    /// Longest time that one look at the grid can bridge.
+    /// Longest time that one table look-up can bridge.
     double reach() const { return cell_ * cells; }
-    /// The transfer matrix over s has the determinant e^(-damping s)
+    /// The transfer matrix over s has the determinant e^(-damping s).
     double damping() const { return damping_; }
-    /// Rate at which the unforced motion dies out, its faster part.
+    /// Decay rate of the faster part of the unforced motion.
     double fastest_decay() const { return fastest_decay_; }
 
     double acceleration(const Oscillation& o) const {
         return -stiffness_ * o.x - damping_ * o.x_dot + forcing_ * o.sin_theta;
     }
-    /// The third and the fourth derivative.
+    /// Third and fourth derivative of x.
     double jerk(const Oscillation& o) const {
         return -stiffness_ * o.x_dot - damping_ * acceleration(o) + forcing_ * Omega_ * o.cos_theta;
     }
@@ -91,8 +89,8 @@ public:
         return from(of_x_.x) * o.x + from(of_x_dot_.x) * o.x_dot + from(of_sin_.x) * o.sin_theta +
                from(of_cos_.x) * o.cos_theta - (y0 + from(time_) * y_dot);
     }
-    /// The same at the ends of blocks, of the j-th (from 0) and of the next ones: at the grid times
-    /// block (j + 1) h, block (j + 2) h, ... j <= cells/block.
+    /// The same at the ends of blocks j, j + 1, ... (from 0): at the grid times block (j + 1) h,
+    /// block (j + 2) h, ... j <= cells/block.
     Block relative_positions_apart(const Oscillation& o, double y0, double y_dot, int j) const {
         const auto from = [j](const std::vector<double>& column) {
             return Eigen::Map<const Block>(column.data() + j);
@@ -101,7 +99,7 @@ public:
                from(of_sin_.x_apart) * o.sin_theta + from(of_cos_.x_apart) * o.cos_theta -
                (y0 + from(time_apart_) * y_dot);
     }
-    /// The whole state at grid time k h.
+    /// The full state at grid time k h.
     Oscillation at(const Oscillation& o, int k) const;
     /// x' alone.
     double speed_at(const Oscillation& o, int k) const {
@@ -109,7 +107,7 @@ public:
         return r.x_dot[0] * o.x + r.x_dot[1] * o.x_dot + r.x_dot[2] * o.sin_theta +
                r.x_dot[3] * o.cos_theta;
     }
-    /// The whole state, but for the last ulp of the phasor's length.
+    /// The full state, except for the last ulp of the phasor's length.
     Oscillation roughly_at(const Oscillation& o, int k) const {
         const Row& r = rows_[static_cast<std::size_t>(k)];
         return {
@@ -119,22 +117,22 @@ public:
             o.sin_theta * r.cos + o.cos_theta * r.sin, o.cos_theta * r.cos - o.sin_theta * r.sin};
     }
     /// Taylor coefficients of x(s + d) in d.
-    Series series(const Oscillation& o) const {
+    TaylorSeries series(const Oscillation& o) const {
         return of_x_.series * o.x + of_x_dot_.series * o.x_dot + of_sin_.series * o.sin_theta +
                of_cos_.series * o.cos_theta;
     }
-    /// The same, shorter: the coefficients of x and of x' by pairs of an even and an odd power, for
-    /// |d| <= h. Remainders below 1e-18 of the motion.
-    static constexpr int near_pairs = near_terms / 2;
-    using NearSeries = Eigen::Array<double, 2 * near_pairs, 1>;
-    struct Near {
-        NearSeries x, x_dot;
+    /// The same, shorter: coefficients of x and x' in pairs of an even and an odd power, for |d| <=
+    /// h. Remainders below 1e-18 of the motion.
+    static constexpr int short_pairs = short_terms / 2;
+    using ShortCoefficients = Eigen::Array<double, 2 * short_pairs, 1>;
+    struct ShortSeries {
+        ShortCoefficients x, x_dot;
         /// x and x' at d.
         std::array<double, 2> at(double d) const {
             // Estrin's scheme: three levels of operations instead of eleven.
-            static_assert(near_pairs == 6);
+            static_assert(short_pairs == 6);
             const double q = d * d, q_squared = q * q, q_fourth = q_squared * q_squared;
-            const auto value = [=](const NearSeries& c) {
+            const auto value = [=](const ShortCoefficients& c) {
                 const auto pair = [&c](Eigen::Index k) { return c.segment<2>(2 * k); };
                 const Eigen::Array2d sum = pair(0) + pair(1) * q +
                                            (pair(2) + pair(3) * q) * q_squared +
@@ -144,34 +142,33 @@ public:
             return {value(x), value(x_dot)};
         }
     };
-    Near near_series(const Oscillation& o) const {
+    ShortSeries short_series(const Oscillation& o) const {
         return {
             of_x_.near.x * o.x + of_x_dot_.near.x * o.x_dot + of_sin_.near.x * o.sin_theta +
                 of_cos_.near.x * o.cos_theta,
             of_x_.near.x_dot * o.x + of_x_dot_.near.x_dot * o.x_dot +
                 of_sin_.near.x_dot * o.sin_theta + of_cos_.near.x_dot * o.cos_theta};
     }
-    /// The state with its phasor turned by 0 <= d <= h; x and x' stay.
-    Oscillation turned(const Oscillation& o, double d) const;
+    /// The state with its phasor rotated over 0 <= d <= h; x and x' are unchanged.
+    Oscillation rotated(const Oscillation& o, double d) const;
     /// The same for |d| Omega < 1e-6.
-    Oscillation turned_little(const Oscillation& o, double d) const {
+    Oscillation rotated_little(const Oscillation& o, double d) const {
         const double a = Omega_ * d, cos = 1 - 0.5 * a * a;
         return {
             o.x, o.x_dot, o.sin_theta * cos + o.cos_theta * a, o.cos_theta * cos - o.sin_theta * a};
     }
-    /// The state that `series` (made at o) has after 0 <= d <= h.
-    Oscillation along(const Series& series, const Oscillation& o, double d) const;
+    /// The state after 0 <= d <= h, with `series` about o.
+    Oscillation along(const TaylorSeries& series, const Oscillation& o, double d) const;
     /// The state after any s >= 0.
     Oscillation after(Oscillation o, double s) const;
     /// The transfer matrix over any s >= 0, eq. (19).
     Transfer transfer(double s) const;
 
-    /// For flights in lanes; while this flow is where it is.
+    /// Tables for the vectorised search; valid during the lifetime of this flow.
     FlowTables tables() const;
 
-    /// Upper bounds of |x|, |x''| and |x'''| over the reach, or over such a time, from the
-    /// growth of the energy: sqrt(stiffness x^2 + x'^2) rises no faster than the forcing, for any
-    /// damping >= 0.
+    /// Upper bounds of |x|, |x''| and |x'''| over the reach, or over `time`, from the growth of the
+    /// energy: sqrt(stiffness x^2 + x'^2) grows no faster than |forcing|, for any damping >= 0.
     struct Bounds {
         double x, x_ddot, x_dddot;
     };
@@ -189,16 +186,16 @@ private:
     double stiffness_, damping_, forcing_, Omega_;
     double cell_;  // h
     double inverse_root_stiffness_, fastest_decay_;
-    // What one part of a state, of size 1 and alone, becomes: x at the grid times k h, and the
-    // Taylor coefficients of x within a cell. A state becomes the sum of its four parts.
+    // Response to one part of the state with size 1: x at the grid times k h, and the Taylor
+    // coefficients of x within a cell. A motion is the sum of the responses to its four parts.
     struct Response {
         std::vector<double> x, x_apart;
-        Series series;
-        Near near;
+        TaylorSeries series;
+        ShortSeries near;
     };
     Response of_x_, of_x_dot_, of_sin_, of_cos_;
-    std::vector<double> time_, time_apart_;  // the grid times
-    // x and x' of all four by grid times k h, with the turn of the phasor by then.
+    std::vector<double> time_, time_apart_;  // grid times
+    // Responses of x and x' to the four parts by grid time, and the rotation of the phasor.
     struct Row {
         std::array<double, 4> x, x_dot;
         double cos, sin;
@@ -210,6 +207,6 @@ private:
 struct SeriesValue {
     double x, x_dot, half_x_ddot;
 };
-SeriesValue value_at(const Flow::Series& series, double d);
+SeriesValue value_at(const Flow::TaylorSeries& series, double d);
 
 }  // namespace vines

@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "core/motion/elementary.hpp"
-#include "core/motion/special_values.hpp"
 
 namespace vines {
 
@@ -31,19 +30,18 @@ Impact impact_at(const Parameters& p, const Contact& contact, double x_ddot, dou
     i.y_dot_after = i.x_dot_after - i.relative_speed_after;
     i.x_ddot_before = x_ddot;
     i.R = R;
-    // x - y is b + w s + x'' s^2/2 (times side) near the contact: depth w^2/(2 |x''|), if x''
-    // turns it back at all.
+    // At the contact side (x - y) is b + w s - |x''| s^2/2 if x'' reverses it: depth w^2/(2 |x''|).
     i.grazing = contact.side * x_ddot < 0 && w * w < 2 * std::abs(x_ddot) * grazing_depth * p.b;
     return i;
 }
 
 Eigen::Vector4d wall_normal() { return {0, 1, 0, -1}; }
 
-// S, eq. (25): the impact as a linear map of (x', x, y', y), which leaves positions alone.
+// S, eq. (25): the impact as a linear map of (x', x, y', y); positions are unchanged.
 Matrix4 Saltation::S() const {
     Matrix4 S = Matrix4::Identity();
-    S(0, 0) -= on_x, S(0, 2) += on_x;
-    S(2, 0) += on_y, S(2, 2) -= on_y;
+    S(0, 0) -= jump_x, S(0, 2) += jump_x;
+    S(2, 0) += jump_y, S(2, 2) -= jump_y;
     return S;
 }
 
@@ -51,20 +49,20 @@ Matrix4 Saltation::S() const {
 Matrix4 Saltation::matrix() const { return S() + r() * wall_normal().transpose(); }
 
 double Saltation::condition() const {
-    // M^-1 = S^-1 - S^-1 r g^T S^-1/(1 + g^T S^-1 r). S leaves positions alone and g sees nothing
-    // else, so that g^T S^-1 = g^T and 1 + g^T r = -R: no large entry of r is left to cancel.
+    // M^-1 = S^-1 - S^-1 r g^T S^-1/(1 + g^T S^-1 r). S leaves positions unchanged and g depends on
+    // them alone: g^T S^-1 = g^T and 1 + g^T r = -R, without large entries of r to cancel.
     if (R == 0) return infinity;
     const Matrix4 S_inverse = S().inverse();
     return matrix().norm() * (S_inverse + S_inverse * r() * wall_normal().transpose() / R).norm();
 }
 
 Saltation saltation(const Parameters& p, const Impact& i) {
-    const double on_y = (1 + i.R) / (1 + p.epsilon), on_x = p.epsilon * on_y;
+    const double jump_y = (1 + i.R) / (1 + p.epsilon), jump_x = p.epsilon * jump_y;
     const double kappa = i.x_ddot_before / i.relative_speed_before;
-    // r = (f+ - S f-)/(x'- - y'-) with f = (x'', x', 0, y'), eq. (27): a deviation meets the wall
-    // earlier or later. x'' jumps by -2 zeta (x'+ - x'-), the velocities by their share of
-    // (1 + R)(x'- - y'-).
-    return {i.R, on_x, on_y, on_x * (kappa + 2 * p.zeta()), -on_y * kappa};
+    // r = (f+ - S f-)/(x'- - y'-) with f = (x'', x', 0, y'), eq. (27): a deviation shifts the
+    // impact in time. x'' jumps by -2 zeta (x'+ - x'-), velocities by jump_x, jump_y times (x'- -
+    // y'-).
+    return {i.R, jump_x, jump_y, jump_x * (kappa + 2 * p.zeta()), -jump_y * kappa};
 }
 
 }  // namespace vines

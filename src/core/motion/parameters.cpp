@@ -11,14 +11,12 @@ namespace vines {
 
 namespace {
 
-// x0 and y0 are decimal numbers rounded to double: their difference may miss b by some ulps of the
-// largest of the three.
+// x0 and y0 are rounded decimals: their difference can miss b by some ulps of the largest of them.
 double wall_tolerance(const State& s, double b) {
     return 8 * std::numeric_limits<double>::epsilon() * std::max({std::abs(s.x), std::abs(s.y), b});
 }
 
-// Above this damping ratio the cells of the search (flow.cpp) would be so short that nobody wants
-// to wait for the answer.
+// Above this damping ratio the cells of the contact search (flow.cpp) are too short.
 constexpr double zeta_maximum = 10;
 
 constexpr ParameterRange ranges[] = {
@@ -87,7 +85,7 @@ std::vector<Fault> validate(const Parameters& p, const State& start) {
     };
     for (const ParameterRange& r : ranges)
         check(r.name, r.parameter ? p.*r.parameter : start.*r.state, r.minimum, r.maximum, r.name);
-    if (!faults.empty()) return faults;  // what follows is computed from numbers that are in range
+    if (!faults.empty()) return faults;  // the checks below need numbers within their ranges
 
     if (p.zeta() > zeta_maximum)
         check(
@@ -97,7 +95,7 @@ std::vector<Fault> validate(const Parameters& p, const State& start) {
     if (!wall_of(start, p.b))
         check(
             "y0", start.y, start.x - p.b, start.x + p.b,
-            "y0, so that the free mass starts inside its cavity (|x0 - y0| <= b),");
+            "y0, so that the ball starts inside its cavity (|x0 - y0| <= b),");
     return faults;
 }
 

@@ -1,42 +1,86 @@
-// Observers that write down what a run does: the sampled motion, the impacts, the stuck phases.
+// Observers that record a run: the sampled motion, stroboscopic states, impacts, sticking phases,
+// grazing contacts.
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <vector>
 
-#include "core/motion/sampled_flow.hpp"
+#include "core/motion/elementary.hpp"
+#include "core/motion/flow.hpp"
 #include "core/motion/simulate.hpp"
-#include "core/motion/special_values.hpp"
 
 namespace vines {
 
-/// Of a record that keeps all of its entries.
+/// The oscillator at equidistant times of a stretch: one table look-up in the flow, then eight
+/// multiplications per sample. The flow is a linear map of (x, x', sin theta, cos theta); its maps
+/// over 1, 2, 3, ... steps are stored in a table, each accurate to the last ulp, so that errors do
+/// not add up from sample to sample. A sample differs from Flow::after() by at most 16 ulp of the
+/// motion's size (Flow::Bounds::x): up to 4 from the sum of four products, the rest from rounding
+/// of times within the flow's reach, up to 19/max(1, Omega), half an ulp of which is 2e-15.
+class SampledFlow {
+public:
+    /// Time between samples, in tau.
+    explicit SampledFlow(double step) : step_(step) {}
+
+    /// Sets the flow and the state at s = 0 for the following calls of at(). The flow must exist
+    /// until the next begin().
+    void begin(const Flow& flow, const Oscillation& start);
+    /// The state after s <= reach; s grows from call to call, by one step up to rounding of tau.
+    Oscillation at(double s);
+
+private:
+    /// The map over j steps: responses of x and x' to the parts of the state, rotation of the
+    /// phasor.
+    struct Steps {
+        double time;  ///< duration of j steps, rounded: the map is exact for it
+        Oscillation x, x_dot;
+        double cos, sin;
+    };
+    Steps steps_over(double time) const;
+
+    double step_;
+    const Flow* flow_ = nullptr;
+    Oscillation start_{};
+    std::vector<Steps> table_;  // for j = 1, 2, ..., extended on demand
+    std::optional<Flow::Coefficients> of_;
+
+    // Time and state from which the table counts, and the steps that at() has taken since.
+    struct Origin {
+        double s;
+        Oscillation state;
+        std::size_t steps;
+    };
+    std::optional<Origin> origin_;
+};
+
+/// Capacity of a record that keeps all entries.
 inline constexpr std::size_t everything = std::numeric_limits<std::size_t>::max() / 2;
 
-/// Cuts a growing record down to its last `most` entries, at half of them more: each entry is moved
-/// once at most.
+/// Trims a growing record to its last `most` entries whenever it holds half as many more: an entry
+/// moves about twice.
 template <class Entries>
 void keep_last(Entries& entries, std::size_t most) {
     if (entries.size() >= most + most / 2 + 1)
         entries.erase(entries.begin(), entries.end() - static_cast<std::ptrdiff_t>(most));
 }
-/// The same at the end of the run.
+/// Trims to exactly the last `most` entries at the end of the run.
 template <class Entries>
 void trim_to_last(Entries& entries, std::size_t most) {
     if (entries.size() > most)
         entries.erase(entries.begin(), entries.end() - static_cast<std::ptrdiff_t>(most));
 }
 
-/// The motion at some moments: columns of equal length. x and y in m, derivatives in tau.
+/// The sampled motion: columns of equal length. x and y in m, derivatives with respect to tau.
 struct Series {
     std::vector<double> tau, x, x_dot, y, y_dot, x_ddot;
 };
 
-/// The motion at tau = 0, step, 2 step, ... and at the end of the run.
+/// Samples the motion at tau = 0, step, 2 step, ... and at the end of the run.
 class SeriesRecord : public Observer {
 public:
-    explicit SeriesRecord(double step) : step_(step), free_(step), stuck_(step) {}
-    /// Makes room for all of a run, or for the first million moments.
+    explicit SeriesRecord(double step) : step_(step), free_(step), sticking_(step) {}
+    /// Reserves memory for a complete run, or for the first million samples.
     void expect(double tau_end);
     void on_stretch(const Stretch&) override;
     void finish(const Outcome& outcome);
@@ -47,11 +91,11 @@ private:
     void add(double tau, const State& state, double x_ddot);
     double step_, x_ddot_at_end_ = 0;
     long next_ = 0;
-    SampledFlow free_, stuck_;
+    SampledFlow free_, sticking_;
 };
 
-/// Takes the states at one phase of the forcing, once a cycle: at tau = (k + phase/(2 pi)) 2
-/// pi/Omega with k = first, first + 1, ... So theta = phi + phase.
+/// Takes the state once per forcing cycle, at tau = (k + phase/(2 pi)) 2 pi/Omega with k = first,
+/// first + 1, ...; there theta = phi + phase.
 class Stroboscope : public Observer {
 public:
     explicit Stroboscope(
@@ -62,7 +106,7 @@ public:
           next_(first) {}
     void on_stretch(const Stretch&) override;
 
-    /// Moment of the k-th.
+    /// Time of sample k.
     double tau_of(long k) const { return static_cast<double>(k) * cycle_ + after_; }
 
 protected:
@@ -74,13 +118,13 @@ private:
     long next_;
 };
 
-/// Of the states at whole cycles up to a moment the last so many.
+/// Selects the last `most` states at whole cycles up to the time `until`.
 struct LastStates {
     std::size_t most;
     double until;
 };
 
-/// Keeps them all, or of LastStates up to half more.
+/// Stroboscopic states: all of them, or those selected by LastStates and up to half as many more.
 class StroboscopicRecord : public Stroboscope {
 public:
     explicit StroboscopicRecord(const Parameters& parameters, long first = 0, double phase = 0)
@@ -89,10 +133,10 @@ public:
         : Stroboscope(parameters, 0, 0, last.until),
           most_(last.most) {}
 
-    /// Number k of the first that is kept.
+    /// Number k of the first state kept.
     long first() const { return next() - static_cast<long>(states.size()); }
     double tau(std::size_t k) const { return tau_of(first() + static_cast<long>(k)); }
-    std::vector<State> states;  ///< the k-th at tau(k)
+    std::vector<State> states;  ///< states[k] is the state at tau(k)
 
 private:
     void take(long, const State& state) override {
@@ -102,8 +146,7 @@ private:
     const std::size_t most_ = everything;
 };
 
-/// The last `most` entries of a list that grows with a run: it keeps up to half more. `seen` counts
-/// all of them.
+/// The last `most` entries of a growing list, and up to half as many more. `seen` counts all.
 template <class Entry>
 class LastOf {
 public:
@@ -127,14 +170,14 @@ public:
     void on_impact(const Impact& impact) override { add(impact); }
 };
 
-/// An impact of a section, and the time since the impact before it.
+/// An impact and the time since the previous impact.
 struct SectionPoint {
     Impact impact;
     double since;  ///< NaN at the first impact of the run
 };
 
-/// The impacts in [tau_start, tau_end], each with the time since the impact before it, whether that
-/// is in the window or not.
+/// The impacts in [tau_start, tau_end], each with the time since the previous impact, even if that
+/// is outside the window.
 class SectionRecord : public Observer, public LastOf<SectionPoint> {
 public:
     SectionRecord(double tau_start, double tau_end, std::size_t most)
@@ -151,29 +194,70 @@ private:
     double before_ = nan;
 };
 
-/// A phase in which the mass stays on a wall.
-struct StuckPhase {
+/// A phase in which the ball rests on a wall.
+struct StickingPhase {
     StickStart start;
     double tau_end;
 };
 
-class StickRecord : public Observer, public LastOf<StuckPhase> {
+class StickRecord : public Observer, public LastOf<StickingPhase> {
 public:
     using LastOf::LastOf;
     void on_stick(const StickStart& start) override { add({start, start.tau}); }
     void on_release(double tau) override { entries.back().tau_end = tau; }
 };
 
-/// A tangent contact without an impact.
-struct TangentContact {
+/// A contact with zero relative speed, without an impact.
+struct GrazingEvent {
     double tau;
     int side;
 };
 
-class TouchRecord : public Observer, public LastOf<TangentContact> {
+class GrazingRecord : public Observer, public LastOf<GrazingEvent> {
 public:
     using LastOf::LastOf;
-    void on_touch(double tau, int side) override { add({tau, side}); }
+    void on_grazing_contact(double tau, int side) override { add({tau, side}); }
+};
+
+/// A contact of ball and oscillator as regimes and periodic orbits count it: an impact, or a
+/// complete chatter that ends in sticking.
+struct CountedContact {
+    double tau;
+    int side;
+};
+
+class ContactRecord : public Observer {
+public:
+    struct Stick {
+        double tau_start, tau_end;
+    };
+
+    void on_impact(const Impact& impact) override;
+    void on_stick(const StickStart& start) override;
+    void on_release(double tau) override { sticks.back().tau_end = tau; }
+
+    std::vector<CountedContact> contacts;
+    std::vector<Stick> sticks;
+    long impacts = 0;
+};
+
+/// Reports the same contacts one at a time. It stores only impacts that can still belong to a
+/// chatter, because the sticking phase at its end makes them one contact.
+class ContactStream : public Observer {
+public:
+    explicit ContactStream(const Parameters& parameters);
+
+    void on_impact(const Impact& impact) override;
+    void on_stick(const StickStart& start) override;
+
+protected:
+    virtual void on_contact(const CountedContact& contact) = 0;
+    /// Reports the stored contacts; call it after the run.
+    void flush_contacts();
+
+private:
+    const double longest_bounce_;
+    std::vector<CountedContact> held_;
 };
 
 }  // namespace vines

@@ -5,22 +5,22 @@
 #include <cmath>
 
 #include "core/motion/elementary.hpp"
+#include "core/motion/simulate.hpp"
 
 namespace vines {
 
 namespace {
 
-// A chatter is over when the rest of it would last less than this: then its impacts, of which there
-// are infinitely many, can no longer be told from its limit at the accuracy that a result is read
-// with. The relative speed is then near 1e-12 of a typical one, far above anything that rounding
-// does to it (guard.hpp, property 3).
+// A chatter ends when its remaining duration is below this: the remaining impacts, of which there
+// are infinitely many, then differ from their limit by less than the accuracy of any result. The
+// relative speed is near 1e-12 of a typical one, far above the effect of rounding
+// (contact_search.hpp, property 3).
 constexpr double chatter_rest = 1e-9;
-// The rest is summed as a geometric series, as if the acceleration stayed the same. It changes by
-// less than this share.
+// The remaining duration is the sum of a geometric series for a constant acceleration, which
+// changes by less than this fraction.
 constexpr double chatter_drift = 1e-4;
 
-// How often the stop function is asked, in events (a flight without a contact within its reach is
-// one, too).
+// Events between two calls of the stop function; a flight without a contact in its reach is one.
 constexpr long events_per_look = 64;
 
 }  // namespace
@@ -36,7 +36,7 @@ Run::Run(
       clock_(limits.tau_start),
       y_(start.y),
       y_dot_(start.y_dot),
-      longest_hop_(p.faster_half_cycle()) {
+      longest_bounce_(p.faster_half_cycle()) {
     const double theta = p.Omega * limits.tau_start + p.phi();
     lo_ = {start.x, start.x_dot, elementary::sin(theta), elementary::cos(theta)};
     side_ = wall_of(start, p.b);
@@ -47,7 +47,7 @@ Run::Run(
     if (side_ != 0) meet_wall_at_start();
 }
 
-Outcome Run::to_its_end() {
+Outcome Run::run_to_end() {
     while (!is_over()) fly();
     return outcome();
 }
@@ -63,13 +63,13 @@ Outcome Run::outcome() const {
     return {*end_, clock_.tau(), {lo_.x_dot, lo_.x, y_dot_, y_}, impacts_};
 }
 
-/// Emits a stretch of the given flow and moves the clock over it. The caller sets the state at
+/// Reports a stretch to the observers and advances the clock over it. The caller sets the state at
 /// its end.
-void Run::pass(const Flow& flow, double duration, int stuck_side, const Transfer* over) {
+void Run::pass(const Flow& flow, double duration, int sticking_side, const Transfer* over) {
     if (duration > 0)
-        tell(
+        notify(
             &Observer::on_stretch,
-            {flow, clock_.tau(), duration, lo_, y_, y_dot_, stuck_side, over});
+            {flow, clock_.tau(), duration, lo_, y_, y_dot_, sticking_side, over});
     clock_.advance(duration);
 }
 
@@ -79,16 +79,16 @@ void Run::meet_wall_at_start() {
     else leave_or_stick();
 }
 
-// A contact whose tau rounds to tau_end belongs to the run, so that behind one what rests may be
-// negative: by half an ulp of tau_end, over which nothing moves.
+// A contact whose tau rounds to tau_end belongs to the run. After it the remaining time can be
+// negative, by half an ulp of tau_end, over which nothing moves.
 double Run::flight_limit() const {
     return std::min(clock_.until(limits_.tau_end) + end_rounding_, free_.reach());
 }
 
 void Run::fly() {
-    touches_.clear();
-    const auto contact = fast_contact(free_, flight(), p_.b, flight_limit(), touches_);
-    for (const Touch& t : touches_) touch(clock_.tau() + t.s, t.side);
+    grazing_.clear();
+    const auto contact = fast_contact(free_, flight(), p_.b, flight_limit(), grazing_);
+    for (const GrazingPoint& t : grazing_) graze(clock_.tau() + t.s, t.side);
     fly_to(contact, nullptr);
 }
 
@@ -100,8 +100,8 @@ void Run::fly_to(const std::optional<Contact>& contact, const Transfer* over) {
         y_ = lo_.x - contact->side * p_.b;
         side_ = contact->side;
         if (contact->relative_speed != 0) return strike(*contact);
-        // The approach has lost its speed to rounding: tangent.
-        touch(clock_.tau(), side_);
+        // Rounding has reduced the approach speed to zero: a grazing contact.
+        graze(clock_.tau(), side_);
         relative_speed_ = 0;
         return leave_or_stick();
     }
@@ -110,41 +110,41 @@ void Run::fly_to(const std::optional<Contact>& contact, const Transfer* over) {
     lo_ = limit == free_.reach() ? free_.at(lo_, Flow::cells)
                                  : free_.after(lo_, std::max(0.0, limit));
     side_ = 0;
-    hop_ = 0;
+    bounce_limit_ = 0;
 }
 
-void Run::touch(double tau, int side) {
+void Run::graze(double tau, int side) {
     ++others_;
-    tell(&Observer::on_touch, tau, side);
+    notify(&Observer::on_grazing_contact, tau, side);
 }
 
 void Run::strike(const Contact& contact) {
     const Impact i = impact_at(p_, contact, free_.acceleration(contact.lo), clock_.tau());
-    const bool pressed = i.side * i.x_ddot_before > 0 && contact.s < hop_;
+    const bool pressed = i.side * i.x_ddot_before > 0 && contact.s < bounce_limit_;
     chatter_ = i.side == last_side_ && pressed ? chatter_ + 1 : 1;
     last_side_ = i.side;
     ++impacts_;
     lo_.x_dot = i.x_dot_after;
     y_dot_ = i.y_dot_after;
     relative_speed_ = i.relative_speed_after;
-    tell(&Observer::on_impact, i);
+    notify(&Observer::on_impact, i);
     leave_or_stick();
 }
 
-/// On the wall side_ with a relative speed that is zero or leads away from it: which derivative
-/// of the gap leads.
+/// At the wall side_ with a relative speed that is zero or points away from it: determines the
+/// leading derivative of the gap.
 void Run::leave_or_stick() {
     const double press = side_ * free_.acceleration(lo_), press_rate = side_ * free_.jerk(lo_);
-    hop_ = press > 0 ? longest_hop_ : 0;
+    bounce_limit_ = press > 0 ? longest_bounce_ : 0;
     if (relative_speed_ != 0) {
         zeros_ = 1;
         const double R = p_.restitution(side_);
-        // Geometric series of 2 w/press.
+        // Sum of the geometric series of 2 w/press.
         const double rest = 2 * std::abs(relative_speed_) / (press * (1 - R));
         if (press > 0 && R < 1 && rest < chatter_rest &&
             std::abs(press_rate) * rest < chatter_drift * press)
             stick(rest, 0);
-        // All three zero: at rest together, for good.
+        // All three zero: both masses stay at rest together.
     } else if (press > 0 || (press == 0 && press_rate >= 0)) {
         stick(0, press == 0);
     } else {
@@ -152,14 +152,14 @@ void Run::leave_or_stick() {
     }
 }
 
-/// The stuck phase up to its release. What is left of the chatter passes as a part of it: the
-/// centre of mass moves by the same law. `zeros` as in next_release.
+/// The sticking phase up to the release. The rest of the chatter counts as part of it: the centre
+/// of mass obeys the same law. `zeros` as in next_release().
 void Run::stick(double chatter_left, int zeros) {
     ++others_;
-    if (!stuck_) stuck_ = Flow::shared_stuck(p_);
+    if (!sticking_) sticking_ = Flow::shared_sticking(p_);
     // The velocity of the centre of mass.
     lo_.x_dot -= p_.epsilon / (1 + p_.epsilon) * relative_speed_;
-    tell(
+    notify(
         &Observer::on_stick, {std::min(clock_.tau() + chatter_left, limits_.tau_end), side_,
                               relative_speed_ == 0 && last_side_ != side_ ? 0 : chatter_});
     relative_speed_ = 0;
@@ -167,11 +167,12 @@ void Run::stick(double chatter_left, int zeros) {
     for (bool released = false; !released && !end_;) {
         y_ = lo_.x - side_ * p_.b;
         y_dot_ = lo_.x_dot;
-        const double rest = clock_.until(limits_.tau_end), limit = std::min(rest, stuck_->reach());
-        const auto release = next_release(*stuck_, lo_, side_, zeros, limit);
+        const double rest = clock_.until(limits_.tau_end),
+                     limit = std::min(rest, sticking_->reach());
+        const auto release = next_release(*sticking_, lo_, side_, zeros, limit);
         const double s = release ? *release : limit;
-        pass(*stuck_, s, side_, nullptr);
-        lo_ = stuck_->after(lo_, std::max(0.0, s));
+        pass(*sticking_, s, side_, nullptr);
+        lo_ = sticking_->after(lo_, std::max(0.0, s));
         released = release.has_value();
         zeros = 0;
         if (!released && limit == rest) end_ = End::tau_end;
@@ -179,8 +180,24 @@ void Run::stick(double chatter_left, int zeros) {
     }
     y_ = lo_.x - side_ * p_.b;
     y_dot_ = lo_.x_dot;
-    zeros_ = 3;  // at the release x'' = 0 as well
-    tell(&Observer::on_release, clock_.tau());
+    zeros_ = 3;  // x'' = 0 at the release as well
+    notify(&Observer::on_release, clock_.tau());
+}
+
+State Stretch::at(double s) const {
+    const Oscillation o = flow.after(start, s);
+    if (sticking_side != 0) return {o.x_dot, o.x, o.x_dot, o.x + (y - start.x)};
+    return {o.x_dot, o.x, y_dot, y + y_dot * s};
+}
+
+Outcome simulate(
+    const Parameters& parameters, const State& start, const Limits& limits,
+    std::span<Observer* const> observers) {
+    return Run(parameters, start, limits, observers).run_to_end();
+}
+
+Outcome simulate(const RunPlan& plan) {
+    return simulate(plan.parameters, plan.start, plan.limits, plan.observers);
 }
 
 }  // namespace vines

@@ -1,4 +1,4 @@
-// A run, flight by flight: what moves, and what is told to the observers.
+// A run, flight by flight: state of the motion and notification of the observers.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace vines {
 
-/// Time as a sum of two doubles, so that adding a million small steps loses nothing.
+/// Time as a sum of two doubles: adding a million small steps loses no accuracy.
 class Clock {
 public:
     explicit Clock(double tau) : high_(tau) {}
@@ -26,39 +26,40 @@ private:
     double high_, low_ = 0;
 };
 
-/// Parameters, limits and observers outlive it.
+/// A run in progress. Parameters, limits and observers must outlive it.
 class Run {
 public:
     Run(const Parameters& parameters, const State& start, const Limits& limits,
         std::span<Observer* const> observers);
 
-    /// From flight to flight, until it is over.
-    Outcome to_its_end();
+    /// Runs to the end.
+    Outcome run_to_end();
 
-    // Or step by step. Asked before each flight: the last one may have reached a limit.
+    // Or flight by flight: check is_over() before each, as the last one can have reached a limit.
     bool is_over();
     Outcome outcome() const;
 
-    // The flight that is next, and how far to look for the contact that ends it.
+    // The next flight, and the time limit for its contact.
     const Flow& flow() const { return free_; }
     double b() const { return p_.b; }
     FlightStart flight() const { return {lo_, y_, y_dot_, side_, relative_speed_, zeros_}; }
     double flight_limit() const;
-    /// Finds that contact, and goes on to the flight behind it.
+    /// Finds the contact and advances past it.
     void fly();
-    /// Goes on by the one that was found: fast_contact() of this flight, without a touch before it.
-    /// `over`: the flight's transfer matrix, where it is known already; else null.
+    /// Advances past a contact found by the caller, which must equal fast_contact() of this flight
+    /// without a grazing contact before it. `over`: transfer matrix of the flight, null if unknown.
     void fly_to(const std::optional<Contact>& contact, const Transfer* over);
     bool is_observed() const { return !observers_.empty(); }
 
 private:
     template <class... Arguments>
-    void tell(void (Observer::*event)(Arguments...), std::type_identity_t<Arguments>... arguments) {
+    void notify(
+        void (Observer::*event)(Arguments...), std::type_identity_t<Arguments>... arguments) {
         for (Observer* o : observers_) (o->*event)(arguments...);
     }
-    void pass(const Flow& flow, double duration, int stuck_side, const Transfer* over);
+    void pass(const Flow& flow, double duration, int sticking_side, const Transfer* over);
     void meet_wall_at_start();
-    void touch(double tau, int side);
+    void graze(double tau, int side);
     void strike(const Contact& contact);
     void leave_or_stick();
     void stick(double chatter_left, int zeros);
@@ -68,24 +69,24 @@ private:
     std::span<Observer* const> observers_;
     const std::shared_ptr<const Flow> free_table_;
     const Flow& free_;
-    std::shared_ptr<const Flow> stuck_;  // from the first stick on
+    std::shared_ptr<const Flow> sticking_;  // set at the first sticking phase
     Clock clock_;
     Oscillation lo_;
     double y_, y_dot_;
     double end_rounding_;
-    int side_ = 0;               // the wall that the mass is at, 0 in flight
+    int side_ = 0;               // the wall that the ball is at, 0 in flight
     double relative_speed_ = 0;  // x' - y' at that wall
     int zeros_ = 1;              // see FlightStart
-    // Side and length of the current run of impacts on one side that its wall's pressing joins.
+    // Side and length of the current sequence of impacts on one side, joined by the pressing wall.
     int last_side_ = 0, chatter_ = 0;
-    // A flight that leaves a pressing wall and comes back to it while it presses, within half a
-    // cycle of the faster of forcing and oscillator, was pressed all along: it belongs to a
-    // chatter. `hop_`: how long the one at hand may last for that.
-    const double longest_hop_;
-    double hop_ = 0;
-    std::vector<Touch> touches_;     // of the flight at hand
-    long impacts_ = 0, others_ = 0;  // others: sticks and touches
-    long events_ = 0;                // flights and what ends them
+    // A flight that leaves a pressing wall and returns to it while it presses, within half a cycle
+    // of the faster of forcing and oscillator, was pressed throughout and belongs to a chatter.
+    // `bounce_limit_`: longest duration for which the current flight does.
+    const double longest_bounce_;
+    double bounce_limit_ = 0;
+    std::vector<GrazingPoint> grazing_;  // of the current flight
+    long impacts_ = 0, others_ = 0;      // others: sticking phases and grazing contacts
+    long events_ = 0;                    // flights and the events that end them
     std::optional<End> end_;
 };
 

@@ -4,15 +4,13 @@
 #include <cmath>
 
 #include "core/motion/elementary.hpp"
-#include "core/motion/special_values.hpp"
 #include "core/stability/linear.hpp"
 
 namespace vines {
 
 namespace {
 
-// A product's spectral radius below this share of its norm is made of rounding as much as of the
-// product.
+// A spectral radius below this fraction of the norm is dominated by rounding.
 constexpr double least_radius = 1e-8;
 
 double parts_of(const Flow& flow, double duration) {
@@ -22,33 +20,33 @@ double parts_of(const Flow& flow, double duration) {
 
 }  // namespace
 
-Leg leg_of(const Flow& flow, double duration, bool stuck) {
+Leg leg_of(const Flow& flow, double duration, bool sticking) {
     const double parts = parts_of(flow, duration), part = duration / parts;
-    return {flow.transfer(part), part, -flow.damping() * part, static_cast<long>(parts), stuck};
+    return {flow.transfer(part), part, -flow.damping() * part, static_cast<long>(parts), sticking};
 }
 
 Leg leg_of(const Stretch& s) {
-    const bool stuck = s.stuck_side != 0;
-    if (!s.transfer || parts_of(s.flow, s.duration) > 1) return leg_of(s.flow, s.duration, stuck);
-    return {*s.transfer, s.duration, -s.flow.damping() * s.duration, 1, stuck};
+    const bool sticking = s.sticking_side != 0;
+    if (!s.transfer || parts_of(s.flow, s.duration) > 1)
+        return leg_of(s.flow, s.duration, sticking);
+    return {*s.transfer, s.duration, -s.flow.damping() * s.duration, 1, sticking};
 }
 
 namespace {
 
-/// By rows.
 template <class Deviations>
 void carry_rows(Deviations& d, const Leg& leg, double epsilon) {
     const auto& [a11, a12, a21, a22] = leg.oscillator;
     using Row = Eigen::Matrix<double, 1, Deviations::ColsAtCompileTime>;
     Row x_dot = d.row(0), x = d.row(1);
-    if (leg.stuck) {
+    if (leg.sticking) {
         const double nu = 1 / (1 + epsilon), mu = epsilon * nu;
         x_dot = nu * x_dot + mu * d.row(2);
         x = nu * x + mu * d.row(3);
     }
     d.row(0) = a11 * x_dot + a12 * x;
     d.row(1) = a21 * x_dot + a22 * x;
-    if (leg.stuck) d.row(2) = d.row(0), d.row(3) = d.row(1);
+    if (leg.sticking) d.row(2) = d.row(0), d.row(3) = d.row(1);
     else d.row(3) += leg.duration * d.row(2);
 }
 
@@ -69,7 +67,7 @@ Matrix4 transfer_of(const Leg& leg, double epsilon) {
 
 namespace {
 
-/// Of one part, which shrinks too little for the difference to lose digits.
+/// Determinant over one part; the contraction is too small for the difference to lose digits.
 double determinant_of(const Transfer& a) { return a.a11 * a.a22 - a.a12 * a.a21; }
 
 }  // namespace
@@ -78,15 +76,15 @@ Area carried(const Area& w, const Leg& leg, double epsilon) {
     const auto& [a11, a12, a21, a22] = leg.oscillator;
     const double det = determinant_of(leg.oscillator);
     Area out;
-    if (leg.stuck) {
-        // The area of the two deviations of the centre of mass, (nu x' + mu y') and (nu x + mu y),
-        // as x' = y', x = y.
+    if (leg.sticking) {
+        // Area of the deviations of the centre of mass, (nu x' + mu y') and (nu x + mu y): x' = y',
+        // x = y.
         const double nu = 1 / (1 + epsilon), mu = epsilon * nu;
         const double area = det * (nu * nu * w(0) + nu * mu * (w(2) - w(3)) + mu * mu * w(5));
         out << area, 0, area, -area, 0, area;
         return out;
     }
-    // J is the oscillator's block beside [1 0; s 1] of the free mass.
+    // J consists of the oscillator's block and the ball's block [1 0; s 1].
     const double s = leg.duration, w03 = w(2) + s * w(1), w13 = w(4) + s * w(3);
     out << det * w(0), a11 * w(1) + a12 * w(3), a11 * w03 + a12 * w13, a21 * w(1) + a22 * w(3),
         a21 * w03 + a22 * w13, w(5);
@@ -94,7 +92,7 @@ Area carried(const Area& w, const Leg& leg, double epsilon) {
 }
 
 Volume carried(const Volume& volume, const Leg& leg) {
-    if (leg.stuck) return {Eigen::Vector4d::Zero()};
+    if (leg.sticking) return {Eigen::Vector4d::Zero()};
     // det(J) J^-T n
     const auto& [a11, a12, a21, a22] = leg.oscillator;
     const Eigen::Vector4d& n = volume.normal;
@@ -106,28 +104,29 @@ Volume carried(const Volume& volume, const Leg& leg) {
 
 namespace {
 
-/// M in the coordinates (x', x, z', z) with z = x - y: z' becomes -R z' + turn z and z becomes
-/// -R z, x' gains -on_x z' + turn_x z and x gains -on_x z.
+/// M in the coordinates (x', x, z', z) with z = x - y: z' becomes -R z' + r_z z and z becomes -R
+/// z, x' gains -jump_x z' + r_x z and x gains -jump_x z.
 struct Relative {
-    double R, on_x, turn_x, turn;
-    double mixed;  ///< R turn_x - on_x turn, where R x''/(x'- - y'-) cancels: x'' is linear in all
+    double R, jump_x, r_x, r_z;
+    /// R r_x - jump_x r_z, in which R x''/(x'- - y'-) cancels: x'' enters linearly everywhere
+    double mixed;
 };
 Relative relative(const Saltation& M) {
-    const double turn = M.turn_x - M.turn_y;
-    return {M.R, M.on_x, M.turn_x, turn, M.R * M.turn_x - M.on_x * turn};
+    const double r_z = M.r_x - M.r_y;
+    return {M.R, M.jump_x, M.r_x, r_z, M.R * M.r_x - M.jump_x * r_z};
 }
 
 }  // namespace
 
 Area carried(const Area& w, const Saltation& M) {
-    const auto [R, on_x, turn_x, turn, mixed] = relative(M);
-    // In the coordinates of x and z: 12 is x, z'; 23 is z', z.
+    const auto [R, jump_x, r_x, r_z, mixed] = relative(M);
+    // Components in the coordinates of x and z: 12 is x, z'; 23 is z', z.
     const double u02 = -w(1), u03 = w(0) - w(2), u12 = -w(0) - w(3), u13 = -w(4),
                  u23 = u03 + w(3) + w(5);
-    const double on_u23 = on_x * u23;
-    const double v01 = w(0) - on_x * (u03 - u12 - on_u23) - turn_x * u13,
-                 v02 = turn * u03 - R * u02 + mixed * u23, v03 = R * (on_u23 - u03),
-                 v12 = turn * u13 - R * (u12 + on_u23), v13 = -R * u13, v23 = R * R * u23;
+    const double on_u23 = jump_x * u23;
+    const double v01 = w(0) - jump_x * (u03 - u12 - on_u23) - r_x * u13,
+                 v02 = r_z * u03 - R * u02 + mixed * u23, v03 = R * (on_u23 - u03),
+                 v12 = r_z * u13 - R * (u12 + on_u23), v13 = -R * u13, v23 = R * R * u23;
     Area out;
     out << v01, -v02, v01 - v03, -v01 - v12, -v13, v01 - v03 + v12 + v23;
     return out;
@@ -135,11 +134,11 @@ Area carried(const Area& w, const Saltation& M) {
 
 Volume carried(const Volume& volume, const Saltation& M) {
     // det(M) M^-T n.
-    const auto [R, on_x, turn_x, turn, mixed] = relative(M);
+    const auto [R, jump_x, r_x, r_z, mixed] = relative(M);
     const Eigen::Vector4d& n = volume.normal;
     const double along_x_dot = n(0) + n(2), along_x = n(1) + n(3);
-    const double along_z_dot = R * (n(2) - on_x * along_x_dot),
-                 along_z = mixed * along_x_dot + turn * n(2) + R * (n(3) - on_x * along_x);
+    const double along_z_dot = R * (n(2) - jump_x * along_x_dot),
+                 along_z = mixed * along_x_dot + r_z * n(2) + R * (n(3) - jump_x * along_x);
     return {{R * R * along_x_dot + along_z_dot, R * R * along_x + along_z, -along_z_dot, -along_z}};
 }
 
@@ -147,7 +146,7 @@ void Flag::pass(const Leg& leg, double epsilon) {
     carry(deviation, leg, epsilon);
     area = carried(area, leg, epsilon);
     volume = carried(volume, leg);
-    determinant *= leg.stuck ? 0 : determinant_of(leg.oscillator);
+    determinant *= leg.sticking ? 0 : determinant_of(leg.oscillator);
 }
 
 void Flag::strike(const Saltation& M) {
@@ -160,7 +159,7 @@ std::array<double, 3> Flag::squares() const {
     return {deviation.squaredNorm(), area.squaredNorm(), volume.normal.squaredNorm()};
 }
 
-std::array<double, 2> Flag::gaps() const {
+std::array<double, 2> Flag::separations() const {
     const Eigen::Vector4d &d = deviation, &n = volume.normal;
     const Area& w = area;
     const Eigen::Vector4d spanned(
@@ -189,7 +188,7 @@ double PowerProduct::Scaled<n>::log_radius() const {
 }
 
 void PowerProduct::pass(const Leg& leg) {
-    if (leg.stuck) rank_ = 2;
+    if (leg.sticking) rank_ = 2;
     for (long count = 0; count < leg.parts; ++count) {
         Frame first = first_.matrix;
         carry(first, leg, epsilon_);

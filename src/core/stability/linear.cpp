@@ -5,18 +5,17 @@
 #include <Eigen/QR>
 #include <cmath>
 
-#include "core/motion/special_values.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines {
 
 namespace {
 
-// Of a size that is known at run time only: one solver, which compiles in two thirds of the time of
-// those that are unrolled for 4 and for 6.
+// Size known at run time only: this compiles in two thirds of the time of solvers for 4 and 6.
 using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
 
-// A direction that a matrix shrinks to this share of its largest counts as none: far above an ulp,
-// so that what rounding leaves of a zero is not divided by.
+// Singular values below this fraction of the largest count as zero: far above an ulp, so that the
+// rounding of a zero is never a divisor.
 constexpr double least_share = 1e-10;
 
 Eigen::VectorXcd solved(const Square& matrix) {
@@ -36,14 +35,14 @@ double spectral_radius(const Eigen::Matrix2d& m) {
     return D < 0 ? std::sqrt(det) : std::abs(half_trace) + std::sqrt(D);
 }
 
-EigenBase eigen_base_of(const Eigen::Matrix4d& matrix) {
+EigenBasis eigen_basis_of(const Eigen::Matrix4d& matrix) {
     const Eigen::EigenSolver<Square> solver{Square(matrix)};
     const Eigen::Matrix4cd vectors = solver.eigenvectors();
     return {solver.eigenvalues(), vectors.inverse()};
 }
 
-Eigen::Vector4d smallest_solution(const Eigen::Matrix4d& matrix, const Eigen::Vector4d& right) {
-    // On the heap it compiles in two thirds of the time, and is called a few times a search.
+Eigen::Vector4d minimum_norm_solution(const Eigen::Matrix4d& matrix, const Eigen::Vector4d& right) {
+    // A heap matrix compiles in two thirds of the time; this runs a few times per search.
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
     solver.setThreshold(least_share);
     solver.compute(matrix);

@@ -6,32 +6,32 @@
 #include <limits>
 
 #include "core/motion/elementary.hpp"
-#include "core/motion/special_values.hpp"
 #include "core/stability/linear.hpp"
 
 namespace vines {
 
 namespace {
 
-// Products of lengths, and squares of areas and volumes, are kept within these bounds by taking
-// their logarithms out: a third of double's exponents, so that the next factors stay in its range.
+// Products of lengths, and squares of areas and volumes, stay within these bounds by extracting
+// their logarithms: a third of the exponent range of double, so that further factors do not leave
+// it.
 constexpr double least_product = 1e-100, most_product = 1e100;
 constexpr double rounding = std::numeric_limits<double>::epsilon();
-// Where many impacts magnify it, it is not always at its worst, nor of one sign: of 1500 strongly
-// damped systems, most with chatters, a whole ulp withholds ten whose exponents are right to 1e-7,
-// a tenth of one withholds one.
+// Over many impacts rounding is neither always at its worst nor of one sign. Among 1500 strongly
+// damped systems, most with chatter, a full ulp withholds ten whose exponents are accurate to 1e-7,
+// a tenth of an ulp withholds one.
 constexpr double typical_rounding = 0.1 * rounding;
-// The sine of an angle that should be none, far above what rounding leaves of it.
-constexpr double widest_gap = 1e-6;
+// Sine of an angle that should be zero, far above the effect of rounding.
+constexpr double widest_separation = 1e-6;
 bool is_in_range(double product) { return product > least_product && product < most_product; }
 
 constexpr Exponents no_exponents = {nan, nan, nan, nan};
 
 /// A history that thins itself: when full it drops every second entry and from then on takes every
-/// second impact. Of capacity 0 it stays empty.
-class Thinned {
+/// second impact. With capacity 0 it stays empty.
+class ThinnedHistory {
 public:
-    explicit Thinned(std::size_t capacity)
+    explicit ThinnedHistory(std::size_t capacity)
         : capacity_(capacity > 0 ? std::max(capacity, shortest_history) : 0) {}
 
     bool wants_next() const { return capacity_ > 0 && seen_ % stride_ == 0; }
@@ -68,8 +68,8 @@ Exponents per_time(const Exponents& logs, int rank, double T) {
     return lambda;
 }
 
-/// The same in descending order, NaN behind: over a short window, or one of strong damping, the
-/// deviations need not have turned into that order.
+/// The same in descending order, NaN last: over a short window or under strong damping the
+/// deviations are not yet ordered.
 Exponents descending(Exponents logs, int rank, double T) {
     for (int k = 1; k < rank; ++k)
         for (int j = k; j > 0 && (logs[j] > logs[j - 1] || std::isnan(logs[j - 1])); --j)
@@ -77,7 +77,7 @@ Exponents descending(Exponents logs, int rank, double T) {
     return per_time(logs, rank, T);
 }
 
-const ExponentHistory& none() {
+const ExponentHistory& empty_history() {
     static const ExponentHistory empty;
     return empty;
 }
@@ -90,6 +90,12 @@ Status status_of(double exponent) {
                                   : Status::ok;
 }
 
+std::size_t ExponentHistory::coarse_stride() const {
+    std::size_t stride = 1;
+    while ((tau.size() + stride - 1) / stride > shortest_history) stride *= 2;
+    return stride;
+}
+
 double rounding_floor(double lambda1, double T) {
     return lambda1 + elementary::log(std::numeric_limits<double>::epsilon()) / T;
 }
@@ -98,104 +104,109 @@ struct TransferProduct::Qr {
     explicit Qr(std::size_t history) : thinned(history) {}
 
     Flag flag;
-    std::array<double, 4> taken{};  // logarithms that were taken out of its four sizes
-    double log_det = 0;             // of the flights by the law: -2 zeta s
+    std::array<double, 4> extracted_logs{};  // logarithms extracted from its four sizes
+    double log_det = 0;                      // exact value for the flights: -2 zeta s
     double R_product = 1, log_R = 0;
-    /// What rounding may have changed of the logarithms of length, area and volume.
-    std::array<double, 3> lost{};
-    int unseen = 0;  // impacts since the sizes were looked at
-    Thinned thinned;
+    /// Bound of the rounding error in the logarithms of length, area and volume.
+    std::array<double, 3> rounding_bounds{};
+    int since_rescale = 0;  // impacts since the last rescaling
+    ThinnedHistory thinned;
 
     void pass(const Leg& leg, double epsilon) {
         for (long k = 0; k < leg.parts; ++k) {
             flag.pass(leg, epsilon);
             log_det += leg.log_det;
-            if (leg.parts > 1 || leg.stuck) rescale();
+            if (leg.parts > 1 || leg.sticking) rescale();
         }
     }
 
     void strike(const Saltation& M) {
-        // Others, with a flight of one part, let no size grow by more than 1e17 (where the flight
-        // lasts 1e10), nor shrink by more than 1e10.
-        const double steepness = std::abs(M.turn_x) + std::abs(M.turn_y);
-        if (M.R < 1e-3 || steepness > 1e6) return strike_strongly(M, steepness);
+        const double steepness = std::abs(M.r_x) + std::abs(M.r_y);
+        if (M.R < 1e-3 || steepness > 1e6) return strike_magnified(M, steepness);
+        // Within these limits an impact and a flight of one part let no size grow by more than 1e17
+        // (for a flight of duration 1e10) or shrink by more than 1e10.
         flag.strike(M);
-        for (double& share : lost) share += rounding;
+        for (double& share : rounding_bounds) share += rounding;
         R_product *= M.R;
-        if (++unseen == 4) rescale();
+        if (++since_rescale == 4) rescale();
     }
 
-    /// x - y and x' - y' of a deviation are known to an ulp of x and x', of areas and volumes
-    /// alike, and M magnifies that by its entries: what this is of the sizes behind it.
-    void strike_strongly(const Saltation& M, double steepness) {
+    /// x - y and x' - y' of a deviation are accurate to an ulp of x and x', as are those of areas
+    /// and volumes, and M magnifies this by its entries: adds it relative to the sizes after the
+    /// impact.
+    void strike_magnified(const Saltation& M, double steepness) {
         rescale();
         const auto before = flag.squares();
         flag.strike(M);
         const auto after = flag.squares();
         for (int k = 0; k < 3; ++k)
-            lost[k] += before[k] > 0 ? typical_rounding *
-                                           (1 + (1 + steepness) * std::sqrt(before[k] / after[k]))
-                                     : 0;
+            rounding_bounds[k] +=
+                before[k] > 0
+                    ? typical_rounding * (1 + (1 + steepness) * std::sqrt(before[k] / after[k]))
+                    : 0;
         log_R += elementary::log(M.R);
         rescale();
     }
 
-    /// Keeps the sizes within the range of double; what has lost its rank stays zero.
+    /// Keeps the sizes within the range of double; zero after loss of rank stays zero.
     void rescale() {
-        unseen = 0;
+        since_rescale = 0;
         const auto squares = flag.squares();
         auto keep = [](double square, auto& size, double& log) {
             if (is_in_range(square) || square == 0) return;
             log += 0.5 * elementary::log(square);
             size *= 1 / std::sqrt(square);
         };
-        keep(squares[0], flag.deviation, taken[0]);
-        keep(squares[1], flag.area, taken[1]);
-        keep(squares[2], flag.volume.normal, taken[2]);
+        keep(squares[0], flag.deviation, extracted_logs[0]);
+        keep(squares[1], flag.area, extracted_logs[1]);
+        keep(squares[2], flag.volume.normal, extracted_logs[2]);
         auto take = [](double& product, double& log) {
             if (is_in_range(std::abs(product)) || product == 0) return;
             log += elementary::log(std::abs(product));
             product = product < 0 ? -1 : 1;
         };
-        take(flag.determinant, taken[3]);
+        take(flag.determinant, extracted_logs[3]);
         take(R_product, log_R);
     }
 
-    double log_det_found() const { return taken[3] + elementary::log(std::abs(flag.determinant)); }
+    double log_det_carried() const {
+        return extracted_logs[3] + elementary::log(std::abs(flag.determinant));
+    }
 
-    /// Growth of the first deviation, and by how much the next ones make that of area, volume and
-    /// determinant larger: the diagonal of R.
+    /// Diagonal of R: the growth of the first deviation, and the factors by which each further one
+    /// increases the growth of area, volume and determinant.
     Exponents logs(int rank) const {
         const auto squares = flag.squares();
         Exponents logs{};
         double before = 0;
         for (int k = 0; k < rank; ++k) {
-            const double sum = k < 3 ? taken[k] + 0.5 * elementary::log(squares[k])
-                                     : log_det_found() + 2 * (log_R + elementary::log(R_product));
+            const double sum = k < 3 ? extracted_logs[k] + 0.5 * elementary::log(squares[k])
+                                     : log_det_carried() + 2 * (log_R + elementary::log(R_product));
             logs[k] = sum - before;
             before = sum;
         }
         return logs;
     }
 
-    /// By how much each of the four sums misses: the angles by which parts of the flag have come
-    /// apart, and the determinants their law. Where rounding may have changed one by more than
-    /// `most`, that.
-    std::array<double, 4> misses(int rank, double most) const {
+    /// Error of each of the four sums: angles between the parts of the flag, and deviation of the
+    /// determinant from its exact value; at least the rounding bound where that exceeds `most`.
+    std::array<double, 4> errors(int rank, double most) const {
         const auto squares = flag.squares();
-        const auto gaps = flag.gaps();
-        std::array<double, 4> misses{};
+        const auto separations = flag.separations();
+        std::array<double, 4> errors{};
         for (int k = 0; k < std::min(rank, 3); ++k) {
-            if (!(lost[k] <= most)) misses[k] = lost[k];
-            if (!(squares[k] > 0)) misses[k] = infinity;
+            if (!(rounding_bounds[k] <= most)) errors[k] = rounding_bounds[k];
+            if (!(squares[k] > 0)) errors[k] = infinity;
         }
         for (int k = 1; k < std::min(rank, 3); ++k) {
-            // Which of the two is wrong a gap does not tell.
-            const double gap = gaps[k - 1] <= widest_gap ? gaps[k - 1] : infinity;
-            misses[k - 1] = std::max(misses[k - 1], gap), misses[k] = std::max(misses[k], gap);
+            // A separation does not identify which of the two is wrong.
+            const double separation =
+                separations[k - 1] <= widest_separation ? separations[k - 1] : infinity;
+            errors[k - 1] = std::max(errors[k - 1], separation);
+            errors[k] = std::max(errors[k], separation);
         }
-        if (rank == 4) misses[3] = std::abs(log_det_found() - log_det);
-        return misses;
+        if (rank == 4) errors[3] = std::abs(log_det_carried() - log_det);
+        return errors;
     }
 };
 
@@ -205,14 +216,14 @@ struct TransferProduct::Powers {
           thinned(std::min(history, most_eigenvalue_entries)) {}
 
     PowerProduct product;
-    Thinned thinned;
+    ThinnedHistory thinned;
 };
 
 struct TransferProduct::Raw {
     explicit Raw(std::size_t history) : thinned(history) {}
 
     Matrix4 product = Matrix4::Identity();
-    Thinned thinned;
+    ThinnedHistory thinned;
 
     void multiply(std::span<const Leg> legs, const Saltation& M, double epsilon) {
         Matrix4 J = Matrix4::Identity();
@@ -253,7 +264,7 @@ void TransferProduct::append(std::span<const Leg> legs, const Saltation& M, doub
         estimator.thinned.push(tau, exponents());
     };
     for (const Leg& leg : legs) {
-        if (leg.stuck) rank_ = 2;
+        if (leg.sticking) rank_ = 2;
         if (qr_) qr_->pass(leg, epsilon_);
         if (powers_) powers_->product.pass(leg);
     }
@@ -276,11 +287,11 @@ Exponents TransferProduct::qr() const {
     if (!qr_) return no_exponents;
     const double T = end_ - start_;
     Exponents logs = qr_->logs(rank_);
-    const auto misses = qr_->misses(rank_, most_residual * (end_ - start_));
-    // The k-th exponent is the difference of two sums. Where one is not known, it is not known
-    // either which place the ones behind it have among the others.
+    const auto errors = qr_->errors(rank_, most_residual * (end_ - start_));
+    // The k-th exponent is the difference of two sums. If one is unknown, the order of all
+    // following exponents is unknown, too.
     for (int k = 0; k < rank_; ++k)
-        if (!(misses[k] <= most_residual * T)) {
+        if (!(errors[k] <= most_residual * T)) {
             std::fill(logs.begin() + k, logs.begin() + rank_, nan);
             break;
         }
@@ -293,19 +304,19 @@ Exponents TransferProduct::raw_product() const {
     return raw_ ? raw_->exponents(end_ - start_) : no_exponents;
 }
 const ExponentHistory& TransferProduct::qr_history() const {
-    return qr_ ? qr_->thinned.history() : none();
+    return qr_ ? qr_->thinned.history() : empty_history();
 }
 const ExponentHistory& TransferProduct::eigenvalues_history() const {
-    return powers_ ? powers_->thinned.history() : none();
+    return powers_ ? powers_->thinned.history() : empty_history();
 }
 const ExponentHistory& TransferProduct::raw_product_history() const {
-    return raw_ ? raw_->thinned.history() : none();
+    return raw_ ? raw_->thinned.history() : empty_history();
 }
 
 double TransferProduct::sum_rule_residual() const {
     if (!qr_ || impacts_ < 2) return nan;
-    const auto misses = qr_->misses(rank_, most_residual * (end_ - start_));
-    return *std::max_element(misses.begin(), misses.end()) / (end_ - start_);
+    const auto errors = qr_->errors(rank_, most_residual * (end_ - start_));
+    return *std::max_element(errors.begin(), errors.end()) / (end_ - start_);
 }
 
 Lyapunov::Lyapunov(
@@ -316,7 +327,7 @@ Lyapunov::Lyapunov(
       product_(parameters.epsilon, options) {}
 
 void Lyapunov::on_stretch(const Stretch& stretch) {
-    if (product_.impacts() > 0) since_impact_.extend(stretch);  // the window has begun
+    if (product_.impacts() > 0) since_impact_.extend(stretch);  // the window has started
 }
 
 void Lyapunov::on_impact(const Impact& impact) {
@@ -324,6 +335,28 @@ void Lyapunov::on_impact(const Impact& impact) {
     if (product_.impacts() == 0) product_.start(impact.tau);
     else product_.append(since_impact_.legs(), saltation(parameters_, impact), impact.tau);
     since_impact_.reset();
+}
+
+void WindowedExponents::add(double tau_start, double tau_end) {
+    windows_.push_back({tau_start, tau_end, Lyapunov(parameters_, tau_start, tau_end, options_)});
+}
+
+void WindowedExponents::on_stretch(const Stretch& stretch) {
+    for (Window* w : open_) w->lyapunov.on_stretch(stretch);
+}
+
+void WindowedExponents::on_impact(const Impact& impact) {
+    if (!begun_) {
+        for (Window& w : windows_) waiting_.push_back(&w);
+        std::sort(waiting_.begin(), waiting_.end(), [](const Window* a, const Window* b) {
+            return a->tau_start > b->tau_start;
+        });
+        begun_ = true;
+    }
+    for (; !waiting_.empty() && waiting_.back()->tau_start <= impact.tau; waiting_.pop_back())
+        open_.push_back(waiting_.back());
+    std::erase_if(open_, [&](const Window* w) { return w->tau_end < impact.tau; });
+    for (Window* w : open_) w->lyapunov.on_impact(impact);
 }
 
 }  // namespace vines

@@ -1,25 +1,25 @@
-// Transient Lyapunov exponents of a sequence of transfer matrices, by three estimators.
+// Finite-time Lyapunov exponents of a sequence of transfer matrices, by three estimators.
 //
-//   qr           Benettin's: how length, area, volume and determinant of one to four deviations
-//                grow that are carried by T_i = M_i J_i (30): as the diagonal of R in a QR
+//   qr           Benettin: growth of the length, area, volume and determinant spanned by one to
+//                four deviations under T_i = M_i J_i (30), which is the diagonal of R in a QR
 //                factorisation at every impact. The reference.
-//   eigenvalues  ln|eigenvalues of T_n ... T_1| / T, eq. (33), all four moduli right over any
-//                window: the largest eigenvalue of each exterior power of the product (the k-th
-//                has the k-fold products of its eigenvalues), each product scaled as it grows.
-//   raw_product  (33) as the paper computed it: the product in double precision, unscaled. After a
-//                while it is a matrix of rank one plus rounding: its third and fourth "exponents"
-//                are lambda1 - ln(1/2.2e-16)/T, the rounding floor, and near T = 709/lambda1 it
+//   eigenvalues  ln|eigenvalues of T_n ... T_1| / T, eq. (33), all four moduli accurate over any
+//                window: the largest eigenvalue of each exterior power of the product (the k-th has
+//                the k-fold products of its eigenvalues), each product rescaled as it grows.
+//   raw_product  (33) as the paper computed it: the product in double precision, unscaled. It soon
+//                becomes a matrix of rank one plus rounding: its third and fourth "exponents" are
+//                lambda1 - ln(1/2.2e-16)/T, the rounding floor, and near T = 709/lambda1 it
 //                overflows.
 //
-// Sum rule, exact from impact to impact while nothing sticks: the four exponents add up to
-// -2 zeta + 2/T * (sum of ln R over the impacts).
+// Sum rule, exact from impact to impact without sticking: the four exponents sum to -2 zeta + 2/T *
+// (sum of ln R over the impacts).
 //
-// A stick leaves only the deviations of the centre of mass (rank 2), an impact with R = 0 leaves
-// none of x - y (rank 3): from there on the exponents beyond the rank are minus infinity, and the
-// rule says nothing. At rank 4 the determinants of the flights, multiplied up, are held against it.
-// At any rank what rounding may have changed is added up where M magnifies it (near grazing, or
-// with a tiny R), and the deviation must lie in the plane of the area, and that in the space of the
-// volume (exterior.hpp, Flag), though each is carried by itself.
+// Sticking leaves only the deviations of the centre of mass (rank 2); an impact with R = 0 removes
+// that of x - y (rank 3). From then on the exponents beyond the rank are minus infinity, and the
+// sum rule does not apply. At rank 4 the product of the flights' determinants is compared with it.
+// At any rank, rounding that M magnifies (near grazing, or with a tiny R) is added up, and the
+// deviation must lie in the plane of the area, and that plane in the space of the volume
+// (exterior.hpp, Flag), although each is transported separately.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@
 
 namespace vines {
 
-/// Per unit of tau; -infinity beyond the rank, NaN where not converged.
+/// Exponents per unit of tau; -infinity beyond the rank, NaN if not converged.
 using Exponents = std::array<double, 4>;
 
 /// ok: a number; minus_infinity: rank was lost; not_converged: fewer than two impacts in the
@@ -38,56 +38,55 @@ using Exponents = std::array<double, 4>;
 enum class Status { ok, minus_infinity, not_converged };
 Status status_of(double exponent);
 
-/// A history holds at least so many entries before it is thinned.
+/// Fewest entries that a history holds before it is thinned.
 inline constexpr std::size_t shortest_history = 256;
-/// Of `eigenvalues`: each costs three eigenvalue problems.
+/// Limit for the history of `eigenvalues`: each entry needs three eigenvalue problems.
 inline constexpr std::size_t most_eigenvalue_entries = 2048;
 
 struct ExponentHistory {
     std::vector<double> tau;
-    std::vector<Exponents> lambda;  ///< of the window from its first impact to tau
+    std::vector<Exponents> lambda;  ///< over the window from its first impact to tau
 
-    /// Every how many entries the shortest history of the same run would hold: what is concluded
-    /// from a history rests on those alone, and so does not depend on how long it was asked to be.
+    /// Stride that reduces this history to the shortest history of the same run. Conclusions use
+    /// only those entries and therefore do not depend on the requested length.
     std::size_t coarse_stride() const;
 };
 
-/// Which estimators to run, and how many entries their histories may have (at least
-/// shortest_history; 0: none but qr's shortest one, which its standard error rests on). Longer ones
-/// are thinned to every second, fourth, ... impact; `eigenvalues` keeps at most
-/// most_eigenvalue_entries.
+/// Estimators to run, and length of their histories (at least shortest_history; 0: only the
+/// shortest history of qr, which its standard error needs). Longer histories are thinned to every
+/// second, fourth, ... impact; `eigenvalues` keeps at most most_eigenvalue_entries.
 struct ExponentOptions {
     bool qr = false, eigenvalues = false, raw_product = false;
     std::size_t history = 20000;
 };
 
-/// What verdicts, regimes and standard errors rest on, where no history is shown.
+/// Sufficient for verdicts, regimes and standard errors.
 inline constexpr ExponentOptions qr_alone = {.qr = true, .history = shortest_history};
 inline constexpr ExponentOptions all_estimators = {
     .qr = true, .eigenvalues = true, .raw_product = true};
 
-/// The product of the transfer matrices of one window, as the estimators see it.
+/// The product of the transfer matrices of one window, with its estimators.
 class TransferProduct {
 public:
     TransferProduct(double epsilon, const ExponentOptions& options);
     ~TransferProduct();
     TransferProduct(TransferProduct&&) noexcept;
 
-    /// Starts the window at the impact at tau (whose own matrices do not belong to it).
+    /// Starts the window at the impact at tau, whose own matrices are not part of it.
     void start(double tau);
-    /// The legs from the impact before to the impact at tau, and its M.
+    /// Appends the legs from the previous impact to the one at tau, and its M.
     void append(std::span<const Leg> legs, const Saltation& M, double tau);
 
     double start_tau() const { return start_; }
     double end_tau() const { return end_; }
-    long impacts() const { return impacts_; }  ///< of the window, the first included
+    long impacts() const { return impacts_; }  ///< in the window, including the first
     int rank() const { return rank_; }
-    /// By how much qr misses the sum rule (at rank 4), or its parts have come apart, or, if that is
-    /// more than `most_residual`, rounding may have changed them: the largest, per unit of tau. NaN
-    /// without qr or two impacts.
+    /// Largest deviation of qr, per unit of tau: from the sum rule (at rank 4), between length,
+    /// area and volume, and, if above `most_residual`, the accumulated rounding. NaN without qr or
+    /// with fewer than two impacts.
     double sum_rule_residual() const;
-    /// The exponents at the last impact, descending; NaN where there are none, or from the first on
-    /// that may be wrong by more than `most_residual`.
+    /// The exponents at the last impact, descending; NaN if unavailable. In qr(), NaN from the
+    /// first exponent on whose error can exceed `most_residual`.
     Exponents qr() const;
     Exponents eigenvalues() const;
     Exponents raw_product() const;
@@ -108,15 +107,14 @@ private:
     std::unique_ptr<Raw> raw_;
 };
 
-/// An exponent whose sum rule misses by more is not shown (TransferProduct::qr).
+/// Largest residual of an exponent that is still reported (TransferProduct::qr), per unit of tau.
 inline constexpr double most_residual = 1e-6;
 
-/// The exponent that rounding puts in place of a smaller one in raw_product:
-/// lambda1 - ln(1/2.2e-16)/T.
+/// Value of the smaller exponents of raw_product due to rounding: lambda1 - ln(1/2.2e-16)/T.
 double rounding_floor(double lambda1, double T);
 
-/// Feeds the matrices of a run into a product, from the first impact at or after tau_start to the
-/// last at or before tau_end.
+/// Observer that feeds the matrices of a run into a product, from the first impact at or after
+/// tau_start to the last at or before tau_end.
 class Lyapunov : public Observer {
 public:
     Lyapunov(
@@ -127,14 +125,45 @@ public:
     void on_impact(const Impact&) override;
 
     const TransferProduct& product() const { return product_; }
-    /// After the run.
+    /// Call it after the run.
     TransferProduct take() { return std::move(product_); }
 
 private:
     const Parameters parameters_;
     const double tau_start_, tau_end_;
-    Passage since_impact_;
+    LegSequence since_impact_;
     TransferProduct product_;
+};
+
+/// Exponents of many windows of one run; each window receives events only while it is open.
+class WindowedExponents : public Observer {
+public:
+    WindowedExponents(const Parameters& parameters, const ExponentOptions& options)
+        : parameters_(parameters),
+          options_(options) {}
+    /// Adds a window; call it before the run. Products are numbered in the order of these calls.
+    void add(double tau_start, double tau_end);
+
+    void on_stretch(const Stretch&) override;
+    void on_impact(const Impact&) override;
+
+    std::size_t size() const { return windows_.size(); }
+    const TransferProduct& product(std::size_t i) const { return windows_[i].lyapunov.product(); }
+    /// Call it after the run.
+    TransferProduct take(std::size_t i) { return windows_[i].lyapunov.take(); }
+
+private:
+    struct Window {
+        double tau_start, tau_end;
+        Lyapunov lyapunov;
+    };
+    const Parameters parameters_;
+    const ExponentOptions options_;
+    std::vector<Window> windows_;
+    // Windows not yet open, latest start first; filled at the first impact.
+    std::vector<Window*> waiting_;
+    std::vector<Window*> open_;
+    bool begun_ = false;
 };
 
 }  // namespace vines

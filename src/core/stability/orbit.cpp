@@ -3,47 +3,47 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/motion/contacts.hpp"
 #include "core/motion/elementary.hpp"
 #include "core/motion/record.hpp"
-#include "core/motion/special_values.hpp"
 #include "core/stability/linear.hpp"
 
 namespace vines {
 
 namespace {
 
-// A period with more impacts than this is not looked for.
+// Orbits with more impacts per period are not searched for.
 constexpr long most_orbit_impacts = 20000;
-// Newton's method has found the orbit when its return misses it by no more, in units of the scale.
-constexpr double closed = 1e-10;
-// Closer than this it cannot come: some ulps of a state of order one. Before that, a step which
-// does not shrink the miss to a tenth has met rounding: near the orbit it would square it.
-constexpr double closed_to_rounding = 1e-14, converging = 0.1;
-// Newton's method gives up after so many steps, or so many that led further away; a step out of the
-// cavity is halved so many times. And where the motion stretches deviations by more, in units of
-// the scale: an ulp of the state alone then moves its return by more than `closed`. It is so at
-// returns of a chaotic motion after many cycles, of which half of all steps were.
+// Newton's method has converged when the return differs by at most this, in units of the scale.
+constexpr double return_tolerance = 1e-10;
+// Rounding prevents anything closer: some ulps of a state of order one. Above that, a step that
+// does not reduce the miss to a tenth has reached rounding, because convergence near the orbit is
+// quadratic.
+constexpr double rounding_tolerance = 1e-14, least_improvement = 0.1;
+// Limits of Newton's method: steps, steps that increase the miss, halvings of a step out of the
+// cavity. The search also stops where the motion stretches deviations, in units of the scale, by
+// more than most_stretch: an ulp of the state then moves its return by more than
+// `return_tolerance`. That happens for returns of a chaotic motion after many cycles, which without
+// this limit take half of all steps.
 constexpr int most_steps = 25, most_worse_steps = 2, most_halvings = 6;
 constexpr double most_stretch = 1e6;
-// A divisor of the period closes, too, if the state misses itself by no more than this.
-constexpr double divisor_closed = 1e3 * closed;
+// A divisor of the period also closes if the state returns to within this distance.
+constexpr double divisor_tolerance = 1e3 * return_tolerance;
 // An eigenvalue this much smaller than the largest one has lost six digits to the solver's error,
-// an ulp of the largest: the exterior powers know its modulus better.
+// an ulp of the largest; the exterior powers give its modulus more accurately.
 constexpr double small_multiplier = 1e-6;
-// What a motion is measured by at least, in b: less is rest. And the free mass is never slower, by
-// order of magnitude, than b per half cycle where it meets both walls.
-constexpr double least_scale = 1e-9, least_mass_speed = 0.1;
-// A contact's tau is known to rounding, which must not count it twice: share of a period.
+// Smallest scales, in units of b: less is rest. A ball that meets both walls is never slower, by
+// order of magnitude, than b per half cycle.
+constexpr double least_scale = 1e-9, least_ball_speed = 0.1;
+// Rounding of a contact's tau, as a fraction of a period; it must not be counted twice.
 constexpr double contact_rounding = 1e-9;
-// An orbit is symmetric if its state after half a period is the opposite one to this, in units of
-// the scale: far above what it closes to, far below what an asymmetry of any use would be.
+// An orbit is symmetric if its state after half a period is the negative one to within this
+// distance, in units of the scale: far above its closure, far below any relevant asymmetry.
 constexpr double symmetric_within = 1e-6;
 
 Eigen::Vector4d vector(const State& s) { return {s.x_dot, s.x, s.y_dot, s.y}; }
 State state(const Eigen::Vector4d& v) { return {v(0), v(1), v(2), v(3)}; }
 
-/// The product of all transfer matrices of a run.
+/// Product of all transfer matrices of a run.
 class Monodromy : public Observer {
 public:
     explicit Monodromy(const Parameters& p) : p_(p) {}
@@ -59,7 +59,7 @@ private:
     const Parameters p_;
 };
 
-/// Its exterior powers.
+/// Exterior powers of that product.
 class Powers : public Observer {
 public:
     explicit Powers(const Parameters& p) : product(p.epsilon), p_(p) {}
@@ -72,8 +72,8 @@ private:
     const Parameters p_;
 };
 
-/// Eigenvalues by descending modulus. The solver's error is one of the largest: small ones get
-/// their moduli from the exterior powers.
+/// Eigenvalues by descending modulus. The solver's error is an ulp of the largest: small
+/// eigenvalues take their moduli from the exterior powers.
 std::array<std::complex<double>, 4> multipliers_of(
     const Matrix4& monodromy, const PowerProduct& powers) {
     const Eigen::Vector4cd eigenvalues = eigenvalues_of(monodromy);
@@ -95,9 +95,8 @@ std::array<std::complex<double>, 4> multipliers_of(
 
 using Stop = std::function<bool()>;
 
-/// The middle of the longest flight within one cycle from a state at a whole cycle: a moment with
-/// no event nearby.
-double quiet_moment(const Parameters& p, const State& start, const Stop& stop) {
+/// The middle of the longest flight in the cycle after a state at a whole cycle: far from events.
+double time_far_from_events(const Parameters& p, const State& start, const Stop& stop) {
     ImpactRecord impacts;
     StickRecord sticks;
     Observer* const observers[] = {&impacts, &sticks};
@@ -106,7 +105,7 @@ double quiet_moment(const Parameters& p, const State& start, const Stop& stop) {
     double from = 0, length = 0, middle = 0.5 * cycle;
     std::size_t stick = 0;
     auto flight_to = [&](double tau) {
-        // What is left of a chatter, and the stuck phase behind it, are no flight.
+        // The rest of a chatter and the sticking phase after it are not a flight.
         for (; stick < sticks.entries.size() && sticks.entries[stick].start.tau <= tau; ++stick)
             from = std::max(from, sticks.entries[stick].tau_end);
         if (tau - from > length) length = tau - from, middle = 0.5 * (from + tau);
@@ -124,7 +123,7 @@ std::optional<State> after_period(
     return follow(p, s, tau, cycles * p.cycle(), stop, observers);
 }
 
-/// Of the eigenvalues: whatever the units, it is below the norm in them.
+/// Spectral radius: independent of the units, and at most the norm in any of them.
 double largest_modulus(const Matrix4& monodromy) {
     double largest = 0;
     for (const std::complex<double>& value : eigenvalues_of(monodromy))
@@ -133,7 +132,7 @@ double largest_modulus(const Matrix4& monodromy) {
 }
 
 /// Newton's method, in coordinates scaled to order one.
-std::optional<State> close(
+std::optional<State> solve_return(
     const Parameters& p, State s, double tau, int cycles, const State& scale, double reach,
     const Stop& stop) {
     const State guess = s;
@@ -146,7 +145,8 @@ std::optional<State> close(
         if (!back) return std::nullopt;
         const Eigen::Vector4d miss = (vector(*back) - vector(s)).cwiseQuotient(unit);
         const double size = miss.cwiseAbs().maxCoeff();
-        if (size < closed_to_rounding || (size < closed && size > converging * miss_before))
+        if (size < rounding_tolerance ||
+            (size < return_tolerance && size > least_improvement * miss_before))
             return s;
         if (size > miss_before && ++worse > most_worse_steps) return std::nullopt;
         miss_before = size;
@@ -154,9 +154,8 @@ std::optional<State> close(
                           (Matrix4(monodromy.matrix) - Matrix4::Identity()) * unit.asDiagonal();
         if (!(D.norm() < most_stretch) && !(largest_modulus(monodromy.matrix) < most_stretch))
             return std::nullopt;
-        // Neutral directions (a mass at rest that is never hit) are left as they are: the smallest
-        // step solves.
-        Eigen::Vector4d correction = -smallest_solution(D, miss);
+        // Neutral directions (a ball at rest, never hit) are left unchanged: the minimum-norm step.
+        Eigen::Vector4d correction = -minimum_norm_solution(D, miss);
         State next = state(vector(s) + correction.cwiseProduct(unit));
         for (int half = 0; half < most_halvings && std::abs(next.x - next.y) > p.b; ++half) {
             correction *= 0.5;
@@ -171,12 +170,12 @@ std::optional<State> close(
 }  // namespace
 
 State scale_of(const Parameters& p, std::span<const State> states) {
-    State scale{least_scale * p.b, least_scale * p.b, least_mass_speed * p.b, p.b};
+    State scale{least_scale * p.b, least_scale * p.b, least_ball_speed * p.b, p.b};
     for (const State& s : states)
         scale = {
             std::max(scale.x_dot, std::abs(s.x_dot)), std::max(scale.x, std::abs(s.x)),
             std::max(scale.y_dot, std::abs(s.y_dot)), scale.y};
-    // At one phase of the forcing either may pass through zero.
+    // At a given phase of the forcing either can pass through zero.
     scale.x = scale.x_dot = std::max(scale.x, scale.x_dot);
     return scale;
 }
@@ -187,7 +186,7 @@ double distance(const State& a, const State& b, const State& scale) {
 
 Exponents PeriodicOrbit::exponents(const Parameters& p) const {
     Exponents lambda;
-    // Multipliers below what rounding leaves of a zero are zero: the orbit sticks, or R = 0.
+    // A multiplier that is zero up to rounding is zero: the orbit sticks, or R = 0.
     for (int k = 0; k < 4; ++k)
         lambda[k] = elementary::log(elementary::modulus(multipliers[k])) / (cycles * p.cycle());
     return lambda;
@@ -204,9 +203,9 @@ std::optional<State> follow(
 
 namespace {
 
-/// The smallest period: the first divisor of `cycles` after which the state is back. Sets what the
-/// monodromy matrix over it says; false where the search was stopped.
-bool close_smallest(
+/// The smallest period: the first divisor of `cycles` after which the state returns. Sets the
+/// results of the monodromy matrix over it; false if the search was stopped.
+bool find_smallest_period(
     const Parameters& p, int cycles, const State& scale, const Stop& stop, PeriodicOrbit& orbit) {
     for (int divisor = 1; divisor <= cycles; ++divisor) {
         if (cycles % divisor != 0) continue;
@@ -216,7 +215,7 @@ bool close_smallest(
         const auto back = after_period(p, orbit.state, orbit.tau, divisor, stop, observers);
         if (!back) return false;
         orbit.closure = distance(*back, orbit.state, scale);
-        if (divisor < cycles && orbit.closure > divisor_closed) continue;
+        if (divisor < cycles && orbit.closure > divisor_tolerance) continue;
         orbit.cycles = divisor;
         orbit.monodromy = monodromy.matrix;
         orbit.multipliers = multipliers_of(orbit.monodromy, powers.product);
@@ -225,10 +224,10 @@ bool close_smallest(
     return true;
 }
 
-/// Counts what happens in a period; false where the search was stopped.
+/// Counts the events in a period; false if the search was stopped.
 bool count_period(const Parameters& p, const Stop& stop, PeriodicOrbit& orbit) {
-    // Three periods, of which one is counted from the first contact after a release: a chatter must
-    // not be cut in two.
+    // Follows three periods and counts one from the first contact after a release: no chatter is
+    // cut.
     ContactRecord contacts;
     ImpactRecord impacts;
     Observer* const observers[] = {&contacts, &impacts};
@@ -254,9 +253,8 @@ bool count_period(const Parameters& p, const Stop& stop, PeriodicOrbit& orbit) {
     return true;
 }
 
-/// Half a period on, the forcing has the opposite sign only where the period is an odd number of
-/// cycles. Walls that differ may leave the motion between their chatters the same, but not the
-/// chatters.
+/// After half a period the forcing has the opposite sign only if the period is an odd number of
+/// cycles. Unequal walls can leave the motion between chatters symmetric, but not the chatters.
 bool is_symmetric(
     const Parameters& p, const PeriodicOrbit& orbit, const State& scale, const Stop& stop) {
     if (orbit.cycles % 2 == 0 || (p.R_plus != p.R_minus && orbit.impacts != 0)) return false;
@@ -269,15 +267,15 @@ bool is_symmetric(
 std::optional<PeriodicOrbit> find_orbit(
     const Parameters& p, const State& at_whole_cycle, int cycles, const State& scale, double reach,
     const Stop& stop) {
-    const double tau = quiet_moment(p, at_whole_cycle, stop);
+    const double tau = time_far_from_events(p, at_whole_cycle, stop);
     const auto guess = follow(p, at_whole_cycle, 0, tau, stop);
     if (!guess) return std::nullopt;
-    const auto found = close(p, *guess, tau, cycles, scale, reach, stop);
+    const auto found = solve_return(p, *guess, tau, cycles, scale, reach, stop);
     if (!found) return std::nullopt;
     PeriodicOrbit orbit{};
     orbit.tau = tau;
     orbit.state = *found;
-    if (!close_smallest(p, cycles, scale, stop, orbit) || !count_period(p, stop, orbit))
+    if (!find_smallest_period(p, cycles, scale, stop, orbit) || !count_period(p, stop, orbit))
         return std::nullopt;
     orbit.symmetric = is_symmetric(p, orbit, scale, stop);
     return orbit;
@@ -293,8 +291,9 @@ std::complex<double> power(std::complex<double> z, int n) {
     return result;
 }
 
-/// Deviations from an orbit in the eigenvectors of its monodromy matrix: there a small one shrinks,
-/// period by period, by the multipliers' moduli, however far from orthogonal the eigenvectors are.
+/// Deviations from an orbit in eigenvector coordinates of its monodromy matrix: a small deviation
+/// shrinks there per period by the multipliers' moduli, however non-orthogonal the eigenvectors
+/// are.
 class EigenCoordinates {
 public:
     EigenCoordinates(const PeriodicOrbit& orbit, const State& scale, bool oscillator_alone)
@@ -302,7 +301,7 @@ public:
           unit_(vector(scale)) {
         Matrix4 D = unit_.asDiagonal().inverse() * orbit.monodromy * unit_.asDiagonal();
         if (oscillator_alone) D.bottomRows<2>().setZero(), D.rightCols<2>().setZero();
-        base_ = eigen_base_of(D);
+        base_ = eigen_basis_of(D);
     }
     Eigen::Vector4cd of(const State& s) const {
         return base_.to_coordinates * (vector(s) - at_).cwiseQuotient(unit_);
@@ -315,20 +314,20 @@ public:
 
 private:
     const Eigen::Vector4d at_, unit_;
-    EigenBase base_;
+    EigenBasis base_;
 };
 
-// From order one to there takes this many times the contraction's own time, and some more while it
-// is not linear yet.
+// Convergence from order one to on_the_orbit takes this many time constants of the contraction,
+// plus some periods before it becomes linear.
 constexpr double decay_times = 24;
 constexpr int more_periods = 20;
-// A motion is followed for so many cycles at most, but for so many periods at least.
+// Longest time that a motion is followed, in cycles, but at least least_periods periods.
 constexpr int most_cycles = 4000, least_periods = 30;
-// Where that is too short, it must move as the orbit's linear map says, in each of so many spans,
-// to this share of what the map contracts in the span.
+// If that is too short, the motion must agree with the orbit's linear map in each of `spans`
+// intervals, to this fraction of the contraction in the interval.
 constexpr int spans = 3;
 constexpr double linear_return_share = 0.2;
-// ln of the contraction of a period that is more than rounding.
+// ln of the smallest contraction per period that is more than rounding.
 constexpr double least_contraction = 1e-9;
 
 }  // namespace
@@ -336,17 +335,16 @@ constexpr double least_contraction = 1e-9;
 bool attracts(
     const Parameters& p, const PeriodicOrbit& orbit, const State& at_whole_cycle,
     const State& scale, const Stop& stop) {
-    // Without an impact nothing pulls the free mass back: its two multipliers are 1, and it is the
-    // oscillator that converges.
+    // Without impacts the ball has two multipliers 1, and only the oscillator converges.
     const bool untouched = orbit.contacts == 0 && orbit.state.y_dot == 0;
     const double largest = untouched ? spectral_radius(orbit.monodromy.topLeftCorner<2, 2>())
                                      : elementary::modulus(orbit.multipliers[0]);
     const double per_period = -elementary::log(largest);
     if (!(per_period > least_contraction)) return false;
     std::optional<State> s = follow(p, at_whole_cycle, 0, orbit.tau, stop);
-    auto distant = [&] { return distance(*s, orbit.state, scale); };
+    auto distance_to_orbit = [&] { return distance(*s, orbit.state, scale); };
     auto pass = [&](int periods) {
-        for (int k = 0; k < periods && s && distant() >= on_the_orbit; ++k)
+        for (int k = 0; k < periods && s && distance_to_orbit() >= on_the_orbit; ++k)
             s = follow(p, *s, orbit.tau, orbit.cycles * p.cycle(), stop);
         return s.has_value();
     };
@@ -354,7 +352,8 @@ bool attracts(
 
     const int most_periods = std::max(most_cycles / orbit.cycles, least_periods);
     const double needed = decay_times / per_period + more_periods;
-    if (needed <= most_periods) return pass(static_cast<int>(needed)) && distant() < on_the_orbit;
+    if (needed <= most_periods)
+        return pass(static_cast<int>(needed)) && distance_to_orbit() < on_the_orbit;
 
     const EigenCoordinates coordinates(orbit, scale, untouched);
     if (!coordinates.usable()) return false;
@@ -364,7 +363,7 @@ bool attracts(
         const Eigen::Vector4cd before = coordinates.of(*s),
                                linear = coordinates.after(before, periods);
         if (!pass(periods)) return false;
-        if (distant() < on_the_orbit) return true;
+        if (distance_to_orbit() < on_the_orbit) return true;
         if ((coordinates.of(*s) - linear).norm() >
             linear_return_share * contraction * before.norm())
             return false;

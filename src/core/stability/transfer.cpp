@@ -8,15 +8,15 @@
 
 namespace vines {
 
-void Passage::extend(const Stretch& stretch) {
-    const bool stuck = stretch.stuck_side != 0;
-    if (legs_.empty() || legs_.back().stuck != stuck) {
+void LegSequence::extend(const Stretch& stretch) {
+    const bool sticking = stretch.sticking_side != 0;
+    if (legs_.empty() || legs_.back().sticking != sticking) {
         legs_.push_back(leg_of(stretch));
         return;
     }
     Leg& leg = legs_.back();
     leg = leg_of(
-        stretch.flow, stretch.duration + leg.duration * static_cast<double>(leg.parts), stuck);
+        stretch.flow, stretch.duration + leg.duration * static_cast<double>(leg.parts), sticking);
 }
 
 Moduli eigenvalue_moduli(const Matrix4& m) {
@@ -35,18 +35,18 @@ Matrix4 ImpactTransfer::J() const {
 }
 
 int ImpactTransfer::rank() const {
-    return std::any_of(legs.begin(), legs.end(), [](const Leg& leg) { return leg.stuck; }) ? 2 : 4;
+    return std::any_of(legs.begin(), legs.end(), [](const Leg& leg) { return leg.sticking; }) ? 2
+                                                                                              : 4;
 }
 
 Moduli ImpactTransfer::J_moduli() const {
     Moduli moduli = {1, 1, 1, 1};
-    // Two blocks, eq. (19); that of the free mass, [1 0; s 1], is a Jordan block, which an
-    // eigenvalue solver would split.
+    // Two blocks, eq. (19). The ball's, [1 0; s 1], is a Jordan block, which a solver would split.
     if (rank() == 4) {
         for (const Leg& leg : legs) {
             const auto& [a11, a12, a21, a22] = leg.oscillator;
             const double n = static_cast<double>(leg.parts), half_trace = 0.5 * std::abs(a11 + a22);
-            // half_trace^2 less the determinant, without the ones that cancel in a short flight.
+            // half_trace^2 minus the determinant, without the ones that cancel in a short flight.
             const double d = 0.25 * (a11 - a22) * (a11 - a22) + a12 * a21;
             const double large =
                 d > 0 ? elementary::log(half_trace + std::sqrt(d)) : 0.5 * leg.log_det;

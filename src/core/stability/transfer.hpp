@@ -1,4 +1,4 @@
-// Transfer matrices of the deviations: J over flights (19), projections over stuck phases, M at
+// Transfer matrices of deviations: J over flights (19), projections over sticking phases, M at
 // impacts (27), T = M J (30).
 #pragma once
 
@@ -10,9 +10,8 @@
 
 namespace vines {
 
-/// The legs of the way since some moment, collected stretch by stretch. Free flights that follow
-/// each other are one.
-class Passage {
+/// The legs since the last reset, collected by stretch; consecutive free flights form one leg.
+class LegSequence {
 public:
     void extend(const Stretch& stretch);
     void reset() { legs_.clear(); }
@@ -24,27 +23,25 @@ private:
 
 Moduli eigenvalue_moduli(const Matrix4& m);
 
-/// The three matrices of one impact: J from the impact before it, its own M, and T = M J.
+/// The three matrices of one impact: J from the previous impact, its own M, and T = M J.
 struct ImpactTransfer {
     double tau;
     double epsilon;
     Saltation M;
-    std::vector<Leg> legs;  ///< from the impact before it
+    std::vector<Leg> legs;  ///< from the previous impact
 
     Matrix4 J() const;
-    int rank() const;  ///< of J: 4, or 2 after a stick
+    int rank() const;  ///< of J: 4, or 2 after sticking
     Matrix4 T() const { return M.times(J()); }
     Moduli J_moduli() const;
-    /// Exactly 1, 1, R, R (section 4): in the coordinates of the centre of mass and of x - y, M is
-    /// triangular.
+    /// Exactly 1, 1, R, R (section 4): M is triangular for the centre of mass and x - y.
     Moduli M_moduli() const { return {1, 1, M.R, M.R}; }
-    /// By the exterior powers, so that all four are right however strong the damping, however large
-    /// the entries of M.
+    /// From the exterior powers: accurate for any damping and any entries of M.
     Moduli T_moduli() const;
 };
 
-/// The matrices of the impacts in [tau_start, tau_end], from the second one on; up to half more
-/// than the last `most` of them.
+/// The matrices of the impacts in [tau_start, tau_end], from the second one on; keeps the last
+/// `most` and up to half as many more.
 class TransferRecord : public Observer {
 public:
     TransferRecord(
@@ -58,13 +55,13 @@ public:
     void on_impact(const Impact& impact) override;
 
     std::vector<ImpactTransfer> transfers;
-    long seen = 0;  ///< all of them, kept or not
+    long seen = 0;  ///< number of all transfers, stored or not
 
 private:
     const Parameters parameters_;
     const double tau_start_, tau_end_;
     const std::size_t most_;
-    Passage passage_;
+    LegSequence passage_;
     bool begun_ = false;
 };
 

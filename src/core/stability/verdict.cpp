@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/stability/standard_error.hpp"
+#include "core/stability/exponent_statistics.hpp"
 
 namespace vines {
 

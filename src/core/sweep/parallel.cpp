@@ -27,8 +27,8 @@ void parallel(std::size_t count, int threads, const std::function<void(std::size
     const std::size_t wanted = std::min(count, static_cast<std::size_t>(std::max(threads, 1)));
     try {
         for (std::size_t t = 1; t < wanted; ++t) others.emplace_back(work);
-    } catch (const std::system_error&) {  // the system has no more: those that are there do it
-    }
+        // no more threads available: continue with those already started
+    } catch (const std::system_error&) {}
     work();
     for (std::thread& t : others) t.join();
     if (failure) std::rethrow_exception(failure);

@@ -4,15 +4,18 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/measures/energy.hpp"
+#include "core/motion/elementary.hpp"
+
 namespace vines {
 
 namespace {
 
-// Two orbits of the same period and contacts are one if their x_rms differ by no more than this
-// share; of irregular motions, whose x_rms is a mean over a finite run, more may be chance.
+// Largest relative difference of x_rms of two runs on the same orbit (same period and contacts).
+// x_rms of irregular motions is a mean over a finite run and varies more by chance.
 constexpr double same_orbit = 0.01, same_irregular = 0.25;
 
-/// From a state at a whole cycle: the phase of the forcing is that of tau = 0 again.
+/// Run from a state at a whole cycle: the forcing phase is that of tau = 0.
 RunPlan cycles_from(
     const Parameters& p, const State& from, double tau, double cycles,
     const std::function<bool()>& stop) {
@@ -25,7 +28,7 @@ RunPlan cycles_from(
          .tau_start = tau}};
 }
 
-Wanted wanted_of(const Parameters& p, const State& start, const PointOptions& o) {
+AnalysisRequest wanted_of(const Parameters& p, const State& start, const PointOptions& o) {
     const double tau_end = std::round(o.cycles) * p.cycle();
     return {
         .parameters = p,
@@ -40,28 +43,27 @@ Wanted wanted_of(const Parameters& p, const State& start, const PointOptions& o)
         .most_listed = 1};
 }
 
-/// A row of points is kept in memory: of the regime its numbers, not its lists.
+/// Drops the lists: a row of points is kept in memory.
 Regime without_lists(Regime regime) {
     for (auto* list : {&regime.moving_tau, &regime.moving_z, &regime.cycles_with}) *list = {};
     regime.stretches = {};
     return regime;
 }
 
-/// Of what the motion ends in: a capture outweighs the transient before it.
+/// Verdict on the steady state: a capture outweighs the transient before it.
 Verdict final_verdict(Verdict verdict, const Regime& regime) {
     if (!regime.capture || verdict == Verdict::none) return verdict;
     return regime.type == RegimeType::none ? Verdict::none : Verdict::regular;
 }
 
-/// The rms of the steady motion without the absorber, or where there is none, of that from the same
-/// start.
-double unattached_rms_beside(
+/// Rms of the steady motion without absorber, or, if none exists, from the same start.
+double reference_rms(
     const Parameters& p, const State& begin, std::optional<double> amplitude, double duration) {
     return amplitude && *amplitude > 0 ? *amplitude / std::numbers::sqrt2
                                        : unattached_rms(p, begin, duration);
 }
 
-/// The last state at a whole cycle: a run that ended within a cycle goes on to the end of it.
+/// Last state at a whole cycle: a run that ended within a cycle continues to its end.
 std::optional<State> last_state(
     const Parameters& p, Outcome end, const std::function<bool()>& stop) {
     if (end.reason == End::max_impacts) {
@@ -116,7 +118,7 @@ void PointRun::conclude(const Outcome& outcome) {
     r.x_max = energy.peak;
     r.x_rms = energy.rms;
     r.x_free = free_amplitude(p);
-    r.x_rms_ratio = r.x_rms / unattached_rms_beside(p, begin_, r.x_free, outcome.tau);
+    r.x_rms_ratio = r.x_rms / reference_rms(p, begin_, r.x_free, outcome.tau);
     r.share_impacts = energy.share_impacts;
     r.impacts = outcome.impacts;
     r.sticks = a.stick_count;
@@ -133,9 +135,9 @@ PointResult measure(
     return run.take();
 }
 
-bool ends_elsewhere(const PointResult& one, const PointResult& other) {
+bool differs_in_steady_state(const PointResult& one, const PointResult& other) {
     const Regime &a = one.regime, &b = other.regime;
-    // Without impacts there is one motion.
+    // The motion without impacts is unique.
     if (a.type == RegimeType::none || b.type == RegimeType::none) return a.type != b.type;
     auto apart = [&](double share) {
         return std::abs(one.x_rms - other.x_rms) > share * std::max(one.x_rms, other.x_rms);
@@ -144,6 +146,104 @@ bool ends_elsewhere(const PointResult& one, const PointResult& other) {
         return a.orbit->cycles != b.orbit->cycles || a.orbit->contacts != b.orbit->contacts ||
                apart(same_orbit);
     return apart(same_irregular);
+}
+
+std::vector<NamedStart> default_starts(const Parameters& p) {
+    std::vector<NamedStart> starts = {{"middle", {}}, {"wall", default_state(p)}};
+    const auto amplitude = free_amplitude(p);
+    if (!amplitude || *amplitude == 0) return starts;
+    // The steady motion at theta = phi: x = C sin(theta - delta),
+    // tan(delta) = 2 zeta Omega/(1 - Omega^2).
+    const double delta = elementary::atan2(2 * p.zeta() * p.Omega, (1 - p.Omega) * (1 + p.Omega)),
+                 theta = p.phi() - delta;
+    const double x = *amplitude * elementary::sin(theta);
+    const double x_dot = *amplitude * p.Omega * elementary::cos(theta);
+    starts.push_back({"moving", {x_dot, x, 0, x}});
+    if (*amplitude < p.b) starts.push_back({"untouched", {x_dot, x, 0, 0}});
+    return starts;
+}
+
+State carried(const State& s, const Parameters& from, const Parameters& to) {
+    State next = s;
+    next.y = s.x + (s.y - s.x) * (to.b / from.b);
+    return next;
+}
+
+namespace {
+
+double peak_of(const Motion& m) { return m.result.x_max; }
+
+const Motion* from_start(const SweepPoint& point, const std::string& name) {
+    const auto m = std::find_if(
+        point.motions.begin(), point.motions.end(),
+        [&](const Motion& motion) { return motion.start == name && motion.result.measured; });
+    return m == point.motions.end() ? nullptr : &*m;
+}
+
+std::vector<std::string> start_names(std::span<const SweepPoint> row) {
+    std::vector<std::string> names;
+    for (const SweepPoint& point : row)
+        for (const Motion& m : point.motions)
+            if (std::find(names.begin(), names.end(), m.start) == names.end())
+                names.push_back(m.start);
+    return names;
+}
+
+}  // namespace
+
+std::vector<const Motion*> ranked(const SweepPoint& point) {
+    std::vector<const Motion*> motions;
+    for (const Motion& m : point.motions)
+        if (m.result.measured) motions.push_back(&m);
+    std::stable_sort(motions.begin(), motions.end(), [](const Motion* a, const Motion* b) {
+        return peak_of(*a) < peak_of(*b);
+    });
+    return motions;
+}
+
+bool depends_on_start(const std::vector<const Motion*>& motions) {
+    return std::any_of(motions.begin(), motions.end(), [&](const Motion* m) {
+        return differs_in_steady_state(motions.back()->result, m->result);
+    });
+}
+
+std::optional<bool> depends_on_start(const SweepPoint& point, bool default_set) {
+    const auto motions = ranked(point);
+    if (default_set) return depends_on_start(motions);
+    if (!point.second) return std::nullopt;
+    return !motions.empty() && point.second->result.measured &&
+           differs_in_steady_state(motions.back()->result, point.second->result);
+}
+
+RowSummary summary_of(std::span<const SweepPoint> row, bool largest, bool default_set) {
+    RowSummary s;
+    auto beats = [largest](double one, double other) {
+        return largest ? one > other : one < other;
+    };
+    auto offer = [&](Peak& peak, std::size_t at, const Motion* m) {
+        if (m && (!peak.motion || beats(peak_of(*m), peak_of(*peak.motion)))) peak = {at, m};
+    };
+    s.points = row.size();
+    for (std::string& name : start_names(row)) s.starts.push_back({std::move(name), {}});
+    for (std::size_t k = 0; k < row.size(); ++k) {
+        const SweepPoint& point = row[k];
+        const auto motions = ranked(point);
+        if (motions.empty()) {
+            ++s.missing;
+            continue;
+        }
+        offer(s.worst, k, motions.back());
+        offer(s.best, k, motions.front());
+        for (auto& of_start : s.starts) offer(of_start.peak, k, from_start(point, of_start.start));
+        const auto x_free = motions.back()->result.x_free;
+        if (x_free && (!s.x_free || beats(*x_free, *s.x_free))) s.x_free = x_free;
+        if (!default_set && !point.second) continue;
+        const bool elsewhere =
+            default_set ? depends_on_start(motions)
+                        : differs_in_steady_state(motions.back()->result, point.second->result);
+        s.depends_on_start = s.depends_on_start.value_or(false) || elsewhere;
+    }
+    return s;
 }
 
 }  // namespace vines

@@ -1,66 +1,93 @@
-// What is measured at one point of a sweep.
+// One point of a sweep: its starts, the measurement of a motion (a transient, then a measured
+// part), and the motions found at the point.
+//
+// Several starts can lead to different steady states. The worst motion of a point is the one with
+// the largest peak; a row of points is summarised by its extreme peaks.
 #pragma once
 
 #include <functional>
 #include <optional>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "core/analysis/analysis.hpp"
+#include "core/motion/parameters.hpp"
 
 namespace vines {
 
-/// Which points of the motion a sweep keeps for a bifurcation diagram.
+struct NamedStart {
+    const char* name;
+    State state;
+};
+/// Starts of different energy that show whether the steady state depends on the start:
+/// - middle: all at rest, the ball in the middle of its cavity;
+/// - wall: the default start, next to a wall;
+/// - moving: the oscillator in its steady motion without absorber, the ball at rest in the middle
+/// of the cavity;
+/// - untouched: the same with the ball at rest at y = 0, if that motion is smaller than b: it then
+/// lasts for ever.
+std::vector<NamedStart> default_starts(const Parameters& parameters);
+
+/// Starts per point: default_starts() and the last states of both neighbours.
+inline constexpr std::size_t most_starts = 6;
+
+/// State at which a run with other parameters takes over: the same motion, with the ball at the
+/// same relative position in its cavity.
+State carried(const State& state, const Parameters& from, const Parameters& to);
+
+/// Section that a sweep keeps for a bifurcation diagram.
 enum class SectionKind { none, impact, stroboscopic };
 
 struct PointOptions {
-    double transient_cycles = 200;  ///< run before anything is measured; whole cycles
+    double transient_cycles = 200;  ///< run before the measurement; whole cycles
     double cycles = 1000;           ///< measured; whole cycles
-    long max_impacts = 1000000;     ///< of the measured part; the transient has its own limit
+    long max_impacts = 1000000;     ///< of the measured part; see transient_impacts_per_cycle
     SectionKind section = SectionKind::none;
-    std::size_t section_points = 200;  ///< the last so many
-    double section_phase = 0;          ///< of a stroboscopic section: rad after each whole cycle
-    /// Whether a neighbour goes on from the last state: PointResult::at_end.
+    std::size_t section_points = 200;  ///< keeps the last ones
+    double section_phase = 0;          ///< stroboscopic section: rad after each whole cycle
+    /// A neighbour continues from the last state: computes PointResult::at_end.
     bool carry = false;
 };
 
 struct PointResult {
-    /// False: the transient did not end, and nothing else here has a meaning.
+    /// False if the transient did not end; then only `outcome` is valid.
     bool measured = false;
-    /// Of the measured part, or of the transient where there is none; what it ended by.
+    /// End of the measured part, or of the transient if that did not end.
     Outcome outcome;
-    /// At a whole cycle at or behind the measured part's end; with PointOptions::carry.
+    /// With PointOptions::carry: state at the first whole cycle at or after the measured part.
     std::optional<State> at_end;
     Exponents lambda, standard_error;  ///< qr
-    Verdict verdict;                   ///< of what the motion ends in
+    Verdict verdict;                   ///< of the steady state
     Regime regime;                     ///< without its lists
-    /// m, m, over that of the steady motion without the absorber (free: of the same start)
+    /// m; m; x_rms over that of the steady motion (free decay: same start) without absorber.
     double x_max, x_rms, x_rms_ratio;
-    /// Steady amplitude without the absorber, m; none undamped at resonance.
+    /// Steady amplitude without absorber, m; empty at undamped resonance.
     std::optional<double> x_free;
-    std::optional<double> share_impacts;  ///< of the dissipated energy; none where nothing is
+    std::optional<double> share_impacts;  ///< fraction of dissipation; empty without dissipation
     long impacts, sticks;
-    Sections sections;  ///< of the kind that was asked for
+    Sections sections;  ///< of the requested kind
 };
 
-/// A transient may have so many impacts a cycle: far more than any motion has that is not a chatter
-/// without end (R = 1).
+/// Limit of impacts per cycle in the transient: far more than any motion has except endless chatter
+/// (R = 1).
 inline constexpr long transient_impacts_per_cycle = 1000;
 
-/// Runs one point from a state at tau = 0. `stop` as in Limits; once it says true the result is
-/// worthless.
+/// Runs one point from a state at tau = 0. Invalid once `stop` (as in Limits) returned true.
 PointResult measure(
     const Parameters& parameters, const State& start, const PointOptions& options,
     const std::function<bool()>& stop);
 
-/// The same run by run, for who does them together with others.
+/// measure() run by run, for callers that run several points as a batch.
 class PointRun {
 public:
     PointRun(
         const Parameters& parameters, const State& start, const PointOptions& options,
         std::function<bool()> stop);
 
-    /// The transient, the measured part, none: as RunLine::next().
+    /// Next run: the transient, the measured part, then empty; as RunSource::next().
     std::optional<RunPlan> next(const std::optional<Outcome>& last);
-    /// Once there is none.
+    /// The result, once next() returned empty.
     PointResult take() { return std::move(result_); }
 
 private:
@@ -71,14 +98,67 @@ private:
     const State start_;
     const PointOptions options_;
     const std::function<bool()> stop_;
-    State begin_;  ///< of the measured part
+    State begin_;  ///< start of the measured part
     std::optional<AnalysisRun> analysis_;
     PointResult result_;
 };
 
-/// Whether two runs of the same point end in different motions, as far as this shows without a
-/// doubt: only one without impacts, or different periods or impacts per period, or an rms of x that
-/// differs by 1 % between periodic ones, by a fourth between others.
-bool ends_elsewhere(const PointResult& one, const PointResult& other);
+/// True if two runs of the same point clearly end in different motions: only one has impacts, or
+/// the periods or the impacts per period differ, or the rms of x differs by 1 % between periodic
+/// motions, by a fourth between others.
+bool differs_in_steady_state(const PointResult& one, const PointResult& other);
+
+struct PointSystem {
+    Parameters parameters;
+    State start;
+    long max_impacts;
+};
+
+/// A motion and its start, named in the default set of starts, else unnamed.
+struct Motion {
+    std::string start;
+    State from;
+    PointResult result;
+};
+
+struct SweepPoint {
+    std::optional<PointSystem> system;  ///< empty: the values make no valid system
+    /// The neighbour had no last state at a whole cycle to continue from.
+    bool afresh = false;
+    std::vector<Motion> motions;
+    std::optional<Motion> second;  ///< from a second start, to detect dependence on the start
+};
+
+/// Measured motions in ascending order of x_max: the worst is the last.
+std::vector<const Motion*> ranked(const SweepPoint& point);
+
+/// True if one of the motions differs from the worst one in its steady state.
+bool depends_on_start(const std::vector<const Motion*>& ranked);
+/// True if the point's steady state depends on the start. Empty if only one start was tried.
+std::optional<bool> depends_on_start(const SweepPoint& point, bool default_set);
+
+/// Highest or lowest x_max along a row.
+struct Peak {
+    std::size_t at = 0;              ///< index of the point in the row
+    const Motion* motion = nullptr;  ///< null if nothing was measured
+};
+
+/// Summary of a row of points; refers to the motions of the row, which must outlive it.
+struct RowSummary {
+    Peak worst;  ///< over the worst motion of each point
+    Peak best;   ///< over the best motion of each point
+    struct FromStart {
+        std::string start;
+        Peak peak;
+    };
+    std::vector<FromStart> starts;  ///< for each start
+    std::optional<double> x_free;   ///< peak amplitude without absorber
+    std::size_t points = 0;         ///< points in the row
+    std::size_t missing = 0;        ///< points without a measured motion
+    /// True if the steady state depends on the start at one of the points where that was tested.
+    std::optional<bool> depends_on_start;
+};
+/// Summary of a row: the largest peaks, or without `largest` the smallest.
+RowSummary summary_of(std::span<const SweepPoint> row, bool largest, bool default_set);
 
 }  // namespace vines

@@ -1,27 +1,26 @@
-// Points of a sweep that do not wait for each other: on all cores, and on each in lanes.
+// Independent points of a sweep, computed on all cores, several per core as a vectorised batch.
 #pragma once
 
-#include "core/sweep/motions.hpp"
-#include "core/sweep/pace.hpp"
-#include "core/sweep/starts.hpp"
+#include "core/sweep/parallel.hpp"
+#include "core/sweep/point.hpp"
 
 namespace vines {
 
-/// A point, the starts that it is run from, and who takes the motions, in the order of the starts.
+/// A point, its starts, and the receiver of the motions, in the order of the starts.
 struct PointTask {
     PointSystem system;
     std::vector<NamedStart> starts;
-    std::function<void(std::vector<Motion>)> done;  ///< called on the thread that has run them
+    std::function<void(std::vector<Motion>)> done;  ///< called on the computing thread
 };
 
-/// A motion of a point: measure() on the calling thread. Stopped where the pace says so.
+/// Computes a motion by measure() on the calling thread. Throws Stopped on a stop request.
 PointResult run_point(
-    const PointSystem& system, const State& start, PointOptions options, Pace& pace);
+    const PointSystem& system, const State& start, PointOptions options, RunControl& control);
 
-/// The same of task_at(0), ..., task_at(count - 1), each made when its turn comes; none: there is
-/// nothing to be run.
+/// Computes task_at(0), ..., task_at(count - 1). Each task is created when it is due; an empty one
+/// is skipped. Throws Stopped after a stop request.
 void run_points(
-    std::size_t count, int threads, const PointOptions& options, Pace& pace,
+    std::size_t count, int threads, const PointOptions& options, RunControl& control,
     const std::function<std::optional<PointTask>(std::size_t)>& task_at);
 
 }  // namespace vines

@@ -1,32 +1,30 @@
-// A half-width of the cavity for a given oscillator: which b the manifold suggests, and what it
-// does there.
+// Recommended clearance b for a given oscillator, and the response there.
 //
 // The two-impact motion can begin where the amplitude reaches the fold of its manifold
-// (manifold.hpp). With the fold at the amplitude without absorber, b is the largest for which it
-// can at all, and reduces next to nothing: the motion lingers at the fold. The absorber works where
-// the fold lies well below that amplitude. How far below depends on the masses, the damping and R:
-// so a few b are tried, each from all of default_starts().
+// (manifold.hpp). With the fold at the amplitude without absorber, b is the largest possible, but
+// the motion lingers at the fold and is hardly reduced. The absorber works if the fold lies well
+// below that amplitude. The best ratio depends on the masses, the damping and R, so several b are
+// tried, each from all of default_starts().
 #pragma once
 
 #include <optional>
 
 #include "core/sweep/point.hpp"
-#include "core/sweep/starts.hpp"
 
 namespace vines {
 
 struct Recommendation {
     double b;            ///< m
-    double fold_share;   ///< the fold's amplitude over that without absorber
-    NamedStart start;    ///< from which the motion is the worse one: what follows is of it
+    double fold_share;   ///< amplitude at the fold over that without absorber
+    NamedStart start;    ///< start of the worst motion, which the following values describe
     double x_rms_ratio;  ///< rms of x over that without absorber, below 1
     double x_max;        ///< m
     RegimeType regime;
 };
 
-/// The best of the b tried, by the largest rms of x of all starts. None where none of them reduces
-/// it, where there is no amplitude without absorber (undamped resonance, no forcing) or no fold
-/// (R = 1), or where the time is over.
+/// The b with the smallest worst-case rms of x over all starts. Empty if none reduces the rms, if
+/// there is no amplitude without absorber (undamped resonance, no forcing) or no fold (R = 1), or
+/// if `stop` returned true.
 std::optional<Recommendation> recommended_b(
     Parameters parameters, const std::function<bool()>& stop);
 

@@ -1,7 +1,14 @@
+// Independent points are computed coarse to fine, as tasks that share all cores (points.hpp).
+// Points that depend on a neighbour are computed in rows, as many rows at a time as there are
+// threads: first all motions whose starts need no neighbour; then, with the default set of starts,
+// a pass up and a pass down each row, which continue from each point's worst motion, or, with
+// `carry`, one pass in its direction.
 #include "core/sweep/sweep.hpp"
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cassert>
 
 #include "core/sweep/parallel.hpp"
 #include "core/sweep/points.hpp"
@@ -10,10 +17,56 @@ namespace vines {
 
 namespace {
 
-/// A second start is tried at about so many points of a sweep with a single one.
+/// Positions per axis of the coarsest grid, or up to twice as many: enough to recognise a picture.
+constexpr std::size_t coarsest = 8;
+
+std::size_t level_on_axis(std::size_t at, std::size_t steps) {
+    const auto levels =
+        static_cast<std::size_t>(std::bit_width(std::max(steps / coarsest, 1UL)) - 1);
+    const auto halvings = static_cast<std::size_t>(std::countr_zero(at));
+    return levels - std::min(levels, halvings);
+}
+
+}  // namespace
+
+std::size_t Grid::points() const {
+    std::size_t product = starts;
+    for (const std::size_t n : steps) product *= n;
+    return product;
+}
+
+Place Grid::place_of(std::size_t line) const {
+    assert(line < lines());
+    Place place{0, std::vector<std::size_t>(steps.size(), 0)};
+    auto take = [&line](std::size_t n) {
+        const std::size_t at = line % n;
+        line /= n;
+        return at;
+    };
+    bool starts_counted = false;
+    for (std::size_t a = 0; a < steps.size(); ++a) {
+        if (a == reduced) continue;
+        place.at[a] = take(steps[a]);
+        if (!starts_counted) place.start = take(starts);
+        starts_counted = true;
+    }
+    if (!starts_counted) place.start = take(starts);
+    return place;
+}
+
+std::size_t Grid::level(const Place& place) const {
+    std::size_t finest = 0;
+    for (std::size_t a = 0; a < steps.size(); ++a)
+        finest = std::max(finest, level_on_axis(place.at[a], steps[a]));
+    return finest;
+}
+
+namespace {
+
+/// A second start is tried at about this many points of a sweep with a single start.
 constexpr std::size_t second_starts = 16;
 
-/// Points that follow each other along the inner axis, and the lines that are wanted of them.
+/// Points along the inner axis, and the requested lines among them.
 struct Row {
     Place place;
     std::vector<std::size_t> wanted;
@@ -22,16 +75,16 @@ struct Row {
 
 class Sweep {
 public:
-    Sweep(const SweepPlan& plan, int threads, Pace& pace, SweepSink& sink)
+    Sweep(const SweepPlan& plan, int threads, RunControl& control, SweepSink& sink)
         : plan_(plan),
           threads_(threads),
-          pace_(pace),
+          control_(control),
           sink_(sink) {}
 
     void run() {
         if (plan_.by_rows()) return run_rows();
         const std::vector<std::size_t> lines = plan_.in_order ? plan_.lines : coarse_to_fine();
-        run_points(lines.size(), threads_, plan_.options, pace_, [&](std::size_t i) {
+        run_points(lines.size(), threads_, plan_.options, control_, [&](std::size_t i) {
             return single(lines[i]);
         });
     }
@@ -45,8 +98,8 @@ private:
         return point;
     }
 
-    /// The wanted lines, so that the whole is seen early. Points of one flow fly side by side:
-    /// where it is another one at each step of the first axis, lines are begun along the other
+    /// Requested lines, ordered so that the whole picture appears early. Points with the same flow
+    /// form a batch: if each step of the first axis has another flow, lines run along the other
     /// axes.
     std::vector<std::size_t> coarse_to_fine() const {
         const bool across = first_axis_changes_flow();
@@ -75,10 +128,10 @@ private:
     }
 
     PointResult run_from(const PointSystem& system, const State& start) {
-        return run_point(system, start, plan_.options, pace_);
+        return run_point(system, start, plan_.options, control_);
     }
 
-    /// A line's point, handed out at once where there is nothing to run.
+    /// Task of a line; handed out at once if there is nothing to run.
     std::optional<PointTask> single(std::size_t line) {
         SweepPoint point = begun(plan_.grid.place_of(line));
         if (!point.system) {
@@ -94,8 +147,7 @@ private:
             }};
     }
 
-    /// Its own, and, at every so many points, another one: the middle, or where that was its own,
-    /// the wall.
+    /// The point's own start and, at regular intervals, a second one: middle, else wall.
     std::vector<NamedStart> starts_of(const PointSystem& system, std::size_t count) const {
         const State& first = system.start;
         std::vector<NamedStart> starts = {{"", first}};
@@ -113,7 +165,7 @@ private:
 
     void run_rows() {
         std::vector<Row> rows = wanted_rows();
-        // Rows are kept while they are computed: only so many as keep the threads busy.
+        // Rows stay in memory while they are computed: only enough to keep the threads busy.
         const std::size_t at_once = static_cast<std::size_t>(std::max(threads_, 1));
         for (std::size_t from = 0; from < rows.size(); from += at_once) {
             const std::span<Row> block =
@@ -147,16 +199,16 @@ private:
         return rows;
     }
 
-    /// The points' systems, and their motions from the starts that do not wait for a neighbour.
+    /// Sets up the points' systems and runs the starts that do not depend on a neighbour.
     void run_fresh(std::span<Row> rows) {
         const std::size_t n = plan_.grid.row();
         for (Row& row : rows) row.points.resize(n);
-        run_points(rows.size() * n, threads_, plan_.options, pace_, [&](std::size_t task) {
+        run_points(rows.size() * n, threads_, plan_.options, control_, [&](std::size_t task) {
             return fresh(rows[task / n], task % n);
         });
     }
 
-    /// Of the k-th point of a row.
+    /// Task of the k-th point of a row.
     std::optional<PointTask> fresh(Row& row, std::size_t k) {
         Place place = row.place;
         place.at[plan_.grid.inner()] = k;
@@ -171,7 +223,7 @@ private:
             [&point](std::vector<Motion> motions) { point.motions = std::move(motions); }};
     }
 
-    /// Up and down are independent of each other, so they may run at the same time.
+    /// Passes up and down are independent of each other and run at the same time.
     void follow_neighbours(std::span<Row> rows) {
         std::vector<std::vector<std::optional<Motion>>> found(2 * rows.size());
         parallel(found.size(), threads_, [&](std::size_t task) {
@@ -193,8 +245,8 @@ private:
         State state;
     };
 
-    /// One motion of each point: where its neighbour's has led to. Each line is handed out at once,
-    /// up to the last that is wanted.
+    /// One motion per point, continued from its neighbour's last state. Each line is handed out at
+    /// once, up to the last requested one.
     void carry_along(Row& row) {
         const std::size_t n = row.points.size();
         std::optional<Carried> before;
@@ -220,7 +272,7 @@ private:
         }
     }
 
-    /// From each point's worst motion, the ones found here among them, to the next point.
+    /// Continues from each point's worst motion, including those found here, to the next point.
     std::vector<std::optional<Motion>> follow(const std::vector<SweepPoint>& points, bool up) {
         const std::size_t n = points.size();
         std::vector<std::optional<Motion>> found(n);
@@ -260,7 +312,7 @@ private:
 
     const SweepPlan& plan_;
     const int threads_;
-    Pace& pace_;
+    RunControl& control_;
     SweepSink& sink_;
     std::atomic<std::size_t> tried_ = 0, elsewhere_ = 0;
 };
@@ -281,8 +333,8 @@ bool SweepPlan::tries_second_start(std::size_t point) const {
     return !default_set && carry == Carry::none && grid.starts == 1 && point % every == 0;
 }
 
-StartTrial run_sweep(const SweepPlan& plan, int threads, Pace& pace, SweepSink& sink) {
-    Sweep sweep(plan, threads, pace, sink);
+StartTrial run_sweep(const SweepPlan& plan, int threads, RunControl& control, SweepSink& sink) {
+    Sweep sweep(plan, threads, control, sink);
     try {
         sweep.run();
     } catch (const Stopped&) {}

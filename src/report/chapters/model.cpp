@@ -1,5 +1,5 @@
-// Table 1, whether the closed form (8)-(11), as printed, solves the equation of motion (1), and
-// whether the transfer matrix carries the difference of two trajectories (Fig. 2).
+// Table 1; test whether the closed form (8)-(11), as printed, solves the equation of motion (1);
+// test whether the transfer matrix carries the difference of two trajectories (Fig. 2).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,14 +9,13 @@
 #include "report/plots.hpp"
 
 #include "core/motion/elementary.hpp"
-#include "core/motion/special_values.hpp"
 
 namespace vines::report {
 
 namespace {
 
 void parameters_of_table_1(Report& report, const Parameters& p) {
-    report.find(
+    report.add(
         {.where = "Table 1",
          .what = "epsilon = m2/m1",
          .paper = ".84 %",
@@ -24,7 +23,7 @@ void parameters_of_table_1(Report& report, const Parameters& p) {
          .number = 100 * p.epsilon,
          .band = {0.835, 0.845},
          .because = "rounds to .84"});
-    report.find(
+    report.add(
         {.where = "Table 1",
          .what = "lambda = c1/(m2 omega0)",
          .paper = "1.43",
@@ -34,7 +33,7 @@ void parameters_of_table_1(Report& report, const Parameters& p) {
          .because = "rounds to 1.43"});
 }
 
-/// x(tau) by (8) to (11), letter by letter, with tau_0 = 0.
+/// x(tau) by (8) to (11) exactly as printed, with tau_0 = 0.
 class PrintedClosedForm {
 public:
     PrintedClosedForm(const Parameters& p, double x20, double x10) : decay_(p.epsilon * p.lambda) {
@@ -58,8 +57,8 @@ private:
     double decay_, Omega_, omega_d_, f1_, f2_, q1_, p1_;
 };
 
-/// The k of x'' + k epsilon lambda x' + x = epsilon A sin(Omega tau + phi) that a motion obeys at
-/// tau; derivatives by central differences of the fourth order.
+/// The k for which a motion satisfies x'' + k epsilon lambda x' + x = epsilon A sin(Omega tau +
+/// phi) at tau; derivatives by central differences of the fourth order.
 double damping_obeyed(const Parameters& p, const PrintedClosedForm& motion, double tau) {
     constexpr double h = 0.01;  // error h^4/30 of x', far above rounding
     const auto x = [&](int k) { return motion.x(tau + k * h); };
@@ -72,34 +71,34 @@ double damping_obeyed(const Parameters& p, const PrintedClosedForm& motion, doub
 void closed_form(Report& report, const Parameters& p) {
     const PrintedClosedForm motion(p, 0.01, 0.003);  // any start
     double least = infinity, most = -infinity;
-    // Where x' is not small, of a motion of some 10 mm.
+    // Times at which x' is not small; the motion has an amplitude of about 10 mm.
     for (double tau : {1.0, 2.5, 4.0, 5.5, 7.0, 30.0}) {
         const double k = damping_obeyed(p, motion, tau);
         least = std::min(least, k), most = std::max(most, k);
     }
-    report.find(
+    report.add(
         {.where = "Eqs. (8) to (11)",
          .what = "the k of x'' + k epsilon lambda x' + x = ... that they solve",
          .paper = "1, eq. (1)",
-         .here = fmt::format("{:.5f} to {:.5f} at six moments", least, most),
+         .here = fmt::format("{:.5f} to {:.5f} at six times", least, most),
          .number = std::abs(least - 1) > std::abs(most - 1) ? least : most,
          .band = {0.999, 1.001},
          .because = "the differences that stand for x' and x'' are exact to 1e-4",
-         .expected = Verdict::not_reproduced});
-    report.say(fmt::format(
-        "The equation of motion (1) has 2 zeta = epsilon lambda; the closed form (8)-(11), put "
-        "into it as printed, has {:.4f} times that, and so has the transfer matrix (19), (20). "
-        "These are the two dampings of this report.",
+         .expected = ClaimVerdict::not_reproduced});
+    report.paragraph(fmt::format(
+        "The equation of motion (1) has 2 zeta = epsilon lambda; the closed form (8)-(11), "
+        "inserted into it as printed, has {:.4f} times that, and so has the transfer matrix (19), "
+        "(20). These are the two dampings of this report.",
         most));
 }
 
-/// Whether M J carries the difference of two trajectories through their impacts, which come one
-/// after the other (Fig. 2): the distance of two runs beside the length of the tangent vector.
+/// Compares the distance of two runs with the length of the tangent vector carried by M J through
+/// their impacts, which follow each other (Fig. 2).
 void trajectory_difference(Report& report) {
     Parameters p;
     p.damping = Damping::closed_form;
-    Wanted wanted{.parameters = p, .start = default_state(p), .tau_end = 60};
-    constexpr double size = 1e-10;  // m: far below what bends, far above rounding
+    AnalysisRequest wanted{.parameters = p, .start = default_state(p), .tau_end = 60};
+    constexpr double size = 1e-10;  // m: small against nonlinearity, large against rounding
     wanted.perturbation = random_difference(1, size);
     const Analysis run = analyse(wanted);
     const Perturbation& second = *run.perturbation;
@@ -112,14 +111,14 @@ void trajectory_difference(Report& report) {
     distance.y = second.distance, tangent.y = second.tangent;
     report.picture(
         {.name = "fig2",
-         .caption = "Fig. 2: distance of two trajectories through their impacts, and what (26) to "
-                    "(32) say of it",
+         .caption = "Fig. 2: distance of two trajectories through their impacts, and its "
+                    "prediction by (26) to (32)",
          .plots = {
              {.x_label = "tau",
               .y_label = "distance (m)",
               .curves = {distance, tangent},
               .logarithmic = true}}});
-    report.find(
+    report.add(
         {.where = "Fig. 2, eqs. (26) to (32)",
          .what = fmt::format(
              "two runs, {:g} m apart, to tau = {:g}: largest relative error of M J as their "
@@ -131,13 +130,13 @@ void trajectory_difference(Report& report) {
              run.outcome.impacts, second.distance.back() / size),
          .number = largest,
          .band = {0, 1e-3},
-         .because = "an identity of first order: what is left is the size of the distance and "
+         .because = "an identity of first order: the error is of the size of the distance, plus "
                     "rounding"});
 }
 
 }  // namespace
 
-void model(Report& report, Runs&) {
+void model(Report& report, RunCache&) {
     report.heading("Table 1 and the equations of motion");
     const Parameters p;
     parameters_of_table_1(report, p);

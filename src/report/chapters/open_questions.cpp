@@ -1,5 +1,4 @@
-// What the paper leaves open, or says in passing: where the regimes begin and end, and what the
-// motion at b = 22 mm comes to in the end.
+// Questions left open by the paper: the borders of the regimes; the steady state at 22 mm.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,13 +7,13 @@
 #include "report/chapters.hpp"
 #include "report/symmetric_motion.hpp"
 
-#include "core/motion/special_values.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines::report {
 
 namespace {
 
-/// Where `holds` changes, between an end where it does and one where it does not; b in m.
+/// Bisects the b (m) at which `holds` changes.
 double border(double where_it_holds, double where_not, const auto& holds) {
     for (int i = 0; i < 60; ++i) {
         const double middle = (where_it_holds + where_not) / 2;
@@ -28,22 +27,22 @@ bool is_stable(double b, Damping damping) {
     return motion && motion->stable();
 }
 
-/// By which multiplier of the half cycle the stability is lost, and what that makes of the motion.
+/// The multiplier of the half cycle at which stability is lost, and the resulting motion.
 std::string crossing(double b, Damping damping) {
     const std::complex<double> m = fast_symmetric_motion(table1(b, damping))->multipliers[0];
     if (std::abs(m.imag()) > 1e-6)
         return fmt::format(
-            "a pair {:.4f} +- {:.4f}i leaves the unit circle, as where a torus branches off",
-            m.real(), std::abs(m.imag()));
+            "a pair {:.4f} +- {:.4f}i leaves the unit circle, as at a torus bifurcation", m.real(),
+            std::abs(m.imag()));
     return fmt::format(
         "a multiplier of the half cycle is {:+.4f}, {}", m.real(),
         m.real() < 0 ? "the symmetry breaks" : "a fold");
 }
 
-/// By either damping two symmetric impacts per cycle attract at this b (Fig. 11), m.
+/// b (m) at which two symmetric impacts per cycle attract with either damping (Fig. 11).
 constexpr double symmetric = 0.015;
 
-/// Both ends of the range around it where they do.
+/// Ends of the range of b around it in which they attract.
 struct Borders {
     double breaking, end;  ///< m
 };
@@ -53,8 +52,8 @@ Borders borders(Damping damping) {
 }
 
 std::string compared_with_runs(double b) {
-    constexpr double beside = 0.0001;  // m
-    const std::vector<Regime> runs = long_regimes({b - beside, b + beside}, Damping::closed_form);
+    constexpr double offset = 0.0001;  // m
+    const std::vector<Regime> runs = long_regimes({b - offset, b + offset}, Damping::closed_form);
     return fmt::format(
         "from the paper's start Type {} .1 mm below it, {} .1 mm above", name_of(runs[0].type),
         name_of(runs[1].type));
@@ -63,7 +62,7 @@ std::string compared_with_runs(double b) {
 void symmetric_impacts(Report& report) {
     const Borders here = borders(Damping::closed_form),
                   other = borders(Damping::equation_of_motion);
-    report.find(
+    report.add(
         {.where = "Fig. 11, Table 3",
          .what =
              "b at which two symmetric impacts per cycle cease to attract (end of Type III), mm",
@@ -76,24 +75,24 @@ void symmetric_impacts(Report& report) {
          .by_equation = 1000 * other.end,
          .band = {15, 16.5},
          .because = "between the two",
-         .expected = Verdict::by_closed_form});
+         .expected = ClaimVerdict::by_closed_form});
     const double fold = border(symmetric, 0.030, [](double b) {
         return fast_symmetric_motion(table1(b, Damping::closed_form)).has_value();
     });
-    report.say(fmt::format(
+    report.paragraph(fmt::format(
         "Where two symmetric impacts per cycle (Fig. 11) become asymmetric (Fig. 12): at b = "
-        "{:.6f} mm {}; by eq. (1) at {:.6f} mm {}. By the closed form the motion is there up to b "
-        "= {:.6f} mm, where it meets a slower one in a fold.",
+        "{:.6f} mm {}; by eq. (1) at {:.6f} mm {}. By the closed form the motion exists up to b = "
+        "{:.6f} mm, where it meets a slower one in a fold.",
         1000 * here.breaking, crossing(here.breaking, Damping::closed_form), 1000 * other.breaking,
         crossing(other.breaking, Damping::equation_of_motion), 1000 * fold));
 }
 
-/// Long runs on a grid of b, in mm.
-struct Grid {
+/// Regimes of long runs at equidistant b, mm.
+struct LongRuns {
     std::vector<double> mm;
     std::vector<Regime> regimes;
 
-    Grid(double from, double to, int steps, Damping damping) {
+    LongRuns(double from, double to, int steps, Damping damping) {
         std::vector<double> b;
         for (int i = 0; i <= steps; ++i) {
             mm.push_back(from + (to - from) * i / steps);
@@ -101,7 +100,6 @@ struct Grid {
         }
         regimes = long_regimes(b, damping);
     }
-    /// Those b at which the response is as asked for.
     std::vector<double> where(auto&& is_so) const {
         std::vector<double> found;
         for (std::size_t i = 0; i < mm.size(); ++i)
@@ -118,12 +116,14 @@ std::string listed(const std::vector<double>& numbers) {
 
 void sparse_and_modulated(Report& report) {
     const auto of_type = [](RegimeType type, Damping damping) {
-        return Grid(31, 34, 12, damping).where([type](const Regime& r) { return r.type == type; });
+        return LongRuns(31, 34, 12, damping).where([type](const Regime& r) {
+            return r.type == type;
+        });
     };
     const auto lowest = [](const std::vector<double>& mm) { return mm.empty() ? nan : mm.front(); };
     const std::vector<double> here = of_type(RegimeType::I, Damping::closed_form),
                               other = of_type(RegimeType::I, Damping::equation_of_motion);
-    report.find(
+    report.add(
         {.where = "Table 3",
          .what = "31 to 34 mm in steps of .25, runs of 17,000: lowest b of Type I",
          .paper = "II at 31, I at 34",
@@ -132,54 +132,55 @@ void sparse_and_modulated(Report& report) {
          .by_equation = lowest(other),
          .band = {31.25, 34},
          .because = "between the two",
-         .expected = Verdict::by_closed_form});
+         .expected = ClaimVerdict::by_closed_form});
 }
 
-/// "Then b is decreased to 0.004 m, three impacts per cycle is obtained": where it is.
+/// "Then b is decreased to 0.004 m, three impacts per cycle is obtained": the b at which it is.
 void three_impacts(Report& report) {
     const auto of_three = [](const Regime& r) {
         return r.type == RegimeType::V && r.orbit->contacts == 3L * r.orbit->cycles;
     };
     const auto where = [&](Damping damping) {
-        return listed(Grid(3, 9, 60, damping).where(of_three));
+        return listed(LongRuns(3, 9, 60, damping).where(of_three));
     };
-    report.say(fmt::format(
-        "Three impacts per cycle, periodic (Type V, Fig. 13), of b from 3 to 9 mm in steps of .1 "
-        "and runs of 17,000: at {} mm; by eq. (1) at {} mm.",
+    report.paragraph(fmt::format(
+        "Three impacts per cycle, periodic (Type V, Fig. 13), for b from 3 to 9 mm in steps of .1, "
+        "runs of 17,000: at {} mm; by eq. (1) at {} mm.",
         where(Damping::closed_form), where(Damping::equation_of_motion)));
 }
 
-/// Whether the chaos at b = 22 mm is itself a transient, if a long one.
-void captures(Report& report, Runs& runs) {
+/// Tests whether the chaos at b = 22 mm is a (long) transient.
+void captures(Report& report, RunCache& runs) {
     const Ensemble& e = runs.ensemble(0.022, WindowsOf::tau_1690);
     const auto captured = std::ssize(e.capture_tau);
     std::string when;
     for (const double tau : e.capture_tau)
         when += fmt::format("{} {:.0f}", when.empty() ? ", at tau =" : ",", tau);
-    report.say(fmt::format(
+    report.paragraph(fmt::format(
         "\"In this period, the transient response has disappeared\" (of Fig. 5): of {} runs at b = "
         "22 mm to tau = {:g} a periodic orbit captures {}{}, which {} chaotic until then by "
-        "lambda1 and its standard error; the other {} are chaotic to their ends. Whether their "
-        "chaos lasts, runs of this length do not decide.",
+        "lambda1 and its standard error; the other {} are chaotic to their ends. Runs of this "
+        "length do not decide whether their chaos persists.",
         Ensemble::runs, Ensemble::tau_end, captured, when, captured == 1 ? "was" : "were",
         Ensemble::runs - captured));
 }
 
 }  // namespace
 
-void open_questions(Report& report, Runs& runs) {
+void open_questions(Report& report, RunCache& runs) {
     report.heading("What the paper leaves open");
     captures(report, runs);
     symmetric_impacts(report);
     sparse_and_modulated(report);
     three_impacts(report);
-    report.say(
-        "Without a row: Fig. 1, a drawing; that Fig. 24 and Fig. 5 are \"consistent\", for which "
-        "the paper gives no measure (each has its own rows); that irregular impacts are the "
-        "\"common base\" of all chaotic regimes (section 6), of which one is tested (section 4.1); "
-        "friction and the walls' materials (section 6), which are in no equation.");
-    report.heading("Misprints that a reader may stumble over");
-    report.say(
+    report.paragraph(
+        "Without a row in the table: Fig. 1, a drawing; that Fig. 24 and Fig. 5 are "
+        "\"consistent\", for which the paper gives no measure (each has its own rows); that "
+        "irregular impacts are the \"common base\" of all chaotic regimes (section 6), of which "
+        "one is tested (section 4.1); friction and the walls' materials (section 6), which are in "
+        "no equation.");
+    report.heading("Misprints in the paper");
+    report.paragraph(
         "Below eq. (1) lambda_1 stands for lambda, the damping. In (7) tau = 0 stands for tau_0. "
         "The forced part of (8) to (10) is that of (6) for tau_0 = 0 alone: elsewhere its phase is "
         "Omega tau_0 + phi. By (26) M_i belongs to the impact at tau_(i+1), so the products (31), "

@@ -1,5 +1,5 @@
 // Figs. 10 to 14: the regimes other than the strongly modulated response. Those of Figs. 12 and 13
-// are found at another b than the paper's, and from no start at the paper's own.
+// are found at other b than the paper's, and from no start at the paper's own b.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,14 +9,14 @@
 #include "report/exponent_claims.hpp"
 #include "report/plots.hpp"
 
-#include "core/motion/special_values.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines::report {
 
 namespace {
 
-/// Relative displacement from some moment on, and the exponents as in the paper and by QR.
-void show(Report& report, const Response& r, int figure, double from) {
+/// Draws the relative displacement from tau = `from` on, and the exponents by both methods.
+void show(Report& report, const PaperRun& r, int figure, double from) {
     const std::string name = fmt::format("fig{}", figure),
                       at = fmt::format("Fig. {}, b = {:g} mm: ", figure, 1000 * r.parameters.b);
     report.picture(
@@ -29,11 +29,12 @@ void show(Report& report, const Response& r, int figure, double from) {
          .plots = exponent_histories(r.run.exponents->product)});
 }
 
-/// The regime of a figure, by its number, by both dampings.
+/// Compares the regime of a figure, with both dampings.
 void regime(
     Report& report, const std::string& where, const std::string& paper, RegimeType type,
-    const Response& here, const Response& by_equation, Verdict expected = Verdict::reproduced) {
-    report.find(
+    const PaperRun& here, const PaperRun& by_equation,
+    ClaimVerdict expected = ClaimVerdict::reproduced) {
+    report.add(
         {.where = where,
          .what = "regime",
          .paper = paper,
@@ -47,24 +48,25 @@ void regime(
          .expected = expected});
 }
 
-void figure_10(Report& report, const Response& r, const Response& by_equation) {
+void figure_10(Report& report, const PaperRun& r, const PaperRun& by_equation) {
     report.heading("Fig. 10: b = 40 mm (Type I)");
     show(report, r, 10, 0);
-    regime(report, "Fig. 10", "Type I", RegimeType::I, r, by_equation, Verdict::by_closed_form);
+    regime(
+        report, "Fig. 10", "Type I", RegimeType::I, r, by_equation, ClaimVerdict::by_closed_form);
     const Regime &regime_here = *r.run.regime, &other = *by_equation.run.regime;
-    report.find(
+    report.add(
         {.where = "Section 4, Type I",
          .what = "b = 40 mm: impacts per cycle, z",
          .paper = "one impact during many cycles",
          .here = fmt::format(
-             "{:.2f}, and {:.2f} of the cycles without one; by eq. (1) {:.2f}", regime_here.z,
+             "{:.2f}; {:.2f} of the cycles have none; by eq. (1) {:.2f}", regime_here.z,
              regime_here.cycles_with[0], other.z),
          .number = regime_here.z,
          .by_equation = other.z,
          .band = {0, 1.0 / 3},
          .because = "an impact in three cycles or in more; in part: in two",
          .partly = Band{0, 0.5},
-         .expected = Verdict::not_reproduced});
+         .expected = ClaimVerdict::not_reproduced});
     positive_exponents(
         report,
         {.where = "Fig. 10",
@@ -72,17 +74,18 @@ void figure_10(Report& report, const Response& r, const Response& by_equation) {
          .positive = "\"four positive values are obtained\""},
         r, by_equation);
     if (r.run.stick_count > 0)
-        report.say(fmt::format(
-            "{} stuck phase(s) lie in the window: each leaves the deviations of the centre of mass "
-            "alone, so that the exponents beyond the second are minus infinity from there on.",
+        report.paragraph(fmt::format(
+            "The window contains {} sticking phase(s): each keeps only the deviations of the "
+            "centre of mass, so that the third and fourth exponents are minus infinity from there "
+            "on.",
             r.run.stick_count));
 }
 
 /// "Four negative values ..."
-void negative(Report& report, const std::string& where, const Response& r, const Response& other) {
+void negative(Report& report, const std::string& where, const PaperRun& r, const PaperRun& other) {
     const Exponents lambda = exponents_of(r), raw = r.run.exponents->product.raw_product();
     const std::string at = fmt::format(" at b = {:g} mm", 1000 * r.parameters.b);
-    report.find(
+    report.add(
         {.where = where,
          .what = "largest exponent" + at,
          .paper = "all four negative",
@@ -96,10 +99,10 @@ void negative(Report& report, const std::string& where, const Response& r, const
          .because = "negative"});
 }
 /// "... (two of them almost zero)"
-void almost_zero(Report& report, const std::string& where, const Response& r) {
+void almost_zero(Report& report, const std::string& where, const PaperRun& r) {
     const TransferProduct& product = r.run.exponents->product;
     const Exponents orbit = exponents_of(r), raw = product.raw_product();
-    report.find(
+    report.add(
         {.where = where,
          .what = fmt::format(
              "lambda2 over lambda3 at b = {:g} mm, by Floquet multipliers", 1000 * r.parameters.b),
@@ -110,24 +113,24 @@ void almost_zero(Report& report, const std::string& where, const Response& r) {
              rounding_floor(raw[0], product.end_tau() - product.start_tau())),
          .number = orbit[1] / orbit[2],
          .band = {0, 0.2},
-         .because = "\"almost zero\" is read as small beside the other two: a fifth or less"});
+         .because =
+             "\"almost zero\" is read as small compared with the other two: a fifth or less"});
 }
 
-void figure_11(Report& report, const Response& r, const Response& by_equation) {
+void figure_11(Report& report, const PaperRun& r, const PaperRun& by_equation) {
     report.heading("Fig. 11: two symmetric impacts per cycle, b = 15 mm (Type III)");
     show(report, r, 11, 1600);
     regime(report, "Fig. 11", "Type III", RegimeType::III, r, by_equation);
     negative(report, "Fig. 11", r, by_equation);
     almost_zero(report, "Fig. 11", r);
     if (!r.run.sticks.empty())
-        report.say(fmt::format(
-            "A stick near the start of the run (tau = {:.1f}) makes lambda3 and lambda4 of the "
-            "window from the first impact minus infinity; the orbit has none.",
+        report.paragraph(fmt::format(
+            "A sticking phase near the start of the run (tau = {:.1f}) makes lambda3 and lambda4 "
+            "of the window from the first impact minus infinity; the orbit has no sticking phase.",
             r.run.sticks.front().start.tau));
 }
 
-/// A regime of so many impacts in one cycle that the paper has at one b and that is found at
-/// another.
+/// A regime that the paper finds at one b and that is found here at another.
 struct Elsewhere {
     int figure;
     RegimeType type;
@@ -135,7 +138,6 @@ struct Elsewhere {
     double b_paper, b_here;  ///< m
 };
 
-/// A response in words.
 std::string described(const Regime& r) {
     if (!r.orbit) return fmt::format("irregular (Type {})", name_of(r.type));
     return fmt::format(
@@ -144,7 +146,7 @@ std::string described(const Regime& r) {
         r.orbit->symmetric ? "symmetric" : "asymmetric");
 }
 
-/// How many there are of each, in the order of the words.
+/// Number of responses per description, ordered by description.
 std::string counted(const std::vector<Regime>& regimes) {
     std::map<std::string, int> counts;
     for (const Regime& r : regimes) ++counts[described(r)];
@@ -156,7 +158,7 @@ std::string counted(const std::vector<Regime>& regimes) {
 
 constexpr int random_starts = 200;
 
-/// Of many motions those that come to the paper's regime.
+/// Number of motions that reach the paper's regime.
 long as_in_the_paper(const Elsewhere& e, const std::vector<Regime>& found) {
     return std::ranges::count_if(found, [&](const Regime& f) {
         return f.type == e.type && f.orbit && f.orbit->contacts == e.impacts * f.orbit->cycles;
@@ -164,17 +166,17 @@ long as_in_the_paper(const Elsewhere& e, const std::vector<Regime>& found) {
 }
 
 void at_the_papers_b(
-    Report& report, const Elsewhere& e, const Response& r, const Response& by_equation) {
+    Report& report, const Elsewhere& e, const PaperRun& r, const PaperRun& by_equation) {
     const std::vector<Regime> found = regimes_of_random_starts(r.parameters, random_starts),
                               other =
                                   regimes_of_random_starts(by_equation.parameters, random_starts);
     const long here = as_in_the_paper(e, found), there = as_in_the_paper(e, other);
     const double mm = 1000 * e.b_paper;
-    report.find(
+    report.add(
         {.where = fmt::format("Fig. {}", e.figure),
          .what = fmt::format(
-             "b = {:g} mm: of {} random starts, those that come to Type {} with {} impacts a "
-             "cycle, and so to four negative exponents",
+             "b = {:g} mm: number of {} random starts that reach Type {} with {} impacts per "
+             "cycle, that is, four negative exponents",
              mm, random_starts, name_of(e.type), e.impacts),
          .paper = fmt::format("Type {}, all four negative", name_of(e.type)),
          .here = fmt::format(
@@ -184,13 +186,13 @@ void at_the_papers_b(
          .by_equation = static_cast<double>(there),
          .band = {1, random_starts},
          .because = "one is enough",
-         .expected = Verdict::not_reproduced});
-    report.say(fmt::format(
-        "Where {} random starts at b = {:g} mm end: {}. By eq. (1): {}.", random_starts, mm,
+         .expected = ClaimVerdict::not_reproduced});
+    report.paragraph(fmt::format(
+        "Final motions of {} random starts at b = {:g} mm: {}. By eq. (1): {}.", random_starts, mm,
         counted(found), counted(other)));
 }
 
-void figures_12_and_13(Report& report, Runs& runs) {
+void figures_12_and_13(Report& report, RunCache& runs) {
     constexpr Elsewhere both[] = {
         {.figure = 12, .type = RegimeType::IV, .impacts = 2, .b_paper = 0.008, .b_here = 0.0065},
         {.figure = 13, .type = RegimeType::V, .impacts = 3, .b_paper = 0.004, .b_here = 0.0046}};
@@ -198,15 +200,15 @@ void figures_12_and_13(Report& report, Runs& runs) {
         report.heading(fmt::format(
             "Fig. {}: Type {}, b = {:g} mm in the paper", e.figure, name_of(e.type),
             1000 * e.b_paper));
-        const Response &there = runs.response(e.b_paper),
-                       &by_equation = runs.response(e.b_paper, Damping::equation_of_motion),
-                       &here = runs.response(e.b_here);
+        const PaperRun &there = runs.paper_run(e.b_paper),
+                       &by_equation = runs.paper_run(e.b_paper, Damping::equation_of_motion),
+                       &here = runs.paper_run(e.b_here);
         at_the_papers_b(report, e, there, by_equation);
         const Exponents lambda = exponents_of(here);
-        report.say(fmt::format(
-            "At b = {:g} mm it is {}; its exponents are {} ({}), lambda2 over lambda3 {:.2f}. At "
-            "the paper's own b the largest is {:.4f}, by eq. (1) {:.4f}, of the motions that are "
-            "there.",
+        report.paragraph(fmt::format(
+            "At b = {:g} mm the response is {}; its exponents are {} ({}), lambda2 over lambda3 "
+            "{:.2f}. At the paper's own b the largest exponent of the motion found there is "
+            "{:.4f}, by eq. (1) {:.4f}.",
             1000 * e.b_here, described(*here.run.regime), in_words(lambda),
             here.run.regime->orbit ? "Floquet multipliers" : "qr", lambda[1] / lambda[2],
             exponents_of(there)[0], exponents_of(by_equation)[0]));
@@ -214,11 +216,11 @@ void figures_12_and_13(Report& report, Runs& runs) {
     }
 }
 
-void figure_14(Report& report, const Response& r, const Response& by_equation) {
+void figure_14(Report& report, const PaperRun& r, const PaperRun& by_equation) {
     report.heading("Fig. 14: irregular, about three impacts per cycle, b = 3 mm (Type VI)");
     show(report, r, 14, 1600);
     regime(report, "Fig. 14", "Type VI", RegimeType::VI, r, by_equation);
-    report.find(
+    report.add(
         {.where = "Fig. 14",
          .what = "impacts per cycle, z",
          .paper = "between 3 and 4",
@@ -228,7 +230,7 @@ void figure_14(Report& report, const Response& r, const Response& by_equation) {
          .by_equation = by_equation.run.regime->z,
          .band = {3, 4},
          .because = "the paper's two numbers",
-         .expected = Verdict::by_equation_of_motion});
+         .expected = ClaimVerdict::by_equation_of_motion});
     positive_exponents(
         report,
         {.where = "Fig. 14",
@@ -239,14 +241,14 @@ void figure_14(Report& report, const Response& r, const Response& by_equation) {
 
 }  // namespace
 
-void other_regimes(Report& report, Runs& runs) {
-    const auto by_equation = [&](double b) -> const Response& {
-        return runs.response(b, Damping::equation_of_motion);
+void other_regimes(Report& report, RunCache& runs) {
+    const auto by_equation = [&](double b) -> const PaperRun& {
+        return runs.paper_run(b, Damping::equation_of_motion);
     };
-    figure_10(report, runs.response(0.040), by_equation(0.040));
-    figure_11(report, runs.response(0.015), by_equation(0.015));
+    figure_10(report, runs.paper_run(0.040), by_equation(0.040));
+    figure_11(report, runs.paper_run(0.015), by_equation(0.015));
     figures_12_and_13(report, runs);
-    figure_14(report, runs.response(0.003), by_equation(0.003));
+    figure_14(report, runs.paper_run(0.003), by_equation(0.003));
 }
 
 }  // namespace vines::report

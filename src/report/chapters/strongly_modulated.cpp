@@ -1,5 +1,5 @@
-// Figs. 3 and 4: the strongly modulated response at b = 22 mm. The amplitude of x rises with fewer
-// than two impacts per cycle and falls with two.
+// Figs. 3 and 4: the strongly modulated response at b = 22 mm. The amplitude of x rises while there
+// are fewer than two impacts per cycle and falls while there are two.
 #include <fmt/format.h>
 
 #include "core/motion/elementary.hpp"
@@ -11,12 +11,12 @@ namespace vines::report {
 
 namespace {
 
-/// Mean numbers of impacts in the cycles over which the amplitude of x falls and rises.
+/// Mean number of impacts per cycle while the amplitude of x falls, and while it rises.
 struct ImpactsPerCycle {
     double falling, rising;
 };
 
-ImpactsPerCycle impacts_per_cycle(const Response& r) {
+ImpactsPerCycle impacts_per_cycle(const PaperRun& r) {
     double falling = 0, rising = 0;
     long falling_cycles = 0, rising_cycles = 0;
     auto impact = r.run.impacts.begin();
@@ -32,16 +32,15 @@ ImpactsPerCycle impacts_per_cycle(const Response& r) {
         falling / static_cast<double>(falling_cycles), rising / static_cast<double>(rising_cycles)};
 }
 
-/// When a run's first flight, from its initial state, first comes within `tolerance` of the wall
-/// that it will meet; m.
-double first_within(const Response& r, double tolerance) {
+/// Time at which the first flight first comes within `tolerance` (m) of the wall that it will meet.
+double first_within(const PaperRun& r, double tolerance) {
     const Parameters& p = r.parameters;
     const Flow flow = Flow::free(p);
     const State start = default_state(p);
     const Oscillation from{
         start.x, start.x_dot, elementary::sin(p.phi()), elementary::cos(p.phi())};
     const Impact& first = r.run.impacts.front();
-    // On its last way to the wall, which takes less than the half cycle before: bisected.
+    // Bisection on the last approach, which takes less than the half cycle before the impact.
     double outside = first.tau - p.cycle() / 4, inside = first.tau;
     for (int i = 0; i < 60; ++i) {
         const double tau = (outside + inside) / 2,
@@ -52,17 +51,17 @@ double first_within(const Response& r, double tolerance) {
 }
 
 double first_impact_of(const Parameters& p) {
-    Wanted wanted{.parameters = p, .start = default_state(p), .tau_end = 30};
+    AnalysisRequest wanted{.parameters = p, .start = default_state(p), .tau_end = 30};
     wanted.parts = {.impacts = true};
     return analyse(wanted).impacts.front().tau;
 }
 
-void first_impact(Report& report, const Response& r, const Response& by_equation) {
+void first_impact(Report& report, const PaperRun& r, const PaperRun& by_equation) {
     Parameters rounded = r.parameters;
     rounded.epsilon = 0.0084;
     rounded.lambda = 1.43;
     const double tau = r.run.impacts.front().tau, other = by_equation.run.impacts.front().tau;
-    report.find(
+    report.add(
         {.where = "Table 2",
          .what = "first impact, tau_s (Fig. 3)",
          .paper = "18.1300",
@@ -74,28 +73,28 @@ void first_impact(Report& report, const Response& r, const Response& by_equation
          .band = {18.12995, 18.13005},
          .because = "the printed digits; in part: a tenth of a per cent",
          .partly = Band{18.1119, 18.1481},
-         .expected = Verdict::partly_by_closed_form});
-    // A program that stops its steps where the mass is this near to a wall would be early by that.
+         .expected = ClaimVerdict::partly_by_closed_form});
+    // A program that ends a step at this distance from the wall would report the impact too early.
     constexpr double tolerance = 1e-5;
-    report.say(fmt::format(
-        "The first impact comes at {:.4f}; the mass is within {:g} m of the wall from {:.4f} on.",
+    report.paragraph(fmt::format(
+        "The first impact comes at {:.4f}; the ball is within {:g} m of the wall from {:.4f} on.",
         tau, tolerance, first_within(r, tolerance)));
 }
 
-void figure_3(Report& report, const Response& r, const Response& by_equation) {
+void figure_3(Report& report, const PaperRun& r, const PaperRun& by_equation) {
     Plot x = displacement(series_until(0.022, 5521.3));
-    x.moments = {18.13, 1708.9};
+    x.marked_times = {18.13, 1708.9};
     report.picture(
         {.name = "fig3",
          .caption = "Fig. 3: displacement of the linear oscillator; the window of Fig. 5 between "
-                    "the broken lines",
+                    "the dashed lines",
          .plots = {x}});
-    report.find(
+    report.add(
         {.where = "Fig. 3",
          .what = "regime",
          .paper = "Type II",
          .here = fmt::format(
-             "{}, {} half cycles in step; by eq. (1) {}", r.type(),
+             "{}, {} synchronised half cycles; by eq. (1) {}", r.type(),
              r.run.regime->longest_synchronised, by_equation.type()),
          .number = number_of(r.run.regime->type),
          .by_equation = number_of(by_equation.run.regime->type),
@@ -104,13 +103,13 @@ void figure_3(Report& report, const Response& r, const Response& by_equation) {
     first_impact(report, r, by_equation);
 }
 
-void figure_4(Report& report, const Response& r, const Response& by_equation) {
+void figure_4(Report& report, const PaperRun& r, const PaperRun& by_equation) {
     report.picture(
         {.name = "fig4",
          .caption = "Fig. 4: displacement and relative displacement, enlarged",
          .plots = {displacement(*r.run.series, 600), relative_displacement(r, 0, 600)}});
     const ImpactsPerCycle here = impacts_per_cycle(r), other = impacts_per_cycle(by_equation);
-    report.find(
+    report.add(
         {.where = "Fig. 4",
          .what = "impacts per cycle while x falls",
          .paper = "2",
@@ -119,7 +118,7 @@ void figure_4(Report& report, const Response& r, const Response& by_equation) {
          .by_equation = other.falling,
          .band = {1.9, 2.1},
          .because = "cycles in which x turns are counted with either side"});
-    report.find(
+    report.add(
         {.where = "Fig. 4",
          .what = "impacts per cycle while x rises",
          .paper = "below 2",
@@ -132,10 +131,10 @@ void figure_4(Report& report, const Response& r, const Response& by_equation) {
 
 }  // namespace
 
-void strongly_modulated(Report& report, Runs& runs) {
+void strongly_modulated(Report& report, RunCache& runs) {
     report.heading("Figs. 3 and 4: strongly modulated response, b = 22 mm (Type II)");
-    const Response &r = runs.response(0.022),
-                   &by_equation = runs.response(0.022, Damping::equation_of_motion);
+    const PaperRun &r = runs.paper_run(0.022),
+                   &by_equation = runs.paper_run(0.022, Damping::equation_of_motion);
     figure_3(report, r, by_equation);
     figure_4(report, r, by_equation);
 }

@@ -1,6 +1,5 @@
-// The free flight and the impact as the user of an integrator writes them: the oscillator's
-// equation of motion (2), (3) for the integrator, the ball's flight y'' = 0 in closed form beside
-// it, the reset (4).
+// Free flight and impact for a general integrator: the oscillator's equation of motion (2), (3) is
+// integrated, the ball's flight y'' = 0 is in closed form, and the impact is the reset (4).
 #pragma once
 
 #include <algorithm>
@@ -11,7 +10,7 @@
 
 namespace peers {
 
-/// The integrator's unknowns: x and x'.
+/// Unknowns of the integrator: x and x'.
 using Motion = std::array<double, 2>;
 
 class Flight {
@@ -31,15 +30,15 @@ public:
         return forcing_ * std::sin(job_.Omega * tau + phi_) - damping_ * x_dot - x;
     }
 
-    /// x - y. Counted from the flight's start, so that it is b or -b there to the last bit.
+    /// x - y. Measured from the flight's start, so that it is exactly b or -b there.
     double relative(double tau, double x) const {
         return relative_ + (x - x_) - y_dot_ * (tau - tau_);
     }
 
-    /// By how much the ball is beyond the wall that it is nearer to: negative in the cavity.
+    /// Distance of the ball beyond the nearer wall; negative inside the cavity.
     double beyond(double tau, double x) const { return std::abs(relative(tau, x)) - job_.b; }
 
-    /// Eq. (4), and the next flight: what x' is at its start.
+    /// Applies eq. (4) and starts the next flight.
     double strike(double tau, double x, double x_dot) {
         side_ = relative(tau, x) > 0 ? 1 : -1;
         const double e = job_.epsilon, mean = (x_dot + e * y_dot_) / (1 + e),
@@ -51,9 +50,9 @@ public:
         return mean + e * relative_speed / (1 + e);
     }
 
-    /// The longest first step of a flight that does not pass over its end: where the wall presses,
-    /// the ball is back after about 2 |x' - y'|/|x''|, and half of that is where it turns. At least
-    /// ten times what tau can resolve, as SciPy's shortest step.
+    /// First step short enough not to pass the end of the flight. If the wall accelerates toward
+    /// the ball, the ball returns after about 2 |x' - y'|/|x''|, and turns at half of that. At
+    /// least ten times the resolution of tau, the same as SciPy's shortest step.
     double first_step(double x_dot, double otherwise) const {
         const double press = side_ * acceleration(tau_, x_, x_dot);
         if (press <= 0) return otherwise;
@@ -62,7 +61,7 @@ public:
     }
 
     double b() const { return job_.b; }
-    int side() const { return side_; }  ///< the wall that the ball has left; 0: none
+    int side() const { return side_; }  ///< wall that the ball has left; 0: none
 
 private:
     const Job& job_;

@@ -35,7 +35,7 @@ double processor_seconds() {
     return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// Nanoseconds of processor time per contact, of runs that take so long together.
+/// Nanoseconds of CPU time per contact, from runs that take this long in total.
 Json timed(Method method, const Job& job, double seconds, void (*forget)()) {
     double contacts = 0, spent = 0;
     do {

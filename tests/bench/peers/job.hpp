@@ -1,4 +1,4 @@
-// What peers.mjs asks of a peer, and how a C++ one answers: one line of JSON each.
+// Requests of peers.mjs to a peer, and the answers of a C++ peer: one line of JSON each.
 #pragma once
 
 #include <exception>
@@ -8,14 +8,14 @@
 
 namespace peers {
 
-/// One motion to be followed: the system (docs/physics.md, damping by the equation of motion), the
-/// state at tau, the wall just left (0: none), and how.
+/// A motion to be followed: the system (docs/physics.md, damping by the equation of motion), the
+/// state at tau, the wall just left (0: none), and the method.
 struct Job {
     double epsilon, lambda, G, Omega, R, b;
     double x_dot, x, y_dot, y;
     int side;
     double tau, tau_end;
-    double longest_step;  ///< of the integrator, in tau; 0: its own
+    double longest_step;  ///< largest step of the integrator, in tau; 0: the library's default
     double tolerance;     ///< relative; the absolute one is b times that
 };
 
@@ -27,17 +27,17 @@ struct Contact {
 struct Answer {
     std::vector<Contact> contacts;
     std::string end = "tau_end";      ///< or "through the wall", "stalled", or an error
-    std::vector<double> states = {};  ///< x', x, y', y behind each contact, if the peer tells
-    std::vector<double> sticks = {};  ///< where they begin, if the peer knows of any
+    std::vector<double> states = {};  ///< x', x, y', y after each contact, if the peer returns them
+    std::vector<double> sticks = {};  ///< start times of sticking phases, if the peer detects them
 };
 
-/// Whether the contacts have come to a standstill: 200 of them within a tau of .001, where a
-/// chatter with the benchmark's R is over after 30.
+/// Returns whether the contacts have stalled: 200 of them within .001 of tau; a chatter with the
+/// benchmark's R needs 30.
 bool stalled(const std::vector<Contact>& contacts);
 
 using Method = Answer (*)(const Job&);
 
-/// A method that adds to its answer; what it throws is how the motion ends.
+/// A method that adds to its answer; the text of an exception becomes the end of the motion.
 template <void (*follow)(const Job&, Answer&)>
 Answer guarded(const Job& job) {
     Answer answer;
@@ -49,8 +49,8 @@ Answer guarded(const Job& job) {
     return answer;
 }
 
-/// Answers the lines on standard input until it ends. `forget` drops what is kept of a run for the
-/// next one of the same system; where asked for, before each run that is timed.
+/// Answers the lines of stdin until it ends. `forget` clears what is cached from a run for the next
+/// one of the same system; it is called before each timed run if requested.
 int serve(
     const std::string& versions, const std::map<std::string, Method>& methods,
     void (*forget)() = [] {});

@@ -1,5 +1,5 @@
 // Boost.odeint: dense output, a sign test at the end of each step, and a bracketed root on the
-// step's own interpolant. bulirsch_stoer_dense_out, tried too, is slower at this accuracy.
+// step's interpolant. bulirsch_stoer_dense_out was tried and is slower at this accuracy.
 #include <boost/math/tools/toms748_solve.hpp>
 #include <boost/numeric/odeint.hpp>
 #include <boost/version.hpp>
@@ -13,8 +13,8 @@ namespace {
 namespace odeint = boost::numeric::odeint;
 using namespace peers;
 
-/// Where the ball meets the wall in (from, to], beyond(to) >= 0 at the step's end. At the flight's
-/// start it is on the wall that it leaves: the bracket begins where it has left it. If there is no
+/// Time of the contact in (from, to], where beyond(to) >= 0 at the step's end. At the flight's
+/// start the ball is on the wall that it leaves: the bracket begins after it has left. Without a
 /// bracket, within rounding, the contact is at `to`.
 template <class Beyond>
 double root(double from, double to, const Beyond& beyond) {

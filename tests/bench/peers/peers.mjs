@@ -1,6 +1,6 @@
-// vines beside what one would follow the same motions with instead, all in turn in one run, on one
-// core: scripts/bench peers. vines is the reference, too: its impacts are held against 250-digit
-// arithmetic by tests/core/reference.
+// Comparison of vines with general integrators on the same motions, in turn in one run on one core:
+// scripts/bench peers. vines is also the reference: tests/core/reference checks its impacts against
+// 250-digit arithmetic.
 import {spawn, spawnSync} from "node:child_process";
 import os from "node:os";
 import {createInterface} from "node:readline";
@@ -8,10 +8,10 @@ import {createInterface} from "node:readline";
 const rounds = 7;
 const segments = 2000;
 const chatters = 20;
-const early = 80; // in tau: up to here chaotic runs are still one
+const early = 80; // in tau: until then chaotic runs still agree
 const cycle = 2 * Math.PI;
-const apart = 1e-3; // in tau: impacts further apart than that are not the same
-const narrow = 0.02; // in tau: contacts closer than that are those of a chatter
+const apart = 1e-3; // in tau: impacts further apart are different ones
+const narrow = 0.02; // in tau: closer contacts belong to a chatter
 
 // Table 1 of the paper, damping by the equation of motion.
 const [m1, c1, k1, m2] = [3.807, 2.53, 11.68e3, 0.032];
@@ -33,11 +33,11 @@ const programs = {
   vines: built("peer_vines"),
   odeint: built("peer_odeint"),
   sundials: built("peer_sundials"),
-  scipy: ["/usr/bin/python3", script], // Debian's, which has Debian's SciPy
+  scipy: ["/usr/bin/python3", script], // Debian's Python, which has Debian's SciPy
 };
-// Tolerances: the loosest powers of ten with which 99 % of the impact times of segments are right
-// to 4e-9 up to b = 22 mm. Where the step is capped, the cap alone decides on accuracy and time.
-// `time_only`: the same motion as that above, for which only its time is of interest.
+// Tolerances: the loosest powers of ten for which 99 % of the impact times of segments have errors
+// below 4e-9 up to b = 22 mm. If the step is limited, the limit alone determines accuracy and time.
+// `time_only`: the same motion as the entry above; only its time is measured.
 const vines = {program: "vines", tolerance: 0};
 const scipy = {program: "scipy", method: "DOP853"};
 const peers = [
@@ -50,7 +50,7 @@ const peers = [
   {name: "SciPy DOP853, max_step .2", ...scipy, tolerance: 1e-8, longest_step: 0.2},
 ];
 
-/** A program that answers lines, one by one. */
+/** A program that answers lines one by one. */
 class Program {
   constructor([command, ...words]) {
     this.child = spawn(command, words, {stdio: ["pipe", "pipe", "inherit"]});
@@ -67,7 +67,7 @@ const running = Object.fromEntries(
   Object.entries(programs).map(([name, command]) => [name, new Program(command)]),
 );
 
-/** The motion from vines' default start. */
+/** Motion from vines' default start. */
 const whole = ({b, R}, tau_end = 1709) => {
   const start = {x_dot: 0, x: 0, y_dot: 0, y: 0.95 * b, side: 0, tau: 0};
   return {...table1, b, R, ...start, tau_end};
@@ -76,7 +76,7 @@ const follow = ({program, method, tolerance, longest_step = 0}, job) =>
   running[program].ask({method, tolerance, longest_step, ...job});
 const reference = {...vines, method: "reference"};
 
-/** The motion of a reference from right behind its i-th contact. */
+/** Motion of a reference from just after its contact i. */
 const onwards = (orbit, {tau, side, states}, i, tau_end) => {
   const [x_dot, x, y_dot, y] = states.slice(4 * i, 4 * i + 4);
   return {
@@ -94,8 +94,8 @@ const onwards = (orbit, {tau, side, states}, i, tau_end) => {
 };
 
 /**
- * Stretches of a cycle, each from right behind a contact, and the contacts in it: up to where a
- * chatter begins, if one does.
+ * Segments of one forcing cycle, each starting just after a contact, with their contacts. A segment
+ * ends before a chatter, if one begins in it.
  */
 function segmentsOf(orbit, run) {
   const {tau} = run;
@@ -106,8 +106,8 @@ function segmentsOf(orbit, run) {
     let last = i; // contact of the segment
     while (tau[last + 1] < end && tau[last + 1] - tau[last] >= narrow) ++last;
     const chatter = tau[last + 1] < end;
-    if (tau[last + 1] === undefined) break; // the reference's end
-    // It ends ahead of the chatter's first contact, else a little behind its cycle.
+    if (tau[last + 1] === undefined) break; // end of the reference
+    // Ends before the first contact of a chatter, otherwise shortly after the cycle.
     const until = chatter ? tau[last] - apart : end + 0.1;
     const contacts = tau.slice(i + 1, chatter ? last : last + 1);
     found.push({job: onwards(orbit, run, i, until), tau: contacts, until: Math.min(until, end)});
@@ -115,7 +115,7 @@ function segmentsOf(orbit, run) {
   return found;
 }
 
-/** What a peer makes of the segments. A segment counts up to the first contact that differs. */
+/** Results of a peer for the segments. A segment counts up to the first contact that differs. */
 async function compare(peer, list) {
   const errors = [];
   const result = {contacts: 0, missed: 0, invented: 0};
@@ -133,7 +133,7 @@ async function compare(peer, list) {
   return {...result, most: errors.at(-1), usual: errors[Math.floor(0.99 * errors.length)]};
 }
 
-/** How a peer goes on behind the last contact ahead of a chatter: each end, and how often. */
+/** How a peer continues after the last contact before a chatter: each end, and its frequency. */
 async function throughChatters(peer, orbit, run) {
   const ends = {};
   for (const stick of run.sticks.slice(0, chatters)) {
@@ -150,7 +150,7 @@ async function throughChatters(peer, orbit, run) {
 const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
 const percent = (part) => `${(100 * part).toFixed(0)} %`;
 
-/** Of runs in turn from the start to tau_end: nanoseconds per contact, their ratio to vines'. */
+/** ns per contact of runs from the start to tau_end, measured in turn, and their ratio to vines'. */
 async function times(orbit, tau_end) {
   const all = peers.map(() => []);
   for (let round = 0; round < rounds; ++round)
@@ -170,7 +170,7 @@ const columns = [
   "spread",
   "x vines",
   `to ${early}`,
-  "one until",
+  "same until",
   "missed",
   "false",
   "99 % within",
@@ -179,7 +179,7 @@ const columns = [
 const row = (name, cells) =>
   `${name.padEnd(26)}${cells.map((cell, i) => cell.padStart(Math.max(columns[i].length, 8) + 2)).join("")}`;
 
-/** What a peer's run from the start, and the segments, show beside the reference. */
+/** Errors of a peer's run from the start, and of its segments, relative to the reference. */
 async function agreement(peer, run, base, list) {
   const parted = base.tau.find((t, i) => !(Math.abs(t - run.tau[i]) < apart));
   const found = await compare(peer, list);
@@ -197,7 +197,7 @@ async function measure(orbit) {
   const base = await follow(reference, whole(orbit));
   const runs = [];
   for (const peer of peers) runs.push(await follow(peer, whole(orbit)));
-  // Timed up to where the first of them has met its end in a chatter.
+  // Timed until the first of them ends in a chatter.
   const ended = runs.filter((run) => run.end !== "tau_end").map((run) => run.tau.at(-1) - 10);
   const tau_end = Math.floor(Math.min(1709, ...ended));
   const timed = await times(orbit, tau_end);
@@ -222,14 +222,14 @@ console.log(`${os.cpus()[0].model}, ${os.cpus().length} cores`);
 const heyoka = spawnSync("apt-cache", ["search", "heyoka"], {encoding: "utf8"}).stdout?.trim();
 console.log(
   heyoka
-    ? `heyoka: not measured, though there is ${heyoka}`
-    : "heyoka: left out, no Debian package",
+    ? `heyoka: not measured, although available: ${heyoka}`
+    : "heyoka: omitted, no Debian package",
 );
 console.log(`
-Processor time per impact from the default start, median of ${rounds} runs in turn, (most - least)/median,
-and median of the ratios of a turn.
-Impacts up to tau = ${early}, and vines'; until when the run has vines' impacts.
-Of segments of a cycle from vines' states: contacts missed; contacts that are none; errors of tau.
+CPU time per impact from the default start: median of ${rounds} runs in turn, (largest - smallest)/median,
+and median of the ratios within a round.
+Impacts up to tau = ${early}, and those of vines; the time until which the impacts are the same.
+For segments of a cycle from vines' states: missed contacts; false contacts; errors of tau.
 `);
 for (const {name, tolerance} of peers)
   if (tolerance) console.log(`${name}: rtol = ${tolerance}, atol = ${tolerance} b`);

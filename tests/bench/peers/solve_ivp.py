@@ -1,8 +1,8 @@
-"""SciPy: solve_ivp with a terminal event at each wall, called anew behind each contact.
+"""SciPy: solve_ivp with a terminal event at each wall, restarted after each contact.
 
 Answers the lines of peers.mjs as the C++ peers do (job.hpp), with the same closed form of the
-ball's flight (flight.hpp). Python's own floats throughout: NumPy's scalars are slower. LSODA, tried
-too, is slower at this accuracy.
+ball's flight (flight.hpp). Uses Python floats, since NumPy's scalars are slower. LSODA was tried and
+is slower at this accuracy.
 """
 import json
 import math
@@ -15,19 +15,19 @@ from scipy.integrate import solve_ivp
 
 
 def terminal(event):
-    """Ends the integration where it rises through zero."""
+    """Marks the event so that it ends the integration where it rises through zero."""
     event.terminal = True
     event.direction = 1
     return event
 
 
 def stalled(contacts):
-    """As in job.cpp."""
+    """Same as in job.cpp."""
     return len(contacts) >= 200 and contacts[-1][0] - contacts[-200][0] < 1e-3
 
 
 def follow(job, contacts):
-    """Adds the contacts; returns how the motion ends."""
+    """Appends the contacts; returns how the motion ends."""
     epsilon, R, b, Omega = job["epsilon"], job["R"], job["b"], job["Omega"]
     damping = epsilon * job["lambda"]
     forcing = epsilon * job["G"] * math.hypot(1, damping * Omega)
@@ -79,13 +79,13 @@ def guarded(job):
     contacts = []
     try:
         end = follow(job, contacts)
-    except ValueError as error:  # the root search's
+    except ValueError as error:  # raised by the root search
         end = str(error)
     return contacts, end
 
 
 def timed(job, seconds):
-    """As in job.cpp."""
+    """Same as in job.cpp."""
     spent, count = 0.0, 0
     while spent < seconds:
         start = time.process_time()

@@ -1,5 +1,5 @@
-// SUNDIALS: CVODE's Adams methods with its own rootfinding, restarted behind each contact. ARKODE's
-// explicit Runge-Kutta methods, tried too, are no faster at this accuracy.
+// SUNDIALS: CVODE's Adams methods with its own root finding, restarted after each contact. ARKODE's
+// explicit Runge-Kutta methods were tried and are no faster at this accuracy.
 #include <cvode/cvode.h>
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_config.h>
@@ -34,14 +34,14 @@ int walls(sunrealtype tau, N_Vector motion, sunrealtype* out, void* flight) {
 }
 int outwards[] = {1, 1};
 
-/// Ends a run with what the library says.
+/// Ends a run with the library's error message.
 int checked(int flag) {
     if (flag >= 0) return flag;
     const std::unique_ptr<char, decltype(&std::free)> name(CVodeGetReturnFlagName(flag), std::free);
     throw std::runtime_error(name.get());
 }
 
-/// Beyond a wall by this share of b there is no contact left to be found.
+/// Beyond a wall by this fraction of b, a contact has been missed.
 constexpr double sunk = 1e-6;
 
 class Context {
@@ -100,7 +100,7 @@ void follow(const Job& job, Answer& answer) {
     m[0] = job.x, m[1] = job.x_dot;
     Flight flight(job);
     Cvode integrator(job, flight, motion.get(), context);
-    // 0: the library's own first step.
+    // 0: the library's default first step.
     const auto first_step = [&] {
         const double step = flight.first_step(m[1], 1);
         return step < 1 ? step : 0;
@@ -122,6 +122,7 @@ void follow(const Job& job, Answer& answer) {
 }  // namespace
 
 int main() {
-    std::freopen("/dev/null", "w", stderr);  // what the library says of an error it also returns
+    std::freopen("/dev/null", "w", stderr);  // discards the library's messages; it also returns the
+                                             // errors
     return serve("SUNDIALS " SUNDIALS_VERSION, {{"cvode", guarded<follow>}});
 }

@@ -1,4 +1,4 @@
-// vines itself, by its public functions.
+// vines, through its public functions.
 #include "bench/peers/job.hpp"
 #include "core/motion/record.hpp"
 #include "core/stability/lyapunov.hpp"
@@ -20,7 +20,7 @@ public:
     peers::Answer answer;
 };
 
-/// What the others are started from and compared with.
+/// The motion from which the others start and with which they are compared.
 class Reference : public Contacts {
 public:
     explicit Reference(double b) : b_(b) {}
@@ -68,7 +68,7 @@ void forget() {
         Parameters other;
         other.G *= 1 + i;
         Flow::shared_free(other);
-        Flow::shared_stuck(other);
+        Flow::shared_sticking(other);
     }
 }
 

@@ -1,4 +1,4 @@
-// All that can be wanted of a run.
+// All parts of a run.
 #pragma once
 
 #include "core/analysis/analysis.hpp"

@@ -12,14 +12,14 @@ namespace {
 
 Analysis run(const Parts& parts) {
     const Parameters p = table1(0.022, Damping::closed_form);
-    Wanted w{.parameters = p, .start = default_state(p), .tau_end = 500};
+    AnalysisRequest w{.parameters = p, .start = default_state(p), .tau_end = 500};
     w.window = {100, 400};
     w.parts = parts;
     w.estimators = all_estimators;
     return analyse(w);
 }
 
-/// The names of the parts that a result has, in the order of Parts.
+/// Names of the parts that a result has, in the order of Parts.
 std::string parts_of(const Analysis& a) {
     std::string names;
     const auto add = [&](bool there, const char* name) {
@@ -40,7 +40,7 @@ std::string parts_of(const Analysis& a) {
 
 }  // namespace
 
-TEST_CASE("a result has the parts that are wanted, and those that they rest on") {
+TEST_CASE("a result has the requested parts and those that they depend on") {
     CHECK(parts_of(run({})) == "");
     CHECK(parts_of(run({.series = true})) == "series");
     CHECK(parts_of(run({.impacts = true})) == "impacts");
@@ -49,14 +49,14 @@ TEST_CASE("a result has the parts that are wanted, and those that they rest on")
     CHECK(parts_of(run({.section = true})) == "impacts section");
     CHECK(parts_of(run({.energy = true})) == "energy");
     CHECK(parts_of(run({.manifold = true})) == "manifold");
-    // The verdict is on the growth and on where the motion goes.
+    // The verdict needs both the growth and the regime.
     CHECK(parts_of(run({.exponents = true})) == "exponents regime");
     CHECK(parts_of(run({.regime = true})) == "exponents regime");
     CHECK_FALSE(run({.energy = true}).energy->unattached);
     CHECK(run({.energy = true, .unattached = true}).energy->unattached);
 }
 
-TEST_CASE("how a run ended, and what of its window it reached, is told whatever is wanted") {
+TEST_CASE("every result has the end of the run and the part of the window that it reached") {
     for (const Parts& parts : {Parts{}, all_parts}) {
         const Analysis a = run(parts);
         CHECK(a.outcome.reason == End::tau_end);
@@ -66,7 +66,7 @@ TEST_CASE("how a run ended, and what of its window it reached, is told whatever 
     }
 }
 
-TEST_CASE("a part is the same to the last bit whichever others are wanted") {
+TEST_CASE("a part is bit-identical whichever other parts are requested") {
     const Analysis all = run(all_parts);
     CHECK(run({.series = true}).series->x == all.series->x);
     CHECK(run({}).outcome.state.x == all.outcome.state.x);
@@ -81,7 +81,7 @@ TEST_CASE("a part is the same to the last bit whichever others are wanted") {
     CHECK(exponents.exponents->product.eigenvalues() == all.exponents->product.eigenvalues());
     CHECK(exponents.exponents->growth.standard_error == all.exponents->growth.standard_error);
     CHECK(exponents.exponents->judgement.reason == all.exponents->judgement.reason);
-    // The regime asks for no other estimator than the one that it rests on.
+    // The regime requests only qr, which its verdict needs.
     const Analysis regime = run({.regime = true});
     CHECK(regime.exponents->growth.lambda1 == all.exponents->growth.lambda1);
     CHECK(regime.regime->type == all.regime->type);
@@ -96,9 +96,9 @@ TEST_CASE("a part is the same to the last bit whichever others are wanted") {
     CHECK(run({.manifold = true}).manifold->tau == all.manifold->tau);
 }
 
-TEST_CASE("further windows are judged one by one, in the order in which they are asked for") {
+TEST_CASE("further windows are judged separately, in the requested order") {
     const Parameters p = table1(0.022, Damping::closed_form);
-    Wanted w{.parameters = p, .start = default_state(p), .tau_end = 500};
+    AnalysisRequest w{.parameters = p, .start = default_state(p), .tau_end = 500};
     w.windows = {{200, 300}, {0, 500}};
     w.parts.exponents = true;
     w.estimators = all_estimators;
@@ -110,9 +110,9 @@ TEST_CASE("further windows are judged one by one, in the order in which they are
     CHECK(a.windows[1].product.qr() == a.exponents->product.qr());
 }
 
-TEST_CASE("impacts that are too many to be kept are told by the same run once more") {
+TEST_CASE("impacts that are too many to keep are recomputed by repeating the run") {
     const Parameters p = table1(0.003, Damping::closed_form);
-    Wanted w{.parameters = p, .start = default_state(p), .tau_end = 500};
+    AnalysisRequest w{.parameters = p, .start = default_state(p), .tau_end = 500};
     w.parts = {.impacts = true, .section = true};
     for (const std::size_t most_listed : {everything, std::size_t{100}}) {
         w.most_listed = most_listed;
@@ -139,9 +139,9 @@ TEST_CASE("impacts that are too many to be kept are told by the same run once mo
     }
 }
 
-TEST_CASE("a run that was stopped is repeated up to the impact that it came to") {
+TEST_CASE("a stopped run is repeated up to its last impact") {
     const Parameters p = table1(0.003, Damping::closed_form);
-    Wanted w{.parameters = p, .start = default_state(p), .tau_end = 1e5};
+    AnalysisRequest w{.parameters = p, .start = default_state(p), .tau_end = 1e5};
     w.parts.impacts = true;
     w.most_kept = 40;
     int looks = 0;
@@ -149,11 +149,11 @@ TEST_CASE("a run that was stopped is repeated up to the impact that it came to")
     REQUIRE(a.outcome.reason == End::stopped);
     REQUIRE(a.unkept_impacts);
     REQUIRE(a.unkept_impacts->count == a.outcome.impacts);
-    long told = 0;
+    long passed = 0;
     const Limits limits{.tau_end = w.tau_end, .max_impacts = w.max_impacts};
     CHECK(repeat_impacts(
-        w.parameters, w.start, limits, *a.unkept_impacts, [&](const Impact&) { ++told; }));
-    CHECK(told == a.outcome.impacts);
+        w.parameters, w.start, limits, *a.unkept_impacts, [&](const Impact&) { ++passed; }));
+    CHECK(passed == a.outcome.impacts);
     Limits late = limits;
     late.stop = [] { return true; };
     CHECK_FALSE(

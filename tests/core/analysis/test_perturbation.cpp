@@ -12,10 +12,10 @@ using namespace vines::test;
 
 namespace {
 
-Analysis beside(
+Analysis analyse_with(
     const Parameters& p, const State& start, const State& difference, double tau_end,
     double samples_per_cycle = 32) {
-    Wanted w{.parameters = p, .start = start, .tau_end = tau_end};
+    AnalysisRequest w{.parameters = p, .start = start, .tau_end = tau_end};
     w.parts = {.series = true, .impacts = true};
     w.perturbation = difference;
     w.samples_per_cycle = samples_per_cycle;
@@ -25,15 +25,15 @@ Analysis beside(
 Perturbation perturbed(
     const Parameters& p, const State& start, const State& difference, double tau_end,
     double samples_per_cycle = 32) {
-    return *beside(p, start, difference, tau_end, samples_per_cycle).perturbation;
+    return *analyse_with(p, start, difference, tau_end, samples_per_cycle).perturbation;
 }
 
-/// The state after whole cycles, from which a run goes on as if they had not been.
+/// State after whole cycles, from which a run can start at tau = 0.
 State settled(const Parameters& p, int cycles) {
     return record(p, default_state(p), cycles * p.cycle()).outcome.state;
 }
 
-/// By how much the distance misses the tangent vector's length at most, relative to it, up to tau.
+/// Largest relative deviation of the distance from the tangent vector's length up to tau.
 double largest_miss(const Perturbation& r, double tau) {
     double most = 0;
     for (std::size_t i = 0; i < r.distance.size() && r.series.tau[i] <= tau; ++i)
@@ -49,13 +49,13 @@ double plain_distance(const Analysis& a, std::size_t i) {
 
 }  // namespace
 
-TEST_CASE("the distance is the tangent vector's length to the order of the difference") {
+TEST_CASE("the distance equals the tangent vector's length to first order in the difference") {
     std::mt19937_64 engine(4);
     int compared = 0;
     for (int n = 0; n < 60; ++n) {
         const System s = random_system(engine);
         const Record alone = record(s.parameters, s.start, 300, 40);
-        // A stick in the middle changes the tangent vector before the second run sticks as well.
+        // A sticking phase changes the tangent vector before the second run sticks.
         if (alone.impacts.size() < 10 || !alone.sticks.empty() || !alone.touches.empty()) continue;
         const double tau = alone.impacts[9].tau;
         if (std::abs(s.start.x - s.start.y) > 0.999 * s.parameters.b) continue;
@@ -65,21 +65,21 @@ TEST_CASE("the distance is the tangent vector's length to the order of the diffe
         };
         CAPTURE(n);
         const double large = miss(1e-9), small = miss(1e-10);
-        if (large > 0.03) continue;  // next to a grazing impact, where the order is higher
+        if (large > 0.03) continue;  // near grazing, where the order is higher
         ++compared;
         CHECK(small < 0.3 * large + 1e-4);  // rounding is 1e-15 of a difference of 1e-10
     }
     CHECK(compared > 20);
 }
 
-TEST_CASE("without forcing a shift along the motion stays one, through every impact") {
+TEST_CASE("without forcing a shift in time stays a shift in time through every impact") {
     Parameters p = table1(0.015, Damping::closed_form);
     p.G = 0;
     const State start{0, 0.05, 0, 0.04};
-    // Far above rounding, which a hundred units of tau let grow by more than 1e4.
+    // Far above rounding, which grows by more than 1e4 in a hundred units of tau.
     const double shift = 1e-5;
     const State later = record(p, start, shift).outcome.state;
-    const Analysis a = beside(p, start, difference_of(later, start), 100, 1000);
+    const Analysis a = analyse_with(p, start, difference_of(later, start), 100, 1000);
     REQUIRE(a.impacts.size() > 20);
     CHECK_FALSE(a.perturbation->parted);
     // The difference is f = (x'', x', 0, y') times the shift.
@@ -94,7 +94,7 @@ TEST_CASE("without forcing a shift along the motion stays one, through every imp
     CHECK(most < 1e-4);
 }
 
-TEST_CASE("beside a stable periodic motion the distance shrinks by lambda1 down to rounding") {
+TEST_CASE("near a stable periodic motion the distance shrinks by lambda1 down to rounding") {
     const Parameters p = table1(0.015, Damping::closed_form);
     const State start = settled(p, 400);
     const Perturbation r = perturbed(p, start, random_difference(1, 1e-6), 1000);
@@ -105,7 +105,9 @@ TEST_CASE("beside a stable periodic motion the distance shrinks by lambda1 down 
     CHECK(r.distance.back() < 1e-12);
 }
 
-TEST_CASE("in a chaotic motion it grows by lambda1 up to the size of the motion, and stays there") {
+TEST_CASE(
+    "in a chaotic motion the distance grows by lambda1 up to the size of the motion and stays "
+    "there") {
     const Parameters p = table1(0.003, Damping::closed_form);
     const State start = settled(p, 100);
     const Perturbation r = perturbed(p, start, random_difference(1, 1e-10), 600);
@@ -121,7 +123,7 @@ TEST_CASE("in a chaotic motion it grows by lambda1 up to the size of the motion,
     const double largest = *std::max_element(r.distance.begin(), r.distance.end());
     CHECK(largest > 0.01);
     CHECK(largest < 0.2);
-    // The linear prediction goes on.
+    // The linear prediction continues to grow.
     CHECK(r.tangent.back() > 1e10);
 }
 
@@ -133,10 +135,10 @@ TEST_CASE("the linear stretch ends before the distance misses the prediction by 
     CHECK(largest_miss(r, r.linear->tau.to) <= linear_share);
 }
 
-TEST_CASE("between the two moments of an impact the distance shows no jump of the velocities") {
+TEST_CASE("between the two times of an impact the distance shows no jump of the velocities") {
     const Parameters p = table1(0.008, Damping::closed_form);
     const State start = settled(p, 300);
-    const Analysis a = beside(p, start, {0, 1e-6, 0, 0}, 60, 10000);
+    const Analysis a = analyse_with(p, start, {0, 1e-6, 0, 0}, 60, 10000);
     const Perturbation& r = *a.perturbation;
     CHECK(largest_miss(r, 60) < 0.01);
     double plain = 0;
@@ -145,7 +147,7 @@ TEST_CASE("between the two moments of an impact the distance shows no jump of th
     CHECK(plain > 1000);
 }
 
-TEST_CASE("of two runs either may be the perturbed one") {
+TEST_CASE("distances do not depend on which of two runs is the perturbed one") {
     for (const double b : {0.022, 0.004}) {
         const Parameters p = table1(b, Damping::closed_form);
         const State start = default_state(p), difference = random_difference(3, 1e-8);
@@ -158,11 +160,11 @@ TEST_CASE("of two runs either may be the perturbed one") {
     }
 }
 
-TEST_CASE("chatters of two hundred impacts that end in sticks leave the runs together") {
+TEST_CASE("chatters of two hundred impacts that end in sticking do not separate the runs") {
     Parameters p;
     p.epsilon = 1, p.lambda = 6, p.b = 0.002;
     p.R_plus = p.R_minus = 0.9;
-    const Analysis a = beside(p, default_state(p), random_difference(1, 1e-6), 20, 10000);
+    const Analysis a = analyse_with(p, default_state(p), random_difference(1, 1e-6), 20, 10000);
     REQUIRE(a.stick_count > 3);
     REQUIRE(static_cast<long>(a.impacts.size()) > 150 * a.stick_count);
     const Perturbation& r = *a.perturbation;
@@ -170,23 +172,23 @@ TEST_CASE("chatters of two hundred impacts that end in sticks leave the runs tog
     CHECK(largest_miss(r, 20) < 1e-3);
 }
 
-TEST_CASE("R = 0 parts nothing, and the linear theory holds behind its sticks") {
+TEST_CASE("R = 0 does not separate the runs, and the linear theory holds after sticking") {
     Parameters p = table1(0.01, Damping::equation_of_motion);
     p.R_plus = p.R_minus = 0;
-    const Analysis a = beside(p, default_state(p), random_difference(1, 1e-9), 300);
+    const Analysis a = analyse_with(p, default_state(p), random_difference(1, 1e-9), 300);
     REQUIRE(a.stick_count > 50);
     const Perturbation& r = *a.perturbation;
     CHECK_FALSE(r.parted);
     CHECK(r.linear_until == 300);
 }
 
-TEST_CASE("runs part where one has an impact that the other one never has") {
-    // Half a cycle of an oscillator that nothing damps or forces, beside a free mass at rest: it
-    // comes to the wall by a hair, the second run by a hair not.
+TEST_CASE("runs separate at an impact that only one of them has") {
+    // Half a cycle of an undamped, unforced oscillator and a ball at rest: the first run barely
+    // reaches the wall, the second barely misses it.
     Parameters p = table1(0.01, Damping::closed_form);
     p.lambda = 0, p.G = 0;
     const State start{0.01 * (1 + 1e-8), 0, 0, 0};
-    const Analysis a = beside(p, start, {-2e-10, 0, 0, 0}, 1.1 * std::numbers::pi);
+    const Analysis a = analyse_with(p, start, {-2e-10, 0, 0, 0}, 1.1 * std::numbers::pi);
     REQUIRE(a.impacts.size() == 1);
     const Perturbation& r = *a.perturbation;
     CHECK(r.impacts.empty());
@@ -197,11 +199,12 @@ TEST_CASE("runs part where one has an impact that the other one never has") {
         if (r.series.tau[i] >= *r.parted) CHECK(r.distance[i] == plain_distance(a, i));
 }
 
-TEST_CASE("an impact just before the end does not part runs of which one has it just behind") {
+TEST_CASE(
+    "an impact just before the end does not separate runs if the other has it just after the end") {
     const Parameters p = table1(0.015, Damping::closed_form);
     const State start = settled(p, 400);
     const State difference = random_difference(2, 1e-6);
-    const Analysis whole = beside(p, start, difference, 50);
+    const Analysis whole = analyse_with(p, start, difference, 50);
     REQUIRE(whole.perturbation->impacts.size() == whole.impacts.size());
     for (std::size_t k = 3; k < 8; ++k) {
         const double one = whole.impacts[k].tau, other = whole.perturbation->impacts[k].tau;
@@ -211,18 +214,17 @@ TEST_CASE("an impact just before the end does not part runs of which one has it 
     }
 }
 
-TEST_CASE(
-    "a second run that is ended before the first one is compared up to there, and warned of") {
+TEST_CASE("a second run that is interrupted early is compared up to there, with a warning") {
     const Parameters p = table1(0.022, Damping::closed_form);
-    Wanted w{.parameters = p, .start = default_state(p), .tau_end = 1500};
-    long asked = 0;
-    analyse(w, {.run = [&] { return ++asked, false; }});
-    const long by_first = asked;
+    AnalysisRequest w{.parameters = p, .start = default_state(p), .tau_end = 1500};
+    long polls = 0;
+    analyse(w, {.run = [&] { return ++polls, false; }});
+    const long by_first = polls;
     w.perturbation = random_difference(1, 1e-9);
     const Analysis whole = analyse(w);
     CHECK(whole.perturbation->outcome.tau == 1500);
-    asked = 0;
-    const Analysis cut = analyse(w, {.run = [&] { return ++asked > by_first + 1; }});
+    polls = 0;
+    const Analysis cut = analyse(w, {.run = [&] { return ++polls > by_first + 1; }});
     CHECK(cut.outcome.tau == 1500);
     CHECK(cut.perturbation->outcome.reason == End::stopped);
     const std::size_t size = cut.perturbation->distance.size();
@@ -238,7 +240,7 @@ TEST_CASE(
 
 TEST_CASE("a run that is stopped at its start is compared at its start") {
     const Parameters p = table1(0.022, Damping::closed_form);
-    Wanted w{.parameters = p, .start = default_state(p), .tau_end = 300};
+    AnalysisRequest w{.parameters = p, .start = default_state(p), .tau_end = 300};
     w.perturbation = State{0, 1e-6, 0, 0};
     const Analysis a = analyse(w, {.run = [] { return true; }});
     REQUIRE(a.perturbation->distance.size() == 1);
@@ -246,7 +248,7 @@ TEST_CASE("a run that is stopped at its start is compared at its start") {
     CHECK_FALSE(a.perturbation->parted);
 }
 
-TEST_CASE("a random difference has its length, and another direction for each seed") {
+TEST_CASE("a random difference has the given length and a different direction for each seed") {
     const State one = random_difference(1, 1e-9), other = random_difference(2, 1e-9);
     CHECK(length_of(one) == doctest::Approx(1e-9).epsilon(1e-14));
     CHECK(length_of(difference_of(other, one)) > 1e-10);

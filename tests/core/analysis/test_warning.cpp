@@ -11,17 +11,17 @@ using namespace vines::test;
 
 namespace {
 
-Wanted of(const Parameters& p, double tau_end, const Parts& parts) {
-    Wanted w{.parameters = p, .start = default_state(p), .tau_end = tau_end};
+AnalysisRequest of(const Parameters& p, double tau_end, const Parts& parts) {
+    AnalysisRequest w{.parameters = p, .start = default_state(p), .tau_end = tau_end};
     w.parts = parts;
     w.estimators = all_estimators;
     return w;
 }
-Wanted of(double b, double tau_end, const Parts& parts) {
+AnalysisRequest of(double b, double tau_end, const Parts& parts) {
     return of(table1(b, Damping::closed_form), tau_end, parts);
 }
 
-/// The one warning of a kind; null where there is none, or more than one.
+/// The only warning of a kind; null if there is none or more than one.
 template <class Kind>
 const Kind* only(const std::vector<Warning>& warnings) {
     const Kind* found = nullptr;
@@ -33,24 +33,24 @@ const Kind* only(const std::vector<Warning>& warnings) {
     return found;
 }
 
-/// Half a cycle of an oscillator that nothing damps or forces, beside a free mass at rest.
-Wanted swinging(const State& start) {
+/// Half a cycle of an undamped, unforced oscillator and a ball at rest.
+AnalysisRequest swinging(const State& start) {
     Parameters p = table1(0.01, Damping::closed_form);
     p.lambda = 0, p.G = 0;
-    Wanted w = of(p, 1.1 * std::numbers::pi, {.impacts = true});
+    AnalysisRequest w = of(p, 1.1 * std::numbers::pi, {.impacts = true});
     w.start = start;
     return w;
 }
 
 }  // namespace
 
-TEST_CASE("a regular run that nothing sticks in earns no warning, whatever is wanted") {
+TEST_CASE("a regular run without sticking has no warnings, whatever is requested") {
     const Analysis a = analyse(of(0.008, 700, all_parts));
     CHECK(a.warnings.empty());
 }
 
-TEST_CASE("a run that ends before its window begins says so") {
-    Wanted w = of(0.022, 1000, {});
+TEST_CASE("a run that ends before its window begins has a warning") {
+    AnalysisRequest w = of(0.022, 1000, {});
     w.window = {500, 1000};
     w.max_impacts = 2;
     const Analysis a = analyse(w);
@@ -59,8 +59,8 @@ TEST_CASE("a run that ends before its window begins says so") {
     CHECK(warning->tau_start == 500);
 }
 
-TEST_CASE("a series that would be too long is thinned, and says to how much") {
-    Wanted w = of(0.022, 100, {.series = true});
+TEST_CASE("a series that would be too long is thinned, with the resulting density in a warning") {
+    AnalysisRequest w = of(0.022, 100, {.series = true});
     w.most_points = 51;
     const Analysis a = analyse(w);
     const auto* warning = only<warning::SeriesThinned>(a.warnings);
@@ -71,8 +71,8 @@ TEST_CASE("a series that would be too long is thinned, and says to how much") {
     CHECK(a.series->tau.size() == 51);
 }
 
-TEST_CASE("a list of which only the end is kept says how long it was") {
-    Wanted w = of(0.022, 300, {.impacts = true});
+TEST_CASE("a list cut to its end has a warning with its full length") {
+    AnalysisRequest w = of(0.022, 300, {.impacts = true});
     const Analysis whole = analyse(w);
     CHECK_FALSE(only<warning::ListCut>(whole.warnings));
     w.most_listed = 3;
@@ -86,13 +86,13 @@ TEST_CASE("a list of which only the end is kept says how long it was") {
     CHECK(a.impacts.back().tau == whole.impacts.back().tau);
 }
 
-TEST_CASE("a touch is warned of, a nearly tangent impact as well, and neither as the other") {
+TEST_CASE("grazing contacts and nearly tangent impacts have separate warnings") {
     const Analysis touches = analyse(swinging({0, 0.01 - 3e-17, 0, 0}));
-    CHECK(only<warning::Touched>(touches.warnings));
+    CHECK(only<warning::GrazingContact>(touches.warnings));
     CHECK_FALSE(only<warning::NearlyTangent>(touches.warnings));
-    // It comes to the wall with the speed b sqrt(2e-8), where x'' = -b turns it back.
+    // The ball meets the wall with the speed b sqrt(2e-8), where x'' = -b turns it back.
     const Analysis grazes = analyse(swinging({0.01 * (1 + 1e-8), 0, 0, 0}));
-    CHECK_FALSE(only<warning::Touched>(grazes.warnings));
+    CHECK_FALSE(only<warning::GrazingContact>(grazes.warnings));
     const auto* warning = only<warning::NearlyTangent>(grazes.warnings);
     REQUIRE(warning);
     CHECK(warning->count == 1);
@@ -100,15 +100,15 @@ TEST_CASE("a touch is warned of, a nearly tangent impact as well, and neither as
     CHECK(warning->speed_ratio == 1);
 }
 
-TEST_CASE("an unscaled product that leaves the range of double says so, where it is shown") {
-    Wanted w = of(0.034, 9000, {.exponents = true});
+TEST_CASE("overflow of the unscaled product is reported if it is shown") {
+    AnalysisRequest w = of(0.034, 9000, {.exponents = true});
     w.estimators = {.qr = true, .raw_product = true};
     CHECK(only<warning::RawProductOverflows>(analyse(w).warnings));
     w.estimators.raw_product = false;
     CHECK_FALSE(only<warning::RawProductOverflows>(analyse(w).warnings));
 }
 
-TEST_CASE("exponents that miss the sum rule are warned of") {
+TEST_CASE("exponents that violate the sum rule have a warning") {
     const Parameters p = table1(0.022, Damping::closed_form);
     const Record run = record(p, default_state(p), 200);
     TransferProduct product(p.epsilon, qr_alone);
@@ -116,7 +116,7 @@ TEST_CASE("exponents that miss the sum rule are warned of") {
     for (std::size_t k = 1; k < 3; ++k) {
         const double flight = run.impacts[k].tau - run.impacts[k - 1].tau;
         Leg leg = leg_of(Flow::free(p), flight, false);
-        leg.log_det += 0.1;  // which is not that of its matrix
+        leg.log_det += 0.1;  // inconsistent with its matrix
         product.append({&leg, 1}, saltation(p, run.impacts[k]), run.impacts[k].tau);
     }
     for (const bool histories : {false, true}) {
@@ -135,7 +135,7 @@ TEST_CASE("a window with fewer than two impacts has no exponents") {
     CHECK_FALSE(only<warning::NoExponents>(analyse(of(0.022, 60, {.exponents = true})).warnings));
 }
 
-TEST_CASE("a product that loses rank says which it has left") {
+TEST_CASE("a product that loses rank has a warning with the remaining rank") {
     const Analysis sticks = analyse(of(0.015, 100, {.exponents = true}));
     REQUIRE(sticks.stick_count > 0);
     const auto* two = only<warning::RankLost>(sticks.warnings);
@@ -151,8 +151,8 @@ TEST_CASE("a product that loses rank says which it has left") {
     CHECK(three->rank == 3);
 }
 
-TEST_CASE("transfer matrices and sections that are kept of the last impacts only say so") {
-    Wanted w = of(0.022, 500, {.matrices = true, .section = true});
+TEST_CASE("transfer matrices and sections cut to the last impacts have a warning") {
+    AnalysisRequest w = of(0.022, 500, {.matrices = true, .section = true});
     const Analysis whole = analyse(w);
     CHECK(whole.warnings.empty());
     w.most_points = 5;
@@ -172,8 +172,8 @@ TEST_CASE("transfer matrices and sections that are kept of the last impacts only
     CHECK(a.sections->tau.back() == whole.sections->tau.back());
 }
 
-TEST_CASE("moduli that there was no time for are those of the first impacts") {
-    const Wanted w = of(0.008, 1709, {.moduli = true});
+TEST_CASE("when time is up, the moduli of the first impacts are missing") {
+    const AnalysisRequest w = of(0.008, 1709, {.moduli = true});
     const Analysis whole = analyse(w);
     REQUIRE(whole.moduli->tau.size() > 256);
     int looks = 0;
@@ -185,8 +185,8 @@ TEST_CASE("moduli that there was no time for are those of the first impacts") {
     CHECK(a.moduli->tau.back() == whole.moduli->tau.back());
 }
 
-TEST_CASE("stretches that are kept of the end only say how many there were") {
-    Wanted w = of(0.022, 1709, {.regime = true});
+TEST_CASE("stretches cut to the last ones have a warning with their full number") {
+    AnalysisRequest w = of(0.022, 1709, {.regime = true});
     const std::size_t seen = analyse(w).regime->stretches.size();
     w.most_points = 2;
     const Analysis a = analyse(w);
@@ -197,18 +197,18 @@ TEST_CASE("stretches that are kept of the end only say how many there were") {
     CHECK(a.regime->stretches.size() == 2);
 }
 
-TEST_CASE("a search for an orbit that is ended from outside says so") {
-    long asked = 0;
-    analyse(of(0.015, 1709, {}), {.run = [&] { return ++asked, false; }});
-    const long during_run = asked;
-    asked = 0;
+TEST_CASE("an interrupted search for an orbit has a warning") {
+    long polls = 0;
+    analyse(of(0.015, 1709, {}), {.run = [&] { return ++polls, false; }});
+    const long during_run = polls;
+    polls = 0;
     const Analysis a =
-        analyse(of(0.015, 1709, {.regime = true}), {.run = [&] { return ++asked > during_run; }});
+        analyse(of(0.015, 1709, {.regime = true}), {.run = [&] { return ++polls > during_run; }});
     CHECK(a.outcome.reason == End::tau_end);
     CHECK(only<warning::OrbitSearchStopped>(a.warnings));
 }
 
-TEST_CASE("a chaotic transient that an orbit captures is told with the growth of both") {
+TEST_CASE("a captured chaotic transient is reported with lambda1 before and after") {
     const Analysis a = analyse(
         of(captured_transient().parameters, 20000, {.regime = true, .before_capture = true}));
     const auto* warning = only<warning::CapturedTransient>(a.warnings);
@@ -218,7 +218,7 @@ TEST_CASE("a chaotic transient that an orbit captures is told with the growth of
     CHECK(warning->tau.has_value());
 }
 
-TEST_CASE("walls that differ have no manifold") {
+TEST_CASE("walls with different R have no manifold") {
     Parameters p = table1(0.022, Damping::closed_form);
     p.R_minus = 0.5;
     const Analysis a = analyse(of(p, 100, {.manifold = true}));
@@ -227,8 +227,9 @@ TEST_CASE("walls that differ have no manifold") {
     CHECK_FALSE(a.manifold->points.empty());
 }
 
-TEST_CASE("a distance that leaves the linear theory too soon has no slope, and says how soon") {
-    Wanted w = of(0.022, 500, {});
+TEST_CASE(
+    "a distance that leaves the linear theory early has no slope, with the time in a warning") {
+    AnalysisRequest w = of(0.022, 500, {});
     w.perturbation = State{0, 1e-3, 0, 0};
     const Analysis a = analyse(w);
     const auto* warning = only<warning::NoDistanceSlope>(a.warnings);
@@ -239,11 +240,11 @@ TEST_CASE("a distance that leaves the linear theory too soon has no slope, and s
     CHECK_FALSE(only<warning::NoDistanceSlope>(analyse(w).warnings));
 }
 
-TEST_CASE("a perturbed run that ends before the run itself says where, and why") {
-    // Ten impacts: the run that is ahead by a little has them first.
+TEST_CASE("a perturbed run that ends before its reference is reported with time and reason") {
+    // The run that is slightly ahead reaches ten impacts first.
     int cut = 0;
     for (const double y : {1e-9, -1e-9}) {
-        Wanted w = of(0.015, 500, {});
+        AnalysisRequest w = of(0.015, 500, {});
         w.max_impacts = 10;
         w.perturbation = State{0, 0, 0, y};
         const Analysis a = analyse(w);

@@ -10,7 +10,7 @@ namespace vines::test {
 
 namespace {
 
-/// A wrong k1 is a wrong unit of time.
+/// A wrong k1 means a wrong unit of time.
 void rescale_time(Experiment& e, double faster) {
     e.omega0 *= faster;
     e.parameters.Omega /= faster;
@@ -18,7 +18,7 @@ void rescale_time(Experiment& e, double faster) {
     for (double& tau : e.record.tau) tau *= faster;
     for (double& a : e.record.x_ddot) a /= faster * faster;
     for (Impact& i : e.impacts) i.tau *= faster;
-    for (StuckPhase& s : e.sticks) s.start.tau *= faster, s.tau_end *= faster;
+    for (StickingPhase& s : e.sticks) s.start.tau *= faster, s.tau_end *= faster;
 }
 
 }  // namespace
@@ -32,15 +32,15 @@ TrueMotion motion_after(double settling, double b, double R_plus, double R_minus
 }
 
 TrueMotion settled_motion(double b, double R_plus, double R_minus, double seconds) {
-    // A chaotic motion sticks now and then: the first stretch that does not.
+    // A chaotic motion sticks occasionally: takes the first part without sticking.
     for (double settling = 20; settling < 200; settling += 10) {
         TrueMotion motion = motion_after(settling, b, R_plus, R_minus, seconds);
         if (motion.sticks.empty()) return motion;
     }
-    throw std::runtime_error("the motion sticks all the time");
+    throw std::runtime_error("every part of the motion sticks");
 }
 
-Experiment measured(const TrueMotion& motion, const Sensors& sensors, const Misinformation& told) {
+Experiment measured(const TrueMotion& motion, const Sensors& sensors, const GivenErrors& given) {
     Experiment e{
         motion.parameters,
         motion.omega0,
@@ -50,9 +50,9 @@ Experiment measured(const TrueMotion& motion, const Sensors& sensors, const Misi
         motion.exponents.qr()[0],
         motion.parameters,
         long_run_verdict(motion.parameters)};
-    e.parameters.Omega *= 1 + told.frequency;
-    e.parameters.lambda *= 1 + told.damping;
-    rescale_time(e, std::sqrt(1 + told.stiffness));
+    e.parameters.Omega *= 1 + given.frequency;
+    e.parameters.lambda *= 1 + given.damping;
+    rescale_time(e, std::sqrt(1 + given.stiffness));
     return e;
 }
 
@@ -91,8 +91,21 @@ Verdict long_run_verdict(const Parameters& p) {
     return verdict;
 }
 
+Experiment regular_record(
+    double R_plus, double R_minus, const Sensors& sensors, const GivenErrors& given) {
+    return measured(settled_motion(0.009, R_plus, R_minus, 12), sensors, given);
+}
+
 Experiment measured(double b, double R_plus, double R_minus, const Sensors& sensors) {
     return measured(settled_motion(b, R_plus, R_minus, 20), sensors);
+}
+
+Measurement measurement_of(const Experiment& e) {
+    return {.parameters = e.parameters, .record = e.record};
+}
+
+MeasurementResult identified(const Experiment& e) {
+    return evaluate_measurement(measurement_of(e));
 }
 
 }  // namespace vines::test

@@ -1,44 +1,51 @@
-// Measurements of Table 4's oscillator, with what identification is told of it and the truth.
+// Simulated measurements of Table 4's oscillator, with the true values and those given to
+// identification.
 #pragma once
 
 #include "../support.hpp"
-#include "core/measurement/identify.hpp"
+#include "core/measurement/measurement.hpp"
 #include "core/measurement/synthetic_record.hpp"
 #include "core/stability/verdict.hpp"
 
 namespace vines::test {
 
-/// Errors of what identification is told of the oscillator, relative.
-struct Misinformation {
+/// Relative errors of the values given to identification.
+struct GivenErrors {
     double frequency = 0;  ///< of the forcing
     double stiffness = 0;  ///< of k1
     double damping = 0;    ///< of c1
 };
 
 struct Experiment {
-    Parameters parameters;  ///< as identification is told them
+    Parameters parameters;  ///< given to identification
     double omega0;
     MeasuredRecord record;
-    std::vector<Impact> impacts;  ///< the true ones
-    std::vector<StuckPhase> sticks;
-    double lambda1;              ///< of them: what a perfect identification would give
-    Parameters true_parameters;  ///< in the truth's tau
-    Verdict verdict;             ///< on the motion in the long run: chaotic or regular
+    std::vector<Impact> impacts;  ///< true impacts
+    std::vector<StickingPhase> sticks;
+    double lambda1;              ///< from the true impacts: result of a perfect identification
+    Parameters true_parameters;  ///< in the true tau
+    Verdict verdict;             ///< true verdict in the long run: chaotic or regular
 };
 
-/// The motion of Table 4's oscillator with its absorber from so many seconds on.
+/// Motion of Table 4's oscillator with its absorber, from `settling` s on.
 TrueMotion motion_after(double settling, double b, double R_plus, double R_minus, double seconds);
-/// The same once it has settled, from 20 s on or later,
-/// where it does not stick.
+/// The same from 20 s or later, in a part without sticking.
 TrueMotion settled_motion(double b, double R_plus, double R_minus, double seconds);
 Experiment measured(
-    const TrueMotion& motion, const Sensors& sensors, const Misinformation& told = {});
-/// True impacts as one would list them.
+    const TrueMotion& motion, const Sensors& sensors, const GivenErrors& given = {});
+/// True impacts as a list.
 std::vector<IdentifiedImpact> listed(const std::vector<Impact>& impacts);
 
-/// By lambda1 of an hour.
+/// From lambda1 over about an hour.
 Verdict long_run_verdict(const Parameters& parameters);
-/// Of 20 s.
+/// A record of a regular motion: 12 s contain about 200 impacts.
+Experiment regular_record(
+    double R_plus = 0.85, double R_minus = 0.85, const Sensors& sensors = {},
+    const GivenErrors& given = {});
+/// A record of 20 s.
 Experiment measured(double b, double R_plus, double R_minus, const Sensors& sensors);
+
+Measurement measurement_of(const Experiment& experiment);
+MeasurementResult identified(const Experiment& experiment);
 
 }  // namespace vines::test

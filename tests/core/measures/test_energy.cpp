@@ -23,7 +23,7 @@ TEST_CASE("the energy balance closes to rounding, whatever the system and the wi
     CHECK(worst < 1e-12);
 }
 
-TEST_CASE("the residual of Table 1 is below 1e-9 of the input, with a stick in the run, too") {
+TEST_CASE("the residual of Table 1 is below 1e-9 of the input, also with sticking") {
     for (double b : {0.015, 0.022, 0.004}) {
         const Parameters p = table1(b, Damping::closed_form);
         Energy energy(p, 0, 1709);
@@ -88,7 +88,7 @@ TEST_CASE("from rest the rms is right however short the window and slow the forc
         }
 }
 
-TEST_CASE("a window that begins at the last impact has the energy behind it") {
+TEST_CASE("a window that begins at the last impact has the energy after it") {
     const Parameters p = table1(0.015, Damping::closed_form);
     const Impact last = record(p, default_state(p), 1000, 20).impacts.back();
     Energy energy(p, last.tau, 1000);
@@ -100,7 +100,7 @@ TEST_CASE("a window that begins at the last impact has the energy behind it") {
         energy_of(p, {last.x_dot_after, last.x, last.y_dot_after, last.x - last.side * p.b}));
 }
 
-TEST_CASE("without the absorber the oscillator comes to its steady amplitude") {
+TEST_CASE("without absorber the oscillator reaches its steady amplitude") {
     for (double Omega : {0.4, 1.0, 2.3}) {
         Parameters p = table1(0.022, Damping::closed_form);
         p.Omega = Omega;
@@ -114,7 +114,7 @@ TEST_CASE("without the absorber the oscillator comes to its steady amplitude") {
     CHECK_FALSE(unattached(undamped, {}, 0, 10).amplitude);
 }
 
-TEST_CASE("a system at rest has no moment at which half of its energy is left") {
+TEST_CASE("a system at rest has no time at which half of its energy is left") {
     Parameters p = table1(0.022, Damping::equation_of_motion);
     p.G = 0;
     Decay decay(p, 0, {0.5, 0.1});
@@ -123,7 +123,7 @@ TEST_CASE("a system at rest has no moment at which half of its energy is left") 
     CHECK_FALSE(decay.tau[1]);
 }
 
-TEST_CASE("a free decay passes half and a tenth of its energy at the moments reported") {
+TEST_CASE("a free decay passes half and a tenth of its energy at the reported times") {
     Parameters p = table1(0.022, Damping::equation_of_motion);
     p.G = 0;
     const State start{0, 0.02, 0, 0.005};
@@ -133,7 +133,7 @@ TEST_CASE("a free decay passes half and a tenth of its energy at the moments rep
     REQUIRE(decay.tau[1]);
     CHECK_FALSE(decay.tau[2]);
     for (int k = 0; k < 2; ++k) {
-        // Just before it, the energy is above; at it, at or below (an impact may carry it past).
+        // Just before, the energy is above the level; then at or below it (an impact can cross it).
         const double tau = *decay.tau[k], level = (k == 0 ? 0.5 : 0.1) * energy_of(p, start);
         CHECK(energy_of(p, simulate(p, start, {tau - 1e-9, 1000000, {}}, {}).state) > level);
         CHECK(energy_of(p, simulate(p, start, {tau + 1e-9, 1000000, {}}, {}).state) <= level);

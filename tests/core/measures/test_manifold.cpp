@@ -13,12 +13,12 @@ using namespace vines::test;
 
 namespace {
 
-/// Moduli of the eigenvalues of one cycle of symmetric impacts with speed V, with a free mass that
-/// is too light to be felt.
+/// Moduli of the eigenvalues over one cycle of symmetric impacts with speed V, in the limit of a
+/// massless ball.
 Moduli cycle_moduli(double R, double Omega, double b, double V) {
     Parameters p;
     p.epsilon = 1e-9, p.lambda = 0, p.G = 0, p.b = b, p.R_plus = p.R_minus = R, p.Omega = Omega;
-    // The oscillator's own frequency is 1: the manifold of Omega = 1 in its time.
+    // The natural frequency is 1: the manifold of Omega = 1 in the oscillator's time.
     const double k = (1 - R) / (1 + R), x = b - std::numbers::pi / 2 * V;
     const State after_impact{k * V, x, V, x - b};
     TransferRecord record_of(p, 0, 100);
@@ -28,8 +28,8 @@ Moduli cycle_moduli(double R, double Omega, double b, double V) {
     return eigenvalue_moduli(record_of.transfers[1].T() * record_of.transfers[0].T());
 }
 
-/// How far the mass stays off both walls during the flight of a symmetric motion, least over a
-/// dense grid that leaves out its ends; negative: it would pass a wall.
+/// Least distance of the ball from both walls during the flight of a symmetric motion, over a dense
+/// grid without its ends; negative if it would pass a wall.
 double clearance(double R, double b, double V) {
     const double k = (1 - R) / (1 + R), x = b - std::numbers::pi / 2 * V;
     double least = b;
@@ -41,7 +41,7 @@ double clearance(double R, double b, double V) {
     return least;
 }
 
-/// The impacts of the first cycle and a half of a motion on the manifold, with so light a mass.
+/// Impacts of the first cycle and a half of a motion on the manifold with mass ratio epsilon.
 std::vector<Impact> impacts_on_manifold(double R, double b, double V, double epsilon) {
     Parameters p;
     p.epsilon = epsilon, p.lambda = 0, p.G = 0, p.b = b, p.R_plus = p.R_minus = R;
@@ -53,7 +53,7 @@ std::vector<Impact> impacts_on_manifold(double R, double b, double V, double eps
 
 }  // namespace
 
-TEST_CASE("the manifold ends where the mass meets the wall that it comes from a second time") {
+TEST_CASE("the manifold ends where the ball meets the wall that it comes from a second time") {
     CHECK(manifold_second_contact(0.001, 1, 0.02).V == doctest::Approx(0.0134).epsilon(5e-3));
     CHECK(manifold_second_contact(0.05, 1, 0.02).V == doctest::Approx(0.0186).epsilon(5e-3));
     CHECK(
@@ -100,14 +100,12 @@ TEST_CASE("the fold is where C is smallest, and b can be chosen to put it at an 
     CHECK(manifold_fold(0.6, 1, 1).C == doctest::Approx(0.157).epsilon(0.01));  // in units of b
 }
 
-TEST_CASE(
-    "the motion on the manifold is stable between the fold and the loss of symmetry, and nowhere "
-    "else") {
+TEST_CASE("the motion on the manifold is stable only between the fold and the loss of symmetry") {
     for (double R : {0.3, 0.6, 0.85}) {
         CAPTURE(R);
         const double fold = manifold_fold(R, 1, 0.02).V,
                      breaking = manifold_symmetry_breaking(R, 1, 0.02).V;
-        // The oscillator, which nothing damps, keeps two multipliers of modulus 1.
+        // The undamped oscillator keeps two multipliers of modulus 1.
         for (double share : {0.05, 0.5, 0.95})
             CHECK(
                 cycle_moduli(R, 1, 0.02, fold + share * (breaking - fold))[0] ==
@@ -120,7 +118,7 @@ TEST_CASE(
 TEST_CASE(
     "a run with two symmetric impacts per cycle lies on the manifold, the closer the lighter the "
     "absorber") {
-    // Deviations of C as measured independently: -1.3 % and -.13 %.
+    // Deviations of C, measured independently: -1.3 % and -.13 %.
     for (const double epsilon : {0.0084, 0.00084}) {
         Parameters p = table1(0.015, Damping::closed_form);
         p.lambda *= p.epsilon / epsilon * epsilon / 0.0084;
@@ -135,10 +133,10 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "half cycles hold the mean speed of the mass and the peak of the oscillator, stuck phases "
-    "included") {
+    "half cycles hold the mean speed of the ball and the peak of the oscillator, including "
+    "sticking phases") {
     const Parameters p = table1(0.015, Damping::closed_form);
-    HalfCycles points(p, 0, 60);  // with the stick at 11.8
+    HalfCycles points(p, 0, 60);  // includes the sticking phase at 11.8
     SeriesRecord series(1e-4);
     record(p, default_state(p), 60, 1000000, {&points, &series});
     for (std::size_t k = 0; k < points.points.size(); ++k) {

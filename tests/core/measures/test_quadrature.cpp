@@ -20,12 +20,12 @@ Integrals in_closed_form(
 
 }  // namespace
 
-TEST_CASE("integrals in closed form are those by tables, free and stuck") {
+TEST_CASE("integrals in closed form equal those by tables, in free flight and sticking") {
     std::mt19937_64 engine(7);
     int compared = 0;
     for (int i = 0; i < 300; ++i) {
         const Parameters p = random_system(engine).parameters;
-        const Flow flow = i % 2 ? Flow::free(p) : Flow::stuck(p);
+        const Flow flow = i % 2 ? Flow::free(p) : Flow::sticking(p);
         const auto F = Antiderivative::of(flow);
         if (!F) continue;
         ++compared;
@@ -39,7 +39,7 @@ TEST_CASE("integrals in closed form are those by tables, free and stuck") {
         const double size = 1e-11 * (tables.x_squared + tables.x_dot_squared);
         CHECK(std::abs(closed.x_squared - tables.x_squared) < size);
         CHECK(std::abs(closed.x_dot_squared - tables.x_dot_squared) < size);
-        // x' sin(theta) is of the size of x'.
+        // x' sin(theta) has the size of x'.
         CHECK(
             std::abs(closed.x_dot_sin - tables.x_dot_sin) <
             1e-11 * std::sqrt(duration * tables.x_dot_squared));
@@ -47,7 +47,7 @@ TEST_CASE("integrals in closed form are those by tables, free and stuck") {
     CHECK(compared > 200);
 }
 
-TEST_CASE("across an impact the antiderivative changes by what at() says") {
+TEST_CASE("across() equals the change of at() over an impact") {
     const Flow flow = Flow::free(table1(0.022, Damping::closed_form));
     const Antiderivative F = Antiderivative::of(flow).value();
     const Oscillation before = {0.003, -0.004, 0.6, -0.8}, after = {0.003, -0.0031, 0.6, -0.8};
@@ -59,7 +59,7 @@ TEST_CASE("across an impact the antiderivative changes by what at() says") {
     CHECK(across.x_dot_sin == doctest::Approx(difference.x_dot_sin));
 }
 
-TEST_CASE("without damping, and at resonance with hardly any, there is no closed form") {
+TEST_CASE("without damping, and at resonance with very little, the closed form is unavailable") {
     CHECK_FALSE(Antiderivative::of(Flow(1, 0, 1e-3, 1.7)));
     CHECK_FALSE(Antiderivative::of(Flow(1, 1e-5, 1e-3, 1)));
     CHECK(Antiderivative::of(Flow(1, 0.01, 1e-3, 1)));

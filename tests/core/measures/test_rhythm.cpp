@@ -11,20 +11,21 @@ using namespace vines::test;
 
 namespace {
 
-class Told : public ContactStream {
+class ContactCollector : public ContactStream {
 public:
     using ContactStream::ContactStream;
-    void finish() { tell_held(); }
+    void finish() { flush_contacts(); }
     std::vector<CountedContact> contacts;
 
 private:
     void on_contact(const CountedContact& contact) override { contacts.push_back(contact); }
 };
 
-/// A system with chatters, sticks and contacts on one side as well as an even alternation.
+/// A system with chatters, sticking, contacts on one side, and regular alternation.
 Parameters some_system(std::mt19937_64& engine) {
     Parameters p = table1(uniform(engine, 0.002, 0.035), Damping::closed_form);
-    // At small R the mass often meets the same wall twice in a cycle, and sticks at the second.
+    // At small R the ball often meets the same wall twice in a cycle and sticks at the second
+    // contact.
     const double most_R = uniform(engine, 0, 1) < 0.5 ? 0.3 : 1;
     p.R_plus = uniform(engine, 0, most_R);
     p.R_minus = uniform(engine, 0, most_R);
@@ -32,7 +33,7 @@ Parameters some_system(std::mt19937_64& engine) {
     return p;
 }
 
-/// Contacts per cycle of a whole run, counted from a list: each cycle is a look at all of them.
+/// Number of contacts in [from, to), from a list.
 long contacts_between(const std::vector<CountedContact>& contacts, double from, double to) {
     return std::count_if(contacts.begin(), contacts.end(), [&](const CountedContact& c) {
         return c.tau >= from && c.tau < to;
@@ -41,26 +42,26 @@ long contacts_between(const std::vector<CountedContact>& contacts, double from, 
 
 }  // namespace
 
-TEST_CASE("contacts told one by one are those of the list") {
+TEST_CASE("contacts streamed one by one are those of the list") {
     std::mt19937_64 engine(31);
     int sticks = 0;
     for (int n = 0; n < 100; ++n) {
         const Parameters p = some_system(engine);
         ContactRecord list;
-        Told told(p);
-        record(p, default_state(p), 400, 100000, {&list, &told});
-        told.finish();
+        ContactCollector collected(p);
+        record(p, default_state(p), 400, 100000, {&list, &collected});
+        collected.finish();
         sticks += static_cast<int>(list.sticks.size());
-        REQUIRE(told.contacts.size() == list.contacts.size());
-        for (std::size_t k = 0; k < told.contacts.size(); ++k) {
-            CHECK(told.contacts[k].tau == list.contacts[k].tau);
-            CHECK(told.contacts[k].side == list.contacts[k].side);
+        REQUIRE(collected.contacts.size() == list.contacts.size());
+        for (std::size_t k = 0; k < collected.contacts.size(); ++k) {
+            CHECK(collected.contacts[k].tau == list.contacts[k].tau);
+            CHECK(collected.contacts[k].side == list.contacts[k].side);
         }
     }
     CHECK(sticks > 500);
 }
 
-TEST_CASE("the moving z counts the contacts of ten cycles, the shares those of one") {
+TEST_CASE("the moving z counts the contacts of ten cycles, the fractions those of one") {
     std::mt19937_64 engine(32);
     for (int n = 0; n < 30; ++n) {
         const Parameters p = some_system(engine);
@@ -93,7 +94,7 @@ TEST_CASE("the moving z counts the contacts of ten cycles, the shares those of o
     }
 }
 
-TEST_CASE("a bound of the lists keeps every so many of the moving z, and the last stretches") {
+TEST_CASE("bounded lists keep a regular selection of the moving z and the last stretches") {
     const Parameters p = table1(0.022, Damping::closed_form);
     const std::size_t most = 7;
     Rhythm all(p, {0, 2000}, everything), thinned(p, {0, 2000}, most), none(p, {0, 2000}, 0);
@@ -123,7 +124,7 @@ TEST_CASE("a bound of the lists keeps every so many of the moving z, and the las
     }
 }
 
-TEST_CASE("positions are given back as they were added, pauses of many cycles too") {
+TEST_CASE("positions are returned as they were added, also after pauses of many cycles") {
     CyclePositions positions;
     const std::vector<double> cycles = {0, 0, 0.25, 0.5, 1.49, 1.5, 5.125, 1000, 2e6};
     for (const double at : cycles) positions.add(at);

@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "../support.hpp"
-#include "core/motion/contacts.hpp"
+#include "core/motion/record.hpp"
 
 using namespace vines;
 using namespace vines::test;
@@ -16,7 +16,7 @@ Impact impact(double tau, int side) {
 
 }  // namespace
 
-TEST_CASE("each impact is a contact, and those of a chatter before a stick are one") {
+TEST_CASE("each impact is a contact, and a chatter that ends in sticking is one contact") {
     ContactRecord record;
     record.on_impact(impact(1, 1));
     for (const double tau : {2.0, 2.5, 2.75}) record.on_impact(impact(tau, -1));
@@ -33,7 +33,7 @@ TEST_CASE("each impact is a contact, and those of a chatter before a stick are o
     CHECK(record.sticks[0].tau_end == 4);
 }
 
-TEST_CASE("a stick after one impact, or after none, takes no contact away") {
+TEST_CASE("sticking after one impact, or after none, removes no contact") {
     ContactRecord record;
     record.on_stick({0, 1, 0});
     record.on_release(1);
@@ -45,8 +45,7 @@ TEST_CASE("a stick after one impact, or after none, takes no contact away") {
 }
 
 TEST_CASE(
-    "a chatter that ends in a stick is one contact, of the side and the moment of its first "
-    "impact") {
+    "a chatter that ends in sticking is one contact, with the side and time of its first impact") {
     const Parameters p = table1(0.015, Damping::closed_form);
     ContactRecord contacts;
     const Record run = record(p, default_state(p), 100, 1000000, {&contacts});
@@ -58,9 +57,10 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "a chatter holds the impacts that a pressing wall joins, and none from half a cycle before") {
-    // At small R the mass often meets the same wall twice in a cycle, once while it recedes, and
-    // sticks at the second.
+    "a chatter consists of the impacts joined by a pressing wall, without impacts from half a "
+    "cycle before") {
+    // At small R the ball often meets the same wall twice in a cycle, the first time while it
+    // recedes, and sticks at the second.
     std::mt19937_64 engine(429);
     int sticks = 0;
     for (int n = 0; n < 60; ++n) {

@@ -14,11 +14,11 @@ using namespace vines::test;
 
 namespace {
 
-using Wide = long double;  // of 64 bits: its own errors are below 0.001 ulp of a double
+using Wide = long double;  // 64 bits: its errors are below 0.001 ulp of a double
 
 constexpr int calls = 20000;
 
-/// In ulps of the true result.
+/// Error in ulps of the true result.
 double error_in_ulps(double result, Wide truth) {
     const int exponent = std::max(std::ilogb(truth), std::numeric_limits<double>::min_exponent - 1);
     return static_cast<double>(std::abs((result - truth) * std::scalbn(Wide{1}, 52 - exponent)));
@@ -28,7 +28,7 @@ struct Two {
     double a, b;
 };
 
-/// The largest error over random arguments.
+/// Largest error over random arguments.
 double worst_of(
     unsigned seed, const std::function<Two(std::mt19937_64&)>& arguments,
     const std::function<double(double, double)>& tested,
@@ -55,7 +55,7 @@ auto evenly(double from, double to) {
     return [=](std::mt19937_64& engine) { return uniform(engine, from, to); };
 }
 
-/// Of any size between e^from and e^to.
+/// Log-uniform between e^from and e^to.
 auto of_any_size(double from, double to) {
     return [=](std::mt19937_64& engine) { return std::exp(uniform(engine, from, to)); };
 }
@@ -69,7 +69,7 @@ bool is_zero(double x, bool negative) { return x == 0 && std::signbit(x) == nega
 
 }  // namespace
 
-TEST_CASE("log is right to 0.51 ulp: of large and small numbers, beside 1, and of subnormals") {
+TEST_CASE("log is accurate to 0.51 ulp for large and small numbers, near 1, and for subnormals") {
     const auto log = [](const auto& argument) {
         return worst_of(argument, elementary::log, [](Wide x) { return std::log(x); });
     };
@@ -80,7 +80,7 @@ TEST_CASE("log is right to 0.51 ulp: of large and small numbers, beside 1, and o
     CHECK(log([](std::mt19937_64& e) { return (e() >> (12 + e() % 40)) * smallest; }) < 0.51);
 }
 
-TEST_CASE("exp is right to 0.51 ulp, and where it is subnormal to 0.76") {
+TEST_CASE("exp is accurate to 0.51 ulp, and to 0.76 ulp where it is subnormal") {
     const auto exp = [](const auto& argument) {
         return worst_of(argument, elementary::exp, [](Wide x) { return std::exp(x); });
     };
@@ -90,7 +90,7 @@ TEST_CASE("exp is right to 0.51 ulp, and where it is subnormal to 0.76") {
     CHECK(exp(evenly(-745, -708)) < 0.76);
 }
 
-TEST_CASE("sin and cos are right to 0.51 ulp, of angles up to 2^31 and beside their zeros") {
+TEST_CASE("sin and cos are accurate to 0.51 ulp for angles up to 2^31 and near their zeros") {
     for (const double limit : {1.0, 10.0, 1e3, 1e6, 0x1p31}) {
         CAPTURE(limit);
         CHECK(worst_of(evenly(-limit, limit), elementary::sin, [](Wide x) {
@@ -109,7 +109,7 @@ TEST_CASE("sin and cos are right to 0.51 ulp, of angles up to 2^31 and beside th
         worst_of(of_any_size(-40, 0), elementary::sin, [](Wide x) { return std::sin(x); }) < 0.51);
 }
 
-TEST_CASE("sin and cos of larger angles are those of an angle closer than the next double") {
+TEST_CASE("sin and cos of larger angles equal those of an angle closer than the next double") {
     std::mt19937_64 engine(3);
     for (int i = 0; i < calls; ++i) {
         const double near = of_any_size(std::log(0x1p31), std::log(0x1p47))(engine),
@@ -122,7 +122,7 @@ TEST_CASE("sin and cos of larger angles are those of an angle closer than the ne
     }
 }
 
-TEST_CASE("atan2 is right to 0.51 ulp, all around and for sides of any size") {
+TEST_CASE("atan2 is accurate to 0.51 ulp in all quadrants and for arguments of any size") {
     const auto atan2 = [](const std::function<Two(std::mt19937_64&)>& sides) {
         return worst_of(
             4, sides, [](double y, double x) { return elementary::atan2(y, x); },
@@ -142,7 +142,7 @@ TEST_CASE("atan2 is right to 0.51 ulp, all around and for sides of any size") {
     CHECK(worst_of(evenly(-2, 2), elementary::atan, [](Wide x) { return std::atan(x); }) < 0.51);
 }
 
-TEST_CASE("hypot is right to 0.51 ulp, and exact where the result is a double") {
+TEST_CASE("hypot is accurate to 0.51 ulp, and exact where the result is a double") {
     const auto hypot = [](const std::function<Two(std::mt19937_64&)>& sides) {
         return worst_of(
             5, sides, [](double x, double y) { return elementary::hypot(x, y); },
@@ -179,7 +179,7 @@ TEST_CASE("pow is right to 0.51 ulp and 2^-15 for each unit of the exponent, and
     CHECK(elementary::pow(8, -1) == 0.125);
 }
 
-TEST_CASE("zeros, infinite numbers and what is none give what they give in C") {
+TEST_CASE("zeros, infinities and NaN give the same results as in C") {
     CHECK(elementary::log(0) == -infinity);
     CHECK(elementary::log(-0.0) == -infinity);
     CHECK(is_zero(elementary::log(1), false));
@@ -213,7 +213,7 @@ TEST_CASE("zeros, infinite numbers and what is none give what they give in C") {
     CHECK(elementary::hypot(smallest, 0) == smallest);
 }
 
-TEST_CASE("angles of points on the axes, at infinity and of none are those of C") {
+TEST_CASE("atan2 of points on the axes, at infinity and of NaN agrees with C") {
     const double values[] = {0,        -0.0,     1,         -1,     smallest, -smallest, largest,
                              -largest, infinity, -infinity, 1e-300, -1e300,   vines::nan};
     for (const double y : values)
@@ -228,7 +228,7 @@ TEST_CASE("angles of points on the axes, at infinity and of none are those of C"
     CHECK(is_zero(elementary::atan(-0.0), true));
 }
 
-TEST_CASE("powers at the ends are those of C, and of a negative base none") {
+TEST_CASE("pow agrees with C at the limits, and is NaN for a negative base") {
     const double values[] = {0, 1, 0.5, 2, smallest, 1e300, infinity, vines::nan};
     for (const double x : values)
         for (const double y :

@@ -9,7 +9,8 @@
 using namespace vines;
 using namespace vines::test;
 
-TEST_CASE("the peak of a swing is its amplitude, its path the way between its turning points") {
+TEST_CASE(
+    "the peak of an oscillation is its amplitude, and its path the distance between its extrema") {
     const Flow undamped(1, 0, 0, 1);
     const double duration = 10 * 2 * std::numbers::pi + 1;
     CHECK(peak_beyond(0, undamped, {0, 1, 0, 1}, duration) == doctest::Approx(1).epsilon(1e-15));
@@ -19,7 +20,8 @@ TEST_CASE("the peak of a swing is its amplitude, its path the way between its tu
 }
 
 TEST_CASE(
-    "the peak is that of dense samples, of any flow over any time, and what is known if larger") {
+    "the peak agrees with dense samples for any flow and duration, and is at least the known "
+    "peak") {
     std::mt19937_64 engine(12);
     for (int i = 0; i < 200; ++i) {
         const Flow flow = Flow::free(random_system(engine).parameters);
@@ -31,7 +33,7 @@ TEST_CASE(
             sampled = std::max(sampled, std::abs(flow.after(o, duration * k / samples).x));
         const double peak = peak_beyond(0, flow, o, duration);
         CHECK(peak >= sampled * (1 - 1e-14));
-        // Between two samples x rises by a share of the square of their distance.
+        // Between two samples x rises by at most a fraction of the square of their distance.
         const double apart = duration / samples * std::max(1.0, flow.coefficients()[1]);
         CHECK(peak <= sampled * (1 + 1e-14) + flow.bounds(o, duration).x_ddot * apart * apart);
         CHECK(peak_beyond(peak * 1.001, flow, o, duration) == peak * 1.001);
@@ -39,7 +41,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("a cell in which x turns twice hides neither turning point, nor its path") {
+TEST_CASE("both extrema of x in a single cell count for the peak and the path") {
     struct Hidden {
         Flow flow;
         Oscillation o;
@@ -71,7 +73,7 @@ TEST_CASE("a cell in which x turns twice hides neither turning point, nor its pa
     }
 }
 
-TEST_CASE("a swing so small that products of its speeds vanish has its peak, too") {
+TEST_CASE("an oscillation so small that products of its speeds underflow has its peak") {
     const Flow flow(.5326, 4.8e-4, 0, .21);
     const Oscillation o = {-8.3e-149, 5.5e-149, 0, 1}, larger = {-8.3e-9, 5.5e-9, 0, 1};
     CHECK(

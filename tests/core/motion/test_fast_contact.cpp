@@ -9,7 +9,7 @@ using namespace vines::test;
 
 namespace {
 
-/// A flight of a random system that leaves a wall, at a speed of any size, or begins between them.
+/// A flight of a random system, from a wall at a speed of any size or from between the walls.
 struct RandomFlight {
     Flow flow;
     double b;
@@ -33,19 +33,19 @@ RandomFlight random_flight(std::mt19937_64& engine) {
 
 }  // namespace
 
-TEST_CASE("the fast search for a contact finds what the plain one finds") {
+TEST_CASE("the fast search finds the same contacts as the plain one") {
     std::mt19937_64 engine(5);
     int contacts = 0;
     for (int n = 0; n < 20000; ++n) {
         const RandomFlight f = random_flight(engine);
         const double limit = n % 3 ? f.flow.reach() : uniform(engine, 0, 1) * f.flow.reach();
-        std::vector<Touch> touches, plain_touches;
-        const auto fast = fast_contact(f.flow, f.start, f.b, limit, touches),
-                   plain = next_contact(f.flow, f.start, f.b, limit, plain_touches);
+        std::vector<GrazingPoint> grazing, plain_grazing;
+        const auto fast = fast_contact(f.flow, f.start, f.b, limit, grazing),
+                   plain = next_contact(f.flow, f.start, f.b, limit, plain_grazing);
         CAPTURE(n);
-        REQUIRE(touches.size() == plain_touches.size());
+        REQUIRE(grazing.size() == plain_grazing.size());
         if (!fast || !plain) {
-            // At the very end of the interval rounding may decide.
+            // At the very end of the interval rounding decides.
             const double s = fast ? fast->s : plain ? plain->s : limit;
             REQUIRE(std::abs(s - limit) * 1e3 <= 1e-11);
             continue;
@@ -60,24 +60,24 @@ TEST_CASE("the fast search for a contact finds what the plain one finds") {
     CHECK(contacts > 10000);
 }
 
-TEST_CASE("a chatter's next hop keeps its relative accuracy by the fast search, too") {
+TEST_CASE("the fast search keeps the relative accuracy of the next contact of a chatter") {
     std::mt19937_64 engine(6);
-    int hops = 0;
+    int bounces = 0;
     for (int n = 0; n < 20000; ++n) {
         const RandomFlight f = random_flight(engine);
         const double w = -f.start.side * f.start.relative_speed,
                      a = f.start.side * f.flow.acceleration(f.start.lo);
         if (!(a > 0 && 4 * w < a * f.flow.cell())) continue;
-        std::vector<Touch> touches;
-        const auto fast = fast_contact(f.flow, f.start, f.b, f.flow.reach(), touches),
-                   plain = next_contact(f.flow, f.start, f.b, f.flow.reach(), touches);
+        std::vector<GrazingPoint> grazing;
+        const auto fast = fast_contact(f.flow, f.start, f.b, f.flow.reach(), grazing),
+                   plain = next_contact(f.flow, f.start, f.b, f.flow.reach(), grazing);
         if (!plain || plain->s > 4 * w / a) continue;
-        ++hops;
+        ++bounces;
         CAPTURE(n);
         REQUIRE(fast);
         REQUIRE(fast->s == doctest::Approx(plain->s).epsilon(1e-13).scale(0));
         REQUIRE(
             fast->relative_speed == doctest::Approx(plain->relative_speed).epsilon(1e-13).scale(0));
     }
-    CHECK(hops > 1000);
+    CHECK(bounces > 1000);
 }

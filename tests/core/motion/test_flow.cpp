@@ -91,7 +91,7 @@ TEST_CASE("without damping at resonance the response grows with time") {
     }
 }
 
-TEST_CASE("next to an undamped resonance nothing is lost to cancellation") {
+TEST_CASE("near an undamped resonance no digits are lost to cancellation") {
     const Flow at = Flow::free(with_zeta(0, 1)), beside = Flow::free(with_zeta(0, 1 + 1e-12));
     CHECK(std::abs(at.after(start, 100).x - beside.after(start, 100).x) < 1e-12);
 }
@@ -120,7 +120,7 @@ TEST_CASE("the bounds of the motion hold over the whole reach") {
     for (int n = 0; n < 200; ++n) {
         const System system = random_system(engine);
         const Flow flow =
-            engine() % 2 ? Flow::free(system.parameters) : Flow::stuck(system.parameters);
+            engine() % 2 ? Flow::free(system.parameters) : Flow::sticking(system.parameters);
         Oscillation o{system.start.x, system.start.x_dot, std::sin(n), std::cos(n)};
         const auto bounds = flow.bounds(o);
         double x = 0, a = 0, j = 0;

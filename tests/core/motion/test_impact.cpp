@@ -26,7 +26,7 @@ Impact random_impact(std::mt19937_64& engine, Parameters& p) {
 
 }  // namespace
 
-TEST_CASE("an impact keeps momentum and reverses the relative velocity with factor R") {
+TEST_CASE("an impact conserves momentum and reverses the relative velocity with factor R") {
     std::mt19937_64 engine(3);
     for (int n = 0; n < 1000; ++n) {
         Parameters p;
@@ -60,7 +60,7 @@ TEST_CASE("the saltation matrix is eq. (27) with f from the flow") {
         const Matrix4 M =
             S - (S * before - after) * wall_normal().transpose() / wall_normal().dot(before);
         CHECK((m.matrix() - M).norm() < 1e-12 * M.norm());
-        // The flow's own direction goes over into itself.
+        // The direction of the flow is mapped to that after the impact.
         CHECK((M * before - after).norm() < 1e-14);
     }
 }
@@ -75,12 +75,12 @@ TEST_CASE("|det M| = R^2 and the moduli of its eigenvalues are 1, 1, R, R") {
         Eigen::Vector4d moduli = eigenvalues_of(M).cwiseAbs();
         std::sort(moduli.begin(), moduli.end());
         const Eigen::Vector4d expected(i.R, i.R, 1, 1);
-        // Double eigenvalues: the root of the rounding.
+        // Double eigenvalues: square root of the rounding.
         CHECK((moduli - expected).cwiseAbs().maxCoeff() < 1e-5 * M.norm());
     }
 }
 
-TEST_CASE("a nearly tangent impact is flagged, one that the wall presses towards is not") {
+TEST_CASE("a nearly grazing impact is flagged, one on a pressing wall is not") {
     const Parameters p = table1(0.022, Damping::closed_form);
     const Oscillation lo{0.004, 0.001, 0, 1};
     CHECK(impact_at(p, {0, 1, lo, 1e-8}, -0.004, 0).grazing);

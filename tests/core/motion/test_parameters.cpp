@@ -44,7 +44,7 @@ TEST_CASE("validation returns every fault with its field, value and range") {
     CHECK(faults[3].message == "x0 must lie in [-1000, 1000]");
 }
 
-TEST_CASE("a start outside the cavity is a fault, one on its wall is not") {
+TEST_CASE("a start outside the cavity is a fault, one on a wall is not") {
     Parameters p;
     p.b = 0.022;
     CHECK(validate(p, {0, 0.001, 0, 0.0230001}).size() == 1);
@@ -54,8 +54,7 @@ TEST_CASE("a start outside the cavity is a fault, one on its wall is not") {
     CHECK(wall_of({0, 0.001, 0, 0}, p.b) == 0);
 }
 
-TEST_CASE(
-    "the equations of motion hold for more than a request may ask for, but not for anything") {
+TEST_CASE("is_physical accepts more than a request can contain, but not everything") {
     Parameters p;
     p.b = 1e6;
     CHECK_FALSE(validate(p, default_state(p)).empty());
@@ -67,7 +66,7 @@ TEST_CASE(
     CHECK_FALSE(is_physical(p));
 }
 
-TEST_CASE("a damping ratio that the grid would be too fine for is a fault of lambda") {
+TEST_CASE("a damping ratio that needs too fine a grid is a fault of lambda") {
     Parameters p;
     p.epsilon = 0.5;
     p.lambda = 100;

@@ -9,7 +9,7 @@
 using namespace vines;
 using namespace vines::test;
 
-TEST_CASE("a growing record keeps its last entries, and up to half of them more") {
+TEST_CASE("a growing record keeps its last entries, and up to half as many more") {
     for (const std::size_t most : {1u, 2u, 5u, 10u}) {
         CAPTURE(most);
         std::vector<int> entries;
@@ -27,7 +27,7 @@ TEST_CASE("a growing record keeps its last entries, and up to half of them more"
     }
 }
 
-TEST_CASE("what is shorter than its limit is left alone") {
+TEST_CASE("a record shorter than its limit is not changed") {
     std::vector<int> entries = {1, 2, 3};
     keep_last(entries, 3);
     trim_to_last(entries, 3);
@@ -54,7 +54,7 @@ TEST_CASE("the series is the motion between the impacts, at equal steps and at t
         CHECK(std::abs(series.series.x[k] - series.series.y[k]) < p.b + 1e-15);
 }
 
-TEST_CASE("a series whose last step is the end of the run does not hold the end twice") {
+TEST_CASE("a series whose last step is the end of the run contains the end once") {
     const Parameters p = table1(0.022, Damping::closed_form);
     SeriesRecord series(0.25);
     const Record run = record(p, default_state(p), 10, 1000, {&series});
@@ -78,7 +78,7 @@ TEST_CASE("stroboscopic states are those of the motion at one phase of each cycl
     }
 }
 
-TEST_CASE("states are kept up to a moment, and of those the last") {
+TEST_CASE("the last states up to a given time are kept") {
     const Parameters p = table1(0.022, Damping::closed_form);
     StroboscopicRecord all(p), last(p, {8, 150});
     record(p, default_state(p), 300, 100000, {&all, &last});
@@ -94,7 +94,8 @@ TEST_CASE("states are kept up to a moment, and of those the last") {
     }
 }
 
-TEST_CASE("a section holds the impacts of its window, each with the time since the one before") {
+TEST_CASE(
+    "a section contains the impacts of its window, each with the time since the previous one") {
     const Parameters p = table1(0.022, Damping::closed_form);
     SectionRecord whole(0, 300, everything), late(100, 200, everything), last(0, 300, 4);
     const Record run = record(p, default_state(p), 300, 1000, {&whole, &late, &last});
@@ -106,7 +107,7 @@ TEST_CASE("a section holds the impacts of its window, each with the time since t
     while (run.impacts[first].tau < 100) ++first;
     REQUIRE(!late.entries.empty());
     CHECK(late.entries[0].impact.tau == run.impacts[first].tau);
-    // The impact before it is outside of the window, but known.
+    // The previous impact is outside the window but still used.
     CHECK(late.entries[0].since == whole.entries[first].since);
     CHECK(late.entries.back().impact.tau <= 200);
     CHECK(late.seen == static_cast<long>(late.entries.size()));
@@ -115,23 +116,23 @@ TEST_CASE("a section holds the impacts of its window, each with the time since t
     CHECK(last.entries.back().impact.tau == run.impacts.back().tau);
 }
 
-TEST_CASE("a list that keeps its last entries counts all of them") {
+TEST_CASE("a list that keeps its last entries counts all entries") {
     ImpactRecord impacts(3);
     StickRecord sticks(3);
-    TouchRecord touches(3);
+    GrazingRecord grazing(3);
     for (int k = 0; k < 20; ++k) {
         Impact i{};
         i.tau = k;
         impacts.on_impact(i);
         sticks.on_stick({k + 0.25, 1, 1});
         sticks.on_release(k + 0.5);
-        touches.on_touch(k, -1);
+        grazing.on_grazing_contact(k, -1);
     }
     CHECK(impacts.seen == 20);
     CHECK(sticks.seen == 20);
-    CHECK(touches.seen == 20);
+    CHECK(grazing.seen == 20);
     CHECK(impacts.entries.back().tau == 19);
     CHECK(sticks.entries.back().tau_end == 19.5);
-    CHECK(touches.entries.back().tau == 19);
+    CHECK(grazing.entries.back().tau == 19);
     CHECK(impacts.entries.size() <= 4);
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "../support.hpp"
-#include "core/motion/sampled_flow.hpp"
+#include "core/motion/record.hpp"
 
 using namespace vines;
 using namespace vines::test;
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double ulp = std::numeric_limits<double>::epsilon();
 
-/// What a series holds, each state by itself, and the motion's size there.
+/// The samples of a series, each computed directly, and the motion's size there.
 class Direct : public Observer {
 public:
     explicit Direct(double step) : step_(step) {}
@@ -26,11 +26,11 @@ public:
             x_ddot.push_back(stretch.x_ddot(s));
             sizes.push_back(stretch.flow.bounds(stretch.flow.after(stretch.start, s)).x);
         }
-        if (stretch.stuck_side != 0) ++stuck;
+        if (stretch.sticking_side != 0) ++sticking;
     }
     std::vector<State> states;
     std::vector<double> x_ddot, sizes;
-    int stuck = 0;
+    int sticking = 0;
 
 private:
     const double step_;
@@ -39,7 +39,7 @@ private:
 
 }  // namespace
 
-TEST_CASE("a sampled flow is the flow, to 16 ulp of the motion's size") {
+TEST_CASE("a sampled flow equals the flow to 16 ulp of the motion's size") {
     const Oscillation start{0.003, -0.004, std::sin(0.7), std::cos(0.7)};
     for (const double damping : {0.0, 0.02, 0.7, 3.0})
         for (const double Omega : {0.3, 1.0, 4.0})
@@ -68,9 +68,9 @@ TEST_CASE("a sampled flow is the flow, to 16 ulp of the motion's size") {
                 }
 }
 
-TEST_CASE("a series is the motion of each of its stretches, free and stuck, to rounding") {
+TEST_CASE("a series equals the motion of each stretch, free and sticking, up to rounding") {
     std::mt19937_64 engine(20);
-    int stuck = 0;
+    int sticking = 0;
     for (int system = 0; system < 40; ++system) {
         CAPTURE(system);
         const System s = random_system(engine);
@@ -90,7 +90,7 @@ TEST_CASE("a series is the motion of each of its stretches, free and stuck, to r
                  std::abs(r.y_dot[k] - d.y_dot) / (direct.sizes[k] + std::abs(d.y_dot))});
         }
         CHECK(worst <= 32 * ulp);
-        stuck += direct.stuck;
+        sticking += direct.sticking;
     }
-    CHECK(stuck > 0);
+    CHECK(sticking > 0);
 }

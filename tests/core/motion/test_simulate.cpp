@@ -14,8 +14,8 @@ double energy(const Parameters& p, const State& s) {
     return (s.x_dot * s.x_dot + s.x * s.x + p.epsilon * s.y_dot * s.y_dot) / 2;
 }
 
-/// Work of the forcing and of the damper over each stretch by Gauss quadrature: a second way to the
-/// energy at its end.
+/// Work of the forcing and of the damper over each stretch by Gauss quadrature: an independent
+/// value of the energy at its end.
 struct PowerBalance : Observer {
     explicit PowerBalance(const Parameters& parameters) : p(parameters) {}
     void on_stretch(const Stretch& stretch) override {
@@ -52,8 +52,8 @@ struct Invariants : Observer {
         for (int k = 0; k <= 16; ++k) {
             const State at = s.at(s.duration * k / 16);
             outside = std::max(outside, std::abs(at.x - at.y) - p.b);
-            if (s.stuck_side != 0)
-                apart = std::max(apart, std::abs(at.x - at.y - s.stuck_side * p.b));
+            if (s.sticking_side != 0)
+                apart = std::max(apart, std::abs(at.x - at.y - s.sticking_side * p.b));
         }
     }
     void on_impact(const Impact& i) override {
@@ -76,7 +76,7 @@ struct Invariants : Observer {
 
 }  // namespace
 
-TEST_CASE("thousands of random systems keep every invariant of the motion") {
+TEST_CASE("thousands of random systems satisfy every invariant of the motion") {
     std::mt19937_64 engine(2018);
     long impacts = 0, sticks = 0;
     for (int n = 0; n < 3000; ++n) {
@@ -107,7 +107,7 @@ TEST_CASE("thousands of random systems keep every invariant of the motion") {
 }
 
 TEST_CASE("the run agrees with plain numerical integration") {
-    // The second method: classical Runge-Kutta of eq. (2) with 400 steps per unit of tau, contacts
+    // Independent method: classical Runge-Kutta of eq. (2) with 400 steps per unit of tau, contacts
     // by bisection of its steps.
     std::mt19937_64 engine(5);
     for (int n = 0; n < 40; ++n) {
@@ -133,7 +133,7 @@ TEST_CASE("the run agrees with plain numerical integration") {
             w += d / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
         };
         for (const Impact& i : run.impacts) {
-            // a grazing or chattering contact magnifies the integrator's error.
+            // a grazing or chatter contact magnifies the integrator's error.
             if (std::abs(i.relative_speed_before) < 1e-4) break;
             for (;;) {
                 double q = x, w = v;
@@ -153,7 +153,7 @@ TEST_CASE("the run agrees with plain numerical integration") {
             y += u * low, tau += low;
             REQUIRE(std::abs(tau - i.tau) < 1e-6);
             CHECK(std::abs(v - i.x_dot_before) < 1e-7);
-            // Do not let its error add up.
+            // Restart from the exact state, so that the integrator's error does not add up.
             x = i.x, v = i.x_dot_after, u = i.y_dot_after, y = i.x - i.side * p.b, tau = i.tau;
             double q = x, w = v;
             step(1e-5, q, w);
@@ -173,8 +173,8 @@ TEST_CASE("a run ends at tau_end, and a contact there belongs to it") {
 }
 
 TEST_CASE(
-    "a start on a wall: into it is an impact at once, away from it is a flight, pressed against it "
-    "is a stick") {
+    "a start on a wall is an impact if moving into it, a flight if moving away, sticking if "
+    "pressed") {
     Parameters p = table1(0.01, Damping::closed_form);
     Record run = record(p, {0.01, 0, 0, -0.01}, 1);  // x - y = b, moving in
     REQUIRE(!run.impacts.empty());
@@ -183,19 +183,18 @@ TEST_CASE(
     run = record(p, {-0.01, 0, 0, -0.01}, 0.5);
     CHECK(run.impacts.empty());
     CHECK(run.sticks.empty());
-    // At rest relative to each other, x'' > 0 presses at x - y = +b.
+    // Zero relative speed: x'' > 0 presses at x - y = +b.
     run = record(p, {0, -0.005, 0, -0.015}, 1);
     REQUIRE(run.sticks.size() == 1);
     CHECK(run.sticks[0].start.tau == 0);
     CHECK(run.sticks[0].start.impacts == 0);
-    run = record(p, {0, 0.005, 0, -0.005}, 0.5);  // x'' < 0 draws apart
+    run = record(p, {0, 0.005, 0, -0.005}, 0.5);  // x'' < 0 separates them
     CHECK(run.sticks.empty());
     CHECK(run.impacts.empty());
 }
 
-TEST_CASE("a run may end at any impact, whether the mass sticks there or flies on") {
-    // The moment of an impact is rounded: about half of them lie behind the tau_end of the second
-    // run, by less than an ulp.
+TEST_CASE("a run can end at any impact, whether the ball sticks there or flies on") {
+    // Impact times are rounded: about half of them lie after tau_end, by less than an ulp.
     for (const double R : {0.0, 0.6}) {
         Parameters p = table1(0.022, Damping::closed_form);
         p.R_plus = p.R_minus = R;
@@ -209,7 +208,7 @@ TEST_CASE("a run may end at any impact, whether the mass sticks there or flies o
     }
 }
 
-TEST_CASE("a run goes on from a state beyond any that a request may start from") {
+TEST_CASE("a run can continue from a state outside the range permitted in a request") {
     Parameters p = table1(0.022, Damping::equation_of_motion);
     p.lambda = 0;
     p.G = 1000;
@@ -222,7 +221,7 @@ TEST_CASE("a run goes on from a state beyond any that a request may start from")
     CHECK(simulate(p, grown.state, limits, {}).reason == End::tau_end);
 }
 
-TEST_CASE("a system at rest on its wall stays there, as one stick without an impact") {
+TEST_CASE("a system at rest on its wall stays there, as one sticking phase without an impact") {
     Parameters p = table1(0.01, Damping::closed_form);
     p.G = 0;
     const Record run = record(p, {0, 0, 0, 0.01}, 1000);
@@ -242,7 +241,8 @@ TEST_CASE("R = 0 sticks at the first contact that presses") {
     for (const Impact& i : run.impacts) CHECK(std::abs(i.relative_speed_after) == 0);
 }
 
-TEST_CASE("R = 1 loses nothing at impacts, never sticks, and a cap ends what would chatter on") {
+TEST_CASE(
+    "R = 1 loses no energy at impacts and never sticks, and the impact limit ends a chatter") {
     Parameters p = table1(0.01, Damping::closed_form);
     p.R_plus = p.R_minus = 1;
     PowerBalance power(p);
@@ -253,7 +253,7 @@ TEST_CASE("R = 1 loses nothing at impacts, never sticks, and a cap ends what wou
     CHECK(power.lost == 0);
 }
 
-TEST_CASE("a chatter's impacts follow each other by their geometric law down to the stick") {
+TEST_CASE("the impacts of a chatter follow the geometric law until sticking") {
     const Parameters p = table1(0.015, Damping::closed_form);
     const Record run = record(p, default_state(p), 100);
     REQUIRE(run.sticks.size() == 1);
@@ -271,9 +271,9 @@ TEST_CASE("a chatter's impacts follow each other by their geometric law down to 
     }
 }
 
-TEST_CASE("a tangent contact is reported and does not end the flight") {
-    // The free mass rests in the middle; the undamped, unforced oscillator swings with amplitude b
-    // but for rounding.
+TEST_CASE("a grazing contact is reported and does not end the flight") {
+    // The ball rests in the middle; the undamped, unforced oscillator has amplitude b but for
+    // rounding.
     Parameters p = table1(0.01, Damping::closed_form);
     p.lambda = 0;
     p.G = 0;
@@ -286,7 +286,7 @@ TEST_CASE("a tangent contact is reported and does not end the flight") {
     }
 }
 
-TEST_CASE("a stop function ends a run with what it has") {
+TEST_CASE("a stop function ends a run with the result so far") {
     const Parameters p = table1(0.022, Damping::closed_form);
     long asked = 0;
     const Outcome outcome =

@@ -27,7 +27,7 @@ Eigen::Matrix<double, 6, 6> second_minors(const Matrix4& m) {
     return minors;
 }
 
-/// The signed 3x3 minors: what carries a Volume's normal.
+/// The signed 3x3 minors, which transport a Volume's normal.
 Matrix4 cofactors(const Matrix4& m) {
     Matrix4 minors;
     for (int i = 0; i < 4; ++i)
@@ -40,7 +40,7 @@ Matrix4 cofactors(const Matrix4& m) {
     return minors;
 }
 
-/// The matrices by which areas and volumes are carried, column by column.
+/// The matrices that transport areas and volumes, column by column.
 template <class... Way>
 Eigen::Matrix<double, 6, 6> area_matrix(const Way&... way) {
     Eigen::Matrix<double, 6, 6> m;
@@ -54,9 +54,9 @@ Matrix4 volume_matrix(const Way&... way) {
     return m;
 }
 
-/// A flight or a stuck phase of one part.
-Leg random_leg(std::mt19937_64& engine, const Parameters& p, bool stuck) {
-    return leg_of(stuck ? Flow::stuck(p) : Flow::free(p), uniform(engine, 0, 0.5), stuck);
+/// A flight or a sticking phase of one part.
+Leg random_leg(std::mt19937_64& engine, const Parameters& p, bool sticking) {
+    return leg_of(sticking ? Flow::sticking(p) : Flow::free(p), uniform(engine, 0, 0.5), sticking);
 }
 
 Saltation random_strike(std::mt19937_64& engine, const Parameters& p) {
@@ -70,7 +70,7 @@ Saltation random_strike(std::mt19937_64& engine, const Parameters& p) {
 
 }  // namespace
 
-TEST_CASE("areas and volumes are carried by the minors of J and M") {
+TEST_CASE("areas and volumes are transported by the minors of J and M") {
     std::mt19937_64 engine(6);
     for (int n = 0; n < 300; ++n) {
         const Parameters p = random_system(engine).parameters;
@@ -86,7 +86,7 @@ TEST_CASE("areas and volumes are carried by the minors of J and M") {
     }
 }
 
-TEST_CASE("areas and volumes are carried as the deviations that span them") {
+TEST_CASE("areas and volumes are transported like the deviations that span them") {
     std::mt19937_64 engine(5);
     for (int n = 0; n < 300; ++n) {
         System s = random_system(engine);
@@ -100,7 +100,7 @@ TEST_CASE("areas and volumes are carried as the deviations that span them") {
         const Impact impact = impact_at(p, c, uniform(engine, -1, 1), 0);
         const Saltation M = saltation(p, impact);
         const Leg leg =
-            leg_of(n % 3 ? Flow::free(p) : Flow::stuck(p), uniform(engine, 0, 0.5), n % 3 == 0);
+            leg_of(n % 3 ? Flow::free(p) : Flow::sticking(p), uniform(engine, 0, 0.5), n % 3 == 0);
         Eigen::Matrix4d v;
         for (int i = 0; i < 16; ++i) v(i / 4, i % 4) = uniform(engine, -1, 1);
         auto area = [](const Eigen::Matrix4d& of) {
@@ -136,7 +136,7 @@ TEST_CASE("areas and volumes are carried as the deviations that span them") {
     }
 }
 
-TEST_CASE("a flag's sizes are those of a QR factorisation at every impact") {
+TEST_CASE("the sizes of a flag are those of a QR factorisation at every impact") {
     std::mt19937_64 engine(9);
     for (const double b : {0.022, 0.015, 0.003}) {
         const Parameters p = table1(b, Damping::closed_form);
@@ -159,19 +159,20 @@ TEST_CASE("a flag's sizes are those of a QR factorisation at every impact") {
             CHECK(flag.determinant * impacts == doctest::Approx(sizes[3]).epsilon(1e-9).scale(0));
             for (int k = 0; k < 3; ++k)
                 CHECK(std::sqrt(squares[k]) == doctest::Approx(sizes[k]).epsilon(1e-9).scale(0));
-            for (const double gap : flag.gaps()) CHECK(gap < 1e-12);
+            for (const double separation : flag.separations()) CHECK(separation < 1e-12);
         }
         Flag apart = flag;
         apart.deviation += 1e-6 * apart.deviation.norm() * Eigen::Vector4d(1, -2, 3, 1);
-        CHECK(apart.gaps()[0] > 1e-8);
+        CHECK(apart.separations()[0] > 1e-8);
         apart = flag;
         apart.volume.normal += 1e-6 * apart.volume.normal.norm() * Eigen::Vector4d(1, -2, 3, 1);
-        CHECK(apart.gaps()[1] > 1e-8);
+        CHECK(apart.separations()[1] > 1e-8);
     }
 }
 
 TEST_CASE(
-    "a leg's parts shrink nothing by more than e^-4, and together they are the whole flight") {
+    "the parts of a leg shrink nothing by more than e^-4, and their product is the complete "
+    "flight") {
     Parameters p = table1(0.02, Damping::closed_form);
     p.lambda = 2 / p.epsilon;  // zeta = 2
     const Flow flow = Flow::free(p);
@@ -189,7 +190,7 @@ TEST_CASE(
     CHECK(leg_of(flow, 8, false).parts > leg_of(flow, 3, false).parts);
 }
 
-TEST_CASE("a product's moduli are those of its matrix where that can still tell them") {
+TEST_CASE("the moduli of a product are those of its matrix while double precision resolves them") {
     const Parameters p = table1(0.022, Damping::closed_form);
     std::mt19937_64 engine(7);
     PowerProduct product(p.epsilon);
@@ -207,7 +208,7 @@ TEST_CASE("a product's moduli are those of its matrix where that can still tell 
         CHECK(std::exp(logs[k]) == doctest::Approx(moduli[k]).epsilon(1e-6));
 }
 
-TEST_CASE("an impact with R = 0 leaves rank 3, a stick rank 2, and what is lost does not return") {
+TEST_CASE("an impact with R = 0 leaves rank 3, sticking rank 2, and lost rank does not return") {
     const Parameters p = table1(0.022, Damping::closed_form);
     std::mt19937_64 engine(8);
     Parameters soft = p;

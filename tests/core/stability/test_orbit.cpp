@@ -11,8 +11,7 @@ using namespace vines::test;
 
 namespace {
 
-/// Table 1 with two symmetric impacts per cycle, and a state of it at a whole cycle, when it has
-/// settled.
+/// Table 1 with two symmetric impacts per cycle, and its steady state at a whole cycle.
 struct Settled {
     Parameters p = table1(0.015, Damping::closed_form);
     State state = simulate(p, default_state(p), {300 * p.cycle(), 10000, {}}, {}).state;
@@ -28,7 +27,7 @@ TEST_CASE("the distance of two states is their largest difference in units of th
     CHECK(distance({0.5, 1, 0, -8}, {}, scale) == 1);
 }
 
-TEST_CASE("a scale has no zero, and is the same for both parts of the oscillator") {
+TEST_CASE("a scale has no zero, and is the same for x and x'") {
     const Parameters p = table1(0.015, Damping::closed_form);
     const State rest = scale_of(p, {});
     CHECK(std::min({rest.x, rest.x_dot, rest.y, rest.y_dot}) > 0);
@@ -39,7 +38,7 @@ TEST_CASE("a scale has no zero, and is the same for both parts of the oscillator
     CHECK(moving.y == p.b);
 }
 
-TEST_CASE("Newton's method closes the orbit next to a settled motion, with its smallest period") {
+TEST_CASE("Newton's method finds the orbit next to a steady motion, with its smallest period") {
     const Settled at;
     for (const int cycles : {1, 2, 6}) {
         CAPTURE(cycles);
@@ -56,7 +55,7 @@ TEST_CASE("Newton's method closes the orbit next to a settled motion, with its s
     }
 }
 
-TEST_CASE("the exponents of an orbit add up to the sum rule of its impacts") {
+TEST_CASE("the exponents of an orbit satisfy the sum rule of its impacts") {
     const Settled at;
     const auto orbit = find_orbit(at.p, at.state, 1, at.scale, 0.5, {});
     REQUIRE(orbit);
@@ -67,7 +66,7 @@ TEST_CASE("the exponents of an orbit add up to the sum rule of its impacts") {
         doctest::Approx(-2 * at.p.zeta() + 2 / at.p.cycle() * 2 * std::log(0.6)).epsilon(1e-9));
 }
 
-TEST_CASE("the states of an orbit at whole cycles follow each other") {
+TEST_CASE("the states of an orbit at whole cycles are consecutive") {
     const Settled at;
     const auto orbit = find_orbit(at.p, at.state, 1, at.scale, 0.5, {});
     REQUIRE(orbit);
@@ -89,7 +88,8 @@ TEST_CASE("an orbit that does not contract attracts nothing, not even itself") {
     }
 }
 
-TEST_CASE("an orbit beyond the reach is not found, and none is once the search is stopped") {
+TEST_CASE(
+    "an orbit beyond the reach is not found, and no orbit is found once the search is stopped") {
     const Settled at;
     const State rest = default_state(at.p);
     CHECK_FALSE(find_orbit(at.p, rest, 1, at.scale, 1e-3, {}));

@@ -1,4 +1,4 @@
-// Against trajectories in 250-digit arithmetic.
+// Comparison with trajectories in 250-digit arithmetic.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@ using namespace vines::test;
 
 namespace {
 
-/// How far the impacts agree with the reference to 1e-9 in tau and 1e-8 of a typical speed; in a
+/// Largest tau up to which impacts agree with the reference to 1e-9 in tau and 1e-10 in x; in a
 /// chatter the nearest one counts.
 double agreement(const Reference& reference, const Record& run) {
     std::size_t j = 0;
@@ -40,7 +40,7 @@ TEST_CASE("impacts follow the reference to the end where the motion is regular")
 }
 
 TEST_CASE("impacts follow the reference until chaos has magnified the rounding of the input") {
-    // The relative rounding of b alone, 1e-16, grows to 1e-9 over these times.
+    // The relative rounding of b alone, 1e-16, grows to 1e-9 within these times.
     const std::pair<const char*, double> cases[] = {
         {"closed_b0.003", 110},
         {"closed_b0.018", 180},
@@ -58,7 +58,7 @@ TEST_CASE("impacts follow the reference until chaos has magnified the rounding o
     }
 }
 
-TEST_CASE("every velocity before and after every impact is the reference's") {
+TEST_CASE("every velocity before and after every impact agrees with the reference") {
     const Reference reference = read_reference("eom_b0.008");
     const Record run = record(reference.parameters, default_state(reference.parameters), 1709);
     REQUIRE(run.impacts.size() == reference.impacts.size());
@@ -74,7 +74,7 @@ TEST_CASE("every velocity before and after every impact is the reference's") {
     CHECK(worst < 1e-13);
 }
 
-TEST_CASE("a stick begins and ends where the reference's does") {
+TEST_CASE("a sticking phase begins and ends as in the reference") {
     const Reference reference = read_reference("closed_b0.015");
     const Record run = record(reference.parameters, default_state(reference.parameters), 1709);
     REQUIRE(run.sticks.size() == 1);
@@ -84,7 +84,7 @@ TEST_CASE("a stick begins and ends where the reference's does") {
     CHECK(std::abs(run.sticks[0].tau_end - reference.sticks[0].end) < 1e-10);
 }
 
-TEST_CASE("all four exponents of a stick-free regular window are the reference's") {
+TEST_CASE("all four exponents of a regular window without sticking agree with the reference") {
     for (const char* name : {"closed_b0.008", "eom_b0.008", "eom_b0.018"}) {
         CAPTURE(name);
         const Reference reference = read_reference(name);

@@ -7,8 +7,8 @@
 using namespace vines;
 
 TEST_CASE(
-    "chaos needs three standard errors, more growth than one unstable orbit gives, and growth that "
-    "goes on") {
+    "chaos needs three standard errors, more growth than one unstable orbit gives, and continued "
+    "growth") {
     CHECK(verdict_by_exponents({0.1, {0.03}, 170, 85}) == Verdict::chaotic);
     CHECK(verdict_by_exponents({0.1, {0.04}, 170, 85}) == Verdict::not_decided);
     CHECK(verdict_by_exponents({0.1, {0.01}, 30, 15}) == Verdict::not_decided);

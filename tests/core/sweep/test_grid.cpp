@@ -3,7 +3,7 @@
 #include <set>
 #include <vector>
 
-#include "core/sweep/grid.hpp"
+#include "core/sweep/sweep.hpp"
 
 using namespace vines;
 
@@ -23,7 +23,7 @@ TEST_CASE("lines count along the first axis fastest, then the starts, then the o
                 }
 }
 
-TEST_CASE("a reduced axis has one line for all of its points, and its place is 0") {
+TEST_CASE("the points of a reduced axis share one line, with index 0") {
     for (const std::size_t reduced : {0u, 1u, 2u}) {
         CAPTURE(reduced);
         const Grid grid{.steps = {3, 2, 4}, .starts = 2, .reduced = reduced};
@@ -41,7 +41,7 @@ TEST_CASE("a reduced axis has one line for all of its points, and its place is 0
     }
 }
 
-TEST_CASE("beside a reduced first axis the second one counts fastest") {
+TEST_CASE("if the first axis is reduced the second one counts fastest") {
     const Grid grid{.steps = {3, 4}, .starts = 2, .reduced = 0};
     CHECK(grid.place_of(3).at[1] == 3);
     CHECK(grid.place_of(3).start == 0);
@@ -49,13 +49,14 @@ TEST_CASE("beside a reduced first axis the second one counts fastest") {
     CHECK(grid.place_of(4).start == 1);
 }
 
-TEST_CASE("where the only axis is reduced each start has a line") {
+TEST_CASE("if the only axis is reduced each start has a line") {
     const Grid grid{.steps = {5}, .starts = 3, .reduced = 0};
     CHECK(grid.lines() == 3);
     for (std::size_t line = 0; line < 3; ++line) CHECK(grid.place_of(line).start == line);
 }
 
-TEST_CASE("each level of a grid halves the steps of the one before, from 8 to 16 an axis on") {
+TEST_CASE(
+    "each level of a grid halves the steps of the one before, starting from 8 to 16 per axis") {
     const Grid grid{.steps = {65, 20}};
     std::vector<std::size_t> seen(4, 0);
     for (std::size_t line = 0; line < grid.lines(); ++line) {

@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <string>
 
 #include "../support.hpp"
 #include "core/sweep/point.hpp"
@@ -8,7 +9,7 @@
 using namespace vines;
 using namespace vines::test;
 
-TEST_CASE("a point of a sweep measures what the whole run would, after its transient") {
+TEST_CASE("a point of a sweep measures the motion after its transient") {
     const Parameters p = table1(0.015, Damping::closed_form);
     PointOptions options;
     options.section = SectionKind::impact;
@@ -49,12 +50,134 @@ TEST_CASE("a section keeps the last points in order of time, at whole cycles too
     CHECK(std::isnan(impacts.sections.impact[0].since));
 }
 
-TEST_CASE("a point stops soon after it is asked to") {
+TEST_CASE("a point stops soon after a stop request") {
     const Parameters p = table1(0.022, Damping::closed_form);
     PointOptions options;
     options.cycles = 1e6;
-    long asked = 0;
-    const PointResult r = measure(p, default_state(p), options, [&] { return ++asked > 10; });
+    long polls = 0;
+    const PointResult r = measure(p, default_state(p), options, [&] { return ++polls > 10; });
     CHECK(r.outcome.reason == End::stopped);
     CHECK(r.impacts < 10000);
+}
+
+namespace {
+
+/// A periodic motion of two contacts per cycle.
+Motion motion(const std::string& start, double x_max) {
+    Motion m{start, {}, {}};
+    m.result.measured = true;
+    m.result.x_max = m.result.x_rms = x_max;
+    m.result.regime.type = RegimeType::III;
+    m.result.regime.orbit.emplace();
+    m.result.regime.orbit->cycles = 1;
+    m.result.regime.orbit->contacts = 2;
+    return m;
+}
+Motion unmeasured(const std::string& start) {
+    Motion m = motion(start, 1000);
+    m.result.measured = false;
+    return m;
+}
+
+}  // namespace
+
+TEST_CASE("measured motions are ranked by their peak") {
+    const SweepPoint point{
+        .system = {},
+        .motions = {motion("a", 3), unmeasured("b"), motion("c", 1), motion("d", 3)},
+        .second = {}};
+    const auto order = ranked(point);
+    REQUIRE(order.size() == 3);
+    CHECK(order[0]->start == "c");
+    CHECK(order[1]->start == "a");  // equal peaks keep
+    CHECK(order[2]->start == "d");
+    CHECK(ranked({}).empty());
+}
+
+TEST_CASE("a point depends on its start if one of its motions differs from the worst") {
+    SweepPoint point;
+    point.motions = {motion("a", 1), motion("b", 1.001)};
+    CHECK(depends_on_start(point, true) == false);
+    point.motions.push_back(motion("c", 2));
+    CHECK(depends_on_start(point, true) == true);
+    point.motions = {motion("a", 1), unmeasured("b")};
+    CHECK(depends_on_start(point, true) == false);
+}
+
+TEST_CASE("without the default set dependence on the start is known only from a second start") {
+    SweepPoint point;
+    point.motions = {motion("", 1)};
+    CHECK_FALSE(depends_on_start(point, false));
+    point.second = motion("", 1);
+    CHECK(depends_on_start(point, false) == false);
+    point.second = motion("", 2);
+    CHECK(depends_on_start(point, false) == true);
+    point.second = unmeasured("");
+    CHECK(depends_on_start(point, false) == false);
+}
+
+TEST_CASE("a row is summarised by the peaks of its worst and best motions and of each start") {
+    std::vector<SweepPoint> row(4);
+    row[0].motions = {motion("a", 2), motion("b", 5)};
+    row[1].motions = {motion("a", 4), motion("b", 3)};
+    row[2].motions = {unmeasured("a")};
+    row[3].motions = {motion("b", 1)};
+    row[1].motions[0].result.x_free = 7;
+    row[3].motions[0].result.x_free = 6;
+
+    const RowSummary high = summary_of(row, true, true);
+    CHECK(high.points == 4);
+    CHECK(high.missing == 1);
+    CHECK(high.worst.at == 0);
+    CHECK(high.worst.motion->result.x_max == 5);
+    CHECK(high.best.at == 1);
+    CHECK(high.best.motion->result.x_max == 3);
+    REQUIRE(high.starts.size() == 2);
+    CHECK(high.starts[0].start == "a");
+    CHECK(high.starts[0].peak.at == 1);
+    CHECK(high.starts[1].peak.at == 0);
+    CHECK(high.x_free == 7);
+    CHECK(high.depends_on_start == true);
+
+    const RowSummary low = summary_of(row, false, true);
+    CHECK(low.worst.at == 3);
+    CHECK(low.best.at == 3);
+    CHECK(low.starts[0].peak.at == 0);
+    CHECK(low.starts[1].peak.at == 3);
+    CHECK(low.x_free == 6);
+}
+
+TEST_CASE("a row without measured motions has no peak and no dependence on the start") {
+    std::vector<SweepPoint> row(2);
+    row[1].motions = {unmeasured("")};
+    const RowSummary s = summary_of(row, true, false);
+    CHECK(s.missing == 2);
+    CHECK(s.worst.motion == nullptr);
+    CHECK(s.best.motion == nullptr);
+    CHECK_FALSE(s.x_free);
+    CHECK_FALSE(s.depends_on_start);
+}
+
+TEST_CASE("a carried state keeps the relative position of the ball in its cavity") {
+    const Parameters wide = table1(0.02, Damping::closed_form),
+                     narrow = table1(0.01, Damping::closed_form);
+    const State s = carried({0.1, 0.005, 0.2, -0.009}, wide, narrow);
+    CHECK(s.x == 0.005);
+    CHECK(s.y == doctest::Approx(0.005 - 0.007));
+    CHECK(std::abs(s.x - s.y) <= narrow.b);
+}
+
+TEST_CASE("the default starts are valid and include untouched if the free motion fits in b") {
+    for (const double b : {0.005, 0.5}) {
+        const Parameters p = table1(b, Damping::closed_form);
+        const auto starts = default_starts(p);
+        bool untouched = false;
+        for (const NamedStart& s : starts) {
+            CAPTURE(s.name);
+            CHECK(validate(p, s.state).empty());
+            untouched = untouched || std::string(s.name) == "untouched";
+        }
+        CHECK(untouched == (b > 0.1));
+        CHECK(starts.size() + 2 <= most_starts);
+    }
 }

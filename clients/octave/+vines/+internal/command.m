@@ -1,16 +1,17 @@
 function line = command(folder, request)
-  % The shell's line that sends REQUEST to the service or the program of the environment: what is
-  % answered goes to the file out of FOLDER, what is said beside it to err, the head of a service's
-  % answer to head. What a request says stands in files, as the list of processes is for everybody.
+  % Shell command that sends REQUEST to the service or the program of the environment. The answer is
+  % written to the file out in FOLDER, stderr to err, the header of a service's response to head.
+  % The request and the key are passed in files, since every user can see the arguments of a
+  % process.
   %
-  % REQUEST: route; body, or file and query.
+  % REQUEST has route, and either body, or file and query.
   given = fullfile(folder, 'in');
   if isfield(request, 'file')
     given = request.file;
   else
     write(given, request.body);
   end
-  if vines.internal.asks_service()
+  if vines.internal.uses_service()
     write(fullfile(folder, 'config'), config(folder, request));
     words = {'curl', '-q', '--config', fullfile(folder, 'config')};
   else
@@ -36,7 +37,7 @@ end
 function text = config(folder, request)
   url = regexprep(getenv('VINES_URL'), '/+$', '');
   if isempty(regexp(url, '^https?://', 'once'))
-    error('vines:arguments', 'VINES_URL: %s is no http:// or https:// address', url);
+    error('vines:arguments', 'VINES_URL: %s is not an http:// or https:// address', url);
   end
   target = [url, '/v1/', request.route];
   kind = 'application/json';
@@ -46,7 +47,7 @@ function text = config(folder, request)
   end
   lines = {'silent', 'show-error', 'no-buffer', 'globoff', ...
            'proto = "=http,https"', ...
-           'speed-limit = 1', 'speed-time = 600', ... % seconds without a byte
+           'speed-limit = 1', 'speed-time = 600', ... % s without data
            option('dump-header', fullfile(folder, 'head')), ...
            'data-binary = "@-"', ...
            option('header', ['Content-Type: ', kind]), ...
@@ -55,7 +56,7 @@ function text = config(folder, request)
            option('url', target)};
   key = getenv('VINES_KEY');
   if any(key < 32)
-    error('vines:arguments', 'VINES_KEY is more than one line');
+    error('vines:arguments', 'VINES_KEY has more than one line');
   elseif ~isempty(key)
     lines{end + 1} = option('header', ['Authorization: Bearer ', key]);
   end
@@ -79,7 +80,7 @@ function write(path, text)
 end
 
 function text = libraries()
-  % MATLAB makes its own libraries those of the programs that it starts.
+  % MATLAB starts programs with its own library path, with which curl and vines can fail.
   text = '';
   if ~exist('OCTAVE_VERSION', 'builtin')
     text = 'unset LD_LIBRARY_PATH DYLD_LIBRARY_PATH; ';

@@ -1,5 +1,5 @@
 function text = content(path)
-  % The text of a file; '' where there is none.
+  % Text of a file; '' if it does not exist.
   text = '';
   file = fopen(path, 'r');
   if file >= 0

@@ -1,8 +1,8 @@
 function value = decode(text)
-  % JSON as structs, columns and cells; null is NaN.
+  % Decodes JSON into structs, columns and cells; null is NaN.
   %
-  % jsondecode knows that in lists of numbers, but else makes [] of it, as of an empty list: a null
-  % goes in as a word that no answer has.
+  % jsondecode reads null as NaN only in lists of numbers, elsewhere as [], like an empty list. Such
+  % a null is therefore replaced by a text that no answer contains.
   marked = regexprep(text, '(?<=[^\\]":)\s*null', '"\\u0001"');
   value = jsondecode(marked);
   if numel(marked) ~= numel(text)

@@ -1,5 +1,5 @@
 function given = fields(pairs)
-  % A struct of what a cell array of names and values, or of structs, has. Later ones win.
+  % Struct of the fields in a cell array of names and values, or of structs. Later ones override.
   given = struct();
   at = 1;
   while at <= numel(pairs)
@@ -13,7 +13,7 @@ function given = fields(pairs)
     elseif (ischar(one) || isa(one, 'string')) && at < numel(pairs)
       name = char(one);
       if ~isvarname(name) && ~iskeyword(name)
-        error('vines:arguments', '''%s'' is no name of a field', name);
+        error('vines:arguments', '''%s'' is not a field name', name);
       end
       given.(name) = pairs{at + 1};
       at = at + 2;
@@ -22,6 +22,6 @@ function given = fields(pairs)
     end
   end
   if isfield(given, 'format')
-    error('vines:arguments', 'answers come as structs: there is no format to choose');
+    error('vines:arguments', 'answers are structs: format cannot be chosen');
   end
 end

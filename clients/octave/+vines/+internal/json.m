@@ -1,8 +1,8 @@
 function text = json(value, name)
-  % VALUE as JSON, each number with the digits that read back to it; NaN is null. NAME is that of the
-  % field that has it, if one has.
+  % VALUE as JSON. Numbers have enough digits to be read back exactly; NaN is null. NAME is the name
+  % of its field, if any.
   %
-  % jsonencode writes 15 digits, and a list of one as that one.
+  % jsonencode writes only 15 digits, and a list with one element as that element.
   if nargin < 2
     name = '';
   end
@@ -15,7 +15,7 @@ function text = json(value, name)
   end
   if ischar(value)
     text = quoted(value, name);
-    if depth > 0 && ~strcmp(name, 'starts') % 'default set' is the one word that is no list
+    if depth > 0 && ~strcmp(name, 'starts') % starts can be the text 'default set'
       text = ['[', text, ']'];
     end
   elseif iscell(value)
@@ -74,7 +74,7 @@ end
 
 function text = quoted(value, name)
   if ~isempty(value) && ~isrow(value)
-    error('vines:arguments', '%s: a text has one row', name);
+    error('vines:arguments', '%s: a text must have one row', name);
   end
   text = strrep(strrep(value, '\', '\\'), '"', '\"');
   for code = unique(double(text(text < 32)))

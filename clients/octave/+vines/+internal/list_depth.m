@@ -1,6 +1,6 @@
 function depth = list_depth(name)
-  % Of a field of a request: 1 where it is a list, 2 where it is a list of lists, else 0. It tells
-  % what one number, one word or one struct stands for.
+  % Depth of a request field: 1 for a list, 2 for a list of lists, else 0. A single value of a list
+  % field is sent as a list with one element.
   switch name
     case 'windows'
       depth = 2;

@@ -1,5 +1,5 @@
 function text = number(value)
-  % A number as JSON has it, with as few digits as read back to it; NaN is null.
+  % A number as JSON, with the fewest digits that are read back exactly; NaN is null.
   if islogical(value)
     words = {'false', 'true'};
     text = words{value + 1};

@@ -1,5 +1,5 @@
 function text = query(given)
-  % Fields as in a URL: lists are separated by commas.
+  % Fields as a URL query; the elements of lists are separated by commas.
   names = fieldnames(given);
   pairs = cell(1, numel(names));
   for k = 1:numel(names)
@@ -17,7 +17,7 @@ function text = plain(value, name)
   elseif iscell(value)
     text = strjoin(cellfun(@(one) plain(one, name), value(:)', 'UniformOutput', false), ',');
   elseif isstruct(value)
-    error('vines:arguments', '%s: beside a file there is no field that is an object', name);
+    error('vines:arguments', '%s: with a file, no field can be an object', name);
   else
     text = strrep(strrep(strrep(vines.internal.json(value, name), '[', ''), ']', ''), '"', '');
   end

@@ -1,4 +1,4 @@
 function text = quoted(text)
-  % A word of a command of the shell.
+  % TEXT as one word of a shell command.
   text = ['''', strrep(text, '''', '''\'''''), ''''];
 end

@@ -1,8 +1,8 @@
-function raise(kind, told, document, came)
-  % Ends a request with the error vines:KIND, and keeps what vines.problem() tells of it: DOCUMENT is
-  % a problem document (RFC 9457) or a sentence, CAME what came of a sweep.
-  problem = struct('status', told.status, 'title', '', 'detail', '', 'errors', no_errors(), ...
-                   'lacking', '', 'request_id', '', 'retry_after', told.retry_after);
+function raise(kind, outcome, document, received)
+  % Raises the error vines:KIND and stores its details for vines.problem(). DOCUMENT is a problem
+  % document (RFC 9457) or a sentence; RECEIVED has the points received from a sweep, and missing.
+  problem = struct('status', outcome.status, 'title', '', 'detail', '', 'errors', no_errors(), ...
+                   'lacking', '', 'request_id', '', 'retry_after', outcome.retry_after);
   if ischar(document)
     problem.detail = document;
   else
@@ -16,8 +16,8 @@ function raise(kind, told, document, came)
     end
   end
   if nargin > 3
-    problem.points = came.points;
-    problem.missing = came.missing;
+    problem.points = received.points;
+    problem.missing = received.missing;
   end
   vines.problem(problem);
   error(['vines:', kind], '%s', message(problem));
@@ -27,14 +27,14 @@ function list = no_errors()
   list = struct('field', {}, 'value', {}, 'range', {}, 'detail', {});
 end
 
-function list = errors(told)
+function list = errors(documents)
   list = no_errors();
-  for k = 1:numel(told)
-    one = told(k);
+  for k = 1:numel(documents)
+    one = documents(k);
     if iscell(one)
       one = one{1};
     end
-    % RFC 6901 escapes these two in the names that a pointer consists of.
+    % RFC 6901 escapes / and ~ in the names of a pointer.
     field = strrep(strrep(regexprep(one.pointer, '^/', ''), '~1', '/'), '~0', '~');
     list(k) = struct('field', field, 'value', {one.value}, 'range', {one.range}, ...
                      'detail', one.detail);
@@ -42,7 +42,7 @@ function list = errors(told)
 end
 
 function text = message(problem)
-  % Where one field is at fault the document's detail is that field's.
+  % With one invalid field, the document's detail is the field's detail.
   faults = {problem.errors.detail};
   text = strjoin([{problem.detail}, faults(~strcmp(faults, problem.detail))], '; ');
   if problem.status > 0

@@ -1,0 +1,209 @@
+#include "api/identify.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+#include <vector>
+
+#include "api/schema/check.hpp"
+#include "core/measurement/listed_impacts.hpp"
+#include "core/motion/elementary.hpp"
+
+namespace vines::api {
+
+namespace {
+
+// Largest misfit, as a fraction of the oscillator's speed, of a list that belongs to this
+// oscillator and frequency.
+constexpr double most_misfit = 0.1;
+
+/// A column's name in units of tau and in SI. SI value = value * omega0^powers_of_omega0.
+struct ColumnName {
+    const char* name;
+    const char* si_name;
+    int powers_of_omega0;  ///< 1 for a velocity
+};
+constexpr ColumnName time_column{"tau", "time_s", -1};
+constexpr ColumnName x_column{"x", "x", 0};
+constexpr ColumnName before_column{"x_dot_before", "x_velocity_before", 1};
+constexpr ColumnName after_column{"x_dot_after", "x_velocity_after", 1};
+constexpr ColumnName acceleration_column{"x_ddot_before", "x_acceleration_before", 2};
+constexpr ColumnName y_before_column{"y_dot_before", "y_velocity_before", 1};
+constexpr ColumnName y_after_column{"y_dot_after", "y_velocity_after", 1};
+constexpr ColumnName side_column{"side", "side", 0};
+constexpr ColumnName phase_column{"phase", "phase", 0};
+
+bool has(const Json& list, const ColumnName& c) {
+    return list.contains(c.name) || list.contains(c.si_name);
+}
+
+class ImpactColumnReader {
+public:
+    ImpactColumnReader(const IdentifyRequest& r, const Json& given, CancelCheck& cancel)
+        : given_(given),
+          cancel_(cancel),
+          omega0_(r.system.si ? std::optional(r.system.si->omega0()) : std::nullopt) {}
+
+    /// The column in units of tau; empty, with an error, if it is missing. `may_be_null`: null is
+    /// NaN.
+    std::vector<double> column(const ColumnName& c, bool may_be_null = false) {
+        if (!has(given_, c)) {
+            const std::string other =
+                std::string(c.name) == c.si_name ? "" : std::string(" or ") + c.si_name;
+            fail(c.name, nullptr, c.name + other + " is missing");
+            return {};
+        }
+        const char* name = name_of(c);
+        const bool is_si = !given_.contains(c.name);
+        if (is_si && !omega0_)
+            fail(
+                name, nullptr,
+                std::string(name) + " is in SI: give m1, c1, k1, m2 and f, or a preset, or " +
+                    c.name);
+        double factor = 1;
+        for (int k = 0; is_si && omega0_ && k < std::abs(c.powers_of_omega0); ++k)
+            c.powers_of_omega0 > 0 ? factor /= * omega0_ : factor *= *omega0_;
+        return values_of(name, factor, may_be_null);
+    }
+    std::vector<double> optional_column(const ColumnName& c, bool may_be_null = false) {
+        return has(given_, c) ? column(c, may_be_null) : std::vector<double>();
+    }
+
+    /// The name under which the column is given.
+    const char* name_of(const ColumnName& c) const {
+        return given_.contains(c.name) ? c.name : c.si_name;
+    }
+    void fail(const std::string& at, const Json& value, const std::string& text) {
+        if (errors_.size() < most_errors)
+            errors_.push_back({"/impacts/" + at, value, nullptr, text});
+    }
+    void refuse_faults() {
+        if (!errors_.empty()) refuse(std::move(errors_));
+    }
+
+private:
+    std::vector<double> values_of(const std::string& name, double factor, bool may_be_null) {
+        const Json& given = given_[name];
+        std::vector<double> values;
+        if (!given.is_array()) {
+            fail(name, nullptr, name + " is an array of numbers");
+            return values;
+        }
+        if (!first_.empty() && given.size() != size_)
+            fail(name, given.size(), name + " differs in length from " + first_);
+        if (first_.empty()) first_ = name, size_ = given.size();
+        values.reserve(given.size());
+        for (std::size_t i = 0; i < given.size(); ++i) {
+            cancel_.step();
+            if (given[i].is_number()) values.push_back(factor * given[i].get<double>());
+            else if (may_be_null && given[i].is_null()) values.push_back(nan);
+            else fail(name + "/" + std::to_string(i), beginning_of(given[i]), "must be a number");
+        }
+        return values;
+    }
+
+    const Json& given_;
+    CancelCheck& cancel_;
+    const std::optional<double> omega0_;
+    std::string first_;  // name and length of the first column
+    std::size_t size_ = 0;
+    std::vector<FieldError> errors_;
+};
+
+/// The columns of the list; empty if not given.
+struct Columns {
+    std::vector<double> tau, x, before, after, side, phase, acceleration, y_before, y_after;
+};
+
+Columns columns_of(ImpactColumnReader& list) {
+    Columns c{
+        .tau = list.column(time_column),
+        .x = list.column(x_column),
+        .before = list.column(before_column),
+        .after = list.column(after_column),
+        .side = list.optional_column(side_column),
+        .phase = list.optional_column(phase_column),
+        .acceleration = {},
+        .y_before = list.optional_column(y_before_column, true),
+        .y_after = list.optional_column(y_after_column, true)};
+    if (c.phase.empty()) c.acceleration = list.optional_column(acceleration_column);
+    list.refuse_faults();
+    if (c.tau.size() < 2)
+        refuse({{"/impacts", c.tau.size(), nullptr, "exponents need at least two impacts"}});
+    for (std::size_t i = 0; i < c.tau.size(); ++i) {
+        if (i > 0 && !(c.tau[i] > c.tau[i - 1]))
+            list.fail(
+                list.name_of(time_column) + ("/" + std::to_string(i)), c.tau[i],
+                "the times of the impacts must increase");
+        if (!c.side.empty() && std::abs(c.side[i]) != 1)
+            list.fail("side/" + std::to_string(i), c.side[i], "a side is 1 or -1");
+    }
+    list.refuse_faults();
+    return c;
+}
+
+/// The wall of an impact: x' decreases at side 1 and increases at side -1.
+int side_of(const Columns& c, std::size_t i) {
+    if (!c.side.empty()) return static_cast<int>(c.side[i]);
+    return c.after[i] > c.before[i] ? -1 : 1;
+}
+
+/// Fits the forcing to the list if needed, and restores impacts that it lacks.
+void take_motion(IdentifyRequest& r, CancelCheck& cancel) {
+    Parameters& p = r.measurement.parameters;
+    std::vector<IdentifiedImpact>& impacts = r.measurement.impacts;
+    const ListedForcing forcing = fit_forcing(p, impacts, [&cancel] { cancel.step(); });
+    if (r.forcing_fitted) p.G = G_of(p, forcing.sin, forcing.cos);
+    if (!(forcing.misfit < most_misfit)) {
+        r.notes.push_back(fmt::format(
+            "no forcing at this frequency leads from each impact to the next: the states miss it "
+            "by {:.2g} of the oscillator's speed. Is f, a mass, a stiffness or a unit wrong, or "
+            "are "
+            "impacts missing?",
+            forcing.misfit));
+        r.measurement.doubts.push_back(Doubt::no_forcing);
+        return;
+    }
+    insert_missing_impacts(p, forcing, impacts, [&cancel] { cancel.step(); });
+}
+
+}  // namespace
+
+bool has_phase(const Json& impacts) { return impacts.is_object() && has(impacts, phase_column); }
+
+void read_impact_list(IdentifyRequest& r, Json given, CancelCheck& cancel) {
+    if (!given.is_object())
+        refuse(
+            {{"/impacts", nullptr, nullptr,
+              "impacts is an object of columns, as in the answer of /v1/simulate"}});
+    ImpactColumnReader list(r, given, cancel);
+    const Columns c = columns_of(list);
+    given = nullptr;
+    const Parameters& p = r.system.parameters;
+    const auto flow = Flow::shared_free(p);
+    std::vector<IdentifiedImpact>& impacts = r.measurement.impacts;
+    impacts.reserve(c.tau.size());
+    for (std::size_t i = 0; i < c.tau.size(); ++i) {
+        cancel.step();
+        IdentifiedImpact impact{
+            .tau = c.tau[i],
+            .side = side_of(c, i),
+            .x = c.x[i],
+            .x_dot_before = c.before[i],
+            .x_dot_after = c.after[i],
+            .x_ddot_before = c.acceleration.empty() ? nan : c.acceleration[i]};
+        if (!c.phase.empty())
+            impact.x_ddot_before = flow->acceleration(
+                {c.x[i], c.before[i], elementary::sin(c.phase[i]), elementary::cos(c.phase[i])});
+        if (!c.y_before.empty()) impact.y_dot_before = c.y_before[i];
+        if (!c.y_after.empty()) impact.y_dot_after = c.y_after[i];
+        impacts.push_back(impact);
+    }
+    take_motion(r, cancel);
+    set_flight_velocities(p, impacts);
+    complete_impacts(p, impacts, 0);
+}
+
+}  // namespace vines::api

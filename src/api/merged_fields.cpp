@@ -1,0 +1,205 @@
+// The preset is restated in the kind of fields that the request uses, SI or reduced; its fields
+// that do not apply to the request's system or motion are dropped; the request's fields replace the
+// rest.
+#include "api/merged_fields.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "api/presets.hpp"
+#include "api/schema/check.hpp"
+
+namespace vines::api {
+
+const std::vector<std::string> reduced_names = {"epsilon", "lambda", "G", "Omega"};
+const std::vector<std::vector<std::string>> si_groups = {
+    {"m1"}, {"c1", "damping_ratio"}, {"k1", "f0"}, {"m2", "mass_ratio"}, {"F"}, {"f"}};
+const std::vector<std::string> si_names = [] {
+    std::vector<std::string> names;
+    for (const auto& group : si_groups) names.insert(names.end(), group.begin(), group.end());
+    return names;
+}();
+
+std::vector<std::string> present(const Json& object, const std::vector<std::string>& names) {
+    std::vector<std::string> found;
+    std::copy_if(names.begin(), names.end(), std::back_inserter(found), [&](const std::string& n) {
+        return object.contains(n);
+    });
+    return found;
+}
+
+namespace {
+
+/// Masses, spring and damper. Changing one drops a preset's damping.
+const std::vector<std::string> oscillator_fields = {
+    "epsilon", "lambda", "m1", "c1", "damping_ratio", "k1", "f0", "m2", "mass_ratio"};
+/// Two groups of fields that exclude each other.
+struct Alternative {
+    std::vector<std::string> one, other;
+    std::string detail;
+};
+const std::vector<Alternative>& alternatives() {
+    static const std::vector<Alternative> list = {
+        {reduced_names, si_names,
+         "reduced (epsilon, lambda, G, Omega) and SI (m1, c1, k1, m2, F, f; damping_ratio, f0, "
+         "mass_ratio) fields cannot be mixed"},
+        {{"R"},
+         {"R_plus", "R_minus"},
+         "R stands for both walls and cannot be mixed with R_plus or R_minus"},
+        {{"tau_end"}, {"cycles"}, "tau_end and cycles both say how long to run; give one of them"},
+        {{"k1"}, {"f0"}, "f0 stands for k1 = m1 (2 pi f0)^2; give one of them"},
+        {{"c1"},
+         {"damping_ratio"},
+         "damping_ratio stands for c1 = 2 damping_ratio m1 omega0; give one of them"},
+        {{"m2"}, {"mass_ratio"}, "mass_ratio stands for m2 = mass_ratio m1; give one of them"},
+        {{"x_dot0"},
+         {"x_velocity0"},
+         "x_dot0 (m per unit of tau) and x_velocity0 (m/s) are the same; give one of them"},
+        {{"y_dot0"},
+         {"y_velocity0"},
+         "y_dot0 (m per unit of tau) and y_velocity0 (m/s) are the same; give one of them"},
+    };
+    return list;
+}
+
+void check_alternatives(const Json& object, std::vector<FieldError>& errors) {
+    for (const Alternative& a : alternatives()) {
+        if (present(object, a.one).empty() || present(object, a.other).empty()) continue;
+        for (const auto& names : {a.one, a.other})
+            for (const std::string& name : present(object, names))
+                errors.push_back({"/" + name, object[name], nullptr, a.detail});
+    }
+}
+
+const Preset& preset_named(const std::string& name) {
+    const auto preset = std::find_if(
+        presets().begin(), presets().end(), [&](const Preset& p) { return p.name == name; });
+    if (preset != presets().end()) return *preset;
+    Json names = Json::array();
+    for (const Preset& p : presets()) names.push_back(p.name);
+    refuse(
+        {{"/preset", name, names, "there is no preset of this name; GET /v1/presets lists them"}});
+}
+
+}  // namespace
+
+Json fields_of(const SiParameters& si) {
+    return {{"m1", si.m1}, {"c1", si.c1}, {"k1", si.k1}, {"m2", si.m2}, {"F", si.F}, {"f", si.f}};
+}
+
+namespace {
+
+/// Restates the preset's system in the kind of fields that the request uses, so that each given
+/// field replaces only its own value. A preset is in SI or has the values of Table 1, which are
+/// omitted from it. Reduced fields over SI keep m1 and k1, which set the scale.
+void restate_system(Json& preset, const Json& given) {
+    if (!present(given, si_names).empty()) {
+        preset.update(fields_of(si_of(system_fields(preset))));
+        const SiParameters si = si_of(system_fields(preset));
+        const Json others = {{"c1", si.damping_ratio()}, {"k1", si.f0()}, {"m2", si.epsilon()}};
+        for (const auto& group : si_groups)
+            if (group.size() > 1 && given.contains(group[1])) {
+                preset[group[1]] = others[group[0]];
+                preset.erase(group[0]);
+            }
+    } else if (!present(given, reduced_names).empty()) {
+        const SiParameters si = si_of(system_fields(preset));
+        const bool in_si = !present(preset, si_names).empty();
+        for (const std::string& name : si_names) preset.erase(name);
+        if (in_si) preset.update({{"m1", si.m1}, {"k1", si.k1}});
+        preset.update(
+            {{"epsilon", si.epsilon()},
+             {"lambda", si.lambda()},
+             {"G", si.G()},
+             {"Omega", si.Omega()}});
+    }
+}
+
+/// Splits a preset's R into R_plus and R_minus if the request gives one of them.
+void restate_walls(Json& preset, const Json& given) {
+    if (!preset.contains("R") || present(given, {"R_plus", "R_minus"}).empty()) return;
+    preset["R_plus"] = preset["R_minus"] = preset["R"];
+    preset.erase("R");
+}
+
+/// Removes from a preset the fields that do not apply to another system or run, and returns them.
+Json drop_inapplicable_fields(Json& preset, const FieldTable& table, const Json& given) {
+    Json dropped = Json::object();
+    auto drop = [&](const char* name) {
+        if (!preset.contains(name)) return;
+        if (!given.contains(name)) dropped[name] = preset[name];
+        preset.erase(name);
+    };
+    auto replaced = [&](const std::string& name) {
+        return given.contains(name) && (!preset.contains(name) || preset[name] != given[name]);
+    };
+    const bool another_system =
+        std::any_of(oscillator_fields.begin(), oscillator_fields.end(), replaced);
+    const bool another_run = std::any_of(table.begin(), table.end(), [&](const Field& f) {
+        const bool of_the_motion =
+            is_of_system(f) || f.group == "start" || f.name == "tau_end" || f.name == "cycles";
+        return of_the_motion && f.name != "preset" && replaced(f.name);
+    });
+    if (another_system) drop("damping");
+    if (another_run)
+        for (const char* name : {"window", "windows"}) drop(name);
+    if (given.contains("tau_end") || given.contains("cycles"))
+        for (const char* name : {"tau_end", "cycles"}) preset.erase(name);
+    return dropped;
+}
+
+}  // namespace
+
+std::string MergedFields::origin(const std::string& name) const {
+    return given.contains(name) ? "given" : fields.contains(name) ? "preset " + preset : "default";
+}
+
+MergedFields merge_with_preset(const FieldTable& table, const Json& given) {
+    std::vector<FieldError> errors = check(table, given);
+    check_alternatives(given, errors);
+    if (!errors.empty()) refuse(std::move(errors));
+    if (!given.contains("preset")) return {table, given, given, "", Json::object()};
+    Json merged = preset_named(given["preset"]).parameters;
+    restate_system(merged, given);
+    restate_walls(merged, given);
+    Json dropped = drop_inapplicable_fields(merged, table, given);
+    for (auto it = merged.begin(); it != merged.end();)  // only fields of the table
+        it = find(table, it.key()) ? std::next(it) : merged.erase(it);
+    merged.update(given);
+    merged.erase("preset");
+    return {table, given, std::move(merged), given["preset"], std::move(dropped)};
+}
+
+namespace {
+
+const Json& value_of(const MergedFields& l, const std::string& name) {
+    if (l.has(name)) return l.fields[name];
+    const Field* own = find(l.table, name);
+    return own && !own->fallback.is_null() ? own->fallback
+                                           : find(simulate_fields(), name)->fallback;
+}
+
+Interval interval_of(const Json& v) { return {v[0].get<double>(), v[1].get<double>()}; }
+
+}  // namespace
+
+double MergedFields::number(const std::string& name) const {
+    return value_of(*this, name).get<double>();
+}
+std::string MergedFields::word(const std::string& name) const {
+    return value_of(*this, name).get<std::string>();
+}
+std::set<std::string> MergedFields::words(const std::string& name) const {
+    return value_of(*this, name).get<std::set<std::string>>();
+}
+Interval MergedFields::interval(const std::string& name) const {
+    return interval_of(value_of(*this, name));
+}
+
+std::vector<Interval> MergedFields::intervals(const std::string& name) const {
+    std::vector<Interval> list;
+    for (const Json& v : value_of(*this, name)) list.push_back(interval_of(v));
+    return list;
+}
+
+}  // namespace vines::api

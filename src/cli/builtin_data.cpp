@@ -1,0 +1,221 @@
+// Subcommands that print data built into the program: `vines presets` (the paper's figures and
+// tables as requests), `parameters` (the fields of requests), `openapi` (the document that the
+// service has at /v1/openapi.json) and `example` (an example record).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "api/json_text.hpp"
+#include "api/openapi/openapi.hpp"
+#include "api/presets.hpp"
+#include "api/problem.hpp"
+#include "api/schema/enum_names.hpp"
+#include "api/schema/field.hpp"
+#include "api/schema/tables.hpp"
+#include "cli/commands.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/files.hpp"
+#include "cli/output.hpp"
+#include "cli/stop_signals.hpp"
+#include "program/standard_streams.hpp"
+#include "program/subcommand.hpp"
+
+namespace vines::cli {
+
+namespace {
+
+/// Options shared by `presets` and `parameters`.
+struct ListingOptions {
+    std::string name;  ///< empty: all
+    std::string format = "text";
+
+    bool is_json() const { return format == "json"; }
+};
+
+/// `about` is the help text of the positional `name`.
+void add_listing(CLI::App& command, ListingOptions& listing, const std::string& about) {
+    command.add_option("name", listing.name, about);
+    command
+        .add_option(
+            "--format", listing.format,
+            "text, or json: the service's answer, always the whole list")
+        ->check(CLI::IsMember({"text", "json"}))
+        ->capture_default_str();
+}
+
+/// Throws Problem 422 for an unknown name; `nearest` is the nearest known name or empty.
+[[noreturn]] void refuse_name(
+    const std::string& kind, const std::string& name, const std::string& nearest) {
+    throw api::Problem(
+        422, "no " + kind + " has the name " + api::shortened(name) +
+                 (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
+}
+
+std::string all_presets() {
+    std::size_t name = 0, source = 0;
+    for (const api::Preset& p : api::presets()) {
+        name = std::max(name, p.name.size());
+        source = std::max(source, p.source.size());
+    }
+    std::string text;
+    for (const api::Preset& p : api::presets())
+        text += fmt::format("{:<{}}  {:<{}}  {}\n", p.name, name, p.source, source, p.title);
+    return text;
+}
+
+std::string text_of(const api::Preset& p) {
+    std::string text = fmt::format("{}, {}: {}\n", p.name, p.source, p.title);
+    if (!p.note.empty()) text += p.note + "\n";
+    for (const auto& [name, value] : p.parameters.items())
+        text += fmt::format("  {} = {}\n", name, api::json_text(value));
+    return text + fmt::format("vines simulate -p preset={} --plot\n", p.name);
+}
+
+std::string text_of_preset(const std::string& name) {
+    std::vector<std::string> names;
+    for (const api::Preset& p : api::presets()) {
+        if (p.name == name) return text_of(p);
+        names.push_back(p.name);
+    }
+    refuse_name("preset", name, api::nearest_name(names, name));
+}
+
+}  // namespace
+
+Command add_presets(CLI::App& app) {
+    const auto listing = std::make_shared<ListingOptions>();
+    CLI::App* command =
+        app.add_subcommand("presets", "the paper's figures and tables, as requests");
+    add_listing(*command, *listing, "show only this preset, with its parameters");
+    return with_exit_codes(
+        command,
+        [listing] {
+            if (listing->is_json()) print(api::json_text(api::describe_presets()) + "\n");
+            else print(listing->name.empty() ? all_presets() : text_of_preset(listing->name));
+            return static_cast<int>(complete);
+        },
+        "vines presets\nvines presets fig3\nvines presets --format json | jq length");
+}
+
+namespace {
+
+using api::Field;
+using api::FieldTable;
+
+const std::vector<std::pair<const char*, const FieldTable&>>& tables() {
+    static const std::vector<std::pair<const char*, const FieldTable&>> list = {
+        {"simulate", api::simulate_fields()}, {"manifold", api::manifold_fields()},
+        {"sweep", api::sweep_fields()},       {"an axis of a sweep", api::axis_fields()},
+        {"identify", api::identify_fields()}, {"any answer", api::form_fields()}};
+    return list;
+}
+
+std::string fallback_of(const Field& f) {
+    if (!f.fallback_note.empty()) return f.fallback_note;
+    return f.fallback.is_string() ? f.fallback.get<std::string>() : api::json_text(f.fallback);
+}
+
+std::string range_of(const Field& f) {
+    if (f.range) return fmt::format("[{:g}, {:g}]", f.range->minimum, f.range->maximum);
+    return api::joined(f.choices);
+}
+
+std::string line_of(const Field& f) {
+    return fmt::format(
+        "  {:<21} {:<14} {}\n", f.name, f.unit.empty() ? api::enum_name(f.type) : f.unit,
+        f.description);
+}
+
+std::string all_fields() {
+    std::string text;
+    for (const auto& [title, table] : tables()) {
+        text += fmt::format("{}{}\n", text.empty() ? "" : "\n", title);
+        for (const Field& f : table) text += line_of(f);
+    }
+    return text;
+}
+
+void append_field(const Field& f, const std::string& before, std::string& text) {
+    text += line_of(f);
+    if (!f.symbol.empty()) text += before + "symbol   " + f.symbol + "\n";
+    text += before + "default  " + fallback_of(f) + "\n";
+    if (f.range || !f.choices.empty())
+        text += before + (f.range ? "range    " : "one of   ") + range_of(f) + "\n";
+    for (const Field& part : f.fields) text += "  " + f.name + "." + line_of(part).substr(2);
+}
+
+/// Description of a field in each table that has it. Throws Problem 422 if no table has it.
+std::string text_of_field(const std::string& name) {
+    std::string text;
+    FieldTable all;
+    for (const auto& [title, table] : tables()) {
+        all.insert(all.end(), table.begin(), table.end());
+        const Field* const field = api::find(table, name);
+        if (!field) continue;
+        text += fmt::format("{}{}\n", text.empty() ? "" : "\n", title);
+        append_field(*field, std::string(4, ' '), text);
+    }
+    if (text.empty()) refuse_name("field", name, api::nearest_name(all, name));
+    return text;
+}
+
+}  // namespace
+
+Command add_parameters(CLI::App& app) {
+    const auto listing = std::make_shared<ListingOptions>();
+    CLI::App* command = app.add_subcommand("parameters", "the fields of requests");
+    add_listing(*command, *listing, "show only this field, with its default and range");
+    return with_exit_codes(
+        command,
+        [listing] {
+            if (listing->is_json()) print(api::json_text(api::describe_fields()) + "\n");
+            else print(listing->name.empty() ? all_fields() : text_of_field(listing->name));
+            return static_cast<int>(complete);
+        },
+        "vines parameters\nvines parameters b\nvines parameters --format json | jq "
+        "'.fields[].name'");
+}
+
+Command add_openapi(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("openapi", "the OpenAPI document");
+    add_examples(*command, "vines openapi | jq '.paths | keys'");
+    return ended_by_signals({command, [] {
+                                 print(api::openapi().dump(2) + "\n");
+                                 return 0;
+                             }});
+}
+
+namespace {
+
+struct ExampleOptions {
+    std::string what;
+    Files files;
+};
+
+}  // namespace
+
+Command add_example(CLI::App& app) {
+    const auto options = std::make_shared<ExampleOptions>();
+    CLI::App* command = app.add_subcommand("example", "an example record for identify");
+    command
+        ->add_option(
+            "what", options->what,
+            "record: 20 s of the paper's experiment, b = 15 mm, simulated with the noise of two "
+            "sensors, as CSV")
+        ->required()
+        ->check(CLI::IsMember({"record"}));
+    add_output(*command, options->files);
+    return with_exit_codes(
+        command,
+        [options] {
+            write_all(options->files.output, api::example_record());
+            return static_cast<int>(complete);
+        },
+        "vines example record > record.csv");
+}
+
+}  // namespace vines::cli

@@ -1,0 +1,297 @@
+// The equations of a Gauss-Newton step of the joint fit (unknowns.hpp): samples of both sensors,
+// conditions at the borders between intervals, flights of the mass, priors, and a given forcing.
+#include "core/measurement/joint_fit_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/motion/elementary.hpp"
+
+namespace vines {
+
+namespace {
+
+// Jump of x allowed at an impact, as a fraction of a sample's noise. Much smaller values cost
+// digits in the equations.
+constexpr double continuity_share = 0.05;
+// Huber weights: residuals up to the first number of deviations count in full, larger ones less,
+// those beyond the second not at all.
+constexpr double huber_sigmas = 2.5, ignored_sigmas = 8;
+// Standard error of a release time from its condition, in tau: more precise than any other
+// information.
+constexpr double release_error = 1e-4;
+// Relative tolerance of a given forcing: far more precise than any record.
+constexpr double known_to = 1e-7;
+
+/// Whether an unknown keeps its value: fixed, or nonlinear in the motion in the first step.
+bool is_held(const JointFitState& state, std::size_t unknown, bool first) {
+    return state.fit.fixed[unknown] ||
+           (first && unknown >= static_cast<std::size_t>(Unknown::x_gain));
+}
+
+/// Zeroes the derivatives by unknowns that keep their values.
+void clear_held(const JointFitState& state, UnknownRow& by_unknowns, bool first) {
+    for (std::size_t k = 0; k < sensed_unknowns; ++k)
+        if (is_held(state, k, first)) by_unknowns(static_cast<Eigen::Index>(k)) = 0;
+}
+
+/// Inverse variance, reduced for outliers (Huber); `scale`: standard deviation of the residuals.
+double weight(const JointFitState& state, double left, double noise, double scale, bool first) {
+    const double plain = 1 / (noise * noise);
+    if (first) return plain;
+    const double off = std::abs(left) / scale;
+    if (off > ignored_sigmas && state.weights_trusted) return 0;
+    return off > huber_sigmas ? plain * huber_sigmas / off : plain;
+}
+
+double relative_time(const JointFitState& state, std::size_t k) {
+    return (state.record.tau[k] - state.fit.tau_middle) / state.fit.length;
+}
+
+/// Whether the displacement at `tau` is spoiled by the kink of an impact.
+bool is_at_kink(const JointFitState& state, std::size_t interval, double tau) {
+    const auto& i = state.fit.intervals;
+    return (interval > 0 && tau - i[interval].tau < state.input.x_spoiled) ||
+           (interval + 1 < i.size() && i[interval + 1].tau - tau < state.input.x_spoiled);
+}
+
+/// Calls `visit` with the motion at each sample of a channel delayed by `late`.
+template <class Visit>
+void each_sample(
+    const JointFitState& state, const IntervalFlows& flows, double late, bool accelerate,
+    const Visit& visit) {
+    std::size_t i = 0;
+    for (std::size_t k = 0; k < state.record.tau.size();) {
+        const auto here = [&] { return state.record.tau[k] - late; };
+        const auto next = [&] {
+            return i + 1 < state.fit.intervals.size() ? state.fit.intervals[i + 1].tau : infinity;
+        };
+        while (here() >= next()) ++i;
+        IntervalMotion motion = state.motion_in(flows, state.fit.intervals[i]);
+        for (; k < state.record.tau.size() && here() < next(); ++k) {
+            state.progress.tick();
+            visit(k, i, motion.at(std::max(0.0, here() - state.fit.intervals[i].tau), accelerate));
+        }
+    }
+}
+
+void add_displacement(
+    JointFitState& state, const IntervalFlows& flows, bool first, JointEquations& equations) {
+    Eigen::RowVector2d by_start;
+    UnknownRow by_unknowns;
+    const auto set = [&](Unknown u, double value) {
+        by_unknowns(static_cast<Eigen::Index>(u)) = value;
+    };
+    const MeasuredRecord& r = state.record;
+    const UnknownValues& v = state.fit.values;
+    each_sample(
+        state, flows, v[Unknown::x_delay], false,
+        [&](std::size_t k, std::size_t i, const MotionRow& row) {
+            const double gain = v[Unknown::x_gain], u = relative_time(state, k);
+            const double left =
+                r.x[k] - gain * row.value.x - v[Unknown::x_offset] - v[Unknown::x_drift] * u;
+            state.fit.x_residual[k] = left;
+            if (state.input.bad_x[k] || is_at_kink(state, i, r.tau[k] - v[Unknown::x_delay]))
+                return;
+            take_derivatives(row, &OscillatorMotion::x, by_start, by_unknowns);
+            by_start *= gain;
+            by_unknowns *= gain;
+            set(Unknown::x_offset, 1);
+            set(Unknown::x_drift, u);
+            set(Unknown::x_gain, row.value.x);
+            set(Unknown::x_delay, -gain * row.value.x_dot);
+            clear_held(state, by_unknowns, first);
+            equations.add(
+                i, by_start, by_unknowns, left,
+                weight(state, left, state.input.statistics.x.noise, state.scale_x, first));
+        });
+}
+
+void add_acceleration(
+    JointFitState& state, const IntervalFlows& flows, bool first, JointEquations& equations) {
+    Eigen::RowVector2d by_start;
+    UnknownRow by_unknowns;
+    const auto set = [&](Unknown u, double value) {
+        by_unknowns(static_cast<Eigen::Index>(u)) = value;
+    };
+    const UnknownValues& v = state.fit.values;
+    each_sample(state, flows, 0, true, [&](std::size_t k, std::size_t i, const MotionRow& row) {
+        const double u = relative_time(state, k);
+        const double left = state.record.x_ddot[k] - row.value.x_ddot - v[Unknown::a_offset] -
+                            v[Unknown::a_drift] * u;
+        state.fit.a_residual[k] = left;
+        if (state.in_pulse[k] || state.input.bad_a[k]) return;
+        take_derivatives(row, &OscillatorMotion::x_ddot, by_start, by_unknowns);
+        set(Unknown::a_offset, 1);
+        set(Unknown::a_drift, u);
+        clear_held(state, by_unknowns, first);
+        equations.add(
+            i, by_start, by_unknowns, left,
+            weight(state, left, state.input.statistics.x_ddot.noise, state.scale_a, first));
+    });
+}
+
+/// The border between an interval, whose end is `row`, and the next one, `to`.
+FittedBorder fitted_border(
+    const JointFitState& state, const ImpactTime& border, const MotionRow& row,
+    const FittedInterval& to) {
+    FittedBorder m{
+        .flies = border.border == Border::impact && !border.sticks,
+        .tau = to.tau,
+        .x = to.x,
+        .x_dot_before = row.value.x_dot,
+        .x_dot_after = to.x_dot,
+        .x_ddot_before = row.value.x_ddot,
+        .x_ddot_after = state.acceleration_at(to),
+        .before_by_start = {},
+        .before_by_unknowns = {}};
+    take_derivatives(row, &OscillatorMotion::x_dot, m.before_by_start, m.before_by_unknowns);
+    clear_held(state, m.before_by_unknowns, false);
+    return m;
+}
+
+/// Adds a condition on x, x' or x'' at the end of interval k; `by_moment`: its derivative by
+/// the border's time; `meets`: it equals the value at the start of the next interval.
+void add_border_condition(
+    const JointFitState& state, std::size_t k, const MotionRow& row,
+    double OscillatorMotion::* member, double by_moment, bool meets, double left, double weight,
+    JointEquations& equations) {
+    Eigen::RowVector2d by_start;
+    UnknownRow by_unknowns;
+    take_derivatives(row, member, by_start, by_unknowns);
+    clear_held(state, by_unknowns, false);
+    std::vector<JointEquations::Term> terms = {
+        {equations.start_of(k), by_start(0)},
+        {equations.start_of(k) + 1, by_start(1)},
+        {equations.time_of(k), by_moment}};
+    if (meets)
+        terms.push_back(
+            {equations.start_of(k + 1) + (member == &OscillatorMotion::x_dot ? 1 : 0), -1});
+    for (std::size_t g = 0; g < sensed_unknowns; ++g) {
+        const double by = by_unknowns(static_cast<Eigen::Index>(g));
+        if (by != 0) terms.push_back({equations.unknown_at(g), by});
+    }
+    equations.add(terms, left, weight);
+}
+
+void add_mass_flights(
+    const JointFitState& state, const std::vector<FittedBorder>& borders,
+    JointEquations& equations) {
+    const double epsilon = state.input.parameters.epsilon;
+    const std::vector<MassResidual> residuals =
+        mass_residuals(epsilon, *state.input.sides, borders, state.fit.values);
+    const MassScatter scatter = scatter_of(residuals);
+    const auto weight_of = [&](double left, double sigma) {
+        return weight(state, left, sigma, sigma, false);
+    };
+    for (const MassResidual& r : residuals)
+        add_mass_rows(
+            epsilon, *state.input.sides, borders, state.fit.values, state.fit.fixed, r,
+            weight_of(r.momentum, scatter.momentum), weight_of(r.restitution, scatter.restitution),
+            equations);
+}
+
+double jerk_at(
+    const JointFitState& state, const FittedInterval& i, const OscillatorMotion& m, double tau) {
+    const UnknownValues& v = state.fit.values;
+    const double angle = v[Unknown::Omega] * (tau - state.fit.tau_middle);
+    return (-v[Unknown::stiffness] * m.x_dot - v[Unknown::damping] * m.x_ddot +
+            v[Unknown::Omega] * (v[Unknown::force_sin] * elementary::cos(angle) -
+                                 v[Unknown::force_cos] * elementary::sin(angle))) /
+           state.moving_mass(i);
+}
+
+/// At each impact x is continuous, and its pulse gives its time. At a release x' is continuous
+/// too, and its time follows from the vanishing acceleration.
+void add_impacts(
+    const JointFitState& state, const IntervalFlows& flows, JointEquations& equations) {
+    std::vector<FittedBorder> borders;
+    const double noise = state.record.x.empty() ? state.input.statistics.x_ddot.noise
+                                                : state.input.statistics.x.noise;
+    const double weight = 1 / (continuity_share * continuity_share * noise * noise);
+    for (std::size_t k = 0; k < state.borders.size(); ++k) {
+        const FittedInterval &from = state.fit.intervals[k], &to = state.fit.intervals[k + 1];
+        const MotionRow row = state.motion_in(flows, from).at(to.tau - from.tau, true);
+        const ImpactTime& m = state.borders[k];
+        if (state.input.sides) borders.push_back(fitted_border(state, m, row, to));
+        if (m.border == Border::gap) continue;
+        add_border_condition(
+            state, k, row, &OscillatorMotion::x, row.value.x_dot - to.x_dot, true,
+            to.x - row.value.x, weight, equations);
+        if (m.border == Border::release) {
+            add_border_condition(
+                state, k, row, &OscillatorMotion::x_dot,
+                row.value.x_ddot - state.acceleration_at(to), true, to.x_dot - row.value.x_dot,
+                weight, equations);
+            const double jerk = jerk_at(state, from, row.value, to.tau),
+                         sigma = release_error * std::abs(jerk);
+            add_border_condition(
+                state, k, row, &OscillatorMotion::x_ddot, jerk, false, -row.value.x_ddot,
+                1 / (sigma * sigma), equations);
+            continue;
+        }
+        const double error = std::min(m.pulse_error, state.input.statistics.step);
+        if (!std::isfinite(m.pulse_error)) {
+            equations.add({{equations.time_of(k), 1}}, 0, 1 / (error * error));
+            continue;
+        }
+        std::vector<JointEquations::Term> terms = {{equations.time_of(k), 1}};
+        if (!state.fit.fixed[Unknown::pulse_lag])
+            terms.push_back({equations.unknown_at(Unknown::pulse_lag), 1});
+        equations.add(
+            terms, m.pulse_tau - to.tau - state.fit.values[Unknown::pulse_lag],
+            1 / (error * error));
+    }
+    if (state.input.sides) add_mass_flights(state, borders, equations);
+}
+
+/// Priors; unknowns that keep their values get one that holds them.
+void add_priors(const JointFitState& state, JointEquations& equations, bool first) {
+    for (std::size_t k = 0; k < unknowns; ++k) {
+        if (is_held(state, k, first)) equations.add_prior(k, 0, 1);
+        else if (std::isfinite(state.prior[k]))
+            equations.add_prior(
+                k, state.prior_mean[k] - state.fit.values[k],
+                1 / (state.prior[k] * state.prior[k]));
+    }
+}
+
+/// Keeps a given amplitude and a given phase at tau = 0.
+void add_known_forcing(const JointFitState& state, JointEquations& equations) {
+    const UnknownValues& v = state.fit.values;
+    const double sin = v[Unknown::force_sin], cos = v[Unknown::force_cos],
+                 amplitude = elementary::hypot(sin, cos),
+                 weight = 1 / (known_to * known_to * amplitude * amplitude);
+    if (!(amplitude > 0)) return;
+    const Eigen::Index of_sin = equations.unknown_at(Unknown::force_sin),
+                       of_cos = equations.unknown_at(Unknown::force_cos);
+    if (const auto& known = state.input.forcing.amplitude)
+        equations.add(
+            {{of_sin, sin / amplitude}, {of_cos, cos / amplitude}}, *known - amplitude, weight);
+    if (const auto& known = state.input.forcing.phase) {
+        // The phase in the middle depends on the frequency.
+        const double phase = *known + v[Unknown::Omega] * state.fit.tau_middle,
+                     along_sin = elementary::cos(phase), along_cos = elementary::sin(phase);
+        std::vector<JointEquations::Term> row = {{of_sin, -along_cos}, {of_cos, along_sin}};
+        if (!state.fit.fixed[Unknown::Omega])
+            row.push_back(
+                {equations.unknown_at(Unknown::Omega),
+                 -state.fit.tau_middle * (sin * along_sin + cos * along_cos)});
+        equations.add(row, sin * along_cos - cos * along_sin, weight);
+    }
+}
+
+}  // namespace
+
+JointEquations equations_of(JointFitState& state, bool first) {
+    JointEquations equations(state.fit.intervals.size(), state.ridge);
+    const IntervalFlows flows(state.fit.values, state.oscillator_moves(), state.fit.epsilon);
+    if (!state.record.x.empty()) add_displacement(state, flows, first, equations);
+    if (!state.record.x_ddot.empty()) add_acceleration(state, flows, first, equations);
+    if (!first) add_impacts(state, flows, equations);
+    add_priors(state, equations, first);
+    if (!first) add_known_forcing(state, equations);
+    return equations;
+}
+
+}  // namespace vines

@@ -1,0 +1,148 @@
+#include "core/motion/batch_run.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <deque>
+#include <optional>
+
+#include "core/motion/run.hpp"
+
+namespace vines {
+
+std::vector<NamedBatchSearch> batch_searches() {
+    std::vector<NamedBatchSearch> searches = {baseline_search()};
+#ifdef __x86_64__
+    if (__builtin_cpu_supports("avx2")) searches.push_back(avx2_search());
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+        __builtin_cpu_supports("avx512vl"))
+        searches.push_back(avx512_search());
+#endif
+    return searches;
+}
+
+BatchSearch best_batch_search() {
+    static const BatchSearch search = [] {
+        const auto searches = batch_searches();
+        return searches.size() > 1 ? searches.back().search : nullptr;
+    }();
+    return search;
+}
+
+void append(FlightBatch& flights, const FlightStart& f, double b, double limit) {
+    const int i = flights.count++;
+    flights.x[i] = f.lo.x;
+    flights.x_dot[i] = f.lo.x_dot;
+    flights.sin_theta[i] = f.lo.sin_theta;
+    flights.cos_theta[i] = f.lo.cos_theta;
+    flights.y[i] = f.y;
+    flights.y_dot[i] = f.y_dot;
+    flights.side[i] = f.side;
+    flights.relative_speed[i] = f.relative_speed;
+    flights.b[i] = b;
+    flights.limit[i] = limit;
+}
+
+void search(FlightBatch& flights, BatchSearch by) {
+    for (int i = flights.count; i < FlightBatch::capacity; ++i) {
+        for (auto* column :
+             {&flights.x, &flights.x_dot, &flights.sin_theta, &flights.cos_theta, &flights.y,
+              &flights.y_dot, &flights.side, &flights.relative_speed, &flights.b, &flights.limit})
+            (*column)[i] = (*column)[0];
+    }
+    by(flights);
+}
+
+Contact contact_of(const FlightBatch& f, int i) {
+    return {
+        f.s[i],
+        static_cast<int>(f.wall[i]),
+        {f.contact_x[i], f.contact_x_dot[i], f.contact_sin[i], f.contact_cos[i]},
+        f.contact_speed[i]};
+}
+
+Transfer transfer_of(const FlightBatch& f, int i) {
+    return {f.a11[i], f.a12[i], f.a21[i], f.a22[i]};
+}
+
+namespace {
+
+/// A source of runs and its current run.
+class Slot {
+public:
+    explicit Slot(RunSource& source) : source_(source) { begin({}); }
+
+    bool has_ended() const { return !run_; }
+    Run& run() { return *run_; }
+    const FlowTables& tables() const { return tables_; }
+    /// Moves on to the first run that is not over.
+    void settle() {
+        while (run_ && run_->is_over()) begin(run_->outcome());
+    }
+
+private:
+    void begin(const std::optional<Outcome>& last) {
+        run_.reset();
+        plan_ = source_.next(last);
+        if (!plan_) return;
+        run_.emplace(plan_->parameters, plan_->start, plan_->limits, plan_->observers);
+        tables_ = run_->flow().tables();
+    }
+
+    RunSource& source_;
+    std::optional<RunPlan> plan_;
+    std::optional<Run> run_;
+    FlowTables tables_{};
+};
+
+/// Advances every run by one flight: as a batch if it has the first run's flow, else separately.
+void fly_all(std::span<Slot*> slots, BatchSearch by) {
+    FlightBatch flights;
+    std::array<Slot*, FlightBatch::capacity> slot_of;
+    const Flow& flow = slots[0]->run().flow();
+    for (Slot* slot : slots) {
+        Run& run = slot->run();
+        const FlightStart flight = run.flight();
+        if (slots.size() == 1 || !by || &run.flow() != &flow || !has_simple_start(flight)) {
+            run.fly();
+            continue;
+        }
+        slot_of[flights.count] = slot;
+        append(flights, flight, run.b(), run.flight_limit());
+        flights.transfers |= run.is_observed();
+    }
+    if (flights.count == 0) return;
+    flights.tables = &slot_of[0]->tables();
+    search(flights, by);
+    for (int i = 0; i < flights.count; ++i) {
+        Run& run = slot_of[i]->run();
+        if (flights.result[i] == FlightBatch::undecided) run.fly();
+        else if (flights.result[i] == FlightBatch::none) run.fly_to(std::nullopt, nullptr);
+        else {
+            const Transfer over = transfer_of(flights, i);
+            run.fly_to(contact_of(flights, i), flights.transfers ? &over : nullptr);
+        }
+    }
+}
+
+}  // namespace
+
+void simulate_batch(std::span<RunSource* const> sources) {
+    simulate_batch(sources, best_batch_search());
+}
+
+void simulate_batch(std::span<RunSource* const> sources, BatchSearch search) {
+    assert(sources.size() <= static_cast<std::size_t>(max_batch_runs));
+    std::deque<Slot> slots;
+    for (RunSource* source : sources) slots.emplace_back(*source);
+    std::vector<Slot*> active;
+    for (Slot& slot : slots) active.push_back(&slot);
+    const auto settled = [&] {
+        for (Slot* slot : active) slot->settle();
+        std::erase_if(active, [](const Slot* slot) { return slot->has_ended(); });
+        return !active.empty();
+    };
+    while (settled()) fly_all(active, search);
+}
+
+}  // namespace vines

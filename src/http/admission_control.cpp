@@ -1,0 +1,154 @@
+#include "http/admission_control.hpp"
+
+#include <chrono>
+#include <utility>
+
+namespace vines::http {
+
+// --- Slots ---
+
+namespace {
+
+// Interval at which a waiting request checks whether to give up.
+constexpr auto give_up_check = std::chrono::milliseconds(50);
+
+// Grace periods at once per slot: they share its core.
+constexpr int graces_per_slot = 4;
+
+}  // namespace
+
+/// Gives each free slot to the first in the queue, and wakes only that thread.
+void AdmissionControl::assign_slots() {
+    while (free_ > 0 && !(foreground_.empty() && background_.empty())) {
+        Queue& queue = foreground_.empty() ? background_ : foreground_;
+        Waiter& next = *queue.front();
+        queue.pop_front();
+        --free_;
+        next.has_slot = true;
+        next.changed.notify_one();
+    }
+    foreground_waits_ = !foreground_.empty();
+    background_waits_ = !background_.empty();
+}
+
+/// Ends a wait; returns whether it got a slot.
+bool AdmissionControl::end_wait(Queue& queue, Waiter& waiter) {
+    if (waiter.has_slot) return true;
+    queue.remove(&waiter);
+    assign_slots();
+    return false;
+}
+
+bool AdmissionControl::is_full() const {
+    return static_cast<int>(foreground_.size()) + graces_ >= limits_.waiting;
+}
+
+AdmissionControl::Attempt AdmissionControl::try_acquire() {
+    const std::lock_guard lock(mutex_);
+    if (free_ > 0) {
+        --free_;
+        return {Slot(this), {}};
+    }
+    if (is_full() || graces_ >= graces_per_slot * limits_.running) return {};
+    ++graces_;
+    return {{}, Grace(this)};
+}
+
+void AdmissionControl::end_grace() {
+    const std::lock_guard lock(mutex_);
+    --graces_;
+}
+
+AdmissionControl::Slot AdmissionControl::acquire(
+    const std::function<bool()>& gives_up, Grace grace) {
+    std::unique_lock lock(mutex_);
+    if (grace.release()) --graces_;
+    else if (free_ == 0 && is_full()) return nullptr;
+    Waiter waiter;
+    foreground_.push_back(&waiter);
+    assign_slots();
+    bool given_up = false;
+    while (!waiter.has_slot && !given_up) {
+        waiter.changed.wait_for(lock, give_up_check, [&waiter] { return waiter.has_slot; });
+        if (waiter.has_slot || !gives_up) continue;
+        lock.unlock();
+        given_up = gives_up();
+        lock.lock();
+    }
+    return Slot(end_wait(foreground_, waiter) ? this : nullptr);
+}
+
+AdmissionControl::Slot AdmissionControl::acquire_background(const std::stop_token& stop) {
+    std::unique_lock lock(mutex_);
+    Waiter waiter;
+    background_.push_back(&waiter);
+    assign_slots();
+    // The wait registers with the token before it checks the condition, so that no stop is missed.
+    // The thread that requests the stop must not hold the mutex, and cannot.
+    waiter.changed.wait(lock, stop, [this, &waiter] { return waiter.has_slot || sweeps_stopped_; });
+    if (!end_wait(background_, waiter)) return nullptr;
+    if (!sweeps_stopped_) return Slot(this);
+    ++free_;
+    assign_slots();
+    return nullptr;
+}
+
+void AdmissionControl::release() {
+    const std::lock_guard lock(mutex_);
+    ++free_;
+    assign_slots();
+}
+
+AdmissionControl::SweepSlot AdmissionControl::acquire_sweep() {
+    const std::lock_guard lock(mutex_);
+    if (sweeps_ >= limits_.sweeps || sweeps_stopped_) return nullptr;
+    ++sweeps_;
+    return SweepSlot(this);
+}
+
+void AdmissionControl::release_sweep() {
+    const std::lock_guard lock(mutex_);
+    --sweeps_;
+}
+
+void AdmissionControl::stop_sweeps() {
+    const std::lock_guard lock(mutex_);
+    sweeps_stopped_ = true;
+    for (Waiter* waiter : background_) waiter->changed.notify_one();
+}
+
+AdmissionLoad AdmissionControl::load() const {
+    const std::lock_guard lock(mutex_);
+    return {limits_.running - free_, foreground_.size(), sweeps_};
+}
+
+// --- Permits ---
+
+namespace {
+
+// Many times the duration of a small answer, and short compared to a time slice of the scheduler.
+constexpr auto grace_time = std::chrono::milliseconds(1);
+
+}  // namespace
+
+Permit::Permit(AdmissionControl& admission, std::function<bool()> gives_up, bool may_begin)
+    : admission_(admission),
+      gives_up_(std::move(gives_up)) {
+    if (may_begin) {
+        AdmissionControl::Attempt attempt = admission_.try_acquire();
+        slot_ = std::move(attempt.slot);
+        grace_ = std::move(attempt.grace);
+    }
+    if (!*this) slot_ = admission_.acquire(gives_up_);
+}
+
+bool Permit::renew() {
+    if (!grace_) return slot_ != nullptr;
+    const Clock::time_point now = Clock::now();
+    if (now - began_ < grace_time) return true;
+    slot_ = admission_.acquire(gives_up_, std::move(grace_));
+    waited_ = Clock::now() - now;
+    return slot_ != nullptr;
+}
+
+}  // namespace vines::http

@@ -1,0 +1,144 @@
+// Admission control: limits how many computations run at once.
+//
+// The server has more worker threads than cores, so a computation needs one of a fixed number of
+// slots (--compute-threads). Two classes of work compete for them:
+// - foreground: one request. It queues up to a limit and is refused beyond it.
+// - background: the points of a sweep, the lists of a streamed answer. It waits without limit,
+//   after all foreground work, and gives its slot back whenever foreground work waits.
+// Waiting for a slot costs a thread switch, which takes longer than a small answer. A foreground
+// request that finds no free slot therefore starts in a grace period of 1 ms without one, and
+// waits only if it needs longer (Permit).
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <stop_token>
+#include <thread>
+
+namespace vines::http {
+
+struct AdmissionLimits {
+    int running = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    int waiting = 64;  ///< foreground requests in the queue, in addition to the running ones
+    int sweeps = 4;    ///< sweeps at once; they share the slots that requests leave free
+};
+
+struct AdmissionLoad {
+    int running = 0;          ///< slots in use
+    std::size_t waiting = 0;  ///< foreground requests waiting for a slot
+    int sweeps = 0;
+};
+
+/// Must outlive the slots that it hands out.
+class AdmissionControl {
+    struct Release {
+        void operator()(AdmissionControl* admission) const { admission->release(); }
+    };
+    struct ReleaseSweep {
+        void operator()(AdmissionControl* admission) const { admission->release_sweep(); }
+    };
+    struct EndGrace {
+        void operator()(AdmissionControl* admission) const { admission->end_grace(); }
+    };
+
+public:
+    explicit AdmissionControl(const AdmissionLimits& limits)
+        : limits_(limits),
+          free_(limits.running) {}
+
+    int threads() const { return limits_.running; }
+
+    /// The right to compute, or null. The destructor gives it back.
+    using Slot = std::unique_ptr<AdmissionControl, Release>;
+    /// The right to compute for a moment without a slot; counts towards the queue's limit.
+    using Grace = std::unique_ptr<AdmissionControl, EndGrace>;
+    /// Result of try_acquire(): a slot, a grace period or neither.
+    struct Attempt {
+        Slot slot;
+        Grace grace;
+    };
+    /// For foreground work; does not wait.
+    Attempt try_acquire();
+    /// For foreground work: waits for a slot, first come, first served. Null if the queue is full
+    /// or gives_up() returned true; it is polled every 50 ms. The end of a grace period always
+    /// finds space in the queue.
+    Slot acquire(const std::function<bool()>& gives_up = {}, Grace grace = {});
+    /// For background work: waits for a slot, after all foreground work and the background work
+    /// that came earlier. Null once `stop` is requested or sweeps are stopped.
+    Slot acquire_background(const std::stop_token& stop);
+    /// True while foreground work waits: background work should release its slot and wait again.
+    bool foreground_waits() const { return foreground_waits_; }
+    /// True while background work waits.
+    bool background_waits() const { return background_waits_; }
+
+    /// The right to run one sweep. Null if the limit is reached or sweeps are stopped.
+    using SweepSlot = std::unique_ptr<AdmissionControl, ReleaseSweep>;
+    SweepSlot acquire_sweep();
+
+    /// Running sweeps end at their next check and no new one starts. Requests still compute.
+    void stop_sweeps();
+    bool sweeps_stopped() const { return sweeps_stopped_; }
+
+    /// All work ends at its next check, with the results it has.
+    void stop_all() { all_stopped_ = true; }
+    bool all_stopped() const { return all_stopped_; }
+
+    AdmissionLoad load() const;
+
+private:
+    struct Waiter {
+        std::condition_variable_any changed = {};
+        bool has_slot = false;
+    };
+    using Queue = std::list<Waiter*>;
+
+    void release();
+    void release_sweep();
+    void end_grace();
+    bool is_full() const;
+    void assign_slots();
+    bool end_wait(Queue& queue, Waiter& waiter);
+
+    const AdmissionLimits limits_;
+    mutable std::mutex mutex_;
+    int free_, sweeps_ = 0, graces_ = 0;  // nobody waits while free_ > 0
+    Queue foreground_, background_;
+    // Written under the mutex; running work reads them without it.
+    std::atomic<bool> foreground_waits_ = false, background_waits_ = false;
+    std::atomic<bool> sweeps_stopped_ = false, all_stopped_ = false;
+};
+
+/// A foreground request's permission to compute: a slot or a grace period at once, otherwise after
+/// a wait. For one thread at a time; the admission control outlives it.
+class Permit {
+public:
+    using Clock = std::chrono::steady_clock;
+
+    /// Waits for a slot if may_begin is false, or if neither a slot nor a grace period is free.
+    /// gives_up() is polled while waiting.
+    Permit(AdmissionControl& admission, std::function<bool()> gives_up, bool may_begin);
+    /// False if the queue was full or the wait was given up.
+    explicit operator bool() const { return slot_ || grace_; }
+
+    /// To be called regularly: waits for a slot after the grace period. False if it gave up.
+    bool renew();
+
+    /// Time spent waiting after the grace period; the initial wait does not count.
+    Clock::duration waited() const { return waited_; }
+
+private:
+    AdmissionControl& admission_;
+    const std::function<bool()> gives_up_;
+    AdmissionControl::Slot slot_;
+    AdmissionControl::Grace grace_;
+    Clock::time_point began_ = Clock::now();
+    Clock::duration waited_{};
+};
+
+}  // namespace vines::http

@@ -1,0 +1,291 @@
+#include "http/event_loop.hpp"
+
+#include <fcntl.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/epoll.h>
+#include <sys/eventfd.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <utility>
+
+#include "http/message.hpp"
+
+namespace vines::http {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+// Interval between checks for timeouts.
+constexpr auto expiry_interval = 250ms;
+
+// Time for which a worker waits for a client's next request, in ms: cheaper than to return the
+// connection to the event loop and get it back.
+constexpr int next_request_wait = 1;  // ms
+
+// Answers to one client in a row; then the others get their turn.
+constexpr int max_answers_in_row = 16;
+
+// Time after which a client that does not read its answer is disconnected.
+constexpr auto write_time = 30s;
+
+// Time after stop() in which requests on idle connections are still answered.
+constexpr auto drain_time = 300ms;
+
+void add(int poll, int socket) {
+    epoll_event event{};
+    event.events = EPOLLIN;
+    event.data.fd = socket;
+    ::epoll_ctl(poll, EPOLL_CTL_ADD, socket, &event);
+}
+
+/// Raises the limit of open files as far as possible and returns it, less some for other files.
+std::size_t files_for_connections() {
+    constexpr std::size_t others = 64;
+    rlimit limit{};
+    ::getrlimit(RLIMIT_NOFILE, &limit);
+    limit.rlim_cur = limit.rlim_max;
+    ::setrlimit(RLIMIT_NOFILE, &limit);
+    ::getrlimit(RLIMIT_NOFILE, &limit);
+    return limit.rlim_cur > 2 * others ? limit.rlim_cur - others : others;
+}
+
+std::string numeric(const sockaddr* address, socklen_t size) {
+    std::array<char, NI_MAXHOST> text{};
+    ::getnameinfo(address, size, text.data(), text.size(), nullptr, 0, NI_NUMERICHOST);
+    return text.data();
+}
+
+void remove(int poll, int socket) { ::epoll_ctl(poll, EPOLL_CTL_DEL, socket, nullptr); }
+
+}  // namespace
+
+EventLoop::EventLoop(int listening, const ConnectionLimits& limits, Handlers handlers)
+    : listening_(listening),
+      handlers_(std::move(handlers)),
+      max_connections_(std::min(limits.connections, files_for_connections())),
+      poll_(::epoll_create1(EPOLL_CLOEXEC)),
+      wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
+      memory_(limits.held_bytes),
+      workers_(limits.workers, limits.waiting, [this](Owned connection) {
+          work(std::move(connection));
+      }) {
+    ::fcntl(listening_, F_SETFL, ::fcntl(listening_, F_GETFL) | O_NONBLOCK);
+    add(poll_, wake_);
+    listen(true);
+}
+
+EventLoop::~EventLoop() {
+    ::close(poll_);
+    ::close(wake_);
+}
+
+void EventLoop::run() {
+    while (!is_done()) {
+        wait();
+        collect_returned();
+        if (Clock::now() - checked_ >= expiry_interval || stopping_) expire();
+    }
+}
+
+void EventLoop::stop() {
+    stopping_ = true;
+    wake();
+}
+
+void EventLoop::wake() const {
+    const std::uint64_t one = 1;
+    static_cast<void>(!::write(wake_, &one, sizeof one));
+}
+
+void EventLoop::wait() {
+    std::array<epoll_event, 256> events;
+    const int n = ::epoll_wait(
+        poll_, events.data(), events.size(),
+        ready_.empty() ? static_cast<int>((stopping_ ? 20ms : expiry_interval).count()) : 0);
+    for (int i = 0; i < n; ++i) {
+        const int socket = events[static_cast<std::size_t>(i)].data.fd;
+        if (socket == listening_) accept_all();
+        else if (socket == wake_) {
+            std::uint64_t count = 0;
+            static_cast<void>(!::read(wake_, &count, sizeof count));
+        } else handle(socket);
+    }
+    for (const int socket : std::exchange(ready_, {})) handle(socket);
+}
+
+void EventLoop::listen(bool on) {
+    if (on == listens_) return;
+    on ? add(poll_, listening_) : remove(poll_, listening_);
+    listens_ = on;
+}
+
+/// Accepts pending connections. Beyond the limit another connection is closed for each new one.
+void EventLoop::accept_all() {
+    for (;;) {
+        const bool full = count_ + static_cast<std::size_t>(in_flight_) >= max_connections_;
+        Connection* const other = full ? eviction_candidate() : nullptr;
+        if (full && !other) return listen(false);
+        sockaddr_storage address{};
+        socklen_t size = sizeof address;
+        auto* const peer = reinterpret_cast<sockaddr*>(&address);
+        const int socket = ::accept4(listening_, peer, &size, SOCK_NONBLOCK | SOCK_CLOEXEC);
+        if (socket < 0 && (errno == EINTR || errno == ECONNABORTED)) continue;
+        if (socket < 0 && errno != EAGAIN)
+            return listen(false);  // out of file descriptors or memory
+        if (socket < 0) return;
+        if (other) release(other->socket());
+        const int yes = 1;
+        ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+        watch(std::make_unique<Connection>(
+            socket, numeric(peer, size), handlers_.check_head, memory_));
+    }
+}
+
+/// The connection that is closed first: an idle keep-alive one, else the one that has waited
+/// longest for its client. A well-behaved client never waits long, so a flood closes its own
+/// connections.
+Connection* EventLoop::eviction_candidate() const {
+    Connection* chosen = nullptr;
+    const auto before = [](const Connection& a, const Connection& b) {
+        if (a.is_idle_keep_alive() != b.is_idle_keep_alive()) return a.is_idle_keep_alive();
+        return a.waiting_since() < b.waiting_since();
+    };
+    for (const Owned& c : connections_)
+        if (c && (!chosen || before(*c, *chosen))) chosen = c.get();
+    return chosen;
+}
+
+void EventLoop::watch(Owned connection) {
+    const int socket = connection->socket();
+    if (connections_.size() <= static_cast<std::size_t>(socket))
+        connections_.resize(static_cast<std::size_t>(socket) + 1);
+    connections_[static_cast<std::size_t>(socket)] = std::move(connection);
+    ++count_;
+    add(poll_, socket);
+}
+
+EventLoop::Owned EventLoop::release(int socket) {
+    remove(poll_, socket);
+    --count_;
+    return std::move(connections_[static_cast<std::size_t>(socket)]);
+}
+
+void EventLoop::handle(int socket) {
+    const Owned& connection = connections_[static_cast<std::size_t>(socket)];
+    if (!connection) return;  // closed after the event
+    if (!connection->is_closing()) read(*connection);
+    else if (connection->finish_closing()) release(socket);
+}
+
+void EventLoop::read(Connection& connection) {
+    for (int n = 0;; ++n) {
+        switch (connection.advance()) {
+            case Connection::Progress::waits: return;
+            case Connection::Progress::ended: release(connection.socket()); return;
+            case Connection::Progress::complete: break;
+        }
+        if (!connection.is_answered_on_loop()) return hand_over(release(connection.socket()));
+        if (n >= max_answers_in_row) return ready_.push_back(connection.socket());
+        answer_here(connection, connection.take());
+        if (connection.is_closing()) return;
+    }
+}
+
+void EventLoop::hand_over(Owned connection) {
+    ++in_flight_;
+    if (workers_.add(connection)) return;
+    --in_flight_;
+    connection->refuse(handlers_.overloaded());
+    answer_here(*connection, connection->take());
+    watch(std::move(connection));
+}
+
+/// Sends without waiting: a small answer fits into the socket's buffer of a client that reads.
+void EventLoop::answer_here(Connection& connection, Exchange exchange) {
+    const auto never = [] { return false; };
+    if (handlers_.answer(connection, std::move(exchange), {0ms, never})) connection.begin_waiting();
+    else connection.begin_closing();
+}
+
+void EventLoop::collect_returned() {
+    std::vector<Owned> returned;
+    {
+        const std::lock_guard lock(mutex_);
+        returned.swap(returned_);
+    }
+    for (Owned& connection : returned) {
+        --in_flight_;
+        watch(std::move(connection));
+    }
+}
+
+void EventLoop::expire() {
+    const Clock::time_point now = checked_ = Clock::now();
+    if (stopping_ && !closing_) {
+        closing_ = true;
+        accept_all();  // those already in the listen queue
+        listen(false);
+        ::shutdown(listening_, SHUT_RDWR);
+        idle_until_ = now + drain_time;
+    }
+    for (const Owned& c : connections_)
+        if (c && now > (c->is_closing() ? c->deadline() : std::min(c->deadline(), idle_until_)))
+            time_out(*c);
+    if (!stopping_) listen(true);
+}
+
+void EventLoop::time_out(Connection& connection) {
+    if (connection.is_idle() || connection.is_closing()) {
+        release(connection.socket());
+        return;
+    }
+    connection.refuse(
+        stopping_ ? stopping_refusal()
+                  : problem_response(408, "the request did not arrive completely in time"));
+    answer_here(connection, connection.take());
+}
+
+bool EventLoop::is_done() const { return closing_ && count_ == 0 && in_flight_ == 0; }
+
+void EventLoop::work(Owned connection) {
+    for (;;) {
+        const WriteTimeout timeout{write_time, [this] { return workers_.jobs_wait(); }};
+        if (!handlers_.answer(*connection, connection->take(), timeout)) {
+            connection->begin_closing();
+            break;
+        }
+        connection->begin_waiting();
+        Connection::Progress progress = connection->advance();
+        if (progress == Connection::Progress::waits && next_request_is_near(*connection))
+            progress = connection->advance();
+        if (progress == Connection::Progress::ended) connection->begin_closing();
+        if (progress != Connection::Progress::complete) break;
+        // Others have waited longer.
+        if (workers_.jobs_wait() && workers_.add(connection)) return;
+    }
+    return_connection(std::move(connection));
+}
+
+bool EventLoop::next_request_is_near(Connection& connection) {
+    pollfd state{connection.socket(), POLLIN, 0};
+    return !workers_.jobs_wait() && ::poll(&state, 1, next_request_wait) > 0;
+}
+
+void EventLoop::return_connection(Owned connection) {
+    {
+        const std::lock_guard lock(mutex_);
+        returned_.push_back(std::move(connection));
+    }
+    wake();
+}
+
+}  // namespace vines::http

@@ -1,0 +1,98 @@
+// The event loop: all connections of the service.
+// One thread waits with epoll for all clients, whatever their number, reads requests and answers
+// those that need no worker (health, refusals). A complete request goes with its connection to a
+// worker thread, which sends the answer and returns the connection.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "http/connection.hpp"
+#include "http/metrics.hpp"
+#include "http/worker_pool.hpp"
+
+namespace vines::http {
+
+/// The server's callbacks. They are called from several threads.
+struct Handlers {
+    HeadCheck check_head;
+    /// Sends the answer; false if the connection cannot be reused.
+    std::function<bool(Connection&, Exchange, WriteTimeout)> answer;
+    /// The answer if all workers are busy and the queue is full.
+    std::function<Response()> overloaded;
+};
+
+struct ConnectionLimits {
+    std::size_t connections = 4096;
+    int workers = 64;
+    std::size_t waiting = 64;            ///< requests queued for a worker
+    std::size_t held_bytes = 512 << 20;  ///< bytes of requests and answers, see MemoryBudget
+};
+
+class EventLoop {
+public:
+    /// listening: a listening socket, which becomes non-blocking. Throws std::system_error if no
+    /// worker thread can be started.
+    EventLoop(int listening, const ConnectionLimits& limits, Handlers handlers);
+    ~EventLoop();
+
+    /// Runs until stop() has been called and all connections are closed.
+    void run();
+    const MemoryBudget& memory() const { return memory_; }
+    ConnectionLoad load() const {
+        const auto in_flight = static_cast<std::size_t>(in_flight_);
+        return {.open = count_ + in_flight, .in_flight = in_flight, .held_bytes = memory_.bytes()};
+    }
+    /// From any thread, once: accepts no new connections, answers requests that arrive on open ones
+    /// within 300 ms, waits for the answers in progress, and lets run() return.
+    void stop();
+
+private:
+    using Owned = std::unique_ptr<Connection>;
+    using Clock = Connection::Clock;
+
+    // Called by the thread in run().
+    void wait();
+    void accept_all();
+    Connection* eviction_candidate() const;
+    void listen(bool on);
+    void watch(Owned connection);
+    Owned release(int socket);
+    void handle(int socket);
+    void read(Connection& connection);
+    void hand_over(Owned connection);
+    void answer_here(Connection& connection, Exchange exchange);
+    void collect_returned();
+    void expire();
+    void time_out(Connection& connection);
+    bool is_done() const;
+    // Called by workers.
+    void work(Owned connection);
+    bool next_request_is_near(Connection& connection);
+    void return_connection(Owned connection);
+    void wake() const;
+
+    const int listening_;
+    const Handlers handlers_;
+    const std::size_t max_connections_;
+    const int poll_, wake_;
+    MemoryBudget memory_;
+    std::vector<Owned> connections_;      // indexed by socket; used by run() only
+    std::vector<int> ready_;              // sockets with more pipelined requests to read
+    std::atomic<std::size_t> count_ = 0;  // number of connections_
+    std::atomic<int> in_flight_ = 0;      // with a worker, or returned and not yet collected
+    std::atomic<bool> stopping_ = false;
+    bool listens_ = false, closing_ = false;
+    Clock::time_point checked_ = Clock::now();
+    Clock::time_point idle_until_ =
+        Clock::time_point::max();  // connections without a complete request end then
+    std::mutex mutex_;
+    std::vector<Owned> returned_;  // from workers
+    WorkerPool<Owned> workers_;    // destroyed first
+};
+
+}  // namespace vines::http

@@ -1,0 +1,294 @@
+#include "http/streams.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <memory>
+#include <thread>
+#include <utility>
+
+#include "http/line_queue.hpp"
+#include "http/log.hpp"
+#include "http/memory.hpp"
+#include "http/message.hpp"
+
+namespace vines::http {
+
+// --- Simulations with long lists ---
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// RunControl of a streamed answer: one slot for each run, none while its lists are sent. It
+/// releases the slot while requests wait. A started answer is finished even if the server is about
+/// to stop.
+class StreamPace : public RunControl {
+public:
+    StreamPace(AdmissionControl& admission, Writer& out) : admission_(admission), out_(out) {}
+    void begin() override {
+        slot_ = admission_.acquire_background({});
+        while (!slot_ && out_.connected() && !admission_.all_stopped()) {
+            slot_ = admission_.acquire();
+            if (!slot_) std::this_thread::sleep_for(client_check_interval);  // the queue is full
+        }
+    }
+    void end() override { slot_.reset(); }
+    bool stop_or_yield() override {
+        if (slot_ && admission_.foreground_waits()) {
+            end();
+            begin();
+        }
+        if (const auto now = Clock::now(); now - checked_ >= client_check_interval) {
+            checked_ = now;
+            connected_ = out_.connected();
+        }
+        return !slot_ || !connected_;
+    }
+
+private:
+    AdmissionControl& admission_;
+    Writer& out_;
+    AdmissionControl::Slot slot_;
+    Clock::time_point checked_ = Clock::now();
+    bool connected_ = true;
+};
+
+// Memory of a run while its lists are made and sent: measured at 5 to 7 MB.
+constexpr std::size_t held_by_answer = 8 << 20;
+
+bool write(api::Answer answer, const std::string& id, AdmissionControl& admission, Writer& out) {
+    trim_memory();  // the memory of the run
+    StreamPace control(admission, out);
+    try {
+        api::write_answer(std::move(answer), control, [&out](std::string_view piece) {
+            if (!out.write(piece)) throw api::Cancelled();
+        });
+        return true;
+    } catch (const api::Cancelled&) {
+    } catch (...) {
+        log_failure("/v1/simulate", id, std::current_exception());
+    }
+    return false;
+}
+
+}  // namespace
+
+Response stream_answer(
+    api::Answer answer, const std::string& request_id, AdmissionControl& admission) {
+    // Shared, because a response can be copied.
+    auto shared = std::make_shared<api::Answer>(std::move(answer));
+    return {
+        .headers = {{"Cache-Control", "no-store"}},
+        .stream =
+            [shared, request_id, &admission](Writer& out) {
+                const bool whole = write(std::move(*shared), request_id, admission, out);
+                trim_memory();
+                return whole;
+            },
+        .held = held_by_answer,
+        .compressible = true};
+}
+
+// --- Sweeps ---
+
+namespace {
+
+// Interval between progress lines.
+constexpr auto report_interval = std::chrono::milliseconds(200);
+
+// Time for which a sweep keeps a slot that another sweep waits for.
+constexpr auto time_slice = std::chrono::milliseconds(20);
+
+/// RunControl of a sweep's threads: they take background slots, release them while requests wait,
+/// and wait while the client reads slower than they compute.
+class SweepControl : public api::RunControl {
+public:
+    SweepControl(AdmissionControl& admission, LineQueue& lines, double deadline)
+        : admission_(admission),
+          lines_(lines),
+          ends_(
+              Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                 std::chrono::duration<double>(deadline))) {}
+    void begin() override {
+        slot() = admission_.acquire_background(stop_.get_token());
+        acquired_at() = Clock::now();
+    }
+    void end() override { slot().reset(); }
+    bool stop_or_yield() override {
+        const Clock::time_point now = Clock::now();
+        const bool is_long = admission_.background_waits() && now - acquired_at() > time_slice;
+        const bool is_full = lines_.is_full();
+        if (slot() && (admission_.foreground_waits() || is_long || is_full)) {
+            end();
+            while (lines_.is_full() && !stops(Clock::now()))
+                lines_.wait_while_full(client_check_interval);
+            begin();
+        }
+        return stops(now) || !slot();
+    }
+    /// From any thread.
+    void stop() { stop_.request_stop(); }
+    bool is_late() const { return Clock::now() > ends_; }
+
+private:
+    /// The slot of the calling thread. thread_local, because a thread of the sweep holds no slot
+    /// before its first point and after its last, and so never two.
+    static AdmissionControl::Slot& slot() {
+        thread_local AdmissionControl::Slot slot;
+        return slot;
+    }
+    static Clock::time_point& acquired_at() {
+        thread_local Clock::time_point time;
+        return time;
+    }
+    bool stops(Clock::time_point now) const {
+        return stop_.stop_requested() || admission_.sweeps_stopped() || now > ends_;
+    }
+
+    AdmissionControl& admission_;
+    LineQueue& lines_;
+    const Clock::time_point ends_;
+    std::stop_source stop_;
+};
+
+/// The last lines of a sweep, for a client that is still connected.
+std::string last_lines(SweepEnd end, std::size_t done, const std::string& warning) {
+    if (end == SweepEnd::complete)
+        return (warning.empty() ? "" : api::warning_line(warning)) + api::done_line(done);
+    const bool late = end == SweepEnd::deadline;
+    return api::error_line(
+        503,
+        fmt::format(
+            "the {}; request the missing indices again",
+            late ? "time limit of one sweep is reached" : "server is stopping"),
+        done);
+}
+
+class SweepStream {
+public:
+    SweepStream(
+        const api::SweepRequest& request, double deadline, AdmissionControl& admission, Writer& out)
+        : request_(request),
+          admission_(admission),
+          out_(out),
+          control_(admission, lines_, deadline) {}
+
+    /// id: the request's id, for the log.
+    SweepEnd run(const std::string& id) {
+        if (!out_.write(api::start_line(request_))) return SweepEnd::client_left;
+        try {
+            const std::size_t done = points();
+            const SweepEnd end = done == of_          ? SweepEnd::complete
+                                 : control_.is_late() ? SweepEnd::deadline
+                                                      : SweepEnd::stopping;
+            const bool sent = connected_ && out_.write(last_lines(end, done, warning_));
+            return sent ? end : SweepEnd::client_left;
+        } catch (...) {
+            log_failure("/v1/sweep", id, std::current_exception());
+            const std::string line = api::error_line(
+                500, "the server failed; the reason is in its log", lines_.take({}).count);
+            return connected_ && out_.write(line) ? SweepEnd::failed : SweepEnd::client_left;
+        }
+    }
+    std::size_t runs() const { return control_.runs; }
+    std::size_t impacts() const { return control_.impacts; }
+
+private:
+    /// Computes the points on other threads while this one sends them, and rethrows their
+    /// exceptions. Returns the number of lines sent.
+    std::size_t points() {
+        std::exception_ptr failure;
+        std::thread computing([&] {
+            try {
+                warning_ = api::run_sweep(
+                    request_, admission_.threads(), control_,
+                    [this](std::size_t, const std::string& line) { lines_.push(line); });
+            } catch (...) {
+                failure = std::current_exception();
+            }
+            lines_.finish();
+        });
+        std::size_t done = 0;
+        try {
+            done = write_lines();
+        } catch (...) {
+            control_.stop();
+            computing.join();
+            throw;
+        }
+        computing.join();
+        if (failure) std::rethrow_exception(failure);
+        return done;
+    }
+
+    /// Sends lines as they come, and progress between them; returns their number. Stops the sweep
+    /// once the client has left.
+    std::size_t write_lines() {
+        auto reported = started_;
+        LineQueue::Taken taken;
+        do {
+            taken = lines_.take(client_check_interval);
+            const auto now = Clock::now();
+            if (now - reported >= report_interval || taken.finished) {
+                taken.text += progress(taken.count, now);
+                reported = now;
+            }
+            connected_ =
+                connected_ && out_.connected() && (taken.text.empty() || out_.write(taken.text));
+            if (!connected_) control_.stop();
+        } while (!taken.finished);
+        return taken.count;
+    }
+
+    std::string progress(std::size_t done, Clock::time_point now) {
+        const std::chrono::duration<double> seconds = now - started_;
+        return api::progress_line(
+            {.done = done,
+             .of = of_,
+             .runs = control_.runs,
+             .runs_of = request_.plan.runs(),
+             .seconds = seconds.count()});
+    }
+
+    const api::SweepRequest& request_;
+    const std::size_t of_ = request_.plan.lines.size();
+    const Clock::time_point started_ = Clock::now();
+    AdmissionControl& admission_;
+    Writer& out_;
+    LineQueue lines_;
+    SweepControl control_;
+    bool connected_ = true;
+    std::string warning_ = {};
+};
+
+}  // namespace
+
+Response stream_sweep(
+    api::SweepRequest request, double deadline, const std::string& request_id,
+    AdmissionControl& admission, Metrics& metrics) {
+    // Shared, because a response can be copied: the sweep's slot is released with the last copy,
+    // whether it was sent or not.
+    const std::shared_ptr<AdmissionControl> sweep_slot = admission.acquire_sweep();
+    if (!sweep_slot)
+        return admission.sweeps_stopped()
+                   ? stopping_refusal()
+                   : problem_response(api::Problem::unavailable(
+                         "sweeps",
+                         "the maximum number of sweeps is running; try again "
+                         "later"));
+    return {
+        .content_type = "application/x-ndjson",
+        .headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}},
+        .stream = [request = std::move(request), deadline, request_id, &admission, &metrics,
+                   sweep_slot](Writer& out) {
+            SweepStream sending(request, deadline, admission, out);
+            const SweepEnd end = sending.run(request_id);
+            metrics.count_sweep(end, sending.runs(), sending.impacts());
+            return end != SweepEnd::client_left;
+        }};
+}
+
+}  // namespace vines::http

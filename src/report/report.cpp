@@ -1,0 +1,175 @@
+#include "report/report.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+#include "core/motion/elementary.hpp"
+#include "plot/plot.hpp"
+#include "report/chapters.hpp"
+
+namespace vines::report {
+
+namespace {
+
+constexpr int picture_width = 860;  // px
+
+const char* const introduction =
+    "# Li, Lamarque, Seguy, Berlioz (2018), recomputed\n\n"
+    "The figures, tables and statements of *Nonlinear Dynamics* 91, 2319-2330, each compared with "
+    "the result computed here. A verdict follows from a number and from the band that contains it "
+    "if the statement holds; the last column gives the reason for the band. Where the paper uses "
+    "only a word (almost, a little, close to, typical, a lot), the limits interpret it: a tenth, "
+    "nine in ten, four times.\n\n";
+
+const char* const glossary =
+    "Numbers are computed with the damping of the closed form (8) to (11), zeta = epsilon lambda, "
+    "and also with that of eq. (1), half as much, where a row says so. Section 5 uses eq. (1) "
+    "only. The rows that are not reproduced because lambda2, lambda3, lambda4 or the sum is not "
+    "positive share one cause. Of the reproduced rows, Figs. 2, 6 and 7 are identities, Table 1 "
+    "and Table 4's lambda are divisions, and Fig. 11's negative exponents follow from its type. "
+    "*Alone*: with the other damping a row does not hold, or only in part.\n\n"
+    "Exponents: *qr*, by a QR factorisation at each impact, which is insensitive to rounding; "
+    "*(33)*, from the eigenvalues of the product of transfer matrices, computed accurately; "
+    "*raw_product*, the same with the product in double precision and without scaling, presumably "
+    "the paper's method. *Contact*: an impact, or a whole chatter that ends in sticking. A "
+    "*sticking phase* makes two exponents minus infinity. *z*: contacts per cycle. "
+    "*Synchronised*: contacts alternate walls at intervals within 15 % of half a forcing cycle. "
+    "*Types*: III, IV and V are motions on a stable periodic orbit, the others are not; VI has "
+    "more than two contacts per cycle, II has synchronised stretches, I has none. *sd*: standard "
+    "deviation. *T*: the matrix (30) in Figs. 8 and 9, elsewhere the length of a window. "
+    "Eigenvalues and exponents are sorted by size, which the paper does not state for its "
+    "own.\n\n";
+
+std::string row(const std::vector<std::string>& cells) {
+    return fmt::format("| {} |\n", fmt::join(cells, " | "));
+}
+std::string head(const std::vector<std::string>& columns) {
+    return row(columns) + row(std::vector<std::string>(columns.size(), "---"));
+}
+
+std::string markdown(const Heading& h) { return "\n## " + h.text + "\n\n"; }
+std::string markdown(const Paragraph& p) { return p.text + "\n\n"; }
+std::string markdown(const DataTable& t) {
+    std::string text = head(t.columns);
+    for (const auto& cells : t.rows) text += row(cells);
+    return text + "\n";
+}
+std::string markdown(const Picture& p) {
+    return fmt::format("![{0}]({1}.svg)\n*{0}*\n\n", p.caption, p.name);
+}
+
+void write(const std::filesystem::path& path, const std::string& content) {
+    std::ofstream file(path, std::ios::binary);
+    file << content;
+    if (!file.flush()) throw std::runtime_error("cannot write " + path.string());
+}
+
+std::string text_of(const Band& b) {
+    if (b.low == b.high) return fmt::format("{:.8g}", b.low);
+    if (b.high == infinity) return fmt::format("{:.8g} or more", b.low);
+    if (b.low == -infinity) return fmt::format("{:.8g} or less", b.high);
+    return fmt::format("{:.8g} to {:.8g}", b.low, b.high);
+}
+
+std::string band_of(const Finding& f) {
+    return text_of(f.band) + (f.partly ? " (in part: " + text_of(*f.partly) + ")" : "");
+}
+
+std::string shown(double number) {
+    return std::isnan(number) ? "none" : fmt::format("{:.4g}", number);
+}
+
+std::string shown_number(const Finding& f) {
+    return shown(f.number) + (f.by_equation ? "; eq. (1): " + shown(*f.by_equation) : "");
+}
+
+/// Places in the paper with one of two verdicts, each once, in order.
+std::string places_of(const std::vector<Finding>& findings, ClaimVerdict a, ClaimVerdict b) {
+    std::vector<std::string> places;
+    for (const Finding& f : findings)
+        if ((f.verdict() == a || f.verdict() == b) &&
+            std::ranges::find(places, f.where) == places.end())
+            places.push_back(f.where);
+    return fmt::format("{}", fmt::join(places, "; "));
+}
+
+/// Number of findings per verdict, and the places that hold with one damping only.
+std::string summary(const std::vector<Finding>& findings) {
+    std::map<std::pair<bool, ClaimVerdict>, int> counts;
+    for (const Finding& f : findings) ++counts[{f.computed_record, f.verdict()}];
+    std::string text;
+    for (const auto& [kind, n] : counts)
+        text += fmt::format("- {}: {}\n", text_of(kind.second, kind.first), n);
+    return fmt::format(
+        "{}\nThe paper's two dampings contradict each other. Places that hold, or hold in part, "
+        "with the closed form alone: {}. With eq. (1) alone: {}.\n\n",
+        text,
+        places_of(findings, ClaimVerdict::by_closed_form, ClaimVerdict::partly_by_closed_form),
+        places_of(
+            findings, ClaimVerdict::by_equation_of_motion,
+            ClaimVerdict::partly_by_equation_of_motion));
+}
+
+}  // namespace
+
+std::string markdown_table(const std::vector<Finding>& findings) {
+    std::string text =
+        head({"place", "quantity", "paper", "here", "verdict", "number", "band", "because"});
+    for (const Finding& f : findings)
+        text += row(
+            {f.where, f.what, f.paper, f.here,
+             std::string(text_of(f.verdict(), f.computed_record)) +
+                 (f.as_expected() ? "" : " **(CHANGED)**"),
+             shown_number(f), band_of(f), f.because});
+    return text;
+}
+
+void write_markdown(const Report& report, const std::string& folder) {
+    const std::filesystem::path to(folder);
+    std::string text =
+        introduction + summary(report.findings) + glossary + markdown_table(report.findings);
+    for (const auto& part : report.body) {
+        if (const auto* picture = std::get_if<Picture>(&part))
+            write(
+                to / (picture->name + ".svg"),
+                plot::svg(picture->plots, picture_width, picture->height));
+        text += std::visit([](const auto& p) { return markdown(p); }, part);
+    }
+    write(to / "report.md", text);
+}
+
+namespace {
+
+constexpr Chapter* chapters[] = {
+    model,                // Table 1, eqs. (8) to (11)
+    strongly_modulated,   // Figs. 3 and 4
+    transient_exponents,  // Fig. 5
+    transfer_matrices,    // Figs. 6 to 9
+    table_2,
+    other_regimes,  // Figs. 10 to 14
+    table_3,
+    experiment,  // Table 4, Figs. 15 to 24
+    open_questions,
+};
+
+}  // namespace
+
+Report reproduce(const std::string& folder) {
+    // Created first, so that an invalid folder is reported before the long computation.
+    if (!folder.empty()) std::filesystem::create_directories(folder);
+    Report report;
+    RunCache runs;
+    for (Chapter* chapter : chapters) chapter(report, runs);
+    if (!folder.empty()) write_markdown(report, folder);
+    return report;
+}
+
+}  // namespace vines::report

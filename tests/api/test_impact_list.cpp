@@ -1,0 +1,197 @@
+// Identification from a list of impacts.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <numbers>
+#include <set>
+#include <sstream>
+
+#include "api/csv.hpp"
+#include "api/identify.hpp"
+#include "core/measurement/synthetic_record.hpp"
+#include "record_support.hpp"
+
+using namespace vines;
+using namespace vines::api;
+using namespace vines::test;
+
+TEST_CASE("parts of a record cannot be included for a list of impacts") {
+    const Json request =
+        parse_object(R"({"b":0.015,"impacts":{"tau":[1,2]},"include":["motion"]})");
+    CHECK(pointers(problem_of([&] {
+              read_identify_request(request);
+          })) == std::set<std::string>{"/include"});
+}
+
+TEST_CASE("a list without a complete chatter yields the hidden impacts and the sticking phases") {
+    const Json run =
+        simulated(read_simulate_request({{"preset", "fig20"}, {"b", 0.015}, {"R", 0.5}}), {});
+    const Json& all = run["impacts"];
+    Json strong = Json::object();
+    for (const char* name : {"tau", "x", "x_dot_before", "x_dot_after"})
+        for (std::size_t i = 0; i < all["tau"].size(); ++i)
+            if (std::abs(
+                    all["x_dot_after"][i].get<double>() - all["x_dot_before"][i].get<double>()) >
+                2e-5)
+                strong[name].push_back(all[name][i]);
+    const Json a =
+        identified(read_identify_request({{"preset", "fig20"}, {"b", 0.015}, {"impacts", strong}}));
+    const Json& sticking = a["sticking"];
+    REQUIRE(sticking["tau_start"].size() > 0);
+    for (std::size_t i = 0; i < sticking["tau_start"].size(); ++i) {
+        CHECK(sticking["tau_end"][i] > sticking["tau_start"][i]);
+        CHECK(sticking["impacts"][i] > 1);
+        double nearest = 1;
+        for (const Json& tau : run["sticking"]["tau_end"])
+            nearest = std::min(
+                nearest, std::abs(tau.get<double>() - sticking["tau_end"][i].get<double>()));
+        CHECK(nearest < 1e-6);
+    }
+    const Json& status = a["impacts"]["status"];
+    CHECK(std::count(status.begin(), status.end(), "hidden") > 0);
+    CHECK(a["impacts"]["tau"].size() < all["tau"].size());
+    CHECK(a["warnings"].dump().find("missing from the list were inserted") != std::string::npos);
+    CHECK(a["verdict"] == "chaotic");
+}
+
+TEST_CASE("impacts of a simulation with their states give its exponents") {
+    const Json a = simulated(
+        read_simulate_request(
+            parse_object(R"({"preset":"fig20","include":["impacts","exponents"]})")),
+        {});
+    const Json b =
+        identified(read_identify_request({{"preset", "fig20"}, {"impacts", a["impacts"]}}));
+    for (int k = 0; k < 4; ++k)
+        CHECK(
+            b["exponents"]["qr"]["final"][k].get<double>() ==
+            doctest::Approx(a["exponents"]["qr"]["final"][k].get<double>()).epsilon(1e-9));
+    Json broken = a["impacts"];
+    broken.erase("x_dot_after");
+    broken.erase("x_velocity_after");
+    broken["tau"][3] = 0;
+    broken["x"][2] = "a";
+    CHECK(pointers(problem_of([&] {
+              read_identify_request({{"preset", "fig20"}, {"impacts", broken}});
+          })) == std::set<std::string>{"/impacts/x_dot_after", "/impacts/x/2"});
+}
+
+TEST_CASE(
+    "listed impacts are judged like those of a record: momentum, R within [0, 1], missing "
+    "impacts") {
+    const Json run = simulated(
+        read_simulate_request(
+            {{"preset", "fig20"}, {"include", {"impacts", "exponents"}}, {"cycles", 200}}),
+        {});
+    Json impacts = run["impacts"];
+    const double epsilon = run["parameters"]["epsilon"];
+    const std::size_t n = impacts["tau"].size();
+    REQUIRE(n > 100);
+    std::vector<double> jumps;
+    for (std::size_t i = 0; i < n; ++i)
+        jumps.push_back(std::abs(
+            impacts["x_dot_after"][i].get<double>() - impacts["x_dot_before"][i].get<double>()));
+    std::sort(jumps.begin(), jumps.end());
+    const double typical = 0.5 * (jumps[(n - 1) / 2] + jumps[n / 2]);
+    // Momentum lost.
+    impacts["x_dot_after"][20] = impacts["x_dot_after"][20].get<double>() + 0.5 * typical;
+    // R doubled.
+    impacts["y_dot_after"][30] =
+        2 * impacts["y_dot_after"][30].get<double>() - impacts["x_dot_after"][30].get<double>();
+    const Json a = identified(read_identify_request({{"preset", "fig20"}, {"impacts", impacts}}));
+    const Json& error = a["impacts"]["momentum_error"];
+    CHECK(error[20].get<double>() == doctest::Approx(0.5).epsilon(0.01));
+    const double change =
+        impacts["y_dot_after"][30].get<double>() - run["impacts"]["y_dot_after"][30].get<double>();
+    CHECK(error[30].get<double>() == doctest::Approx(epsilon * change / typical).epsilon(0.01));
+    CHECK(std::abs(error[10].get<double>()) < 1e-9);
+    CHECK(a["impacts"]["status"][10] == "ok");
+    CHECK(a["impacts"]["status"][20].get<std::string>().find("momentum") == 0);
+    CHECK(a["impacts"]["status"][30].get<std::string>().find("R lies outside [0, 1]") == 0);
+    CHECK(a["exponents"]["stretches"]["tau_start"].size() == 3);
+    CHECK(a["exponents"]["sum_rule_residual"].get<double>() < 1e-12);
+    CHECK(a["verdict"] == "chaotic");
+
+    const auto thinned = [&](const auto& is_left) {
+        Json rest = Json::object();
+        for (const auto& [name, column] : run["impacts"].items())
+            for (std::size_t i = 0; i < n; ++i)
+                if (is_left(i)) rest[name].push_back(column[i]);
+        return identified(read_identify_request({{"preset", "fig20"}, {"impacts", rest}}));
+    };
+    // One in ten, sometimes seven in a row.
+    const Json few = thinned([](std::size_t i) { return i % 10 != 5; }),
+               gaps = thinned([](std::size_t i) { return i % 200 < 193; }),
+               many = thinned([](std::size_t i) { return i % 15 < 8; });
+    CHECK(few["verdict"] == "chaotic");
+    CHECK(few["warnings"].dump().find("missing from the list were inserted") != std::string::npos);
+    CHECK(few["impacts"]["tau"].size() <= n);
+    CHECK(few["impacts"]["tau"].size() + 2 >= n);
+    CHECK(
+        few["exponents"]["qr"]["final"][0].get<double>() ==
+        doctest::Approx(run["exponents"]["qr"]["final"][0].get<double>()).epsilon(0.01));
+    CHECK(gaps["verdict"] == "chaotic");
+    CHECK(gaps["warnings"].dump().find("did not fly freely") != std::string::npos);
+    CHECK(
+        gaps["exponents"]["duration"].get<double>() <
+        gaps["exponents"]["window"][1].get<double>() -
+            gaps["exponents"]["window"][0].get<double>());
+    CHECK(gaps["exponents"]["eigenvalues"]["window"][0] >= gaps["exponents"]["window"][0]);
+    CHECK(many["verdict"] == "not_decided");
+    CHECK(
+        many["verdict_reason"].get<std::string>().find(
+            "% of the impacts are left out or missing") != std::string::npos);
+}
+
+TEST_CASE("a list of impacts needs only quantities that a laboratory measures") {
+    const Json run = simulated(
+        read_simulate_request({{"preset", "fig20"}, {"include", {"impacts"}}, {"cycles", 200}}),
+        {});
+    const Json& all = run["impacts"];
+    Json few = {
+        {"time_s", all["time_s"]},
+        {"x", all["x"]},
+        {"x_velocity_before", all["x_velocity_before"]},
+        {"x_velocity_after", all["x_velocity_after"]}};
+    const Json whole = identified(read_identify_request({{"preset", "fig20"}, {"impacts", all}}));
+    Json system = run["parameters"]["si"];
+    const Json request = {{"m1", system["m1"]}, {"c1", system["c1"]}, {"k1", system["k1"]},
+                          {"m2", system["m2"]}, {"f", system["f"]},   {"b", run["parameters"]["b"]},
+                          {"impacts", few}};
+    const Json a = identified(read_identify_request(request));
+    CHECK(a["parameters"]["origin"]["F"] == "fitted to the impacts");
+    CHECK(
+        a["parameters"]["si"]["F"].get<double>() ==
+        doctest::Approx(system["F"].get<double>()).epsilon(1e-6));
+    CHECK(a["impacts"]["side"] == all["side"]);
+    for (const char* name : {"R", "y_dot_before"})
+        for (std::size_t i = 2; i < all["x"].size(); i += 17)
+            CHECK(
+                a["impacts"][name][i].get<double>() ==
+                doctest::Approx(whole["impacts"][name][i].get<double>()).epsilon(1e-6));
+    CHECK(a["verdict"] == whole["verdict"]);
+    CHECK(
+        a["exponents"]["qr"]["final"][0].get<double>() ==
+        doctest::Approx(whole["exponents"]["qr"]["final"][0].get<double>()).epsilon(1e-5));
+    // The impacts of an answer are a valid list.
+    Json again = request;
+    again["impacts"] = a["impacts"];
+    CHECK(
+        identified(read_identify_request(again))["exponents"]["qr"]["final"][0].get<double>() ==
+        doctest::Approx(a["exponents"]["qr"]["final"][0].get<double>()).epsilon(1e-9));
+    Json wrong = request;
+    wrong["f"] = 0.97 * system["f"].get<double>();
+    const Json off = identified(read_identify_request(wrong));
+    CHECK(off["warnings"].dump().find("no forcing at this") != std::string::npos);
+    CHECK(off["verdict"] == "not_decided");
+}
+
+TEST_CASE("impact_times_s is refused for a list of impacts") {
+    for (const char* system : {R"("b":0.015)", R"("preset":"fig20")"}) {
+        const Json request = parse_object(
+            std::string("{") + system + R"(,"impacts":{"tau":[1,2]},"impact_times_s":[0.1]})");
+        CHECK_THROWS_AS(read_identify_request(request), Problem);
+    }
+}

@@ -1,0 +1,302 @@
+// Order of waiting in the admission control. A thread that waits forever makes a test hang until
+// ctest's time limit; no test depends on the machine's speed.
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <thread>
+#include <vector>
+
+#include "http/admission_control.hpp"
+
+using namespace vines::http;
+
+namespace {
+
+/// Waits until holds() is true, for something that another thread is about to do.
+template <class Condition>
+void wait_until(Condition holds) {
+    while (!holds()) std::this_thread::yield();
+}
+
+}  // namespace
+
+TEST_CASE("foreground work queues up to its limit and is refused beyond it") {
+    AdmissionControl admission({.running = 1, .waiting = 1});
+    AdmissionControl::Slot first = admission.acquire();
+    REQUIRE(first);
+    std::atomic<bool> entered = false;
+    std::thread second([&] { entered = admission.acquire() != nullptr; });
+    wait_until([&] { return admission.foreground_waits(); });
+    CHECK(!admission.acquire());
+    CHECK(!entered);
+    first.reset();
+    second.join();
+    CHECK(entered);
+    CHECK(!admission.foreground_waits());
+    CHECK(admission.acquire());
+}
+
+TEST_CASE("no work waits if the queue's limit is 0") {
+    AdmissionControl admission({.running = 1, .waiting = 0});
+    const AdmissionControl::Slot slot = admission.acquire();
+    CHECK(slot);
+    CHECK(!admission.acquire());
+}
+
+TEST_CASE("background work that releases its slot gets it back after the foreground work") {
+    AdmissionControl admission({.running = 1});
+    const std::stop_source stop;
+    for (int round = 0; round < 200; ++round) {
+        AdmissionControl::Slot slot = admission.acquire_background(stop.get_token());
+        REQUIRE(slot);
+        std::atomic<bool> served = false;
+        std::thread foreground([&] {
+            const AdmissionControl::Slot own = admission.acquire();
+            served = own != nullptr;
+        });
+        wait_until([&] { return admission.foreground_waits(); });
+        slot.reset();
+        slot = admission.acquire_background(stop.get_token());
+        CHECK(slot);
+        CHECK(served);
+        foreground.join();
+    }
+}
+
+TEST_CASE("background work gets slots in the order of arrival") {
+    AdmissionControl admission({.running = 1});
+    const std::stop_source stop;
+    for (int round = 0; round < 200; ++round) {
+        AdmissionControl::Slot slot = admission.acquire_background(stop.get_token());
+        CHECK(!admission.background_waits());
+        std::atomic<bool> served = false;
+        std::thread other([&] {
+            const AdmissionControl::Slot own = admission.acquire_background(stop.get_token());
+            served = own != nullptr;
+        });
+        wait_until([&] { return admission.background_waits(); });
+        slot.reset();
+        slot = admission.acquire_background(stop.get_token());
+        CHECK(slot);
+        CHECK(served);
+        other.join();
+    }
+}
+
+TEST_CASE("stopped background work does not block later background work") {
+    AdmissionControl admission({.running = 1});
+    std::stop_source first_stop;
+    const std::stop_source stop;
+    AdmissionControl::Slot slot = admission.acquire_background(stop.get_token());
+    std::thread first([&] { CHECK(!admission.acquire_background(first_stop.get_token())); });
+    wait_until([&] { return admission.background_waits(); });
+    std::thread second([&] { CHECK(admission.acquire_background(stop.get_token())); });
+    first_stop.request_stop();
+    first.join();
+    slot.reset();
+    second.join();
+}
+
+TEST_CASE(
+    "when two slots become free at once, background work gets the one that foreground work "
+    "leaves") {
+    const std::stop_source stop;
+    for (int round = 0; round < 1000; ++round) {
+        AdmissionControl admission({.running = 2});
+        AdmissionControl::Slot first = admission.acquire(), second = admission.acquire();
+        std::atomic<bool> background_inside = false;
+        std::thread background(
+            [&] { background_inside = admission.acquire_background(stop.get_token()) != nullptr; });
+        std::thread foreground([&] {
+            const AdmissionControl::Slot own = admission.acquire();
+            wait_until([&] { return background_inside.load(); });  // keeps its slot
+        });
+        wait_until([&] { return admission.foreground_waits(); });
+        first.reset();
+        second.reset();
+        background.join();
+        foreground.join();
+        CHECK(background_inside);
+    }
+}
+
+TEST_CASE("a stop ends background work's wait, whether it comes before or during the wait") {
+    AdmissionControl admission({.running = 1});
+    const AdmissionControl::Slot held = admission.acquire();
+    for (int round = 0; round < 500; ++round) {  // stops at different times relative to the wait
+        std::stop_source stop;
+        std::atomic<bool> waiting = false, entered = true;
+        std::thread background([&] {
+            waiting = true;
+            entered = admission.acquire_background(stop.get_token()) != nullptr;
+        });
+        if (round % 2) wait_until([&] { return waiting.load(); });
+        if (round % 4 == 3) std::this_thread::sleep_for(std::chrono::microseconds(round));
+        stop.request_stop();
+        background.join();
+        CHECK(!entered);
+    }
+}
+
+TEST_CASE(
+    "stopping sweeps ends all background waits and admits no sweep; foreground work still "
+    "computes") {
+    for (int round = 0; round < 200; ++round) {
+        AdmissionControl admission({.running = 1, .sweeps = 2});
+        const AdmissionControl::SweepSlot sweep_slot = admission.acquire_sweep();
+        CHECK(sweep_slot);
+        AdmissionControl::Slot held = admission.acquire();
+        const std::stop_source stop;
+        std::atomic<int> waiting = 0, without = 0;
+        std::vector<std::thread> background;
+        for (int k = 0; k < 3; ++k)
+            background.emplace_back([&] {
+                ++waiting;
+                if (!admission.acquire_background(stop.get_token())) ++without;
+            });
+        wait_until([&] { return waiting == 3; });
+        admission.stop_sweeps();
+        for (std::thread& thread : background) thread.join();
+        CHECK(without == 3);
+        CHECK(admission.sweeps_stopped());
+        CHECK(!admission.acquire_sweep());
+        held.reset();
+        CHECK(admission.acquire());
+    }
+}
+
+TEST_CASE("a sweep's slot can be acquired again after its release") {
+    AdmissionControl admission({.sweeps = 1});
+    AdmissionControl::SweepSlot sweep_slot = admission.acquire_sweep();
+    CHECK(sweep_slot);
+    CHECK(!admission.acquire_sweep());
+    sweep_slot.reset();
+    CHECK(admission.acquire_sweep());
+}
+
+TEST_CASE("no wake-up and no slot is lost when foreground and background work compete") {
+    constexpr int slots = 2, rounds = 20000;
+    AdmissionControl admission({.running = slots});
+    const std::stop_source stop;
+    std::atomic<int> inside = 0, most = 0, background_done = 0, foreground_done = 0;
+    const auto compute = [&] {
+        const int now = ++inside;
+        for (int seen = most; now > seen && !most.compare_exchange_weak(seen, now);) {}
+        --inside;
+    };
+    std::vector<std::thread> threads;
+    for (int k = 0; k < 3; ++k)
+        threads.emplace_back([&] {
+            for (int round = 0; round < rounds; ++round) {
+                AdmissionControl::Slot slot = admission.acquire_background(stop.get_token());
+                if (admission.foreground_waits()) {
+                    slot.reset();
+                    slot = admission.acquire_background(stop.get_token());
+                }
+                if (!slot) continue;
+                compute();
+                ++background_done;
+            }
+        });
+    for (int k = 0; k < 3; ++k)
+        threads.emplace_back([&] {
+            for (int round = 0; round < rounds; ++round)
+                if (const AdmissionControl::Slot slot = admission.acquire()) {
+                    compute();
+                    ++foreground_done;
+                }
+        });
+    for (std::thread& thread : threads) thread.join();
+    CHECK(background_done == 3 * rounds);
+    CHECK(foreground_done == 3 * rounds);
+    CHECK(most <= slots);
+    CHECK(!admission.foreground_waits());
+}
+
+TEST_CASE("without a free slot foreground work starts in grace periods, up to the queue's limit") {
+    AdmissionControl admission({.running = 1, .waiting = 2});
+    const AdmissionControl::Attempt first = admission.try_acquire(),
+                                    second = admission.try_acquire(),
+                                    third = admission.try_acquire();
+    CHECK(first.slot);
+    CHECK(!first.grace);
+    CHECK(second.grace);
+    CHECK(third.grace);
+    CHECK(!second.slot);
+    const AdmissionControl::Attempt fourth = admission.try_acquire();
+    CHECK(!fourth.slot);
+    CHECK(!fourth.grace);
+    CHECK(!admission.acquire());
+    CHECK(admission.load().running == 1);
+}
+
+TEST_CASE("the number of grace periods per slot is limited; one that ends allows another") {
+    AdmissionControl admission({.running = 1, .waiting = 1000});
+    const AdmissionControl::Slot slot = admission.acquire();
+    std::vector<AdmissionControl::Attempt> begun;
+    for (AdmissionControl::Attempt try_acquire = admission.try_acquire(); try_acquire.grace;
+         try_acquire = admission.try_acquire())
+        begun.push_back(std::move(try_acquire));
+    CHECK(begun.size() == 4);
+    begun.pop_back();
+    CHECK(admission.try_acquire().grace);
+}
+
+TEST_CASE("work whose grace period is over joins a full queue, at its end") {
+    AdmissionControl admission({.running = 1, .waiting = 2});
+    AdmissionControl::Slot slot = admission.acquire();
+    AdmissionControl::Attempt try_acquire = admission.try_acquire();
+    REQUIRE(try_acquire.grace);
+    std::atomic<bool> first_entered = false, second_entered = false;
+    std::thread first([&] { first_entered = admission.acquire() != nullptr; });
+    wait_until([&] { return admission.load().waiting == 1; });
+    CHECK(!admission.acquire());
+    std::thread second([&] {
+        const AdmissionControl::Slot own = admission.acquire({}, std::move(try_acquire.grace));
+        second_entered = own && first_entered;
+    });
+    wait_until([&] { return admission.load().waiting == 2; });
+    CHECK(!admission.acquire());
+    slot.reset();
+    first.join();
+    second.join();
+    CHECK(second_entered);
+    CHECK(admission.try_acquire().slot);
+}
+
+TEST_CASE("a permit lasts for a grace period without a slot, then waits for one, or gives up") {
+    AdmissionControl admission({.running = 1});
+    AdmissionControl::Slot slot = admission.acquire();
+    std::atomic<bool> left = false;
+    Permit permit(admission, [&] { return left.load(); }, true);
+    REQUIRE(permit);
+    CHECK(admission.load().waiting == 0);
+    std::atomic<bool> renewed = false;
+    std::thread work([&] {
+        while (permit.waited().count() == 0 && permit.renew()) {}
+        renewed = permit.renew();
+    });
+    wait_until([&] { return admission.load().waiting == 1; });
+    slot.reset();
+    work.join();
+    CHECK(renewed);
+    CHECK(permit.waited().count() > 0);
+    CHECK(admission.load().running == 1);
+
+    Permit other(admission, [&] { return left.load(); }, true);
+    left = true;
+    while (other.renew()) {}
+    CHECK(!other);
+    CHECK(admission.load().waiting == 0);
+}
+
+TEST_CASE("a permit without a grace period waits for a slot") {
+    AdmissionControl admission({.running = 1, .waiting = 0});
+    AdmissionControl::Slot slot = admission.acquire();
+    CHECK(!Permit(admission, {}, true));
+    CHECK(!Permit(admission, {}, false));
+    slot.reset();
+    Permit permit(admission, {}, false);
+    CHECK(permit.renew());
+    CHECK(admission.load().running == 1);
+}

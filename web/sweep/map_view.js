@@ -1,0 +1,268 @@
+// A map: a sweep over two axes, or one slice of a sweep over three. A quantity is shown as colours
+// with a scale. Missing points take the colour of a coarser neighbour.
+
+import {rgb} from "../shared/colours.js";
+import {short} from "../shared/numbers.js";
+import {bestMotion, describe, quantityOf, regimeColour} from "../shared/quantities.js";
+import {lastUpTo} from "../shared/search.js";
+import {Viewport} from "../shared/viewport.js";
+import {barWidth, drawBar, endsOf, scaleOf} from "./colour_scale.js";
+import {ascending} from "./data.js";
+import {missingPoint, SweepPlot, SweepView} from "./sweep_view.js";
+
+/** Steps of the keys over the cells. */
+const moves = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
+
+const firstPass = 1 / 40; // fraction of the points after which the colour scale is fixed
+
+/** A colour as a pixel of an ImageData. */
+const opaque = ([r, g, b]) => ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0;
+
+export class MapView extends SweepView {
+  constructor(root, ...rest) {
+    super(root, [new Viewport(), new Viewport()], ...rest);
+    this.plots = [new MapPlot(this, "map")];
+  }
+
+  /** The cell at positions of a layer; its point is null until it is received. */
+  cell(data, k, l) {
+    const {start, best, slice} = this.choice;
+    const index = data.index(k, l, start, data.slice === null ? slice : 0);
+    const [x, y] = data.axes;
+    const at = [x.at[k], y.at[l]];
+    return {
+      p: data.points[index],
+      data,
+      index,
+      best,
+      k,
+      l,
+      at,
+      value: x.values[k],
+      height: y.values[l],
+    };
+  }
+
+  /** Cells of a layer with a point. */
+  *cells(data) {
+    const [first, second] = data.axes;
+    for (let l = 0; l < second.at.length; ++l)
+      for (let k = 0; k < first.at.length; ++k) {
+        const cell = this.cell(data, k, l);
+        if (cell.p) yield cell;
+      }
+  }
+
+  /** The layers of the visible slice, the coarsest first. */
+  over() {
+    return this.layers.over(this.choice.slice);
+  }
+
+  places() {
+    return this.over().flatMap((data) => [...this.cells(data)]);
+  }
+
+  /** The finest cell at a place, preferably one with a point. */
+  nearest({at}) {
+    let found = null;
+    for (const data of this.over()) {
+      const [k, l] = at.map((place, i) => positionAt(data.axes[i], place));
+      if (k < 0 || l < 0) continue;
+      const cell = this.cell(data, k, l);
+      if (cell.p || !found) found = cell;
+    }
+    return found;
+  }
+
+  rowsOf({p, data, value, height}) {
+    const [first, second] = data.axes;
+    const places = [this.labels.place(first, value), this.labels.place(second, height)];
+    return [...places, ...(p ? describe(p, this.labels.where(data)) : missingPoint)];
+  }
+
+  /** Moves the tooltip to the neighbouring cell; it starts in the middle. */
+  move(key) {
+    const way = moves[key];
+    if (!way) return false;
+    const middle = ({range: [from, to]}) => (from + to) / 2;
+    const from = this.nearest({at: this.current?.at ?? this.viewports.map(middle)});
+    const beyond = (at, i) => {
+      const {borders} = from.data.axes[i];
+      const [first, last] = this.viewports[i].full;
+      const border = borders[lastUpTo(borders, at) + (way[i] > 0 ? 1 : 0)];
+      return way[i] ? border + way[i] * 1e-9 * (last - first) : at;
+    };
+    const next = this.current && this.nearest({at: from.at.map(beyond)});
+    this.goTo(...(next ?? from).at);
+    return true;
+  }
+}
+
+class MapPlot extends SweepPlot {
+  drawn({height}) {
+    return height;
+  }
+
+  quantity() {
+    return quantityOf(this.view.choice.map, this.view.data);
+  }
+
+  /** The motion shown: of several starts the worst or the best. */
+  motion(p) {
+    return this.view.choice.best ? bestMotion(p) : p;
+  }
+
+  /** The value drawn for a point; null if it has none. */
+  valueOf(p) {
+    return p.error ? null : (this.quantity().of(this.motion(p)) ?? null);
+  }
+
+  /** All values of the base layer. */
+  values() {
+    return [...this.view.cells(this.view.data)]
+      .map(({p}) => this.valueOf(p))
+      .filter((v) => v !== null);
+  }
+
+  /**
+   * The colour scale; null for categories. It is fixed for each quantity once a coarse picture of
+   * the whole map exists, and holds for all slices and starts.
+   */
+  scale() {
+    const quantity = this.quantity();
+    if (quantity.categories) return null;
+    const {layers, data, choice} = this.view;
+    const chosen = layers.ends[choice.map];
+    if (chosen) return scaleOf(quantity, chosen);
+    const values = this.values();
+    const ends = endsOf(quantity, values);
+    const seen = data.complete || data.received > Math.max(firstPass * data.total, 50);
+    if (seen && values.length) layers.ends[choice.map] = ends;
+    return scaleOf(quantity, ends);
+  }
+
+  prepare(width, height) {
+    if (!this.view.layers) return null;
+    const scale = this.scale();
+    return {scale, frame: this.frameOf(width, height, scale ? barWidth : 12)};
+  }
+
+  paint(c, {frame, scale}) {
+    frame.draw(c);
+    const {left, top} = frame.box;
+    c.imageSmoothingEnabled = false;
+    c.drawImage(this.image(frame, this.colours(scale)), left, top, frame.width, frame.height);
+    if (scale) drawBar(c, frame, scale, this.quantity().label);
+  }
+
+  /** Returns a function that gives the pixel of a point. */
+  colours(scale) {
+    const colourOf = (v) => (scale ? scale.at(v) : rgb(regimeColour(v)));
+    return (p) => {
+      const v = this.valueOf(p);
+      return opaque(v === null ? rgb("nothing") : colourOf(v));
+    };
+  }
+
+  /** All layers at the resolution of the screen. */
+  image(frame, colourOf) {
+    const width = Math.round(frame.width * devicePixelRatio);
+    const height = Math.round(frame.height * devicePixelRatio);
+    const image = new ImageData(width, height);
+    const pixels = new Uint32Array(image.data.buffer);
+    for (const data of this.view.over()) {
+      const [first, second] = data.axes;
+      const columns = positions(first, this.viewport.range, width);
+      const rows = positions(second, this.across.range, height).reverse();
+      const cells = this.pixels(data, colourOf);
+      for (let j = 0; j < height; ++j)
+        for (let i = 0; i < width; ++i) {
+          const inside = rows[j] >= 0 && columns[i] >= 0;
+          const pixel = inside && cells[rows[j] * first.at.length + columns[i]];
+          if (pixel) pixels[j * width + i] = pixel;
+        }
+    }
+    const canvas = Object.assign(document.createElement("canvas"), {width, height});
+    canvas.getContext("2d").putImageData(image, 0, 0);
+    return canvas;
+  }
+
+  /** A pixel for each cell of a layer; 0 without a point. */
+  pixels(data, colourOf) {
+    const [first, second] = data.axes;
+    const n = first.at.length;
+    const pixels = new Uint32Array(n * second.at.length);
+    for (const {p, k, l} of this.view.cells(data)) pixels[l * n + k] = colourOf(p);
+    // Only the base layer is filled: below a finer layer the coarser one shows through.
+    if (!data.complete && data === this.view.data) fill(pixels, first.order, second.order);
+    return pixels;
+  }
+
+  columns() {
+    return {
+      [this.quantity().label || "regime"]: (p) => this.valueOf(p),
+      regime: (p) => this.motion(p).regime ?? "–",
+    };
+  }
+
+  /** Slice and start shown, where there are several. */
+  shown() {
+    const {slice, start, best} = this.view.choice;
+    const {axes, defaultSet, starts} = this.view.data;
+    const third = axes[2];
+    const of = [
+      third && this.view.labels.fields({[third.parameter]: third.values[slice]}),
+      defaultSet && `${best ? "best" : "worst"} start`,
+      starts > 1 && `start ${start + 1}`,
+    ];
+    return of
+      .filter(Boolean)
+      .map((text) => `, ${text}`)
+      .join("");
+  }
+
+  about() {
+    const {title} = this.quantity();
+    const scale = this.scale();
+    const of = this.shown();
+    const [first, second] = this.view.data.axes.map((a) => this.view.labels.label(a.parameter));
+    const colours = scale ? `, colours from ${scale.ends.map(short).join(" to ")}` : "";
+    return {
+      title: `Map of ${title}${of}`,
+      summary: `${title} over ${first} and ${second}${of}${colours}`,
+    };
+  }
+}
+
+/** Index of the cell at a place; -1 outside the axis. */
+function positionAt({borders}, at) {
+  if (at < borders[0] || at > borders.at(-1)) return -1;
+  return Math.min(lastUpTo(borders, at), borders.length - 2);
+}
+
+/** Index of the cell at each pixel of a visible range. */
+function positions(axis, [from, to], pixels) {
+  const step = (to - from) / pixels;
+  return Int32Array.from({length: pixels}, (_, i) => positionAt(axis, from + (i + 0.5) * step));
+}
+
+/** Step of the coarsest grid along an axis of n values; the service starts with that grid. */
+const coarsest = (n) => 2 ** Math.floor(Math.log2(Math.max(Math.floor(n / 8), 1)));
+
+/**
+ * Gives missing cells the colour of the preceding point on a coarser grid, in the order in which
+ * the service computes. columns, rows: index of each position in the requested axis.
+ */
+function fill(cells, columns, rows) {
+  const n = columns.length;
+  const [column, row] = [ascending(columns), ascending(rows)]; // position of each entry
+  const [widest, highest] = [coarsest(n), coarsest(rows.length)];
+  const known = cells.slice();
+  for (let l = 0; l < rows.length; ++l)
+    for (let k = 0; k < n; ++k)
+      for (let step = 2; !cells[l * n + k] && step <= Math.max(widest, highest); step *= 2) {
+        const [across, up] = [Math.min(step, widest), Math.min(step, highest)];
+        const from = row[rows[l] - (rows[l] % up)] * n + column[columns[k] - (columns[k] % across)];
+        cells[l * n + k] = known[from];
+      }
+}

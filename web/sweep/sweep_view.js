@@ -1,0 +1,264 @@
+// Base of the views of a sweep, over one axis or two: its plots share viewports, choices and a
+// tooltip, which follows the mouse, a tap or the keys.
+import {$, button, element} from "../shared/dom.js";
+import {addExportButton} from "../shared/export_dialog.js";
+import {Frame} from "../shared/frame.js";
+import {ZoomablePlot} from "../shared/zoomable_plot.js";
+import {sameAxis, startNote} from "./axis_labels.js";
+
+/** Pressing the button must not move the focus, which would hide the tooltip before the click. */
+const buttonFor = ({label, run}) =>
+  button(label, run, {onmousedown: (event) => event.preventDefault()});
+
+export class Tip {
+  constructor(container) {
+    this.container = container;
+    this.node = element("div", {className: "tip", hidden: true, ariaLive: "polite"});
+    container.append(this.node);
+  }
+
+  /**
+   * rows: [term, value]; left, top: px in the container; act: {label, run}, a button for keyboard
+   * and touch.
+   */
+  show(left, top, rows, note, act) {
+    const entry = ([term, value]) => [element("dt", {}, term), element("dd", {}, value)];
+    const list = element("dl", {}, ...rows.flatMap(entry));
+    const last = act ? buttonFor(act) : element("p", {}, note);
+    this.node.replaceChildren(list, last);
+    this.node.hidden = false;
+    this.node.classList.toggle("pinned", Boolean(act));
+    const {offsetWidth: width, offsetHeight: height} = this.node;
+    const gap = 14;
+    const room = this.container.clientWidth;
+    const beside = left + gap + width <= room ? left + gap : left - gap - width;
+    const lowest = this.container.clientHeight - height;
+    this.node.style.left = `${Math.max(0, Math.min(beside, room - width))}px`;
+    this.node.style.top = `${Math.max(0, Math.min(top - height / 2, lowest))}px`;
+  }
+
+  hide() {
+    this.node.hidden = true;
+  }
+}
+
+const zooms = {"+": 1.5, "=": 1.5, "-": 1 / 1.5};
+
+/** Tooltip of a missing point. */
+export const missingPoint = [["", "not computed yet"]];
+
+/**
+ * A plot of a SweepView. Subclasses implement about(): {title, summary}; drawn(place): the height
+ * of a place, null if it has several or none; columns(): numbers of a point, {name: of(p)}.
+ */
+export class SweepPlot extends ZoomablePlot {
+  /** name: in the ids of its figure and container. */
+  constructor(view, name) {
+    super($(`plot-sweep-${name}`), ...view.viewports);
+    this.view = view;
+    addExportButton($(`figure-sweep-${name}`), this, () => ({
+      ...this.about(),
+      caption: view.caption(),
+      name: `sweep-${name}`,
+    }));
+    this.over.addEventListener("pointermove", (event) => {
+      const mouse = event.pointerType === "mouse" && !event.buttons;
+      if (mouse && this.viewport.cursor !== null)
+        view.showTip({plot: this, at: view.viewports.map(({cursor}) => cursor)});
+    });
+  }
+
+  /** beside: px at the right. */
+  frameOf(width, height, beside) {
+    const {labels, data, viewports} = this.view;
+    const [x, y = this.y()] = viewports.map(({range}, i) => labels.frameAxis(data.axes[i], range));
+    return new Frame(width, height, x, y, beside);
+  }
+
+  click(x, _, {y, top, touch}) {
+    const at = [x, y];
+    if (touch) this.view.showTip({plot: this, at, act: true});
+    else this.view.choose({plot: this, at, top});
+  }
+
+  /** Moves the tooltip with the place; one with a button stays where it was opened. */
+  refresh() {
+    super.refresh();
+    const {current} = this.view;
+    if (current?.plot === this && !current.act) this.view.showTip(current);
+  }
+
+  cursorText() {
+    return "";
+  }
+
+  /** The rows of a point in the table. */
+  rows(p) {
+    return [Object.values(this.columns()).map((of) => of(p))];
+  }
+
+  /** {names, columns} of the visible points. */
+  numbers() {
+    const {labels, data, viewports, several} = this.view;
+    const shown = data.axes.slice(0, viewports.length).map(({parameter}) => parameter);
+    const names = shown.map((parameter) => labels.label(parameter));
+    if (several) names.push("start");
+    names.push(...Object.keys(this.columns()));
+    const rows = this.view.visiblePlaces().flatMap(({p, value, height, start}) => {
+      const at = shown.map((parameter, i) => labels.number(parameter, i ? height : value));
+      return this.rows(p).map((row) => [...at, ...(several ? [start + 1] : []), ...row]);
+    });
+    return {names, columns: names.map((_, i) => rows.map((row) => row[i]))};
+  }
+}
+
+/**
+ * Subclasses have plots: [SweepPlot]; places(): received points as {at: place on each axis, value
+ * and height: the same as values, p, data, index}; nearest({plot, at, top}): the point nearest to
+ * a place, top: the clicked height in px or undefined; rowsOf(place): [term, value]; and move(key):
+ * goes to another place, false for other keys. `current` is the place of the tooltip: {plot, at,
+ * act: with a button}.
+ */
+export class SweepView {
+  /**
+   * root: contains the plots and receives the keys; labels: texts of the axes; open({data, index,
+   * best}): called for a chosen point.
+   */
+  constructor(root, viewports, labels, open) {
+    Object.assign(this, {root, viewports, labels, open, layers: null, current: null});
+    this.tip = new Tip(root);
+    root.onpointerleave = (event) => {
+      if (event.pointerType === "mouse") this.hideTip();
+    };
+    root.onkeydown = (event) => {
+      if (event.target === root && this.key(event.key)) event.preventDefault();
+    };
+    root.addEventListener("focusout", (event) => {
+      if (!root.contains(event.relatedTarget)) this.hideTip();
+    });
+  }
+
+  get data() {
+    return this.layers?.base;
+  }
+
+  /** Shows another sweep, given as Layers. The zoom is kept if the axes are the same. */
+  show(layers) {
+    const fresh = this.viewports.some((_, i) => !sameAxis(layers.base.axes[i], this.data?.axes[i]));
+    this.layers = layers;
+    this.hideTip();
+    for (const [i, viewport] of this.viewports.entries()) {
+      const {borders} = this.data.axes[i];
+      viewport.span(borders[0], borders.at(-1), undefined, fresh);
+    }
+  }
+
+  /**
+   * Draws received points or another choice: {coordinate: of the section, quantity: of the lowest
+   * plot, map: quantity of a map, start, best: best motion in place of the worst, slice: position
+   * on the third axis}.
+   */
+  refresh(choice) {
+    this.choice = choice;
+    for (const plot of this.plots) plot.refresh();
+  }
+
+  /** The visible places. */
+  visiblePlaces() {
+    const inside = ({range: [from, to]}, at) => at >= from && at <= to;
+    return this.places().filter(({at}) =>
+      this.viewports.every((viewport, i) => inside(viewport, at[i])),
+    );
+  }
+
+  /** Describes the plots for screen readers. */
+  describe() {
+    for (const plot of this.plots) {
+      const {title, summary} = plot.about();
+      plot.container.setAttribute("role", "img");
+      plot.container.setAttribute("aria-label", `${title}: ${summary}`);
+    }
+  }
+
+  /** Subtitle of an exported picture: the shared fields. */
+  caption() {
+    const {base, axes, ...run} = this.data.request;
+    return this.labels.fields({...base, ...run});
+  }
+
+  /**
+   * Ends of the visible ranges as values, rounded to four digits of the range; empty for the full
+   * range.
+   */
+  ends() {
+    if (!this.viewports.some(({zoomed}) => zoomed)) return [];
+    return this.viewports.flatMap(({range}, i) => {
+      const ends = range.map(this.data.axes[i].from);
+      const digits = 4 - Math.floor(Math.log10(ends[1] - ends[0]));
+      return ends.map((v) => Number(v.toFixed(Math.max(digits, 0))));
+    });
+  }
+
+  /** Zooms to such ends; without any, resets the zoom. */
+  zoomTo(ends) {
+    for (const [i, viewport] of this.viewports.entries()) {
+      if (!ends.length && viewport.changed) viewport.reset();
+      const [from, to] = ends.slice(2 * i, 2 * i + 2).map(this.data.axes[i].to);
+      if (from < to) viewport.zoom(from, to);
+    }
+  }
+
+  key(key) {
+    if (key in zooms) for (const viewport of this.viewports) viewport.zoomAbout(zooms[key]);
+    else if (key === "0") for (const viewport of this.viewports) viewport.reset();
+    else if (key === "Enter") this.choose(this.current);
+    else if (key === "Escape") this.hideTip();
+    else return this.move(key);
+    return true;
+  }
+
+  /** Shows the tooltip of a place and scrolls to it. */
+  goTo(...at) {
+    for (const [i, viewport] of this.viewports.entries()) viewport.reveal(at[i]);
+    for (const [i, viewport] of this.viewports.entries()) viewport.point(at[i], "key");
+    this.showTip({plot: this.plots.find(({size}) => size.width), at, act: true});
+  }
+
+  /** Note how the simulation of a place starts. */
+  startOf({data}) {
+    return startNote(data);
+  }
+
+  choose(current) {
+    const place = current && this.nearest(current);
+    if (place) this.open(place);
+  }
+
+  showTip(current) {
+    const {plot, act} = current;
+    const place = this.nearest(current);
+    if (!place || !plot.frame) return;
+    this.current = current;
+    for (const each of this.plots) each.light(place.value, each.drawn(place));
+    const {frame} = plot;
+    const box = this.root.getBoundingClientRect();
+    const over = plot.over.getBoundingClientRect();
+    const down =
+      place.height === undefined ? frame.height / 2 : frame.py(place.height) - frame.box.top;
+    this.tip.show(
+      over.left - box.left + frame.px(place.value) - frame.box.left,
+      over.top - box.top + down,
+      this.rowsOf(place),
+      `Click: simulate it${this.startOf(place)}`,
+      act && {label: "Simulate this point", run: () => this.open(place)},
+    );
+  }
+
+  /** Hides tooltip, rings and cursor. */
+  hideTip() {
+    this.current = null;
+    this.tip.hide();
+    for (const plot of this.plots) plot.light();
+    for (const viewport of this.viewports) if (viewport.cursor !== null) viewport.point(null);
+  }
+}
