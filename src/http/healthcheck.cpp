@@ -29,8 +29,8 @@ bool is_healthy(const Target& target) {
 
 Command add_healthcheck(CLI::App& app) {
     const auto target = std::make_shared<Target>();
-    CLI::App* command = app.add_subcommand(
-        "healthcheck", "check a running service: exit code 0 if healthy");
+    CLI::App* command =
+        app.add_subcommand("healthcheck", "check a running service: exit code 0 if healthy");
     command->add_option("--host", target->host, "address of the service")->capture_default_str();
     command->add_option("--port", target->port, "port of the service")
         ->envname("VINES_PORT")
