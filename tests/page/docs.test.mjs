@@ -69,7 +69,7 @@ test("an operation shows each field with its type, range, default and meaning, a
     [...tr.cells].map((cell) => cell.textContent),
   );
   assert.deepEqual(row.slice(0, 2), ["b", "number, 1e-9 to 1000, default 0.022"]);
-  assert.match(row[2], /^half-width of the cavity/);
+  assert.match(row[2], /^clearance: half-width of the cavity/);
   const fields = await page.$$eval('tr[id^="simulate_by_query."]', (rows) => rows.length);
   assert.equal(fields, parameters.length);
   await page.getByText("Other statuses").first().click();
