@@ -131,11 +131,12 @@ FieldTable make_axis_fields() {
     };
 }
 
-template <class AnalysisRequest>
-FieldTable of_simulate(AnalysisRequest wanted) {
+/// The fields of /v1/simulate for which keep(field) is true.
+template <class Predicate>
+FieldTable simulate_fields_where(Predicate keep) {
     FieldTable table;
     for (const Field& f : simulate_fields())
-        if (wanted(f)) table.push_back(f);
+        if (keep(f)) table.push_back(f);
     return table;
 }
 
@@ -147,7 +148,7 @@ const FieldTable& sweep_fields() {
 }
 
 const FieldTable& sweep_base_fields() {
-    static const FieldTable table = of_simulate([](const Field& f) {
+    static const FieldTable table = simulate_fields_where([](const Field& f) {
         return is_of_system(f) || f.group == "start" || f.name == "max_impacts";
     });
     return table;
@@ -159,7 +160,8 @@ const FieldTable& axis_fields() {
 }
 
 const FieldTable& start_fields() {
-    static const FieldTable table = of_simulate([](const Field& f) { return f.group == "start"; });
+    static const FieldTable table =
+        simulate_fields_where([](const Field& f) { return f.group == "start"; });
     return table;
 }
 

@@ -29,7 +29,7 @@ struct Capture {
     /// Time from which the run stays near the orbit (or later, if the search ran out of time).
     /// Empty if the run ends before that; continuing it showed where it goes.
     std::optional<double> tau;
-    /// By qr, from the run's first impact to tau or to its end; NaN with too few impacts.
+    /// Exponents by qr from the first impact to tau or to the end; NaN with too few impacts.
     Exponents before;
     Exponents after;  ///< from the Floquet multipliers
     /// The run was chaotic before the capture, by verdict_by_exponents(), and not just settling.
