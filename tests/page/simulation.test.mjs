@@ -710,66 +710,63 @@ test("a page of an allowed origin can embed the plots; a page of another origin 
   browser.complaints.length = 0; // the refused frame
 });
 
-test("the page asks once for a required key, again after a wrong one, and keeps it", async (t) => {
+/**
+ * Runs use(page, url, enterKey) with a new page and a service that requires the key
+ * "key-of-the-laboratory"; the browser must report nothing but 401.
+ */
+async function withRequiredKey(t, use) {
   const folder = await mkdtemp(join(tmpdir(), "vines-key-"));
   t.after(() => rm(folder, {recursive: true}));
   const file = join(folder, "keys");
   await writeFile(file, "key-of-the-laboratory\n");
   const own = await startService(["--api-key-file", file]);
   const page = await browser.context.newPage();
-  await page.goto(own.url);
-  const show = async (key) => {
+  await use(page, own.url, async (key) => {
     await page.fill("dialog[open] input[type=password]", key);
     await page.keyboard.press("Enter");
-  };
-  await show("no-key-of-the-laboratory");
-  await page.waitForSelector("dialog[open]:has-text('does not accept this key')");
-  await show("key-of-the-laboratory");
-  await drawn(page, 1);
-  assert.equal(await page.$("dialog[open]"), null);
-  await page.reload();
-  await drawn(page, 1);
-  assert.doesNotMatch(page.url(), /laboratory/);
+  });
   await page.close();
   await own.stop();
   const refusals = browser.complaints.splice(0); // Chromium logs each 401
   for (const text of refusals) assert.match(text, /401/);
-});
+}
 
-test("a key typed while another request is pending is used for that request", async (t) => {
-  const folder = await mkdtemp(join(tmpdir(), "vines-key-"));
-  t.after(() => rm(folder, {recursive: true}));
-  const file = join(folder, "keys");
-  await writeFile(file, "key-of-the-laboratory\n");
-  const own = await startService(["--api-key-file", file]);
-  const page = await browser.context.newPage();
-  let release;
-  const released = new Promise((resolve) => {
-    release = resolve;
-  });
-  // The request for the presets with the wrong key is answered after the right key was typed.
-  await page.route("**/v1/presets", async (route) => {
-    if (/wrong/.test(await route.request().headerValue("authorization"))) await released;
-    await route.continue();
-  });
-  await page.goto(own.url);
-  for (const key of ["wrong-key-of-the-laboratory", "key-of-the-laboratory"]) {
-    await page.fill("dialog[open] input[type=password]", key);
-    await page.keyboard.press("Enter");
-    if (/wrong/.test(key))
-      await page.waitForSelector("dialog[open]:has-text('does not accept this key')");
-  }
-  await page.waitForSelector("dialog[open]", {state: "detached"});
-  release();
-  await page.waitForFunction(
-    () => document.getElementById("results").dataset.done || document.querySelector("dialog[open]"),
-  );
-  assert.equal(await page.locator("dialog[open]").count(), 0, "no further question");
-  await page.close();
-  await own.stop();
-  const refusals = browser.complaints.splice(0); // Chromium logs each 401
-  for (const text of refusals) assert.match(text, /401/);
-});
+test("the page asks once for a required key, again after a wrong one, and keeps it", (t) =>
+  withRequiredKey(t, async (page, url, enterKey) => {
+    await page.goto(url);
+    await enterKey("no-key-of-the-laboratory");
+    await page.waitForSelector("dialog[open]:has-text('does not accept this key')");
+    await enterKey("key-of-the-laboratory");
+    await drawn(page, 1);
+    assert.equal(await page.$("dialog[open]"), null);
+    await page.reload();
+    await drawn(page, 1);
+    assert.doesNotMatch(page.url(), /laboratory/);
+  }));
+
+test("a key typed while another request is pending is used for that request", (t) =>
+  withRequiredKey(t, async (page, url, enterKey) => {
+    let release;
+    const released = new Promise((resolve) => {
+      release = resolve;
+    });
+    // The request for the presets with the wrong key is answered after the right key was typed.
+    await page.route("**/v1/presets", async (route) => {
+      if (/wrong/.test(await route.request().headerValue("authorization"))) await released;
+      await route.continue();
+    });
+    await page.goto(url);
+    await enterKey("wrong-key-of-the-laboratory");
+    await page.waitForSelector("dialog[open]:has-text('does not accept this key')");
+    await enterKey("key-of-the-laboratory");
+    await page.waitForSelector("dialog[open]", {state: "detached"});
+    release();
+    await page.waitForFunction(
+      () =>
+        document.getElementById("results").dataset.done || document.querySelector("dialog[open]"),
+    );
+    assert.equal(await page.locator("dialog[open]").count(), 0, "no further question");
+  }));
 
 test("a printed page shows the results without the controls", async () => {
   const page = await still("?preset=fig9");
