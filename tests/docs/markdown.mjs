@@ -15,8 +15,8 @@ const cellsOf = (line) =>
     .map((cell) => cell.trim());
 
 /**
- * {argument, lines} of each marker `<!-- kind -->` or `<!-- kind: argument -->`; lines: all lines after
- * it.
+ * {argument, lines} for each marker `<!-- kind -->` or `<!-- kind: argument -->`. lines: all lines
+ * after the marker.
  */
 function marked(markdown, kind) {
   const marker = new RegExp(`^<!-- ${kind}(?:: (.*?))? ?-->$`);
