@@ -139,7 +139,7 @@ struct ShiftedRegime {
     int figure;
     RegimeType type;
     long impacts;
-    double b_paper, b_here;  ///< m
+    double b_paper, b_other;  ///< m
 };
 
 std::string described(const Regime& r) {
@@ -199,22 +199,22 @@ void report_paper_b(
 
 void figures_12_and_13(Report& report, RunCache& runs) {
     constexpr ShiftedRegime both[] = {
-        {.figure = 12, .type = RegimeType::IV, .impacts = 2, .b_paper = 0.008, .b_here = 0.0065},
-        {.figure = 13, .type = RegimeType::V, .impacts = 3, .b_paper = 0.004, .b_here = 0.0046}};
+        {.figure = 12, .type = RegimeType::IV, .impacts = 2, .b_paper = 0.008, .b_other = 0.0065},
+        {.figure = 13, .type = RegimeType::V, .impacts = 3, .b_paper = 0.004, .b_other = 0.0046}};
     for (const ShiftedRegime& e : both) {
         report.heading(fmt::format(
             "Fig. {}: Type {}, b = {:g} mm in the paper", e.figure, name_of(e.type),
             1000 * e.b_paper));
         const PaperRun &at_paper_b = runs.paper_run(e.b_paper),
                        &by_equation = runs.paper_run(e.b_paper, Damping::equation_of_motion),
-                       &at_other_b = runs.paper_run(e.b_here);
+                       &at_other_b = runs.paper_run(e.b_other);
         report_paper_b(report, e, at_paper_b, by_equation);
         const Exponents lambda = exponents_of(at_other_b);
         report.paragraph(fmt::format(
             "At b = {:g} mm the response is {}; its exponents are {} ({}), lambda2 over lambda3 "
             "{:.2f}. At the paper's own b the largest exponent of the motion found there is "
             "{:.4f}, by eq. (1) {:.4f}.",
-            1000 * e.b_here, described(*at_other_b.run.regime), in_words(lambda),
+            1000 * e.b_other, described(*at_other_b.run.regime), in_words(lambda),
             at_other_b.run.regime->orbit ? "Floquet multipliers" : "qr", lambda[1] / lambda[2],
             exponents_of(at_paper_b)[0], exponents_of(by_equation)[0]));
         show(report, at_other_b, e.figure, late_tau);

@@ -64,9 +64,7 @@ TEST_CASE("contacts streamed one by one equal those of the list") {
 }
 
 TEST_CASE(
-    "moving_z is the contacts per cycle over ten cycles; cycles_with[k] is the fraction of cycles "
-    "with "
-    "k contacts") {
+    "moving_z averages contacts over ten cycles; cycles_with is their distribution by cycle") {
     std::mt19937_64 engine(32);
     for (int n = 0; n < 30; ++n) {
         const Parameters p = random_system_near_table1(engine);
@@ -106,7 +104,7 @@ TEST_CASE("bounded lists hold every n-th moving_z and the last synchronised inte
     record(p, default_state(p), 2000, 1000000, {&all, &thinned, &none});
     for (Rhythm* rhythm : {&all, &thinned, &none}) rhythm->finish({0, 2000});
     const CycleCounts whole = all.cycle_counts(), few = thinned.cycle_counts();
-    // Smallest stride with which the list has at most `most` entries.
+    // With this stride the list has at most `most` entries.
     const std::size_t every = whole.moving_z.size() / most + 1;
     REQUIRE(few.moving_z.size() == (whole.moving_z.size() + every - 1) / every);
     for (std::size_t k = 0; k < few.moving_z.size(); ++k) {
@@ -131,9 +129,7 @@ TEST_CASE("bounded lists hold every n-th moving_z and the last synchronised inte
 }
 
 TEST_CASE(
-    "positions are returned in order, rounded down to 1/parts of a cycle, also after pauses of "
-    "many "
-    "cycles") {
+    "positions are returned in order, rounded down to 1/parts of a cycle, also after pauses") {
     CyclePositions positions;
     const std::vector<double> cycles = {0, 0, 0.25, 0.5, 1.49, 1.5, 5.125, 1000, 2e6};
     for (const double at : cycles) positions.add(at);
