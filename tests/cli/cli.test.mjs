@@ -86,27 +86,48 @@ test("verify reports malformed, repeated and modified answers without an excepti
     return `${JSON.stringify(fields)}\n`;
   };
   const cases = [
-    [answer + answer, 2, /one unmodified/],
-    [answer.replace('{"', '{"a":[,"'), 2, /one unmodified/],
-    [`${answer}}`, 2, /not end with/],
-    [`${answer}and more`, 2, /not end with/],
-    [answer.replace('"provenance":{', '"provenance":{"route":"/x",'), 2, /not end with/],
-    [whole((a) => Object.assign(a, {version: 7})), 1, /the answer was modified/],
-    [whole((a) => Object.assign(a, {status: []})), 1, /the answer was modified/],
-    [whole((a) => Object.assign(a.status, {reason: 7})), 1, /the answer was modified/],
-    [`{"a":${"[".repeat(100000)}${"]".repeat(100000)},${answer.slice(1)}`, 2, /one unmodified/],
-    [`{"a":[[["]\\"["]]],${answer.slice(1)}`, 1, /recomputed: a is missing/],
+    ["two answers", answer + answer, 2, /one unmodified/],
+    ["malformed JSON", answer.replace('{"', '{"a":[,"'), 2, /one unmodified/],
+    ["a second brace", `${answer}}`, 2, /not end with/],
+    ["text after the answer", `${answer}and more`, 2, /not end with/],
     [
+      "a repeated key in the provenance",
+      answer.replace('"provenance":{', '"provenance":{"route":"/x",'),
+      2,
+      /not end with/,
+    ],
+    ["version is a number", whole((a) => Object.assign(a, {version: 7})), 1, /the answer was modified/],
+    ["status is a list", whole((a) => Object.assign(a, {status: []})), 1, /the answer was modified/],
+    [
+      "status.reason is a number",
+      whole((a) => Object.assign(a.status, {reason: 7})),
+      1,
+      /the answer was modified/,
+    ],
+    [
+      "deep lists in the answer",
+      `{"a":${"[".repeat(100000)}${"]".repeat(100000)},${answer.slice(1)}`,
+      2,
+      /one unmodified/,
+    ],
+    [
+      "brackets and quotes in a text",
+      `{"a":[[["]\\"["]]],${answer.slice(1)}`,
+      1,
+      /recomputed: a is missing/,
+    ],
+    [
+      "deep lists in the request",
       answer.replace('"request":{', `"request":{"b":${"[".repeat(100000)}${"]".repeat(100000)},`),
       2,
       /not end with a provenance/,
     ],
   ];
-  for (const [text, code, message] of cases) {
+  for (const [what, text, code, message] of cases) {
     const result = await verify(text);
-    assert.equal(result.code, code, result.out + result.errors);
-    assert.match(result.out + result.errors, message);
-    assert.doesNotMatch(result.errors, /exception/);
+    assert.equal(result.code, code, `${what}: ${result.out}${result.errors}`);
+    assert.match(result.out + result.errors, message, what);
+    assert.doesNotMatch(result.errors, /exception/, what);
   }
 });
 
