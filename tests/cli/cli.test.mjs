@@ -96,8 +96,18 @@ test("verify reports malformed, repeated and modified answers without an excepti
       2,
       /not end with/,
     ],
-    ["version is a number", whole((a) => Object.assign(a, {version: 7})), 1, /the answer was modified/],
-    ["status is a list", whole((a) => Object.assign(a, {status: []})), 1, /the answer was modified/],
+    [
+      "version is a number",
+      whole((a) => Object.assign(a, {version: 7})),
+      1,
+      /the answer was modified/,
+    ],
+    [
+      "status is a list",
+      whole((a) => Object.assign(a, {status: []})),
+      1,
+      /the answer was modified/,
+    ],
     [
       "status.reason is a number",
       whole((a) => Object.assign(a.status, {reason: 7})),
@@ -342,7 +352,7 @@ test("a sweep's file has its points in order, the same as on stdout and for any 
   assert.deepEqual(indices.slice(1, -1), [...Array(40).keys()]);
 });
 
-// This test and the next use whole.ndjson of the test above.
+// This test and the next read whole.ndjson, which the test above writes.
 test("merged shards equal the whole sweep byte for byte; a missing point is reported", async () => {
   const whole = await readFile(at("whole.ndjson"), "utf8");
   const slurm = {
