@@ -1,7 +1,8 @@
 // Evaluation of a joint fit: the states at its borders, and the residual of each sensor.
 //
-// evaluate_impacts() gives the fitted state before and after each border, and the jumps of x and x'
-// with their errors, from fits of the neighbouring intervals alone.
+// evaluate_impacts() gives the fitted state before and after each border. From separate fits of the
+// neighbouring intervals it gives the jump of x, which is 0 within its error if the border is an
+// impact, and the error of the jump of x'.
 //
 // evaluate_residual() separates the residual into the sensor's noise and a motion that the fit
 // missed. A missed motion is smooth from sample to sample, like the motion itself; noise, hum and
