@@ -9,7 +9,9 @@ import * as simulation from "./simulation/simulation.js";
 import * as sweep from "./sweep/sweep.js";
 
 // A tab is a module with start(tables, changed, others), open(query), query() and redraw(), started
-// when it is first shown. others: {simulate(fields), measure(answer)} open another tab.
+// when it is first shown. tables: fields and presets of the service; changed({edit, soon}): called
+// when the tab's query has changed, see addressUpdater; others: {simulate(fields), measure(answer)}
+// open another tab.
 const modules = {simulation, sweep, measurement};
 const started = new Set();
 const queryOf = (name) => (started.has(name) ? modules[name].query() : "");
@@ -34,7 +36,7 @@ function selectTab(chosen) {
 
 const moves = {ArrowRight: (i) => i + 1, ArrowLeft: (i) => i - 1, Home: () => 0, End: () => -1};
 
-/** Tabs are chosen by click and by arrow keys. */
+/** Tabs are chosen by click, by arrow keys, and by Home and End. */
 function listenToTabs(choose) {
   for (const tab of tabs)
     on(tab, {
@@ -55,7 +57,7 @@ function address(name, query) {
   return `?${parts.filter(Boolean).join("&")}`;
 }
 
-function show(name) {
+function showTab(name) {
   if (current === name) return;
   if (current) scrolled[current] = scrollY;
   current = name;
@@ -64,56 +66,60 @@ function show(name) {
 }
 
 /** Shows the tab and request of the address. */
-function follow() {
+function openAddress() {
   const query = new URLSearchParams(location.search);
   query.delete("embed");
   const named = query.get("tab");
   const name = Object.hasOwn(modules, named) ? named : "simulation";
-  if (name === named) query.delete("tab"); // other values are reported as unknown
-  show(name);
+  if (name === named) query.delete("tab"); // any other value stays, and open() reports it
+  showTab(name);
   if (!started.has(name))
-    modules[name].start(tables, keep(name), {simulate: simulatePoint, measure: measureRun});
+    modules[name].start(tables, addressUpdater(name), {
+      simulate: simulatePoint,
+      measure: measureRun,
+    });
   started.add(name);
   return modules[name].open(query);
 }
 
-function go(name, query) {
+function navigate(name, query) {
   history.pushState(null, "", address(name, query));
-  return follow();
+  return openAddress();
 }
 
-const together = 800; // ms within which edits share a history entry
-let edited = -Infinity;
-let writing = 0;
+const editWindow = 800; // ms
+let lastEdit = -Infinity;
+let writeTimer = 0;
 
 /**
- * Writes a tab's query to the address. edit: adds a history entry, unless the last is recent; soon:
- * more changes follow.
+ * Returns a function that writes a tab's query to the address. edit: adds a history entry if the
+ * previous edit is more than `editWindow` ago, otherwise replaces the current one. soon: more
+ * changes follow; the replacement is delayed by 200 ms.
  */
-const keep =
+const addressUpdater =
   (name) =>
   ({edit = false, soon = false} = {}) => {
     if (current !== name) return;
-    clearTimeout(writing);
-    const write = (way) => history[way](null, "", address(name, queryOf(name)));
+    clearTimeout(writeTimer);
+    const write = (method) => history[method](null, "", address(name, queryOf(name)));
     const now = performance.now();
-    const apart = edit && now - edited > together;
-    if (edit) edited = now;
-    if (apart) write("pushState");
+    const isNewEntry = edit && now - lastEdit > editWindow;
+    if (edit) lastEdit = now;
+    if (isNewEntry) write("pushState");
     else if (soon)
-      writing = setTimeout(write, 200, "replaceState"); // browsers count them
+      writeTimer = setTimeout(write, 200, "replaceState"); // browsers limit the rate of calls
     else write("replaceState");
   };
 
 /** Opens the simulation of a sweep's point. */
 function simulatePoint(fields) {
-  scrolled.simulation = 0;
-  return go("simulation", new URLSearchParams(Object.entries(fields)));
+  scrolled.simulation = 0; // the new simulation is shown from the top
+  return navigate("simulation", new URLSearchParams(Object.entries(fields)));
 }
 
 /** Opens the record of a run, an answer of /v1/simulate with impacts, in Measurement. */
 async function measureRun(answer) {
-  await go("measurement", queryOf("measurement"));
+  await navigate("measurement", queryOf("measurement"));
   return measurement.measure(answer);
 }
 
@@ -121,13 +127,13 @@ async function start() {
   const [fields, {presets}] = await Promise.all([get("v1/parameters"), get("v1/presets")]);
   tables = {...fields, presets};
   listenToTabs((name) => {
-    if (name !== current) go(name, queryOf(name));
+    if (name !== current) navigate(name, queryOf(name));
   });
-  addEventListener("popstate", follow);
+  addEventListener("popstate", openAddress);
   onColours(() => {
     for (const name of started) modules[name].redraw();
   });
-  await follow();
+  await openAddress();
   const {version} = await get("version");
   $("version").textContent = `vines ${version}`;
 }

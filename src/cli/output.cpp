@@ -1,3 +1,9 @@
+// Output and AppendFile.
+//
+// Output opens the existing target, which proves that it is writable, and locks it. It writes a
+// temporary file, which end() renames to the target; the target keeps its old content until then.
+// Streams and descriptors are written directly. AppendFile locks its file in the same way and
+// writes to the file itself.
 #include "cli/output.hpp"
 
 #include <fcntl.h>
@@ -19,10 +25,10 @@ namespace vines::cli {
 
 namespace {
 
-constexpr int max_links = 40;  // limit of the kernel
+constexpr int max_links = 40;  // as in Linux (MAXSYMLINKS)
 
 /// Number of the file descriptor of this process that the path stands for, as /dev/fd/3 does.
-std::optional<int> open_number(const std::string& path) {
+std::optional<int> descriptor_number(const std::string& path) {
     if (path == "/dev/stdout") return STDOUT_FILENO;
     if (path == "/dev/stderr") return STDERR_FILENO;
     for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
@@ -36,6 +42,7 @@ std::optional<int> open_number(const std::string& path) {
 }
 
 Destination open_descriptor(const std::string& name, int number) {
+    // The copy is above 2, and closing it leaves the standard streams open.
     Descriptor copy(::fcntl(number, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
     if (!copy) fail_at("write", name);
     return {name, std::move(copy), ""};
@@ -59,7 +66,7 @@ constexpr mode_t mode_of_new = 0666;  // reduced by umask
 void lock(int descriptor, const std::string& name) {
     if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
     throw std::runtime_error(
-        fmt::format("{} is being written by another run of vines: wait for its end", name));
+        fmt::format("another run of vines is writing {}; wait until it ends", name));
 }
 
 /// Returns whether the path still leads to this open file.
@@ -79,7 +86,7 @@ Descriptor open_locked(const Destination& to, int flags) {
         if (!file && errno == ENOENT && !(flags & O_CREAT)) return file;
         if (!file) fail_at("write", to.name);
         lock(file.number(), to.name);
-        // The previous holder of the lock can have replaced the file.
+        // Retries if the previous holder of the lock has replaced the file.
         if (is_still_at(file.number(), to.file)) return file;
     }
 }
@@ -88,9 +95,11 @@ Descriptor open_locked(const Destination& to, int flags) {
 
 Destination destination_of(const std::string& path) {
     if (is_standard(path)) return open_descriptor("to stdout", STDOUT_FILENO);
+    // Follows links one at a time: a link can lead to /dev/fd/N, which realpath() would resolve
+    // further, and a missing target can be created.
     std::string at = path;
     for (int links = 0;; ++links) {
-        if (const auto number = open_number(at)) return open_descriptor(path, *number);
+        if (const auto number = descriptor_number(at)) return open_descriptor(path, *number);
         struct stat entry{};
         const bool is_link = ::lstat(at.c_str(), &entry) == 0 && S_ISLNK(entry.st_mode);
         if (!is_link) break;

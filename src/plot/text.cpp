@@ -1,3 +1,5 @@
+// Plots as text. Each character holds 2 x 4 Braille dots (in ASCII it is a "*"); coordinates count
+// dots from the upper left. v is an ordinate on the axis: y, or log10 y (on_ordinate).
 #include "plot/plot.hpp"
 
 #include <fmt/format.h>
@@ -14,8 +16,8 @@ namespace vines::plot {
 
 namespace {
 
-constexpr int least_room = 7;  // width of the ordinate's labels, characters
-constexpr int narrowest = 20, least_height = 4;
+constexpr int min_label_width = 7;             // of the ordinate, characters
+constexpr int min_width = 20, min_height = 4;  // inside the frame, characters
 
 constexpr int dots_across = 2, dots_down = 4;  // dots of a Braille character
 
@@ -34,7 +36,7 @@ unsigned braille_dot(int across, int down) {
     return bits[static_cast<std::size_t>(across)][static_cast<std::size_t>(down)];
 }
 
-/// "#rrggbb" as the nearest of the 6 x 6 x 6 terminal colours.
+/// Number of a colour "#rrggbb" in the 6 x 6 x 6 colour cube of terminals, by uniform levels.
 int terminal_colour(const std::string& hex) {
     const auto level = [&hex](std::size_t at) {
         return static_cast<int>(std::strtol(hex.substr(at, 2).c_str(), nullptr, 16) * 5 + 127) /
@@ -49,7 +51,7 @@ int length(const std::string& text) {
         std::count_if(text.begin(), text.end(), [](char c) { return (c & '\xC0') != '\x80'; }));
 }
 
-int lines_of(const Terminal& terminal) { return std::max(terminal.height, least_height); }
+int lines_of(const Terminal& terminal) { return std::max(terminal.height, min_height); }
 
 std::vector<double> ordinate_ticks(const Plot& plot, const Terminal& terminal) {
     return y_ticks(plot, y_range(plot), std::max(lines_of(terminal) / 3, 2));
@@ -61,7 +63,7 @@ struct Layout {
     int width;  ///< inside the frame
 };
 
-// Marks of the curves of points, which distinguish them without colours.
+// Marks of curves of points; they distinguish the curves on a terminal without colours.
 constexpr std::array unicode_marks = {"•", "×", "+", "◦", "▪", "▵", "◇"};
 constexpr std::array ascii_marks = {"o", "x", "+", "#", "@", "%", "&"};
 
@@ -78,7 +80,7 @@ public:
           cells_(static_cast<std::size_t>(width_ * height_)) {
         for (double level : plot.levels) rule_across(on_ordinate(plot_, level));
         for (double time : plot.marked_times) rule_down(time);
-        for (const Curve& c : plot.curves) c.dots ? dots(c) : line(c);
+        for (const Curve& c : plot.curves) c.dots ? draw_points(c) : draw_line(c);
     }
 
     std::string draw() const {
@@ -103,10 +105,11 @@ public:
 
 private:
     struct Cell {
-        unsigned dots = 0;
+        unsigned dots = 0;             ///< bits of the Braille pattern
         const Curve* curve = nullptr;  ///< the last curve with a dot here
-        const char* mark = nullptr;    ///< character that replaces the dots
-        bool is_point = false;         ///< the mark belongs to the curve
+        /// Mark of a rule, which dots hide, or of a point, which is shown in place of its dots.
+        const char* mark = nullptr;
+        bool is_point = false;  ///< the mark is that of a point
     };
 
     Cell& cell(int column, int row) {
@@ -148,6 +151,7 @@ private:
             cell(across(x) / dots_across, row).mark = terminal_.ascii ? ":" : "┊";
     }
 
+    /// Draws a straight line from (x1, v1) to (x2, v2).
     void stroke(double x1, double v1, double x2, double v2, const Curve& curve) {
         const int a = across(x1), b = across(x2), c = down(v1), d = down(v2),
                   steps = std::max({std::abs(b - a), std::abs(d - c), 1});
@@ -156,17 +160,18 @@ private:
                 static_cast<int>(std::lround(c + (d - c) * (1. * k / steps))), curve);
     }
 
-    void line(const Curve& c) {
+    void draw_line(const Curve& c) {
         for (std::size_t i = 0; i < c.x.size(); ++i) {
             const double v = on_ordinate(plot_, c.y[i]);
             if (!std::isfinite(v)) continue;
             const double before = i > 0 ? on_ordinate(plot_, c.y[i - 1]) : v;
             const std::size_t from = i > 0 && std::isfinite(before) ? i - 1 : i;
+            // A value next to a gap is drawn as a single dot.
             stroke(c.x[from], from == i ? v : before, c.x[i], v, c);
         }
     }
 
-    void dots(const Curve& c) {
+    void draw_points(const Curve& c) {
         const bool is_marked = has_marks(c);
         for (std::size_t i = 0; i < c.x.size(); ++i) {
             const double x = c.x[i], v = on_ordinate(plot_, c.y[i]);
@@ -205,7 +210,8 @@ private:
         return labels;
     }
 
-    /// Row of each curve's end, or the nearest free one below, or above.
+    /// Labels by row: each at the row where its curve ends, else at the next free row below, else
+    /// above.
     std::map<int, std::string> end_labels() const {
         std::map<int, std::string> labels;
         for (const Curve& c : plot_.curves) {
@@ -239,12 +245,12 @@ int longest_label(const std::vector<Plot>& plots) {
 }
 
 Layout layout_of(const std::vector<Plot>& plots, const Terminal& terminal) {
-    int room = least_room;
+    int label_width = min_label_width;
     for (const Plot& p : plots)
         for (double t : ordinate_ticks(p, terminal))
-            room = std::max(room, length(y_tick_label(p, t)));
-    const int left = room + 2, label = longest_label(plots);
-    return {left, std::max(terminal.width - 1 - left - (label > 0 ? label + 1 : 0), narrowest)};
+            label_width = std::max(label_width, length(y_tick_label(p, t)));
+    const int left = label_width + 2, label = longest_label(plots);
+    return {left, std::max(terminal.width - 1 - left - (label > 0 ? label + 1 : 0), min_width)};
 }
 
 /// Axis with ticks, the numbers below them, and the label.

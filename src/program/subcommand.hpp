@@ -10,13 +10,13 @@
 namespace vines {
 
 /// The options are registered with `app`. After parsing, run() executes the command and returns the
-/// exit code. An exception is reported on stderr, with exit code 1.
+/// exit code. main() reports an exception of run() on stderr and exits with code 1.
 struct Command {
     CLI::App* app;
     std::function<int()> run;
 };
 
-/// Example commands to copy, one per line, and an optional paragraph after them.
+/// Sets the help footer: `lines`, one example command per line, then `paragraph`, if any.
 inline void add_examples(
     CLI::App& command, const std::string& lines, const std::string& paragraph = "") {
     std::string text = "Examples:\n  ";
@@ -31,6 +31,7 @@ CLI::Validator number_between(Value from, Value to) {
     return CLI::Validator(
         [from, to, range](const std::string& text) -> std::string {
             Value value{};
+            // The conversion that CLI11 applies to the option itself.
             if (CLI::detail::lexical_cast(text, value) && value >= from && value <= to) return "";
             return fmt::format("\"{}\" is not in {}", text, range);
         },

@@ -1,4 +1,4 @@
-// Encoding of answers in each format.
+// Cancellation of encoding in each format, and CBOR against the JSON library.
 #include <doctest/doctest.h>
 
 #include <limits>
@@ -13,6 +13,7 @@ using namespace vines::api;
 
 namespace {
 
+// Around the limits at which CBOR's length field becomes wider.
 const std::vector<std::size_t> lengths{0, 1, 23, 24, 255, 256, 65535, 65536, 100000};
 
 std::vector<double> numbers_of(std::size_t length) {
@@ -32,7 +33,7 @@ Json long_answer() {
     return {{"impacts", lists}};
 }
 
-/// The CBOR of the JSON library.
+/// Typed array of little-endian doubles (RFC 8746, tag 86) as the JSON library encodes it.
 std::string typed_by_library(const std::vector<double>& numbers) {
     const auto* const first = reinterpret_cast<const std::uint8_t*>(numbers.data());
     std::string bytes;
@@ -46,13 +47,14 @@ TEST_CASE("encoding stops when it is cancelled, in every format") {
     for (const FormatName& name : format_names) {
         CAPTURE(name.word);
         const std::string whole = encoded(long_answer(), name.format, std::nullopt);
-        int asked = 0;
-        CHECK(encoded(long_answer(), name.format, std::nullopt, [&asked] {
-                  ++asked;
+        int polls = 0;
+        CHECK(encoded(long_answer(), name.format, std::nullopt, [&polls] {
+                  ++polls;
                   return false;
               }) == whole);
-        CHECK(asked >= 4);
-        for (int stops_at = 1; stops_at <= asked; stops_at += 1 + asked / 7) {
+        CHECK(polls >= 4);
+        // Cancels at up to seven of the polls.
+        for (int stops_at = 1; stops_at <= polls; stops_at += 1 + polls / 7) {
             int times = 0;
             CHECK_THROWS_AS(
                 encoded(
@@ -64,7 +66,8 @@ TEST_CASE("encoding stops when it is cancelled, in every format") {
     }
 }
 
-TEST_CASE("CBOR of typed arrays equals that of the JSON library at any length") {
+TEST_CASE(
+    "CBOR of columns of numbers, flags and rows equals that of the JSON library at any length") {
     for (const std::size_t length : lengths) {
         CAPTURE(length);
         const std::vector<double> numbers = numbers_of(length);
@@ -86,7 +89,7 @@ TEST_CASE("CBOR of typed arrays equals that of the JSON library at any length") 
     }
 }
 
-TEST_CASE("CBOR without lists of numbers equals that of the JSON library") {
+TEST_CASE("CBOR of an answer without columns equals that of the JSON library") {
     const Json answer = Json::parse(
         R"({"words":["a","b"],"none":null,"nested":{"window":[[1,2],[3,4.5]],"empty":{},"":[]},)"
         R"("large":18446744073709551615,"objects":[{"a":1},{"b":[{"c":true}]}],"text":"\u03bb"})");
@@ -95,10 +98,10 @@ TEST_CASE("CBOR without lists of numbers equals that of the JSON library") {
     CHECK(cbor_bytes(answer) == expected);
 }
 
-TEST_CASE("a number that does not exist is NaN in CBOR") {
+TEST_CASE("infinities and NaN are encoded as NaN in CBOR") {
     constexpr double infinite = std::numeric_limits<double>::infinity();
-    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
     CHECK(
-        cbor_bytes(column(std::vector{1.0, infinite, -infinite, none})) ==
-        typed_by_library({1.0, none, none, none}));
+        cbor_bytes(column(std::vector{1.0, infinite, -infinite, not_a_number})) ==
+        typed_by_library({1.0, not_a_number, not_a_number, not_a_number}));
 }

@@ -154,7 +154,8 @@ int main(int argc, char** argv) {
     bench_answer(
         "impacts to tau = 200", post(R"({"tau_end":200,"include":["impacts"]})"), 500, services);
     bench_answer(
-        "a run to tau = 20, nothing of it", post(R"({"tau_end":20,"include":[]})"), 500, services);
+        "a run to tau = 20, `include` empty", post(R"({"tau_end":20,"include":[]})"), 500,
+        services);
     bench_answer(
         "the README's first request", get("preset=fig11&include=regime,energy"), 30, services);
     bench_answer(

@@ -64,7 +64,8 @@ void short_sweep(std::size_t points) {
 
 void bench_memory() {
     for (std::size_t points : {100, 10000})
-        row("memory of a sweep of " + power(static_cast<double>(points)) + " points, 5 + 10 cycles",
+        row("memory of a sweep of " + power(static_cast<double>(points)) +
+                " points, 5 settling and 10 measured cycles",
             {cost_of([points] { short_sweep(points); }).megabytes}, "MB");
     for (long impacts : {200000, 2000000}) {
         const Cost run = cost_of([impacts] {

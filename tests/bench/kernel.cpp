@@ -78,9 +78,10 @@ void bench_case(const Case& c) {
     const std::string name = c.name;
     row(name + ": trajectory and its list of impacts", times[0], "ns per impact");
     row(name + ": trajectory and all four exponents", times[1], "ns per impact");
-    row(name + ": the states at its contacts alone, were these known", times[2], "ns per impact");
+    row(name + ": the states at its contacts alone, if these are known", times[2], "ns per impact");
     row(name + ": the plain program, with all four exponents", times[3], "ns per impact");
-    row(name + ": the plain program takes", ratios(times[3], times[1]), "times that");
+    row(name + ": time of the plain program, relative to trajectory and all four exponents",
+        ratios(times[3], times[1]), "times");
 }
 
 }  // namespace

@@ -46,8 +46,8 @@ void bench_sampling() {
     const auto times =
         in_turn(turns, {[&] { return run(true); }, [&] { return run(false); }, digits_alone});
     row("10,000 samples of a run to tau = 1709, b = 22 mm, with the run", times[0], "ms");
-    row("that run without them", times[1], "ms");
-    row("five columns of them by std::to_chars alone", times[2], "ms");
+    row("the same run without samples", times[1], "ms");
+    row("five columns of these samples by std::to_chars alone", times[2], "ms");
 }
 
 /// The default request, from its text to each form of its answer.
@@ -67,8 +67,8 @@ void bench_forms() {
         return ", " + std::to_string(s.size()) + " bytes";
     };
     row("the default request, computed and described", times[0], "ms");
-    row("its answer as JSON text", times[1], "ms", size(text));
-    row("that text gzipped", times[2], "ms", size(packed));
+    row("the default answer as JSON text", times[1], "ms", size(text));
+    row("the default answer gzipped", times[2], "ms", size(packed));
 }
 
 }  // namespace

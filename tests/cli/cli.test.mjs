@@ -19,7 +19,7 @@ after(() => rm(folder, {recursive: true}));
 const at = (name) => join(folder, name);
 
 const simulated = async (fields) => (await run(["simulate"], {input: JSON.stringify(fields)})).out;
-const verified = async (answer, args = []) => run(["verify", ...args], {input: answer});
+const verify = async (answer, args = []) => run(["verify", ...args], {input: answer});
 
 test("an answer contains its provenance, and verify reproduces it", async () => {
   const fields = {preset: "fig3", tau_end: 400, fields: ["impacts", "regime.z"]};
@@ -29,17 +29,17 @@ test("an answer contains its provenance, and verify reproduces it", async () => 
   assert.deepEqual(provenance.request, fields);
   const text = `${answer.slice(0, answer.lastIndexOf(',"provenance":'))}}`;
   assert.equal(createHash("sha256").update(text).digest("hex"), provenance.sha256);
-  const same = await verified(answer);
+  const same = await verify(answer);
   assert.equal(same.code, 0, same.errors);
   assert.match(same.out, /sha256: matches\nrecomputed: the same \d+ bytes\n/);
-  const changed = await verified(answer.replace(/"z":[\d.]+/, '"z":9'));
+  const changed = await verify(answer.replace(/"z":[\d.]+/, '"z":9'));
   assert.equal(changed.code, 1);
   assert.match(changed.out, /the answer was modified\nrecomputed: regime\.z: 9 became /);
   // A recomputed hash does not hide the change.
   const z = /"z":[\d.]+/;
   const forged = text.replace(z, '"z":9');
   const sha256 = createHash("sha256").update(forged).digest("hex");
-  const again = await verified(answer.replace(z, '"z":9').replace(provenance.sha256, sha256));
+  const again = await verify(answer.replace(z, '"z":9').replace(provenance.sha256, sha256));
   assert.equal(again.code, 1);
   assert.match(again.out, /sha256: matches\nrecomputed: regime\.z: 9 became /);
 });
@@ -50,7 +50,7 @@ test("verify also compares the provenance and reports another build's commit", a
     const fields = JSON.parse(answer);
     alter(fields.provenance);
     const at = answer.lastIndexOf(',"provenance":');
-    return verified(`${answer.slice(0, at)},"provenance":${JSON.stringify(fields.provenance)}}\n`);
+    return verify(`${answer.slice(0, at)},"provenance":${JSON.stringify(fields.provenance)}}\n`);
   };
   const cases = [
     [(p) => Object.assign(p, {extra: 1}), /^provenance: extra is missing$/m],
@@ -75,10 +75,10 @@ test("verify also compares the provenance and reports another build's commit", a
   const other = await altered((p) => Object.assign(p, {commit: "another"}));
   assert.equal(other.code, 0, other.out + other.errors);
   assert.match(other.out, /^answered by \S+ \(another\), .*\ncommit: not this program's/);
-  assert.doesNotMatch((await verified(answer)).out, /^commit|^provenance/m);
+  assert.doesNotMatch((await verify(answer)).out, /^commit|^provenance/m);
 });
 
-test("verify refuses a text that is not one answer with a message, also with values of a wrong type", async () => {
+test("verify reports malformed, repeated and modified answers without an exception", async () => {
   const answer = await simulated({tau_end: 40, include: ["regime"]});
   const whole = (alter) => {
     const fields = JSON.parse(answer);
@@ -86,27 +86,58 @@ test("verify refuses a text that is not one answer with a message, also with val
     return `${JSON.stringify(fields)}\n`;
   };
   const cases = [
-    [answer + answer, 2, /one unmodified/],
-    [answer.replace('{"', '{"a":[,"'), 2, /one unmodified/],
-    [`${answer}}`, 2, /not end with/],
-    [`${answer}and more`, 2, /not end with/],
-    [answer.replace('"provenance":{', '"provenance":{"route":"/x",'), 2, /not end with/],
-    [whole((a) => Object.assign(a, {version: 7})), 1, /the answer was modified/],
-    [whole((a) => Object.assign(a, {status: []})), 1, /the answer was modified/],
-    [whole((a) => Object.assign(a.status, {reason: 7})), 1, /the answer was modified/],
-    [`{"a":${"[".repeat(100000)}${"]".repeat(100000)},${answer.slice(1)}`, 2, /one unmodified/],
-    [`{"a":[[["]\\"["]]],${answer.slice(1)}`, 1, /recomputed: a is missing/],
+    ["two answers", answer + answer, 2, /one unmodified/],
+    ["malformed JSON", answer.replace('{"', '{"a":[,"'), 2, /one unmodified/],
+    ["a second brace", `${answer}}`, 2, /not end with/],
+    ["text after the answer", `${answer}and more`, 2, /not end with/],
     [
+      "a repeated key in the provenance",
+      answer.replace('"provenance":{', '"provenance":{"route":"/x",'),
+      2,
+      /not end with/,
+    ],
+    [
+      "version is a number",
+      whole((a) => Object.assign(a, {version: 7})),
+      1,
+      /the answer was modified/,
+    ],
+    [
+      "status is a list",
+      whole((a) => Object.assign(a, {status: []})),
+      1,
+      /the answer was modified/,
+    ],
+    [
+      "status.reason is a number",
+      whole((a) => Object.assign(a.status, {reason: 7})),
+      1,
+      /the answer was modified/,
+    ],
+    [
+      "deep lists in the answer",
+      `{"a":${"[".repeat(100000)}${"]".repeat(100000)},${answer.slice(1)}`,
+      2,
+      /one unmodified/,
+    ],
+    [
+      "brackets and quotes in a text",
+      `{"a":[[["]\\"["]]],${answer.slice(1)}`,
+      1,
+      /recomputed: a is missing/,
+    ],
+    [
+      "deep lists in the request",
       answer.replace('"request":{', `"request":{"b":${"[".repeat(100000)}${"]".repeat(100000)},`),
       2,
       /not end with a provenance/,
     ],
   ];
-  for (const [text, code, message] of cases) {
-    const result = await verified(text);
-    assert.equal(result.code, code, result.out + result.errors);
-    assert.match(result.out + result.errors, message);
-    assert.doesNotMatch(result.errors, /exception/);
+  for (const [what, text, code, message] of cases) {
+    const result = await verify(text);
+    assert.equal(result.code, code, `${what}: ${result.out}${result.errors}`);
+    assert.match(result.out + result.errors, message, what);
+    assert.doesNotMatch(result.errors, /exception/, what);
   }
 });
 
@@ -116,29 +147,31 @@ test("verify reproduces the service's answers: runs, manifolds, identifications,
     (
       await fetch(service.url + path, {method: "POST", headers: {"Content-Type": type}, body})
     ).text();
-  const long = {b: 0.003, tau_end: 60000, include: ["impacts"]};
+  const many = {b: 0.003, tau_end: 60000, include: ["impacts"]};
   for (const [path, fields] of [
-    ["/v1/simulate", long], // thinned to the limit
+    ["/v1/simulate", many], // thinned to the limit
     ["/v1/simulate", {preset: "fig11", include: ["matrices"], fields: "matrices.T"}],
     ["/v1/manifold", {b: 0.015}],
   ]) {
-    const {code, out, errors} = await verified(await post(path, JSON.stringify(fields)));
+    const {code, out, errors} = await verify(await post(path, JSON.stringify(fields)));
     assert.equal(code, 0, out + errors);
   }
   const record = await measured(service.url, "fig20", 3);
   const file = at("verify.csv");
   await writeFile(file, record);
   const identified = await post("/v1/identify?preset=fig20", record, "text/csv");
-  const same = await verified(identified, ["--record", file]);
+  const same = await verify(identified, ["--record", file]);
   assert.equal(same.code, 0, same.out + same.errors);
-  assert.equal((await verified(identified)).code, 2, "the record is not in the answer");
+  assert.equal((await verify(identified)).code, 2, "the record is not in the answer");
   await writeFile(file, record.replace(/^.*\n.*\n/, ""));
-  assert.match((await verified(identified, ["--record", file])).out, /not the file that was sent/);
-  const lines = await post("/v1/sweep", sweep);
-  const points = await verified(lines);
+  assert.match((await verify(identified, ["--record", file])).out, /not the file that was sent/);
+  const swept = await post("/v1/sweep", sweep);
+  const points = await verify(swept);
   assert.equal(points.code, 0, points.out + points.errors);
   assert.match(points.out, /40 of 40 points are the same/);
-  const changed = await verified(lines.replace(/("index":7,.*"z":)[\d.]+/, "$19"));
+  const changed = await verify(
+    swept.replace(/("index":7,.*"z":)[\d.]+/, (_, prefix) => `${prefix}9`),
+  );
   assert.equal(changed.code, 1);
   assert.match(changed.out, /39 of 40 points are the same\npoint 7: z: 9 became /);
   await service.stop();
@@ -148,12 +181,12 @@ test("verify reports a run ended by a time limit, and a text that is not an answ
   const limited = await startService(["--deadline", "0.2"]);
   const body = '{"b":0.0005,"R":1,"tau_end":1e7,"max_impacts":2000000,"include":["regime"]}';
   const answer = await fetch(`${limited.url}/v1/simulate`, {method: "POST", body});
-  const late = await verified(await answer.text());
+  const late = await verify(await answer.text());
   assert.equal(late.code, 3);
   assert.match(late.out, /not decided: a time limit/);
   await limited.stop();
-  for (const none of ["", "{}", "[1]", '{"provenance":1}', '{"a":1,"provenance":{"route":"/x"}}'])
-    assert.equal((await verified(none)).code, 2, none);
+  for (const invalid of ["", "{}", "[1]", '{"provenance":1}', '{"a":1,"provenance":{"route":"/x"}}'])
+    assert.equal((await verify(invalid)).code, 2, invalid);
 });
 
 const sweep = JSON.stringify({
@@ -163,12 +196,12 @@ const sweep = JSON.stringify({
   section: "impact",
   section_points: 5,
 });
-// Runs longer than a check of its file takes on any machine.
-const long = JSON.stringify({...JSON.parse(sweep), cycles: 100000});
-const lines = async (name) =>
+// A sweep that a test can interrupt before it ends, on any machine.
+const longSweep = JSON.stringify({...JSON.parse(sweep), cycles: 100000});
+const countLines = async (name) =>
   (await readFile(at(name), "utf8").catch(() => "")).split("\n").length - 1;
 
-test("simulate gives the service's answer, from a file or stdin to a file or stdout", async () => {
+test("simulate returns the same bytes as the service, from a file or stdin to a file or stdout", async () => {
   const service = await startService();
   const body = '{"b":0.015,"tau_end":100,"include":["impacts"]}';
   const answer = await (await fetch(`${service.url}/v1/simulate`, {method: "POST", body})).text();
@@ -205,6 +238,7 @@ test("the memory of a run with exponents does not grow with its impacts", async 
   const peak = async (max_impacts) =>
     (await peakOf({b: 0.015, tau_end: 1e7, max_impacts, include: ["exponents"]})).megabytes;
   const [half, whole] = [await peak(250000), await peak(500000)];
+  // 4 MB of tolerance for the allocator.
   assert.ok(half > 1 && whole < half + 4, `${half} and ${whole} MB`);
 });
 
@@ -219,8 +253,8 @@ test("the memory of an answer does not grow with the impacts that it lists", asy
 });
 
 test("identify accepts a CSV file with its fields as a query, or the service's JSON", async () => {
-  const asked = '{"preset":"fig20","include":["impacts","exponents"],"exponents":["qr"]}';
-  const simulated = JSON.parse((await run(["simulate"], {input: asked})).out);
+  const request = '{"preset":"fig20","include":["impacts","exponents"],"exponents":["qr"]}';
+  const simulated = JSON.parse((await run(["simulate"], {input: request})).out);
   const {code, out} = await run(["identify"], {
     input: JSON.stringify({preset: "fig20", impacts: simulated.impacts, exponents: ["qr"]}),
   });
@@ -235,20 +269,20 @@ test("identify accepts a CSV file with its fields as a query, or the service's J
 
 test("identify decodes its query the way the service decodes a URL's", async () => {
   const input = "time_s,the x,a\n0,1,2\n0.001,1,3\n";
-  const refused = async (column) => {
+  const problemOf = async (column) => {
     const query = `preset=fig20&displacement_column=${column}`;
     return JSON.parse((await run(["identify", "-q", query], {input})).errors);
   };
-  const {errors} = await refused("no%20x+%2Cor%3D&");
+  const {errors} = await problemOf("no%20x+%2Cor%3D&");
   assert.equal(errors[0].pointer, "/displacement_column");
   assert.equal(errors[0].value, "no x ,or=");
   // The column is found, and the record is too short.
   for (const column of ["the x", "the%20x", "the+x", "%74he%20x"])
-    assert.match((await refused(column)).detail, /^the record has 2 samples/);
-  assert.equal((await refused("50%zz%2")).errors[0].value, "50%zz%2");
+    assert.match((await problemOf(column)).detail, /^the record has 2 samples/);
+  assert.equal((await problemOf("50%zz%2")).errors[0].value, "50%zz%2");
 });
 
-test("a sweep reports on stderr a motion that depends on the start; with the default set of starts its lines hold the worst and the best", async () => {
+test("a sweep warns if the motion depends on the start; a default set of starts reports worst and best", async () => {
   const platform = {
     base: {m1: 12, f0: 14, damping_ratio: 0.006, mass_ratio: 0.01, F: 0.0004, R: 0.4, b: 0.03},
     axes: [{parameter: "f", from: 13.8, to: 14.2, count: 3}],
@@ -318,6 +352,7 @@ test("a sweep's file has its points in order, the same as on stdout and for any 
   assert.deepEqual(indices.slice(1, -1), [...Array(40).keys()]);
 });
 
+// This test and the next read whole.ndjson, which the test above writes.
 test("merged shards equal the whole sweep byte for byte; a missing point is reported", async () => {
   const whole = await readFile(at("whole.ndjson"), "utf8");
   const slurm = {
@@ -365,19 +400,19 @@ test("an existing file is not overwritten; --resume completes one that was cut a
 
 test("a killed sweep loses only unfinished points, and an interrupted one ends with exit code 130", async () => {
   const killed = await run(["sweep", "-o", at("killed")], {
-    input: long,
+    input: longSweep,
     signal: "SIGKILL",
-    until: async () => (await lines("killed")) > 4,
+    until: async () => (await countLines("killed")) > 4,
   });
   assert.equal(killed.code, null);
-  const kept = await lines("killed");
-  assert.ok(kept > 4);
+  const linesBefore = await countLines("killed");
+  assert.ok(linesBefore > 4);
   const interrupted = await run(["sweep", "--resume", "-o", at("killed")], {
-    input: long,
+    input: longSweep,
     signal: "SIGINT",
-    until: async () => (await lines("killed")) > kept + 3,
+    until: async () => (await countLines("killed")) > linesBefore + 3,
   });
   assert.equal(interrupted.code, 130);
   assert.match(interrupted.errors, /--resume completes the file/);
-  assert.ok((await lines("killed")) > kept + 3);
+  assert.ok((await countLines("killed")) > linesBefore + 3);
 });

@@ -267,7 +267,7 @@ test("a second run on a file that is being written is refused at once", async ()
       return true;
     },
   });
-  const message = `vines: ${name} is being written by another run of vines: wait for its end\n`;
+  const message = `vines: another run of vines is writing ${name}; wait until it ends\n`;
   assert.deepEqual([second.code, second.errors], [1, message]);
   assert.deepEqual([merged.code, merged.errors], [1, message]);
   assert.equal(first.code, 130);

@@ -12,7 +12,7 @@ namespace vines::test {
 
 struct ReferenceImpact {
     double tau;
-    int side;
+    int side;  ///< +1: x - y = b, -1: x - y = -b
     double x, x_dot_before, y_dot_before, x_dot_after, y_dot_after;
 };
 
@@ -21,8 +21,8 @@ struct ReferenceStick {
     double start, end;
 };
 
-/// One file of reference/: a trajectory in 250-digit arithmetic from Table 1's initial state to tau
-/// = 1709.
+/// One file of reference/: a trajectory in 250-digit arithmetic from Table 1's initial state to
+/// tau = 1709.
 struct Reference {
     Parameters parameters;
     std::vector<ReferenceImpact> impacts;
@@ -31,25 +31,28 @@ struct Reference {
 };
 Reference read_reference(const std::string& name);
 
+/// A run with all its events.
 struct Record {
     Outcome outcome;
     std::vector<Impact> impacts;
     std::vector<StickingPhase> sticks;
     std::vector<GrazingEvent> touches;
 };
+/// Simulates to tau_end or max_impacts, with additional observers.
 Record record(
     const Parameters& parameters, const State& start, double tau_end, long max_impacts = 1000000,
     std::vector<Observer*> more = {});
 
+/// Table 1 of the paper with this b, in m.
 Parameters table1(double b, Damping damping);
 
 /// A system whose chaotic transient from the default start is captured by a periodic orbit between
-/// tau = 2000 and 9000. The capture time depends on the last bit of every sum before it, so the
-/// function searches for such a system: by then half of the neighbours of b = 22 mm, R = .5 are
-/// captured.
+/// tau = 2000 and 9000. The capture time changes with the last bit of any earlier sum; the function
+/// therefore searches the neighbours of b = 22 mm, R = .5, half of which are captured by
+/// tau = 9000.
 struct CapturedTransient {
     Parameters parameters;
-    double tau;
+    double tau;  ///< time of capture
 };
 CapturedTransient captured_transient();
 

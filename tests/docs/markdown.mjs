@@ -1,11 +1,11 @@
-// Reads tables and commands after markers, links and headings of a Markdown document.
+// Reads from a Markdown document: marked tables and transcripts, links, and anchors of headings.
 import {readFile} from "node:fs/promises";
 
 export const root = new URL("../../", import.meta.url);
 
 export const read = (name) => readFile(new URL(name, root), "utf8");
 
-/** Words of a text in `code` style. */
+/** Contents of the code spans of a text. */
 export const codes = (text) => [...text.matchAll(/`([^`]+)`/g)].map((found) => found[1]);
 
 const cellsOf = (line) =>
@@ -14,7 +14,10 @@ const cellsOf = (line) =>
     .slice(1, -1)
     .map((cell) => cell.trim());
 
-/** Lines after each marker `<!-- kind -->` or `<!-- kind: argument -->`. */
+/**
+ * {argument, lines} for each marker `<!-- kind -->` or `<!-- kind: argument -->`. lines: all lines
+ * after the marker.
+ */
 function marked(markdown, kind) {
   const marker = new RegExp(`^<!-- ${kind}(?:: (.*?))? ?-->$`);
   const lines = markdown.split("\n");
@@ -29,7 +32,7 @@ export const tables = (markdown, kind) =>
   marked(markdown, kind).map(({argument, lines}) => {
     const end = lines.findIndex((line) => !line.startsWith("|"));
     const [header, , ...rest] = lines.slice(0, end);
-    if (!header) throw new Error(`no table behind <!-- ${kind}: ${argument} -->`);
+    if (!header) throw new Error(`no table after <!-- ${kind}: ${argument} -->`);
     const names = cellsOf(header);
     const rows = rest.map((line) => {
       const cells = cellsOf(line);
@@ -40,12 +43,12 @@ export const tables = (markdown, kind) =>
   });
 
 /**
- * The marked transcripts: lists of {command, output}. A line behind a blank goes on a command, until
- * its output has begun.
+ * The marked transcripts: lists of {command, output}. A line that starts with a space continues
+ * the command, unless its output has begun.
  */
 export const transcripts = (markdown) =>
   marked(markdown, "run").map(({lines}) => {
-    if (lines[0] !== "```console") throw new Error("no ```console behind <!-- run -->");
+    if (lines[0] !== "```console") throw new Error("no ```console after <!-- run -->");
     const steps = [];
     for (const line of lines.slice(1, lines.indexOf("```"))) {
       if (line.startsWith("$ ")) steps.push({command: line.slice(2), output: ""});
@@ -66,11 +69,11 @@ export function between(markdown, name) {
 
 const withoutBlocks = (markdown) => markdown.replace(/^```[\s\S]*?^```$/gm, "");
 
-/** Targets of its links and images. */
+/** Targets of the links and images of a document. */
 export const links = (markdown) =>
   [...withoutBlocks(markdown).matchAll(/\]\(([^)\s]+)\)/g)].map((found) => found[1]);
 
-/** The anchors of its headings, as GitHub makes them. */
+/** Anchors of the headings of a document, as GitHub makes them for distinct headings. */
 export const anchors = (markdown) =>
   [...withoutBlocks(markdown).matchAll(/^#+ (.*)$/gm)].map((found) =>
     found[1]

@@ -1,6 +1,7 @@
-// Requests /livez every 10 ms, each time on a new connection, and prints the duration of each in
-// ms. A separate process: one that also generates load would measure its own waiting.
-// Usage: node prober.mjs URL MS
+// Requests /livez 10 ms after each response, on new connections, for DURATION ms; prints a JSON
+// array of the response times in ms. It is a separate process because a load generator would delay
+// its own probes.
+// Usage: node prober.mjs URL DURATION
 import net from "node:net";
 import {sleep} from "./raw.mjs";
 
@@ -8,7 +9,7 @@ const [url, ms] = process.argv.slice(2);
 const {hostname, port} = new URL(url);
 const request = "GET /livez HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
 
-/** Time until the complete answer, ms. */
+/** Time until the response is complete, ms. */
 const probe = () =>
   new Promise((resolve, reject) => {
     const began = performance.now();
@@ -16,10 +17,10 @@ const probe = () =>
     const socket = net.connect({host: hostname, port: Number(port), noDelay: true});
     socket.on("connect", () => socket.write(request));
     socket.on("error", reject);
-    socket.on("close", () => reject(new Error(`no whole answer: ${text}`)));
+    socket.on("close", () => reject(new Error(`incomplete response: ${text}`)));
     socket.on("data", (data) => {
       text += data;
-      if (!text.endsWith('"ok"}\n')) return;
+      if (!text.endsWith('"ok"}\n')) return; // the end of the body of /livez
       resolve(performance.now() - began);
       socket.destroy();
     });

@@ -18,6 +18,7 @@ let unended;
 before(async () => {
   service = await startService();
   document = await Document.of(service.url);
+  // Left incomplete; the last test reads its 408.
   unended = await connect(service.url);
   unended.socket.write("GET /v1/simulate HTTP/1.1\r\n");
 });
@@ -46,7 +47,7 @@ test("the document passes the recommended lint rules", async () => {
   assert.notDeepEqual(await lint({...document.json, servers: [], paths: {}}), []);
 });
 
-// Examples.
+// --- Example requests and responses
 
 /** The example requests of an operation: [name, target, request]. */
 function exampleRequests(path, method, operation) {
@@ -59,15 +60,15 @@ function exampleRequests(path, method, operation) {
   return [["query", given.length ? `${path}?${query}` : path, {}]];
 }
 
-/** Equal except for the last digits of numbers. */
-function alike(shown, got, at = "") {
+/** Asserts equality up to 1e-9 of each number, ignoring version, commit and provenance. */
+function assertAlike(shown, got, at = "") {
   if (typeof shown === "number" && typeof got === "number")
     return assert.ok(Math.abs(shown - got) <= 1e-9 * Math.max(1, Math.abs(shown)), `${at}: ${got}`);
   if (shown === null || typeof shown !== "object") return assert.equal(got, shown, at);
   assert.deepEqual(Object.keys(got), Object.keys(shown), at);
   for (const [name, value] of Object.entries(shown))
     if (!["version", "commit", "provenance"].includes(name))
-      alike(value, got[name], `${at}.${name}`);
+      assertAlike(value, got[name], `${at}.${name}`);
 }
 
 test("every example request gets a response that matches the document and its example", async () => {
@@ -80,12 +81,14 @@ test("every example request gets a response that matches the document and its ex
         const answer = await checked(target, request, `${operation.operationId}: ${name}`);
         assert.equal(answer.status, 200, answer.text);
         const {schema, example} = Object.values(operation.responses[200].content)[0];
+        // The example response belongs to the first POST example.
         if (!example || method === "get" || name !== examples[0][0]) continue;
         const lines = answer.text
           .trim()
           .split("\n")
           .map((line) => JSON.parse(line));
-        alike(
+        // A document of one line has no index: it is found by index undefined.
+        assertAlike(
           example,
           lines.find((line) => line.index === example.index),
         );
@@ -106,10 +109,11 @@ test("every example response matches its schema", () => {
         document.holds(schema.$ref.split("/").at(-1), example);
         ++count;
       }
+  // Guards against a loop that finds nothing.
   assert.ok(count >= 25, `${count} examples`);
 });
 
-// Real responses.
+// --- Responses to real requests
 
 test("responses to many requests match the document", async () => {
   const simulate = async (body) =>
@@ -173,7 +177,7 @@ test("a request with the current ETag gets 304", async () => {
   }
 });
 
-// Problems.
+// --- Problem documents
 
 const head = (line, ...headers) => [line, "Host: localhost", ...headers, "", ""].join("\r\n");
 const get = "GET /v1/simulate HTTP/1.1";
@@ -218,7 +222,7 @@ test("a request without the required key gets a problem that matches the documen
   document.check(answer, "/v1/presets", "GET");
 });
 
-/** `lacking` of a 503 response. */
+/** Starts a server with flags, expects 503 for the request, and returns `lacking` of the answer. */
 async function lackingOf(flags, path, body) {
   const small = await startService(flags);
   const answer = await ask(small.url, path, {body});
@@ -248,7 +252,7 @@ test("/readyz of a stopping server matches the document", async () => {
   await draining.stop();
 });
 
-// Changed responses.
+// --- Changed responses, which must not match
 
 /** Calls visit(object, path) for each object in a value; in lists for the first entry only. */
 function eachObject(value, visit, path = "") {
@@ -262,7 +266,7 @@ function eachObject(value, visit, path = "") {
  * Fails if a schema accepts a changed response: an additional key in any object, or a string in
  * place of any number. Returns the count of numbers.
  */
-function refusesChanges(schema, answer) {
+function assertRejectsChanges(schema, answer) {
   document.holds(schema, answer);
   let changes = 0;
   eachObject(answer, (object, path) => {
@@ -271,7 +275,8 @@ function refusesChanges(schema, answer) {
     assert.ok(document.faults(schema, answer), `${schema}: an additional key in ${path}`);
     delete object.unknown;
     for (const [name, value] of Object.entries(object)) {
-      if (name === "start") continue; // a number or a name in a sweep's point
+      // The start of a sweep's point can be a number or a name: a string is valid.
+      if (name === "start") continue;
       const isColumn = Array.isArray(value) && typeof value[0] === "number";
       if (typeof value !== "number" && !isColumn) continue;
       object[name] = isColumn ? ["1", ...value.slice(1)] : "1";
@@ -287,7 +292,7 @@ function refusesChanges(schema, answer) {
 test("a changed or empty response does not match the document", async () => {
   const body = {...simulations[1], max_points: 256};
   const run = JSON.parse((await checked("/v1/simulate", {body})).text);
-  assert.ok(refusesChanges("Simulation", run) > 100);
+  assert.ok(assertRejectsChanges("Simulation", run) > 100);
   for (const [part, key] of [
     ["impacts", "tau"],
     ["status", "reason"],
@@ -308,10 +313,10 @@ test("a changed or empty response does not match the document", async () => {
   ])
     assert.ok(document.faults(schema, {}), schema);
   const manifold = (await checked("/v1/manifold", {body: {points: 5}})).text;
-  assert.ok(refusesChanges("Manifold", JSON.parse(manifold)) > 20);
+  assert.ok(assertRejectsChanges("Manifold", JSON.parse(manifold)) > 20);
   const {example} =
     document.json.paths["/v1/identify"].post.responses[200].content["application/json"];
-  assert.ok(refusesChanges("Identification", structuredClone(example)) > 40);
+  assert.ok(assertRejectsChanges("Identification", structuredClone(example)) > 40);
 });
 
 test("a changed line of a sweep does not match the document", async () => {
@@ -325,22 +330,22 @@ test("a changed line of a sweep does not match the document", async () => {
       const kind = line.reduce ? "reduced" : line.type;
       if (changed.has(kind)) continue;
       changed.add(kind);
-      refusesChanges("SweepLine", line);
+      assertRejectsChanges("SweepLine", line);
     }
   }
   assert.ok(changed.has("reduced") && changed.has("point") && changed.has("start"));
 });
 
-// A client.
+// --- A client generated from the document
 
 /** The compiler's diagnostics for each program, compiled with types generated from the document. */
 async function compiled(programs) {
-  const {default: make, astToString} = await import(
+  const {default: generateTypes, astToString} = await import(
     pathToFileURL(require.resolve("openapi-typescript").replace(/cjs$/, "mjs"))
   );
   const ts = require("typescript");
   const folder = await mkdtemp(join(tmpdir(), "vines-client-"));
-  await writeFile(join(folder, "vines.ts"), astToString(await make(document.json)));
+  await writeFile(join(folder, "vines.ts"), astToString(await generateTypes(document.json)));
   const files = programs.map((_, k) => join(folder, `program${k}.ts`));
   await Promise.all(files.map((file, k) => writeFile(file, programs[k])));
   const program = ts.createProgram(files, {

@@ -564,9 +564,9 @@ test("a free decay is drawn, with its initial energy and decay times", async () 
     /verdict– without forcing \(G = 0\) the motion dies out/,
   );
   const energy = await page.textContent("#energy");
-  assert.match(energy, /200 mm² at the start; half is left at τ = \d+/);
+  assert.match(energy, /200 mm² at the start; half of the energy is left at τ = \d+/);
   const left = (part) => `${part} is left at τ = ([\\d.]+) \\(without absorber: τ = ([\\d.]+)\\)`;
-  const decay = new RegExp(`${left("half")}; ${left("a tenth")}`);
+  const decay = new RegExp(`${left("half of the energy")}; ${left("a tenth")}`);
   const times = decay.exec(energy).slice(1).map(Number);
   assert.ok(times[0] < times[1] && times[2] < times[3], "the absorber shortens the decay");
   for (const canvas of [...instrument, ...details])

@@ -1,9 +1,12 @@
 // <details> elements filled when first opened, because schemas can be recursive.
 import {$, element} from "../shared/dom.js";
 
-const folds = new Map(); // by the id of their content
+const openers = new Map(); // functions that open an element, by its id
 
-/** A <details> element. summary: nodes; make() returns the content; place: its id, if any. */
+/**
+ * Returns a <details> element. summary: nodes; make() returns the content; place: id, if any, by
+ * which unfold() opens the element.
+ */
 export function fold(summary, make, place) {
   const node = element("details", {}, element("summary", {}, ...summary));
   let filled = false;
@@ -13,16 +16,19 @@ export function fold(summary, make, place) {
     node.open = true;
   };
   node.addEventListener("toggle", () => node.open && open());
-  if (place) folds.set(place, open);
+  if (place) openers.set(place, open);
   return node;
 }
 
-/** Opens all elements around an id, from the outside in. */
+/**
+ * Opens all elements around an id, from the outside in. Ids are paths such as "a.b/c": each part
+ * before a "." or "/" is the id of an enclosing element.
+ */
 export const unfold = (place) => {
-  for (const {index} of place.matchAll(/[./]|$/g)) folds.get(place.slice(0, index))?.();
+  for (const {index} of place.matchAll(/[./]|$/g)) openers.get(place.slice(0, index))?.();
 };
 
-/** Scrolls to the id in the address and focuses it. */
+/** Opens and focuses the element whose id is the fragment `hash` ("#id"), and scrolls to it. */
 export function reveal(hash) {
   const place = hash.slice(1);
   unfold(place);

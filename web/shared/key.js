@@ -2,7 +2,7 @@
 import {element} from "./dom.js";
 
 const name = "vines-api-key";
-let asking = null; // one dialog for all waiting requests
+let openPrompt = null; // one dialog for all waiting requests
 
 export const currentKey = () => sessionStorage.getItem(name);
 
@@ -11,15 +11,18 @@ export const hasKey = () => currentKey() !== null;
 /** The request headers with the key, if there is one. */
 export const keyHeaders = () => (hasKey() ? {Authorization: `Bearer ${currentKey()}`} : {});
 
-/** Asks for a key; resolves to true when one was typed. */
+/**
+ * Prompts for a key after a 401 response. Resolves to true if a text was entered before the dialog
+ * closed; that text is then the key.
+ */
 export function askForKey() {
-  asking ??= ask().finally(() => {
-    asking = null;
+  openPrompt ??= showDialog().finally(() => {
+    openPrompt = null;
   });
-  return asking;
+  return openPrompt;
 }
 
-async function ask() {
+async function showDialog() {
   const input = element("input", {
     type: "password",
     name: "key",
@@ -28,14 +31,14 @@ async function ask() {
     title: "16 or more letters, digits or -._~+/=",
     autocomplete: "current-password",
   });
-  const wrong = hasKey() ? "The server does not accept this key. " : "";
-  const use = element("button", {}, "Use key");
+  const rejection = hasKey() ? "The server does not accept this key. " : "";
+  const submit = element("button", {}, "Use key");
   const dialog = element(
     "dialog",
     {},
     element("h2", {}, "API key"),
-    element("p", {}, `${wrong}This server requires an API key.`),
-    element("form", {method: "dialog"}, element("label", {}, "Key ", input, " ", use)),
+    element("p", {}, `${rejection}This server requires an API key.`),
+    element("form", {method: "dialog"}, element("label", {}, "Key ", input, " ", submit)),
   );
   document.body.append(dialog);
   dialog.showModal();
@@ -43,7 +46,7 @@ async function ask() {
     dialog.onclose = resolve;
   });
   dialog.remove();
-  const given = input.value.trim();
-  if (given) sessionStorage.setItem(name, given);
-  return Boolean(given);
+  const key = input.value.trim();
+  if (key) sessionStorage.setItem(name, key);
+  return Boolean(key);
 }

@@ -1,5 +1,8 @@
 // Results of a run as text and numbers: cards of the window and the whole run, the table of
 // windows, and the energy balance.
+//
+// units: {si, time, velocity, ..., at(tau)}. A quantity is {of(value), unit}: of() converts a
+// dimensionless value, unit is the suffix. at(tau) formats a time.
 
 import {$, element, reveal, setTexts} from "../shared/dom.js";
 import {clamp, count, digits, inMm, minus, percent, shortTo} from "../shared/numbers.js";
@@ -36,6 +39,7 @@ function rhythm(r) {
 }
 
 function verdictCard({verdict, verdict_reason: given}, r) {
+  // The service writes plain text: typographic characters are substituted.
   const text = given?.replace("lambda1", "λ₁").replace("= -", "= −");
   const reason = text ?? "requires the estimator qr";
   const name = verdicts[verdict] ?? "–";
@@ -47,6 +51,7 @@ function verdictCard({verdict, verdict_reason: given}, r) {
 function lambdaCard({qr}, {time}) {
   const error = qr?.standard_error[0];
   const remark = error == null ? "" : `± ${digits(error)}`;
+  // Exponents are per unit of tau, even if times are in seconds.
   const unit = time.unit ? " per unit of τ" : "";
   return ["λ₁ (qr)", qr ? digits(qr.final[0]) : "–", remark + unit];
 }
@@ -56,12 +61,12 @@ function lambdaCard({qr}, {time}) {
  * decided.
  */
 function positivesCard({qr, raw_product: product, verdict}) {
-  const exact = positives(qr);
+  const byQr = positives(qr);
   const raw = positives(product);
   const differs = `${raw} by the raw product`;
-  const remark = raw === null || raw === exact ? "" : differs;
+  const remark = raw === null || raw === byQr ? "" : differs;
   const open = verdict === "not_decided" ? "not decided" : "–";
-  const decided = {regular: "none in the long run", chaotic: String(exact ?? "–")};
+  const decided = {regular: "none in the long run", chaotic: String(byQr ?? "–")};
   const shown = decided[verdict] ?? open;
   return ["positive exponents (qr)", shown, remark];
 }
@@ -71,6 +76,7 @@ function residualCard({qr, sum_rule_residual: residual, impacts}) {
   return ["sum rule residual", "–", qr && impacts > 1 ? "undefined after sticking" : ""];
 }
 
+/** The median; of an even count, the upper of the middle two. */
 const median = (values) => values.toSorted((a, b) => a - b)[values.length >> 1];
 
 const inUnit = (value, {of, unit}) => `${shortTo(3, of(value))} ${unit}`;
@@ -103,15 +109,15 @@ const engineeringCards = ({impacts, series, parameters}, units) => [
 ];
 
 /** Title of the window's cards. */
-function windowTitle({window, impacts}, {at}, asked) {
-  if (!window) return asked ? "Window without impacts" : "Run without impacts";
-  const whole = asked ? "Window" : "Whole run, first to last impact";
+function windowTitle({window, impacts}, {at}, requested) {
+  if (!window) return requested ? "Window without impacts" : "Run without impacts";
+  const whole = requested ? "Window" : "Whole run, first to last impact";
   return `${whole}: ${at(window[0])} to ${at(window[1]).replace(/^.*= /, "")}, ${count(impacts, "impact")}`;
 }
 
 export function summarise(answer, units) {
   const {exponents, regime, energy, impacts, sticking, parameters} = answer;
-  const stuck = sticking.side.length;
+  const stickingPhases = sticking.side.length;
   setTexts({"summary-title": windowTitle(exponents, units, parameters.window)});
   cards($("summary"), [
     regimeCard(regime, units),
@@ -126,7 +132,7 @@ export function summarise(answer, units) {
   ]);
   cards($("summary-run"), [
     ["impacts", String(impacts.tau.length), "chatter included"],
-    ["sticking phases", String(stuck), stuck ? "shaded in the plots" : ""],
+    ["sticking phases", String(stickingPhases), stickingPhases ? "shaded in the plots" : ""],
     ["damping ζ", digits(parameters.derived.zeta, 5), parameters.damping.replaceAll("_", " ")],
     ...(units.si ? engineeringCards(answer, units) : []),
   ]);
@@ -139,17 +145,17 @@ export function tabulate(windows = [], {time}) {
   const rows = windows.map((w) => {
     const lambda = [0, 1, 2, 3].map((k) => (w.qr ? exponent(w.qr, k) : "–"));
     const error = w.qr?.standard_error[0];
-    const asked = w.asked.map((t) => (time.unit ? time.of(t).toFixed(2) : String(t)));
+    const requested = w.asked.map((t) => (time.unit ? time.of(t).toFixed(2) : String(t)));
     if (error != null) lambda[0] += ` ± ${digits(error)}`;
-    return [...asked, String(w.impacts), ...lambda, verdicts[w.verdict] ?? "–"];
+    return [...requested, String(w.impacts), ...lambda, verdicts[w.verdict] ?? "–"];
   });
   $("windows").replaceChildren(...tableOf(names, rows));
 }
 
 /** A bar whose length is a fraction of the whole. */
-function bar(share, className) {
+function bar(fraction, className) {
   const node = element("span", {className});
-  node.style.width = `${clamp(share, 0, 1) * 100}%`;
+  node.style.width = `${clamp(fraction, 0, 1) * 100}%`;
   return node;
 }
 
@@ -182,37 +188,38 @@ function energyNote({input, at_start: start, decay}, units) {
 
 /** Times at which half and a tenth of the energy are left, with and without the absorber. */
 function decayTimes(decay, {at}) {
-  const moment = (tau, before = "") => (tau == null ? "not in this run" : before + at(tau));
+  const timeOf = (tau, before = "") => (tau == null ? "not in this run" : before + at(tau));
   const line = ([what, name]) => {
     const withIt = decay[name];
     const without = decay.without_absorber[name];
     const known = withIt != null || without != null;
     return (
-      known && `${what} is left ${moment(withIt, "at ")} (without absorber: ${moment(without)})`
+      known && `${what} is left ${timeOf(withIt, "at ")} (without absorber: ${timeOf(without)})`
     );
   };
-  return Object.entries({half: "tau_half", "a tenth": "tau_tenth"}).map(line);
+  return Object.entries({"half of the energy": "tau_half", "a tenth": "tau_tenth"}).map(line);
 }
 
 /**
- * The energy balance: energy supplied by the base or present at the start is dissipated by the
- * damper and the impacts, or is left at the end.
+ * Shows the energy balance: the energy supplied by the base or present at the start is dissipated by
+ * the damper and the impacts, or is left at the end. The fractions are of the sum of these three,
+ * which equals the energy supplied.
  */
 export function accountEnergy(energy, units) {
   const {damper, impacts, at_end: left, without_absorber: without} = energy;
-  const supplied = damper + impacts + left || 1;
+  const total = damper + impacts + left || 1;
   const parts = [
     ["damper", "damper", damper],
     ["impacts", "impacts", impacts],
     ["left", "left at the end", left],
   ];
-  const bars = parts.map(([className, , value]) => bar(value / supplied, className));
+  const bars = parts.map(([className, , value]) => bar(value / total, className));
   const keys = parts.map(([className, name, value]) =>
     element(
       "li",
       {},
       element("span", {className: `key ${className}`, textContent: name}),
-      element("b", {textContent: percent(value / supplied)}),
+      element("b", {textContent: percent(value / total)}),
       element("small", {textContent: inUnit(value, units.energy)}),
     ),
   );

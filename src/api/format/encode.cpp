@@ -1,3 +1,5 @@
+// Encoding of an answer as JSON, CSV, CBOR or npz. JSON ends with a provenance that contains the
+// SHA-256 of the text before it; CBOR and npz have a provenance without the hash, CSV has none.
 #include "api/format/encode.hpp"
 
 #include <utility>
@@ -13,13 +15,13 @@ const FormatName& name_of(Format format) {
 namespace {
 
 // Approximate size of a provenance without the request, in bytes.
-constexpr std::size_t room_for_provenance = 1024;
+constexpr std::size_t provenance_bytes = 1024;
 
-std::string sealed_text(
+std::string json_with_provenance(
     Json answer, const std::optional<Provenance>& provenance,
     const std::function<bool()>& gives_up) {
     std::string text;
-    text.reserve(room_for_lists(answer) + room_for_provenance);
+    text.reserve(room_for_lists(answer) + provenance_bytes);
     const CancelCheck cancel(gives_up);
     write_sealed(answer, provenance, [&](std::string_view piece) {
         cancel.poll();
@@ -33,10 +35,13 @@ std::string sealed_text(
 std::string encoded(
     Json answer, Format format, const std::optional<Provenance>& provenance,
     const std::function<bool()>& gives_up) {
-    if (format == Format::json) return sealed_text(std::move(answer), provenance, gives_up);
+    if (format == Format::json)
+        return json_with_provenance(std::move(answer), provenance, gives_up);
     if (format == Format::csv) return csv_text(answer, gives_up);
+    // No SHA-256: it is defined for the JSON text only.
     if (provenance) answer["provenance"] = describe(*provenance, nullptr);
-    return (format == Format::cbor ? cbor_bytes : npz_bytes)(std::move(answer), gives_up);
+    if (format == Format::cbor) return cbor_bytes(std::move(answer), gives_up);
+    return npz_bytes(std::move(answer), gives_up);
 }
 
 }  // namespace vines::api

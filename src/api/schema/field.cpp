@@ -19,8 +19,8 @@ const Field* find(const FieldTable& table, const std::string& name) {
 
 namespace {
 
-/// Longer names are not compared, which would take time: the longest field name has 19 characters.
-constexpr std::size_t longest_name = 64;
+/// Longer names are not compared, which saves time: field names are much shorter.
+constexpr std::size_t max_compared_length = 64;
 
 /// Levenshtein distance, ignoring case.
 std::size_t distance(const std::string& a, const std::string& b) {
@@ -41,11 +41,11 @@ std::size_t distance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string nearest_name(std::span<const std::string> names, const std::string& name) {
-    if (name.size() > longest_name) return "";
+    if (name.size() > max_compared_length) return "";
     const auto nearest = std::min_element(
         names.begin(), names.end(),
         [&](const auto& a, const auto& b) { return distance(name, a) < distance(name, b); });
-    // One typing error per three letters, at least one.
+    // Allows one typing error per three letters, at least one.
     const std::size_t errors = std::max<std::size_t>(1, name.size() / 3);
     return distance(name, *nearest) <= errors ? *nearest : "";
 }
@@ -58,7 +58,8 @@ std::string nearest_name(const FieldTable& table, const std::string& name) {
 
 namespace {
 
-/// The finite number that the whole text spells; otherwise the text itself.
+/// The text as a number if all of it is one finite number; otherwise the text, which check()
+/// reports.
 Json number_or_text(const std::string& text) {
     double value;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -77,12 +78,13 @@ Json numbers_of(const std::string& text) {
 
 std::vector<std::string> split(const std::string& text, char separator) {
     std::vector<std::string> parts;
-    for (std::size_t from = 0, at; !text.empty(); from = at + 1) {
-        at = text.find(separator, from);
+    if (text.empty()) return parts;
+    for (std::size_t from = 0;;) {
+        const std::size_t at = text.find(separator, from);
         parts.push_back(text.substr(from, at - from));
-        if (at == std::string::npos) break;
+        if (at == std::string::npos) return parts;
+        from = at + 1;
     }
-    return parts;
 }
 
 Json value_of_text(FieldType type, const std::string& text) {
@@ -100,7 +102,7 @@ Json value_of_text(FieldType type, const std::string& text) {
         }
         case FieldType::integers:
         case FieldType::object:
-        case FieldType::objects: return text;  // cannot be written in a query
+        case FieldType::objects: return text;  // no form in a query: check() reports the text
     }
     return nullptr;
 }

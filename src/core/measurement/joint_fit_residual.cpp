@@ -1,11 +1,17 @@
-// Evaluation of a joint fit: the motion at its borders, and the residual of each sensor.
+// Evaluation of a joint fit: the states at its borders, and the residual of each sensor.
 //
-// The residual of a fit: the sensor's noise, and the part of the motion that the fit missed.
+// evaluate_impacts() gives the fitted state before and after each border. From separate fits of the
+// neighbouring intervals it gives the jump of x, which is 0 within its error if the border is an
+// impact, and the error of the jump of x'.
 //
-// A missed motion is smooth from sample to sample, like the motion itself; noise, hum and filtered
-// noise are not, over a fraction of 1/omega0. So the variance of short block means is compared with
-// the differences between neighbouring means: noise of any colour above about 3 omega0 contributes
-// the same to both.
+// evaluate_residual() separates the residual into the sensor's noise and a motion that the fit
+// missed. A missed motion is smooth from sample to sample, like the motion itself; noise, hum and
+// filtered noise are not, over a fraction of 1/omega0. The variance of short block means is
+// therefore compared with their variance from third differences: noise of any colour above about
+// 3 omega0 contributes the same to both. With v the variance of the residual and m the excess of
+// the first variance over the second, at least 0,
+//
+//   misfit^2 = 1 + m / (max(v - m, 0) + least_noise^2).
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -18,14 +24,14 @@ namespace {
 
 struct ResidualStatistics {
     double noise;   ///< standard deviation of the residual
-    double misfit;  ///< that, divided by the standard deviation without the missed motion
+    double misfit;  ///< size of the residual relative to its noise alone; 1: nothing was missed
     /// Factor on standard errors that assume white noise of SignalStatistics::noise: samples of
     /// coloured noise carry less information.
     double uncertainty;
 };
 
-// Length of a block in tau: the motion's frequencies, 1 and Omega, are slow compared with it, the
-// filters of laboratory sensors fast.
+// Length of a block in tau: short against the periods of the motion, 2 pi and 2 pi/Omega, and long
+// against the time constants of the filters of laboratory sensors.
 constexpr double block_tau = 0.3;
 
 struct Blocks {
@@ -35,18 +41,18 @@ struct Blocks {
 
 /// Means of blocks of consecutive samples without ignored ones.
 Blocks blocks_of(
-    const std::vector<double>& tau, const std::vector<double>& left,
+    const std::vector<double>& tau, const std::vector<double>& residual,
     const std::vector<char>& ignored, double step) {
     Blocks b;
     b.samples = static_cast<std::size_t>(std::max(1.0, std::round(block_tau / step)));
     double sum = 0;
     std::size_t taken = 0;
-    for (std::size_t k = 0; k < left.size(); ++k) {
+    for (std::size_t k = 0; k < residual.size(); ++k) {
         if (ignored[k]) {
             taken = 0;
             continue;
         }
-        sum = taken == 0 ? left[k] : sum + left[k];
+        sum = taken == 0 ? residual[k] : sum + residual[k];
         if (++taken < b.samples) continue;
         b.tau.push_back(tau[k] - 0.5 * step * static_cast<double>(taken - 1));
         b.mean.push_back(sum / static_cast<double>(taken));
@@ -65,14 +71,14 @@ double deviation_of(const std::vector<double>& values) {
 
 double squared(double x) { return x * x; }
 
-/// `left`: residual at `tau`; `ignored`: samples to ignore; `step`: sampling interval.
+/// `residual`: at `tau`; `ignored`: samples to ignore; `step`: sampling interval.
 ResidualStatistics statistics_of(
-    const std::vector<double>& tau, const std::vector<double>& left,
+    const std::vector<double>& tau, const std::vector<double>& residual,
     const std::vector<char>& ignored, double step, const SignalStatistics& signal) {
     std::vector<double> clean;
-    for (std::size_t k = 0; k < left.size(); ++k)
-        if (!ignored[k]) clean.push_back(left[k]);
-    const Blocks blocks = blocks_of(tau, left, ignored, step);
+    for (std::size_t k = 0; k < residual.size(); ++k)
+        if (!ignored[k]) clean.push_back(residual[k]);
+    const Blocks blocks = blocks_of(tau, residual, ignored, step);
     const double all = squared(deviation_of(clean)), slow = squared(deviation_of(blocks.mean)),
                  differing = squared(ThirdDifferences(blocks.tau, blocks.mean).noise());
     // NaN, from too few blocks, counts as no misfit.
@@ -85,21 +91,23 @@ ResidualStatistics statistics_of(
             slow > 0 ? std::sqrt(slow * static_cast<double>(blocks.samples)) / signal.noise : 1};
 }
 
-/// Residual statistics of one sensor; `left` outside pulses.
+/// Statistics of one sensor's residual; bad samples and samples in pulses are ignored.
 ResidualStatistics statistics_of(
-    const JointFitState& state, const std::vector<double>& left, const SignalStatistics& signal,
+    const JointFitState& state, const std::vector<double>& residual, const SignalStatistics& signal,
     const std::vector<char>& bad) {
     std::vector<char> ignored(state.in_pulse);
-    for (std::size_t k = 0; k < left.size(); ++k)
+    for (std::size_t k = 0; k < residual.size(); ++k)
         if (bad[k]) ignored[k] = 1;
-    return statistics_of(state.record.tau, left, ignored, state.input.statistics.step, signal);
+    return statistics_of(state.record.tau, residual, ignored, state.input.statistics.step, signal);
 }
 
 }  // namespace
 
+/// Appends the fitted states at each border to fit.impacts.
 void evaluate_impacts(JointFitState& state) {
     const IntervalFlows flows(state.fit.values, state.oscillator_moves(), state.fit.epsilon);
-    // Result of each interval alone, with the common values.
+    // Initial state of each interval fitted to its own samples alone, with the global parameters
+    // fixed: s + N^-1 g, with covariance N^-1.
     std::vector<Eigen::Matrix2d> covariance;
     std::vector<Eigen::Vector2d> own;
     for (std::size_t i = 0; i < state.fit.intervals.size(); ++i) {
@@ -140,22 +148,23 @@ void evaluate_impacts(JointFitState& state) {
 }
 
 void evaluate_residual(JointFitState& state) {
-    double uncertain = 1;
-    const auto take = [&](const ResidualStatistics& l, double& noise, double& misfit) {
-        noise = l.noise, misfit = l.misfit, uncertain = std::max(uncertain, l.uncertainty);
+    double error_factor = 1;
+    const auto store = [&](const ResidualStatistics& statistics, double& noise, double& misfit) {
+        noise = statistics.noise, misfit = statistics.misfit;
+        error_factor = std::max(error_factor, statistics.uncertainty);
     };
     state.fit.noise_x = state.fit.noise_a = state.fit.misfit_x = state.fit.misfit_a = nan;
     if (!state.record.x.empty())
-        take(
+        store(
             statistics_of(state, state.fit.x_residual, state.input.statistics.x, state.input.bad_x),
             state.fit.noise_x, state.fit.misfit_x);
     if (!state.record.x_ddot.empty())
-        take(
+        store(
             statistics_of(
                 state, state.fit.a_residual, state.input.statistics.x_ddot, state.input.bad_a),
             state.fit.noise_a, state.fit.misfit_a);
-    // Errors grow if the residual exceeds the noise that the fit assumed.
-    for (double& e : state.fit.errors) e *= uncertain;
+    // The larger factor of both sensors, at least 1, applies to all errors.
+    for (double& e : state.fit.errors) e *= error_factor;
 }
 
 }  // namespace vines

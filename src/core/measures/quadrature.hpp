@@ -1,8 +1,9 @@
 // Integrals of x^2, x'^2 and x' sin(theta) over the motion of the linear oscillator between events.
+// They give the rms of x, the dissipation of the damper and the work of the forcing.
 //
-// Two methods, both exact to rounding. Quadrature sums Gauss's rule over the flow's grid, from
+// Two methods without truncation error. Quadrature sums Gauss's rule over the flow's grid, from
 // tables. Antiderivative uses a closed form, F(end) - F(begin) + c s, which is cheaper for long
-// windows; its rounding error is that of the motion without absorber.
+// windows; its rounding error is relative to F, which has the size of the motion without absorber.
 #pragma once
 
 #include <memory>
@@ -13,7 +14,7 @@
 
 namespace vines {
 
-/// Integrals of x^2, x'^2 and x' sin(theta) over some time.
+/// Integrals of x^2, x'^2 and x' sin(theta) over a time interval; dimensionless.
 struct Integrals {
     double x_squared = 0, x_dot_squared = 0, x_dot_sin = 0;
     Integrals& operator+=(const Integrals& more) {
@@ -31,20 +32,26 @@ struct Integrals {
 };
 
 /// Functions F of the state z = (x, x', sin theta, cos theta) and rates c such that the integral
-/// over a time s, from z0 to z, is F(z) - F(z0) + c s. F is a quadratic form z^T P z with L^T P + P
-/// L + c diag(0, 0, 1, 1) = Q, where z' = L z and Q is the integrand's form.
+/// over a time s, from z0 to z, is F(z) - F(z0) + c s. F is a quadratic form z^T P z with
+///
+///   L^T P + P L + c diag(0, 0, 1, 1) = Q,   z' = L z,
+///
+/// where z^T Q z is the integrand. The third term is the constant c, since sin^2 + cos^2 = 1.
 class Antiderivative {
 public:
-    /// Empty if ill-conditioned: with almost no damping, or at resonance, z^T P z is much larger
-    /// than its changes. Cached per thread.
+    /// Empty if ill-conditioned, that is, if z^T P z is much larger than its changes: with almost
+    /// no damping, in particular near resonance. Cached per thread.
     static std::optional<Antiderivative> of(const Flow& flow);
 
-    /// Duration, in tau, from which on the integrals are no longer small against F: from rest they
-    /// start as high powers of time, while F has the size of the steady motion from the start.
+    /// Shortest window, in tau, for which F(z) - F(z0) loses no digits by cancellation: from rest
+    /// the integrals start as high powers of time, while F has the size of the steady motion from
+    /// the start. Quadrature is accurate for shorter windows.
     double settled() const { return settled_; }
+    /// F at this state, one value per integrand.
     Integrals at(const Oscillation& o) const;
     /// at() before an impact minus at() after it: only x' has changed.
     Integrals across(const Oscillation& after, double x_dot_before) const;
+    /// c s, one value per integrand.
     Integrals over_time(double s) const {
         return {x_squared_.rate * s, x_dot_squared_.rate * s, x_dot_sin_.rate * s};
     }
@@ -63,8 +70,8 @@ private:
     double settled_;
 };
 
-/// Integration by Gauss's rule on each cell of the flow's grid; the forms of the cells are summed
-/// in a table.
+/// Integration by Gauss's rule on each cell of the flow's grid. The cumulative sums of the cells'
+/// quadratic forms are tabulated.
 class Quadrature {
 public:
     explicit Quadrature(const Flow& flow);

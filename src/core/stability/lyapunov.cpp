@@ -1,3 +1,12 @@
+// The three estimators of lyapunov.hpp.
+//
+// Qr carries a Flag (exterior.hpp): a length, an area, a volume and a determinant. Before they
+// leave the range of double, their logarithms are extracted. The logarithms of the four sizes are
+// the cumulative sums of T lambda_k; the difference of neighbouring sums is T lambda_k. Each sum
+// has an error estimate: the angles by which rounding has separated the three subspaces, the
+// accumulated rounding of steep impacts, and for the determinant the deviation from its exact
+// value. An exponent is reported only if its error is at most most_residual. Powers delegates to
+// PowerProduct. Raw multiplies the matrices as the paper did.
 #include "core/stability/lyapunov.hpp"
 
 #include <algorithm>
@@ -17,9 +26,9 @@ namespace {
 // it.
 constexpr double least_product = 1e-100, most_product = 1e100;
 constexpr double rounding = std::numeric_limits<double>::epsilon();
-// Over many impacts rounding is neither always at its worst nor of one sign. Among 1500 strongly
-// damped systems, most with chatter, a full ulp withholds ten whose exponents are accurate to 1e-7,
-// a tenth of an ulp withholds one.
+// Typical rounding error per impact; over many impacts it is neither always the largest nor of one
+// sign. Among 1500 strongly damped systems, most with chatter, a full ulp makes the exponents of
+// ten systems NaN although they are accurate to 1e-7; a tenth of an ulp does so for one.
 constexpr double typical_rounding = 0.1 * rounding;
 // Sine of an angle that should be zero, far above the effect of rounding.
 constexpr double widest_separation = 1e-6;
@@ -106,7 +115,8 @@ struct TransferProduct::Qr {
     Flag flag;
     std::array<double, 4> extracted_logs{};  // logarithms extracted from its four sizes
     double log_det = 0;                      // exact value for the flights: -2 zeta s
-    double R_product = 1, log_R = 0;
+    // Product of the coefficients of restitution, and the logarithm extracted from it.
+    double restitution_product = 1, log_restitution = 0;
     /// Bound of the rounding error in the logarithms of length, area and volume.
     std::array<double, 3> rounding_bounds{};
     int since_rescale = 0;  // impacts since the last rescaling
@@ -126,14 +136,14 @@ struct TransferProduct::Qr {
         // Within these limits an impact and a flight of one part let no size grow by more than 1e17
         // (for a flight of duration 1e10) or shrink by more than 1e10.
         flag.strike(M);
-        for (double& share : rounding_bounds) share += rounding;
-        R_product *= M.R;
+        for (double& bound : rounding_bounds) bound += rounding;
+        restitution_product *= M.R;
         if (++since_rescale == 4) rescale();
     }
 
-    /// x - y and x' - y' of a deviation are accurate to an ulp of x and x', as are those of areas
-    /// and volumes, and M magnifies this by its entries: adds it relative to the sizes after the
-    /// impact.
+    /// Impact with large entries of M, or with a tiny R. x - y and x' - y' of a deviation are
+    /// accurate to an ulp of x and x', and areas and volumes likewise. M magnifies this error by
+    /// its entries; the bounds grow by the magnified error relative to the sizes after the impact.
     void strike_magnified(const Saltation& M, double steepness) {
         rescale();
         const auto before = flag.squares();
@@ -144,7 +154,7 @@ struct TransferProduct::Qr {
                 before[k] > 0
                     ? typical_rounding * (1 + (1 + steepness) * std::sqrt(before[k] / after[k]))
                     : 0;
-        log_R += elementary::log(M.R);
+        log_restitution += elementary::log(M.R);
         rescale();
     }
 
@@ -166,30 +176,35 @@ struct TransferProduct::Qr {
             product = product < 0 ? -1 : 1;
         };
         take(flag.determinant, extracted_logs[3]);
-        take(R_product, log_R);
+        take(restitution_product, log_restitution);
     }
 
     double log_det_carried() const {
         return extracted_logs[3] + elementary::log(std::abs(flag.determinant));
     }
 
-    /// Diagonal of R: the growth of the first deviation, and the factors by which each further one
-    /// increases the growth of area, volume and determinant.
+    /// ln r_kk of the triangular factor of the QR method: the logarithmic growth of the first
+    /// deviation, and the additional growth of area, volume and determinant.
     Exponents logs(int rank) const {
         const auto squares = flag.squares();
         Exponents logs{};
         double before = 0;
         for (int k = 0; k < rank; ++k) {
-            const double sum = k < 3 ? extracted_logs[k] + 0.5 * elementary::log(squares[k])
-                                     : log_det_carried() + 2 * (log_R + elementary::log(R_product));
+            // The determinant of an impact, R^2, is kept apart: log_det_carried() is compared with
+            // the exact value for the flights.
+            const double sum =
+                k < 3 ? extracted_logs[k] + 0.5 * elementary::log(squares[k])
+                      : log_det_carried() +
+                            2 * (log_restitution + elementary::log(restitution_product));
             logs[k] = sum - before;
             before = sum;
         }
         return logs;
     }
 
-    /// Error of each of the four sums: angles between the parts of the flag, and deviation of the
-    /// determinant from its exact value; at least the rounding bound where that exceeds `most`.
+    /// Errors of the four cumulative sums of logarithms (dimensionless). Length, area and volume:
+    /// the larger of the angles to their neighbours, and the rounding bound if that exceeds `most`;
+    /// infinity if unknown. Determinant: deviation of its logarithm from the exact value.
     std::array<double, 4> errors(int rank, double most) const {
         const auto squares = flag.squares();
         const auto separations = flag.separations();
@@ -199,7 +214,8 @@ struct TransferProduct::Qr {
             if (!(squares[k] > 0)) errors[k] = infinity;
         }
         for (int k = 1; k < std::min(rank, 3); ++k) {
-            // A separation does not identify which of the two is wrong.
+            // The angle does not show which of the two neighbours is inaccurate: both get its
+            // error.
             const double separation =
                 separations[k - 1] <= widest_separation ? separations[k - 1] : infinity;
             errors[k - 1] = std::max(errors[k - 1], separation);
@@ -264,11 +280,11 @@ void TransferProduct::append(std::span<const Leg> legs, const Saltation& M, doub
         estimator.thinned.push(tau, exponents());
     };
     for (const Leg& leg : legs) {
-        if (leg.sticking) rank_ = 2;
+        if (leg.sticking) rank_ = 2;  // only the two deviations of the centre of mass remain
         if (qr_) qr_->pass(leg, epsilon_);
         if (powers_) powers_->product.pass(leg);
     }
-    if (M.R == 0) rank_ = std::min(rank_, 3);
+    if (M.R == 0) rank_ = std::min(rank_, 3);  // x' - y' = 0 after the impact
     if (qr_) {
         qr_->strike(M);
         record(*qr_, [&] { return descending(qr_->logs(rank_), rank_, tau - start_); });

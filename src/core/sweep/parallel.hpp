@@ -8,26 +8,29 @@
 
 namespace vines {
 
-/// Calls task(0), ..., task(count - 1), each once, from `threads` threads (fewer if the system
-/// refuses more), and returns when all are done. If a task throws, no further task starts, and the
-/// exception is rethrown once the other threads have returned.
+/// Calls task(0), ..., task(count - 1), each once, from `threads` threads (at least one; fewer if
+/// the system refuses more), and returns when all are done. If a task throws, no further task
+/// starts, and the exception is rethrown once the other threads have returned.
 void parallel(std::size_t count, int threads, const std::function<void(std::size_t)>& task);
 
 /// Interface between a long computation and its host; the default never waits or stops.
 class RunControl {
 public:
     virtual ~RunControl() = default;
-    /// Waits for a permit. Called before a thread's first run and, after end(), before each run.
+    /// Blocks until a permit is granted. A thread calls begin() before its first run; before each
+    /// further run it can return the permit by end() and call begin() again.
     virtual void begin() {}
+    /// Returns the permit of the matching begin().
     virtual void end() {}
-    /// Polled every few events. Can wait in favour of other work; true stops the computation.
+    /// Called between runs and every few events within them. Returns true to stop the computation;
+    /// can block to let other work run.
     virtual bool stop_or_yield() { return false; }
 
-    std::atomic<std::size_t> runs = 0;     ///< completed runs, of SweepPlan::runs()
-    std::atomic<std::size_t> impacts = 0;  ///< impacts in their measured parts
+    std::atomic<std::size_t> runs = 0;     ///< completed runs, out of SweepPlan::runs()
+    std::atomic<std::size_t> impacts = 0;  ///< impacts in the measured cycles of these runs
 };
 
-struct Stopped {};  ///< thrown after a stop request
+struct Stopped {};  ///< thrown by the computation once stop_or_yield() returned true
 
 /// A permit to compute, held while in scope.
 class ComputePermit {

@@ -1,5 +1,6 @@
 // Figs. 10 to 14: the regimes other than the strongly modulated response. Those of Figs. 12 and 13
-// are found at other b than the paper's, and from no start at the paper's own b.
+// are found at values of b other than the paper's; at the paper's b no initial state tried reaches
+// them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,6 +16,8 @@ namespace vines::report {
 
 namespace {
 
+constexpr double late_tau = 1600;  // from here on the relative displacement is drawn
+
 /// Draws the relative displacement from tau = `from` on, and the exponents by both methods.
 void show(Report& report, const PaperRun& r, int figure, double from) {
     const std::string name = fmt::format("fig{}", figure),
@@ -29,7 +32,7 @@ void show(Report& report, const PaperRun& r, int figure, double from) {
          .plots = exponent_histories(r.run.exponents->product)});
 }
 
-/// Compares the regime of a figure, with both dampings.
+/// Compares the regime of a figure, with the damping of the closed form and of eq. (1).
 void regime(
     Report& report, const std::string& where, const std::string& paper, RegimeType type,
     const PaperRun& here, const PaperRun& by_equation,
@@ -44,7 +47,7 @@ void regime(
          .number = number_of(here.run.regime->type),
          .by_equation = number_of(by_equation.run.regime->type),
          .band = exactly(number_of(type)),
-         .because = "the type's number",
+         .because = "the same type as in the paper",
          .expected = expected});
 }
 
@@ -64,7 +67,7 @@ void figure_10(Report& report, const PaperRun& r, const PaperRun& by_equation) {
          .number = regime_here.z,
          .by_equation = other.z,
          .band = {0, 1.0 / 3},
-         .because = "an impact in three cycles or in more; in part: in two",
+         .because = "at most one impact in three cycles; in part: at most one in two",
          .partly = Band{0, 0.5},
          .expected = ClaimVerdict::not_reproduced});
     positive_exponents(
@@ -81,7 +84,7 @@ void figure_10(Report& report, const PaperRun& r, const PaperRun& by_equation) {
             r.run.stick_count));
 }
 
-/// "Four negative values ..."
+/// Adds the paper's claim on a periodic regime: "Four negative values ..."
 void negative(Report& report, const std::string& where, const PaperRun& r, const PaperRun& other) {
     const Exponents lambda = exponents_of(r), raw = r.run.exponents->product.raw_product();
     const std::string at = fmt::format(" at b = {:g} mm", 1000 * r.parameters.b);
@@ -98,7 +101,8 @@ void negative(Report& report, const std::string& where, const PaperRun& r, const
          .band = {-infinity, 0},
          .because = "negative"});
 }
-/// "... (two of them almost zero)"
+
+/// Adds the second part of that claim: "... (two of them almost zero)".
 void almost_zero(Report& report, const std::string& where, const PaperRun& r) {
     const TransferProduct& product = r.run.exponents->product;
     const Exponents orbit = exponents_of(r), raw = product.raw_product();
@@ -119,7 +123,7 @@ void almost_zero(Report& report, const std::string& where, const PaperRun& r) {
 
 void figure_11(Report& report, const PaperRun& r, const PaperRun& by_equation) {
     report.heading("Fig. 11: two symmetric impacts per cycle, b = 15 mm (Type III)");
-    show(report, r, 11, 1600);
+    show(report, r, 11, late_tau);
     regime(report, "Fig. 11", "Type III", RegimeType::III, r, by_equation);
     negative(report, "Fig. 11", r, by_equation);
     almost_zero(report, "Fig. 11", r);
@@ -131,11 +135,11 @@ void figure_11(Report& report, const PaperRun& r, const PaperRun& by_equation) {
 }
 
 /// A regime that the paper finds at one b and that is found here at another.
-struct Elsewhere {
+struct ShiftedRegime {
     int figure;
     RegimeType type;
     long impacts;
-    double b_paper, b_here;  ///< m
+    double b_paper, b_other;  ///< m
 };
 
 std::string described(const Regime& r) {
@@ -158,32 +162,33 @@ std::string counted(const std::vector<Regime>& regimes) {
 
 constexpr int random_starts = 200;
 
-/// Number of motions that reach the paper's regime.
-long as_in_the_paper(const Elsewhere& e, const std::vector<Regime>& found) {
+/// Returns how many of the motions found have the paper's type and impacts per cycle.
+long count_matching(const ShiftedRegime& e, const std::vector<Regime>& found) {
     return std::ranges::count_if(found, [&](const Regime& f) {
         return f.type == e.type && f.orbit && f.orbit->contacts == e.impacts * f.orbit->cycles;
     });
 }
 
-void at_the_papers_b(
-    Report& report, const Elsewhere& e, const PaperRun& r, const PaperRun& by_equation) {
+/// Adds the claim on the regime at the paper's b, from random initial states.
+void report_paper_b(
+    Report& report, const ShiftedRegime& e, const PaperRun& r, const PaperRun& by_equation) {
     const std::vector<Regime> found = regimes_of_random_starts(r.parameters, random_starts),
                               other =
                                   regimes_of_random_starts(by_equation.parameters, random_starts);
-    const long here = as_in_the_paper(e, found), there = as_in_the_paper(e, other);
+    const long by_closed_form = count_matching(e, found), by_eq_1 = count_matching(e, other);
     const double mm = 1000 * e.b_paper;
     report.add(
         {.where = fmt::format("Fig. {}", e.figure),
          .what = fmt::format(
-             "b = {:g} mm: number of {} random starts that reach Type {} with {} impacts per "
-             "cycle, that is, four negative exponents",
+             "b = {:g} mm: random starts, of {}, that reach Type {} with {} impacts per cycle, and "
+             "hence four negative exponents",
              mm, random_starts, name_of(e.type), e.impacts),
          .paper = fmt::format("Type {}, all four negative", name_of(e.type)),
          .here = fmt::format(
-             "{}; from the paper's start {}. By eq. (1) {}; {}", here, described(*r.run.regime),
-             there, described(*by_equation.run.regime)),
-         .number = static_cast<double>(here),
-         .by_equation = static_cast<double>(there),
+             "{}; from the paper's start {}. By eq. (1) {}; {}", by_closed_form,
+             described(*r.run.regime), by_eq_1, described(*by_equation.run.regime)),
+         .number = static_cast<double>(by_closed_form),
+         .by_equation = static_cast<double>(by_eq_1),
          .band = {1, random_starts},
          .because = "one is enough",
          .expected = ClaimVerdict::not_reproduced});
@@ -193,32 +198,32 @@ void at_the_papers_b(
 }
 
 void figures_12_and_13(Report& report, RunCache& runs) {
-    constexpr Elsewhere both[] = {
-        {.figure = 12, .type = RegimeType::IV, .impacts = 2, .b_paper = 0.008, .b_here = 0.0065},
-        {.figure = 13, .type = RegimeType::V, .impacts = 3, .b_paper = 0.004, .b_here = 0.0046}};
-    for (const Elsewhere& e : both) {
+    constexpr ShiftedRegime both[] = {
+        {.figure = 12, .type = RegimeType::IV, .impacts = 2, .b_paper = 0.008, .b_other = 0.0065},
+        {.figure = 13, .type = RegimeType::V, .impacts = 3, .b_paper = 0.004, .b_other = 0.0046}};
+    for (const ShiftedRegime& e : both) {
         report.heading(fmt::format(
             "Fig. {}: Type {}, b = {:g} mm in the paper", e.figure, name_of(e.type),
             1000 * e.b_paper));
-        const PaperRun &there = runs.paper_run(e.b_paper),
+        const PaperRun &at_paper_b = runs.paper_run(e.b_paper),
                        &by_equation = runs.paper_run(e.b_paper, Damping::equation_of_motion),
-                       &here = runs.paper_run(e.b_here);
-        at_the_papers_b(report, e, there, by_equation);
-        const Exponents lambda = exponents_of(here);
+                       &at_other_b = runs.paper_run(e.b_other);
+        report_paper_b(report, e, at_paper_b, by_equation);
+        const Exponents lambda = exponents_of(at_other_b);
         report.paragraph(fmt::format(
             "At b = {:g} mm the response is {}; its exponents are {} ({}), lambda2 over lambda3 "
             "{:.2f}. At the paper's own b the largest exponent of the motion found there is "
             "{:.4f}, by eq. (1) {:.4f}.",
-            1000 * e.b_here, described(*here.run.regime), in_words(lambda),
-            here.run.regime->orbit ? "Floquet multipliers" : "qr", lambda[1] / lambda[2],
-            exponents_of(there)[0], exponents_of(by_equation)[0]));
-        show(report, here, e.figure, 1600);
+            1000 * e.b_other, described(*at_other_b.run.regime), in_words(lambda),
+            at_other_b.run.regime->orbit ? "Floquet multipliers" : "qr", lambda[1] / lambda[2],
+            exponents_of(at_paper_b)[0], exponents_of(by_equation)[0]));
+        show(report, at_other_b, e.figure, late_tau);
     }
 }
 
 void figure_14(Report& report, const PaperRun& r, const PaperRun& by_equation) {
     report.heading("Fig. 14: irregular, about three impacts per cycle, b = 3 mm (Type VI)");
-    show(report, r, 14, 1600);
+    show(report, r, 14, late_tau);
     regime(report, "Fig. 14", "Type VI", RegimeType::VI, r, by_equation);
     report.add(
         {.where = "Fig. 14",

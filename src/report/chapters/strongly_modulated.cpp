@@ -99,7 +99,7 @@ void figure_3(Report& report, const PaperRun& r, const PaperRun& by_equation) {
          .number = number_of(r.run.regime->type),
          .by_equation = number_of(by_equation.run.regime->type),
          .band = exactly(number_of(RegimeType::II)),
-         .because = "the type's number"});
+         .because = "the same type as in the paper"});
     first_impact(report, r, by_equation);
 }
 

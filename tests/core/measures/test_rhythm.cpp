@@ -1,3 +1,4 @@
+// Contact statistics of a run (Rhythm): contacts per cycle and synchronised intervals.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -21,8 +22,9 @@ private:
     void on_contact(const CountedContact& contact) override { contacts.push_back(contact); }
 };
 
-/// A system with chatters, sticking, contacts on one side, and regular alternation.
-Parameters some_system(std::mt19937_64& engine) {
+/// Random system near Table 1; the family includes chatter, sticking, contacts on one side, and
+/// regular alternation.
+Parameters random_system_near_table1(std::mt19937_64& engine) {
     Parameters p = table1(uniform(engine, 0.002, 0.035), Damping::closed_form);
     // At small R the ball often meets the same wall twice in a cycle and sticks at the second
     // contact.
@@ -42,11 +44,11 @@ long contacts_between(const std::vector<CountedContact>& contacts, double from, 
 
 }  // namespace
 
-TEST_CASE("contacts streamed one by one are those of the list") {
+TEST_CASE("contacts streamed one by one equal those of the list") {
     std::mt19937_64 engine(31);
     int sticks = 0;
     for (int n = 0; n < 100; ++n) {
-        const Parameters p = some_system(engine);
+        const Parameters p = random_system_near_table1(engine);
         ContactRecord list;
         ContactCollector collected(p);
         record(p, default_state(p), 400, 100000, {&list, &collected});
@@ -58,13 +60,14 @@ TEST_CASE("contacts streamed one by one are those of the list") {
             CHECK(collected.contacts[k].side == list.contacts[k].side);
         }
     }
-    CHECK(sticks > 500);
+    CHECK(sticks > 500);  // the family does include sticking
 }
 
-TEST_CASE("the moving z counts the contacts of ten cycles, the fractions those of one") {
+TEST_CASE(
+    "moving_z averages contacts over ten cycles; cycles_with is their distribution by cycle") {
     std::mt19937_64 engine(32);
     for (int n = 0; n < 30; ++n) {
-        const Parameters p = some_system(engine);
+        const Parameters p = random_system_near_table1(engine);
         ContactRecord list;
         Rhythm rhythm(p, {0, 300}, everything);
         record(p, default_state(p), 300, 100000, {&list, &rhythm});
@@ -94,13 +97,14 @@ TEST_CASE("the moving z counts the contacts of ten cycles, the fractions those o
     }
 }
 
-TEST_CASE("bounded lists keep a regular selection of the moving z and the last stretches") {
+TEST_CASE("bounded lists hold every n-th moving_z and the last synchronised intervals") {
     const Parameters p = table1(0.022, Damping::closed_form);
     const std::size_t most = 7;
     Rhythm all(p, {0, 2000}, everything), thinned(p, {0, 2000}, most), none(p, {0, 2000}, 0);
     record(p, default_state(p), 2000, 1000000, {&all, &thinned, &none});
     for (Rhythm* rhythm : {&all, &thinned, &none}) rhythm->finish({0, 2000});
     const CycleCounts whole = all.cycle_counts(), few = thinned.cycle_counts();
+    // With this stride the list has at most `most` entries.
     const std::size_t every = whole.moving_z.size() / most + 1;
     REQUIRE(few.moving_z.size() == (whole.moving_z.size() + every - 1) / every);
     for (std::size_t k = 0; k < few.moving_z.size(); ++k) {
@@ -124,7 +128,8 @@ TEST_CASE("bounded lists keep a regular selection of the moving z and the last s
     }
 }
 
-TEST_CASE("positions are returned as they were added, also after pauses of many cycles") {
+TEST_CASE(
+    "positions are returned in order, rounded down to 1/parts of a cycle, also after pauses") {
     CyclePositions positions;
     const std::vector<double> cycles = {0, 0, 0.25, 0.5, 1.49, 1.5, 5.125, 1000, 2e6};
     for (const double at : cycles) positions.add(at);

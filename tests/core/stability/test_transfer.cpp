@@ -9,7 +9,8 @@
 using namespace vines;
 using namespace vines::test;
 
-TEST_CASE("J has the moduli e^(-zeta s) twice and 1 twice, T has the determinant of both") {
+TEST_CASE(
+    "J has the moduli e^(-zeta s) twice and 1 twice, and det T = det M det J = R^2 e^(-2 zeta s)") {
     const Parameters p = table1(0.022, Damping::closed_form);
     TransferRecord transfers(p, 0, 1709);
     const Record run = record(p, default_state(p), 1709, 1000000, {&transfers});
@@ -24,22 +25,24 @@ TEST_CASE("J has the moduli e^(-zeta s) twice and 1 twice, T has the determinant
             std::abs(J[0] - 1) + std::abs(J[1] - 1) + std::abs(J[2] - decay) +
                 std::abs(J[3] - decay) <
             1e-13);
-        // In a chatter the entries of M grow with those of r: beyond 1e7 the moduli are lost in
-        // rounding, and for the plain solver, which splits the nearly defective pairs, much
-        // earlier.
+        // Near grazing, as in a chatter, the entries of M grow with those of r, eq. (27). Beyond
+        // 1e7 T_moduli() returns NaN, since rounding dominates. The general eigenvalue solver
+        // splits the nearly defective pairs; it is compared up to 100 only.
         const double steepness = t.M.r().cwiseAbs().maxCoeff();
         if (std::isnan(T[0] + T[1] + T[2] + T[3])) {
             CHECK(steepness > 1e7);
             continue;
         }
-        CHECK(T[0] * T[1] * T[2] * T[3] == doctest::Approx(decay * decay * 0.36).epsilon(1e-9));
+        CHECK(
+            T[0] * T[1] * T[2] * T[3] ==
+            doctest::Approx(decay * decay * p.R_plus * p.R_minus).epsilon(1e-9));
         if (steepness > 100) continue;
         const Moduli plain = eigenvalue_moduli(t.T());
         for (int k = 0; k < 4; ++k) CHECK(T[k] == doctest::Approx(plain[k]).epsilon(1e-6));
     }
 }
 
-TEST_CASE("overdamped flights have two different moduli") {
+TEST_CASE("overdamped flights have two different decaying moduli") {
     Parameters p = table1(0.01, Damping::equation_of_motion);
     p.lambda = 4 / p.epsilon;  // zeta = 2
     ImpactTransfer t{0, p.epsilon, {}, {leg_of(Flow::free(p), 0.7, false)}};
@@ -64,7 +67,7 @@ TEST_CASE("after sticking J and T have rank two") {
     CHECK(found);
 }
 
-TEST_CASE("the condition number of M is that of its singular values, and grows towards grazing") {
+TEST_CASE("the condition number of M is that of the Frobenius norm, and grows towards grazing") {
     const Parameters p = table1(0.022, Damping::closed_form);
     Impact i = record(p, default_state(p), 100).impacts[2];
     double before = 0;
@@ -95,6 +98,7 @@ TEST_CASE("J and M transport a deviation as the trajectory does") {
         if (run.impacts.size() < 4 || !run.sticks.empty()) continue;
         bool steep = false;
         for (const Impact& i : run.impacts)
+            // Steep impacts amplify d beyond the linear range.
             steep = steep || std::abs(i.x_ddot_before / i.relative_speed_before) > 20;
         if (steep) continue;
         const double tau = run.impacts.back().tau + 1e-3;
@@ -139,7 +143,7 @@ TEST_CASE(
     "a deviation through sticking agrees with the trajectory: only the centre of mass remains") {
     const Parameters p = table1(0.015, Damping::closed_form);
     // Just before a chatter at x - y = +b.
-    const State start{0.0003, -0.004, 0, -0.004 - 0.015 + 2e-5};
+    const State start{.x_dot = 0.0003, .x = -0.004, .y_dot = 0, .y = -0.004 - 0.015 + 2e-5};
     struct Product : Observer {
         explicit Product(const Parameters& parameters) : p(parameters) {}
         void on_stretch(const Stretch& s) override {
