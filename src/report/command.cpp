@@ -13,6 +13,8 @@ namespace vines::report {
 
 namespace {
 
+/// Prints the table, and writes the report if a folder is given. Returns the exit code: 1 if a
+/// verdict differs from the expected one.
 int run(const std::string& folder) {
     const Report result = reproduce(folder);
     print(markdown_table(result.findings));

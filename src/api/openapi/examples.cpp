@@ -174,11 +174,12 @@ constexpr Example answers[] = {
     {"Status", R"({"status": "ok"})"},
 };
 
-/// Responses with provenance, which is made here: it holds the commit.
-struct SealedAnswer {
+/// Responses with a provenance block. It contains the commit of this build, so it is computed here
+/// instead of stored. The stored response answers the first example of `operation` in key order.
+struct AnswerWithProvenance {
     const char *schema, *operation, *route;
 };
-constexpr SealedAnswer sealed_answers[] = {
+constexpr AnswerWithProvenance answers_with_provenance[] = {
     {"Simulation", "simulate", "/v1/simulate"},
     {"Manifold", "manifold", "/v1/manifold"},
     {"Identification", "identify", "/v1/identify"}};
@@ -196,14 +197,16 @@ Json request_example(const char* operation) { return example_of(requests, operat
 
 Json answer_example(const char* schema) {
     Json example = example_of(answers, schema);
-    const auto sealed = std::find_if(
-        std::begin(sealed_answers), std::end(sealed_answers),
-        [schema](const SealedAnswer& answer) { return answer.schema == std::string_view(schema); });
-    if (sealed == std::end(sealed_answers)) return example;
-    const Json request = request_example(sealed->operation).begin()->at("value");
-    const AnswerRequest asked =
-        read_answer_request(sealed->route, request, {request.dump(), false});
-    example["provenance"] = describe(asked.provenance, sha256(example.dump()));
+    const auto found = std::find_if(
+        std::begin(answers_with_provenance), std::end(answers_with_provenance),
+        [schema](const AnswerWithProvenance& answer) {
+            return answer.schema == std::string_view(schema);
+        });
+    if (found == std::end(answers_with_provenance)) return example;
+    const Json request = request_example(found->operation).begin()->at("value");
+    const AnswerRequest answer_request =
+        read_answer_request(found->route, request, {request.dump(), false});
+    example["provenance"] = describe(answer_request.provenance, sha256(example.dump()));
     return example;
 }
 

@@ -75,7 +75,8 @@ FieldTable make_sweep_fields() {
          .fallback = 0,
          .range = Range{0, 2 * std::numbers::pi}},
         {.name = "reduce",
-         // Any string: the valid ones follow from the axes.
+         // A choice without a fixed list: the valid values depend on the axes; the reader of the
+         // request checks them.
          .type = FieldType::choice,
          .group = "sweep",
          .description =
@@ -90,13 +91,15 @@ FieldTable make_sweep_fields() {
     };
 }
 
-/// Range of an axis: the parameter has a range of its own, this one only prevents overflow.
+/// Range of an axis's values. Prevents overflow only: each value is also checked against the range
+/// of its parameter.
 constexpr Range any_number{-1e300, 1e300};
 
 FieldTable make_axis_fields() {
     return {
         {.name = "parameter",
-         // Any string: the reader of the axis reports an unknown parameter with the list.
+         // A choice without a fixed list: the reader of the axis checks it and lists the valid
+         // ones.
          .type = FieldType::choice,
          .group = "axis",
          .description = "name of a numeric field of system, reduced, SI or start",
@@ -131,11 +134,12 @@ FieldTable make_axis_fields() {
     };
 }
 
-template <class AnalysisRequest>
-FieldTable of_simulate(AnalysisRequest wanted) {
+/// The fields of /v1/simulate for which `keep` is true.
+template <class Predicate>
+FieldTable simulate_fields_where(Predicate keep) {
     FieldTable table;
     for (const Field& f : simulate_fields())
-        if (wanted(f)) table.push_back(f);
+        if (keep(f)) table.push_back(f);
     return table;
 }
 
@@ -147,7 +151,7 @@ const FieldTable& sweep_fields() {
 }
 
 const FieldTable& sweep_base_fields() {
-    static const FieldTable table = of_simulate([](const Field& f) {
+    static const FieldTable table = simulate_fields_where([](const Field& f) {
         return is_of_system(f) || f.group == "start" || f.name == "max_impacts";
     });
     return table;
@@ -159,7 +163,8 @@ const FieldTable& axis_fields() {
 }
 
 const FieldTable& start_fields() {
-    static const FieldTable table = of_simulate([](const Field& f) { return f.group == "start"; });
+    static const FieldTable table =
+        simulate_fields_where([](const Field& f) { return f.group == "start"; });
     return table;
 }
 

@@ -33,7 +33,8 @@ void parameters_of_table_1(Report& report, const Parameters& p) {
          .because = "rounds to 1.43"});
 }
 
-/// x(tau) by (8) to (11) exactly as printed, with tau_0 = 0.
+/// x(tau) by (8) to (11) exactly as printed, with tau_0 = 0. x20 = x(0) and x10 = x'(0), in the
+/// paper's names, like f1, f2, p1 and q1.
 class PrintedClosedForm {
 public:
     PrintedClosedForm(const Parameters& p, double x20, double x10) : decay_(p.epsilon * p.lambda) {
@@ -59,8 +60,9 @@ private:
 
 /// The k for which a motion satisfies x'' + k epsilon lambda x' + x = epsilon A sin(Omega tau +
 /// phi) at tau; derivatives by central differences of the fourth order.
-double damping_obeyed(const Parameters& p, const PrintedClosedForm& motion, double tau) {
-    constexpr double h = 0.01;  // error h^4/30 of x', far above rounding
+double damping_factor_of(const Parameters& p, const PrintedClosedForm& motion, double tau) {
+    constexpr double h =
+        0.01;  // error h^4/30 of x' relative to its fifth derivative, far above rounding
     const auto x = [&](int k) { return motion.x(tau + k * h); };
     const double x_dot = (x(-2) - 8 * x(-1) + 8 * x(1) - x(2)) / (12 * h),
                  x_ddot = (-x(-2) + 16 * x(-1) - 30 * x(0) + 16 * x(1) - x(2)) / (12 * h * h);
@@ -73,7 +75,7 @@ void closed_form(Report& report, const Parameters& p) {
     double least = infinity, most = -infinity;
     // Times at which x' is not small; the motion has an amplitude of about 10 mm.
     for (double tau : {1.0, 2.5, 4.0, 5.5, 7.0, 30.0}) {
-        const double k = damping_obeyed(p, motion, tau);
+        const double k = damping_factor_of(p, motion, tau);
         least = std::min(least, k), most = std::max(most, k);
     }
     report.add(
@@ -92,8 +94,8 @@ void closed_form(Report& report, const Parameters& p) {
         most));
 }
 
-/// Compares the distance of two runs with the length of the tangent vector carried by M J through
-/// their impacts, which follow each other (Fig. 2).
+/// Compares the distance of two neighbouring runs with the length of the tangent vector that M J
+/// propagates through their impacts (Fig. 2).
 void trajectory_difference(Report& report) {
     Parameters p;
     p.damping = Damping::closed_form;
