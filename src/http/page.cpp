@@ -22,7 +22,7 @@ struct Page {
 };
 constexpr Page pages[] = {{"/", "index.html"}, {"/docs", "docs.html"}};
 
-constexpr std::size_t any_size = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t no_size_limit = std::numeric_limits<std::size_t>::max();
 
 /// Content security policy: scripts, styles and connections from this server only, and no inline
 /// code; images can also be data: URLs.
@@ -76,7 +76,8 @@ Route file_route(
     const std::filesystem::path& file, const std::string& path, const std::string& policy) {
     return {.method = "GET", .path = path, .answer = [=](const Request&) {
                 try {
-                    return file_response(path, read_regular_file_no_links(file, any_size), policy);
+                    return file_response(
+                        path, read_regular_file_no_links(file, no_size_limit), policy);
                 } catch (const std::runtime_error&) {
                     return problem_response(404, "there is no " + path);
                 }

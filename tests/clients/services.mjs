@@ -9,7 +9,7 @@ export const key = "a-key-of-thirty-two-characters--";
 
 /**
  * Starts the services. Returns {folder, open, locked, stop}; folder: contains record.csv, 20 s of
- * fig20; open: a service without keys; locked: one that requires `key` and stops a computation after
+ * fig20; open: a service without keys; locked: one that requires `key` and stops computations after
  * 0.5 s, for the tests of deadlines; stop(): ends both and deletes the folder.
  */
 export async function startServices() {

@@ -1,6 +1,6 @@
 // Synthetic records: a computed motion as seen through a laboratory's measuring chain, with any
-// combination of its errors. Test data for identification. tau is dimensionless time, omega0 t;
-// displacements are in m, in the sensors' units also times in s and accelerations in m/s^2.
+// combination of its errors. Test data for identification. tau = omega0 t is dimensionless time;
+// lengths are in m. The errors of Sensors are in s, m and m/s^2.
 #pragma once
 
 #include <cstdint>

@@ -61,8 +61,8 @@ private:
 /// The k for which a motion satisfies x'' + k epsilon lambda x' + x = epsilon A sin(Omega tau +
 /// phi) at tau; derivatives by central differences of the fourth order.
 double damping_factor_of(const Parameters& p, const PrintedClosedForm& motion, double tau) {
-    constexpr double h =
-        0.01;  // error h^4/30 of x' relative to its fifth derivative, far above rounding
+    // The error of x' is h^4/30 times its fourth derivative, far above rounding.
+    constexpr double h = 0.01;
     const auto x = [&](int k) { return motion.x(tau + k * h); };
     const double x_dot = (x(-2) - 8 * x(-1) + 8 * x(1) - x(2)) / (12 * h),
                  x_ddot = (-x(-2) + 16 * x(-1) - 30 * x(0) + 16 * x(1) - x(2)) / (12 * h * h);
