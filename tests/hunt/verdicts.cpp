@@ -1,5 +1,6 @@
 // Random systems; for each, a sweep point and simulations of 1, 2 and 4 times `measured_cycles`
-// state a verdict and a period. A reference run of 20 times `measured_cycles` judges each statement:
+// state a verdict and a period. A reference run of 20 times `measured_cycles` judges each
+// statement:
 // - wrong: the reference contradicts a confident statement, or longer runs contradict each other;
 // - missed: the reference is periodic, and the statement does not report it;
 // - unjudged: the run is incomplete, or the reference ended before it became longer than the run.
