@@ -80,17 +80,19 @@ void closed_form(Report& report, const Parameters& p) {
     }
     report.add(
         {.where = "Eqs. (8) to (11)",
-         .what = "the k of x'' + k epsilon lambda x' + x = ... that they solve",
+         .what =
+             "factor k of the damping in x'' + k epsilon lambda x' + x = ..., which they satisfy",
          .paper = "1, eq. (1)",
          .here = fmt::format("{:.5f} to {:.5f} at six times", least, most),
          .number = std::abs(least - 1) > std::abs(most - 1) ? least : most,
          .band = {0.999, 1.001},
-         .because = "the differences that stand for x' and x'' are exact to 1e-4",
+         .because = "the finite differences give x' and x'' to 1e-4",
          .expected = ClaimVerdict::not_reproduced});
     report.paragraph(fmt::format(
         "The equation of motion (1) has 2 zeta = epsilon lambda; the closed form (8)-(11), "
         "inserted into it as printed, has {:.4f} times that, and so has the transfer matrix (19), "
-        "(20). These are the two dampings of this report.",
+        "(20). This report therefore uses two dampings, that of the equation of motion and that of "
+        "the closed form.",
         most));
 }
 
@@ -123,8 +125,8 @@ void trajectory_difference(Report& report) {
     report.add(
         {.where = "Fig. 2, eqs. (26) to (32)",
          .what = fmt::format(
-             "two runs, {:g} m apart, to tau = {:g}: largest relative error of M J as their "
-             "distance",
+             "two runs, {:g} m apart, to tau = {:g}: largest relative error of the distance "
+             "predicted by M J",
              size, wanted.tau_end),
          .paper = "the transfer matrix",
          .here = fmt::format(
@@ -132,8 +134,8 @@ void trajectory_difference(Report& report) {
              run.outcome.impacts, second.distance.back() / size),
          .number = largest,
          .band = {0, 1e-3},
-         .because = "an identity of first order: the error is of the size of the distance, plus "
-                    "rounding"});
+         .because =
+             "exact to first order: the error is of the size of the distance, plus rounding"});
 }
 
 }  // namespace
