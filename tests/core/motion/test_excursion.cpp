@@ -13,8 +13,7 @@ using namespace vines::test;
 
 TEST_CASE(
     "the peak of an oscillation is its amplitude, and its path length the sum of the distances "
-    "between "
-    "successive extrema") {
+    "between successive extrema") {
     const Flow undamped(1, 0, 0, 1);
     const double duration = 10 * 2 * std::numbers::pi + 1;
     CHECK(peak_beyond(0, undamped, {0, 1, 0, 1}, duration) == doctest::Approx(1).epsilon(1e-15));

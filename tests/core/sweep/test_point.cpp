@@ -109,7 +109,7 @@ TEST_CASE(
 TEST_CASE("without the default set dependence on the start is known only from a second start") {
     SweepPoint point;
     point.motions = {motion("", 1)};
-    CHECK(depends_on_start(point, false) == std::nullopt);
+    CHECK_FALSE(depends_on_start(point, false).has_value());
     point.second = motion("", 1);
     CHECK(depends_on_start(point, false) == false);
     point.second = motion("", 2);
@@ -184,7 +184,7 @@ TEST_CASE(
             CHECK(validate(p, s.state).empty());
             untouched = untouched || std::string(s.name) == "untouched";
         }
-        CHECK(untouched == (b > 0.1));  // the amplitude without impacts is 0.007 m
+        CHECK(untouched == (b > 0.1));            // the amplitude without impacts is 0.007 m
         CHECK(starts.size() + 2 <= most_starts);  // the last states of two neighbours follow
     }
 }
