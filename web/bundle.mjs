@@ -1,7 +1,8 @@
 #!/usr/bin/env -S node
-// bundle.mjs OUTPUT.cpp: bundles the pages with esbuild and writes their files as C++, both
-// minified and compressed. The table maps request paths to files. Scripts, styles and drawings
-// lie under a folder named by a hash of their content, so browsers can cache them indefinitely.
+// bundle.mjs OUTPUT.cpp: bundles the pages with esbuild and writes each file to OUTPUT.cpp twice:
+// minified, and minified and compressed. The generated table maps request paths to contents.
+// Scripts, style sheets and SVG images lie in a folder named by a hash of their contents, so
+// browsers can cache them indefinitely.
 import {execFileSync} from "node:child_process";
 import {createHash} from "node:crypto";
 import {readdirSync, readFileSync, unlinkSync, writeFileSync} from "node:fs";
@@ -12,7 +13,7 @@ import {minify} from "terser";
 
 const web = dirname(fileURLToPath(import.meta.url));
 
-/** File by request path. */
+/** Source file of each page by request path. */
 const pages = {"/": "index.html", "/docs": "docs.html"};
 
 /** One script and one style sheet for each page. */
@@ -28,21 +29,21 @@ const {outputFiles} = buildSync({
   write: false,
 });
 /** Scripts minified again by terser, which saves 4 % more than esbuild alone. */
-const smallest = async (path, text) =>
+const minifyScript = async (path, text) =>
   path.endsWith(".js")
     ? (await minify(text, {module: true, ecma: 2022, compress: {passes: 3}})).code
     : text;
-const built = outputFiles.map(async ({path, text}) => [
+const bundledFiles = outputFiles.map(async ({path, text}) => [
   relative(join(web, "built"), path),
-  await smallest(path, text),
+  await minifyScript(path, text),
 ]);
-const drawings = readdirSync(web).filter((name) => name.endsWith(".svg"));
+const svgFiles = readdirSync(web).filter((name) => name.endsWith(".svg"));
 const files = [
-  ...(await Promise.all(built)),
-  ...drawings.map((name) => [name, readFileSync(join(web, name), "utf8")]),
+  ...(await Promise.all(bundledFiles)),
+  ...svgFiles.map((name) => [name, readFileSync(join(web, name), "utf8")]),
 ];
 const hash = createHash("sha256").update(files.flat().join("\0")).digest("hex").slice(0, 12);
-/** Invisible white space before block elements. */
+/** Line breaks before block elements, which have no effect. The pages contain no text in <pre>. */
 const beforeBlock =
   />\n(?=<\/?(?:body|details|div|dl|fig\w+|footer|form|head|header|h\d|link|main|meta|nav|p|script|section|summary|title|ul)\b)/g;
 const page = (name) =>
@@ -50,12 +51,12 @@ const page = (name) =>
     .replace(/(href|src)="([^":#]+\.(?:js|css|svg))"/g, `$1="${hash}/$2"`)
     .replace(/\n\s*/g, "\n")
     .replace(beforeBlock, ">");
-const requested = [
+const servedFiles = [
   ...Object.entries(pages).map(([path, name]) => [path, page(name)]),
   ...files.map(([name, text]) => [`/${hash}/${name}`, text]),
 ];
 
-/** Compresses with zopfli: 4 % smaller than zlib. */
+/** Compresses with the program zopfli: 4 % smaller than with zlib. */
 function gzip(input) {
   const file = `${process.argv[2]}.plain`; // zopfli reads files only
   writeFileSync(file, input);
@@ -65,7 +66,7 @@ function gzip(input) {
 }
 const bytes = (buffer) => [...buffer].join(",");
 const arrays = [];
-const table = requested.map(([path, text], n) => {
+const table = servedFiles.map(([path, text], n) => {
   const plain = Buffer.from(text);
   arrays.push(
     `const unsigned char file${n}[] = {${bytes(plain)}};`,

@@ -14,7 +14,7 @@ namespace vines::api {
 
 namespace {
 
-constexpr std::size_t fewest_samples = 100;
+constexpr std::size_t fewest_samples = 100, most_samples = 1000000;
 
 /// Checks the samples; warns of gaps and clipping. `lines`: line numbers of the samples in a CSV
 /// text.
@@ -24,7 +24,7 @@ void check_record(
     const std::size_t n = time.size();
     if (n < fewest_samples)
         refuse(
-            {{"/record", n, Json::array({fewest_samples, 1000000}),
+            {{"/record", n, Json::array({fewest_samples, most_samples}),
               "the record has " + std::to_string(n) + " samples; at least " +
                   std::to_string(fewest_samples) + " are needed"}});
     for (std::size_t i = 1; i < n; ++i)
@@ -40,7 +40,8 @@ void check_record(
         notes.push_back(
             "the record has " + std::to_string(gaps.size()) + " gap(s), the first of " +
             fmt::format("{:.4g}", (gaps[0].to - gaps[0].from) / omega0) + " s at " +
-            fmt::format("{:.6g}", gaps[0].from / omega0) + " s: impacts in a gap are not seen");
+            fmt::format("{:.6g}", gaps[0].from / omega0) +
+            " s: impacts inside a gap cannot be detected");
     // A clipped signal repeats its extreme value.
     for (const auto& [name, column] :
          {std::pair("displacement", &r.x), std::pair("acceleration", &r.x_ddot)}) {
@@ -56,11 +57,12 @@ void check_record(
     }
 }
 
-/// `forcing_fitted`: the forcing need not be given.
+/// Request from the JSON fields, without its record or impacts. `with_record`: a record follows, in
+/// seconds, which requires a system in SI; `forcing_fitted`: the forcing need not be given.
 IdentifyRequest read_fields(const Json& given, bool with_record, bool forcing_fitted) {
     IdentifyRequest r;
-    const MergedFields l = merge_with_preset(identify_fields(), given);
-    r.system = read_system_alone(l, forcing_fitted);
+    const MergedFields merged = merge_with_preset(identify_fields(), given);
+    r.system = read_system_alone(merged, forcing_fitted);
     r.forcing_fitted = forcing_fitted;
     r.notes = r.system.notes;
     if (with_record && !r.system.si)
@@ -74,33 +76,35 @@ IdentifyRequest read_fields(const Json& given, bool with_record, bool forcing_fi
     Measurement& m = r.measurement;
     m.parameters = r.system.parameters;
     m.R_given = given.contains("R") || (given.contains("R_plus") && given.contains("R_minus"));
-    m.threshold = l.number("threshold");
-    if (l.has("impact_times_s")) {
+    m.threshold = merged.number("threshold");
+    if (merged.has("impact_times_s")) {
         if (!with_record)
             refuse(
                 {{"/impact_times_s", nullptr, nullptr,
                   "impact_times_s needs a record; a list of impacts has its own times"}});
-        for (const Json& t : l.fields["impact_times_s"])
+        for (const Json& t : merged.fields["impact_times_s"])
             m.impact_times.push_back(t.get<double>() * r.system.si->omega0());
         std::sort(m.impact_times.begin(), m.impact_times.end());
     }
-    m.fixed = fixed_of(l.words("fixed"));
-    m.estimators = read_estimators(l);
+    m.fixed = fixed_of(merged.words("fixed"));
+    m.estimators = read_estimators(merged);
     m.estimators.qr = true;  // the verdict needs it
-    r.include = l.words("include");
+    r.include = merged.words("include");
     if (!with_record && !r.include.empty())
         refuse(
             {{"/include", r.include, nullptr,
               "motion and direct_exponents need a record instead of a list of impacts"}});
     if (r.includes("direct_exponents")) m.direct_estimators = m.estimators;
-    r.most_points = static_cast<std::size_t>(l.number("max_points"));
+    r.most_points = static_cast<std::size_t>(merged.number("max_points"));
     return r;
 }
 
-/// F and phase if they are fixed: from the request, else from a channel of the forcing.
+/// Sets F and phase if they are fixed. F: from the request, else from a measured channel of the
+/// forcing, else from the preset. Phase: from the request, else from a channel. phi() converts a
+/// given phase of the base motion to the phase of the force; a channel already gives the latter.
 void read_known_forcing(IdentifyRequest& r, const Json& given) {
-    const MergedFields l = merge_with_preset(identify_fields(), given);
-    const std::set<std::string> fixed = l.words("fixed");
+    const MergedFields merged = merge_with_preset(identify_fields(), given);
+    const std::set<std::string> fixed = merged.words("fixed");
     const auto refuse_unknown = [](const char* name) {
         refuse(
             {{"/fixed", name, nullptr,
@@ -113,12 +117,13 @@ void read_known_forcing(IdentifyRequest& r, const Json& given) {
     if (fixed.contains(fixed_amplitude)) {
         const bool is_given = given.contains("F") || given.contains("G");
         if (channel && !is_given) r.measurement.forcing.amplitude = channel->amplitude;
-        else if (is_given || l.has("F") || l.has("G"))
+        else if (is_given || merged.has("F") || merged.has("G"))
             r.measurement.forcing.amplitude = forcing_of(p);
         else refuse_unknown(fixed_amplitude);
     }
     if (fixed.contains(fixed_phase)) {
-        if (l.has(fixed_phase)) r.measurement.forcing.phase = l.number(fixed_phase) + p.phi();
+        if (merged.has(fixed_phase))
+            r.measurement.forcing.phase = merged.number(fixed_phase) + p.phi();
         else if (channel) r.measurement.forcing.phase = channel->phase;
         else refuse_unknown(fixed_phase);
     }
@@ -130,7 +135,7 @@ std::vector<std::string> names_of(const std::vector<CsvColumn>& columns) {
     return names;
 }
 
-/// The values after change(value).
+/// change(value) for each value.
 template <class Change>
 std::vector<double> changed(
     const std::vector<double>& values, CancelCheck& cancel, const Change& change) {
@@ -151,7 +156,8 @@ void read_record(IdentifyRequest& r, const Json& fields, const Csv& csv, CancelC
     if (!time.column)
         refuse(
             {{"/record", names_of(columns), nullptr,
-              "the record has no column time_s; name it in time_column"}});
+              "the record has no column time_s; set time_column to the name of its column of "
+              "times"}});
     if (!x.column && !a.column)
         refuse(
             {{"/record", names_of(columns), nullptr,
@@ -175,7 +181,8 @@ void read_record(IdentifyRequest& r, const Json& fields, const Csv& csv, CancelC
             "errors add up: y' and R are less certain");
     if (!a.column && r.measurement.impact_times.empty())
         r.notes.push_back(
-            "without an acceleration only impacts with a kink of the displacement are found");
+            "without an acceleration only impacts that cause a visible kink in the displacement "
+            "are found");
     for (double tau : r.measurement.impact_times)
         if (!(tau > record.tau.front() && tau < record.tau.back()))
             refuse(
@@ -188,7 +195,9 @@ void read_record(IdentifyRequest& r, const Json& fields, const Csv& csv, CancelC
 std::vector<CsvColumn> read_record_columns(Json record, CancelCheck& cancel) {
     std::vector<CsvColumn> columns;
     if (!record.is_object())
-        refuse({{"/record", nullptr, nullptr, "record is an object of columns"}});
+        refuse(
+            {{"/record", nullptr, nullptr,
+              "record must be an object that maps column names to arrays of numbers"}});
     for (auto& [name, values] : record.get_ref<Json::object_t&>()) {
         CsvColumn column{name, {}, {}};
         if (!values.is_array())
@@ -213,16 +222,17 @@ std::vector<CsvColumn> read_record_columns(Json record, CancelCheck& cancel) {
     return columns;
 }
 
-/// Moves a member out of an object; null if it has none of that name.
+/// Moves a member out of an object; null if the member is missing.
 Json taken(Json& object, const char* name) {
     Json value = object.contains(name) ? std::move(object[name]) : Json();
     object.erase(name);
     return value;
 }
 
-/// A channel of the forcing supplies f unless the request gives it.
+/// Request with a record: reads the forcing, the fields and the columns in this order, because a
+/// measured channel of the forcing supplies f unless the request gives it.
 IdentifyRequest read_request_of_record(const Json& given, const Csv& csv, CancelCheck& cancel) {
-    // Column lookup uses fields that are not checked before.
+    // Checks all fields first: the lookup of columns below reads them unchecked.
     if (auto errors = check(identify_fields(), given); !errors.empty()) refuse(std::move(errors));
     const std::optional<MeasuredForcing> forcing = measured_forcing(csv.columns, given, cancel);
     Json fields = given;

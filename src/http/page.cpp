@@ -22,8 +22,10 @@ struct Page {
 };
 constexpr Page pages[] = {{"/", "index.html"}, {"/docs", "docs.html"}};
 
-/// Content security policy: everything from this server, nothing inline; the page's scripts and
-/// styles are files.
+constexpr std::size_t no_size_limit = std::numeric_limits<std::size_t>::max();
+
+/// Content security policy: scripts, styles and connections from this server only, and no inline
+/// code; images can also be data: URLs.
 std::string policy_of(const std::vector<std::string>& embed_origins) {
     std::string policy =
         "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
@@ -33,7 +35,7 @@ std::string policy_of(const std::vector<std::string>& embed_origins) {
     return policy;
 }
 
-/// Content type by the extension; pages have none.
+/// Content type by the extension of the request path; the paths of pages have none.
 std::string content_type_of(std::string_view path) {
     const std::string_view ending = path.substr(std::min(path.rfind('.'), path.size()));
     if (ending == ".js" || ending == ".mjs") return "text/javascript; charset=utf-8";
@@ -69,22 +71,20 @@ std::vector<Route> embedded_routes(const std::string& policy) {
     return routes;
 }
 
-/// Reads the file for each request, without links: they could lead out of the folder.
+/// Reads the file at each request. Rejects symbolic links, which could lead out of the folder.
 Route file_route(
     const std::filesystem::path& file, const std::string& path, const std::string& policy) {
     return {.method = "GET", .path = path, .answer = [=](const Request&) {
                 try {
                     return file_response(
-                        path,
-                        read_regular_file_no_links(file, std::numeric_limits<std::size_t>::max()),
-                        policy);
+                        path, read_regular_file_no_links(file, no_size_limit), policy);
                 } catch (const std::runtime_error&) {
                     return problem_response(404, "there is no " + path);
                 }
             }};
 }
 
-/// True if the page uses the file; files of packages in the folder are not served.
+/// True for a script, style sheet or drawing outside node_modules; no other file is served.
 bool is_page_asset(const std::filesystem::path& name) {
     const std::filesystem::path ending = name.extension();
     if (ending != ".js" && ending != ".css" && ending != ".svg") return false;
@@ -92,6 +92,7 @@ bool is_page_asset(const std::filesystem::path& name) {
     return path.rfind("node_modules/", 0) != 0;
 }
 
+/// Lists the files once, at start-up; their contents are read at each request.
 std::vector<Route> folder_routes(const std::filesystem::path& given, const std::string& policy) {
     std::vector<Route> routes;
     try {
@@ -112,6 +113,7 @@ std::vector<Route> folder_routes(const std::filesystem::path& given, const std::
 
 }  // namespace
 
+/// Checks only the scheme and that the rest consists of characters of a host and port.
 bool is_origin(const std::string& text) {
     const std::size_t scheme =
         text.rfind("https://", 0) == 0 ? 8 : (text.rfind("http://", 0) == 0 ? 7 : 0);

@@ -13,19 +13,19 @@ struct Curve {
     std::string colour = "#1f6fb2";
     std::string label{};          ///< in the legend, if not empty
     bool dots = false;            ///< points instead of a line
-    std::string dash{};           ///< SVG's stroke-dasharray
-    std::vector<double> error{};  ///< error bars of +- this length, if not empty
+    std::string dash{};           ///< SVG's stroke-dasharray; ignored by text()
+    std::vector<double> error{};  ///< half-lengths of the error bars; empty or the size of y
 };
 
 struct Plot {
     std::string x_label{}, y_label{};
     std::vector<Curve> curves{};
-    bool logarithmic = false;  ///< y
-    std::optional<std::pair<double, double>> y_range{};
-    std::vector<double> levels{};                    ///< thin lines at y
-    std::vector<double> marked_times{};              ///< dashed lines at x
-    std::vector<std::pair<double, double>> bands{};  ///< shaded intervals of x
-    std::string title{};                             ///< above the plot, if not empty
+    bool logarithmic = false;                            ///< y axis; a y <= 0 leaves a gap
+    std::optional<std::pair<double, double>> y_range{};  ///< automatic if nullopt
+    std::vector<double> levels{};                        ///< y of thin horizontal lines
+    std::vector<double> marked_times{};                  ///< x of dashed vertical lines
+    std::vector<std::pair<double, double>> bands{};      ///< shaded intervals of x
+    std::string title{};                                 ///< above the plot, if not empty
 };
 
 /// Colour of each exponent or eigenvalue.
@@ -33,7 +33,8 @@ inline const char* const colours[] = {"#1f6fb2", "#2e8b57", "#b8780b", "#8e44ad"
 inline const char* const grey = "#8a939b";
 inline const char* const red = "#b3261e";
 
-/// Draws plots above each other with a common abscissa, each `width` x `height` pixels.
+/// Draws the plots as one <svg> document, stacked vertically with a common x axis; each is `width`
+/// x `height` pixels.
 std::string svg(const std::vector<Plot>& plots, int width, int height);
 
 struct Terminal {
@@ -43,8 +44,8 @@ struct Terminal {
     bool ascii = false;    ///< ASCII only, without Braille dots (eight per character)
 };
 
-/// Draws plots above each other with a common abscissa. Labels stand at the ends of their curves;
-/// without colours each curve of points has its own mark; bands are omitted.
+/// Draws the plots in characters, stacked vertically with a common x axis. Labels stand at the ends
+/// of their curves; without colours, curves of points differ by their marks; bands are omitted.
 std::string text(const std::vector<Plot>& plots, const Terminal& terminal);
 
 }  // namespace vines::plot

@@ -1,3 +1,5 @@
+// Speed of sweeps over b and of a map over b and R, on one and two threads. Each row is the median
+// of `rounds` rounds, in which all measurements take turns, so that other load affects all of them.
 #include <atomic>
 #include <ctime>
 #include <deque>
@@ -14,10 +16,11 @@ namespace vines::bench {
 
 namespace {
 
-constexpr std::size_t values_of_b = 1000;
+constexpr std::size_t b_count = 1000;
 constexpr int rounds = 5;
 
-Parameters closed_form(double b, double R) {
+/// Table 1 with the damping of the closed form; b in m.
+Parameters closed_form_parameters(double b, double R) {
     Parameters p;
     p.b = b;
     p.R_plus = p.R_minus = R;
@@ -25,27 +28,28 @@ Parameters closed_form(double b, double R) {
     return p;
 }
 
-double between(double from, double to, std::size_t k, std::size_t count) {
+/// Value k of `count` equidistant ones.
+double linspace_value(double from, double to, std::size_t k, std::size_t count) {
     return from + (to - from) * static_cast<double>(k) / static_cast<double>(count - 1);
 }
 
-Parameters value_of_b(std::size_t i) {
-    return closed_form(between(0.002, 0.040, i, values_of_b), 0.6);
+Parameters parameters_at(std::size_t i) {
+    return closed_form_parameters(linspace_value(0.002, 0.040, i, b_count), 0.6);
 }
 
 /// Simulations for all values of b, with their exponents if requested.
-void motions(int threads, double cycles, bool exponents) {
+void run_motions(int threads, double cycles, bool exponents) {
     std::atomic<std::size_t> next = 0;
-    class Line : public RunSource {
+    class SweepRuns : public RunSource {
     public:
-        Line(std::atomic<std::size_t>& next, double cycles, bool exponents)
+        SweepRuns(std::atomic<std::size_t>& next, double cycles, bool exponents)
             : next_(next),
               cycles_(cycles),
               exponents_(exponents) {}
         std::optional<RunPlan> next(const std::optional<Outcome>&) override {
             const std::size_t i = next_++;
-            if (i >= values_of_b) return std::nullopt;
-            const Parameters p = value_of_b(i);
+            if (i >= b_count) return std::nullopt;
+            const Parameters p = parameters_at(i);
             const double end = cycles_ * p.cycle();
             RunPlan plan{p, default_state(p), {.tau_end = end, .max_impacts = 1000000}, {}};
             if (exponents_) plan.observers = {&lyapunov_.emplace(p, 0, end, qr_alone)};
@@ -59,16 +63,16 @@ void motions(int threads, double cycles, bool exponents) {
         std::optional<Lyapunov> lyapunov_;
     };
     parallel(static_cast<std::size_t>(threads), threads, [&](std::size_t) {
-        std::deque<Line> lines;
-        std::vector<RunSource*> going;
+        std::deque<SweepRuns> runs;
+        std::vector<RunSource*> sources;
         for (int k = 0; k < max_batch_runs; ++k)
-            going.push_back(&lines.emplace_back(next, cycles, exponents));
-        simulate_batch(going);
+            sources.push_back(&runs.emplace_back(next, cycles, exponents));
+        simulate_batch(sources);
     });
 }
 
-/// Points with all their results.
-void points(
+/// Computes complete sweep points: motion, exponents, regime and verdict.
+void run_sweep_points(
     int threads, std::size_t count, const PointOptions& options,
     const std::function<Parameters(std::size_t)>& parameters_of) {
     RunControl control;
@@ -79,7 +83,8 @@ void points(
     });
 }
 
-/// Average number of cores that a piece of work used; less than its threads on a busy machine.
+/// Average number of cores that a piece of work used; lower than the number of threads on a
+/// busy machine.
 class Cores {
 public:
     double seconds_of(const std::function<void()>& work) {
@@ -88,7 +93,7 @@ public:
         cores_.push_back(static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC / seconds);
         return seconds;
     }
-    std::string told() const { return ", on " + digits(median(cores_)) + " cores"; }
+    std::string text() const { return ", on " + digits(median(cores_)) + " cores"; }
 
 private:
     std::vector<double> cores_;
@@ -101,33 +106,33 @@ std::string rate(const std::vector<double>& seconds, std::size_t points) {
 void bench_sweep_of_b() {
     const auto measured = [](double transient) {
         return [transient](int threads) {
-            points(
-                threads, values_of_b, {.transient_cycles = transient, .cycles = 1000}, value_of_b);
+            run_sweep_points(
+                threads, b_count, {.transient_cycles = transient, .cycles = 1000}, parameters_at);
         };
     };
     const struct {
         const char* name;
-        std::function<void(int)> by;
+        std::function<void(int)> run;
     } kinds[] = {
-        {"1000 cycles, trajectories alone", [](int threads) { motions(threads, 1000, false); }},
-        {"1000 cycles, all four exponents", [](int threads) { motions(threads, 1000, true); }},
-        {"1000 cycles, all that a point holds", measured(0)},
-        {"200 + 1000 cycles, all that a point holds", measured(200)}};
+        {"1000 cycles, trajectories alone", [](int threads) { run_motions(threads, 1000, false); }},
+        {"1000 cycles, all four exponents", [](int threads) { run_motions(threads, 1000, true); }},
+        {"1000 cycles, complete points", measured(0)},
+        {"200 + 1000 cycles, complete points", measured(200)}};
     std::vector<std::function<double()>> measurements;
     Cores cores[std::size(kinds)][2];
     for (std::size_t k = 0; k < std::size(kinds); ++k)
         for (int threads : {1, 2})
             measurements.push_back([&kinds, &cores, k, threads] {
-                return cores[k][threads - 1].seconds_of([&] { kinds[k].by(threads); });
+                return cores[k][threads - 1].seconds_of([&] { kinds[k].run(threads); });
             });
     const auto times = in_turn(rounds, measurements);
     for (std::size_t k = 0; k < std::size(kinds); ++k) {
         const std::string name = "1000 values of b, 2 to 40 mm, " + std::string(kinds[k].name);
         const auto &one = times[2 * k], &two = times[2 * k + 1];
-        row(name + ", one thread", one, "s", rate(one, values_of_b));
+        row(name + ", one thread", one, "s", rate(one, b_count));
         row(name + ", two threads", two, "s",
-            rate(two, values_of_b) + ", " + digits(median(ratios(one, two))) +
-                " times as fast as one" + cores[k][1].told());
+            rate(two, b_count) + ", " + digits(median(ratios(one, two))) + " times as fast as one" +
+                cores[k][1].text());
     }
 }
 
@@ -136,16 +141,17 @@ void bench_map() {
     Cores cores;
     const auto map = [&] {
         return cores.seconds_of([&] {
-            points(2, columns * lines, {.transient_cycles = 100, .cycles = 200}, [](std::size_t i) {
-                return closed_form(
-                    between(0.002, 0.040, i % columns, columns),
-                    between(0.3, 0.9, i / columns, lines));
-            });
+            run_sweep_points(
+                2, columns * lines, {.transient_cycles = 100, .cycles = 200}, [](std::size_t i) {
+                    return closed_form_parameters(
+                        linspace_value(0.002, 0.040, i % columns, columns),
+                        linspace_value(0.3, 0.9, i / columns, lines));
+                });
         });
     };
     const auto times = in_turn(rounds, {map});
-    row("map of 120 x 80 points, b 2 to 40 mm, R .3 to .9, 100 + 200 cycles, two threads", times[0],
-        "s", rate(times[0], columns * lines) + cores.told());
+    row("map of 120 x 80 points, b 2 to 40 mm, R 0.3 to 0.9, 100 + 200 cycles, two threads",
+        times[0], "s", rate(times[0], columns * lines) + cores.text());
 }
 
 }  // namespace

@@ -7,7 +7,11 @@ import {startService} from "../service.mjs";
 
 export const key = "a-key-of-thirty-two-characters--";
 
-/** Starts the services. Returns {folder, open, locked, stop}; the folder holds record.csv. */
+/**
+ * Starts the services. Returns {folder, open, locked, stop}; folder: contains record.csv, 20 s of
+ * fig20; open: a service without keys; locked: one that requires `key` and stops computations after
+ * 0.5 s, for the tests of deadlines; stop(): ends both and deletes the folder.
+ */
 export async function startServices() {
   const folder = mkdtempSync(join(tmpdir(), "vines-clients-"));
   writeFileSync(join(folder, "keys"), `${key}\n`);
@@ -21,5 +25,5 @@ export async function startServices() {
   return {folder, open, locked, stop};
 }
 
-/** Exit code and output of a program, for the message of a failed test. */
+/** Exit code and output of a finished process, as text for the messages of assertions. */
 export const outcome = ({status, stdout, stderr}) => `${status}\n${stdout}\n${stderr}`;

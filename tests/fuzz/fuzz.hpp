@@ -1,8 +1,9 @@
-// Helpers of the fuzz targets.
+// Helpers for the fuzz targets.
 #pragma once
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -24,7 +25,7 @@ inline std::string_view text_of(const std::uint8_t* data, std::size_t size) {
 /// Aborts if a condition does not hold; the fuzzer then keeps the input.
 inline void require(bool holds, const char* sentence) {
     if (holds) return;
-    std::fprintf(stderr, "WRONG: violated: %s\n", sentence);
+    std::fprintf(stderr, "violated: %s\n", sentence);
     std::abort();
 }
 
@@ -47,7 +48,8 @@ inline std::string_view take_part(std::string_view& text, char separator) {
     return part;
 }
 
-/// Numbers in a text, so that inputs are readable. A missing or invalid word gives the default.
+/// Numbers in a text, so that inputs are readable. A word gives the number with which it begins; a
+/// word without one, a missing word and NaN give the default.
 class Numbers {
 public:
     explicit Numbers(std::string_view text) : rest_(text) {}
@@ -55,7 +57,7 @@ public:
         const std::string_view word = take_part(rest_, ' ');
         double number = otherwise;
         std::from_chars(word.data(), word.data() + word.size(), number);
-        return number == number ? number : otherwise;
+        return std::isnan(number) ? otherwise : number;
     }
     double next(double otherwise, double from, double to) {
         return std::clamp(next(otherwise), from, to);
@@ -65,7 +67,8 @@ private:
     std::string_view rest_;
 };
 
-/// Stop function that returns true after the given number of calls.
+/// Counts calls of a stop function: each is_over() counts one, and those after the first max_calls
+/// return true.
 class CallLimit {
 public:
     explicit CallLimit(long max_calls) : left_(max_calls) {}

@@ -1,6 +1,11 @@
+// Random systems; for each, a sweep point and simulations of 1, 2 and 4 times `measured_cycles`
+// state a verdict and a period. A reference run of 20 times `measured_cycles` judges each
+// statement:
+// - wrong: the reference contradicts a confident statement, or longer runs contradict each other;
+// - missed: the reference is periodic, and the statement does not report it;
+// - unjudged: the run is incomplete, or the reference ended before it became longer than the run.
 #include "verdicts.hpp"
 
-#include <algorithm>
 #include <atomic>
 #include <cstdio>
 
@@ -11,15 +16,19 @@ namespace vines::hunt {
 
 namespace {
 
-constexpr int transient = 200, measured = 1000;
+constexpr int transient_cycles = 200, measured_cycles = 1000;
 // Length of the reference run, relative to the shortest run under test.
-constexpr int longer = 20;
+constexpr int reference_factor = 20;
+// Largest number of missed orbits per thousand periodic references.
+constexpr int most_missed_per_thousand = 1;
+constexpr int verdict_count = 4;
 
 struct Findings {
     std::string report;  ///< description of the errors
     int wrong = 0, statements = 0, unjudged = 0;
-    int verdicts[4] = {};
-    int recurrent = 0, missed = 0, longest = 0;
+    int verdicts[verdict_count] = {};  ///< statements of each Verdict, in the order of the enum
+    int periodic = 0;                  ///< statements whose reference is periodic
+    int missed = 0;                    ///< those of them that do not report it
 };
 
 void add(
@@ -41,27 +50,28 @@ void judge_statement(
     ++f.verdicts[static_cast<int>(s.verdict)];
     const Judgement j = judge(p, s, run);
     add(f, kind, s, j.wrong);
-    if (j.recurrent > 0) ++f.recurrent;
-    f.longest = std::max(f.longest, j.recurrent);
+    if (j.recurrent > 0) ++f.periodic;
     if (!j.missed) return;
     ++f.missed;
     f.report += "MISSED " + s.interface + ", " + kind + ": the state returns every " +
                 std::to_string(j.recurrent) + " cycles\n    " + s.request + "\n";
 }
 
+/// Checks random system `number` of the series `seed`.
 Findings hunt_one(std::uint64_t seed, int number) {
     std::mt19937_64 engine = engine_of(seed, number);
     const Kind kind = random_kind(engine);
     const System system = random_system(kind, engine);
     Findings f;
-    const Statement point = sweep_point(system, transient, measured);
+    const Statement point = sweep_point(system, transient_cycles, measured_cycles);
     judge_statement(
-        system.parameters, point, LongRun(system.parameters, point.start, longer * measured),
-        name_of(kind), f);
+        system.parameters, point,
+        LongRun(system.parameters, point.start, reference_factor * measured_cycles), name_of(kind),
+        f);
 
-    const LongRun from_start(system.parameters, system.start, longer * measured);
+    const LongRun from_start(system.parameters, system.start, reference_factor * measured_cycles);
     std::vector<Statement> runs;
-    for (int cycles : {measured, 2 * measured, 4 * measured}) {
+    for (int cycles : {measured_cycles, 2 * measured_cycles, 4 * measured_cycles}) {
         runs.push_back(simulation(system, cycles));
         if (!runs.back().complete) {
             runs.pop_back();
@@ -81,25 +91,30 @@ bool hunt_verdicts(int systems, std::uint64_t seed, int first, int threads) {
     parallel(found.size(), threads, [&](std::size_t i) {
         const int number = first + static_cast<int>(i);
         found[i] = hunt_one(seed, number);
-        if (!found[i].report.empty())
-            std::printf("system %d\n%s", number, found[i].report.c_str()), std::fflush(stdout);
+        if (!found[i].report.empty()) {
+            std::printf("system %d\n%s", number, found[i].report.c_str());
+            std::fflush(stdout);
+        }
         if (++done % 100 == 0) std::fprintf(stderr, "%d of %d systems\n", done.load(), systems);
     });
     Findings all;
     int systems_wrong = 0;
     for (const Findings& f : found) {
         systems_wrong += f.wrong > 0;
-        all.wrong += f.wrong, all.statements += f.statements, all.unjudged += f.unjudged,
-            all.recurrent += f.recurrent, all.missed += f.missed;
-        for (int k = 0; k < 4; ++k) all.verdicts[k] += f.verdicts[k];
+        all.wrong += f.wrong;
+        all.statements += f.statements;
+        all.unjudged += f.unjudged;
+        all.periodic += f.periodic;
+        all.missed += f.missed;
+        for (int k = 0; k < verdict_count; ++k) all.verdicts[k] += f.verdicts[k];
     }
     std::printf(
-        "%d systems, %d statements (chaotic %d, regular %d, not decided %d, nothing to judge %d; "
-        "%d runs cut short and not judged): %d "
+        "%d systems, %d statements (chaotic %d, regular %d, not decided %d, no motion to judge %d; "
+        "%d incomplete runs skipped): %d "
         "wrong with confidence in %d systems, %d of %d periodic orbits missed\n",
         systems, all.statements, all.verdicts[0], all.verdicts[1], all.verdicts[2], all.verdicts[3],
-        all.unjudged, all.wrong, systems_wrong, all.missed, all.recurrent);
-    return all.wrong == 0 && 1000L * all.missed <= all.recurrent;
+        all.unjudged, all.wrong, systems_wrong, all.missed, all.periodic);
+    return all.wrong == 0 && 1000L * all.missed <= most_missed_per_thousand * all.periodic;
 }
 
 }  // namespace vines::hunt

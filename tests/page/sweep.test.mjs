@@ -94,7 +94,7 @@ test("a sweep fills its diagrams and counts its points, and a link shows the sam
   await hoverAt(page, "#plot-sweep-lambda", 0.3);
   assert.match(
     await tip(page),
-    /^b1\d\.\d+ mmregimeIII, two symmetric.*z2.*λ₁−0\.\d+ ± .*regular.*Click: simulate it$/,
+    /^b1\d\.\d+ mmregimeIII, two symmetric.*z2.*λ₁−0\.\d+ ± .*regular.*Click to simulate this point$/,
   );
   await page.selectOption("#sweep-coordinate", "y_dot_after");
   await page.selectOption("#sweep-quantity", "share_impacts");
@@ -317,7 +317,7 @@ test("the default set of starts shows the worst motion, the best as rings, the a
   assert.match(await tip(page), new RegExp(told.map((part) => part.source).join(".*")));
   assert.match(
     await tip(page),
-    /Click: simulate it, from its start: (middle|no contact|previous point|next point)$/,
+    /Click to simulate this point, from its start: (middle|no contact|previous point|next point)$/,
   );
   await page.selectOption("#sweep-quantity", "z");
   assert.equal(await page.isVisible("#sweep-free"), false);

@@ -1,12 +1,15 @@
-// Size of the page's files as transferred.
+// Compressed size of the page's files, as transferred.
 
-/** Compressed bytes by path. */
+/**
+ * {path: compressed bytes} of the page, whose path is "", and of the files that it references. They
+ * lie in a folder named by 12 hexadecimal digits (web/bundle.mjs). url: without a trailing slash.
+ */
 export async function weigh(url) {
   const index = await (await fetch(url)).text();
   const paths = ["", ...index.match(/(?<=(?:src|href)=")[0-9a-f]{12}\/[^"]+/g)];
   const bytes = async (path) => {
-    const asked = {headers: {"Accept-Encoding": "gzip"}, method: "HEAD"};
-    const {headers} = await fetch(`${url}/${path}`, asked);
+    const options = {headers: {"Accept-Encoding": "gzip"}, method: "HEAD"};
+    const {headers} = await fetch(`${url}/${path}`, options);
     return Number(headers.get("content-length"));
   };
   return Object.fromEntries(

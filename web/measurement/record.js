@@ -4,8 +4,8 @@ import {firstFrom} from "../shared/search.js";
 
 const atOnce = 50000; // lines between two progress reports
 
-/** Control characters that no text contains. */
-// biome-ignore lint/suspicious/noControlCharactersInRegex: it is these that are looked for
+/** Control characters that do not occur in text files. */
+// biome-ignore lint/suspicious/noControlCharactersInRegex: it searches for control characters
 const binary = /[\0-\x08\x0e-\x1a]/;
 
 /**
@@ -14,6 +14,7 @@ const binary = /[\0-\x08\x0e-\x1a]/;
 async function textOf(file) {
   const bytes = new Uint8Array(await file.arrayBuffer());
   const begins = (first, second) => bytes[0] === first && bytes[1] === second;
+  // UTF-16 without a byte order mark: every other byte of ASCII text is zero.
   const hasZeros = (from) => bytes[from] === 0 && bytes[from + 2] === 0;
   let encoding = "utf-8";
   if (begins(0xff, 0xfe) || hasZeros(1)) encoding = "utf-16le";
@@ -68,43 +69,51 @@ function numberOf(cell, separator) {
 
 const comment = /^\s*(#|%|\/\/)/;
 
-/** The separator that splits the line into two or more numbers; undefined if there is none. */
-function separatorOfNumbers(line, said) {
-  return (said ? [said] : [";", "\t", ",", " "]).find((separator) => {
+/**
+ * The separator that splits the line into two or more numbers; undefined if there is none.
+ * declared: the separator of a line sep=, the only one tried.
+ */
+function separatorOfNumbers(line, declared) {
+  return (declared ? [declared] : [";", "\t", ",", " "]).find((separator) => {
     const cells = cellsOf(line, separator);
     return cells.length > 1 && cells.every((cell) => !Number.isNaN(numberOf(cell, separator)));
   });
 }
 
 /**
- * [names, units] from the lines above `count` columns of numbers; units can be missing. Returns
- * undefined if there are no names.
+ * [names, units] from the lines above the first row of `count` numbers; units can be missing.
+ * Returns undefined if there are no names. above: the last two lines and the last comment.
+ *
+ * Candidates in order of preference: names and units in the last two lines; names in the comment
+ * and units in the last line, unless the comment holds units; units above the names, in a line or
+ * the comment; names alone.
  */
 function headingOf(above, count, separator) {
   const cells = (line) => cellsOf(line, separator).map((cell) => cell.trim());
-  const [last, before, aside] = [above.last, above.before, above.comment].map(cells);
+  const [last, before, commented] = [above.last, above.before, above.comment].map(cells);
   const areNames = (row) =>
     row.length === count && row.every((cell) => Number.isNaN(numberOf(cell, separator)));
   const areUnits = (row) => row.length && row.length <= count && row.every(isUnit);
-  const ways = [
+  const candidates = [
     [before, last],
-    [areUnits(aside) ? [] : aside, last],
+    [areUnits(commented) ? [] : commented, last],
     [last, before],
-    [last, aside],
+    [last, commented],
     [last],
-    [aside],
+    [commented],
   ];
-  return ways.find(([names, units]) => areNames(names) && (!units || areUnits(units)));
+  return candidates.find(([names, units]) => areNames(names) && (!units || areUnits(units)));
 }
 
 /**
- * Parses a CSV file: its text and {names, units, columns}, where columns hold numbers. Lines that
- * the service would reject are skipped. onProgress(fraction) reports progress.
+ * Parses a CSV file into {text, names, units, columns}; columns hold numbers, and names is empty if
+ * no heading is found. Lines that the service would reject are skipped. onProgress(fraction)
+ * reports progress.
  */
 export async function parse(file, onProgress) {
   const text = await textOf(file);
   const above = {last: "", before: "", comment: ""};
-  let said;
+  let declared;
   let separator;
   let heading;
   let columns = [];
@@ -121,8 +130,8 @@ export async function parse(file, onProgress) {
       continue;
     }
     if (!heading) {
-      said ??= /^\s*sep=(.)\s*$/i.exec(line)?.[1];
-      separator = separatorOfNumbers(line, said);
+      declared ??= /^\s*sep=(.)\s*$/i.exec(line)?.[1];
+      separator = separatorOfNumbers(line, declared);
       if (!separator) {
         above.before = above.last;
         above.last = line;
@@ -131,7 +140,7 @@ export async function parse(file, onProgress) {
       const count = cellsOf(line, separator).length;
       heading = headingOf(above, count, separator);
       if (!heading) break;
-      // A number takes at least two characters.
+      // A number and its separator take at least two characters.
       const most = Math.ceil((text.length - index) / (2 * count)) + 1;
       columns = heading[0].map(() => new Float64Array(most));
     }
@@ -144,7 +153,10 @@ export async function parse(file, onProgress) {
   return {text, names, units, columns: columns.map((column) => column.slice(0, rows))};
 }
 
-/** Usual column names by quantity: the first must match exactly, the others are prefixes. */
+/**
+ * Usual column names by quantity: the first must match exactly, the others must be followed by a
+ * space, an underscore, a bracket or the end.
+ */
 const quantities = {
   time: ["time_s", "time", "t"],
   displacement: ["displacement_m", "displacement", "x"],
@@ -154,9 +166,9 @@ const quantities = {
 };
 
 /** Index of the column named by a field or else by a usual name; -1 if missing. */
-function find(names, wanted, [whole, ...beginnings]) {
+function find(names, wanted, [exact, ...prefixes]) {
   if (wanted) return names.findIndex((name) => name.toLowerCase() === wanted.toLowerCase());
-  return [`${whole}$`, ...beginnings.map((text) => `${text}([_ ([]|$)`)]
+  return [`${exact}$`, ...prefixes.map((text) => `${text}([_ ([]|$)`)]
     .map((text) => names.findIndex((name) => new RegExp(`^${text}`, "i").test(name)))
     .reduce((found, at) => (found < 0 ? at : found));
 }
@@ -170,6 +182,7 @@ export const columnsOf = (names, fields) =>
     ]),
   );
 
+/** Factors from the service's units to those of the plots: s, mm, m/s^2. */
 const scales = new Map([
   ["s", 1],
   ["ms", 1e-3],
@@ -179,7 +192,7 @@ const scales = new Map([
   ["m/s2", 1],
   ["g", 9.80665],
 ]);
-/** A unit in the service's spelling, if it is one. */
+/** A unit in the service's spelling; any other text in lower case, without some characters. */
 const spelling = (text) =>
   (text.length > 32 ? "?" : text) // longer than any unit
     .toLowerCase()
@@ -204,11 +217,14 @@ const unitAmong = (...texts) => texts.map(spelling).find((unit) => scales.has(un
 /** The unit in a column's name: in brackets, after a space or underscore, or the whole name. */
 function unitIn(name) {
   const brackets = /[([]([^)\]]*)/.exec(name);
-  const behind = [...name.matchAll(/[_ ]/g)].map(({index}) => name.slice(index + 1));
-  return unitAmong(name, ...(brackets ? [brackets[1]] : behind));
+  const suffixes = [...name.matchAll(/[_ ]/g)].map(({index}) => name.slice(index + 1));
+  return unitAmong(name, ...(brackets ? [brackets[1]] : suffixes));
 }
 
-/** Column of each quantity found: {name, values, unit}. */
+/**
+ * Column of each quantity found: {name, values, unit}. The unit is that of the column's name, else
+ * of the row of units, else of the field, which can be undefined.
+ */
 function partsOf({names, units, columns}, fields) {
   const found = Object.entries(columnsOf(names, fields)).filter(([, k]) => k >= 0);
   const part = (quantity, k) => ({
@@ -229,9 +245,9 @@ export function recordOf(parsed, fields) {
   if (!time?.values.length || !(displacement ?? acceleration)) return null;
   let last = -Infinity;
   const isLater = time.values.map((t) => {
-    const is = t > last;
-    if (is) last = t;
-    return is;
+    const later = t > last;
+    if (later) last = t;
+    return later;
   });
   const of = (part, usual) => {
     const scale = scales.get(part?.unit ?? usual);
@@ -248,15 +264,17 @@ export function asJson(parsed, fields) {
   return {...fields, ...Object.fromEntries(units), record: Object.fromEntries(record)};
 }
 
+const medianReach = 8; // samples before and after the interval, for the local median
+
 /**
  * Index of the sample within `reach` of a time whose acceleration deviates most from the local
  * median: the visible spike. null without an acceleration.
  */
-export function spikeNear({t, a}, moment, reach) {
-  const from = firstFrom(t, moment - reach);
-  const to = Math.max(firstFrom(t, moment + reach), from + 1);
+export function spikeNear({t, a}, time, reach) {
+  const from = firstFrom(t, time - reach);
+  const to = Math.max(firstFrom(t, time + reach), from + 1);
   if (!a || from >= t.length) return null;
-  const around = a.slice(Math.max(0, from - 8), to + 8).sort();
+  const around = a.slice(Math.max(0, from - medianReach), to + medianReach).sort();
   const centre = around[around.length >> 1];
   let best = from;
   for (let i = from; i < Math.min(to, t.length); ++i)

@@ -1,4 +1,4 @@
-// Calls of the service. Routes are relative to the page, so they also work behind a path prefix.
+// Calls to the service. Routes are relative to the page, so they also work below a path prefix.
 import {askForKey, currentKey, keyHeaders} from "./key.js";
 
 /**
@@ -15,9 +15,9 @@ export class Problem extends Error {
 /** A temporary failure: the same request can succeed later. */
 export class TemporaryError extends Error {}
 
-/** The error's message, followed by the details of the faults that it does not contain. */
-export const wholeMessage = (error, faults) =>
-  [error.message, ...faults.map((e) => e.detail).filter((d) => d !== error.message)].join("; ");
+/** The error's message, followed by the details of `errors` that differ from it. */
+export const wholeMessage = (error, errors) =>
+  [error.message, ...errors.map((e) => e.detail).filter((d) => d !== error.message)].join("; ");
 
 async function read(response) {
   const noJson = {title: `the server answered ${response.status} without JSON`};
@@ -29,7 +29,9 @@ async function read(response) {
 
 /** Sends a request and returns its response. Asks for an API key while the service answers 401. */
 export async function sendRequest(path, options = {}) {
-  let sent = null; // no key: the browser may answer with what it preloaded
+  // The first response can be one that the browser preloaded, without a key: a stored key is
+  // therefore tried once more.
+  let sent = null;
   let response = await fetchWithKey(path, options);
   // A key typed for another request in the meantime is tried before asking again.
   while (response.status === 401 && (currentKey() !== sent || (await askForKey()))) {
@@ -39,6 +41,7 @@ export async function sendRequest(path, options = {}) {
   return response;
 }
 
+/** Throws TemporaryError without a response, also if `options.signal` aborts the request. */
 async function fetchWithKey(path, options) {
   try {
     return await fetch(path, {...options, headers: {...options.headers, ...keyHeaders()}});
@@ -57,11 +60,11 @@ const postingJson = (path) => async (fields, signal) =>
 
 export const simulate = postingJson("v1/simulate");
 
-/** Identifies a record: `query` holds the fields, `record` is a CSV file sent unchanged. */
+/** Identifies parameters from a record: `query` holds the fields, `record` is a CSV file. */
 export const identify = async (query, record, signal) =>
   read(await post(`v1/identify?${query}`, record, signal, "text/csv"));
 
-/** Identifies a record that is part of the JSON fields. */
+/** Identifies parameters from a record that is part of the JSON fields. */
 export const identifyJson = postingJson("v1/identify");
 
 /** Starts a sweep; returns its stream of JSON lines. */
@@ -73,7 +76,7 @@ export async function sweep(request, signal) {
 const quoted = (text) => `'${text.replaceAll("'", "'\\''")}'`;
 export const absoluteUrl = (path) => new URL(path, location.href.split("?")[0]).href;
 
-/** A curl command that posts `fields` as JSON. */
+/** A curl command that posts `fields` as JSON, for which the service needs no Content-Type. */
 export const asCurl = (path, fields, flags = "-s") =>
   `curl ${flags} ${absoluteUrl(path)} -d ${quoted(JSON.stringify(fields))}`;
 
@@ -87,7 +90,7 @@ export function sendFileAsCurl(path, type, name, flags = "-s") {
 
 /**
  * Yields {text, value} for each line of a stream. Lines and UTF-8 characters can be split across
- * chunks.
+ * chunks; an incomplete last line is dropped. Throws TemporaryError if the stream breaks.
  */
 export async function* jsonLines(stream) {
   const reader = stream.pipeThrough(new TextDecoderStream()).getReader();

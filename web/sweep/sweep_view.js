@@ -10,6 +10,7 @@ import {sameAxis, startNote} from "./axis_labels.js";
 const buttonFor = ({label, run}) =>
   button(label, run, {onmousedown: (event) => event.preventDefault()});
 
+/** Tooltip in a container. */
 export class Tip {
   constructor(container) {
     this.container = container;
@@ -18,22 +19,22 @@ export class Tip {
   }
 
   /**
-   * rows: [term, value]; left, top: px in the container; act: {label, run}, a button for keyboard
-   * and touch.
+   * rows: [term, value]; left, top: px in the container; note: the last line; action: {label, run},
+   * a button for keyboard and touch in place of the note.
    */
-  show(left, top, rows, note, act) {
+  show(left, top, rows, note, action) {
     const entry = ([term, value]) => [element("dt", {}, term), element("dd", {}, value)];
     const list = element("dl", {}, ...rows.flatMap(entry));
-    const last = act ? buttonFor(act) : element("p", {}, note);
+    const last = action ? buttonFor(action) : element("p", {}, note);
     this.node.replaceChildren(list, last);
     this.node.hidden = false;
-    this.node.classList.toggle("pinned", Boolean(act));
+    this.node.classList.toggle("pinned", Boolean(action));
     const {offsetWidth: width, offsetHeight: height} = this.node;
     const gap = 14;
-    const room = this.container.clientWidth;
-    const beside = left + gap + width <= room ? left + gap : left - gap - width;
+    const available = this.container.clientWidth;
+    const x = left + gap + width <= available ? left + gap : left - gap - width;
     const lowest = this.container.clientHeight - height;
-    this.node.style.left = `${Math.max(0, Math.min(beside, room - width))}px`;
+    this.node.style.left = `${Math.max(0, Math.min(x, available - width))}px`;
     this.node.style.top = `${Math.max(0, Math.min(top - height / 2, lowest))}px`;
   }
 
@@ -48,8 +49,10 @@ const zooms = {"+": 1.5, "=": 1.5, "-": 1 / 1.5};
 export const missingPoint = [["", "not computed yet"]];
 
 /**
- * A plot of a SweepView. Subclasses implement about(): {title, summary}; drawn(place): the height
- * of a place, null if it has several or none; columns(): numbers of a point, {name: of(p)}.
+ * A plot of a SweepView. Subclasses implement
+ * about(): {title, summary};
+ * drawn(place): y at which a place is drawn, null if it has several or none;
+ * columns(): functions that return numbers of a point, {name: of(p)}.
  */
 export class SweepPlot extends ZoomablePlot {
   /** name: in the ids of its figure and container. */
@@ -68,7 +71,7 @@ export class SweepPlot extends ZoomablePlot {
     });
   }
 
-  /** beside: px at the right. */
+  /** beside: px reserved at the right, for example for a colour bar. */
   frameOf(width, height, beside) {
     const {labels, data, viewports} = this.view;
     const [x, y = this.y()] = viewports.map(({range}, i) => labels.frameAxis(data.axes[i], range));
@@ -92,7 +95,7 @@ export class SweepPlot extends ZoomablePlot {
     return "";
   }
 
-  /** The rows of a point in the table. */
+  /** Rows of a point in the exported table. */
   rows(p) {
     return [Object.values(this.columns()).map((of) => of(p))];
   }
@@ -113,11 +116,18 @@ export class SweepPlot extends ZoomablePlot {
 }
 
 /**
- * Subclasses have plots: [SweepPlot]; places(): received points as {at: place on each axis, value
- * and height: the same as values, p, data, index}; nearest({plot, at, top}): the point nearest to
- * a place, top: the clicked height in px or undefined; rowsOf(place): [term, value]; and move(key):
- * goes to another place, false for other keys. `current` is the place of the tooltip: {plot, at,
- * act: with a button}.
+ * A place is {at, value, height, p, data, index}: at, the coordinates on the axes; value and
+ * height, the values of the first and the second parameter there; p, the received point; data and
+ * index, its sweep and its index in the sweep.
+ *
+ * Subclasses have
+ * plots: [SweepPlot];
+ * places(): the places with received points;
+ * nearest({plot, at, top}): the place nearest to `at`; top: the clicked height in px, if any;
+ * rowsOf(place): rows of the tooltip, [term, value];
+ * move(key): goes to another place; returns false for other keys.
+ *
+ * `current` is the position of the tooltip: {plot, at, act: true if it has a button}.
  */
 export class SweepView {
   /**
@@ -154,9 +164,13 @@ export class SweepView {
   }
 
   /**
-   * Draws received points or another choice: {coordinate: of the section, quantity: of the lowest
-   * plot, map: quantity of a map, start, best: best motion in place of the worst, slice: position
-   * on the third axis}.
+   * Draws the received points. choice:
+   * coordinate: of the section;
+   * quantity: of the lowest plot;
+   * map: quantity of a map;
+   * start: index of the start that a map shows;
+   * best: true for the best motion in place of the worst;
+   * slice: position on the third axis.
    */
   refresh(choice) {
     this.choice = choice;
@@ -187,7 +201,7 @@ export class SweepView {
   }
 
   /**
-   * Ends of the visible ranges as values, rounded to four digits of the range; empty for the full
+   * Ends of the visible ranges as values, rounded to about 1e-4 of the range; empty for the full
    * range.
    */
   ends() {
@@ -199,7 +213,7 @@ export class SweepView {
     });
   }
 
-  /** Zooms to such ends; without any, resets the zoom. */
+  /** Zooms to the ranges returned by ends(); an empty list resets the zoom. */
   zoomTo(ends) {
     for (const [i, viewport] of this.viewports.entries()) {
       if (!ends.length && viewport.changed) viewport.reset();
@@ -224,7 +238,7 @@ export class SweepView {
     this.showTip({plot: this.plots.find(({size}) => size.width), at, act: true});
   }
 
-  /** Note how the simulation of a place starts. */
+  /** Text that describes the initial state of the simulation of a place. */
   startOf({data}) {
     return startNote(data);
   }
@@ -249,7 +263,7 @@ export class SweepView {
       over.left - box.left + frame.px(place.value) - frame.box.left,
       over.top - box.top + down,
       this.rowsOf(place),
-      `Click: simulate it${this.startOf(place)}`,
+      `Click to simulate this point${this.startOf(place)}`,
       act && {label: "Simulate this point", run: () => this.open(place)},
     );
   }

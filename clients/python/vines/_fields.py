@@ -143,7 +143,8 @@ Axis = TypedDict(
 )
 Axis.__doc__ = """Keys of the object:
 
-parameter: name of a numeric field of system, reduced, SI or start; default: required
+parameter: name of a numeric parameter of the system, dimensionless or SI, or of a component
+    of the initial state; default: required
 from: first value; default: required without values; -1e+300 to 1e+300
 to: last value; default: required without values; -1e+300 to 1e+300
 count: number of values; 1 to 1e+06; default: 2
@@ -249,8 +250,8 @@ class SimulateFields(TypedDict, total=False):
         "eigenvalues", "raw_product"]
     samples_per_cycle: samples of the series per forcing cycle (dimensionless); 1 to 10000;
         default: 32
-    section_phase: phase of the stroboscopic section after each whole cycle (rad); 0 to 6.28319;
-        default: 0
+    section_phase: value of Omega tau, modulo 2 pi, at which the stroboscopic section samples
+        the state (rad); 0 to 6.28319; default: 0
     max_points: maximum length of series and histories; longer series get a larger step, longer
         histories are thinned; 256 to 1e+06; default: 20000
     max_impacts: number of impacts after which the run ends; 1 to 2e+06; default: 100000
@@ -302,29 +303,30 @@ class SweepFields(TypedDict, total=False):
 
     base: fields of /v1/simulate that all points share: system, reduced or SI, start, preset,
         max_impacts; default: {}
-    axes: one to three axes: {parameter, from, to, count, scale} or {parameter, values}; along
-        the first axis the index of a point varies fastest; default: required
+    axes: one to three axes: {parameter, from, to, count, scale} or {parameter, values}; the
+        point index varies fastest along the first axis; default: required
     starts: initial states {x0, x_dot0, y0, y_dot0}, each run at every point, to find coexisting
-        attractors; or "default set": at rest in the middle, at a wall, moving, and the final
-        states of both neighbours on the first axis; lines then give the worst and the best
-        motion by x_max; default: []
+        attractors; or "default set": at rest in the middle, at a wall, moving, without contact
+        if possible, and the final states of both neighbours on the first axis; lines then give
+        the worst and the best motion by x_max; default: []
     cycles: number of measured forcing cycles at each point (dimensionless); 1 to 1e+06;
         default: 1000
     transient_cycles: number of transient forcing cycles before the measured ones
         (dimensionless); 0 to 1e+06; default: 200
     carry_state: none: each point starts from the initial state of base; up, down: from the
-        final state of its neighbour on the first axis, in ascending or descending order of the
-        axis' entries; default: "none"
+        final state of its predecessor in ascending or descending order of the values on the
+        first axis; default: "none"
     section: points for a bifurcation diagram: at impact or at whole forcing cycles; default:
         "none"
-    section_points: number of section points per point of the sweep: the last ones
+    section_points: largest number of section points of each sweep point; the last ones are kept
         (dimensionless); 1 to 100000; default: 100
-    section_phase: phase of the stroboscopic section after each whole cycle (rad); 0 to 6.28319;
-        default: 0
-    reduce: "max over f": one line for all points along the axis f, with the largest x_max as
-        x_peak and its place; or "min over f"; default: none: one line for each point
-    indices: only these points, for example those missing from an interrupted stream; default:
-        all
+    section_phase: value of Omega tau, modulo 2 pi, at which the stroboscopic section samples
+        the state (rad); 0 to 6.28319; default: 0
+    reduce: "max over P" or "min over P" for an axis P: one line for all points along P, with
+        the largest or smallest x_max as x_peak and the value of P there; default: none: one
+        line for each point
+    indices: zero-based indices of the points to compute, for example those missing from an
+        interrupted stream; default: all
     """
 
     base: SweepBase

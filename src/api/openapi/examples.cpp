@@ -32,23 +32,25 @@ constexpr Example requests[] = {
     {"manifold", R"({
         "default": {"summary": "system of Table 1", "value": {"points": 3}}})"},
     {"sweep", R"({
-        "half-widths": {
-            "summary": "four clearances",
+        "clearances": {
+            "summary": "four values of the clearance b",
             "value": {"base": {"damping": "closed_form"}, "cycles": 500,
                 "axes": [{"parameter": "b", "from": 0.006, "to": 0.015, "count": 4}]}},
         "worst motion": {
-            "summary": "the largest motion between 13 and 15 Hz over all starts",
+            "summary": "the largest peak of x between 13 and 15 Hz over the default set of starts",
             "value": {"base": {"m1": 12, "f0": 14, "damping_ratio": 0.006, "mass_ratio": 0.01,
                 "F": 0.0004, "R": 0.4, "b": 0.03}, "starts": "default set",
                 "reduce": "max over f", "cycles": 200,
                 "axes": [{"parameter": "f", "from": 13, "to": 15, "count": 9}]}}})"},
     {"identify", R"(
-        {"impacts":  {"summary":  "a list of impacts, in SI",  "value":  {"preset":
-        "fig20",  "b":  0.015,  "exponents":  ["qr"],  "impacts":  {"time_s":  [1.403385,
-        1.461862,  1.607638,  1.984774,  2.058772],  "x":  [0.0004349904,  -0.0006110741,
-        0.002128898,  0.002552786,  -0.001091305],  "x_velocity_before":  [-0.1111193,
-        0.1141878,  0.05954217,  -0.0625302,  0.1405365],  "x_velocity_after":
-        [-0.1126914,  0.1123261,  0.06186857,  -0.06275421,  0.1378615]}}}})"},
+        {"impacts": {
+            "summary": "a list of impacts, in SI: x in m, velocities in m/s",
+            "value": {"preset": "fig20", "b": 0.015, "exponents": ["qr"], "impacts": {
+                "time_s": [1.403385, 1.461862, 1.607638, 1.984774, 2.058772],
+                "x": [0.0004349904, -0.0006110741, 0.002128898, 0.002552786, -0.001091305],
+                "x_velocity_before": [-0.1111193, 0.1141878, 0.05954217, -0.0625302, 0.1405365],
+                "x_velocity_after": [-0.1126914, 0.1123261, 0.06186857, -0.06275421, 0.1378615]
+            }}}})"},
 };
 
 constexpr Example answers[] = {
@@ -174,11 +176,12 @@ constexpr Example answers[] = {
     {"Status", R"({"status": "ok"})"},
 };
 
-/// Responses with provenance, which is made here: it holds the commit.
-struct SealedAnswer {
+/// Responses with a provenance block. It contains the commit of this build, so it is computed here
+/// instead of stored. The stored response answers the first example of `operation` in key order.
+struct AnswerWithProvenance {
     const char *schema, *operation, *route;
 };
-constexpr SealedAnswer sealed_answers[] = {
+constexpr AnswerWithProvenance answers_with_provenance[] = {
     {"Simulation", "simulate", "/v1/simulate"},
     {"Manifold", "manifold", "/v1/manifold"},
     {"Identification", "identify", "/v1/identify"}};
@@ -196,14 +199,16 @@ Json request_example(const char* operation) { return example_of(requests, operat
 
 Json answer_example(const char* schema) {
     Json example = example_of(answers, schema);
-    const auto sealed = std::find_if(
-        std::begin(sealed_answers), std::end(sealed_answers),
-        [schema](const SealedAnswer& answer) { return answer.schema == std::string_view(schema); });
-    if (sealed == std::end(sealed_answers)) return example;
-    const Json request = request_example(sealed->operation).begin()->at("value");
-    const AnswerRequest asked =
-        read_answer_request(sealed->route, request, {request.dump(), false});
-    example["provenance"] = describe(asked.provenance, sha256(example.dump()));
+    const auto found = std::find_if(
+        std::begin(answers_with_provenance), std::end(answers_with_provenance),
+        [schema](const AnswerWithProvenance& answer) {
+            return answer.schema == std::string_view(schema);
+        });
+    if (found == std::end(answers_with_provenance)) return example;
+    const Json request = request_example(found->operation).begin()->at("value");
+    const AnswerRequest answer_request =
+        read_answer_request(found->route, request, {.text = request.dump(), .is_columns = false});
+    example["provenance"] = describe(answer_request.provenance, sha256(example.dump()));
     return example;
 }
 

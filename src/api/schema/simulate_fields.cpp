@@ -335,7 +335,8 @@ FieldTable output_rows() {
         {.name = "section_phase",
          .group = "output",
          .unit = "rad",
-         .description = "phase of the stroboscopic section after each whole cycle",
+         .description =
+             "value of Omega tau, modulo 2 pi, at which the stroboscopic section samples the state",
          .fallback = 0,
          .range = Range{0, 2 * std::numbers::pi}},
         {.name = "max_points",

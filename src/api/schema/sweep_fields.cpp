@@ -21,15 +21,16 @@ FieldTable make_sweep_fields() {
          .type = FieldType::objects,
          .group = "sweep",
          .description = "one to three axes: {parameter, from, to, count, scale} or {parameter, "
-                        "values}; along the first axis the index of a point varies fastest",
+                        "values}; the point index varies fastest along the first axis",
          .fallback_note = "required"},
         {.name = "starts",
          .type = FieldType::objects,
          .group = "sweep",
-         .description = "initial states {x0, x_dot0, y0, y_dot0}, each run at every point, to find "
-                        "coexisting attractors; or \"default set\": at rest in the middle, at a "
-                        "wall, moving, and the final states of both neighbours on the first axis; "
-                        "lines then give the worst and the best motion by x_max",
+         .description =
+             "initial states {x0, x_dot0, y0, y_dot0}, each run at every point, to find "
+             "coexisting attractors; or \"default set\": at rest in the middle, at a wall, moving, "
+             "without contact if possible, and the final states of both neighbours on the first "
+             "axis; lines then give the worst and the best motion by x_max",
          .fallback = Json::array(),
          .choices = {default_set_of_starts}},
         {.name = "cycles",
@@ -49,10 +50,9 @@ FieldTable make_sweep_fields() {
         {.name = "carry_state",
          .type = FieldType::choice,
          .group = "sweep",
-         .description =
-             "none: each point starts from the initial state of base; up, down: from the final "
-             "state of its neighbour on the first axis, in ascending or descending "
-             "order of the axis' entries",
+         .description = "none: each point starts from the initial state of base; up, down: from "
+                        "the final state of its predecessor in ascending or descending order of "
+                        "the values on the first axis",
          .fallback = enum_json(Carry::none),
          .choices = enum_choices<Carry>()},
         {.name = "section",
@@ -65,41 +65,48 @@ FieldTable make_sweep_fields() {
          .type = FieldType::integer,
          .group = "sweep",
          .unit = dimensionless,
-         .description = "number of section points per point of the sweep: the last ones",
+         .description =
+             "largest number of section points of each sweep point; the last ones are kept",
          .fallback = 100,
          .range = Range{1, 100000}},
         {.name = "section_phase",
          .group = "sweep",
          .unit = "rad",
-         .description = "phase of the stroboscopic section after each whole cycle",
+         .description =
+             "value of Omega tau, modulo 2 pi, at which the stroboscopic section samples the state",
          .fallback = 0,
          .range = Range{0, 2 * std::numbers::pi}},
         {.name = "reduce",
-         // Any string: the valid ones follow from the axes.
+         // A choice without a fixed list: the valid values depend on the axes; the reader of the
+         // request checks them.
          .type = FieldType::choice,
          .group = "sweep",
          .description =
-             "\"max over f\": one line for all points along the axis f, with the largest "
-             "x_max as x_peak and its place; or \"min over f\"",
+             "\"max over P\" or \"min over P\" for an axis P: one line for all points along P, "
+             "with the largest or smallest x_max as x_peak and the value of P there",
          .fallback_note = "none: one line for each point"},
         {.name = "indices",
          .type = FieldType::integers,
          .group = "sweep",
-         .description = "only these points, for example those missing from an interrupted stream",
+         .description = "zero-based indices of the points to compute, for example those missing "
+                        "from an interrupted stream",
          .fallback_note = "all"},
     };
 }
 
-/// Range of an axis: the parameter has a range of its own, this one only prevents overflow.
+/// Range of an axis's values. Prevents overflow only: each value is also checked against the range
+/// of its parameter.
 constexpr Range any_number{-1e300, 1e300};
 
 FieldTable make_axis_fields() {
     return {
         {.name = "parameter",
-         // Any string: the reader of the axis reports an unknown parameter with the list.
+         // A choice without a fixed list: the reader of the axis checks it and lists the valid
+         // ones.
          .type = FieldType::choice,
          .group = "axis",
-         .description = "name of a numeric field of system, reduced, SI or start",
+         .description = "name of a numeric parameter of the system, dimensionless or SI, or of a "
+                        "component of the initial state",
          .fallback_note = "required"},
         {.name = "from",
          .group = "axis",

@@ -1,5 +1,6 @@
 // Synthetic records: a computed motion as seen through a laboratory's measuring chain, with any
-// combination of its errors. Test data for identification.
+// combination of its errors. Test data for identification. tau = omega0 t is dimensionless time;
+// lengths are in m. The errors of Sensors are in s, m and m/s^2.
 #pragma once
 
 #include <cstdint>
@@ -19,17 +20,18 @@ struct TrueStretch {
 /// The motion of an oscillator with its absorber during a record.
 struct TrueMotion {
     Parameters parameters;
-    double omega0;                      ///< rad/s; the sensors' times are in s
+    double omega0;                      ///< rad/s; t = tau / omega0
     double begin;                       ///< tau of the first sample; the system starts at rest at 0
-    double seconds;                     ///< length of the record
+    double seconds;                     ///< length of the record, s
     std::vector<Impact> impacts;        ///< within the record
     std::vector<StickingPhase> sticks;  ///< those that end within the record
     std::vector<TrueStretch> stretches;  ///< starting with the last one that begins before `begin`
-    /// Exponents of the true impacts: result of a perfect identification.
+    /// Exponents from the exact impacts of the record: the reference for identification.
     TransferProduct exponents;
 };
 
-/// Motion from Table 1's initial state (default_state); the record starts after `settling` s.
+/// Simulates from default_state(parameters); the record begins after `settling` s and lasts
+/// `seconds` s. `estimators`: exponents to compute.
 TrueMotion true_motion(
     const Parameters& parameters, double omega0, double settling, double seconds,
     const ExponentOptions& estimators = qr_alone);
@@ -37,33 +39,35 @@ TrueMotion true_motion(
 /// Errors of sensors, amplifiers and cables. Defaults are neutral, except for pulses and noise.
 struct Sensors {
     double rate = 2048;     ///< Hz
-    double pulse = 0.8e-3;  ///< s; each impact shows as a half sine of the acceleration
+    double pulse = 0.8e-3;  ///< s; length of the half-sine acceleration pulse of an impact
     double noise_x = 2e-6, noise_a = 0.05;  ///< standard deviations, m and m/s^2
     std::uint64_t seed = 5;                 ///< of all random effects
     double offset = 0, drift = 0;           ///< of the displacement: m, and m over the record
     double offset_a = 0, drift_a = 0;  ///< of the acceleration: m/s^2, and m/s^2 over the record
     double delay = 0;                  ///< delay of the displacement, s
     double gain = 0;                   ///< scale error of the displacement, relative
-    /// Clipped fraction of the channel's largest absolute value.
+    /// A channel is limited to (1 - clip) times its largest absolute value; 0: no clipping.
     double clip_x = 0, clip_a = 0;
-    /// Corner frequencies of fourth-order Butterworth filters, divided by the rate.
+    /// Corner frequencies of fourth-order Butterworth filters, divided by the rate; 0: no filter.
     double low_pass_x = 0, low_pass_a = 0;
-    /// Resonance of the accelerometer, Hz, and its damping ratio: it rings after each pulse.
+    /// Resonance of the accelerometer, Hz (0: none), and its damping ratio: it rings after each
+    /// pulse.
     double ringing = 0, ringing_damping = 0.02;
-    /// Fraction of pulses that are double, the second pulse's fraction of the area, and its delay,
-    /// s.
+    /// Double pulses: their fraction of all pulses; the area of the second pulse as a fraction of
+    /// the total; its delay, s.
     double double_hits = 0, second_hit = 0.3, second_hit_delay = 1.5e-3;
-    /// Number of stretches (alternating between channels) that read 0, and their length, s.
+    /// Number of intervals (alternating between channels) in which a channel reads 0, and their
+    /// length, s.
     int dropouts = 0;
     double dropout = 0.02;
     int outliers = 0;  ///< single samples far off, alternating between channels
     /// Fraction of impacts without a pulse.
     double missed_pulses = 0;
     double lost_samples = 0;       ///< fraction of samples missing at random
-    double gap_from = 0, gap = 0;  ///< s: a missing stretch
+    double gap_from = 0, gap = 0;  ///< begin and length of an interval without samples, s
 };
 
-/// The record that these sensors deliver; tau is the motion's.
+/// Simulated record of `motion`. Its tau has the same origin as the motion's.
 MeasuredRecord synthetic_record(const TrueMotion& motion, const Sensors& sensors);
 
 }  // namespace vines

@@ -1,3 +1,11 @@
+// Each slot holds one source and its current run. The loop of simulate_batch() alternates two steps
+// until every source is exhausted: replace the runs that are over by the next ones of their
+// sources, and advance every run by one free flight (fly_all).
+//
+// Flights of runs that share the Flow object of the first active run, and with a simple start, are
+// searched for their contacts as one batch; the kernel reports a contact, none before the limit, or
+// undecided. Undecided and all other flights use the scalar search, run by run. The kernels use the
+// operations of the scalar search in the same order, so the results do not depend on the grouping.
 #include "core/motion/batch_run.hpp"
 
 #include <algorithm>
@@ -22,11 +30,12 @@ std::vector<NamedBatchSearch> batch_searches() {
 }
 
 BatchSearch best_batch_search() {
-    static const BatchSearch search = [] {
+    static const BatchSearch best = [] {
         const auto searches = batch_searches();
+        // The baseline batch alone is no faster than the scalar search.
         return searches.size() > 1 ? searches.back().search : nullptr;
     }();
-    return search;
+    return best;
 }
 
 void append(FlightBatch& flights, const FlightStart& f, double b, double limit) {
@@ -43,14 +52,15 @@ void append(FlightBatch& flights, const FlightStart& f, double b, double limit) 
     flights.limit[i] = limit;
 }
 
-void search(FlightBatch& flights, BatchSearch by) {
+void search(FlightBatch& flights, BatchSearch kernel) {
+    // Unused lanes repeat a valid flight, so that the kernel needs no mask.
     for (int i = flights.count; i < FlightBatch::capacity; ++i) {
         for (auto* column :
              {&flights.x, &flights.x_dot, &flights.sin_theta, &flights.cos_theta, &flights.y,
               &flights.y_dot, &flights.side, &flights.relative_speed, &flights.b, &flights.limit})
             (*column)[i] = (*column)[0];
     }
-    by(flights);
+    kernel(flights);
 }
 
 Contact contact_of(const FlightBatch& f, int i) {
@@ -75,8 +85,8 @@ public:
     bool has_ended() const { return !run_; }
     Run& run() { return *run_; }
     const FlowTables& tables() const { return tables_; }
-    /// Moves on to the first run that is not over.
-    void settle() {
+    /// Replaces finished runs until one is unfinished or the source is exhausted.
+    void advance_to_unfinished() {
         while (run_ && run_->is_over()) begin(run_->outcome());
     }
 
@@ -95,25 +105,28 @@ private:
     FlowTables tables_{};
 };
 
-/// Advances every run by one flight: as a batch if it has the first run's flow, else separately.
-void fly_all(std::span<Slot*> slots, BatchSearch by) {
+/// Advances every run by one flight. Flights with the first run's Flow object and a simple start
+/// are searched as one batch; the others are advanced separately, as are all if there is only one
+/// slot or no kernel.
+void fly_all(std::span<Slot*> slots, BatchSearch kernel) {
     FlightBatch flights;
     std::array<Slot*, FlightBatch::capacity> slot_of;
     const Flow& flow = slots[0]->run().flow();
     for (Slot* slot : slots) {
         Run& run = slot->run();
         const FlightStart flight = run.flight();
-        if (slots.size() == 1 || !by || &run.flow() != &flow || !has_simple_start(flight)) {
+        if (slots.size() == 1 || !kernel || &run.flow() != &flow || !has_simple_start(flight)) {
             run.fly();
             continue;
         }
-        slot_of[flights.count] = slot;
+        slot_of[flights.count] = slot;  // append() increments the count
         append(flights, flight, run.b(), run.flight_limit());
+        // Transfer matrices are computed for all lanes if one run needs them.
         flights.transfers |= run.is_observed();
     }
     if (flights.count == 0) return;
     flights.tables = &slot_of[0]->tables();
-    search(flights, by);
+    search(flights, kernel);
     for (int i = 0; i < flights.count; ++i) {
         Run& run = slot_of[i]->run();
         if (flights.result[i] == FlightBatch::undecided) run.fly();
@@ -131,18 +144,18 @@ void simulate_batch(std::span<RunSource* const> sources) {
     simulate_batch(sources, best_batch_search());
 }
 
-void simulate_batch(std::span<RunSource* const> sources, BatchSearch search) {
+void simulate_batch(std::span<RunSource* const> sources, BatchSearch kernel) {
     assert(sources.size() <= static_cast<std::size_t>(max_batch_runs));
     std::deque<Slot> slots;
     for (RunSource* source : sources) slots.emplace_back(*source);
     std::vector<Slot*> active;
     for (Slot& slot : slots) active.push_back(&slot);
-    const auto settled = [&] {
-        for (Slot* slot : active) slot->settle();
+    const auto prepare_next_round = [&] {
+        for (Slot* slot : active) slot->advance_to_unfinished();
         std::erase_if(active, [](const Slot* slot) { return slot->has_ended(); });
         return !active.empty();
     };
-    while (settled()) fly_all(active, search);
+    while (prepare_next_round()) fly_all(active, kernel);
 }
 
 }  // namespace vines

@@ -35,10 +35,11 @@ std::vector<NamedBatchSearch> batch_searches();
 /// The widest search, or null where it is no faster than fast_contact() per flight.
 BatchSearch best_batch_search();
 
-/// Appends a flight, which must satisfy has_simple_start(); b and limit as in fast_contact().
+/// Appends a flight and increments the count. The flight must satisfy has_simple_start(); b and
+/// limit as in fast_contact().
 void append(FlightBatch& flights, const FlightStart& start, double b, double limit);
 /// Searches all flights of the batch. Unused elements repeat the first flight.
-void search(FlightBatch& flights, BatchSearch by);
+void search(FlightBatch& flights, BatchSearch kernel);
 /// Contact and transfer matrix of a flight whose contact was found.
 Contact contact_of(const FlightBatch& flights, int i);
 Transfer transfer_of(const FlightBatch& flights, int i);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <complex>
 
 namespace vines {
 
@@ -16,16 +17,16 @@ Vector6cd eigenvalues_of(const Matrix6& matrix);
 /// Largest modulus of an eigenvalue.
 double spectral_radius(const Eigen::Matrix2d& matrix);
 
-/// Eigenvalues, and the matrix that transforms a vector to eigenvector coordinates; not finite if
-/// the eigenvectors do not span the space.
+/// Eigenvalues, and the inverse of the eigenvector matrix, which transforms a vector to eigenvector
+/// coordinates; it has non-finite entries if the eigenvector matrix is singular.
 struct EigenBasis {
     Eigen::Vector4cd values;
     Eigen::Matrix4cd to_coordinates;
 };
 EigenBasis eigen_basis_of(const Eigen::Matrix4d& matrix);
 
-/// The minimum-norm z among those that minimise |matrix z - right|; singular values below 1e-10 of
-/// the largest count as zero.
+/// Minimum-norm least-squares solution: the shortest z that minimises |matrix z - right|_2.
+/// Singular values below 1e-10 of the largest count as zero.
 Eigen::Vector4d minimum_norm_solution(const Eigen::Matrix4d& matrix, const Eigen::Vector4d& right);
 
 }  // namespace vines

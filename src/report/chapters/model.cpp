@@ -33,7 +33,8 @@ void parameters_of_table_1(Report& report, const Parameters& p) {
          .because = "rounds to 1.43"});
 }
 
-/// x(tau) by (8) to (11) exactly as printed, with tau_0 = 0.
+/// x(tau) by (8) to (11) exactly as printed, with tau_0 = 0. x20 = x(0) and x10 = x'(0), in the
+/// paper's names, like f1, f2, p1 and q1.
 class PrintedClosedForm {
 public:
     PrintedClosedForm(const Parameters& p, double x20, double x10) : decay_(p.epsilon * p.lambda) {
@@ -59,8 +60,9 @@ private:
 
 /// The k for which a motion satisfies x'' + k epsilon lambda x' + x = epsilon A sin(Omega tau +
 /// phi) at tau; derivatives by central differences of the fourth order.
-double damping_obeyed(const Parameters& p, const PrintedClosedForm& motion, double tau) {
-    constexpr double h = 0.01;  // error h^4/30 of x', far above rounding
+double damping_factor_of(const Parameters& p, const PrintedClosedForm& motion, double tau) {
+    // The error of x' is h^4/30 times its fourth derivative, far above rounding.
+    constexpr double h = 0.01;
     const auto x = [&](int k) { return motion.x(tau + k * h); };
     const double x_dot = (x(-2) - 8 * x(-1) + 8 * x(1) - x(2)) / (12 * h),
                  x_ddot = (-x(-2) + 16 * x(-1) - 30 * x(0) + 16 * x(1) - x(2)) / (12 * h * h);
@@ -73,27 +75,29 @@ void closed_form(Report& report, const Parameters& p) {
     double least = infinity, most = -infinity;
     // Times at which x' is not small; the motion has an amplitude of about 10 mm.
     for (double tau : {1.0, 2.5, 4.0, 5.5, 7.0, 30.0}) {
-        const double k = damping_obeyed(p, motion, tau);
+        const double k = damping_factor_of(p, motion, tau);
         least = std::min(least, k), most = std::max(most, k);
     }
     report.add(
         {.where = "Eqs. (8) to (11)",
-         .what = "the k of x'' + k epsilon lambda x' + x = ... that they solve",
+         .what =
+             "factor k of the damping in x'' + k epsilon lambda x' + x = ..., which they satisfy",
          .paper = "1, eq. (1)",
          .here = fmt::format("{:.5f} to {:.5f} at six times", least, most),
          .number = std::abs(least - 1) > std::abs(most - 1) ? least : most,
          .band = {0.999, 1.001},
-         .because = "the differences that stand for x' and x'' are exact to 1e-4",
+         .because = "the finite differences give x' and x'' to 1e-4",
          .expected = ClaimVerdict::not_reproduced});
     report.paragraph(fmt::format(
         "The equation of motion (1) has 2 zeta = epsilon lambda; the closed form (8)-(11), "
         "inserted into it as printed, has {:.4f} times that, and so has the transfer matrix (19), "
-        "(20). These are the two dampings of this report.",
+        "(20). This report therefore uses two dampings, that of the equation of motion and that of "
+        "the closed form.",
         most));
 }
 
-/// Compares the distance of two runs with the length of the tangent vector carried by M J through
-/// their impacts, which follow each other (Fig. 2).
+/// Compares the distance of two neighbouring runs with the length of the tangent vector that M J
+/// propagates through their impacts (Fig. 2).
 void trajectory_difference(Report& report) {
     Parameters p;
     p.damping = Damping::closed_form;
@@ -121,8 +125,8 @@ void trajectory_difference(Report& report) {
     report.add(
         {.where = "Fig. 2, eqs. (26) to (32)",
          .what = fmt::format(
-             "two runs, {:g} m apart, to tau = {:g}: largest relative error of M J as their "
-             "distance",
+             "two runs, {:g} m apart, to tau = {:g}: largest relative error of the distance "
+             "predicted by M J",
              size, wanted.tau_end),
          .paper = "the transfer matrix",
          .here = fmt::format(
@@ -130,8 +134,8 @@ void trajectory_difference(Report& report) {
              run.outcome.impacts, second.distance.back() / size),
          .number = largest,
          .band = {0, 1e-3},
-         .because = "an identity of first order: the error is of the size of the distance, plus "
-                    "rounding"});
+         .because =
+             "exact to first order: the error is of the size of the distance, plus rounding"});
 }
 
 }  // namespace

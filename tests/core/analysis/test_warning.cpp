@@ -11,14 +11,14 @@ using namespace vines::test;
 
 namespace {
 
-AnalysisRequest of(const Parameters& p, double tau_end, const Parts& parts) {
+AnalysisRequest request(const Parameters& p, double tau_end, const Parts& parts) {
     AnalysisRequest w{.parameters = p, .start = default_state(p), .tau_end = tau_end};
     w.parts = parts;
     w.estimators = all_estimators;
     return w;
 }
-AnalysisRequest of(double b, double tau_end, const Parts& parts) {
-    return of(table1(b, Damping::closed_form), tau_end, parts);
+AnalysisRequest request(double b, double tau_end, const Parts& parts) {
+    return request(table1(b, Damping::closed_form), tau_end, parts);
 }
 
 /// The only warning of a kind; null if there is none or more than one.
@@ -33,11 +33,11 @@ const Kind* only(const std::vector<Warning>& warnings) {
     return found;
 }
 
-/// Half a cycle of an undamped, unforced oscillator and a ball at rest.
+/// Slightly more than half a cycle (1.1 pi) of an undamped, unforced oscillator.
 AnalysisRequest swinging(const State& start) {
     Parameters p = table1(0.01, Damping::closed_form);
     p.lambda = 0, p.G = 0;
-    AnalysisRequest w = of(p, 1.1 * std::numbers::pi, {.impacts = true});
+    AnalysisRequest w = request(p, 1.1 * std::numbers::pi, {.impacts = true});
     w.start = start;
     return w;
 }
@@ -45,12 +45,12 @@ AnalysisRequest swinging(const State& start) {
 }  // namespace
 
 TEST_CASE("a regular run without sticking has no warnings, whatever is requested") {
-    const Analysis a = analyse(of(0.008, 700, all_parts));
+    const Analysis a = analyse(request(0.008, 700, all_parts));
     CHECK(a.warnings.empty());
 }
 
-TEST_CASE("a run that ends before its window begins has a warning") {
-    AnalysisRequest w = of(0.022, 1000, {});
+TEST_CASE("a run that ends before its window begins gives a warning") {
+    AnalysisRequest w = request(0.022, 1000, {});
     w.window = {500, 1000};
     w.max_impacts = 2;
     const Analysis a = analyse(w);
@@ -59,8 +59,8 @@ TEST_CASE("a run that ends before its window begins has a warning") {
     CHECK(warning->tau_start == 500);
 }
 
-TEST_CASE("a series that would be too long is thinned, with the resulting density in a warning") {
-    AnalysisRequest w = of(0.022, 100, {.series = true});
+TEST_CASE("a series that would be too long is thinned, and a warning gives the resulting density") {
+    AnalysisRequest w = request(0.022, 100, {.series = true});
     w.most_points = 51;
     const Analysis a = analyse(w);
     const auto* warning = only<warning::SeriesThinned>(a.warnings);
@@ -71,8 +71,8 @@ TEST_CASE("a series that would be too long is thinned, with the resulting densit
     CHECK(a.series->tau.size() == 51);
 }
 
-TEST_CASE("a list cut to its end has a warning with its full length") {
-    AnalysisRequest w = of(0.022, 300, {.impacts = true});
+TEST_CASE("a list cut to its last entries gives a warning with its full length") {
+    AnalysisRequest w = request(0.022, 300, {.impacts = true});
     const Analysis whole = analyse(w);
     CHECK_FALSE(only<warning::ListCut>(whole.warnings));
     w.most_listed = 3;
@@ -87,28 +87,29 @@ TEST_CASE("a list cut to its end has a warning with its full length") {
 }
 
 TEST_CASE("grazing contacts and nearly tangent impacts have separate warnings") {
-    const Analysis touches = analyse(swinging({0, 0.01 - 3e-17, 0, 0}));
-    CHECK(only<warning::GrazingContact>(touches.warnings));
-    CHECK_FALSE(only<warning::NearlyTangent>(touches.warnings));
-    // The ball meets the wall with the speed b sqrt(2e-8), where x'' = -b turns it back.
-    const Analysis grazes = analyse(swinging({0.01 * (1 + 1e-8), 0, 0, 0}));
-    CHECK_FALSE(only<warning::GrazingContact>(grazes.warnings));
-    const auto* warning = only<warning::NearlyTangent>(grazes.warnings);
+    const Analysis grazing = analyse(swinging({.x = 0.01 - 3e-17}));
+    CHECK(only<warning::GrazingContact>(grazing.warnings));
+    CHECK_FALSE(only<warning::NearlyTangent>(grazing.warnings));
+    // The wall reaches the resting ball with the speed b sqrt(2e-8), just before x turns back
+    // (x'' = -b).
+    const Analysis nearly_tangent = analyse(swinging({.x_dot = 0.01 * (1 + 1e-8)}));
+    CHECK_FALSE(only<warning::GrazingContact>(nearly_tangent.warnings));
+    const auto* warning = only<warning::NearlyTangent>(nearly_tangent.warnings);
     REQUIRE(warning);
     CHECK(warning->count == 1);
     CHECK(warning->tau == doctest::Approx(std::numbers::pi / 2).epsilon(1e-3));
     CHECK(warning->speed_ratio == 1);
 }
 
-TEST_CASE("overflow of the unscaled product is reported if it is shown") {
-    AnalysisRequest w = of(0.034, 9000, {.exponents = true});
+TEST_CASE("overflow of the unscaled product is reported if raw_product is requested") {
+    AnalysisRequest w = request(0.034, 9000, {.exponents = true});
     w.estimators = {.qr = true, .raw_product = true};
     CHECK(only<warning::RawProductOverflows>(analyse(w).warnings));
     w.estimators.raw_product = false;
     CHECK_FALSE(only<warning::RawProductOverflows>(analyse(w).warnings));
 }
 
-TEST_CASE("exponents that violate the sum rule have a warning") {
+TEST_CASE("exponents that violate the sum rule give a warning") {
     const Parameters p = table1(0.022, Damping::closed_form);
     const Record run = record(p, default_state(p), 200);
     TransferProduct product(p.epsilon, qr_alone);
@@ -131,28 +132,29 @@ TEST_CASE("exponents that violate the sum rule have a warning") {
 }
 
 TEST_CASE("a window with fewer than two impacts has no exponents") {
-    CHECK(only<warning::NoExponents>(analyse(of(0.022, 20, {.exponents = true})).warnings));
-    CHECK_FALSE(only<warning::NoExponents>(analyse(of(0.022, 60, {.exponents = true})).warnings));
+    CHECK(only<warning::NoExponents>(analyse(request(0.022, 20, {.exponents = true})).warnings));
+    CHECK_FALSE(
+        only<warning::NoExponents>(analyse(request(0.022, 60, {.exponents = true})).warnings));
 }
 
-TEST_CASE("a product that loses rank has a warning with the remaining rank") {
-    const Analysis sticks = analyse(of(0.015, 100, {.exponents = true}));
+TEST_CASE("a product that loses rank gives a warning with the remaining rank") {
+    const Analysis sticks = analyse(request(0.015, 100, {.exponents = true}));
     REQUIRE(sticks.stick_count > 0);
     const auto* two = only<warning::RankLost>(sticks.warnings);
     REQUIRE(two);
     CHECK(two->rank == 2);
     Parameters p = table1(0.022, Damping::closed_form);
     p.R_plus = 0;
-    // The second impact, at the wall with R = 0, finds it receding: nothing sticks.
-    const Analysis soft = analyse(of(p, 47, {.exponents = true}));
+    // At the second impact the wall with R = 0 moves away from the ball: no sticking follows.
+    const Analysis soft = analyse(request(p, 47, {.exponents = true}));
     REQUIRE(soft.stick_count == 0);
     const auto* three = only<warning::RankLost>(soft.warnings);
     REQUIRE(three);
     CHECK(three->rank == 3);
 }
 
-TEST_CASE("transfer matrices and sections cut to the last impacts have a warning") {
-    AnalysisRequest w = of(0.022, 500, {.matrices = true, .section = true});
+TEST_CASE("transfer matrices and sections cut to the last impacts give a warning") {
+    AnalysisRequest w = request(0.022, 500, {.matrices = true, .section = true});
     const Analysis whole = analyse(w);
     CHECK(whole.warnings.empty());
     w.most_points = 5;
@@ -172,21 +174,23 @@ TEST_CASE("transfer matrices and sections cut to the last impacts have a warning
     CHECK(a.sections->tau.back() == whole.sections->tau.back());
 }
 
-TEST_CASE("when time is up, the moduli of the first impacts are missing") {
-    const AnalysisRequest w = of(0.008, 1709, {.moduli = true});
+TEST_CASE("after the time limit the moduli of the first impacts are missing") {
+    const AnalysisRequest w = request(0.008, 1709, {.moduli = true});
     const Analysis whole = analyse(w);
-    REQUIRE(whole.moduli->tau.size() > 256);
-    int looks = 0;
-    const Analysis a = analyse(w, {.late = [&] { return ++looks > 1; }});
+    // Moduli are computed in blocks, from the last impact; `late` is polled before each.
+    constexpr std::size_t block = 256;
+    REQUIRE(whole.moduli->tau.size() > block);
+    int polls = 0;
+    const Analysis a = analyse(w, {.late = [&] { return ++polls > 1; }});
     const auto* warning = only<warning::ModuliCut>(a.warnings);
     REQUIRE(warning);
-    CHECK(warning->kept == 256);
-    CHECK(a.moduli->T.size() == 256);
+    CHECK(warning->kept == block);
+    CHECK(a.moduli->T.size() == block);
     CHECK(a.moduli->tau.back() == whole.moduli->tau.back());
 }
 
-TEST_CASE("stretches cut to the last ones have a warning with their full number") {
-    AnalysisRequest w = of(0.022, 1709, {.regime = true});
+TEST_CASE("stretches cut to the last ones give a warning with their full number") {
+    AnalysisRequest w = request(0.022, 1709, {.regime = true});
     const std::size_t seen = analyse(w).regime->stretches.size();
     w.most_points = 2;
     const Analysis a = analyse(w);
@@ -197,20 +201,20 @@ TEST_CASE("stretches cut to the last ones have a warning with their full number"
     CHECK(a.regime->stretches.size() == 2);
 }
 
-TEST_CASE("an interrupted search for an orbit has a warning") {
+TEST_CASE("an interrupted search for an orbit gives a warning") {
     long polls = 0;
-    analyse(of(0.015, 1709, {}), {.run = [&] { return ++polls, false; }});
+    analyse(request(0.015, 1709, {}), {.run = [&] { return ++polls, false; }});
     const long during_run = polls;
     polls = 0;
-    const Analysis a =
-        analyse(of(0.015, 1709, {.regime = true}), {.run = [&] { return ++polls > during_run; }});
+    const Analysis a = analyse(
+        request(0.015, 1709, {.regime = true}), {.run = [&] { return ++polls > during_run; }});
     CHECK(a.outcome.reason == End::tau_end);
     CHECK(only<warning::OrbitSearchStopped>(a.warnings));
 }
 
 TEST_CASE("a captured chaotic transient is reported with lambda1 before and after") {
     const Analysis a = analyse(
-        of(captured_transient().parameters, 20000, {.regime = true, .before_capture = true}));
+        request(captured_transient().parameters, 20000, {.regime = true, .before_capture = true}));
     const auto* warning = only<warning::CapturedTransient>(a.warnings);
     REQUIRE(warning);
     CHECK(warning->before == doctest::Approx(0.11).epsilon(0.2));
@@ -221,22 +225,22 @@ TEST_CASE("a captured chaotic transient is reported with lambda1 before and afte
 TEST_CASE("walls with different R have no manifold") {
     Parameters p = table1(0.022, Damping::closed_form);
     p.R_minus = 0.5;
-    const Analysis a = analyse(of(p, 100, {.manifold = true}));
+    const Analysis a = analyse(request(p, 100, {.manifold = true}));
     CHECK(only<warning::NoManifold>(a.warnings));
     CHECK_FALSE(a.manifold->manifold);
     CHECK_FALSE(a.manifold->points.empty());
 }
 
 TEST_CASE(
-    "a distance that leaves the linear theory early has no slope, with the time in a warning") {
-    AnalysisRequest w = of(0.022, 500, {});
-    w.perturbation = State{0, 1e-3, 0, 0};
+    "a distance that leaves the linear theory early has no slope, and a warning gives the time") {
+    AnalysisRequest w = request(0.022, 500, {});
+    w.perturbation = State{.x = 1e-3};
     const Analysis a = analyse(w);
     const auto* warning = only<warning::NoDistanceSlope>(a.warnings);
     REQUIRE(warning);
     CHECK(warning->linear_until < 500);
     CHECK(warning->impacts < fewest_linear_impacts);
-    w.perturbation = State{0, 1e-9, 0, 0};
+    w.perturbation = State{.x = 1e-9};
     CHECK_FALSE(only<warning::NoDistanceSlope>(analyse(w).warnings));
 }
 
@@ -244,9 +248,9 @@ TEST_CASE("a perturbed run that ends before its reference is reported with time 
     // The run that is slightly ahead reaches ten impacts first.
     int cut = 0;
     for (const double y : {1e-9, -1e-9}) {
-        AnalysisRequest w = of(0.015, 500, {});
+        AnalysisRequest w = request(0.015, 500, {});
         w.max_impacts = 10;
-        w.perturbation = State{0, 0, 0, y};
+        w.perturbation = State{.y = y};
         const Analysis a = analyse(w);
         const auto* warning = only<warning::PerturbedRunCut>(a.warnings);
         CHECK((warning != nullptr) == (a.perturbation->outcome.tau < a.outcome.tau));

@@ -50,7 +50,7 @@ TEST_CASE("a section keeps the last points in order of time, at whole cycles too
     CHECK(std::isnan(impacts.sections.impact[0].since));
 }
 
-TEST_CASE("a point stops soon after a stop request") {
+TEST_CASE("a point stops within 10000 impacts after a stop request") {
     const Parameters p = table1(0.022, Damping::closed_form);
     PointOptions options;
     options.cycles = 1e6;
@@ -62,7 +62,8 @@ TEST_CASE("a point stops soon after a stop request") {
 
 namespace {
 
-/// A periodic motion of two contacts per cycle.
+/// A measured periodic motion of two contacts per cycle with the given peak, which serves as the
+/// rms, too.
 Motion motion(const std::string& start, double x_max) {
     Motion m{start, {}, {}};
     m.result.measured = true;
@@ -89,12 +90,13 @@ TEST_CASE("measured motions are ranked by their peak") {
     const auto order = ranked(point);
     REQUIRE(order.size() == 3);
     CHECK(order[0]->start == "c");
-    CHECK(order[1]->start == "a");  // equal peaks keep
+    CHECK(order[1]->start == "a");  // equal peaks keep their order
     CHECK(order[2]->start == "d");
     CHECK(ranked({}).empty());
 }
 
-TEST_CASE("a point depends on its start if one of its motions differs from the worst") {
+TEST_CASE(
+    "a point depends on its start if the orbit or the rms of a motion differs from the worst") {
     SweepPoint point;
     point.motions = {motion("a", 1), motion("b", 1.001)};
     CHECK(depends_on_start(point, true) == false);
@@ -107,7 +109,7 @@ TEST_CASE("a point depends on its start if one of its motions differs from the w
 TEST_CASE("without the default set dependence on the start is known only from a second start") {
     SweepPoint point;
     point.motions = {motion("", 1)};
-    CHECK_FALSE(depends_on_start(point, false));
+    CHECK_FALSE(depends_on_start(point, false).has_value());
     point.second = motion("", 1);
     CHECK(depends_on_start(point, false) == false);
     point.second = motion("", 2);
@@ -116,7 +118,9 @@ TEST_CASE("without the default set dependence on the start is known only from a 
     CHECK(depends_on_start(point, false) == false);
 }
 
-TEST_CASE("a row is summarised by the peaks of its worst and best motions and of each start") {
+TEST_CASE(
+    "a row of points along the reduced axis is summarised by the peaks of its worst and best "
+    "motions and of each start") {
     std::vector<SweepPoint> row(4);
     row[0].motions = {motion("a", 2), motion("b", 5)};
     row[1].motions = {motion("a", 4), motion("b", 3)};
@@ -161,13 +165,16 @@ TEST_CASE("a row without measured motions has no peak and no dependence on the s
 TEST_CASE("a carried state keeps the relative position of the ball in its cavity") {
     const Parameters wide = table1(0.02, Damping::closed_form),
                      narrow = table1(0.01, Damping::closed_form);
-    const State s = carried({0.1, 0.005, 0.2, -0.009}, wide, narrow);
+    const State s = carried({.x_dot = 0.1, .x = 0.005, .y_dot = 0.2, .y = -0.009}, wide, narrow);
     CHECK(s.x == 0.005);
+    // y - x = -0.014 scales with b, to -0.007.
     CHECK(s.y == doctest::Approx(0.005 - 0.007));
     CHECK(std::abs(s.x - s.y) <= narrow.b);
 }
 
-TEST_CASE("the default starts are valid and include untouched if the free motion fits in b") {
+TEST_CASE(
+    "the default starts are valid and include untouched, without impacts, if the "
+    "motion without impacts fits in b") {
     for (const double b : {0.005, 0.5}) {
         const Parameters p = table1(b, Damping::closed_form);
         const auto starts = default_starts(p);
@@ -177,7 +184,7 @@ TEST_CASE("the default starts are valid and include untouched if the free motion
             CHECK(validate(p, s.state).empty());
             untouched = untouched || std::string(s.name) == "untouched";
         }
-        CHECK(untouched == (b > 0.1));
-        CHECK(starts.size() + 2 <= most_starts);
+        CHECK(untouched == (b > 0.1));            // the amplitude without impacts is 0.007 m
+        CHECK(starts.size() + 2 <= most_starts);  // the last states of two neighbours follow
     }
 }
