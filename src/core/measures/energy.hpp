@@ -1,6 +1,7 @@
 // Energy balance (forcing, damper, impacts, stored energy) and amplitudes of the linear oscillator.
 //
-// Energies are per unit of m1, in m^2 (time is dimensionless): E = x'^2/2 + x^2/2 + epsilon y'^2/2.
+// Energies are divided by m1 omega0^2, in m^2 (time is dimensionless): E = x'^2/2 + x^2/2 + epsilon
+// y'^2/2.
 #pragma once
 
 #include <memory>
@@ -21,13 +22,15 @@ public:
     void on_impact(const Impact&) override;
 
     double duration() const { return duration_; }
-    double input() const;   ///< work of the forcing epsilon A sin(theta) on x'
-    double damper() const;  ///< dissipated by the damper, 2 zeta x'
-    /// Dissipated by impacts: (1 - R^2)(x'- - y'-)^2 epsilon/(2 (1 + epsilon)) each.
+    double input() const;   ///< integral of epsilon A sin(theta) x' dtau
+    double damper() const;  ///< integral of 2 zeta x'^2 dtau
+    /// Dissipated by impacts: epsilon (1 - R^2) v^2/(2 (1 + epsilon)) each, with v = x' - y' before
+    /// the impact and R of its wall.
     double impacts() const { return impacts_; }
     double stored() const { return at_end() - at_start(); }
     double at_start() const { return start_; }
     double at_end() const;
+    /// Error of the balance: zero up to rounding.
     double residual() const { return input() - damper() - impacts() - stored(); }
     double rms() const;                    ///< of x, m
     double peak() const { return peak_; }  ///< of |x|, m
@@ -60,20 +63,21 @@ private:
     double energy_of(const Oscillation& o, double y_dot) const;
 };
 
-/// Energy balance of a window and amplitudes of x in it. Energies per unit of m1, in m^2.
+/// Energy balance of a window and amplitudes of x in it. Energies divided by m1 omega0^2, in m^2.
 struct EnergyBalance {
     Interval window;  ///< the part that the run reached
     double input, damper, impacts, stored, residual, at_start, at_end;
-    /// Impacts over all dissipation; empty without dissipation.
+    /// Fraction of the dissipation that is due to impacts; empty without dissipation.
     std::optional<double> share_impacts;
     double rms, peak;  ///< of x, m
 };
 EnergyBalance balance_of(
     const Parameters& parameters, const Energy& energy, const Interval& window);
 
-/// of/to; empty unless `to` is positive.
-std::optional<double> ratio(double of, double to);
+/// Empty unless the denominator is positive.
+std::optional<double> ratio(double numerator, double denominator);
 
+/// Energy E of a state, m^2.
 double energy_of(const Parameters& parameters, const State& state);
 
 /// Amplitudes of the linear oscillator without absorber, with the same forcing and start, over
@@ -87,6 +91,7 @@ Unattached unattached(
     const Parameters& parameters, const State& start, double tau_start, double tau_end);
 /// Only the rms, from tau = 0 on, m: the cheaper part.
 double unattached_rms(const Parameters& parameters, const State& start, double duration);
+/// Unattached::amplitude for these parameters.
 std::optional<double> free_amplitude(const Parameters& parameters);
 
 /// Observer of the times at which the energy of a free decay (G = 0) first falls to given fractions
