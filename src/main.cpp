@@ -107,7 +107,7 @@ int main(int argc, char** argv) {
         "An oscillator with a vibro-impact nonlinear energy sink, simulated exactly.", "vines");
     app.set_version_flag("--version", vines::api::version());
     app.require_subcommand(1);
-    // The subcommands, in the order of --help. Those of cli and http handle signals themselves.
+    // The subcommands, in the order of --help. Those of cli apply ended_by_signals() themselves.
     const std::vector<vines::Command> commands = {
         vines::cli::add_simulate(app),
         vines::cli::add_sweep(app),

@@ -85,7 +85,7 @@ struct SweepOptions {
     bool plot = false;    ///< draw instead of writing the points
     bool resume = false;  ///< complete the output file instead of refusing to overwrite it
     std::string shard;    ///< syntax of read_shard()
-    int shards = 0;       ///< N for "auto", instead of SLURM_ARRAY_TASK_COUNT; 0: from there
+    int shards = 0;       ///< N for "auto"; 0: SLURM_ARRAY_TASK_COUNT
     int threads = 0;      ///< 0: one per core
 };
 

@@ -113,8 +113,7 @@ std::string summary(const std::vector<Finding>& findings) {
         text += fmt::format("- {}: {}\n", text_of(kind.second, kind.first), n);
     return fmt::format(
         "{}\nThe paper's two dampings contradict each other. Statements that hold, at least in "
-        "part, "
-        "with the closed form alone: {}. With eq. (1) alone: {}.\n\n",
+        "part, with the closed form alone: {}. With eq. (1) alone: {}.\n\n",
         text,
         places_of(findings, ClaimVerdict::by_closed_form, ClaimVerdict::partly_by_closed_form),
         places_of(

@@ -13,6 +13,7 @@ import {program, startService} from "../service.mjs";
 import {commands, identifications, requests} from "./requests.mjs";
 
 const nameOf = (name) => name.replace(/[^A-Za-z0-9.]+/g, "_").slice(0, 100);
+/** The text without version, commit and hashes. */
 const masked = (text) =>
   text.replace(/\b0\.\d+\.\d+\b/g, "VERSION").replace(/"(commit|sha256)":"[^"]*"/g, '"$1":"BUILD"');
 

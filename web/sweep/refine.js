@@ -72,7 +72,7 @@ export class Refiner {
     else this.job.start(existing ?? this.makeRefined(counts)); // start() ignores a running request
   }
 
-  /** A sweep of the visible range. A third axis is fixed at the slice shown; a reduced axis stays. */
+  /** Sweep of the visible range. A third axis is fixed at the slice shown, a reduced axis stays. */
   makeRefined(counts) {
     const {data, viewports, choice} = this.view;
     const request = data.request.axes.map((given) => {

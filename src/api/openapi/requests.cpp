@@ -22,6 +22,7 @@ Json value_schema(const Field& f) {
         case FieldType::object:
             return f.fields.empty() ? reference("SweepBase") : request_of(f.fields);
         case FieldType::objects:
+            // All lists of objects are of these two kinds.
             Json objects = list_of(reference(f.name == "axes" ? "Axis" : "Start"));
             if (f.choices.empty()) return objects;
             return {{"anyOf", {std::move(objects), one_of(f.choices)}}};

@@ -38,18 +38,20 @@ public:
 private:
     const Parameters parameters_;
     const double tau_start_, tau_end_;
-    /// An equation of motion (free or sticking) with its integration rules.
+    /// Free or sticking motion with its integration rules.
     struct Law {
         explicit Law(std::shared_ptr<const Flow> flow);
 
         std::shared_ptr<const Flow> flow;
         std::shared_ptr<const Quadrature> quadrature;
-        /// Replaces the quadrature once a window is long.
+        /// Used instead of the quadrature once the window is longer than settled(): cheaper.
         std::optional<Antiderivative> antiderivative;
     };
     const Law free_;
     std::optional<Law> stuck_;  // set at the first sticking phase
-    Integrals sum_;             // minus F at the end, if in closed form
+    /// Integrals so far. While the closed form F is used, F at the end of the last stretch is
+    /// missing; integrals() adds it.
+    Integrals sum_;
     struct Last {
         Oscillation begin;
         double duration, y_dot;

@@ -122,7 +122,7 @@ TEST_CASE("the acceleration alone suffices: its pulses show the impacts") {
 }
 
 TEST_CASE("a motion that reaches no wall has no impacts despite its noise") {
-    // The walls are out of reach.
+    // b = 0.5 m is out of reach.
     const Experiment m = measured(settled_motion(0.5, 0.85, 0.85, 12), {});
     CHECK(m.impacts.empty());
     CHECK_THROWS_AS(identified(m), TooFewImpacts);
