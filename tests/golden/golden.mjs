@@ -140,10 +140,8 @@ async function compare(before, after) {
     let at = 0;
     while (one[at] === other[at]) ++at;
     const around = (text) => JSON.stringify(text.slice(Math.max(0, at - 60), at + 100));
-    console.log(
-      `${name}: differs by ${difference}, at character ${at}\n` +
-        `  - ${around(one)}\n  + ${around(other)}`,
-    );
+    const [was, is] = [one, other].map(around);
+    console.log(`${name}: differs by ${difference}, at character ${at}\n  - ${was}\n  + ${is}`);
   }
   console.log(`${names.length - notIdentical} of ${names.length} answers are equal, byte for byte`);
   if (equalAsJson > 0) console.log(`${equalAsJson} more are equal as JSON`);
