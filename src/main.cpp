@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <functional>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -25,7 +26,7 @@ const char* const examples =
     "vines identify record.csv -p preset=fig20 | jq .verdict\n"
     "vines serve --port 8080";
 
-/// "vines" and the selected subcommand, for the message about a wrong flag.
+/// "vines" and the selected subcommand, for usage errors.
 std::string name_of_selected(const CLI::App& app) {
     const auto selected = app.get_subcommands();
     return "vines" + (selected.empty() ? "" : " " + selected[0]->get_name());
@@ -39,9 +40,10 @@ std::vector<std::string> names_of(const std::vector<vines::Command>& commands) {
 
 /// Error message for the first argument, which must be a subcommand or a flag of the program; empty
 /// if it is valid.
-std::string fault_of_first_argument(
+std::string first_argument_error(
     const CLI::App& app, const std::vector<std::string>& names, const std::string& first) {
-    if (first.empty()) return fmt::format("a subcommand is missing: {}", fmt::join(names, ", "));
+    if (first.empty())
+        return fmt::format("no subcommand given; expected one of: {}", fmt::join(names, ", "));
     if (first[0] == '-') return app.get_option_no_throw(first) ? "" : "unknown flag " + first;
     if (std::find(names.begin(), names.end(), first) != names.end()) return "";
     const std::string nearest = vines::api::nearest_name(names, first);
@@ -51,10 +53,9 @@ std::string fault_of_first_argument(
 
 /// During its lifetime the environment variables of all other subcommands are ignored: they can be
 /// meant for another run and be invalid here.
-class OtherVariablesIgnored {
+class ScopedVariableFilter {
 public:
-    OtherVariablesIgnored(
-        const std::vector<vines::Command>& commands, const std::string& selected) {
+    ScopedVariableFilter(const std::vector<vines::Command>& commands, const std::string& selected) {
         for (const vines::Command& command : commands)
             if (command.app->get_name() != selected)
                 for (CLI::Option* option : command.app->get_options()) {
@@ -62,24 +63,24 @@ public:
                     option->envname("");
                 }
     }
-    ~OtherVariablesIgnored() {
+    ~ScopedVariableFilter() {
         for (const auto& [option, name] : variables_) option->envname(name);
     }
-    OtherVariablesIgnored(const OtherVariablesIgnored&) = delete;
-    OtherVariablesIgnored& operator=(const OtherVariablesIgnored&) = delete;
+    ScopedVariableFilter(const ScopedVariableFilter&) = delete;
+    ScopedVariableFilter& operator=(const ScopedVariableFilter&) = delete;
 
 private:
     std::vector<std::pair<CLI::Option*, std::string>> variables_;
 };
 
 /// Reports a usage error. Returns the exit code 2.
-int refuse(const std::string& fault, const std::string& command) {
-    vines::print_message(fault + "; see " + command + " --help");
+int usage_error(const std::string& message, const std::string& command) {
+    vines::print_message(message + "; see " + command + " --help");
     return 2;
 }
 
 /// Runs a command. Maps a closed pipe and exceptions to exit codes.
-int checked(const std::function<int()>& run) {
+int run_with_exit_code(const std::function<int()>& run) {
     try {
         return run();
     } catch (const vines::BrokenPipe&) {
@@ -106,7 +107,7 @@ int main(int argc, char** argv) {
         "An oscillator with a vibro-impact nonlinear energy sink, simulated exactly.", "vines");
     app.set_version_flag("--version", vines::api::version());
     app.require_subcommand(1);
-    // Order of --help.
+    // The subcommands, in the order of --help. Those of cli apply ended_by_signals() themselves.
     const std::vector<vines::Command> commands = {
         vines::cli::add_simulate(app),
         vines::cli::add_sweep(app),
@@ -126,17 +127,19 @@ int main(int argc, char** argv) {
         vines::cli::add_manual(app)};
     vines::add_examples(app, examples);  // after the subcommands, which would inherit the examples
     const std::string first = argc > 1 ? argv[1] : "";
-    const std::string fault = fault_of_first_argument(app, names_of(commands), first);
-    if (!fault.empty()) return refuse(fault, "vines");
+    const std::string error = first_argument_error(app, names_of(commands), first);
+    if (!error.empty()) return usage_error(error, "vines");
     try {
-        const OtherVariablesIgnored ignored(commands, first);
+        // The variables are restored before --help is printed, which lists all of them.
+        const ScopedVariableFilter filter(commands, first);
         app.parse(argc, argv);
     } catch (const CLI::Success& request) {
-        return checked([&] { return print_text(app, request); });
+        return run_with_exit_code([&] { return print_text(app, request); });
     } catch (const CLI::ParseError& e) {
-        return refuse(e.what(), name_of_selected(app));
+        return usage_error(e.what(), name_of_selected(app));
     }
-    return checked(
+    // One subcommand has been parsed: require_subcommand(1).
+    return run_with_exit_code(
         std::find_if(commands.begin(), commands.end(), [](const vines::Command& command) {
             return command.app->parsed();
         })->run);

@@ -4,15 +4,16 @@ import {spawn} from "node:child_process";
 export const program =
   process.env.VINES ?? new URL("../build/release/vines", import.meta.url).pathname;
 
-// Stops the services of tests that failed before they could do so.
+// Kills services that a failed test did not stop.
 const started = new Set();
 process.once("exit", () => {
   for (const child of started) child.kill("SIGKILL");
 });
 
 /**
- * Starts `vines serve` on a free port; resolves to {url, pid, stop}, where stop resolves to the
- * exit code.
+ * Starts `vines serve`. freePort: on a free port; otherwise the port is in `flags` or
+ * `environment`. Resolves to {url, pid, stop} once the service listens; stop() resolves to the exit
+ * code. Rejects if the service ends before it listens.
  */
 export async function startService(flags = [], environment = {}, freePort = true) {
   const child = spawn(program, ["serve", ...(freePort ? ["--port", "0"] : []), ...flags], {
@@ -30,6 +31,7 @@ export async function startService(flags = [], environment = {}, freePort = true
     });
     ended.then((code) => reject(new Error(`${program} ended with ${code}: ${text}`)));
   });
+  // A running service does not keep the test process alive; stop() waits for its end.
   child.unref();
   child.stdout.unref();
   started.add(child);

@@ -31,7 +31,7 @@ struct Shard {
     std::size_t count = 1;
 };
 
-/// Non-negative integer, or -1.
+/// Parses a non-negative decimal integer; -1 for any other text.
 long number(const std::string& text) {
     char* end = nullptr;
     errno = 0;
@@ -39,7 +39,8 @@ long number(const std::string& text) {
     return text.empty() || *end || errno || value < 0 ? -1 : value;
 }
 
-Shard checked(const std::string& index, const std::string& count) {
+/// Throws Problem 422 unless 0 <= index < count.
+Shard make_shard(const std::string& index, const std::string& count) {
     const long i = number(index), n = number(count);
     if (i < 0 || n < 1 || i >= n)
         throw api::Problem(
@@ -56,12 +57,12 @@ std::string variable(const char* name) {
 Shard shard_of_environment(const std::string& shards) {
     if (const std::string id = variable("SLURM_ARRAY_TASK_ID"); !id.empty()) {
         const long first = std::strtol(variable("SLURM_ARRAY_TASK_MIN").c_str(), nullptr, 10);
-        return checked(
+        return make_shard(
             fmt::format("{}", std::strtol(id.c_str(), nullptr, 10) - first),
             shards.empty() ? variable("SLURM_ARRAY_TASK_COUNT") : shards);
     }
     if (const std::string index = variable("JOB_COMPLETION_INDEX"); !index.empty())
-        return checked(index, shards);
+        return make_shard(index, shards);
     throw api::Problem(
         422,
         "--shard auto needs SLURM_ARRAY_TASK_ID and SLURM_ARRAY_TASK_COUNT, or "
@@ -75,7 +76,7 @@ Shard read_shard(const std::string& text, int shards) {
     if (text.empty()) return {};
     if (text == "auto") return shard_of_environment(shards > 0 ? fmt::format("{}", shards) : "");
     const std::size_t slash = std::min(text.find('/'), text.size());
-    return checked(text.substr(0, slash), slash < text.size() ? text.substr(slash + 1) : "");
+    return make_shard(text.substr(0, slash), slash < text.size() ? text.substr(slash + 1) : "");
 }
 
 struct SweepOptions {
@@ -84,11 +85,11 @@ struct SweepOptions {
     bool plot = false;    ///< draw instead of writing the points
     bool resume = false;  ///< complete the output file instead of refusing to overwrite it
     std::string shard;    ///< syntax of read_shard()
-    int shards = 0;       ///< N for "auto" if the environment has only i
+    int shards = 0;       ///< N for "auto"; 0: SLURM_ARRAY_TASK_COUNT
     int threads = 0;      ///< 0: one per core
 };
 
-/// The request, limited to the points of the shard.
+/// The request, limited to the shard's lines of output.
 api::SweepRequest read_request(const SweepOptions& o) {
     api::SweepRequest request = api::read_sweep_request(read_sweep(o.files, o.fields), max_points);
     const Shard shard = read_shard(o.shard, o.shards);
@@ -99,21 +100,23 @@ api::SweepRequest read_request(const SweepOptions& o) {
 /// Returns whether the output needs all points before it can be written.
 bool needs_all_points(const SweepOptions& o) { return o.plot || o.fields.format == "csv"; }
 
-/// Throws Problem 422 for options that do not fit together, before anything is computed.
+/// Throws Problem 422 for incompatible options, before anything is computed.
 void check(const SweepOptions& o, const api::SweepRequest& request) {
     if (needs_all_points(o) && o.resume)
         throw api::Problem(422, "--resume needs --format ndjson and excludes --plot");
-    std::size_t along = 0;
+    // Axes with several values, except the one that is reduced (if any).
+    std::size_t varying_axes = 0;
     for (std::size_t a = 0; a < request.axes.size(); ++a)
-        along += a != request.plan.grid.reduced && request.axes[a].values.size() > 1;
+        varying_axes += a != request.plan.grid.reduced && request.axes[a].values.size() > 1;
     const bool is_point = request.plan.grid.reduced && request.axes.size() == 1;
-    if (o.plot && (along > 1 || is_point))
-        throw api::Problem(422, "--plot needs a sweep along one axis; the page draws maps of two");
+    if (o.plot && (varying_axes > 1 || is_point))
+        throw api::Problem(
+            422, "--plot needs a sweep along one axis; the web page draws maps of two");
 }
 
 int sweep_all_points(const SweepRun& run, const SweepOptions& o) {
-    return sweep_collected(run, [&o](const api::Json& start, const auto& points) {
-        if (o.plot) draw(plots_of(start, points), o.files.output);
+    return sweep_collected(run, [&o](const api::Json& header, const auto& points) {
+        if (o.plot) draw(plots_of(header, points), o.files.output);
         else write_all(o.files.output, api::csv_text(api::sweep_table(points)));
     });
 }
@@ -134,7 +137,7 @@ int sweep(const SweepOptions& o) {
 Command add_sweep(CLI::App& app) {
     const auto options = std::make_shared<SweepOptions>();
     CLI::App* command =
-        app.add_subcommand("sweep", "runs over one to three parameters: POST /v1/sweep");
+        app.add_subcommand("sweep", "a grid of runs over one to three parameters: POST /v1/sweep");
     add_files(*command, options->files);
     add_request_fields(*command, options->fields);
     add_axes(*command, options->fields);

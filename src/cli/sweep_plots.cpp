@@ -40,7 +40,7 @@ Abscissa abscissa_of(const Json& start, const std::vector<Json>& points) {
         if (!axis.contains("values") || axis["values"].size() < 2) continue;
         if (found)
             throw std::runtime_error(
-                "only a sweep along one axis can be drawn here; the page draws maps of two");
+                "only a sweep along one axis can be drawn here; the web page draws maps of two");
         found = parameter;
     }
     const std::string parameter = found ? *found : first.value_or("");

@@ -1,4 +1,4 @@
-// Standard streams: their state at the start, output on stdout, messages on stderr.
+// Standard streams: preparation, output on stdout, messages on stderr.
 #pragma once
 
 #include <fcntl.h>
@@ -15,9 +15,10 @@
 
 namespace vines {
 
-/// A failing write returns an error instead of ending the process. A standard stream that was
-/// closed before the start is opened so that it cannot be used: otherwise the first file opened
-/// would get its number, and messages for stderr would end up in that file. Call it first.
+/// Ignores SIGPIPE and SIGXFSZ, so that a failing write returns an error. Opens a standard stream
+/// that was closed before the start on /dev/null in the wrong direction, so that its use fails:
+/// otherwise the first file opened would get its number, and messages for stderr would end up in
+/// that file. Call before any file is opened.
 inline void prepare_streams() {
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);  // raised at the limit of `ulimit -f`
@@ -33,7 +34,7 @@ inline int write_fully(int descriptor, std::string_view text) {
         const ssize_t n = ::write(descriptor, text.data(), text.size());
         if (n >= 0) {
             text.remove_prefix(static_cast<std::size_t>(n));
-        } else if (errno == EAGAIN) {  // set non-blocking by another process
+        } else if (errno == EAGAIN) {  // made non-blocking by a process that shares the stream
             pollfd writable{descriptor, POLLOUT, 0};
             ::poll(&writable, 1, -1);
         } else if (errno != EINTR) {
@@ -44,10 +45,10 @@ inline int write_fully(int descriptor, std::string_view text) {
 }
 
 /// Thrown when the reader of the output has closed its end of the pipe. The command then ends
-/// without a message.
+/// without a message, because it is no std::exception, whose text is printed.
 struct BrokenPipe {};
 
-/// Exit code after that, the same as for a program ended by SIGPIPE: 128 + 13.
+/// Exit code after BrokenPipe, the same as for a program ended by SIGPIPE: 128 + 13.
 inline constexpr int broken_pipe_code = 141;
 
 /// Writes the whole text to stdout. Throws BrokenPipe if the pipe is closed, std::runtime_error
@@ -59,8 +60,8 @@ inline void print(std::string_view text) {
         throw std::runtime_error(fmt::format("cannot write to stdout: {}", std::strerror(failed)));
 }
 
-/// Writes "vines: MESSAGE" to stderr. Ignores errors: a terminal that was closed does not end the
-/// work.
+/// Writes "vines: MESSAGE" to stderr. Ignores errors: a closed terminal does not stop the
+/// computation.
 inline void print_message(std::string_view message) {
     std::fputs(fmt::format("vines: {}\n", message).c_str(), stderr);
 }

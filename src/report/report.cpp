@@ -24,29 +24,32 @@ constexpr int picture_width = 860;  // px
 const char* const introduction =
     "# Li, Lamarque, Seguy, Berlioz (2018), recomputed\n\n"
     "The figures, tables and statements of *Nonlinear Dynamics* 91, 2319-2330, each compared with "
-    "the result computed here. A verdict follows from a number and from the band that contains it "
-    "if the statement holds; the last column gives the reason for the band. Where the paper uses "
-    "only a word (almost, a little, close to, typical, a lot), the limits interpret it: a tenth, "
-    "nine in ten, four times.\n\n";
+    "the result computed here. Each statement is reduced to one number and an acceptance band: it "
+    "is reproduced if the number lies in the band. The last column gives the reason for the band. "
+    "Where the paper uses only a word (almost, a little, close to, typical, a lot), the limit is "
+    "an interpretation: a tenth, nine in ten, four times.\n\n";
 
 const char* const glossary =
-    "Numbers are computed with the damping of the closed form (8) to (11), zeta = epsilon lambda, "
-    "and also with that of eq. (1), half as much, where a row says so. Section 5 uses eq. (1) "
-    "only. The rows that are not reproduced because lambda2, lambda3, lambda4 or the sum is not "
-    "positive share one cause. Of the reproduced rows, Figs. 2, 6 and 7 are identities, Table 1 "
-    "and Table 4's lambda are divisions, and Fig. 11's negative exponents follow from its type. "
-    "*Alone*: with the other damping a row does not hold, or only in part.\n\n"
+    "Numbers are computed with the damping of the closed form (8) to (11), zeta = epsilon lambda; "
+    "rows that mention eq. (1) also use its damping, zeta = epsilon lambda/2. Section 5 uses "
+    "eq. (1) only. The rows that are not reproduced because lambda2, lambda3, lambda4 or the sum "
+    "is not positive share one cause: the sum of the exponents is negative, and only one is "
+    "positive in a chaotic regime. Of the reproduced rows, Figs. 2, 6 and 7 are identities, Table "
+    "1 and Table 4's lambda are divisions, and Fig. 11's negative exponents follow from its type. "
+    "*Alone*: the statement holds with this damping, but not, or only in part, with the other. "
+    "*CHANGED*: the verdict differs from the recorded one. *Computed record*: a simulated record "
+    "in place of one of the paper's, which are not published.\n\n"
     "Exponents: *qr*, by a QR factorisation at each impact, which is insensitive to rounding; "
     "*(33)*, from the eigenvalues of the product of transfer matrices, computed accurately; "
     "*raw_product*, the same with the product in double precision and without scaling, presumably "
     "the paper's method. *Contact*: an impact, or a whole chatter that ends in sticking. A "
     "*sticking phase* makes two exponents minus infinity. *z*: contacts per cycle. "
     "*Synchronised*: contacts alternate walls at intervals within 15 % of half a forcing cycle. "
-    "*Types*: III, IV and V are motions on a stable periodic orbit, the others are not; VI has "
-    "more than two contacts per cycle, II has synchronised stretches, I has none. *sd*: standard "
-    "deviation. *T*: the matrix (30) in Figs. 8 and 9, elsewhere the length of a window. "
-    "Eigenvalues and exponents are sorted by size, which the paper does not state for its "
-    "own.\n\n";
+    "*Types*: I is irregular without synchronised stretches, II is irregular with synchronised "
+    "stretches; III, IV and V are motions on a stable periodic orbit; VI is irregular with more "
+    "than two contacts per cycle. *sd*: standard deviation. *T*: the matrix (30) in Figs. 8 and "
+    "9, elsewhere the length of a window. Eigenvalues are in descending order of modulus, "
+    "exponents in descending order; the paper does not state its order.\n\n";
 
 std::string row(const std::vector<std::string>& cells) {
     return fmt::format("| {} |\n", fmt::join(cells, " | "));
@@ -91,7 +94,7 @@ std::string shown_number(const Finding& f) {
     return shown(f.number) + (f.by_equation ? "; eq. (1): " + shown(*f.by_equation) : "");
 }
 
-/// Places in the paper with one of two verdicts, each once, in order.
+/// Places in the paper with verdict `a` or `b`, each once, in order.
 std::string places_of(const std::vector<Finding>& findings, ClaimVerdict a, ClaimVerdict b) {
     std::vector<std::string> places;
     for (const Finding& f : findings)
@@ -109,8 +112,8 @@ std::string summary(const std::vector<Finding>& findings) {
     for (const auto& [kind, n] : counts)
         text += fmt::format("- {}: {}\n", text_of(kind.second, kind.first), n);
     return fmt::format(
-        "{}\nThe paper's two dampings contradict each other. Places that hold, or hold in part, "
-        "with the closed form alone: {}. With eq. (1) alone: {}.\n\n",
+        "{}\nThe paper's two dampings contradict each other. Statements that hold, at least in "
+        "part, with the closed form alone: {}. With eq. (1) alone: {}.\n\n",
         text,
         places_of(findings, ClaimVerdict::by_closed_form, ClaimVerdict::partly_by_closed_form),
         places_of(

@@ -228,7 +228,7 @@ test("a plot written to a file has no terminal colours", async () => {
 test("a request that cannot be drawn is refused before anything is computed", async () => {
   const map = ["sweep", "-a", "b=0.01:0.03:900", "-a", "R=0.5:0.9:900", "-p", "cycles=1000"];
   for (const [args, input, code, message] of [
-    [[...map, "--plot"], "", 2, /a sweep along one axis; the page draws maps/],
+    [[...map, "--plot"], "", 2, /a sweep along one axis; the web page draws maps/],
     [[...sweep, "--plot", "--resume"], "", 2, /--resume needs --format ndjson/],
     [
       [...sweep, "--plot", "--format", "csv"],

@@ -12,7 +12,7 @@ const at = (name) => join(folder, name);
 
 test("a usage error gives one line with the fault and the help to read, and exit code 2", async () => {
   for (const [args, message] of [
-    [[], /a subcommand is missing: simulate, sweep, .*; see vines --help/],
+    [[], /no subcommand given; expected one of: simulate, sweep, .*; see vines --help/],
     [["swep"], /unknown subcommand swep; did you mean sweep\?; see vines --help/],
     [["Simulate"], /unknown subcommand Simulate; did you mean simulate\?/],
     [["foo"], /unknown subcommand foo; see vines --help/],

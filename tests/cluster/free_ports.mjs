@@ -1,7 +1,9 @@
-// free_ports.mjs COUNT: prints COUNT free ports of 127.0.0.1 in one line.
+// free_ports.mjs COUNT: prints COUNT ports that were free on 127.0.0.1, on one line. Another
+// process can take them before they are used.
 import {once} from "node:events";
 import {createServer} from "node:net";
 
+// All are open at the same time, so that the ports differ.
 const servers = Array.from({length: Number(process.argv[2])}, () =>
   createServer().listen(0, "127.0.0.1"),
 );

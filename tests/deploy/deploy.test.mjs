@@ -38,7 +38,10 @@ const kubernetes = () =>
     .filter(([name]) => name.startsWith("kubernetes-"))
     .flatMap(([, text]) => parseAllDocuments(text).map((document) => document.toJS()));
 
-/** A copy of the value that records reads, and a function that lists the paths not read so far. */
+/**
+ * Returns [proxy, unread]: a copy of the value that records which keys are read, and a function
+ * that lists the paths not read so far.
+ */
 function observed(value, path = "") {
   if (value === null || typeof value !== "object") return [value, () => []];
   const seen = new Set();
@@ -71,7 +74,7 @@ test("every Kubernetes resource follows the published schema of its kind", () =>
   for (const resource of resources) validate(resource);
 });
 
-test("a resource with a wrong type, an unknown key or a missing one is refused", () => {
+test("a resource with an invalid value, an unknown key or a missing one is rejected", () => {
   const faults = {
     type: (spec) => {
       spec.template.spec.terminationGracePeriodSeconds = "40";
@@ -109,7 +112,10 @@ async function known() {
   return names;
 }
 
-/** Command lines of the program in a file, as [match, subcommand, arguments]. */
+/**
+ * Command lines of the program in a file, as [match, subcommand, arguments]: shell commands, lists
+ * of arguments, and the `args` of a Kubernetes container.
+ */
 function commands(text) {
   const shell = text.replace(/\\\n/g, " ");
   const written = shell.matchAll(
@@ -119,8 +125,8 @@ function commands(text) {
   return [...written, ...listed];
 }
 
-/** Lines with flags of other programs. */
-const others = /sbatch|parallel|kubectl|docker|cmake|systemctl/i;
+/** Lines that call another program; their flags are not checked, except in commands(). */
+const otherPrograms = /sbatch|parallel|kubectl|docker|cmake|systemctl/i;
 
 test("every flag and variable in a file belongs to the program or is defined in the file", async () => {
   const names = await known();
@@ -132,7 +138,7 @@ test("every flag and variable in a file belongs to the program or is defined in 
     for (const variable of text.match(/\bVINES_\w+/g) ?? [])
       assert.ok(all.has(variable), `${variable} of ${file}`);
     if (file !== "Dockerfile")
-      for (const line of text.split("\n").filter((text) => !others.test(text)))
+      for (const line of text.split("\n").filter((text) => !otherPrograms.test(text)))
         for (const flag of line.match(/--[a-z][a-z-]*/g) ?? [])
           assert.ok(all.has(flag), `${flag} of ${file}`);
     for (const [, subcommand, rest] of commands(text))
@@ -144,22 +150,24 @@ test("every flag and variable in a file belongs to the program or is defined in 
   assert.ok(flags >= 10, `only ${flags} flags were found`);
 });
 
-test("each way to stop gives the service enough time to end", async () => {
+test("every stop timeout exceeds the drain time and the time of the shutdown", async () => {
+  // The service ends finish_time + final_time after the drain; the source defines them in this
+  // order. The unit states its longest drain in a comment.
   const source = await readFile(join(root, "src/http/serve.cpp"), "utf8");
-  const [work, last] = [...source.matchAll(/_time = std::chrono::seconds\((\d+)\)/g)];
-  const end = Number(work[1]) + Number(last[1]) + 0.3;
-  const inTime = (what, grace, drain) =>
+  const [finish, final] = [...source.matchAll(/_time = std::chrono::seconds\((\d+)\)/g)];
+  const end = Number(finish[1]) + Number(final[1]) + 0.3; // 0.3 s to end
+  const checkGrace = (what, grace, drain) =>
     assert.ok(grace > drain + end, `${what}: ${grace} s for ${drain} + ${end} s`);
   for (const [name, service] of Object.entries(compose.services))
     if (service.image === "vines") {
       const {stop_grace_period, environment} = service;
-      inTime(name, Number.parseInt(stop_grace_period, 10), Number(environment.VINES_DRAIN));
+      checkGrace(name, Number.parseInt(stop_grace_period, 10), Number(environment.VINES_DRAIN));
     }
   const {spec} = kubernetes().find(({kind}) => kind === "Deployment").spec.template;
   const drain = spec.containers[0].env.find(({name}) => name === "VINES_DRAIN").value;
-  inTime("Deployment", spec.terminationGracePeriodSeconds, Number(drain));
+  checkGrace("Deployment", spec.terminationGracePeriodSeconds, Number(drain));
   const unit = texts["vines.service"];
-  inTime(
+  checkGrace(
     "unit",
     Number(unit.match(/TimeoutStopSec=(\d+)/)[1]),
     Number(unit.match(/up to (\d+) s/)[1]),
@@ -176,14 +184,14 @@ test("each container of the compose file is locked down and has limits", async (
     assert.equal(service.restart, "unless-stopped", name);
     for (const bound of ["cpus", "mem_limit", "stop_grace_period"])
       assert.ok(service[bound], `${bound} of ${name}`);
-    assert.ok(service.build || service.healthcheck, `${name}: the image's own check, or one here`);
+    assert.ok(service.build || service.healthcheck, `${name}: no health check`);
     for (const volume of service.volumes ?? [])
       if (volume.startsWith("./")) await access(join(root, "deploy", volume.split(":")[0]));
   }
   assert.match(texts.Dockerfile, /^HEALTHCHECK /m);
 });
 
-test("only the proxy of the compose file can be reached from outside", () => {
+test("only the proxy is published to other hosts; Prometheus is on loopback only", () => {
   const published = Object.entries(compose.services).filter(([, service]) => service.ports);
   assert.deepEqual(Object.fromEntries(published.map(([name, {ports}]) => [name, ports])), {
     proxy: ["8080:8080"],
@@ -191,7 +199,7 @@ test("only the proxy of the compose file can be reached from outside", () => {
   });
 });
 
-test("the proxy and Prometheus know every replica, and each computes on its own cores", () => {
+test("the proxy and Prometheus know every replica, which has as many threads as CPUs", () => {
   const replicas = Object.entries(compose.services).filter(([, {image}]) => image === "vines");
   const addresses = replicas.map(([name]) => `${name}:8080`);
   assert.deepEqual(Object.values(compose.services.proxy.environment), addresses);
@@ -227,7 +235,7 @@ test("Prometheus accepts its files, and each alert is raised by its cause", asyn
   }
 });
 
-test("every metric in an alert exists in the service", async () => {
+test("every metric in an alert is exported by the service", async () => {
   const service = await startService();
   await (await fetch(`${service.url}/v1/simulate?tau_end=20`)).text();
   const text = await (await fetch(`${service.url}/metrics`)).text();
@@ -239,13 +247,13 @@ test("every metric in an alert exists in the service", async () => {
   for (const name of names) assert.ok(served.has(name), name);
 });
 
-const exposure = 1.5;
+const exposureLimit = 1.5;
 const analyze = spawnSync("systemd-analyze", ["--version"]).error
   ? {skip: "systemd-analyze is missing (Debian's package systemd)"}
   : {};
 
 test(
-  `systemd accepts the unit and rates its exposure below ${exposure} of 10`,
+  `systemd accepts the unit and rates its exposure below ${exposureLimit} of 10`,
   analyze,
   async (t) => {
     const folder = await mkdtemp(join(tmpdir(), "vines-unit-"));
@@ -259,6 +267,6 @@ test(
     });
     const {text} = await run("systemd-analyze", ["security", "--offline=true", unit]);
     const level = Number(text.match(/Overall exposure level .*: ([\d.]+)/)[1]);
-    assert.ok(level < exposure, text);
+    assert.ok(level < exposureLimit, text);
   },
 );

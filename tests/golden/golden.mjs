@@ -1,8 +1,9 @@
 // Records the program's answers, one file per request, to compare two builds:
-//   node tests/golden/golden.mjs record FOLDER     answers of the program VINES
+//   node tests/golden/golden.mjs record FOLDER     of the program in the variable VINES
 //   node tests/golden/golden.mjs compare BEFORE AFTER
-// compare reports answers that are equal byte for byte, those that are equal as JSON, and for the
-// others the difference of their numbers relative to the largest of their list.
+// compare counts answers that are equal byte for byte and those that are equal as JSON. For each of
+// the others it reports the largest |a - b| of two numbers, divided by the largest magnitude in the
+// array of a, or by |a| outside arrays; it then exits with 1.
 // Version, commit and hashes are masked; a sweep's points are sorted, its progress is removed.
 import {spawn} from "node:child_process";
 import {mkdir, mkdtemp, readdir, readFile, rm, stat, writeFile} from "node:fs/promises";
@@ -12,7 +13,8 @@ import {program, startService} from "../service.mjs";
 import {commands, identifications, requests} from "./requests.mjs";
 
 const nameOf = (name) => name.replace(/[^A-Za-z0-9.]+/g, "_").slice(0, 100);
-const withoutVersion = (text) =>
+/** The text without version, commit and hashes. */
+const masked = (text) =>
   text.replace(/\b0\.\d+\.\d+\b/g, "VERSION").replace(/"(commit|sha256)":"[^"]*"/g, '"$1":"BUILD"');
 
 /** The lines of a sweep in the order of their indices. */
@@ -70,22 +72,22 @@ async function record(folder) {
   let count = 0;
   const keep = async (name, text) => {
     ++count;
-    await writeFile(join(folder, nameOf(name)), withoutVersion(text));
+    await writeFile(join(folder, nameOf(name)), masked(text));
   };
   const service = await startService(["--deadline", "600"]);
   const small = await startService(["--answer-limit", "2000000"]);
-  const ask = async (fields) => {
+  const simulate = async (fields) => {
     const body = JSON.stringify(fields);
     return (await fetch(`${service.url}/v1/simulate`, {method: "POST", body})).json();
   };
-  for (const request of [...requests, ...(await identifications(ask))])
+  for (const request of [...requests, ...(await identifications(simulate))])
     await keep(request.name, await answerOf(request.limited ? small.url : service.url, request));
   await Promise.all([service.stop(), small.stop()]);
   for (const command of commands) await keep(command.name, await outcomeOf(command));
   console.log(`${count} answers in ${folder}`);
 }
 
-/** JSON values of an answer: complete, after its status, or by line; empty if there is other text. */
+/** The lines of an answer, parsed where a line begins an object or array. */
 const valuesIn = (text) => {
   const values = [];
   for (const line of text.split("\n"))
@@ -120,31 +122,30 @@ const parsedDifference = (one, other) => {
 async function compare(before, after) {
   const names = [...new Set([...(await readdir(before)), ...(await readdir(after))])].sort();
   const read = (folder, name) => readFile(join(folder, name), "utf8").catch(() => undefined);
-  let different = 0;
-  let same = 0;
+  let notIdentical = 0;
+  let equalAsJson = 0;
   for (const name of names) {
     const [one, other] = await Promise.all([read(before, name), read(after, name)]);
     if (one === other) continue;
-    ++different;
+    ++notIdentical;
     if (one === undefined || other === undefined) {
       console.log(`${name}: only in ${one === undefined ? after : before}`);
       continue;
     }
     const difference = parsedDifference(one, other);
     if (difference === 0) {
-      ++same;
+      ++equalAsJson;
       continue;
     }
     let at = 0;
     while (one[at] === other[at]) ++at;
     const around = (text) => JSON.stringify(text.slice(Math.max(0, at - 60), at + 100));
-    console.log(
-      `${name}: differs by ${difference}, at byte ${at}\n  - ${around(one)}\n  + ${around(other)}`,
-    );
+    const [was, is] = [one, other].map(around);
+    console.log(`${name}: differs by ${difference}, at character ${at}\n  - ${was}\n  + ${is}`);
   }
-  console.log(`${names.length - different} of ${names.length} answers are equal, byte for byte`);
-  if (same > 0) console.log(`${same} more are equal as JSON`);
-  process.exitCode = different > same ? 1 : 0;
+  console.log(`${names.length - notIdentical} of ${names.length} answers are equal, byte for byte`);
+  if (equalAsJson > 0) console.log(`${equalAsJson} more are equal as JSON`);
+  process.exitCode = notIdentical > equalAsJson ? 1 : 0;
 }
 
 const [what, ...folders] = process.argv.slice(2);

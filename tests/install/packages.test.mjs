@@ -1,4 +1,5 @@
 // Files installed by CMake and by the Debian packages, from the build of the program under test.
+// Needs CMake, CPack and dpkg; lintian is optional.
 import assert from "node:assert/strict";
 import {spawnSync} from "node:child_process";
 import {mkdtempSync, readdirSync, readFileSync, rmSync, statSync} from "node:fs";
@@ -25,7 +26,7 @@ const architecture = run("dpkg", "--print-architecture").trim();
 const filesOf = (path) =>
   readdirSync(path, {recursive: true}).filter((name) => statSync(join(path, name)).isFile());
 
-test("cmake --install puts each file where it is expected", () => {
+test("cmake --install puts each file where it is expected; manual and unit fit the program", () => {
   const prefix = join(folder, "prefix");
   run("cmake", "--install", build, "--prefix", prefix, "--component", "program");
   assert.deepEqual(filesOf(prefix).sort(), [
@@ -101,10 +102,10 @@ test("the core's package has headers, library, and the files for CMake and pkg-c
       paths.some((path) => path.endsWith(end)),
       end,
     );
-  assert.ok(!paths.some((path) => path.includes(folder)));
+  assert.ok(!paths.some((path) => path.includes(folder))); // no path of the build
 });
 
-test("the package's unit starts the package's program, which is owned by root", () => {
+test("all files of the package are owned by root, and its unit starts its program", () => {
   const {file} = packages.vines;
   const list = run("dpkg-deb", "-c", file);
   for (const line of list.trim().split("\n")) assert.match(line, /^\S+ root\/root /);
@@ -120,9 +121,10 @@ test("the package's unit starts the package's program, which is owned by root", 
 const lintian = spawnSync("lintian", ["--version"]).error ? {skip: "lintian is not installed"} : {};
 
 test("lintian reports nothing about the packages", lintian, () => {
-  // Only a build for the prefix /usr, such as the preset `package`, uses Debian's library folder.
+  // Suppressed: the tag expects Debian's library folder, which only a build for the prefix /usr,
+  // such as the preset `package`, uses.
   const suppressed = "pkg-config-unavailable-for-cross-compilation";
   const files = Object.values(packages).map(({file}) => file);
-  const words = ["--allow-root", "--fail-on", "none", "--suppress-tags", suppressed];
-  assert.equal(run("lintian", ...words, ...files), "");
+  const flags = ["--allow-root", "--fail-on", "none", "--suppress-tags", suppressed];
+  assert.equal(run("lintian", ...flags, ...files), "");
 });

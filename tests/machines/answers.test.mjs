@@ -1,5 +1,6 @@
-// The service's responses have the bytes whose SHA-256 is published in answers.json, with every
-// compiler, instruction set and build. After an intended change of the responses:
+// The service's responses are byte-identical to the recorded ones, whose SHA-256 is in
+// answers.json, for every compiler, instruction set and build. After an intended change of the
+// responses, this records the new hashes, and the test passes trivially:
 //   VINES=build/release/vines PUBLISH=1 node --test tests/machines/answers.test.mjs
 import assert from "node:assert/strict";
 import {createHash} from "node:crypto";
@@ -11,23 +12,25 @@ import {answerOf, ask} from "./answers.mjs";
 
 const file = new URL("answers.json", import.meta.url);
 
+// Provenance is the last field of an answer.
 /** The text without commit, version and provenance, which depend on the build. */
-const asPublished = (text) =>
+const asRecorded = (text) =>
   text
     .replace(/,"provenance":.*$/m, "}")
     .replace(/"commit":"[^"]*",/, "")
     .replaceAll(/"version":"[^"]*"/g, '"version":""');
 
-test("responses have the published bytes", async (t) => {
+test("responses have the recorded bytes", async (t) => {
   const service = await startService();
   t.after(() => service.stop());
+  // Identifications use simulated records.
   const simulate = async (body) => (await ask(service.url, {path: "/v1/simulate", body})).json();
   const computed = requests.filter(({path}) =>
     /^\/v1\/(simulate|manifold|sweep|identify)/.test(path),
   );
   const hashes = {};
   for (const request of [...computed, ...(await identifications(simulate))]) {
-    const text = asPublished(await answerOf(service.url, request));
+    const text = asRecorded(await answerOf(service.url, request));
     hashes[request.name] = createHash("sha256").update(text).digest("hex");
   }
   if (process.env.PUBLISH) await writeFile(file, `${JSON.stringify(hashes, null, 2)}\n`);

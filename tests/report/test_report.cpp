@@ -83,7 +83,7 @@ TEST_CASE("NaN is not reproduced") {
     CHECK(finding(std::nan(""), {-1e300, 1e300}).verdict() == ClaimVerdict::not_reproduced);
 }
 
-TEST_CASE("a report is as expected while every verdict is the expected one, good or bad") {
+TEST_CASE("a report is as expected if every verdict is the expected one, reproduced or not") {
     Report report;
     CHECK(report.as_expected());
     report.add(finding(1, {1, 2}));
@@ -109,7 +109,10 @@ TEST_CASE("a changed verdict is marked in its row of the table only") {
 TEST_CASE("a verdict on a computed record mentions that record") {
     std::vector<Finding> findings = {
         finding(1.5, {1, 2}), finding(2.5, {1, 2}), finding(3.5, {1, 2})};
-    for (Finding& f : findings) f.computed_record = true, f.partly = Band{1, 3};
+    for (Finding& f : findings) {
+        f.computed_record = true;
+        f.partly = Band{1, 3};
+    }
     const std::string table = markdown_table(findings);
     CHECK(occurrences(table, "| holds for the computed record") == 1);
     CHECK(occurrences(table, "| holds in part for the computed record") == 1);
@@ -131,7 +134,7 @@ TEST_CASE("verdicts on computed records are counted separately") {
     std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("two symmetric impacts per cycle in closed form are those that a run reaches") {
+TEST_CASE("the closed-form orbit with two symmetric impacts per cycle is the attractor of a run") {
     vines::Parameters p;
     p.b = 0.015;
     p.damping = vines::Damping::closed_form;
@@ -143,15 +146,16 @@ TEST_CASE("two symmetric impacts per cycle in closed form are those that a run r
     const auto motion = fast_symmetric_motion(p);
     REQUIRE(motion);
     CHECK(std::abs(run.impacts.back().y_dot_after) == doctest::Approx(motion->V).epsilon(1e-12));
-    // Multipliers of half a period, squared, are those of a period.
+    // Multipliers of half a period (with the reflection x -> -x, y -> -y), squared, are those of a
+    // period.
     CHECK(
         std::norm(motion->multipliers[0]) ==
         doctest::Approx(std::abs(run.regime->orbit->multipliers[0])).epsilon(1e-9));
 }
 
 TEST_CASE(
-    "two symmetric impacts per cycle attract between 7.0467 and 16.2860 mm and exist up to a "
-    "fold") {
+    "the orbit with two symmetric impacts per cycle is stable for b from 7.0467 to 16.2860 mm and "
+    "exists up to the fold at 17.2747 mm") {
     const auto at = [](double mm) {
         vines::Parameters p;
         p.b = mm / 1000;
@@ -166,7 +170,7 @@ TEST_CASE(
     CHECK_FALSE(at(17.27473415));
 }
 
-TEST_CASE("the report is one text in the order of the chapters, with pictures in separate files") {
+TEST_CASE("the report is one text in the order of its parts, with pictures in separate files") {
     const auto folder = std::filesystem::temp_directory_path() / "vines-test-report";
     std::filesystem::create_directories(folder);
     Report report;
@@ -187,6 +191,7 @@ TEST_CASE("the report is one text in the order of the chapters, with pictures in
     CHECK(picture.starts_with("<svg "));
     CHECK(picture.find("a &lt; b") != std::string::npos);
     std::filesystem::remove_all(folder);
+    // The folder no longer exists.
     CHECK_THROWS_AS(write_markdown(report, folder.string()), std::runtime_error);
 }
 
@@ -210,7 +215,7 @@ TEST_CASE("the rank correlation is 1 for equal order and -1 for opposite order")
     CHECK(rank_correlation({1, 2, 3, 4, 5}, {2, 1, 4, 3, 5}) == doctest::Approx(0.8));
 }
 
-TEST_CASE("moments and quantiles, which are NaN without values") {
+TEST_CASE("mean, sample deviation, median and quantiles, which are NaN for an empty list") {
     const Moments m = moments({1, 2, 3, 4, 5});
     CHECK(m.mean == 3);
     CHECK(m.deviation == doctest::Approx(std::sqrt(2.5)));

@@ -3,18 +3,26 @@ import {Job} from "../shared/job.js";
 import {receive, SweepData} from "./data.js";
 
 const pause = 350; // ms without zooming before it starts
-const mostPoints = 20000;
+const maxPoints = 20000;
 
-/** An axis of the request for a visible range: centres of `count` cells, inside the full range. */
-function axisOf(given, {from: value, at}, [low, high], count) {
+/**
+ * An axis of the request whose `count` values are the centres of equal cells of the visible range
+ * [low, high], clipped to the full range. low, high and at are places on the axis (data.js), which
+ * valueAt() converts to values.
+ */
+function axisOf(given, {from: valueAt, at}, [low, high], count) {
   const half = (high - low) / count / 2;
   const inside = (place) => Math.min(Math.max(place, at[0]), at.at(-1));
-  const [from, to] = [low + half, high - half].map((v) => Number(value(inside(v)).toPrecision(12)));
+  const rounded = (place) => Number(valueAt(inside(place)).toPrecision(12));
+  const [from, to] = [low + half, high - half].map(rounded);
   return {parameter: given.parameter, from, to, count, scale: given.scale};
 }
 
 export class Refiner {
-  /** drawn(): points were received; settled(): all points were received; say(text). */
+  /**
+   * drawn(): called when points were received; settled(): when all were received; say(text): shows
+   * the status, "" for none.
+   */
   constructor({drawn, settled, say}) {
     Object.assign(this, {drawn, say, view: null, waiting: 0});
     this.job = new Job({
@@ -28,7 +36,7 @@ export class Refiner {
     });
   }
 
-  /** Follows a SweepView with a new sweep; null: none. */
+  /** Refines this SweepView, which shows a new sweep, from now on; null: none. */
   follow(view) {
     this.view = view;
     this.stop();
@@ -49,22 +57,23 @@ export class Refiner {
   begin() {
     if (!this.view) return;
     const {layers, data, viewports, choice} = this.view;
+    // A point of a carried sweep depends on its neighbours, so that it cannot be refined.
     if (!data.complete || data.carried) return;
     const counts = countsOf(data, viewports.length);
     // True when a layer has at least 60 % of the density that a new request would have.
-    const covers = (finer) =>
+    const covers = (layer) =>
       viewports.every(({range: [from, to], full}, i) => {
-        const [first, last] = finer.ranges?.[i] ?? full;
-        const inside = (finer.axes[i].at.length * (to - from)) / (last - first);
+        const [first, last] = layer.ranges?.[i] ?? full;
+        const inside = (layer.axes[i].at.length * (to - from)) / (last - first);
         return first <= from && to <= last && inside >= 0.6 * counts[i];
       });
-    const there = layers.over(choice.slice).findLast(covers);
-    if (!viewports.some(({zoomed}) => zoomed) || there?.complete) this.stop();
-    else this.job.start(there ?? this.finer(counts)); // unless it is running already
+    const existing = layers.over(choice.slice).findLast(covers);
+    if (!viewports.some(({zoomed}) => zoomed) || existing?.complete) this.stop();
+    else this.job.start(existing ?? this.makeRefined(counts)); // start() ignores a running request
   }
 
-  /** A sweep of the visible range; of the third axis only the slice shown. */
-  finer(counts) {
+  /** Sweep of the visible range. A third axis is fixed at the slice shown, a reduced axis stays. */
+  makeRefined(counts) {
     const {data, viewports, choice} = this.view;
     const request = data.request.axes.map((given) => {
       const i = data.axes.findIndex(({parameter}) => parameter === given.parameter);
@@ -72,10 +81,10 @@ export class Refiner {
       if (viewports[i]) return axisOf(given, data.axes[i], viewports[i].range, counts[i]);
       return i < 0 ? given : {parameter, values: [values[choice.slice]]};
     });
-    const finer = new SweepData({...data.request, axes: request});
-    finer.ranges = viewports.map(({range}) => range);
-    if (data.axes[2]) finer.slice = choice.slice;
-    return finer;
+    const refined = new SweepData({...data.request, axes: request});
+    refined.ranges = viewports.map(({range}) => range);
+    if (data.axes[2]) refined.slice = choice.slice;
+    return refined;
   }
 
   async ask(data, signal) {
@@ -88,10 +97,13 @@ export class Refiner {
   }
 }
 
-/** The number of points along each visible axis as before, or fewer to stay within mostPoints. */
+/**
+ * Points along each visible axis, unchanged or scaled down equally so that all points times starts
+ * stay within maxPoints, but at least 2.
+ */
 function countsOf({axes, starts}, n) {
   const counts = axes.slice(0, n).map(({at}) => at.length);
   const product = counts.reduce((a, b) => a * b, starts);
-  const share = Math.min((mostPoints / product) ** (1 / n), 1);
-  return counts.map((count) => Math.max(Math.floor(count * share), 2));
+  const scale = Math.min((maxPoints / product) ** (1 / n), 1);
+  return counts.map((count) => Math.max(Math.floor(count * scale), 2));
 }

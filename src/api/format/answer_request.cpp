@@ -160,14 +160,14 @@ void check_other_fields(const Json& fields, std::size_t most) {
 }
 
 AnswerRequest read_identification(
-    Json fields, const MeasurementBody& sent, const ReadLimits& limits) {
+    Json fields, const MeasurementBody& body, const ReadLimits& limits) {
     check_other_fields(fields, limits.most_other_values);
     Provenance provenance{
         .route = "/v1/identify", .request = canonical(without_record(fields)), .record = {}};
     AnswerForm form = take_form(fields, identify_fields());
-    IdentifyRequest request = sent.is_columns ? read_identify_request(fields, sent.text, limits)
+    IdentifyRequest request = body.is_columns ? read_identify_request(fields, body.text, limits)
                                               : read_identify_request(std::move(fields), limits);
-    provenance.record = sha256(sent.text);  // only of a valid record
+    provenance.record = sha256(body.text);  // only of a valid record
     return {std::move(request), std::move(form), std::move(provenance)};
 }
 
@@ -201,12 +201,12 @@ Answer computed(const IdentifyRequest& request, const AnswerForm&, const Compute
 }  // namespace
 
 AnswerRequest read_answer_request(
-    const std::string& route, Json fields, const MeasurementBody& sent, const ReadLimits& limits) {
+    const std::string& route, Json fields, const MeasurementBody& body, const ReadLimits& limits) {
     if (route == "/v1/simulate")
         return read_run(route, std::move(fields), simulate_fields(), read_simulate_request);
     if (route == "/v1/manifold")
         return read_run(route, std::move(fields), manifold_fields(), read_manifold_request);
-    if (route == "/v1/identify") return read_identification(std::move(fields), sent, limits);
+    if (route == "/v1/identify") return read_identification(std::move(fields), body, limits);
     throw Problem(422, "unknown route: " + shortened(route));
 }
 

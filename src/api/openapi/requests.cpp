@@ -1,4 +1,5 @@
-// Request schemas and query parameters, made from the field tables that requests are checked with.
+// Request schemas and query parameters, generated from the field tables against which requests are
+// checked. The columns of a measurement are listed here.
 #include "api/openapi/parts.hpp"
 
 namespace vines::api::document {
@@ -21,6 +22,7 @@ Json value_schema(const Field& f) {
         case FieldType::object:
             return f.fields.empty() ? reference("SweepBase") : request_of(f.fields);
         case FieldType::objects:
+            // All lists of objects are of these two kinds.
             Json objects = list_of(reference(f.name == "axes" ? "Axis" : "Start"));
             if (f.choices.empty()) return objects;
             return {{"anyOf", {std::move(objects), one_of(f.choices)}}};
@@ -87,27 +89,31 @@ void add_query(
 /// The columns of `impacts` in a simulation or an identification; a laboratory can leave out those
 /// it does not measure. Other columns are permitted and ignored.
 Json impact_columns() {
-    const Json some = list_of(or_null(number()));
+    const Json numbers_or_null = list_of(or_null(number()));
     Keys keys = {
-        optional({"tau", numbers(), "time; or use time_s"}),
+        optional({"tau", numbers(), "dimensionless time tau = omega0 t; or use time_s"}),
         optional({"time_s", numbers(), "time in s, for a system in SI"}),
         optional({"x", numbers(), "displacement of the oscillator, m"}),
         optional({"side", list_of(number()), "1 or -1; default: from the jump of x'"}),
-        optional({"phase", numbers(), "phase of the forcing; default: fitted to the list"})};
+        optional({"phase", numbers(), "phase of the forcing; default: fitted to the impacts"})};
     for (const char* when : {"before", "after"})
         for (const auto& [name, si_name] :
              {std::pair("x_dot_", "x_velocity_"), std::pair("y_dot_", "y_velocity_")}) {
             const bool is_ball = name[0] == 'y';
-            const Json values = is_ball ? some : numbers();
-            const std::string what = is_ball ? "velocity of the ball; default: from its flights"
-                                             : "velocity of the oscillator";
+            const Json values = is_ball ? numbers_or_null : numbers();
+            const std::string what =
+                is_ball ? "velocity of the ball; default: from its positions at successive impacts"
+                        : "velocity of the oscillator";
             keys.push_back(optional({std::string(name) + when, values, what}));
             keys.push_back(optional(
                 {std::string(si_name) + when, values, what + "; in m/s, for a system in SI"}));
         }
     keys.push_back(optional(
-        {"x_ddot_before", numbers(), "acceleration of the oscillator, if phase is unknown"}));
-    keys.push_back(optional({"x_acceleration_before", numbers(), "the same in m/s^2"}));
+        {"x_ddot_before", numbers(),
+         "acceleration of the oscillator before the impact, if phase is unknown"}));
+    keys.push_back(optional(
+        {"x_acceleration_before", numbers(),
+         "acceleration of the oscillator before the impact, m/s^2, if phase is unknown"}));
     Json schema = object_of(keys);
     schema["additionalProperties"] = true;
     schema["required"] = {"x"};
@@ -119,8 +125,8 @@ Json identify_request() {
     Json& properties = request["properties"];
     properties["record"] = map_of(numbers());
     properties["record"]["description"] =
-        "columns: time_s, displacement_m, acceleration_m_s2; a unit in a name (displacement_mm, "
-        "time (ms)) is applied";
+        "columns: time_s, displacement_m, acceleration_m_s2; other units in a name "
+        "(displacement_mm, time (ms)) are converted";
     properties["impacts"] = impact_columns();
     properties["impacts"]["description"] =
         "columns as in impacts of /v1/simulate, instead of a record";

@@ -1,3 +1,6 @@
+// An analysis is one run with a list of observers, in three steps: Observers constructs the
+// observers of the requested parts, simulate() passes the motion to them, and Conclusion turns
+// their records into the parts of Analysis and its warnings.
 #include "core/analysis/analysis.hpp"
 
 #include <algorithm>
@@ -10,20 +13,20 @@
 namespace vines {
 
 WindowExponents window_exponents(
-    const Interval& asked, TransferProduct&& product, const Growth& growth, const Regime& regime) {
+    const Interval& window, TransferProduct&& product, const Growth& growth, const Regime& regime) {
     const Judgement judgement = judge(growth, regime, product.start_tau());
     const double start = product.start_tau();
     const ExponentSlopes slopes{
         coarse_slope(product.qr_history(), start),
         coarse_slope(product.eigenvalues_history(), start),
         coarse_slope(product.raw_product_history(), start)};
-    return {asked, std::move(product), growth, slopes, judgement};
+    return {window, std::move(product), growth, slopes, judgement};
 }
 
 void add_warnings(
-    const TransferProduct& product, const ExponentOptions& shown, bool histories,
+    const TransferProduct& product, const ExponentOptions& requested, bool histories,
     std::vector<Warning>& warnings) {
-    if (histories && shown.raw_product && product.impacts() > 1 &&
+    if (histories && requested.raw_product && product.impacts() > 1 &&
         std::isnan(product.raw_product()[0]))
         warnings.push_back(warning::RawProductOverflows{});
     if (product.sum_rule_residual() > most_residual)
@@ -39,11 +42,12 @@ namespace {
 /// Points on each branch of the manifold: a smooth curve on a screen.
 constexpr std::size_t manifold_points = 200;
 
-const std::vector<double> decay_shares = {0.5, 0.1};
+/// Fractions of the initial energy whose times are reported.
+const std::vector<double> decay_fractions = {0.5, 0.1};
 
 double series_step(const AnalysisRequest& w) {
-    const double asked = w.parameters.cycle() / w.samples_per_cycle;
-    return std::max(asked, w.tau_end / static_cast<double>(w.most_points - 1));
+    const double requested = w.parameters.cycle() / w.samples_per_cycle;
+    return std::max(requested, w.tau_end / static_cast<double>(w.most_points - 1));
 }
 
 /// Upper estimate for most responses; sizes a reservation only.
@@ -55,7 +59,7 @@ std::size_t impacts_expected(const AnalysisRequest& w) {
         std::min({expected, static_cast<double>(w.max_impacts), static_cast<double>(w.most_kept)}));
 }
 
-/// Verdict and regime need the exponents by qr, whether or not these are shown.
+/// Verdict and regime need the exponents by qr, whether or not these are requested.
 bool needs_verdict(const AnalysisRequest& w) {
     return w.parts.regime || w.parts.exponents || !w.windows.empty();
 }
@@ -84,36 +88,37 @@ struct AnalysisRun::Observers {
           impacts(w.most_listed, w.most_kept),
           section(w.window.from, w.window.to, w.most_points),
           sticks(w.most_listed),
-          touches(w.most_listed),
+          grazing(w.most_listed),
           lyapunov(w.parameters, w.window.from, w.window.to, main_estimators(w)),
           windows(w.parameters, window_estimators(w)),
           transfers(w.parameters, w.window.from, w.window.to, w.most_points),
-          whole_cycles(w.parameters, {.most = kept_states, .until = w.window.to}),
-          stroboscopic(w.parameters, 0, w.section_phase),
-          decay(w.parameters, w.window.from, decay_shares),
+          at_phase_zero(w.parameters, {.most = kept_states, .until = w.window.to}),
+          at_section_phase(w.parameters, 0, w.section_phase),
+          decay(w.parameters, w.window.from, decay_fractions),
           rhythm(w.parameters, w.window, w.parts.regime ? w.most_points : 0),
           half_cycles(w.parameters, w.window.from, w.window.to, w.most_points) {
-        // Growing lists without a reservation cost more time than the flights. Reserved memory that
-        // is never written takes no RAM.
+        // Without a reservation, growing the lists takes longer than the simulation. Reserved
+        // memory that is never written takes no RAM.
         if (w.parts.series) series.expect(w.tau_end);
         if (w.parts.impacts) impacts.entries.reserve(impacts_expected(w));
         for (const Interval& window : w.windows) windows.add(window.from, window.to);
         if (w.parts.energy) energy.emplace(w.parameters, w.window.from, w.window.to);
-        if (w.perturbation)  // the difference after rounding of the start
+        // The actual difference: adding the perturbation to the start rounds it.
+        if (w.perturbation)
             compared.emplace(
                 w.parameters, series_step(w),
                 difference_of(displaced(w.start, *w.perturbation), w.start));
     }
 
     std::vector<Observer*> wanted(const AnalysisRequest& w) {
-        std::vector<Observer*> list = {&sticks, &touches};
+        std::vector<Observer*> list = {&sticks, &grazing};
         auto observe = [&](bool wanted, auto&... observer) {
             if (wanted) (list.push_back(&observer), ...);
         };
         observe(w.parts.series, series);
         observe(w.parts.impacts || w.parts.section, impacts);
-        observe(w.parts.section, section, stroboscopic);
-        observe(needs_verdict(w), lyapunov, whole_cycles, rhythm);
+        observe(w.parts.section, section, at_section_phase);
+        observe(needs_verdict(w), lyapunov, at_phase_zero, rhythm);
         observe(!w.windows.empty(), windows);
         observe(w.parts.moduli || w.parts.matrices, transfers);
         if (energy) list.push_back(&*energy);
@@ -127,12 +132,12 @@ struct AnalysisRun::Observers {
     ImpactCollector impacts;
     SectionRecord section;
     StickRecord sticks;
-    GrazingRecord touches;
+    GrazingRecord grazing;
     Lyapunov lyapunov;
     WindowedExponents windows;
     TransferRecord transfers;
-    StroboscopicRecord whole_cycles, stroboscopic;
-    std::optional<Energy> energy;  // constructed only on request: its tables take time
+    StroboscopicRecord at_phase_zero, at_section_phase;
+    std::optional<Energy> energy;  // constructed on request only: its tables take time
     Decay decay;
     Rhythm rhythm;
     HalfCycles half_cycles;
@@ -154,7 +159,7 @@ public:
         if (w_.parts.series || w_.perturbation) thinning();
         lists();
         if (needs_verdict(w_)) judge_motion();
-        if (w_.parts.impacts || w_.parts.section) nearly_tangent();
+        if (w_.parts.impacts || w_.parts.section) nearly_grazing();
         transfers();
         if (w_.parts.section) sections();
         if (w_.parts.energy) energy();
@@ -189,7 +194,7 @@ private:
 
     void lists() {
         impacts();
-        if (w_.parts.impacts) a_.touches = last_of(o_.touches, "touches");
+        if (w_.parts.impacts) a_.touches = last_of(o_.grazing, "touches");
         a_.stick_count = o_.sticks.seen;
         a_.sticks = last_of(o_.sticks, "sticks");
         if (!a_.touches.empty()) warn(warning::GrazingContact{});
@@ -222,7 +227,7 @@ private:
         a_.regime = regime_of(
             w_.parameters, w_.start,
             {.rhythm = o_.rhythm,
-             .stroboscopic = o_.whole_cycles,
+             .stroboscopic = o_.at_phase_zero,
              .tau_start = a_.reached.from,
              .tau_end = a_.reached.to,
              .by_exponents = verdict_by_exponents(growth),
@@ -240,8 +245,9 @@ private:
         }
     }
 
-    /// Warns of impacts close to grazing, which shift the eigenvalues of all products with them.
-    void nearly_tangent() {
+    /// Warns of nearly grazing impacts. Each makes the eigenvalues of every product that contains
+    /// it inaccurate.
+    void nearly_grazing() {
         long count = 0;
         const ImpactCollector::NearlyTangent* nearest = nullptr;
         for (const auto& i : o_.impacts.nearly_tangent) {
@@ -269,7 +275,8 @@ private:
         }
     }
 
-    /// Computes the moduli. Those of T take long: when time is up, only the last impacts have them.
+    /// Moduli of the eigenvalues of J, M and T. Those of T are expensive: when interrupt_.late
+    /// returns true, the result is limited to the last impacts, whose moduli are complete.
     void moduli(std::span<const ImpactTransfer> transfers) {
         constexpr std::size_t per_look = 256;
         TransferModuli& m = a_.moduli.emplace();
@@ -289,7 +296,7 @@ private:
     }
 
     void sections() {
-        const StroboscopicRecord& record = o_.stroboscopic;
+        const StroboscopicRecord& record = o_.at_section_phase;
         std::size_t first = 0, end = record.states.size();
         while (first < end && record.tau(first) < w_.window.from) ++first;
         while (end > first && record.tau(end - 1) > w_.window.to) --end;
@@ -315,7 +322,7 @@ private:
         e.rms_ratio = ratio(e.balance.rms, e.unattached->rms);
         e.peak_ratio = ratio(e.balance.peak, e.unattached->peak);
         if (p.G != 0) return;
-        const auto alone = unattached_decay(p, w_.start, a_.reached.from, decay_shares);
+        const auto alone = unattached_decay(p, w_.start, a_.reached.from, decay_fractions);
         e.decay = {
             .with_absorber = {o_.decay.tau[0], o_.decay.tau[1]}, .without = {alone[0], alone[1]}};
     }

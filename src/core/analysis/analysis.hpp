@@ -106,12 +106,12 @@ struct WindowExponents {
 
 /// Verdict and slopes of a window. `growth` belongs to the product, `regime` to the run.
 WindowExponents window_exponents(
-    const Interval& asked, TransferProduct&& product, const Growth& growth, const Regime& regime);
+    const Interval& window, TransferProduct&& product, const Growth& growth, const Regime& regime);
 
-/// Appends the warnings about a product. If `histories` are shown: all; otherwise only the
+/// Appends the warnings about a product. If `histories` are requested: all; otherwise only the
 /// violation of the sum rule.
 void add_warnings(
-    const TransferProduct& product, const ExponentOptions& shown, bool histories,
+    const TransferProduct& product, const ExponentOptions& requested, bool histories,
     std::vector<Warning>& warnings);
 
 struct EnergyResult {

@@ -114,8 +114,8 @@ EnergyBalance balance_of(const Parameters& p, const Energy& e, const Interval& w
         .peak = e.peak()};
 }
 
-std::optional<double> ratio(double of, double to) {
-    return to > 0 ? std::optional(of / to) : std::nullopt;
+std::optional<double> ratio(double numerator, double denominator) {
+    return denominator > 0 ? std::optional(numerator / denominator) : std::nullopt;
 }
 
 std::optional<double> free_amplitude(const Parameters& p) {

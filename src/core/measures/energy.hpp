@@ -1,6 +1,7 @@
 // Energy balance (forcing, damper, impacts, stored energy) and amplitudes of the linear oscillator.
 //
-// Energies are per unit of m1, in m^2 (time is dimensionless): E = x'^2/2 + x^2/2 + epsilon y'^2/2.
+// Energies are divided by m1 omega0^2, in m^2 (time is dimensionless): E = x'^2/2 + x^2/2 + epsilon
+// y'^2/2.
 #pragma once
 
 #include <memory>
@@ -21,13 +22,15 @@ public:
     void on_impact(const Impact&) override;
 
     double duration() const { return duration_; }
-    double input() const;   ///< work of the forcing epsilon A sin(theta) on x'
-    double damper() const;  ///< dissipated by the damper, 2 zeta x'
-    /// Dissipated by impacts: (1 - R^2)(x'- - y'-)^2 epsilon/(2 (1 + epsilon)) each.
+    double input() const;   ///< integral of epsilon A sin(theta) x' dtau
+    double damper() const;  ///< integral of 2 zeta x'^2 dtau
+    /// Dissipated by impacts: epsilon (1 - R^2) v^2/(2 (1 + epsilon)) each, with v = x' - y' before
+    /// the impact and R of its wall.
     double impacts() const { return impacts_; }
     double stored() const { return at_end() - at_start(); }
     double at_start() const { return start_; }
     double at_end() const;
+    /// Error of the balance: zero up to rounding.
     double residual() const { return input() - damper() - impacts() - stored(); }
     double rms() const;                    ///< of x, m
     double peak() const { return peak_; }  ///< of |x|, m
@@ -35,18 +38,20 @@ public:
 private:
     const Parameters parameters_;
     const double tau_start_, tau_end_;
-    /// An equation of motion (free or sticking) with its integration rules.
+    /// Free or sticking motion with its integration rules.
     struct Law {
         explicit Law(std::shared_ptr<const Flow> flow);
 
         std::shared_ptr<const Flow> flow;
         std::shared_ptr<const Quadrature> quadrature;
-        /// Replaces the quadrature once a window is long.
+        /// Used instead of the quadrature once the window is longer than settled(): cheaper.
         std::optional<Antiderivative> antiderivative;
     };
     const Law free_;
     std::optional<Law> stuck_;  // set at the first sticking phase
-    Integrals sum_;             // minus F at the end, if in closed form
+    /// Integrals so far. While the closed form F is used, F at the end of the last stretch is
+    /// missing; integrals() adds it.
+    Integrals sum_;
     struct Last {
         Oscillation begin;
         double duration, y_dot;
@@ -60,20 +65,21 @@ private:
     double energy_of(const Oscillation& o, double y_dot) const;
 };
 
-/// Energy balance of a window and amplitudes of x in it. Energies per unit of m1, in m^2.
+/// Energy balance of a window and amplitudes of x in it. Energies divided by m1 omega0^2, in m^2.
 struct EnergyBalance {
     Interval window;  ///< the part that the run reached
     double input, damper, impacts, stored, residual, at_start, at_end;
-    /// Impacts over all dissipation; empty without dissipation.
+    /// Fraction of the dissipation that is due to impacts; empty without dissipation.
     std::optional<double> share_impacts;
     double rms, peak;  ///< of x, m
 };
 EnergyBalance balance_of(
     const Parameters& parameters, const Energy& energy, const Interval& window);
 
-/// of/to; empty unless `to` is positive.
-std::optional<double> ratio(double of, double to);
+/// Empty unless the denominator is positive.
+std::optional<double> ratio(double numerator, double denominator);
 
+/// Energy E of a state, m^2.
 double energy_of(const Parameters& parameters, const State& state);
 
 /// Amplitudes of the linear oscillator without absorber, with the same forcing and start, over
@@ -87,6 +93,7 @@ Unattached unattached(
     const Parameters& parameters, const State& start, double tau_start, double tau_end);
 /// Only the rms, from tau = 0 on, m: the cheaper part.
 double unattached_rms(const Parameters& parameters, const State& start, double duration);
+/// Unattached::amplitude for these parameters.
 std::optional<double> free_amplitude(const Parameters& parameters);
 
 /// Observer of the times at which the energy of a free decay (G = 0) first falls to given fractions

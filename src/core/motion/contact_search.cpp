@@ -140,7 +140,7 @@ struct CellSearch {
 
     double y_at(int k) const { return start.y + start.y_dot * (k * h); }
 
-    /// The most common case of property 4: g' has no zero in cell k, and g ends beyond the wall
+    /// The most common case of rule 4: g' has no zero in cell k, and g ends beyond the wall
     /// ahead.
     std::optional<Contact> straight(int k, const Oscillation& lo, double next_relative) const {
         const double speed = lo.x_dot - start.y_dot;
@@ -214,7 +214,7 @@ struct CellSearch {
         return Contact{d, start.side, flow.along(x, start.lo, d), start.side * d * rate};
     }
 
-    /// The contact in cell k, if any: properties 3 and 4.
+    /// The contact in cell k, if any: rules 3 and 4.
     std::optional<Contact> in_cell(int k, const Oscillation& lo) const {
         const bool first = k == 0 && start.side != 0;
         const Flow::TaylorSeries x = flow.series(lo);
@@ -237,7 +237,7 @@ struct CellSearch {
         return found;
     }
 
-    /// True if properties 1 and 2 prove the first cell of a flight from a wall empty.
+    /// True if rules 1 and 2 prove the first cell of a flight from a wall empty.
     bool first_cell_empty(double next_relative, double M3) const {
         const double leaving = -M3 * h * h / 24 - eta / h;
         return start.zeros == 1 && start.side * start.relative_speed < leaving &&
@@ -260,7 +260,7 @@ std::optional<Contact> next_contact(
     const auto bounds = flow.bounds(start.lo);
     const double h = flow.cell(), eta = position_rounding(bounds, start.y, b);
     const CellSearch search{flow, start, b, limit, h, eta, bounds.x_ddot, grazing};
-    const double inside = b - bounds.x_ddot * h * h / 8 - eta;  // property 1
+    const double inside = b - bounds.x_ddot * h * h / 8 - eta;  // rule 1
 
     double relative = start.side != 0 ? start.side * b : start.lo.x - start.y;
     for (int from = 0; from < Flow::cells && from * h < limit; from += Flow::block) {

@@ -2,23 +2,24 @@
 //
 // g(s) = x(s) - y(s) leaves |g| < b at a contact. A sign test at the ends of steps misses contacts
 // (two can hide within a step). Therefore every cell of the flow's grid is either proven empty or
-// searched by first_crossing(), whose bisection is itself a proof. With eta the rounding error of g
-// on the grid:
+// searched by first_crossing(), whose bisection is itself a proof. There are four rules; eta is the
+// rounding error of g on the grid.
 //
 //   1. g differs from its chord over a cell of width h by at most M2 h^2/8, M2 >= |g''| = |x''| (y
 //      is linear). The cell is empty if |g| < b - M2 h^2/8 - eta at both ends.
-//   2. If the flight has just left a wall, g = side b at s = 0 and property 1 cannot hold. Let
-//      phi(s) = (side g(s) - b)/s, the integral over t in (0,1) of side g'(ts). |phi''| <= M3/3,
-//      and phi differs from its chord by at most M3 h^2/24: there is no contact with this wall in
-//      (0, h] if phi(0) = side g'(0) and phi(h) are below -M3 h^2/24.
+//   2. If the flight has just left a wall, g = side b at s = 0 and the test of rule 1 always fails.
+//      Let phi(s) = (side g(s) - b)/s, the integral over t in (0,1) of side g'(ts). With M3 >=
+//      |g'''| = |x'''|, |phi''| <= M3/3 and phi differs from its chord by at most M3 h^2/24: there
+//      is no contact with this wall in (0, h] if phi(0) = side g'(0) and phi(h) are below
+//      -M3 h^2/24.
 //   3. Remaining cells are searched on the Taylor polynomial of g about the left end, which equals
 //      g up to rounding. Leading coefficients known to be zero (1 after an impact, 2 after an
-//      impact with R = 0, 3 at the release from sticking) are set to zero and divided out: a
-//      contact that has just happened is known by its side, never by |g| - b, and the next contact
-//      of a chatter keeps full relative accuracy however close it is.
+//      impact with R = 0, 3 at the release from sticking) are set to zero and divided out: the
+//      contact at s = 0 is identified by its side, not by comparing |g| with b, and the next
+//      contact of a chatter keeps full relative accuracy however close it is.
 //   4. first_crossing() bisects until an interval is empty, monotone, convex or concave by bounds
 //      on the polynomial; each such interval has at most one upward crossing, whose position is
-//      bracketed. Bisection ends because the interval halves.
+//      bracketed. Bisection ends at the latest when an interval reaches the resolution of double.
 #pragma once
 
 #include <optional>
@@ -47,8 +48,8 @@ struct Contact {
     double relative_speed;  ///< x' - y' before the impact: side * relative_speed >= 0
 };
 
-/// A grazing contact: side g has a maximum within rounding of b and does not cross. It changes
-/// nothing, but some neighbouring trajectories have an impact there and others do not.
+/// A grazing contact: side g has a maximum within rounding of b and does not cross. It does not
+/// change the motion, but some neighbouring trajectories have an impact there and others do not.
 struct GrazingPoint {
     double s;
     int side;
@@ -60,8 +61,9 @@ inline double halley(double f, double first, double half_second) {
     return -f * first / (first * first - f * half_second);
 }
 
-/// Last Halley step for the next contact of a chatter, relative to the flight time: a further step
-/// would be below 1e-24 of it. Thousands of such flights inherit each other's errors.
+/// Halley's iteration for the next contact of a chatter ends at a step below this, relative to the
+/// flight time. The remaining error is of the order of the step's cube, 1e-24, because the errors
+/// of thousands of flights in a chatter accumulate.
 inline constexpr double last_chatter_step = 1e-8;
 
 /// Rounding error of x - y on the grid: |x - y| can exceed b by this without a contact.
@@ -79,15 +81,17 @@ std::optional<double> next_release(
 
 /// The first d in [0, h] at which the polynomial sum of c[n] d^n rises from below zero to zero or
 /// above. The first `zeros` coefficients are taken as zero and divided out, together with exact
-/// zeros that follow. A maximum below zero by less than `noise` sets `tangent`.
+/// zeros that follow. `tangent` is set to the position of a maximum that is below zero by less than
+/// `noise`.
 std::optional<double> first_crossing(
     std::span<const double> c, int zeros, double h, double noise, std::optional<double>& tangent);
 
-/// True for a flight that begins between the walls or leaves a wall at once.
+/// True for a flight that begins between the walls or leaves a wall with non-zero relative
+/// velocity.
 bool has_simple_start(const FlightStart& start);
 
 /// The same contact as next_contact(), up to rounding, but faster for the flights that make up most
-/// of a run: away from one wall, across the cavity or back. It uses properties 1 to 4 and calls
+/// of a run: away from one wall, across the cavity or back. It uses rules 1 to 4 and calls
 /// next_contact() in every case that they do not settle at once.
 std::optional<Contact> fast_contact(
     const Flow& flow, const FlightStart& start, double b, double limit,

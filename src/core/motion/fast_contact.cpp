@@ -40,10 +40,10 @@ struct FastSearch {
         return {mirror * o.x, mirror * o.x_dot, mirror * o.sin_theta, mirror * o.cos_theta};
     }
 
-    /// Property 1: no contact between two points this far apart if |x - y| is below this at both.
+    /// Rule 1: no contact between two points this far apart if |x - y| is below this at both.
     double inside(double width) const { return b - M2 * (width * width / 8) - eta; }
 
-    /// Property 2, and property 1 for the other wall, over the first interval of this width.
+    /// Rule 2, and rule 1 for the other wall, over the first interval of this width.
     bool leaves(double right, double width, double inside) const {
         const double least = M3 * (width * width / 24) + eta / width;
         return w > least && b - right > least * width && right > -inside;
@@ -96,7 +96,7 @@ struct FastSearch {
         return SearchResult::none;
     }
 
-    /// The contact in cell k if x - y is monotone there: the most common case of property 4. A
+    /// The contact in cell k if x - y is monotone there: the most common case of rule 4. A
     /// contact at the right grid point, as happens where half a cycle is a multiple of h, can be
     /// found one rounding error beyond it.
     SearchResult crossing(int k, double left, double right, std::optional<Contact>& contact) const {

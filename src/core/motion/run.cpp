@@ -14,7 +14,7 @@ namespace {
 // A chatter ends when its remaining duration is below this: the remaining impacts, of which there
 // are infinitely many, then differ from their limit by less than the accuracy of any result. The
 // relative speed is near 1e-12 of a typical one, far above the effect of rounding
-// (contact_search.hpp, property 3).
+// (contact_search.hpp, rule 3).
 constexpr double chatter_rest = 1e-9;
 // The remaining duration is the sum of a geometric series for a constant acceleration, which
 // changes by less than this fraction.

@@ -23,8 +23,9 @@ struct Recommendation {
 };
 
 /// The b with the smallest worst-case rms of x over all starts. Empty if none reduces the rms, if
-/// there is no amplitude without absorber (undamped resonance, no forcing) or no fold (R = 1), or
-/// if `stop` returned true.
+/// there is no amplitude without absorber (undamped resonance, no forcing) or no manifold with a
+/// fold (R = 1, or different R of the walls), if a run has no measured part, or if `stop` returned
+/// true.
 std::optional<Recommendation> recommended_b(
     Parameters parameters, const std::function<bool()>& stop);
 

@@ -1,4 +1,5 @@
-// The program that makes the reference files, against the files.
+// Compares the output of the program that makes the reference files with the stored files. The
+// environment variable MAKE_REFERENCE is the program's path.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
 import {readFileSync} from "node:fs";
@@ -9,22 +10,24 @@ const stored = (name) => lines(readFileSync(new URL(`${name}.txt`, import.meta.u
 const made = (name, tauEnd) =>
   lines(execFileSync(process.env.MAKE_REFERENCE, [name, tauEnd], {encoding: "utf8"}));
 
-test("a short run with the closed form's damping begins its stored file, through a stick", () => {
+// The last four lines of the output: window, exponents by qr, sum rule, exponents by eigenvalues.
+
+test("a short run with the closed form's damping gives the first lines, with a stick", () => {
   const run = made("closed_b0.015", "100").slice(0, -4);
   assert.ok(run.some((line) => line.startsWith("# stick")));
   assert.deepEqual(run, stored("closed_b0.015").slice(0, run.length));
 });
 
-test("a short run with the equation of motion's damping begins its stored file", () => {
+test("a short run with the equation of motion's damping gives the first lines", () => {
   const run = made("eom_b0.008", "200").slice(0, -4);
   assert.ok(run.length > 50);
   assert.deepEqual(run, stored("eom_b0.008").slice(0, run.length));
 });
 
-test("a short run's exponents add up to what damping and impacts say", () => {
+test("the exponents of a short run satisfy the sum rule of damping and impacts", () => {
   const [, qr, sumrule, eig] = made("closed_b0.022", "200").slice(-4);
   const [, sum, rule] = sumrule.split(" ");
-  assert.equal(sum, rule);
+  assert.equal(sum, rule); // as text
   for (const line of [qr, eig]) {
     const exponents = line.split(" ").slice(1).map(Number);
     assert.equal(exponents.length, 4);
