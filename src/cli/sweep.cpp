@@ -137,7 +137,7 @@ int sweep(const SweepOptions& o) {
 Command add_sweep(CLI::App& app) {
     const auto options = std::make_shared<SweepOptions>();
     CLI::App* command =
-        app.add_subcommand("sweep", "a grid of runs over one to three parameters: POST /v1/sweep");
+        app.add_subcommand("sweep", "runs over one to three parameters: POST /v1/sweep");
     add_files(*command, options->files);
     add_request_fields(*command, options->fields);
     add_axes(*command, options->fields);

@@ -29,8 +29,7 @@ Command add_reproduce(CLI::App& app) {
     const auto folder = std::make_shared<std::string>();
     CLI::App* command = app.add_subcommand(
         "reproduce",
-        "recompute the paper's results and compare them: exit code 0 if all verdicts are as "
-        "expected");
+        "recompute the paper's results and compare them");
     command
         ->add_option(
             "--output", *folder,
