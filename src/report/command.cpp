@@ -27,9 +27,8 @@ int run(const std::string& folder) {
 
 Command add_reproduce(CLI::App& app) {
     const auto folder = std::make_shared<std::string>();
-    CLI::App* command = app.add_subcommand(
-        "reproduce",
-        "recompute the paper's results and compare them");
+    CLI::App* command =
+        app.add_subcommand("reproduce", "recompute the paper's results and compare them");
     command
         ->add_option(
             "--output", *folder,

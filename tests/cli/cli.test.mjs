@@ -185,7 +185,13 @@ test("verify reports a run ended by a time limit, and a text that is not an answ
   assert.equal(late.code, 3);
   assert.match(late.out, /not decided: a time limit/);
   await limited.stop();
-  for (const invalid of ["", "{}", "[1]", '{"provenance":1}', '{"a":1,"provenance":{"route":"/x"}}'])
+  for (const invalid of [
+    "",
+    "{}",
+    "[1]",
+    '{"provenance":1}',
+    '{"a":1,"provenance":{"route":"/x"}}',
+  ])
     assert.equal((await verify(invalid)).code, 2, invalid);
 });
 
