@@ -32,15 +32,15 @@ Json or_null(const std::optional<Value>& value) {
     return value ? Json(*value) : Json(nullptr);
 }
 
-/// The entry type of a packed list.
+/// The entry type of a packed list. The values of numbers and integers are the tags of CBOR's typed
+/// arrays (RFC 8746, 2.1), little-endian, with which the library's to_cbor() writes them.
 enum class Packed : std::uint8_t {
     no,          ///< not packed: an array of JSON values
-    numbers,     ///< doubles; NaN and infinities stand for null
     quadruples,  ///< of four doubles
     matrices,    ///< 4 x 4 doubles, by rows
-    integers,
     flags,
-    streamed  ///< generated while it is written: a StreamedList
+    integers = 78,
+    numbers = 86  ///< doubles; NaN and infinities stand for null
 };
 
 using Quadruple = std::array<double, 4>;
@@ -95,26 +95,6 @@ Json column(const Elements& elements) {
 /// The packing of a value of an answer.
 inline Packed packing_of(const Json& value) {
     return value.is_binary() ? static_cast<Packed>(value.get_binary().subtype()) : Packed::no;
-}
-
-/// Placeholder for a list that is generated while it is sent: its column, and the factor of its
-/// numbers.
-struct StreamedList {
-    int column;
-    double factor;
-};
-
-inline Json streamed(const StreamedList& list) {
-    std::vector<std::uint8_t> bytes(sizeof list);
-    std::memcpy(bytes.data(), &list, sizeof list);
-    return Json::binary(std::move(bytes), static_cast<std::uint8_t>(Packed::streamed));
-}
-
-/// The placeholder in a value of packing streamed.
-inline StreamedList streamed_list(const Json& value) {
-    StreamedList list;
-    std::memcpy(&list, value.get_binary().data(), sizeof list);
-    return list;
 }
 
 /// Replaces each packed double by change(number).

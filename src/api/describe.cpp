@@ -3,20 +3,11 @@
 #include <cmath>
 
 #include "api/answer_json.hpp"
+#include "api/columns.hpp"
 #include "api/schema/enum_names.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines::api {
-
-namespace {
-
-MatrixByRows by_rows(const Matrix4& m) {
-    MatrixByRows rows;
-    for (int i = 0; i < 4; ++i) rows[i] = {m(i, 0), m(i, 1), m(i, 2), m(i, 3)};
-    return rows;
-}
-
-}  // namespace
 
 Json describe_system(const System& system) {
     const Parameters& p = system.parameters;
@@ -55,72 +46,12 @@ Json describe_derived(const System& system) {
     return j;
 }
 
-Json describe_series(const Series& s) {
-    return object(
-        {{"tau", column(s.tau)},
-         {"x", column(s.x)},
-         {"x_dot", column(s.x_dot)},
-         {"y", column(s.y)},
-         {"y_dot", column(s.y_dot)},
-         {"x_ddot", column(s.x_ddot)}});
-}
-
-Json describe_sticks(const std::vector<StickingPhase>& sticks) {
-    return object(
-        {{"side", column(sticks, [](const auto& s) { return s.start.side; })},
-         {"tau_start", column(sticks, [](const auto& s) { return s.start.tau; })},
-         {"tau_end", column(sticks, [](const auto& s) { return s.tau_end; })},
-         {"impacts", column(sticks, [](const auto& s) { return s.start.impacts; })}});
-}
-
-Json describe_touches(const std::vector<GrazingEvent>& touches) {
-    return object(
-        {{"tau", column(touches, [](const auto& t) { return t.tau; })},
-         {"side", column(touches, [](const auto& t) { return t.side; })}});
-}
-
-Json describe_moduli(const TransferModuli& m) {
-    return object(
-        {{"tau", column(m.tau)},
-         {"J", column(m.J)},
-         {"M", column(m.M)},
-         {"T", column(m.T)},
-         {"M_condition", column(m.M_condition)}});
-}
-
-Json describe_matrices(const TransferMatrices& m) {
-    return object(
-        {{"tau", column(m.tau)},
-         {"order", {"x_dot", "x", "y_dot", "y"}},
-         {"J", column(m.J, by_rows)},
-         {"M", column(m.M, by_rows)},
-         {"T", column(m.T, by_rows)}});
-}
-
-Json describe_impact_section(const std::vector<SectionPoint>& points) {
-    return object(
-        {{"tau", column(points, [](const auto& p) { return p.impact.tau; })},
-         {"side", column(points, [](const auto& p) { return p.impact.side; })},
-         {"phase", column(points, [](const auto& p) { return p.impact.phase(); })},
-         {"x", column(points, [](const auto& p) { return p.impact.x; })},
-         {"x_dot_after", column(points, [](const auto& p) { return p.impact.x_dot_after; })},
-         {"y_dot_after", column(points, [](const auto& p) { return p.impact.y_dot_after; })},
-         {"time_difference", column(points, [](const auto& p) { return p.since; })}});
-}
-
-Json describe_states(const std::vector<State>& states) {
-    return object(
-        {{"x", column(states, [](const State& s) { return s.x; })},
-         {"x_dot", column(states, [](const State& s) { return s.x_dot; })},
-         {"y", column(states, [](const State& s) { return s.y; })},
-         {"y_dot", column(states, [](const State& s) { return s.y_dot; })}});
-}
-
 Json describe_sections(const Sections& s) {
-    Json stroboscopic = object({{"tau", column(s.tau)}});
-    stroboscopic.update(describe_states(s.states));
+    Json stroboscopic = object({{quantity.tau.name, column(s.tau)}});
+    stroboscopic.update(describe(state_columns(), s.states));
     return object(
-        {{"impact", describe_impact_section(s.impact)}, {"stroboscopic", std::move(stroboscopic)}});
+        {{"impact", describe(impact_section_columns(), s.impact)},
+         {"stroboscopic", std::move(stroboscopic)}});
 }
 
 Json describe_energy(const EnergyResult& e) {
@@ -152,16 +83,6 @@ Json describe_energy(const EnergyResult& e) {
     return j;
 }
 
-namespace {
-
-Json describe_points(const std::vector<ManifoldPoint>& points) {
-    return object(
-        {{"C", column(points, [](const ManifoldPoint& m) { return m.C; })},
-         {"V", column(points, [](const ManifoldPoint& m) { return m.V; })}});
-}
-
-}  // namespace
-
 Json describe_manifold(const Manifold& m) {
     auto point = [](const ManifoldPoint& of) { return Json{{"C", of.C}, {"V", of.V}}; };
     const bool breaks = m.symmetry_breaking.has_value();
@@ -174,17 +95,17 @@ Json describe_manifold(const Manifold& m) {
          {"symmetry_breaking", breaks ? point(*m.symmetry_breaking) : Json(nullptr)},
          {"second_contact", point(m.second_contact)},
          {"stable_ends_by", breaks ? "symmetry_breaking" : "second_contact"},
-         {"stable", describe_points(m.stable)},
-         {"unstable", describe_points(m.unstable)},
-         {"asymmetric", describe_points(m.asymmetric)},
+         {"stable", describe(branch_columns(), m.stable)},
+         {"unstable", describe(branch_columns(), m.unstable)},
+         {"asymmetric", describe(branch_columns(), m.asymmetric)},
          {"free_amplitude", or_null(m.free_amplitude)},
          {"b_at_free_amplitude", or_null(m.b_at_free_amplitude)}});
 }
 
 Json describe_manifold(const ManifoldResult& m) {
     Json j = m.manifold ? describe_manifold(*m.manifold) : Json::object();
-    j["points"] = {{"tau", column(m.tau)}};
-    j["points"].update(describe_points(m.points));
+    j["points"] = {{quantity.tau.name, column(m.tau)}};
+    j["points"].update(describe(branch_columns(), m.points));
     return j;
 }
 
@@ -257,14 +178,6 @@ void add_orbit(Json& j, const std::optional<PeriodicOrbit>& orbit) {
             {"orbit", of_orbit(describe_point)}});
 }
 
-Json describe_stretches(const std::vector<SynchronyStretch>& stretches) {
-    return object(
-        {{"tau_start", column(stretches, [](const auto& s) { return s.tau_start; })},
-         {"tau_end", column(stretches, [](const auto& s) { return s.tau_end; })},
-         {"synchronised", column(stretches, [](const auto& s) { return s.synchronised; })},
-         {"contacts", column(stretches, [](const auto& s) { return s.contacts; })}});
-}
-
 }  // namespace
 
 Json describe_regime(const Regime& r) {
@@ -280,10 +193,10 @@ Json describe_regime(const Regime& r) {
         j, {{"capture", r.capture ? describe_capture(*r.capture) : Json(nullptr)},
             {"cycles_with", column(r.cycles_with)},
             {"share_two_impacts", r.cycles_with.size() > 2 ? r.cycles_with[2] : 0},
-            {"z_moving", object({{"tau", column(r.moving_tau)}, {"z", column(r.moving_z)}})},
+            {"z_moving", describe(moving_z_columns(), r)},
             {"synchronised",
              object({{"share", r.synchronised}, {"longest_half_cycles", r.longest_synchronised}})},
-            {"stretches", describe_stretches(r.stretches)}});
+            {"stretches", describe(stretch_columns(), r.stretches)}});
     return j;
 }
 

@@ -17,20 +17,8 @@ namespace vines::api {
 Json describe_system(const System& system);
 Json describe_derived(const System& system);
 
-/// Columns of equal length. x and y in m, derivatives with respect to tau.
-Json describe_series(const Series& series);
-Json describe_sticks(const std::vector<StickingPhase>& sticks);
-Json describe_touches(const std::vector<GrazingEvent>& touches);
-
-/// {tau, J, M, T, M_condition}: the four moduli of each matrix's eigenvalues, per impact.
-Json describe_moduli(const TransferModuli& moduli);
-/// {tau, order, J, M, T}: 4 x 4 matrices by rows, per impact.
-Json describe_matrices(const TransferMatrices& matrices);
-
-/// {impact, stroboscopic}, and the columns of either.
+/// {impact, stroboscopic}.
 Json describe_sections(const Sections& sections);
-Json describe_impact_section(const std::vector<SectionPoint>& points);
-Json describe_states(const std::vector<State>& states);
 
 /// Expects a result that includes the oscillator without absorber.
 Json describe_energy(const EnergyResult& energy);

@@ -5,20 +5,13 @@
 #include <cmath>
 
 #include "api/answer_json.hpp"
+#include "api/columns.hpp"
 #include "api/schema/enum_names.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines::api {
 
 namespace {
-
-Json describe_history(const ExponentHistory& history) {
-    Json columns = {{"tau", column(history.tau)}};
-    for (std::size_t k = 0; k < 4; ++k)
-        columns["lambda" + std::to_string(k + 1)] =
-            column(history.lambda, [k](const Exponents& lambda) { return lambda[k]; });
-    return columns;
-}
 
 std::string reason_of(const Judgement& judgement, const Growth& g, const Regime& r) {
     const std::string sigmas = fmt::format(
@@ -90,26 +83,28 @@ void add_estimators(
     if (shown.qr) {
         Json qr = describe_final(product.qr());
         qr["standard_error"] = column(growth.standard_error);
-        if (histories) qr["history"] = describe_history(product.qr_history());
+        if (histories) qr["history"] = describe(history_columns(), product.qr_history());
         j["qr"] = std::move(qr);
     }
     if (shown.eigenvalues) {
         j["eigenvalues"] = describe_final(product.eigenvalues());
         if (histories)
-            j["eigenvalues"]["history"] = describe_history(product.eigenvalues_history());
+            j["eigenvalues"]["history"] =
+                describe(history_columns(), product.eigenvalues_history());
     }
     if (!shown.raw_product) return;
     const double start = product.start_tau();
     const Exponents final = product.raw_product();
     Json raw = describe_final(final);
-    raw["rounding_floor"] = finite_or_null(rounding_floor(final[0], product.end_tau() - start));
+    raw[quantity.rounding_floor.name] =
+        finite_or_null(rounding_floor(final[0], product.end_tau() - start));
     if (histories) {
         const ExponentHistory& history = product.raw_product_history();
-        raw["history"] = describe_history(history);
+        raw["history"] = describe(history_columns(), history);
         std::vector<double> floor;
         for (std::size_t i = 0; i < history.tau.size(); ++i)
             floor.push_back(rounding_floor(history.lambda[i][0], history.tau[i] - start));
-        raw["history"]["rounding_floor"] = column(floor);
+        raw["history"][quantity.rounding_floor.name] = column(floor);
     }
     j["raw_product"] = std::move(raw);
 }

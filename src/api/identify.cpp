@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "api/answer_json.hpp"
+#include "api/columns.hpp"
 #include "api/describe.hpp"
 #include "api/fitted_unknowns.hpp"
 #include "api/schema/enum_names.hpp"
@@ -25,28 +26,17 @@ Json describe_restitution(const Restitution& r) {
         {"impacts", r.impacts}};
 }
 
-/// Columns of impacts, without the last ones of a chatter that ends in sticking.
-Json describe_identified(std::vector<IdentifiedImpact> impacts) {
+/// The impacts that an answer lists: without the last ones of a chatter that ends in sticking.
+std::vector<IdentifiedImpact> listed(std::vector<IdentifiedImpact> impacts) {
     std::erase_if(impacts, [](const IdentifiedImpact& i) { return i.comes_to_rest; });
-    auto number = [&](double IdentifiedImpact::* member) {
-        return column(impacts, [member](const IdentifiedImpact& i) { return i.*member; });
-    };
-    return {
-        {"tau", number(&IdentifiedImpact::tau)},
-        {"side", column(impacts, [](const auto& i) { return i.side; })},
-        {"x", number(&IdentifiedImpact::x)},
-        {"x_dot_before", number(&IdentifiedImpact::x_dot_before)},
-        {"x_dot_after", number(&IdentifiedImpact::x_dot_after)},
-        {"x_ddot_before", number(&IdentifiedImpact::x_ddot_before)},
-        {"y_dot_before", number(&IdentifiedImpact::y_dot_before)},
-        {"y_dot_after", number(&IdentifiedImpact::y_dot_after)},
-        {"R", number(&IdentifiedImpact::R)},
-        {"momentum_error", number(&IdentifiedImpact::momentum_error)},
-        {"status", column(impacts, [](const auto& i) {
-             if (i.is_left_out()) return text_of(i.fault);
-             if (i.is_hidden) return "hidden";
-             return std::isnan(i.R) ? "R is not known" : "ok";
-         })}};
+    return impacts;
+}
+
+Json describe_identified(const std::vector<IdentifiedImpact>& impacts) {
+    const std::vector<IdentifiedImpact> shown = listed(impacts);
+    Json j = describe(identified_wall_columns(), shown);
+    j.update(describe(identified_columns(), shown));
+    return j;
 }
 
 Json describe_walls(const Identification& found) {
@@ -84,14 +74,9 @@ Json describe_signal(const Measurement& m, const MeasurementResult& result, doub
 
 Json describe_forward(const std::optional<ForwardRun>& run) {
     if (!run) return nullptr;
-    const std::vector<Impact>& impacts = run->impacts;
     return {
         {"start", run->start},
-        {"impacts",
-         {{"tau", column(impacts, [](const Impact& i) { return i.tau; })},
-          {"side", column(impacts, [](const Impact& i) { return i.side; })},
-          {"x", column(impacts, [](const Impact& i) { return i.x; })},
-          {"x_dot_after", column(impacts, [](const Impact& i) { return i.x_dot_after; })}}},
+        {"impacts", describe(forward_impact_columns(), run->impacts)},
         {"lambda", column(run->lambda)}};
 }
 
@@ -141,8 +126,9 @@ Json describe_measured(
                           of_longest = of_longest_stretch(estimators);
     Json j = describe_window(e.all());
     add_estimators(j, e.all(), growth_of(e.all()), of_all, true);
-    change_numbers(
-        j["qr"]["history"]["tau"].get_binary(), [&e](double tau) { return e.moment(tau); });
+    change_numbers(j["qr"]["history"][quantity.tau.name].get_binary(), [&e](double tau) {
+        return e.moment(tau);
+    });
     std::vector<Warning> odd;
     add_warnings(e.all(), of_all, true, odd);
     add_warnings(e.longest(), of_longest, true, odd);
@@ -161,8 +147,10 @@ Json describe_measured(
     if (stretches.empty()) return j;
     j["window"] = {impacts[stretches.front().first].tau, impacts[stretches.back().last].tau};
     j["stretches"] = {
-        {"tau_start", column(stretches, [&](const auto& s) { return impacts[s.first].tau; })},
-        {"tau_end", column(stretches, [&](const auto& s) { return impacts[s.last].tau; })}};
+        {quantity.tau_start.name,
+         column(stretches, [&](const auto& s) { return impacts[s.first].tau; })},
+        {quantity.tau_end.name,
+         column(stretches, [&](const auto& s) { return impacts[s.last].tau; })}};
     j["duration"] = e.all().end_tau() - e.all().start_tau();
     return j;
 }
@@ -172,10 +160,8 @@ Json describe_direct(
     const IdentifyRequest& r, const std::optional<DirectEstimate>& direct, Warnings& warnings) {
     if (!direct) return nullptr;
     const Identification& found = direct->found;
-    Json columns = describe_identified(found.impacts);
-    for (const char* same : {"time_s", "tau", "side"}) columns.erase(same);
     Json j = {
-        {"impacts", std::move(columns)},
+        {"impacts", describe(identified_columns(), listed(found.impacts))},
         {"restitution", describe_walls(found)},
         {"lambda", column(direct->lambda)}};
     if (!r.includes("direct_exponents")) return j;
@@ -198,11 +184,9 @@ Json describe_motion(
             "the motion is given at one of {} samples, so that it holds at most max_points = {}",
             every, r.most_points));
     const std::vector<OscillatorMotion> motion = motion_at(result.refined->fit, moments);
-    return {
-        {"tau", column(moments)},
-        {"x", column(motion, [](const OscillatorMotion& m) { return m.x; })},
-        {"x_dot", column(motion, [](const OscillatorMotion& m) { return m.x_dot; })},
-        {"x_ddot", column(motion, [](const OscillatorMotion& m) { return m.x_ddot; })}};
+    Json j = {{quantity.tau.name, column(moments)}};
+    j.update(describe(fitted_motion_columns(), motion));
+    return j;
 }
 
 /// Warnings about the fit of a record.
@@ -363,7 +347,7 @@ Json identify_answer(const IdentifyRequest& r, const IdentificationWatch& watch)
             describe_fitted(result.refined->fit, result.parameters, r.system.si->omega0());
     }
     answer["impacts"] = describe_identified(found.impacts);
-    answer["sticking"] = describe_sticks(sticking_phases(found.impacts));
+    answer["sticking"] = describe(sticking_columns(), sticking_phases(found.impacts));
     answer["restitution"] = describe_walls(found);
     answer["b_fitted"] = {
         {"b", finite_or_null(found.b_fitted)}, {"standard_error", finite_or_null(found.b_error)}};

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "api/columns.hpp"
 #include "api/schema/check.hpp"
 #include "core/measurement/listed_impacts.hpp"
 #include "core/motion/elementary.hpp"
@@ -19,24 +20,10 @@ namespace {
 // oscillator and frequency.
 constexpr double most_misfit = 0.1;
 
-/// A column's name in units of tau and in SI. SI value = value * omega0^powers_of_omega0.
-struct ColumnName {
-    const char* name;
-    const char* si_name;
-    int powers_of_omega0;  ///< 1 for a velocity
-};
-constexpr ColumnName time_column{"tau", "time_s", -1};
-constexpr ColumnName x_column{"x", "x", 0};
-constexpr ColumnName before_column{"x_dot_before", "x_velocity_before", 1};
-constexpr ColumnName after_column{"x_dot_after", "x_velocity_after", 1};
-constexpr ColumnName acceleration_column{"x_ddot_before", "x_acceleration_before", 2};
-constexpr ColumnName y_before_column{"y_dot_before", "y_velocity_before", 1};
-constexpr ColumnName y_after_column{"y_dot_after", "y_velocity_after", 1};
-constexpr ColumnName side_column{"side", "side", 0};
-constexpr ColumnName phase_column{"phase", "phase", 0};
-
-bool has(const Json& list, const ColumnName& c) {
-    return list.contains(c.name) || list.contains(c.si_name);
+/// The name under which a list gives a column: in units of tau or in SI; null if it is missing.
+const char* name_in(const Json& list, const Quantity& q) {
+    if (list.contains(q.name)) return q.name;
+    return q.si_name && list.contains(q.si_name) ? q.si_name : nullptr;
 }
 
 class ImpactColumnReader {
@@ -46,35 +33,30 @@ public:
           cancel_(cancel),
           omega0_(r.system.si ? std::optional(r.system.si->omega0()) : std::nullopt) {}
 
-    /// The column in units of tau; empty, with an error, if it is missing. `may_be_null`: null is
-    /// NaN.
-    std::vector<double> column(const ColumnName& c, bool may_be_null = false) {
-        if (!has(given_, c)) {
-            const std::string other =
-                std::string(c.name) == c.si_name ? "" : std::string(" or ") + c.si_name;
-            fail(c.name, nullptr, c.name + other + " is missing");
+    /// The column in units of tau; empty, with an error, if it is missing. A column that may hold
+    /// nulls has NaN for them.
+    std::vector<double> column(const Quantity& q) {
+        const char* const name = name_in(given_, q);
+        if (!name) {
+            const std::string other = q.si_name ? std::string(" or ") + q.si_name : "";
+            fail(q.name, nullptr, q.name + other + " is missing");
             return {};
         }
-        const char* name = name_of(c);
-        const bool is_si = !given_.contains(c.name);
+        const bool is_si = !given_.contains(q.name);
         if (is_si && !omega0_)
             fail(
                 name, nullptr,
                 std::string(name) + " is in SI: give m1, c1, k1, m2 and f, or a preset, or " +
-                    c.name);
+                    q.name);
         double factor = 1;
-        for (int k = 0; is_si && omega0_ && k < std::abs(c.powers_of_omega0); ++k)
-            c.powers_of_omega0 > 0 ? factor /= * omega0_ : factor *= *omega0_;
-        return values_of(name, factor, may_be_null);
+        for (int k = 0; is_si && omega0_ && k < std::abs(q.power); ++k)
+            q.power > 0 ? factor /= * omega0_ : factor *= *omega0_;
+        return values_of(name, factor, q.type == ValueType::number_or_null);
     }
-    std::vector<double> optional_column(const ColumnName& c, bool may_be_null = false) {
-        return has(given_, c) ? column(c, may_be_null) : std::vector<double>();
+    std::vector<double> optional_column(const Quantity& q) {
+        return name_in(given_, q) ? column(q) : std::vector<double>();
     }
-
-    /// The name under which the column is given.
-    const char* name_of(const ColumnName& c) const {
-        return given_.contains(c.name) ? c.name : c.si_name;
-    }
+    const char* name_of(const Quantity& q) const { return name_in(given_, q); }
     void fail(const std::string& at, const Json& value, const std::string& text) {
         if (errors_.size() < most_errors)
             errors_.push_back({"/impacts/" + at, value, nullptr, text});
@@ -113,29 +95,29 @@ private:
 };
 
 /// The columns of the list; empty if not given.
-struct Columns {
+struct ListedColumns {
     std::vector<double> tau, x, before, after, side, phase, acceleration, y_before, y_after;
 };
 
-Columns columns_of(ImpactColumnReader& list) {
-    Columns c{
-        .tau = list.column(time_column),
-        .x = list.column(x_column),
-        .before = list.column(before_column),
-        .after = list.column(after_column),
-        .side = list.optional_column(side_column),
-        .phase = list.optional_column(phase_column),
+ListedColumns read_columns(ImpactColumnReader& list) {
+    ListedColumns c{
+        .tau = list.column(impact_list.tau),
+        .x = list.column(impact_list.x),
+        .before = list.column(impact_list.x_dot_before),
+        .after = list.column(impact_list.x_dot_after),
+        .side = list.optional_column(impact_list.side),
+        .phase = list.optional_column(impact_list.phase),
         .acceleration = {},
-        .y_before = list.optional_column(y_before_column, true),
-        .y_after = list.optional_column(y_after_column, true)};
-    if (c.phase.empty()) c.acceleration = list.optional_column(acceleration_column);
+        .y_before = list.optional_column(impact_list.y_dot_before),
+        .y_after = list.optional_column(impact_list.y_dot_after)};
+    if (c.phase.empty()) c.acceleration = list.optional_column(impact_list.x_ddot_before);
     list.refuse_faults();
     if (c.tau.size() < 2)
         refuse({{"/impacts", c.tau.size(), nullptr, "exponents need at least two impacts"}});
     for (std::size_t i = 0; i < c.tau.size(); ++i) {
         if (i > 0 && !(c.tau[i] > c.tau[i - 1]))
             list.fail(
-                list.name_of(time_column) + ("/" + std::to_string(i)), c.tau[i],
+                list.name_of(impact_list.tau) + ("/" + std::to_string(i)), c.tau[i],
                 "the times of the impacts must increase");
         if (!c.side.empty() && std::abs(c.side[i]) != 1)
             list.fail("side/" + std::to_string(i), c.side[i], "a side is 1 or -1");
@@ -145,7 +127,7 @@ Columns columns_of(ImpactColumnReader& list) {
 }
 
 /// The wall of an impact: x' decreases at side 1 and increases at side -1.
-int side_of(const Columns& c, std::size_t i) {
+int side_of(const ListedColumns& c, std::size_t i) {
     if (!c.side.empty()) return static_cast<int>(c.side[i]);
     return c.after[i] > c.before[i] ? -1 : 1;
 }
@@ -171,7 +153,9 @@ void take_motion(IdentifyRequest& r, CancelCheck& cancel) {
 
 }  // namespace
 
-bool has_phase(const Json& impacts) { return impacts.is_object() && has(impacts, phase_column); }
+bool has_phase(const Json& impacts) {
+    return impacts.is_object() && name_in(impacts, impact_list.phase);
+}
 
 void read_impact_list(IdentifyRequest& r, Json given, CancelCheck& cancel) {
     if (!given.is_object())
@@ -179,7 +163,7 @@ void read_impact_list(IdentifyRequest& r, Json given, CancelCheck& cancel) {
             {{"/impacts", nullptr, nullptr,
               "impacts is an object of columns, as in the answer of /v1/simulate"}});
     ImpactColumnReader list(r, given, cancel);
-    const Columns c = columns_of(list);
+    const ListedColumns c = read_columns(list);
     given = nullptr;
     const Parameters& p = r.system.parameters;
     const auto flow = Flow::shared_free(p);

@@ -150,9 +150,9 @@ std::vector<double> changed(
 
 void read_record(IdentifyRequest& r, const Json& fields, const Csv& csv, CancelCheck& cancel) {
     const std::vector<CsvColumn>& columns = csv.columns;
-    const RecordColumn time = find_column(columns, fields, time_quantity),
-                       x = find_column(columns, fields, displacement_quantity),
-                       a = find_column(columns, fields, acceleration_quantity);
+    const RecordColumn time = find_column(columns, fields, time_channel),
+                       x = find_column(columns, fields, displacement_channel),
+                       a = find_column(columns, fields, acceleration_channel);
     if (!time.column)
         refuse(
             {{"/record", names_of(columns), nullptr,

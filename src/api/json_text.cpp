@@ -168,7 +168,6 @@ void JsonText::put_list(const PackedList& list) {
         case Packed::matrices: return put_list<MatrixByRows>(list.bytes);
         case Packed::integers: return put_list<int>(list.bytes);
         case Packed::flags: return put_list<bool>(list.bytes);
-        case Packed::streamed:
         case Packed::no: return;
     }
 }
@@ -199,8 +198,7 @@ void JsonText::write(Json& json) {
             return values.clear();
         }
         case Type::binary:
-            if (packing_of(json) == Packed::streamed) put_list(source_->list(streamed_list(json)));
-            else put_list({packing_of(json), json.get_binary()});
+            put_list(list_of_(json));
             json = nullptr;
             return;
         case Type::number_float: return put_number(json.get<double>());
@@ -210,6 +208,8 @@ void JsonText::write(Json& json) {
         default: return put(std::string_view(json.dump()));
     }
 }
+
+PackedList list_in_memory(const Json& value) { return {packing_of(value), value.get_binary()}; }
 
 std::string json_text(Json json) {
     std::string text;

@@ -19,24 +19,21 @@ struct PackedList {
     std::span<const std::uint8_t> bytes;
 };
 
-/// Generates lists while an answer is written, in the order in which they stand in it.
-class ListSource {
-public:
-    virtual ~ListSource() = default;
-    /// Valid until the next call.
-    virtual PackedList list(const StreamedList&) = 0;
-};
+/// The list of a packed value.
+PackedList list_in_memory(const Json& value);
 
 /// Writes JSON text in pieces of up to 16 kB.
 class JsonText {
 public:
     /// Receives the pieces in order.
     using Take = std::function<void(std::string_view)>;
+    /// Returns the list of a binary value, valid until the next call. The values come in the order
+    /// of the answer.
+    using ListOf = std::function<PackedList(const Json& value)>;
 
-    /// `source` is required if the answer holds streamed lists.
-    explicit JsonText(Take take, ListSource* source = nullptr)
+    explicit JsonText(Take take, ListOf list_of = list_in_memory)
         : take_(std::move(take)),
-          source_(source) {}
+          list_of_(std::move(list_of)) {}
     JsonText(const JsonText&) = delete;
     JsonText& operator=(const JsonText&) = delete;
 
@@ -64,7 +61,7 @@ private:
     char* room(std::size_t length);
 
     const Take take_;
-    ListSource* const source_;
+    const ListOf list_of_;
     std::array<char, 16384> piece_;
     std::size_t used_ = 0;
 };

@@ -23,9 +23,9 @@ double angular(double f) { return 2 * std::numbers::pi * f; }
 
 std::optional<MeasuredForcing> measured_forcing(
     const std::vector<CsvColumn>& columns, const Json& fields, CancelCheck& cancel) {
-    const RecordColumn time = find_column(columns, fields, time_quantity),
-                       base = find_column(columns, fields, base_quantity),
-                       force = find_column(columns, fields, force_quantity);
+    const RecordColumn time = find_column(columns, fields, time_channel),
+                       base = find_column(columns, fields, base_channel),
+                       force = find_column(columns, fields, force_channel);
     const RecordColumn& channel = base.column ? base : force;
     if (!time.column || !channel.column) return std::nullopt;
     if (base.column && force.column)

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "api/answer_json.hpp"
+#include "api/columns.hpp"
 #include "api/describe.hpp"
 
 namespace vines::api {
@@ -88,22 +89,19 @@ Json describe_perturbation(Perturbation&& p) {
     const std::optional<LinearStretch>& linear = p.linear;
     Json start = Json::object();
     for (const Component& c : perturbed_components) start[c.name] = p.start.*c.value;
-    Json j = describe_series(p.series);
-    j.erase("x_ddot");
+    Json j = describe(perturbation_columns(), p);
     j.update(
         {{"start", std::move(start)},
-         {"impacts",
-          {{"tau", column(p.impacts, [](const auto& i) { return i.tau; })},
-           {"side", column(p.impacts, [](const auto& i) { return i.side; })}}},
-         {"distance", column(p.distance)},
+         {"impacts", describe(touch_columns(), p.impacts)},
+         {quantity.distance.name, column(p.distance)},
          {"predicted",
           {{"lambda1", linear ? finite_or_null(linear->lambda1) : Json(nullptr)},
-           {"distance", column(p.tangent)}}},
+           {quantity.distance.name, column(p.tangent)}}},
          {"slope",
           {{"lambda1", linear ? finite_or_null(linear->slope) : Json(nullptr)},
-           {"tau_start", linear ? Json(linear->tau.from) : Json(nullptr)},
-           {"tau_end", linear ? Json(linear->tau.to) : Json(nullptr)}}},
-         {"parted", or_null(p.parted)}});
+           {quantity.tau_start.name, linear ? Json(linear->tau.from) : Json(nullptr)},
+           {quantity.tau_end.name, linear ? Json(linear->tau.to) : Json(nullptr)}}},
+         {quantity.parted.name, or_null(p.parted)}});
     return j;
 }
 

@@ -126,9 +126,9 @@ std::string sha256(std::string_view text) {
 
 void write_sealed(
     Json& answer, const std::optional<Provenance>& provenance, const JsonText::Take& take,
-    ListSource* lists) {
+    JsonText::ListOf list_of) {
     Seal seal(provenance, take);
-    JsonText text([&seal](std::string_view piece) { seal.add(piece); }, lists);
+    JsonText text([&seal](std::string_view piece) { seal.add(piece); }, std::move(list_of));
     text.write(answer);
     text.end();
     seal.end();

@@ -48,10 +48,10 @@ private:
     bool holds_brace_ = false;  // the last '}' so far is withheld
 };
 
-/// Writes an answer as one line, with its provenance if any. `lists` generates streamed lists.
+/// Writes an answer as one line, with its provenance if any.
 void write_sealed(
     Json& answer, const std::optional<Provenance>& provenance, const JsonText::Take& take,
-    ListSource* lists = nullptr);
+    JsonText::ListOf list_of = list_in_memory);
 
 /// An answer's text split into answer and provenance.
 struct Unsealed {

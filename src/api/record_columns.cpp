@@ -10,9 +10,9 @@
 
 namespace vines::api {
 
-const Quantity time_quantity{
+const Channel time_channel{
     "time", "time_s", {"time", "t"}, {{"s", 1, {"s", "sec"}}, {"ms", 1e-3, {"ms", "msec"}}}};
-const Quantity displacement_quantity{
+const Channel displacement_channel{
     "displacement",
     "displacement_m",
     {"displacement", "x"},
@@ -26,12 +26,11 @@ const std::vector<Unit> acceleration_units = {
 
 }  // namespace
 
-const Quantity acceleration_quantity{
+const Channel acceleration_channel{
     "acceleration", "acceleration_m_s2", {"acceleration", "a"}, acceleration_units};
-const Quantity base_quantity{
+const Channel base_channel{
     "base_acceleration", "base_acceleration_m_s2", {"base_acceleration"}, acceleration_units};
-const Quantity force_quantity{
-    "force", "force_n", {"force"}, {{"N", 1, {"n"}}, {"kN", 1e3, {"kn"}}}};
+const Channel force_channel{"force", "force_n", {"force"}, {{"N", 1, {"n"}}, {"kN", 1e3, {"kn"}}}};
 
 namespace {
 
@@ -46,7 +45,7 @@ bool begins_with(std::string_view name, std::string_view beginning) {
     return is_same_name(name.substr(0, beginning.size()), beginning);
 }
 
-const Unit* known(const Quantity& q, std::string_view text) {
+const Unit* known(const Channel& q, std::string_view text) {
     const std::string written = unit_spelling(text);
     const auto it = std::find_if(q.units.begin(), q.units.end(), [&](const Unit& u) {
         return std::find(u.spellings.begin(), u.spellings.end(), written) != u.spellings.end();
@@ -59,7 +58,7 @@ struct Suffix {
     std::string text;
     bool in_brackets;
 };
-std::optional<Suffix> suffix_of(const Quantity& q, const std::string& name) {
+std::optional<Suffix> suffix_of(const Channel& q, const std::string& name) {
     const std::size_t open = name.find_first_of("([");
     if (open != std::string::npos) {
         const std::size_t close = name.find_first_of(")]", open);
@@ -84,7 +83,7 @@ std::optional<Suffix> suffix_of(const Quantity& q, const std::string& name) {
     return number ? std::nullopt : std::optional(Suffix{text, false});
 }
 
-std::vector<std::string> unit_names(const Quantity& q) {
+std::vector<std::string> unit_names(const Channel& q) {
     std::vector<std::string> names;
     for (const Unit& u : q.units) names.push_back(u.name);
     return names;
@@ -96,8 +95,7 @@ std::string pointer_to(const CsvColumn& column) {
 
 /// `remark` follows the list of known units.
 [[noreturn]] void refuse_unit(
-    const Quantity& q, const CsvColumn& column, const std::string& unit,
-    const std::string& remark) {
+    const Channel& q, const CsvColumn& column, const std::string& unit, const std::string& remark) {
     const std::string shown = shortened(unit);
     refuse(
         {{pointer_to(column), shown, unit_names(q),
@@ -106,7 +104,7 @@ std::string pointer_to(const CsvColumn& column) {
 }
 
 /// The unit in the row of units; null if none.
-const Unit* unit_of_row(const Quantity& q, const CsvColumn& column) {
+const Unit* unit_of_row(const Channel& q, const CsvColumn& column) {
     if (unit_spelling(column.unit).empty()) return nullptr;
     const Unit* named = known(q, column.unit);
     if (!named) refuse_unit(q, column, column.unit, "");
@@ -114,7 +112,7 @@ const Unit* unit_of_row(const Quantity& q, const CsvColumn& column) {
 }
 
 /// The unit in the column's name; null if none.
-const Unit* unit_of_name(const Quantity& q, const CsvColumn& column, bool named_by_request) {
+const Unit* unit_of_name(const Channel& q, const CsvColumn& column, bool named_by_request) {
     const std::optional<Suffix> suffix = suffix_of(q, column.name);
     if (!suffix) return nullptr;
     if (const Unit* named = known(q, suffix->text)) return named;
@@ -126,7 +124,7 @@ const Unit* unit_of_name(const Quantity& q, const CsvColumn& column, bool named_
                             : ". If it is not a unit, name the column in " + q.name + "_column");
 }
 
-double unit_factor(const Quantity& q, const Json& fields, const CsvColumn& column) {
+double unit_factor(const Channel& q, const Json& fields, const CsvColumn& column) {
     const std::string field = q.name + "_unit";
     const Unit* requested = nullptr;
     if (fields.contains(field))
@@ -152,7 +150,7 @@ double unit_factor(const Quantity& q, const Json& fields, const CsvColumn& colum
 }  // namespace
 
 RecordColumn find_column(
-    const std::vector<CsvColumn>& columns, const Json& fields, const Quantity& q) {
+    const std::vector<CsvColumn>& columns, const Json& fields, const Channel& q) {
     const auto found = [&](auto fits) {
         const auto it = std::find_if(columns.begin(), columns.end(), [&](const CsvColumn& c) {
             return fits(std::string_view(c.name));

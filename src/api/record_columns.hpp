@@ -1,4 +1,4 @@
-// Finds the column of a record that holds a quantity, and its unit.
+// Finds the column of a record that holds a channel, and its unit.
 #pragma once
 
 #include <string>
@@ -15,14 +15,15 @@ struct Unit {
     std::vector<std::string> spellings;
 };
 
-struct Quantity {
+/// A channel of a record.
+struct Channel {
     std::string name;                     ///< of the fields <name>_column, <name>_unit
     std::string column;                   ///< default column name
     std::vector<std::string> beginnings;  ///< beginnings of other accepted column names
     std::vector<Unit> units;              ///< the first one is the default
 };
-extern const Quantity time_quantity, displacement_quantity, acceleration_quantity, base_quantity,
-    force_quantity;
+extern const Channel time_channel, displacement_channel, acceleration_channel, base_channel,
+    force_channel;
 
 struct RecordColumn {
     const CsvColumn* column;  ///< null if missing
@@ -33,6 +34,6 @@ struct RecordColumn {
 /// units, else that of the request's field, else the default. Problem 422 for an unknown unit or
 /// contradictory ones.
 RecordColumn find_column(
-    const std::vector<CsvColumn>& columns, const Json& fields, const Quantity& quantity);
+    const std::vector<CsvColumn>& columns, const Json& fields, const Channel& channel);
 
 }  // namespace vines::api

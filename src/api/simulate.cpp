@@ -16,8 +16,8 @@ namespace vines::api {
 
 namespace {
 
-// The size of an answer is bounded before it is computed, from the count of numbers per point and
-// impact. Bytes for words, parameters, the orbit, 200 points on each branch of the manifold:
+// The size of an answer is bounded before it is computed, from its columns per point and impact.
+// Bytes for words, parameters, the orbit, 200 points on each branch of the manifold:
 constexpr double rest_bytes = 64 * 1024;
 // Bytes for the exponents of one window by three estimators, with their words:
 constexpr double window_bytes = 2048;
@@ -28,30 +28,30 @@ struct AnswerSize {
 };
 
 AnswerSize size_of(const SimulateRequest& r) {
-    // Bytes of an entry with its comma. number: "-2.2250738585072014e-308,", the longest double in
-    // its shortest form. count: up to 2000000. word: true, false, null.
-    constexpr double number = 25, side = 3, count = 8, word = 6, bracket = 2;
+    const bool si = r.system.si.has_value();
+    const auto row = [si](auto columns) { return row_bytes(columns, si); };
+    const auto value = [si](const Quantity& q) { return value_bytes(q, si); };
     AnswerSize size;
-    const double si = r.system.si ? number : 0;  // per column with an SI counterpart
     size.fixed += window_bytes * static_cast<double>(r.wanted.windows.size());
-    if (r.includes("series")) size.point += 6 * number + 4 * si;
-    if (r.includes("exponents")) {  // tau and four exponents, and the floor
-        if (r.wanted.estimators.qr) size.point += 5 * number + si;
-        if (r.wanted.estimators.raw_product) size.point += 6 * number + si;
+    if (r.includes("series")) size.point += row(series_columns());
+    if (r.includes("exponents")) {
+        const double history = row(history_columns());
+        if (r.wanted.estimators.qr) size.point += history;
+        if (r.wanted.estimators.raw_product) size.point += history + value(quantity.rounding_floor);
         if (r.wanted.estimators.eigenvalues)
-            size.fixed += static_cast<double>(most_eigenvalue_entries) * (5 * number + si);
+            size.fixed += static_cast<double>(most_eigenvalue_entries) * history;
     }
-    if (r.includes("eigenvalues")) size.point += 14 * number + si + 3 * bracket;
-    if (r.includes("matrices")) size.point += 49 * number + si + 15 * bracket;
-    if (r.includes("section")) size.point += 11 * number + 7 * si + side;
-    if (r.includes("regime")) size.point += 6 * number + 3 * si;    // z_moving, stretches
-    if (r.includes("manifold")) size.point += 3 * number + 2 * si;  // the half cycles
-    if (r.wanted.perturbation) size.point += 7 * number + 3 * si;
-    size.impact = 2 * (number + si) + side + count;  // sticking
-    // Impacts, touches.
-    if (r.includes("impacts"))
-        size.impact += 11 * number + 8 * si + side + word + number + si + side;
-    if (r.wanted.perturbation) size.impact += number + si + side;
+    if (r.includes("eigenvalues")) size.point += row(moduli_columns());
+    if (r.includes("matrices")) size.point += row(matrix_columns());
+    if (r.includes("section"))
+        size.point += row(impact_section_columns()) + value(quantity.tau) + row(state_columns());
+    if (r.includes("regime")) size.point += row(moving_z_columns()) + row(stretch_columns());
+    if (r.includes("manifold")) size.point += value(quantity.tau) + row(branch_columns());
+    if (r.wanted.perturbation)
+        size.point += row(perturbation_columns()) + value(quantity.predicted_distance);
+    size.impact = row(sticking_columns());
+    if (r.includes("impacts")) size.impact += row(impact_columns()) + row(touch_columns());
+    if (r.wanted.perturbation) size.impact += row(touch_columns());
     return size;
 }
 
@@ -156,17 +156,17 @@ public:
 
     void describe(Analysis& a) {
         const ExponentOptions& shown = r_.wanted.estimators;
-        part("series", [&] { return describe_series(*taken(a.series)); });
+        part("series", [&] { return api::describe(series_columns(), *taken(a.series)); });
         part("impacts", [&] {
-            if (a.unkept_impacts) return describe_streamed_impacts();
+            if (a.unkept_impacts) return streamed_impacts(r_.system.si);
             return describe_impacts(taken(a.impacts), scales_of(r_, a));
         });
-        add("sticking", describe_sticks(a.sticks));
-        if (!a.touches.empty()) add("touches", describe_touches(a.touches));
+        add("sticking", api::describe(sticking_columns(), a.sticks));
+        if (!a.touches.empty()) add("touches", api::describe(touch_columns(), a.touches));
         part("exponents", [&] { return describe_exponents(*a.exponents, shown, *a.regime, true); });
         if (!a.windows.empty()) add("windows", describe_windows(a.windows, shown, *a.regime));
-        part("eigenvalues", [&] { return describe_moduli(*taken(a.moduli)); });
-        part("matrices", [&] { return describe_matrices(*taken(a.matrices)); });
+        part("eigenvalues", [&] { return api::describe(moduli_columns(), *taken(a.moduli)); });
+        part("matrices", [&] { return api::describe(matrix_columns(), *taken(a.matrices)); });
         part("section", [&] { return describe_sections(*taken(a.sections)); });
         part("energy", [&] { return describe_energy(*a.energy); });
         part("regime", [&] { return describe_regime(*a.regime); });
@@ -243,9 +243,10 @@ Answer simulate_in_parts(
 
 void write_answer(
     Answer answer, RunControl& control, const JsonText::Take& take, std::size_t list_bytes) {
-    std::optional<StreamedImpacts> lists;
-    if (answer.run) lists.emplace(*answer.run, answer.json, control, list_bytes);
-    write_sealed(answer.json, answer.provenance, take, lists ? &*lists : nullptr);
+    write_sealed(
+        answer.json, answer.provenance, take,
+        answer.run ? list_generator(*answer.run, answer.json, control, list_bytes)
+                   : list_in_memory);
 }
 
 Json simulate_answer(SimulateRequest r, const Stop& stop, std::size_t most_bytes) {

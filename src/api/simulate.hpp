@@ -3,9 +3,9 @@
 
 #include <functional>
 
-#include "api/impact_columns.hpp"
 #include "api/provenance.hpp"
 #include "api/request.hpp"
+#include "api/streamed_impacts.hpp"
 #include "api/warning_text.hpp"
 
 namespace vines::api {

@@ -40,7 +40,6 @@ void visit_below(
 std::optional<AnswerList> AnswerList::of(const Json& value) {
     AnswerList list;
     list.packing_ = packing_of(value);
-    if (list.packing_ == Packed::streamed) return std::nullopt;
     if (list.packing_ != Packed::no) {
         list.bytes_ = value.get_binary();
         return list;

@@ -1,4 +1,5 @@
 // The parts `exponents` and `windows` of a simulation, and `exponents` of a measurement.
+#include "api/columns.hpp"
 #include "api/openapi/parts.hpp"
 
 namespace vines::api::document {
@@ -22,14 +23,6 @@ namespace {
 /// measurement.
 enum class Of { run, windows, measurement };
 
-Keys history_keys() {
-    Keys keys = {{"tau", numbers(), "every impact, or every second, fourth, ..."}};
-    for (const char* name : {"lambda1", "lambda2", "lambda3", "lambda4"})
-        keys.push_back(
-            {name, list_of(or_null(number())), "exponent from the window's start to tau"});
-    return keys;
-}
-
 Keys estimator_keys(Of of, const Keys& of_history = {}) {
     Keys keys = final_keys();
     if (of != Of::measurement)
@@ -39,7 +32,7 @@ Keys estimator_keys(Of of, const Keys& of_history = {}) {
              "with fewer than 24 impacts, or if lambda1 is not converged"});
     if (of != Of::windows)
         keys.push_back(
-            {"history", object_of(history_keys() + of_history),
+            {"history", object_of(columns_of(history_columns()) + of_history),
              "each exponent as a function of time"});
     return keys;
 }
@@ -58,12 +51,9 @@ Keys own_window(Of of) {
 
 Json raw_product(Of of) {
     const Keys floors = {
-        {"rounding_floor", list_of(or_null(number())),
-         "rounding floor from the window's start to tau"}};
+        column_of(quantity.rounding_floor.with("rounding floor from the window's start to tau"))};
     return object_of(
-        estimator_keys(of, floors) + own_window(of) +
-        Keys{
-            {"rounding_floor", or_null(number()), "exponents below this value are rounding only"}});
+        estimator_keys(of, floors) + own_window(of) + Keys{value_of(quantity.rounding_floor)});
 }
 
 Keys window_keys() {
@@ -100,8 +90,8 @@ Keys verdict_keys() {
 
 Keys stretch_keys() {
     const Json stretches = object_of(
-        {{"tau_start", numbers(), "start of each stretch"},
-         {"tau_end", numbers(), "end of each stretch"}});
+        {column_of(quantity.tau_start.with("start of each stretch")),
+         column_of(quantity.tau_end.with("end of each stretch"))});
     return {
         optional({"duration", number(), "total length of the stretches, in tau"}),
         optional(

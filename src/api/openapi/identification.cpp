@@ -1,4 +1,5 @@
 // The response of /v1/identify.
+#include "api/columns.hpp"
 #include "api/openapi/parts.hpp"
 
 namespace vines::api::document {
@@ -51,24 +52,8 @@ Json fitted() {
     return object_of(keys);
 }
 
-Keys impact_keys() {
-    const Json some = list_of(or_null(number()));
-    return {
-        {"x", some, "displacement, m"},
-        {"x_dot_before", some, "velocity of the oscillator, from the fit"},
-        {"x_dot_after", some, "velocity of the oscillator, from the fit"},
-        {"x_ddot_before", some, "acceleration of the oscillator, from the fit"},
-        {"y_dot_before", some, "velocity of the ball, from its flights, eq. (43)"},
-        {"y_dot_after", some, "velocity of the ball, from its flights, eq. (43)"},
-        {"R", some, "restitution coefficient, eq. (4); null for the first and the last impact"},
-        {"momentum_error", some, "error of x' + epsilon y', over the median jump of x'"},
-        {"status", list_of(text()),
-         "ok, R is not known, hidden, or the reason why the exponents exclude the impact"}};
-}
-
 Json identified_impacts() {
-    return object_of(
-        Keys{{"tau", numbers(), "time"}, {"side", list_of(side()), "wall"}} + impact_keys());
+    return object_of(columns_of(identified_wall_columns()) + columns_of(identified_columns()));
 }
 
 Json restitution() {
@@ -80,16 +65,12 @@ Json restitution() {
 }
 
 Json fitted_motion() {
-    return object_of(
-        {{"tau", numbers(), "time"},
-         {"x", numbers(), "displacement of the oscillator, m"},
-         {"x_dot", numbers(), "velocity of the oscillator"},
-         {"x_ddot", numbers(), "acceleration of the oscillator, without the pulses of impacts"}});
+    return object_of(Keys{column_of(quantity.tau)} + columns_of(fitted_motion_columns()));
 }
 
 Json direct() {
     return object_of(
-        {{"impacts", object_of(impact_keys()), "the same impacts, in the same order"},
+        {{"impacts", table_of(identified_columns()), "the same impacts, in the same order"},
          {"restitution", reference("Restitution"), "restitution coefficients"},
          {"lambda", four_exponents(),
           "four exponents by qr, without the impacts that status excludes here"},
@@ -100,14 +81,9 @@ Json direct() {
 }
 
 Json forward_run() {
-    const Json impacts = object_of(
-        {{"tau", numbers(), "time"},
-         {"side", list_of(side()), "wall"},
-         {"x", numbers(), "displacement, m"},
-         {"x_dot_after", numbers(), "velocity of the oscillator"}});
     return object_of(
         {{"start", number(), "tau at the start of the run"},
-         {"impacts", impacts, "impacts of the run"},
+         {"impacts", table_of(forward_impact_columns()), "impacts of the run"},
          {"lambda", four_exponents(), "four exponents by qr"}});
 }
 

@@ -3,7 +3,6 @@
 #include <span>
 #include <utility>
 
-#include "api/si_columns.hpp"
 #include "core/measures/regime.hpp"
 
 namespace vines::api::document {
@@ -79,35 +78,61 @@ Json side() { return {{"type", "integer"}, {"enum", {1, -1}}}; }
 
 namespace {
 
-std::string si_unit_of(const SiCounterpart& t) {
-    if (t.per_m1) return t.power == 1 ? "N s" : "J";
-    return t.power < 0 ? "s" : t.power == 1 ? "m/s" : "m/s^2";
+Json schema_of(ValueType type) {
+    const Json moduli = list_of(number(), 4);
+    switch (type) {
+        case ValueType::number: return number();
+        case ValueType::number_or_null: return or_null(number());
+        case ValueType::whole: return whole();
+        case ValueType::wall: return side();
+        case ValueType::flag: return flag();
+        case ValueType::word: return text();
+        case ValueType::component: return one_of({"x_dot", "x", "y_dot", "y"});
+        case ValueType::moduli: return moduli;
+        case ValueType::exponents: return list_of(or_null(number()), 4);
+        case ValueType::matrix: return list_of(moduli, 4);
+    }
+    return nullptr;
+}
+
+std::string si_unit_of(const Quantity& q) {
+    if (q.per_m1) return q.power == 1 ? "N s" : "J";
+    return q.power < 0 ? "s" : q.power == 1 ? "m/s" : "m/s^2";
 }
 
 /// Adds them as optional keys: only a system in SI has them.
-void add_si_counterparts(Json& properties, std::span<const SiCounterpart> table) {
-    for (const SiCounterpart& t : table) {
-        if (!properties.contains(t.name)) continue;
-        Json counterpart = properties[t.name];
+template <class Table>
+void add_si_counterparts(Json& properties, const Table& table) {
+    for (const Quantity& q : members_of(table)) {
+        if (!q.si_name || !properties.contains(q.name)) continue;
+        Json counterpart = properties[q.name];
         counterpart["description"] =
-            std::string(t.name) + " in " + si_unit_of(t) + ", for a system in SI";
-        properties[t.si_name] = std::move(counterpart);
+            std::string(q.name) + " in " + si_unit_of(q) + ", for a system in SI";
+        properties[q.si_name] = std::move(counterpart);
     }
 }
 
 }  // namespace
 
+Key value_of(const Quantity& q) { return {q.name, schema_of(q.type), q.meaning}; }
+
+Key column_of(const Quantity& q) {
+    const Json entries = schema_of(q.type);
+    const bool is_state = q.type == ValueType::component;
+    return {q.name, is_state ? list_of(entries, 4) : list_of(entries), q.meaning};
+}
+
 Json with_si(Json schema) {
     if (schema.contains("items")) schema["items"] = with_si(std::move(schema["items"]));
     if (!schema.contains("properties")) return schema;
     Json& properties = schema["properties"];
-    add_si_counterparts(properties, si_counterparts());
+    add_si_counterparts(properties, quantity);
     for (auto& [name, value] : properties.items()) value = with_si(std::move(value));
     return schema;
 }
 
 Json with_joules(Json schema) {
-    add_si_counterparts(schema["properties"], energy_counterparts());
+    add_si_counterparts(schema["properties"], energies);
     return schema;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "api/quantity.hpp"
 #include "api/schema/enum_names.hpp"
 #include "api/schema/json.hpp"
 
@@ -60,6 +61,17 @@ Json enum_schema() {
 Json regime_name();
 /// 1 or -1.
 Json side();
+
+/// The key of a quantity: with one value, or with a list, a column of a response.
+Key value_of(const Quantity& quantity);
+Key column_of(const Quantity& quantity);
+/// The keys of a table of columns (columns.hpp), and their object.
+Keys columns_of(const auto& table) {
+    Keys keys;
+    for (const auto& column : table) keys.push_back(column_of(column.quantity));
+    return keys;
+}
+Json table_of(const auto& table) { return object_of(columns_of(table)); }
 
 /// The schema with its SI counterparts, as add_si() adds them to a response.
 Json with_si(Json schema);

@@ -1,21 +1,12 @@
 // The part `manifold` of a simulation, and the response of /v1/manifold.
+#include "api/columns.hpp"
 #include "api/openapi/parts.hpp"
 
 namespace vines::api::document {
 
 namespace {
 
-Json manifold_point() {
-    return object_of(
-        {{"C", number(), "amplitude of the oscillator, m"},
-         {"V", number(), "speed of the ball, m per unit of tau"}});
-}
-
-Keys branch_keys() {
-    return {
-        {"C", numbers(), "amplitudes of the oscillator, m"},
-        {"V", numbers(), "speeds of the ball, m per unit of tau"}};
-}
+Json manifold_point() { return object_of({value_of(quantity.C), value_of(quantity.V)}); }
 
 Keys manifold_keys() {
     return {
@@ -31,9 +22,9 @@ Keys manifold_keys() {
         {"second_contact", manifold_point(),
          "the point at which the ball meets the same wall a second time: this motion ends there"},
         {"stable_ends_by", one_of({"symmetry_breaking", "second_contact"}), "which comes first"},
-        {"stable", object_of(branch_keys()), "branch from the fold to the end of stability"},
-        {"unstable", object_of(branch_keys()), "branch below the fold"},
-        {"asymmetric", object_of(branch_keys()), "branch beyond the symmetry breaking"},
+        {"stable", table_of(branch_columns()), "branch from the fold to the end of stability"},
+        {"unstable", table_of(branch_columns()), "branch below the fold"},
+        {"asymmetric", table_of(branch_columns()), "branch beyond the symmetry breaking"},
         {"free_amplitude", or_null(number()),
          "steady amplitude without the absorber, m; null if undamped at resonance"},
         {"b_at_free_amplitude", or_null(number()),
@@ -55,9 +46,9 @@ Json recommendation() {
 Keys run_keys() {
     Keys keys;
     for (const Key& key : manifold_keys()) keys.push_back(optional(key));
-    const Keys points = {{"tau", numbers(), "end of each half cycle"}};
+    const Keys points = {column_of(quantity.tau.with("end of each half cycle"))};
     keys.push_back(
-        {"points", object_of(points + branch_keys()),
+        {"points", object_of(points + columns_of(branch_columns())),
          "the run: maximum of |x| and mean of |y'| in each half cycle"});
     return keys;
 }

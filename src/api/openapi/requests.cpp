@@ -1,5 +1,6 @@
 // Request schemas and query parameters, generated from the field tables against which requests are
 // checked. The columns of a measurement are listed here.
+#include "api/columns.hpp"
 #include "api/openapi/parts.hpp"
 
 namespace vines::api::document {
@@ -86,38 +87,14 @@ void add_query(
     }
 }
 
-/// The columns of `impacts` in a simulation or an identification; a laboratory can leave out those
-/// it does not measure. Other columns are permitted and ignored.
-Json impact_columns() {
-    const Json numbers_or_null = list_of(or_null(number()));
-    Keys keys = {
-        optional({"tau", numbers(), "dimensionless time tau = omega0 t; or use time_s"}),
-        optional({"time_s", numbers(), "time in s, for a system in SI"}),
-        optional({"x", numbers(), "displacement of the oscillator, m"}),
-        optional({"side", list_of(number()), "1 or -1; default: from the jump of x'"}),
-        optional({"phase", numbers(), "phase of the forcing; default: fitted to the impacts"})};
-    for (const char* when : {"before", "after"})
-        for (const auto& [name, si_name] :
-             {std::pair("x_dot_", "x_velocity_"), std::pair("y_dot_", "y_velocity_")}) {
-            const bool is_ball = name[0] == 'y';
-            const Json values = is_ball ? numbers_or_null : numbers();
-            const std::string what =
-                is_ball ? "velocity of the ball; default: from its positions at successive impacts"
-                        : "velocity of the oscillator";
-            keys.push_back(optional({std::string(name) + when, values, what}));
-            keys.push_back(optional(
-                {std::string(si_name) + when, values, what + "; in m/s, for a system in SI"}));
-        }
-    keys.push_back(optional(
-        {"x_ddot_before", numbers(),
-         "acceleration of the oscillator before the impact, if phase is unknown"}));
-    keys.push_back(optional(
-        {"x_acceleration_before", numbers(),
-         "acceleration of the oscillator before the impact, m/s^2, if phase is unknown"}));
-    Json schema = object_of(keys);
-    schema["additionalProperties"] = true;
-    schema["required"] = {"x"};
-    return schema;
+/// A laboratory can leave out columns that it does not measure. Other columns are permitted and
+/// ignored.
+Json impact_list_columns() {
+    Keys keys;
+    for (const Quantity& q : members_of(impact_list)) keys.push_back(optional(column_of(q)));
+    Json columns = with_si(object_of(keys));
+    columns["additionalProperties"] = true;
+    return columns;
 }
 
 Json identify_request() {
@@ -127,7 +104,7 @@ Json identify_request() {
     properties["record"]["description"] =
         "columns: time_s, displacement_m, acceleration_m_s2; other units in a name "
         "(displacement_mm, time (ms)) are converted";
-    properties["impacts"] = impact_columns();
+    properties["impacts"] = impact_list_columns();
     properties["impacts"]["description"] =
         "columns as in impacts of /v1/simulate, instead of a record";
     return request;

@@ -1,126 +1,52 @@
 // The response of /v1/simulate: one schema for each part.
+#include "api/columns.hpp"
 #include "api/openapi/parts.hpp"
 
 namespace vines::api::document {
 
 Keys impact_section_keys() {
-    return {
-        {"side", list_of(side()), "sign of x - y"},
-        {"phase", numbers(), "phase of the forcing, Omega tau + phi, in [0, 2 pi)"},
-        {"x", numbers(), "displacement of the oscillator, m"},
-        {"x_dot_after", numbers(), "velocity of the oscillator"},
-        {"y_dot_after", numbers(), "velocity of the ball"},
-        {"time_difference", list_of(or_null(number())),
-         "time since the previous impact; null for the first impact of the run"}};
+    Keys keys = columns_of(impact_section_columns());
+    keys.erase(keys.begin());
+    return keys;
 }
 
-Keys stroboscopic_keys() {
-    return {
-        {"x", numbers(), "displacement of the oscillator, m"},
-        {"x_dot", numbers(), "velocity of the oscillator"},
-        {"y", numbers(), "displacement of the ball, m"},
-        {"y_dot", numbers(), "velocity of the ball"}};
-}
+Keys stroboscopic_keys() { return columns_of(state_columns()); }
 
 namespace {
-
-Key time_key(const std::string& description) { return {"tau", numbers(), description}; }
 
 Json run_status() {
     return with_si(object_of(
         {{"reason", one_of({"tau_end", "max_impacts", "deadline"}),
           "deadline: the time limit of the server for one request"},
-         {"tau", number(), "time at which the run ended"},
+         value_of(quantity.tau.with("time at which the run ended")),
          {"message", text(), "a sentence"}}));
-}
-
-Json series() {
-    return object_of(
-        Keys{time_key("equal steps, then the end of the run")} + stroboscopic_keys() +
-        Keys{{"x_ddot", numbers(), "acceleration of the oscillator between impacts"}});
-}
-
-Json impacts() {
-    return object_of(
-        {time_key("time"),
-         {"side", list_of(side()), "sign of x - y"},
-         {"phase", numbers(), "phase of the forcing, Omega tau + phi, in [0, 2 pi)"},
-         {"x", numbers(), "displacement of the oscillator, m"},
-         {"x_dot_before", numbers(), "velocity of the oscillator"},
-         {"x_dot_after", numbers(), "velocity of the oscillator"},
-         {"y_dot_before", numbers(), "velocity of the ball"},
-         {"y_dot_after", numbers(), "velocity of the ball"},
-         {"x_ddot_before", numbers(), "acceleration of the oscillator"},
-         {"relative_speed", numbers(), "|x' - y'| before the impact"},
-         {"impulse", numbers(), "impulse on the ball per m1, epsilon (y'+ - y'-)"},
-         {"relative_speed_ratio", list_of(or_null(number())),
-          "relative_speed over its median; 0 for a grazing contact"},
-         {"grazing", list_of(flag()), "true for a nearly tangent impact"}});
-}
-
-Json sticking() {
-    return object_of(
-        {{"side", list_of(side()), "side of the wall"},
-         {"tau_start", numbers(), "start: the end of the chatter"},
-         {"tau_end", numbers(), "release, or the end of the run"},
-         {"impacts", list_of(whole()), "impacts of the chatter, all on this side"}});
-}
-
-Json touches() { return object_of({time_key("time"), {"side", list_of(side()), "sign of x - y"}}); }
-
-Json eigenvalues() {
-    const Json moduli = list_of(list_of(number(), 4));
-    return object_of(
-        {time_key("time"),
-         {"J", moduli, "transfer matrix of the flight before the impact: four moduli, descending"},
-         {"M", moduli, "transfer matrix of the impact"},
-         {"T", list_of(four_exponents()),
-          "T = M J; null if rounding leaves no accurate digit, at the end of a chatter"},
-         {"M_condition", list_of(or_null(number())),
-          "condition number of M in the Frobenius norm; null if R = 0"}});
-}
-
-Json matrices() {
-    const Json by_rows = list_of(list_of(list_of(number(), 4), 4));
-    return object_of(
-        {time_key("time"),
-         {"order", list_of(one_of({"x_dot", "x", "y_dot", "y"}), 4), "order of rows and columns"},
-         {"J", by_rows, "transfer matrix of the flight before the impact, by rows"},
-         {"M", by_rows, "transfer matrix of the impact, by rows"},
-         {"T", by_rows, "T = M J, by rows"}});
 }
 
 Json section() {
     return object_of(
-        {{"impact",
-          object_of(Keys{time_key("time of each impact in the window")} + impact_section_keys()),
-          "Poincare section at impact"},
+        {{"impact", object_of(columns_of(impact_section_columns())), "Poincare section at impact"},
          {"stroboscopic",
           object_of(
-              Keys{time_key("one time per cycle, section_phase after its start")} +
+              Keys{column_of(
+                  quantity.tau.with("one time per cycle, section_phase after its start"))} +
               stroboscopic_keys()),
           "stroboscopic section, once per cycle"}});
 }
 
-Keys decay_keys() {
-    return {
-        {"tau_half", or_null(number()),
-         "time at which half of the energy is left; null if not reached"},
-        {"tau_tenth", or_null(number()), "time at which a tenth is left; null if not reached"}};
-}
+Keys decay_keys() { return {value_of(quantity.tau_half), value_of(quantity.tau_tenth)}; }
 
 Json energy() {
     return with_joules(object_of(
         {{"window", interval(), "interval of the balance"},
-         {"input", number(), "work of the forcing"},
-         {"damper", number(), "energy dissipated by the damper, 2 zeta x'"},
-         {"impacts", number(), "energy dissipated in impacts"},
-         {"stored", number(), "stored energy at the end minus that at the start"},
-         {"residual", number(), "error of the balance"},
+         value_of(energies.input),
+         value_of(energies.damper),
+         value_of(energies.impacts),
+         value_of(energies.stored),
+         value_of(energies.residual),
          {"share_impacts", or_null(number()),
           "fraction of the dissipated energy; null if none is dissipated"},
-         {"at_start", number(), "stored energy at the start"},
-         {"at_end", number(), "stored energy at the end"},
+         value_of(energies.at_start),
+         value_of(energies.at_end),
          {"rms", number(), "rms of x, m"},
          {"peak", number(), "maximum of |x|, m"},
          {"without_absorber",
@@ -160,7 +86,7 @@ Keys orbit_keys() {
          {"im", numbers(), "imaginary part"},
          {"modulus", numbers(), "modulus, descending"}});
     const Json orbit = object_of(
-        {{"tau", number(), "a time on the orbit, during a flight"},
+        {value_of(quantity.tau.with("a time on the orbit, during a flight")),
          {"x_dot", number(), "velocity of the oscillator at that time"},
          {"x", number(), "displacement of the oscillator at that time, m"},
          {"y_dot", number(), "velocity of the ball at that time"},
@@ -184,22 +110,13 @@ Keys rhythm_keys() {
     return {
         {"cycles_with", numbers(), "fractions of cycles with 0, 1, 2, ... contacts"},
         {"share_two_impacts", number(), "fraction of cycles with two contacts"},
-        {"z_moving",
-         object_of(
-             {time_key("middle of ten cycles"),
-              {"z", numbers(), "contacts per cycle in these ten"}}),
-         "moving average of z"},
+        {"z_moving", table_of(moving_z_columns()), "moving average of z"},
         {"synchronised",
          object_of(
              {{"share", number(), "fraction of the contacts that lie in synchronised stretches"},
               {"longest_half_cycles", whole(), "length of the longest such stretch"}}),
          "synchronisation of the contacts with the forcing (1:1 resonance)"},
-        {"stretches",
-         object_of(
-             {{"tau_start", numbers(), "start of each stretch"},
-              {"tau_end", numbers(), "end of each stretch"},
-              {"synchronised", list_of(flag()), "true for a synchronised stretch"},
-              {"contacts", list_of(whole()), "number of contacts in the stretch"}}),
+        {"stretches", table_of(stretch_columns()),
          "synchronised and other stretches, in order of time"}};
 }
 
@@ -218,40 +135,30 @@ Json regime() {
 }
 
 Json perturbation() {
+    const Keys start = {
+        value_of(quantity.x),
+        value_of(quantity.x_dot.with("velocity of the oscillator, m per unit of tau")),
+        value_of(quantity.y),
+        value_of(quantity.y_dot.with("velocity of the ball, m per unit of tau"))};
+    const Keys predicted = {
+        {"lambda1", or_null(number()),
+         "largest exponent by qr over the impacts of the stretch in slope; null without one"},
+        column_of(quantity.predicted_distance)};
+    const Keys slope = {
+        {"lambda1", or_null(number()), "slope of ln(distance)"},
+        value_of(quantity.tau_start.with("start of the stretch").or_null()),
+        value_of(quantity.tau_end.with("end of the stretch").or_null())};
     return object_of(
-        {{"start",
-          object_of(
-              {{"x", number(), "displacement of the oscillator, m"},
-               {"x_dot", number(), "velocity of the oscillator, m per unit of tau"},
-               {"y", number(), "displacement of the ball, m"},
-               {"y_dot", number(), "velocity of the ball, m per unit of tau"}}),
-          "perturbation of the start"},
-         time_key("times of the series, up to the end of the shorter run"),
-         {"x", numbers(), "displacement of the oscillator in the second run, m"},
-         {"x_dot", numbers(), "velocity of the oscillator in the second run"},
-         {"y", numbers(), "displacement of the ball in the second run, m"},
-         {"y_dot", numbers(), "velocity of the ball in the second run"},
-         {"impacts", touches(), "impacts of the second run"},
-         {"distance", numbers(),
-          "Euclidean length of the difference in (x', x, y', y), through impacts"},
-         {"predicted",
-          object_of(
-              {{"lambda1", or_null(number()),
-                "largest exponent by qr over the impacts of the stretch in slope; null without "
-                "one"},
-               {"distance", list_of(or_null(number())),
-                "length of the tangent vector; null where it overflows"}}),
-          "prediction of the linear theory"},
-         {"slope",
-          object_of(
-              {{"lambda1", or_null(number()), "slope of ln(distance)"},
-               {"tau_start", or_null(number()), "start of the stretch"},
-               {"tau_end", or_null(number()), "end of the stretch"}}),
-          "fit over the stretch in which distance is within 10 % of the prediction; null with "
-          "fewer than three impacts there"},
-         {"parted", or_null(number()),
-          "time from which the impacts of both runs no longer correspond; null if they always "
-          "do"}});
+        Keys{{"start", object_of(start), "perturbation of the start"}} +
+        columns_of(perturbation_columns()) +
+        Keys{
+            {"impacts", table_of(touch_columns()), "impacts of the second run"},
+            column_of(quantity.distance),
+            {"predicted", object_of(predicted), "prediction of the linear theory"},
+            {"slope", object_of(slope),
+             "fit over the stretch in which distance is within 10 % of the prediction; null with "
+             "fewer than three impacts there"},
+            value_of(quantity.parted)});
 }
 
 /// A part that is null if the time limit left no time to compute it.
@@ -294,12 +201,12 @@ Json simulation() {
 void add_simulation(Json& schemas) {
     schemas["Simulation"] = simulation();
     schemas["RunStatus"] = run_status();
-    schemas["Series"] = with_si(series());
-    schemas["Impacts"] = with_si(impacts());
-    schemas["Sticking"] = with_si(sticking());
-    schemas["Touches"] = with_si(touches());
-    schemas["Eigenvalues"] = with_si(eigenvalues());
-    schemas["Matrices"] = with_si(matrices());
+    schemas["Series"] = with_si(table_of(series_columns()));
+    schemas["Impacts"] = with_si(table_of(impact_columns()));
+    schemas["Sticking"] = with_si(table_of(sticking_columns()));
+    schemas["Touches"] = with_si(table_of(touch_columns()));
+    schemas["Eigenvalues"] = with_si(table_of(moduli_columns()));
+    schemas["Matrices"] = with_si(table_of(matrix_columns()));
     schemas["Section"] = with_si(section());
     schemas["Energy"] = with_si(energy());
     schemas["Regime"] = with_si(regime());
