@@ -59,7 +59,10 @@ constexpr Column<std::vector<StickingPhase>> sticking_table[] = {
     {quantity.tau_start.with("start: the end of the chatter"),
      [](const auto& sticks) { return column(sticks, [](auto& s) { return s.start.tau; }); }},
     {quantity.tau_end.with("release, or the end of the run"), each<&StickingPhase::tau_end>},
-    {{"impacts", "impacts of the chatter, all on this side", ValueType::whole},
+    {{"impacts",
+      "impacts of the chatter, all on this side; it is followed until the remainder would last "
+      "less than 1e-9 in tau",
+      ValueType::whole},
      [](const auto& sticks) { return column(sticks, [](auto& s) { return s.start.impacts; }); }},
 };
 
@@ -84,7 +87,7 @@ constexpr Column<TransferModuli> moduli_table[] = {
 
 constexpr Column<TransferMatrices> matrix_table[] = {
     {quantity.tau, list<&TransferMatrices::tau>},
-    {{"order", "order of rows and columns", ValueType::component},
+    {{"order", "order of rows and columns: x_dot, x, y_dot, y", ValueType::component},
      [](const TransferMatrices&) { return Json{"x_dot", "x", "y_dot", "y"}; }},
     {{"J", "transfer matrix of the flight before the impact, by rows", ValueType::matrix},
      matrices<&TransferMatrices::J>},
@@ -155,11 +158,11 @@ constexpr Column<std::vector<IdentifiedImpact>> identified_wall_table[] = {
 
 constexpr Column<std::vector<IdentifiedImpact>> identified_table[] = {
     {quantity.x.with("displacement, m").or_null(), each<&IdentifiedImpact::x>},
-    {quantity.x_dot_before.with("velocity of the oscillator, from the fit").or_null(),
+    {quantity.x_dot_before.with("estimated velocity of the oscillator").or_null(),
      each<&IdentifiedImpact::x_dot_before>},
-    {quantity.x_dot_after.with("velocity of the oscillator, from the fit").or_null(),
+    {quantity.x_dot_after.with("estimated velocity of the oscillator").or_null(),
      each<&IdentifiedImpact::x_dot_after>},
-    {quantity.x_ddot_before.with("acceleration of the oscillator, from the fit").or_null(),
+    {quantity.x_ddot_before.with("estimated acceleration of the oscillator").or_null(),
      each<&IdentifiedImpact::x_ddot_before>},
     {quantity.y_dot_before.with("velocity of the ball, from its flights, eq. (43)").or_null(),
      each<&IdentifiedImpact::y_dot_before>},
@@ -171,7 +174,9 @@ constexpr Column<std::vector<IdentifiedImpact>> identified_table[] = {
     {{"momentum_error", "error of x' + epsilon y', over the median jump of x'",
       ValueType::number_or_null},
      each<&IdentifiedImpact::momentum_error>},
-    {{"status", "ok, R is not known, hidden, or the reason why the exponents exclude the impact",
+    {{"status",
+      "ok, R is not known, hidden, or the reason why the exponents exclude the impact: R outside "
+      "[0, 1], momentum not kept, picked twice, ...",
       ValueType::word},
      [](const auto& impacts) {
          return column(impacts, [](const IdentifiedImpact& i) -> std::string {

@@ -1,10 +1,19 @@
-// Collects all answer keys of the OpenAPI document, by section of the documents.
+// The answer keys of the OpenAPI document, by part of an answer, and their tables in docs/api.md.
+import {anchorOf, codes} from "./markdown.mjs";
 
 /**
  * By part: the schemas that tell it, or their key `at`; what in them is told elsewhere, all but
  * their keys at the `top` or `opaque` ones; of lines that have values by the names of what is swept,
  * those of the names that are keys all the same.
  */
+const listsOfFields = [
+  "fields",
+  "manifold_fields",
+  "sweep_fields",
+  "axis_fields",
+  "identify_fields",
+  "form_fields",
+];
 const parts = {
   simulate: {of: ["Simulation"], top: true},
   parameters: {of: ["SimulationParameters", "System"]},
@@ -49,6 +58,10 @@ const parts = {
   "identify.forward": {of: ["ForwardRun"]},
   "presets-answer": {of: ["Presets"], opaque: ["presets[].parameters"]},
   "health-answer": {of: ["Version", "Status"]},
+  "parameters-answer": {
+    of: ["Parameters", "Field"],
+    opaque: ["model.symbols", ...listsOfFields],
+  },
   problem: {of: ["Problem"]},
 };
 
@@ -64,36 +77,94 @@ class Walk {
     return this.schemas[$ref.split("/").at(-1)];
   }
 
-  /** The paths of the leaves below a schema. */
-  paths(schema, {opaque = [], top = false}, path = "") {
-    if (schema.$ref) return this.paths(this.schema(schema), {opaque, top}, path);
-    if (path && (top || opaque.includes(path))) return [path];
-    const several = schema.anyOf ?? schema.oneOf;
-    if (several) return several.flatMap((one) => this.paths(one, {opaque, top}, path));
-    if (schema.properties)
-      return Object.entries(schema.properties).flatMap(([name, inner]) =>
-        this.paths(inner, {opaque, top}, path ? `${path}.${name}` : name),
+  /** The keys below a schema, and the objects among them that have a meaning of their own. */
+  keys(schema, {opaque = [], top = false}, path = "", meaning = "") {
+    const constant = schema.const === undefined ? meaning : `always ${schema.const}`;
+    const own = {path, si: "", meaning: schema.description || constant};
+    if (path && (top || opaque.includes(path))) return [own];
+    if (schema.$ref) return this.keys(this.schema(schema), {opaque, top}, path, own.meaning);
+    const several = (schema.anyOf ?? schema.oneOf)?.filter((one) => one.type !== "null");
+    if (several) return several.flatMap((one) => this.keys(one, {opaque, top}, path, own.meaning));
+    const entries = schema.items ? this.keys(schema.items, {opaque, top}, `${path}[]`) : [];
+    const object = path && own.meaning ? [{...own, isObject: true}] : [];
+    if (entries.some((entry) => entry.path.startsWith(`${path}[].`)))
+      return [...object, ...entries];
+    if (!schema.properties) return path ? [own] : [];
+    const before = path && `${path}.`;
+    const keys = object;
+    for (const [name, value] of Object.entries(schema.properties)) {
+      const counterpart = keys.find(
+        (key) => key.path === before + value.description?.match(inSi)?.[1],
       );
-    const entries = schema.items && this.paths(schema.items, {opaque, top}, `${path}[]`);
-    return entries?.[0]?.startsWith(`${path}[].`) ? entries : [path];
+      if (counterpart) counterpart.si = before + name;
+      else keys.push(...this.keys(value, {opaque, top}, before + name));
+    }
+    return keys;
   }
 }
 
-/** A Map of Sets of paths, like answeredKeys(). */
+/** The first of the keys with each path. */
+const distinct = (keys) =>
+  [...new Map(keys.toReversed().map((key) => [key.path, key])).values()].toReversed();
+
+const inSi = /^(\w+) in (?:s|m\/s|m\/s\^2|N s|J), for a system in SI$/;
+
+/** By part: {path, si, meaning} of each key; si: the path of its SI counterpart, or "". */
 export function describedKeys(openapi) {
   const walk = new Walk(openapi);
-  const fields = new Set(Object.keys(walk.schemas.SweepBase.properties));
+  const swept = new Set(Object.keys(walk.schemas.SweepBase.properties));
   const keys = new Map();
-  for (const [part, {of, at, swept, ...how}] of Object.entries(parts)) {
+  for (const [part, {of, at, swept: kept, ...how}] of Object.entries(parts)) {
     const schemas = of.map((name) => walk.schemas[name]);
     const own = at ? schemas.map((schema) => schema.properties[at]) : schemas;
-    const paths = own.flatMap((schema) => walk.paths(schema, how));
-    const isKey = (path) => !swept || swept.includes(path) || !isSwept(path, fields);
-    keys.set(part, new Set(paths.filter(isKey)));
+    const isKey = ({path}) => !kept || kept.includes(path) || !isSwept(path, swept);
+    keys.set(part, distinct(own.flatMap((schema) => walk.keys(schema, how))).filter(isKey));
   }
-  const {Parameters, Field} = walk.schemas;
-  const opaque = ["model.symbols", ...Object.keys(Parameters.properties).slice(1)];
-  const own = Object.keys(Field.properties);
-  keys.set("parameters-answer", new Set([...walk.paths(Parameters, {opaque}), ...own]));
   return keys;
+}
+
+/** Parts whose table leaves out the keys that it shares with another part's. */
+const like = {"simulate.windows": "simulate.exponents", "identify.exponents": "simulate.exponents"};
+
+/** Many keys are abbreviated to their last names: `*.value`. */
+const listOf = (paths) =>
+  [...new Set(paths.length > 6 ? paths.map((path) => path.replace(/.*\./, "`*.")) : paths)].join(
+    ", ",
+  );
+
+/** The table of a part, in Markdown: keys with the same meaning share a row, and top-level keys link
+ * to the heading that names them. */
+function tableOf(keys, linkOf) {
+  const rows = new Map();
+  for (const {path, si, meaning} of keys) {
+    const row = rows.get(meaning) ?? {paths: [], si: []};
+    row.paths.push(linkOf(path));
+    if (si) row.si.push(`\`${si}\``);
+    rows.set(meaning, row);
+  }
+  const lines = [...rows].map(([meaning, {paths, si}]) => {
+    const text = meaning.replaceAll("|", "\\|");
+    return `| ${listOf(paths)} | ${listOf(si)} | ${text} |`;
+  });
+  return ["| key | in SI | meaning |", "| --- | --- | --- |", ...lines].join("\n");
+}
+
+/** A Markdown text in which each table marked with <!-- keys: PART --> is generated. */
+export const withKeyTables = (markdown, keys) =>
+  markdown.replace(/^(<!-- keys: (\S+) -->\n)(?:\|.*\n)*/gm, (_, marker, part) => {
+    const known = new Set((keys.get(like[part]) ?? []).map(({path}) => path));
+    const own = keys.get(part).filter(({path}) => !known.has(path));
+    const linkOf = (path) => {
+      const heading = parts[part].top && headingOf(markdown, path);
+      return heading ? `[\`${path}\`](#${heading})` : `\`${path}\``;
+    };
+    return `${marker}${tableOf(own, linkOf)}\n`;
+  });
+
+/** The anchor of the heading below a response that consists of keys and names this one. */
+function headingOf(markdown, key) {
+  const isOfKeys = (title) => /^`[^`]+`(?:(?:, | and )`[^`]+`)*$/.test(title);
+  const titles = [...markdown.matchAll(/^### (.*)$/gm)].map(([, title]) => title);
+  const title = titles.find((one) => isOfKeys(one) && codes(one).includes(key));
+  return title && anchorOf(title);
 }

@@ -1,13 +1,13 @@
 // Compares the documents with the program.
 import assert from "node:assert/strict";
 import {execFile} from "node:child_process";
-import {access, mkdtemp, readdir, rm} from "node:fs/promises";
+import {access, mkdtemp, readdir, rm, writeFile} from "node:fs/promises";
 import {tmpdir} from "node:os";
 import {dirname, join} from "node:path";
 import {after, before, test} from "node:test";
 import {program, startService} from "../service.mjs";
 import {answeredKeys} from "./answers.mjs";
-import {describedKeys} from "./described.mjs";
+import {describedKeys, withKeyTables} from "./described.mjs";
 import {anchors, between, codes, links, read, root, tables, transcripts} from "./markdown.mjs";
 
 const documents = {};
@@ -120,19 +120,6 @@ test("the tables of routes and statuses are the OpenAPI document's", async () =>
 
 // Keys of answers.
 
-/** By part: the paths in the first two columns of its table. */
-function documentedKeys() {
-  const parts = new Map();
-  for (const {argument, rows} of tables(documents["docs/api.md"], "keys")) {
-    assert.ok(!parts.has(argument), `one table for ${argument}`);
-    parts.set(argument, new Set(rows.flatMap((row) => codes(row.key + row["in SI"]))));
-  }
-  return parts;
-}
-
-/** Parts that hold what another one does, too. */
-const like = {"simulate.windows": "simulate.exponents", "identify.exponents": "simulate.exponents"};
-
 test("the table of metrics names each one that is served, with its type and labels", async () => {
   await fetch(`${service.url}/v1/simulate`);
   const text = await (await fetch(`${service.url}/metrics`)).text();
@@ -156,36 +143,30 @@ test("the table of metrics names each one that is served, with its type and labe
   assert.deepEqual(told, types);
 });
 
-test("every key of every answer is in the table of its part, and no other one", async () => {
-  const documented = documentedKeys();
+test("every key of every answer is in the OpenAPI document, and no other one", async () => {
+  const described = describedKeys(openapi);
   const answered = await answeredKeys(service.url);
-  sameNames(documented.keys(), answered.keys());
+  sameNames(described.keys(), answered.keys());
   for (const [part, paths] of answered) {
-    const own = documented.get(part);
-    const known = [...own, ...(documented.get(like[part]) ?? [])];
+    const keys = described.get(part);
+    const known = keys.flatMap(({path, si}) => [path, si]);
     // A value that is null or an empty list in one answer has its keys in another.
     for (const path of paths)
       assert.ok(
         known.some((k) => k === path || k.startsWith(`${path}.`) || k.startsWith(`${path}[]`)),
-        `${part}: ${path} is answered, but not documented`,
+        `${part}: ${path} is answered, but not described`,
       );
-    for (const path of own) assert.ok(paths.has(path), `${part}: ${path} is not answered`);
+    for (const {path, isObject} of keys)
+      assert.ok(isObject || paths.has(path), `${part}: ${path} is not answered`);
   }
 });
 
-test("the OpenAPI document has the keys of the tables, and no other ones", () => {
-  const documented = documentedKeys();
-  const described = describedKeys(openapi);
-  sameNames(described.keys(), documented.keys());
-  for (const [part, paths] of described) {
-    const known = [...documented.get(part), ...(documented.get(like[part]) ?? [])];
-    for (const path of paths) assert.ok(known.includes(path), `${part}: ${path} is not in a table`);
-    for (const path of documented.get(part))
-      assert.ok(
-        [...paths].some((own) => own === path || own.startsWith(`${path}.`)),
-        `${part}: ${path} is not in the document`,
-      );
-  }
+// PUBLISH=1 writes the tables.
+test("the tables of keys are the OpenAPI document's", async () => {
+  const text = documents["docs/api.md"];
+  const generated = withKeyTables(text, describedKeys(openapi));
+  if (process.env.PUBLISH) await writeFile(new URL("docs/api.md", root), generated);
+  else assert.equal(text, generated);
 });
 
 // The command line.

@@ -73,11 +73,12 @@ const withoutBlocks = (markdown) => markdown.replace(/^```[\s\S]*?^```$/gm, "");
 export const links = (markdown) =>
   [...withoutBlocks(markdown).matchAll(/\]\(([^)\s]+)\)/g)].map((found) => found[1]);
 
-/** Anchors of the headings of a document, as GitHub makes them for distinct headings. */
+/** The anchor of a heading, as GitHub makes it for distinct headings. */
+export const anchorOf = (title) =>
+  title
+    .toLowerCase()
+    .replace(/[^\p{L}\p{N} _-]/gu, "")
+    .replaceAll(" ", "-");
+
 export const anchors = (markdown) =>
-  [...withoutBlocks(markdown).matchAll(/^#+ (.*)$/gm)].map((found) =>
-    found[1]
-      .toLowerCase()
-      .replace(/[^\p{L}\p{N} _-]/gu, "")
-      .replaceAll(" ", "-"),
-  );
+  [...withoutBlocks(markdown).matchAll(/^#+ (.*)$/gm)].map((found) => anchorOf(found[1]));

@@ -73,7 +73,8 @@ Keys estimators(Of of) {
         of == Of::measurement ? by_qr : optional(by_qr),
         optional(
             {"eigenvalues", object_of(estimator_keys(of) + own_window(of)),
-             "by the moduli of the eigenvalues of the product"}),
+             "by the moduli of the eigenvalues of the product; the history has at most 2048 "
+             "entries"}),
         optional(
             {"raw_product", raw_product(of), "by the product itself, down to its rounding floor"})};
 }

@@ -25,7 +25,9 @@ Json signal() {
           "residuals over their noise part: the noise can have any colour, the remainder is "
           "motion that the model does not explain"},
          {"pulse_s", number(),
-          "length of the pulse of an impact in the acceleration; 0 if too few pulses are visible"},
+          "length of the pulse of an impact in the acceleration, of a half sine of the same width "
+          "at "
+          "half height; 0 if too few pulses are visible"},
          {"pulse_delay_s", or_null(number()),
           "time from an impact to the peak of its pulse; null if too few pulses are visible"},
          {"pulse_spoils_s", interval(),
@@ -40,15 +42,30 @@ Json signal() {
           "forcing by the channel of the base or of a force; null without one"}});
 }
 
-/// Every fitted quantity can be fixed: the keys are the choices of `fixed`.
 Json fitted() {
     const Json value = object_of(
         {{"value", or_null(number()), "in SI"},
          {"standard_error", or_null(number()), "null if fixed"},
          {"fixed", flag(), "true: the given value is used, not fitted"}});
     Keys keys;
-    for (const std::string& name : find(identify_fields(), "fixed")->choices)
-        keys.push_back({name, value, ""});
+    for (const auto& [name, meaning] : std::initializer_list<std::pair<const char*, const char*>>{
+             {"f", "frequency of the forcing, Hz"},
+             {"displacement_offset", "offset of the displacement in the middle of the record, m"},
+             {"displacement_drift", "drift of the displacement over the record, m"},
+             {"displacement_gain",
+              "measured displacement over that which follows from the acceleration"},
+             {"displacement_delay_s", "delay of the displacement after the acceleration, s"},
+             {"acceleration_offset",
+              "offset of the acceleration in the middle of the record, m/s^2"},
+             {"acceleration_drift", "drift of the acceleration over the record, m/s^2"},
+             {"omega0", "natural frequency of the oscillator, rad/s; tau uses the given one"},
+             {"zeta", "damping ratio of the oscillator"},
+             {"b", "clearance, m"},
+             {"R_plus", "restitution coefficient of the wall at +b"},
+             {"R_minus", "restitution coefficient of the wall at -b"},
+             {"F", "amplitude of the base, m"},
+             {"phase", "the base moves by F sin(2 pi f t + phase), rad"}})
+        keys.push_back({name, value, meaning});
     return object_of(keys);
 }
 
@@ -102,7 +119,8 @@ Keys record_keys() {
             "if include has motion, the fitted motion at the samples"),
         of_record(
             "direct", or_null(reference("DirectEstimate")),
-            "estimate by the paper's method, for comparison; null without both sensors"),
+            "estimate by the paper's method, with velocities from differences of the displacement, "
+            "for comparison; null without both sensors"),
         of_record(
             "forward", or_null(reference("ForwardRun")),
             "a run of the identified system from the first known state")};
@@ -126,7 +144,10 @@ Json identification() {
              "Lyapunov exponents of the sequence of impacts"},
             {"slope",
              object_of(
-                 {{"lambda1", or_null(number()), "long-term slope of lambda1(tau) tau"},
+                 {{"lambda1", or_null(number()),
+                   "long-term slope of lambda1(tau) tau, without the first tenth of the impacts "
+                   "and "
+                   "corrected for the phase of the modulation at both ends"},
                   {"low", or_null(number()), "lower end of its 90 % interval"},
                   {"high", or_null(number()), "upper end of its 90 % interval"}}),
              "growth of lambda1(tau) tau"},

@@ -81,7 +81,8 @@ Json problem() {
           "name of the request in the server's log; also in the header X-Request-ID"},
          optional(
              {"lacking", one_of({"computing", "memory", "stopping", "sweeps", "threads"}),
-              "with 503: the exhausted resource, or stopping"}),
+              "with 503: the exhausted resource, computing (the queue is full), sweeps, threads or "
+              "memory; or stopping"}),
          optional({"errors", std::move(errors), "with 422: each invalid field, up to 20"})});
 }
 

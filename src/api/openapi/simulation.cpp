@@ -17,7 +17,9 @@ namespace {
 Json run_status() {
     return with_si(object_of(
         {{"reason", one_of({"tau_end", "max_impacts", "deadline"}),
-          "deadline: the time limit of the server for one request"},
+          "tau_end, max_impacts, deadline (the time limit of the server for one request), or on "
+          "the "
+          "command line interrupted"},
          value_of(quantity.tau.with("time at which the run ended")),
          {"message", text(), "a sentence"}}));
 }
@@ -69,9 +71,11 @@ Json energy() {
 Json capture() {
     return object_of(
         {{"tau", or_null(number()),
-          "time at which the orbit captured the run; null if the run ends before"},
+          "time at which the orbit captured the run; null if the run ends before; if the time "
+          "limit "
+          "ended the run, it can be later than the capture"},
          {"status", one_of({"captured", "on_its_way"}),
-          "on_its_way: the run ends before its capture"},
+          "captured, or on_its_way: the run ends before its capture"},
          {"chaotic_before", or_null(flag()), "true after a chaotic transient; null if unknown"},
          {"exponents_before", object_of(final_keys()),
           "exponents of the run before the capture, by qr"},
@@ -92,7 +96,8 @@ Keys orbit_keys() {
          {"y_dot", number(), "velocity of the ball at that time"},
          {"y", number(), "displacement of the ball at that time, m"}});
     return {
-        {"period_cycles", or_null(whole()), "period in forcing cycles; null if not periodic"},
+        {"period_cycles", or_null(whole()),
+         "period in forcing cycles; null if not periodic, as are all keys up to capture"},
         {"impacts_per_period", or_null(whole()), "contacts per period"},
         {"chatter_impacts_per_period", or_null(whole()),
          "impacts of chatter in addition to the contacts"},
@@ -173,10 +178,10 @@ Json simulation() {
             {"status", reference("RunStatus"), "how the run ended"},
             part("series", "Series", "the motion"),
             part("impacts", "Impacts", "every impact"),
-            {"sticking", reference("Sticking"), "every sticking phase"},
+            {"sticking", reference("Sticking"), "every sticking phase; always present"},
             optional(
                 {"touches", reference("Touches"),
-                 "grazing contacts without an impact; absent if there are none"}),
+                 "grazing contacts without an impact; with impacts, absent if there are none"}),
             part("exponents", "Exponents", "Lyapunov exponents of the window"),
             optional(
                 {"windows", list_of(reference("WindowExponents")),
@@ -193,7 +198,9 @@ Json simulation() {
                 "slow invariant manifold and the half cycles of the run"),
             part(
                 "perturbation", "Perturbation",
-                "a second run with a perturbed start, and its distance from the first")});
+                "a second run with a perturbed start, and its distance from the first; only with "
+                "the "
+                "field perturbation")});
 }
 
 }  // namespace

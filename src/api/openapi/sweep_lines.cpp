@@ -67,7 +67,8 @@ Keys measured_keys() {
         {"impacts_per_period", count, "contacts per period"},
         {"symmetric", or_null(flag()), "true if a shift by half a period gives the mirror image"},
         {"capture_cycle", value,
-         "cycle in which the orbit captured the motion; null if not periodic or not yet captured"},
+         "cycle in which the orbit captured the motion; if it is late, lambda is a mean over a "
+         "transient; null if not periodic or not yet captured"},
         {"multiplier", value, "largest modulus of the Floquet multipliers"},
         {"synchronised", value, "fraction of the contacts that lie in synchronised stretches"},
         {"x_max", value, "maximum of |x|, m"},
@@ -96,7 +97,8 @@ Json measured_point() {
         Keys{
             state_key("with the default set: initial state of the worst motion"),
             {"reason", one_of({"complete", "max_impacts", "transient_max_impacts"}),
-             "transient_max_impacts: the transient did not end, and all results are null"},
+             "complete, max_impacts, or transient_max_impacts: the transient, which can have 1000 "
+             "impacts per cycle, did not end, and all results are null"},
             optional(
                 {"carried",
                  {{"type", "boolean"}, {"const", false}},
@@ -194,7 +196,7 @@ Json start_line_schema() {
             {"type", constant("start"), ""},
             {"commit", text(), "commit of the program; empty if unknown"},
             {"points", whole(), "number of lines of the whole sweep"},
-            {"of", whole(), "number of lines requested by indices"},
+            {"of", whole(), "number of lines requested by indices; only from the service"},
             {"cycles", number(), "forcing cycles of all runs together, including transients"},
             {"axes", list_of(axis), "axes with their values"},
             {"request", reference("SweepRequest"), "the request, without indices"}});
@@ -208,7 +210,8 @@ Json progress_line_schema() {
          {"per_second", number(), "lines per second"},
          {"seconds_left", or_null(number()),
           "estimate from the completed runs; null before the first"},
-         {"runs", whole(), "completed runs, approximately"},
+         {"runs", whole(),
+          "completed runs, approximately; lines of points that are computed in a batch come late"},
          {"runs_of", whole(), "runs in total, approximately"}});
 }
 

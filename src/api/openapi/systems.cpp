@@ -78,11 +78,16 @@ Json provenance() {
         {{"route", text(), "route of the request"},
          {"commit", text(), "commit of the program; empty if unknown"},
          {"answer_limit", or_null(whole()),
-          "size in bytes to which the response was thinned; null if it was not"},
-         {"request", map_of(Json::object()), "fields of the request, sorted, without a record"},
-         optional({"record_sha256", text(), "hash of the file or JSON that was sent"}),
+          "size in bytes to which the response was thinned, with a warning; null if it was not"},
+         {"request", map_of(Json::object()),
+          "fields of the request, sorted, without a record or a list of impacts"},
+         optional(
+             {"record_sha256", text(),
+              "for an identification: hash of the file or JSON that was sent"}),
          {"sha256", or_null(text()),
-          "hash of the response's text without provenance; null unless the response is JSON"}});
+          "hash of the response's text up to the comma before its last member provenance, followed "
+          "by "
+          "}; null in CBOR and npz"}});
 }
 
 }  // namespace
