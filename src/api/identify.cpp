@@ -10,7 +10,6 @@
 #include "api/describe.hpp"
 #include "api/fitted_unknowns.hpp"
 #include "api/schema/enum_names.hpp"
-#include "api/si_columns.hpp"
 #include "api/version.hpp"
 #include "api/warning_text.hpp"
 #include "core/motion/elementary.hpp"

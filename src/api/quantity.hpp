@@ -10,6 +10,9 @@
 #include <bit>
 #include <cstdint>
 
+#include "api/schema/json.hpp"
+#include "core/motion/parameters.hpp"
+
 namespace vines::api {
 
 /// The type of a value, or of the entries of a list.
@@ -123,5 +126,15 @@ struct Energies {
     Quantity at_end{"at_end", "stored energy at the end", number, "at_end_J", 2, true};
 };
 inline constexpr Energies energies;
+
+/// The SI counterpart of a quantity over its value.
+double si_factor(const Quantity& quantity, const SiParameters& si);
+
+/// Adds the SI counterparts to an object and to everything in it: time_s for tau, x_velocity (m/s)
+/// for x_dot, impulse_N_s for impulse. Nulls stay null; a counterpart that the object has stays.
+void add_si(Json& part, const SiParameters& si);
+
+/// Adds those of the part `energy`: input_J for input.
+void add_joules(Json& energy, const SiParameters& si);
 
 }  // namespace vines::api

@@ -9,7 +9,6 @@
 #include "api/describe.hpp"
 #include "api/perturbation.hpp"
 #include "api/schema/field.hpp"
-#include "api/si_columns.hpp"
 #include "api/version.hpp"
 
 namespace vines::api {

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "api/si_columns.hpp"
 
 namespace vines::api {
 

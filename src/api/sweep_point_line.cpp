@@ -8,7 +8,6 @@
 #include "api/columns.hpp"
 #include "api/describe.hpp"
 #include "api/schema/enum_names.hpp"
-#include "api/si_columns.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines::api {

@@ -1,4 +1,4 @@
-#include "api/si_columns.hpp"
+#include "api/quantity.hpp"
 
 #include <utility>
 
