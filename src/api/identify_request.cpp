@@ -14,7 +14,7 @@ namespace vines::api {
 
 namespace {
 
-constexpr std::size_t fewest_samples = 100, most_samples = 1000000;
+constexpr std::size_t fewest_samples = 100;
 
 /// Checks the samples; warns of gaps and clipping. `lines`: line numbers of the samples in a CSV
 /// text.
@@ -24,7 +24,7 @@ void check_record(
     const std::size_t n = time.size();
     if (n < fewest_samples)
         refuse(
-            {{"/record", n, Json::array({fewest_samples, most_samples}),
+            {{"/record", n, Json::array({fewest_samples, nullptr}),
               "the record has " + std::to_string(n) + " samples; at least " +
                   std::to_string(fewest_samples) + " are needed"}});
     for (std::size_t i = 1; i < n; ++i)
@@ -43,18 +43,19 @@ void check_record(
             fmt::format("{:.6g}", gaps[0].from / omega0) +
             " s: impacts inside a gap cannot be detected");
     // A clipped signal repeats its extreme value.
-    for (const auto& [name, column] :
-         {std::pair("displacement", &r.x), std::pair("acceleration", &r.x_ddot)}) {
-        if (column->empty()) continue;
-        const auto [low, high] = std::minmax_element(column->begin(), column->end());
-        for (double extreme : {*low, *high}) {
-            const auto times = std::count(column->begin(), column->end(), extreme);
-            if (times > 3)
-                notes.push_back(
-                    std::string("the ") + name + " reaches its extreme " + Json(extreme).dump() +
-                    " exactly " + std::to_string(times) + " times: is it clipped?");
-        }
-    }
+    const auto warn_of_clipping = [&notes](
+                                      const char* name, const std::vector<double>& column,
+                                      double unit, const char* unit_name) {
+        if (column.empty()) return;
+        const auto [low, high] = std::minmax_element(column.begin(), column.end());
+        for (const double extreme : {*low, *high})
+            if (const auto times = std::count(column.begin(), column.end(), extreme); times > 3)
+                notes.push_back(fmt::format(
+                    "the {} reaches its extreme {:.6g} {} exactly {} times: is it clipped?", name,
+                    extreme * unit, unit_name, times));
+    };
+    warn_of_clipping("displacement", r.x, 1, "m");
+    warn_of_clipping("acceleration", r.x_ddot, omega0 * omega0, "m/s^2");
 }
 
 /// Request from the JSON fields, without its record or impacts. `with_record`: a record follows, in

@@ -132,7 +132,7 @@ FieldTable make_axis_fields() {
          .choices = {"linear", "log"}},
         {.name = "values",
          .type = FieldType::numbers,
-         .group = "sweep",
+         .group = "axis",
          .description = "values, instead of from, to, count, scale",
          .fallback_note = "from, to, count"},
     };
