@@ -7,7 +7,6 @@
 #include <thread>
 
 #include "core/motion/elementary.hpp"
-#include "core/motion/random.hpp"
 #include "core/motion/record.hpp"
 #include "core/sweep/parallel.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/motion/random.hpp"
+#include "core/motion/elementary.hpp"
 #include "core/motion/record.hpp"
 #include "core/stability/lyapunov.hpp"
 

@@ -7,7 +7,6 @@
 #include <cassert>
 #include <cmath>
 
-#include "core/stability/exponent_statistics.hpp"
 #include "core/stability/lyapunov.hpp"
 
 namespace vines {

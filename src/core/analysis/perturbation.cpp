@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "core/motion/elementary.hpp"
-#include "core/motion/random.hpp"
 #include "core/stability/lyapunov.hpp"
 
 namespace vines {

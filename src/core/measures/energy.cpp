@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/motion/elementary.hpp"
-#include "core/motion/excursion.hpp"
 
 namespace vines {
 

@@ -7,7 +7,6 @@
 
 #include "core/measures/energy.hpp"
 #include "core/motion/elementary.hpp"
-#include "core/motion/excursion.hpp"
 
 namespace vines {
 

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "core/motion/elementary.hpp"
-#include "core/motion/small_cache.hpp"
 
 namespace vines {
 
