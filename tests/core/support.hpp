@@ -1,6 +1,7 @@
 // Shared by the tests: reference trajectories, recorded runs, random systems.
 #pragma once
 
+#include <random>
 #include <string>
 #include <vector>
 

@@ -99,6 +99,11 @@ Restitution restitution_of(const std::vector<IdentifiedImpact>& impacts, int sid
     return {centre, error_of_median(off), static_cast<long>(R.size())};
 }
 
+void take_restitution(const Restitution& plus, const Restitution& minus, Parameters& p) {
+    if (std::isfinite(plus.R)) p.R_plus = std::clamp(plus.R, 0.0, 1.0);
+    if (std::isfinite(minus.R)) p.R_minus = std::clamp(minus.R, 0.0, 1.0);
+}
+
 namespace {
 
 // Number of reweighted rounds. A flight over a missing impact deviates strongly: it gets less
@@ -193,9 +198,7 @@ Parameters listed_system(
     std::vector<IdentifiedImpact> copy = impacts;
     set_flight_velocities(p, copy);
     complete_impacts(p, copy, 0);
-    const double plus = restitution_of(copy, 1).R, minus = restitution_of(copy, -1).R;
-    if (std::isfinite(plus)) p.R_plus = std::clamp(plus, 0.0, 1.0);
-    if (std::isfinite(minus)) p.R_minus = std::clamp(minus, 0.0, 1.0);
+    take_restitution(restitution_of(copy, 1), restitution_of(copy, -1), p);
     return p;
 }
 

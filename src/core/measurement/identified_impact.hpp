@@ -75,6 +75,8 @@ struct Restitution {
 };
 /// R of one wall, from its impacts that are not excluded.
 Restitution restitution_of(const std::vector<IdentifiedImpact>& impacts, int side);
+/// Takes R of each wall that has impacts, clamped to the range of an R.
+void take_restitution(const Restitution& plus, const Restitution& minus, Parameters& parameters);
 
 /// Sets y' before and after each impact where it is NaN, from the flights, eq. (43). It stays
 /// unknown before the first and after the last impact.

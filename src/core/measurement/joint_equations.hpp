@@ -94,9 +94,6 @@ struct JointFitState {
     std::vector<JointEquations::OfInterval> interval_equations = {};  ///< of the last step
     JointFit fit = {};
 
-    bool oscillator_moves() const {
-        return !fit.fixed[Unknown::stiffness] || !fit.fixed[Unknown::damping];
-    }
     IntervalMotion motion_in(const IntervalFlows& flows, const FittedInterval& i) const {
         return {flows.of(i), fit.values, fit.tau_middle, i};
     }
@@ -125,9 +122,8 @@ struct FittedBorder : FittedImpact {
 /// residuals.
 JointEquations equations_of(JointFitState& state, bool first);
 
-/// Adds the equations of the free mass: it flies with constant velocity from contact to contact, y
-/// = x
-/// - side b at both ends (43); each impact conserves x' + epsilon y' (36) and has the R of its wall
+/// Adds the equations of the free mass: it flies with constant velocity from contact to contact,
+/// where y = x - side b (43); each impact conserves x' + epsilon y' (36) and has the R of its wall
 /// (4). They couple the times of neighbouring impacts.
 void add_mass_flights(
     const JointFitState& state, const std::vector<FittedBorder>& borders,

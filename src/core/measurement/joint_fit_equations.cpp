@@ -252,7 +252,7 @@ double JointFitState::weight(double left, double noise, double scale) const {
 
 JointEquations equations_of(JointFitState& state, bool first) {
     JointEquations equations(state.fit.intervals.size(), state.ridge);
-    const IntervalFlows flows(state.fit.values, state.oscillator_moves(), state.fit.epsilon);
+    const IntervalFlows flows(state.fit.values, !state.fit.fixed.oscillator(), state.fit.epsilon);
     if (!state.record.x.empty()) add_displacement(state, flows, first, equations);
     if (!state.record.x_ddot.empty()) add_acceleration(state, flows, first, equations);
     if (!first) add_impacts(state, flows, equations);

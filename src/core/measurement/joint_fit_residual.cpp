@@ -105,7 +105,7 @@ ResidualStatistics statistics_of(
 
 /// Appends the fitted states at each border to fit.impacts.
 void evaluate_impacts(JointFitState& state) {
-    const IntervalFlows flows(state.fit.values, state.oscillator_moves(), state.fit.epsilon);
+    const IntervalFlows flows(state.fit.values, !state.fit.fixed.oscillator(), state.fit.epsilon);
     // Initial state of each interval fitted to its own samples alone, with the global parameters
     // fixed: s + N^-1 g, with covariance N^-1.
     std::vector<Eigen::Matrix2d> covariance;
