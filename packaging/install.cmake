@@ -27,7 +27,7 @@ install(CODE [[
 
 # For pkg-config --cflags --libs vines-core; relocatable with its prefix.
 string(REGEX REPLACE "[^/]+" ".." up ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
-configure_file(src/core/vines-core.pc.in vines-core.pc @ONLY)
+configure_file(packaging/vines-core.pc.in vines-core.pc @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/vines-core.pc
     DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT core)
 

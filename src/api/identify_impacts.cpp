@@ -9,7 +9,7 @@
 
 #include "api/columns.hpp"
 #include "api/schema/check.hpp"
-#include "core/measurement/listed_impacts.hpp"
+#include "core/measurement/identified_impact.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines::api {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/analysis/warning.hpp"
+#include "core/analysis/analysis.hpp"
 #include "core/measurement/identify.hpp"
 
 namespace vines::api {

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <thread>
 
 #include "core/motion/elementary.hpp"
-#include "core/motion/random.hpp"
 #include "core/motion/record.hpp"
 #include "core/sweep/parallel.hpp"
 

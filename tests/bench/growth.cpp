@@ -83,7 +83,7 @@ void bench_memory() {
 /// Record of a regular motion, which never sticks; 2048 samples per second.
 Measurement record_of(double samples) {
     const TrueMotion motion = test::settled_motion(0.008, 0.6, 0.6, samples / 2048);
-    const test::Experiment e = test::measured(motion, Sensors{});
+    const test::Experiment e = test::measured(motion, test::Sensors{});
     return {.parameters = e.parameters, .record = e.record, .estimators = qr_alone};
 }
 

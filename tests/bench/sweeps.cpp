@@ -8,7 +8,7 @@
 #include "core/motion/batch_run.hpp"
 #include "core/stability/lyapunov.hpp"
 #include "core/sweep/parallel.hpp"
-#include "core/sweep/points.hpp"
+#include "core/sweep/point.hpp"
 #include "parts.hpp"
 #include "table.hpp"
 

@@ -1,10 +1,11 @@
 // Shared by the tests: reference trajectories, recorded runs, random systems.
 #pragma once
 
+#include <random>
 #include <string>
 #include <vector>
 
-#include "core/motion/random.hpp"
+#include "core/motion/elementary.hpp"
 #include "core/motion/record.hpp"
 #include "core/stability/lyapunov.hpp"
 

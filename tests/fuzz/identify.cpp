@@ -6,10 +6,10 @@
 
 #include <iterator>
 
+#include "../laboratory/sensors.hpp"
 #include "api/json_text.hpp"
 #include "api/parse.hpp"
 #include "api/schema/tables.hpp"
-#include "core/measurement/synthetic_record.hpp"
 #include "fuzz.hpp"
 
 using namespace vines;
@@ -29,7 +29,7 @@ std::string record(fuzz::Numbers numbers) {
     p.R_minus = numbers.next(p.R_plus, 0, 1);
     const double omega0 = si.omega0(), seconds = numbers.next(1, 0.1, 2),
                  settling = numbers.next(1, 0, 20);
-    const Sensors sensors{
+    const test::Sensors sensors{
         .rate = numbers.next(1024, 50, 2048),
         .pulse = numbers.next(0.8e-3, 1e-5, 0.1),
         .noise_x = numbers.next(2e-6, 0, 1),
@@ -44,7 +44,7 @@ std::string record(fuzz::Numbers numbers) {
         .lost_samples = numbers.next(0, 0, 0.9),
         .gap_from = numbers.next(0, 0, 2),
         .gap = numbers.next(0, 0, 2)};
-    MeasuredRecord r = synthetic_record(true_motion(p, omega0, settling, seconds), sensors);
+    MeasuredRecord r = test::measured_record(true_motion(p, omega0, settling, seconds), sensors);
     const std::size_t n = r.tau.size();
     for (auto at = static_cast<std::size_t>(numbers.next(0, 0, 1e6)); at > 0 && at <= 2 * n;
          at = static_cast<std::size_t>(numbers.next(0, 0, 1e6)))

@@ -7,7 +7,6 @@
 #include <cassert>
 #include <cmath>
 
-#include "core/stability/exponent_statistics.hpp"
 #include "core/stability/lyapunov.hpp"
 
 namespace vines {
@@ -260,7 +259,7 @@ private:
     }
 
     void transfers() {
-        auto& transfers = o_.transfers.transfers;
+        auto& transfers = o_.transfers.entries;
         trim_to_last(transfers, w_.most_points);
         if (o_.transfers.seen > static_cast<long>(transfers.size()))
             warn(warning::TransfersCut{w_.most_points, o_.transfers.seen});

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "core/motion/elementary.hpp"
-#include "core/motion/random.hpp"
 #include "core/stability/lyapunov.hpp"
 
 namespace vines {
@@ -16,17 +16,10 @@ constexpr long most_ahead = 1000;
 /// Vectors this close to the centre of the unit ball are drawn again: few of their bits are random.
 constexpr double least_drawn = 1e-3;
 
-Eigen::Vector4d vector_of(const State& s) { return {s.x_dot, s.x, s.y_dot, s.y}; }
-
-State state_of(const Eigen::Vector4d& v) { return {v(0), v(1), v(2), v(3)}; }
-
-/// J(s) d, eq. (18); carried_over() also in sticking phases, for the centre of mass.
-Eigen::Vector4d carried_free(const Flow& flow, double s, double epsilon, Eigen::Vector4d d) {
-    carry(d, {flow.transfer(s), s, 0, 1, false}, epsilon);
-    return d;
-}
-Eigen::Vector4d carried_over(const Stretch& stretch, double s, double epsilon, Eigen::Vector4d d) {
-    carry(d, {stretch.flow.transfer(s), s, 0, 1, stretch.sticking_side != 0}, epsilon);
+/// J(s) d, eq. (18); also in sticking phases, for the centre of mass.
+Eigen::Vector4d carried_over(
+    const Flow& flow, bool sticking, double s, double epsilon, Eigen::Vector4d d) {
+    carry(d, {flow.transfer(s), s, 0, 1, sticking}, epsilon);
     return d;
 }
 
@@ -59,14 +52,19 @@ ComparedContacts::ComparedContacts(const Parameters& p, const State& deviation)
       deviation_(vector_of(deviation)) {}
 
 void ComparedContacts::on_stretch(const Stretch& stretch) {
-    deviation_ = carried_over(stretch, stretch.duration, parameters_.epsilon, deviation_);
+    deviation_ = carried_over(
+        stretch.flow, stretch.sticking_side != 0, stretch.duration, parameters_.epsilon,
+        deviation_);
 }
 
 void ComparedRun::on_stretch(const Stretch& stretch) {
     series_.on_stretch(stretch);
     for (std::size_t i = tangent.size(); i < series().tau.size(); ++i) {
         const double s = std::max(0.0, series().tau[i] - stretch.tau);
-        tangent.push_back(carried_over(stretch, s, parameters_.epsilon, deviation_).norm());
+        tangent.push_back(
+            carried_over(
+                stretch.flow, stretch.sticking_side != 0, s, parameters_.epsilon, deviation_)
+                .norm());
     }
     ComparedContacts::on_stretch(stretch);
 }
@@ -235,8 +233,8 @@ std::vector<char> measure_distances(
             if (gap->impact) {
                 (gap->of_reference ? own : other) = continued(p, *flow, *gap->impact, tau);
                 if (gap->of_reference)
-                    tangent = carried_free(
-                                  *flow, tau - gap->impact->tau, p.epsilon,
+                    tangent = carried_over(
+                                  *flow, false, tau - gap->impact->tau, p.epsilon,
                                   vector_of(gap->impact->deviation))
                                   .norm();
             }

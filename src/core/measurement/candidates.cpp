@@ -40,10 +40,11 @@ constexpr double attach_steps = 2.5, far_from_kinks = 0.5;
 // other impacts.
 constexpr double most_events_without_kink = 0.1;
 
-PulseEvents events_of(const SearchedRecord& in, IdentificationProgress& progress) {
-    const PulseSignal signal = pulse_signal(in.record, in.bad, in.parameters.Omega, progress);
+PulseEvents events_of(const ImpactSearchInput& in) {
+    const PulseSignal signal = pulse_signal(in.record, in.bad, in.parameters.Omega, in.progress);
     return pulse_events(
-        in.record.tau, in.statistics.step, signal, in.bad.a_without_clipped(), in.sigmas, progress);
+        in.record.tau, in.statistics.step, signal, in.bad.a_without_clipped(), in.options.sigmas,
+        in.progress);
 }
 
 bool are_sharp(const std::vector<Candidate>& kinks) {
@@ -126,17 +127,17 @@ PulseExtent unknown_extent(const RecordStatistics& statistics) {
     return {first_spoiled_steps * statistics.step, first_spoiled_steps * statistics.step};
 }
 
-FirstCandidates first_candidates(const SearchedRecord& in, IdentificationProgress& progress) {
+FirstCandidates first_candidates(const ImpactSearchInput& in) {
     FirstCandidates first{{}, unknown_extent(in.statistics), 0};
     std::vector<PulseEvent> events;
     if (!in.record.x_ddot.empty()) {
-        PulseEvents found = events_of(in, progress);
+        PulseEvents found = events_of(in);
         first.extent = {found.before, found.after};
         events = std::move(found.events);
     }
     const KinkSearch kinks{
         in.record, in.bad.x, in.statistics.x.noise, given_unknowns(in.parameters)};
-    if (!in.record.x.empty()) kinks.add_to(first.candidates, progress);
+    if (!in.record.x.empty()) kinks.add_to(first.candidates, in.progress);
     if (events.empty()) return first;
     if (are_sharp(first.candidates)) {
         const bool by_chance = static_cast<double>(events.size()) >
@@ -148,7 +149,7 @@ FirstCandidates first_candidates(const SearchedRecord& in, IdentificationProgres
     } else {
         first.candidates.clear();
         for (const PulseEvent& e : events) first.candidates.push_back(candidate_of(e));
-        if (!in.record.x.empty()) kinks.add_to(first.candidates, progress);
+        if (!in.record.x.empty()) kinks.add_to(first.candidates, in.progress);
     }
     sort_by_time(first.candidates);
     return first;

@@ -8,10 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/measurement/joint_fit.hpp"
-#include "core/measurement/measured_record.hpp"
-#include "core/measurement/progress.hpp"
-#include "core/measurement/pulse_template.hpp"
+#include "core/measurement/search.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines {
@@ -110,14 +107,27 @@ struct KinkSearch {
     void add_to(std::vector<Candidate>& candidates, IdentificationProgress& progress) const;
 };
 
-/// A record with what is known at the start.
-struct SearchedRecord {
+/// The record under search, and everything that stays the same during the search.
+struct ImpactSearchInput {
+    ImpactSearchInput(
+        const Parameters& p, const MeasuredRecord& r, const ImpactSearchOptions& o,
+        IdentificationProgress& progress_)
+        : parameters(p),
+          record(r),
+          options(o),
+          progress(progress_),
+          bad(bad_samples(r)),
+          statistics(r, bad) {}
+
+    /// False if the times of the impacts are given.
+    bool searches() const { return options.times.empty(); }
+
     const Parameters& parameters;
     const MeasuredRecord& record;
-    const BadSamples& bad;
-    const RecordStatistics& statistics;
-    /// Threshold of a spike in the acceleration, in standard deviations of the noise.
-    double sigmas;
+    const ImpactSearchOptions& options;
+    IdentificationProgress& progress;
+    const BadSamples bad;
+    const RecordStatistics statistics;
 };
 
 struct FirstCandidates {
@@ -129,7 +139,7 @@ struct FirstCandidates {
 /// If the displacement is precise enough for its kinks to show all impacts, the kinks are the
 /// candidates, each with its nearest event. Otherwise all events are candidates, and the kinks
 /// between them.
-FirstCandidates first_candidates(const SearchedRecord& record, IdentificationProgress& progress);
+FirstCandidates first_candidates(const ImpactSearchInput& in);
 
 Candidate candidate_of(const PulseEvent& event);
 

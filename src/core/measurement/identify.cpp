@@ -103,13 +103,7 @@ Identification identify_impacts(
     Identification found;
     const std::vector<Flight> flights = flights_of(m, sides, gaps);
     for (std::size_t i = 0; i < sides.size(); ++i) {
-        IdentifiedImpact impact{
-            .tau = m[i].tau,
-            .side = sides[i],
-            .x = m[i].x,
-            .x_dot_before = m[i].x_dot_before,
-            .x_dot_after = m[i].x_dot_after,
-            .x_ddot_before = m[i].x_ddot_before};
+        IdentifiedImpact impact = at_wall(m[i], sides[i]);
         if (i > 0) impact.y_dot_before = flights[i - 1].y_dot(p.b);
         if (i < flights.size()) impact.y_dot_after = flights[i].y_dot(p.b);
         found.impacts.push_back(impact);

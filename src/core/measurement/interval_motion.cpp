@@ -79,15 +79,12 @@ void take_derivatives(
     const MotionRow& row, double OscillatorMotion::* member, Eigen::RowVector2d& by_start,
     UnknownRow& by_unknowns) {
     by_start << row.parts[0].*member, row.parts[1].*member;
-    const auto set = [&](Unknown u, double value) {
-        by_unknowns(static_cast<Eigen::Index>(u)) = value;
-    };
     by_unknowns.setZero();
-    set(Unknown::force_sin, row.parts[2].*member);
-    set(Unknown::force_cos, row.parts[3].*member);
-    set(Unknown::Omega, row.by_Omega.*member);
-    set(Unknown::stiffness, row.by_stiffness.*member);
-    set(Unknown::damping, row.by_damping.*member);
+    element(by_unknowns, Unknown::force_sin) = row.parts[2].*member;
+    element(by_unknowns, Unknown::force_cos) = row.parts[3].*member;
+    element(by_unknowns, Unknown::Omega) = row.by_Omega.*member;
+    element(by_unknowns, Unknown::stiffness) = row.by_stiffness.*member;
+    element(by_unknowns, Unknown::damping) = row.by_damping.*member;
 }
 
 }  // namespace vines

@@ -120,6 +120,7 @@ private:
 };
 
 using UnknownRow = Eigen::Matrix<double, 1, sensed_unknowns>;
+inline double& element(UnknownRow& row, Unknown u) { return row(static_cast<Eigen::Index>(u)); }
 
 /// Derivatives of one of x, x', x'' by the initial state and by the unknowns; 0 for unknowns that
 /// do not affect the motion.

@@ -41,6 +41,14 @@ void JointEquations::add(const std::vector<Term>& row, double left, double weigh
     }
 }
 
+void JointEquations::append(
+    const UnknownRow& by_unknowns, double times, std::vector<Term>& row) const {
+    for (std::size_t k = 0; k < sensed_unknowns; ++k) {
+        const double by = by_unknowns(static_cast<Eigen::Index>(k));
+        if (by != 0) row.push_back({unknown_at(k), times * by});
+    }
+}
+
 void JointEquations::add_prior(std::size_t unknown, double left, double weight) {
     add({{unknown_at(unknown), 1}}, left, weight);
 }
@@ -91,15 +99,18 @@ namespace {
 // eqs. (36) and (4) more closely.
 constexpr double least_momentum = 2e-3, least_restitution = 5e-3;
 
+using Borders = std::vector<FittedBorder>;
+
 /// The flight of the mass between impacts p and p + 1.
 class MassFlight {
 public:
-    MassFlight(
-        const Sides& sides, const std::vector<FittedBorder>& impacts, double b, std::size_t p)
+    MassFlight(const JointFitState& state, const Borders& impacts, std::size_t p)
         : p_(p),
           duration_(impacts[p + 1].tau - impacts[p].tau),
-          walls_(sides[p + 1] - sides[p]),
-          y_dot_((impacts[p + 1].x - impacts[p].x - b * walls_) / duration_),
+          walls_((*state.input.sides)[p + 1] - (*state.input.sides)[p]),
+          y_dot_(
+              (impacts[p + 1].x - impacts[p].x - state.fit.values[Unknown::b] * walls_) /
+              duration_),
           // Moving an impact's time also changes x there.
           by_first_((y_dot_ - impacts[p].x_dot_after) / duration_),
           by_last_((impacts[p + 1].x_dot_after - y_dot_) / duration_) {}
@@ -122,49 +133,40 @@ private:
     const double duration_, walls_, y_dot_, by_first_, by_last_;
 };
 
-}  // namespace
+/// Residuals of momentum and restitution at an impact, in m per unit of tau.
+struct MassResidual {
+    std::size_t impact;
+    double momentum, restitution;
+    double jump, approach;  ///< jump of x', and x' - y' before the impact
+};
 
-std::vector<MassResidual> mass_residuals(
-    double epsilon, const Sides& sides, const std::vector<FittedBorder>& impacts,
-    const UnknownValues& v) {
+/// Residuals of the impacts whose flights on both sides are known.
+std::vector<MassResidual> mass_residuals(const JointFitState& state, const Borders& impacts) {
+    const Sides& sides = *state.input.sides;
     std::vector<MassResidual> residuals;
     for (std::size_t i = 1; i + 1 < impacts.size(); ++i) {
         const FittedBorder& m = impacts[i];
         if (!m.flies || sides[i - 1] == 0 || sides[i + 1] == 0) continue;
-        const double before = MassFlight(sides, impacts, v[Unknown::b], i - 1).y_dot(),
-                     after = MassFlight(sides, impacts, v[Unknown::b], i).y_dot(),
-                     jump = m.x_dot_after - m.x_dot_before, approach = m.x_dot_before - before,
-                     R = v[restitution_at(sides[i])];
+        const double before = MassFlight(state, impacts, i - 1).y_dot(),
+                     after = MassFlight(state, impacts, i).y_dot(),
+                     approach = m.x_dot_before - before,
+                     R = state.fit.values[restitution_at(sides[i])];
         residuals.push_back(
-            {i, jump + epsilon * (after - before), m.x_dot_after - after + R * approach, jump,
-             approach});
+            {i, m.jump() + state.fit.epsilon * (after - before),
+             m.x_dot_after - after + R * approach, m.jump(), approach});
     }
     return residuals;
 }
 
-MassScatter scatter_of(const std::vector<MassResidual>& residuals) {
-    std::vector<double> momentum, restitution, jump, approach;
-    for (const MassResidual& r : residuals) {
-        momentum.push_back(r.momentum), restitution.push_back(r.restitution);
-        jump.push_back(std::abs(r.jump)), approach.push_back(std::abs(r.approach));
-    }
-    return {
-        std::max(robust_deviation(std::move(momentum)), least_momentum * median(std::move(jump))),
-        std::max(
-            robust_deviation(std::move(restitution)),
-            least_restitution * median(std::move(approach)))};
-}
-
+/// Adds the equations of one impact. Weights are inverse variances.
 void add_mass_rows(
-    double epsilon, const Sides& sides, const std::vector<FittedBorder>& impacts,
-    const UnknownValues& v, const FixedUnknowns& fixed, const MassResidual& r,
+    const JointFitState& state, const Borders& impacts, const MassResidual& r,
     double momentum_weight, double restitution_weight, JointEquations& e) {
     const std::size_t i = r.impact;
     const FittedBorder& m = impacts[i];
-    const Unknown wall = restitution_at(sides[i]);
-    const bool b_is_fixed = fixed[Unknown::b];
-    const MassFlight first(sides, impacts, v[Unknown::b], i - 1),
-        second(sides, impacts, v[Unknown::b], i);
+    const Unknown wall = restitution_at((*state.input.sides)[i]);
+    const bool b_is_fixed = state.fit.fixed[Unknown::b];
+    const MassFlight first(state, impacts, i - 1), second(state, impacts, i);
     const auto add = [&](double by_after, double by_before, double by_first, double by_second,
                          double by_R, double residual, double weight) {
         std::vector<JointEquations::Term> row = {
@@ -172,18 +174,38 @@ void add_mass_rows(
             {e.start_of(i), by_before * m.before_by_start(0)},
             {e.start_of(i) + 1, by_before * m.before_by_start(1)},
             {e.time_of(i), by_after * m.x_ddot_after + by_before * m.x_ddot_before}};
-        for (std::size_t g = 0; g < sensed_unknowns; ++g) {
-            const double by = m.before_by_unknowns(static_cast<Eigen::Index>(g));
-            if (by != 0) row.push_back({e.unknown_at(g), by_before * by});
-        }
+        e.append(m.before_by_unknowns, by_before, row);
         first.add_to(row, e, by_first, b_is_fixed);
         second.add_to(row, e, by_second, b_is_fixed);
-        if (by_R != 0 && !fixed[wall]) row.push_back({e.unknown_at(wall), by_R});
+        if (by_R != 0 && !state.fit.fixed[wall]) row.push_back({e.unknown_at(wall), by_R});
         e.add(row, -residual, weight);
     };
-    const double R = v[wall];
+    const double R = state.fit.values[wall], epsilon = state.fit.epsilon;
     add(1, -1, -epsilon, epsilon, 0, r.momentum, momentum_weight);
     add(1, R, -R, -1, r.approach, r.restitution, restitution_weight);
+}
+
+}  // namespace
+
+void add_mass_flights(
+    const JointFitState& state, const Borders& borders, JointEquations& equations) {
+    const std::vector<MassResidual> residuals = mass_residuals(state, borders);
+    std::vector<double> momentum, restitution, jump, approach;
+    for (const MassResidual& r : residuals) {
+        momentum.push_back(r.momentum), restitution.push_back(r.restitution);
+        jump.push_back(std::abs(r.jump)), approach.push_back(std::abs(r.approach));
+    }
+    // The scatter of the residuals, with a lower bound since no wall is perfectly constant.
+    const double of_momentum = std::max(
+                     robust_deviation(std::move(momentum)),
+                     least_momentum * median(std::move(jump))),
+                 of_restitution = std::max(
+                     robust_deviation(std::move(restitution)),
+                     least_restitution * median(std::move(approach)));
+    for (const MassResidual& r : residuals)
+        add_mass_rows(
+            state, borders, r, state.weight(r.momentum, of_momentum, of_momentum),
+            state.weight(r.restitution, of_restitution, of_restitution), equations);
 }
 
 }  // namespace vines

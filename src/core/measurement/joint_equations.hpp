@@ -1,16 +1,15 @@
-// Normal equations of a joint fit. Unknowns: two for each interval, the time of each impact, and
-// those of the record.
-//
-// Equations of the free mass in the joint fit: it flies with constant velocity from contact to
-// contact, y = x - side b at both ends (43); each impact conserves x' + epsilon y' (36) and has the
-// R of its wall (4). They couple the times of neighbouring impacts.
+// Normal equations of a joint fit, and its state between its stages: equations
+// (joint_fit_equations.cpp), steps (joint_fit.cpp), and evaluation of the result
+// (joint_fit_residual.cpp). Unknowns: two for each interval, the time of each impact, and those of
+// the record.
 #pragma once
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <vector>
 
-#include "core/measurement/interval_motion.hpp"
+#include "core/measurement/joint_fit.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines {
 
@@ -42,6 +41,8 @@ public:
     void add(
         std::size_t interval, const Eigen::RowVector2d& by_start, const UnknownRow& by_unknowns,
         double left, double weight);
+    /// Appends the derivatives by the record's unknowns, multiplied by `times`.
+    void append(const UnknownRow& by_unknowns, double times, std::vector<Term>& row) const;
     /// Adds a residual that depends on few unknowns.
     void add(const std::vector<Term>& row, double left, double weight);
     /// Adds a prior: `left` is the prior mean minus the value.
@@ -79,42 +80,58 @@ private:
     Eigen::VectorXd right_;
 };
 
-/// Wall of each border of a fit, +1 or -1, including the wall that a mass leaves at a release; 0
-/// for a gap.
-using Sides = std::vector<int>;
+struct JointFitState {
+    const JointFitInput& input;
+    const MeasuredRecord& record;
+    const std::vector<ImpactTime>& borders;  ///< between the intervals of `fit`
+    IdentificationProgress& progress;
+    UnknownValues prior_mean, prior;                ///< prior: standard deviations
+    std::vector<char> in_pulse;                     ///< samples of the acceleration in pulses
+    double ridge = 0;                               ///< one over the largest step squared, 1/m^2
+    double scale_x = infinity, scale_a = infinity;  ///< of the residuals, for their weights
+    int scales_taken = 0;
+    bool weights_trusted = false;  ///< large residuals are ignored
+    std::vector<JointEquations::OfInterval> interval_equations = {};  ///< of the last step
+    JointFit fit = {};
+
+    IntervalMotion motion_in(const IntervalFlows& flows, const FittedInterval& i) const {
+        return {flows.of(i), fit.values, fit.tau_middle, i};
+    }
+    /// Moving mass in an interval, divided by m1.
+    double moving_mass(const FittedInterval& i) const { return i.sticks ? 1 + fit.epsilon : 1; }
+    /// x'' at the start of an interval.
+    double acceleration_at(const FittedInterval& i) const;
+    /// The motion at the end of interval k, and that before and after the border there.
+    MotionRow end_of(const IntervalFlows& flows, std::size_t k) const;
+    FittedImpact motion_at_border(std::size_t k, const MotionRow& end) const;
+    /// Inverse variance, reduced for outliers (Huber); `scale`: standard deviation of the
+    /// residuals.
+    double weight(double left, double noise, double scale) const;
+};
 
 /// An impact between two intervals: the motion before it is the end of the first one.
-struct FittedBorder {
-    bool flies;     ///< an impact without a sticking phase after it
-    double tau, x;  ///< start of the second interval
-    double x_dot_before, x_dot_after, x_ddot_before, x_ddot_after;
+struct FittedBorder : FittedImpact {
+    bool flies;  ///< an impact without a sticking phase after it
     /// Derivative of x_dot_before by the first interval's start.
     Eigen::RowVector2d before_by_start;
     UnknownRow before_by_unknowns;
 };
 
-/// Residuals of momentum and restitution at an impact, in m per unit of tau.
-struct MassResidual {
-    std::size_t impact;
-    double momentum, restitution;
-    double jump, approach;  ///< jump of x', and x' - y' before the impact
-};
-/// Residuals of the impacts whose flights on both sides are known.
-std::vector<MassResidual> mass_residuals(
-    double epsilon, const Sides& sides, const std::vector<FittedBorder>& impacts,
-    const UnknownValues& values);
+/// The equations of the next step, with all samples, borders, priors and given forcing. `first`:
+/// the motion is still zero, so only unknowns that are linear in it are fitted. Updates the
+/// residuals.
+JointEquations equations_of(JointFitState& state, bool first);
 
-/// Standard deviations of both residuals: their scatter, with a lower bound since no wall is
-/// perfectly constant.
-struct MassScatter {
-    double momentum, restitution;
-};
-MassScatter scatter_of(const std::vector<MassResidual>& residuals);
+/// Adds the equations of the free mass: it flies with constant velocity from contact to contact,
+/// where y = x - side b (43); each impact conserves x' + epsilon y' (36) and has the R of its wall
+/// (4). They couple the times of neighbouring impacts.
+void add_mass_flights(
+    const JointFitState& state, const std::vector<FittedBorder>& borders,
+    JointEquations& equations);
 
-/// Adds the equations of one impact. Weights are inverse variances.
-void add_mass_rows(
-    double epsilon, const Sides& sides, const std::vector<FittedBorder>& impacts,
-    const UnknownValues& values, const FixedUnknowns& fixed, const MassResidual& residual,
-    double momentum_weight, double restitution_weight, JointEquations& equations);
+/// Sets JointFit::impacts: the motion on both sides of each border.
+void evaluate_impacts(JointFitState& state);
+/// Sets noise and misfit of each sensor, and scales the standard errors by the misfit.
+void evaluate_residual(JointFitState& state);
 
 }  // namespace vines

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/measurement/joint_fit_state.hpp"
+#include "core/measurement/joint_equations.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines {
@@ -205,6 +205,26 @@ double JointFitState::acceleration_at(const FittedInterval& i) const {
             v[Unknown::force_sin] * elementary::sin(angle) +
             v[Unknown::force_cos] * elementary::cos(angle)) /
            moving_mass(i);
+}
+
+MotionRow JointFitState::end_of(const IntervalFlows& flows, std::size_t k) const {
+    const FittedInterval& i = fit.intervals[k];
+    return motion_in(flows, i).at(fit.intervals[k + 1].tau - i.tau, true);
+}
+
+FittedImpact JointFitState::motion_at_border(std::size_t k, const MotionRow& end) const {
+    const FittedInterval& to = fit.intervals[k + 1];
+    return {
+        .tau = to.tau,
+        .border = borders[k].border,
+        .x = to.x,
+        .x_dot_before = end.value.x_dot,
+        .x_dot_after = to.x_dot,
+        .x_ddot_before = end.value.x_ddot,
+        .x_ddot_after = acceleration_at(to),
+        .x_jump = nan,
+        .x_jump_error = nan,
+        .x_dot_jump_error = nan};
 }
 
 JointFit fit_jointly(

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/measurement/interval_motion.hpp"
-#include "core/measurement/joint_equations.hpp"
 #include "core/measurement/measured_record.hpp"
 #include "core/measurement/progress.hpp"
 #include "core/measurement/unknowns.hpp"
@@ -62,6 +61,10 @@ struct JointFit {
     double misfit_x = 0, misfit_a = 0;
     bool converged = false;
 };
+
+/// Wall of each border of a fit, +1 or -1, including the wall that a mass leaves at a release; 0
+/// for a gap.
+using Sides = std::vector<int>;
 
 /// Bound on the delay of the displacement, either sign, in tau.
 inline constexpr double largest_delay = 0.15;

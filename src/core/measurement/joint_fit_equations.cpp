@@ -1,6 +1,6 @@
 // The equations of a Gauss-Newton step of the joint fit (unknowns.hpp): samples of both sensors,
 // conditions at the borders between intervals, flights of the mass, priors, and a given forcing.
-#include "core/measurement/joint_fit_state.hpp"
+#include "core/measurement/joint_equations.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -35,13 +35,9 @@ void clear_held(const JointFitState& state, UnknownRow& by_unknowns, bool first)
         if (is_held(state, k, first)) by_unknowns(static_cast<Eigen::Index>(k)) = 0;
 }
 
-/// Inverse variance, reduced for outliers (Huber); `scale`: standard deviation of the residuals.
-double weight(const JointFitState& state, double left, double noise, double scale, bool first) {
-    const double plain = 1 / (noise * noise);
-    if (first) return plain;
-    const double off = std::abs(left) / scale;
-    if (off > ignored_sigmas && state.weights_trusted) return 0;
-    return off > huber_sigmas ? plain * huber_sigmas / off : plain;
+/// In the first step the residuals are those of a motion of zero.
+double weight_of(const JointFitState& state, double left, double noise, double scale, bool first) {
+    return first ? 1 / (noise * noise) : state.weight(left, noise, scale);
 }
 
 double relative_time(const JointFitState& state, std::size_t k) {
@@ -79,9 +75,6 @@ void add_displacement(
     JointFitState& state, const IntervalFlows& flows, bool first, JointEquations& equations) {
     Eigen::RowVector2d by_start;
     UnknownRow by_unknowns;
-    const auto set = [&](Unknown u, double value) {
-        by_unknowns(static_cast<Eigen::Index>(u)) = value;
-    };
     const MeasuredRecord& r = state.record;
     const UnknownValues& v = state.fit.values;
     each_sample(
@@ -96,14 +89,14 @@ void add_displacement(
             take_derivatives(row, &OscillatorMotion::x, by_start, by_unknowns);
             by_start *= gain;
             by_unknowns *= gain;
-            set(Unknown::x_offset, 1);
-            set(Unknown::x_drift, u);
-            set(Unknown::x_gain, row.value.x);
-            set(Unknown::x_delay, -gain * row.value.x_dot);
+            element(by_unknowns, Unknown::x_offset) = 1;
+            element(by_unknowns, Unknown::x_drift) = u;
+            element(by_unknowns, Unknown::x_gain) = row.value.x;
+            element(by_unknowns, Unknown::x_delay) = -gain * row.value.x_dot;
             clear_held(state, by_unknowns, first);
             equations.add(
                 i, by_start, by_unknowns, left,
-                weight(state, left, state.input.statistics.x.noise, state.scale_x, first));
+                weight_of(state, left, state.input.statistics.x.noise, state.scale_x, first));
         });
 }
 
@@ -111,9 +104,6 @@ void add_acceleration(
     JointFitState& state, const IntervalFlows& flows, bool first, JointEquations& equations) {
     Eigen::RowVector2d by_start;
     UnknownRow by_unknowns;
-    const auto set = [&](Unknown u, double value) {
-        by_unknowns(static_cast<Eigen::Index>(u)) = value;
-    };
     const UnknownValues& v = state.fit.values;
     each_sample(state, flows, 0, true, [&](std::size_t k, std::size_t i, const MotionRow& row) {
         const double u = relative_time(state, k);
@@ -122,29 +112,20 @@ void add_acceleration(
         state.fit.a_residual[k] = left;
         if (state.in_pulse[k] || state.input.bad_a[k]) return;
         take_derivatives(row, &OscillatorMotion::x_ddot, by_start, by_unknowns);
-        set(Unknown::a_offset, 1);
-        set(Unknown::a_drift, u);
+        element(by_unknowns, Unknown::a_offset) = 1;
+        element(by_unknowns, Unknown::a_drift) = u;
         clear_held(state, by_unknowns, first);
         equations.add(
             i, by_start, by_unknowns, left,
-            weight(state, left, state.input.statistics.x_ddot.noise, state.scale_a, first));
+            weight_of(state, left, state.input.statistics.x_ddot.noise, state.scale_a, first));
     });
 }
 
-/// The border between an interval, whose end is `row`, and the next one, `to`.
-FittedBorder fitted_border(
-    const JointFitState& state, const ImpactTime& border, const MotionRow& row,
-    const FittedInterval& to) {
+/// Border k, at the end `row` of its first interval.
+FittedBorder fitted_border(const JointFitState& state, std::size_t k, const MotionRow& row) {
+    const ImpactTime& border = state.borders[k];
     FittedBorder m{
-        .flies = border.border == Border::impact && !border.sticks,
-        .tau = to.tau,
-        .x = to.x,
-        .x_dot_before = row.value.x_dot,
-        .x_dot_after = to.x_dot,
-        .x_ddot_before = row.value.x_ddot,
-        .x_ddot_after = state.acceleration_at(to),
-        .before_by_start = {},
-        .before_by_unknowns = {}};
+        state.motion_at_border(k, row), border.border == Border::impact && !border.sticks, {}, {}};
     take_derivatives(row, &OscillatorMotion::x_dot, m.before_by_start, m.before_by_unknowns);
     clear_held(state, m.before_by_unknowns, false);
     return m;
@@ -167,28 +148,8 @@ void add_border_condition(
     if (meets)
         terms.push_back(
             {equations.start_of(k + 1) + (member == &OscillatorMotion::x_dot ? 1 : 0), -1});
-    for (std::size_t g = 0; g < sensed_unknowns; ++g) {
-        const double by = by_unknowns(static_cast<Eigen::Index>(g));
-        if (by != 0) terms.push_back({equations.unknown_at(g), by});
-    }
+    equations.append(by_unknowns, 1, terms);
     equations.add(terms, left, weight);
-}
-
-void add_mass_flights(
-    const JointFitState& state, const std::vector<FittedBorder>& borders,
-    JointEquations& equations) {
-    const double epsilon = state.input.parameters.epsilon;
-    const std::vector<MassResidual> residuals =
-        mass_residuals(epsilon, *state.input.sides, borders, state.fit.values);
-    const MassScatter scatter = scatter_of(residuals);
-    const auto weight_of = [&](double left, double sigma) {
-        return weight(state, left, sigma, sigma, false);
-    };
-    for (const MassResidual& r : residuals)
-        add_mass_rows(
-            epsilon, *state.input.sides, borders, state.fit.values, state.fit.fixed, r,
-            weight_of(r.momentum, scatter.momentum), weight_of(r.restitution, scatter.restitution),
-            equations);
 }
 
 double jerk_at(
@@ -211,9 +172,9 @@ void add_impacts(
     const double weight = 1 / (continuity_share * continuity_share * noise * noise);
     for (std::size_t k = 0; k < state.borders.size(); ++k) {
         const FittedInterval &from = state.fit.intervals[k], &to = state.fit.intervals[k + 1];
-        const MotionRow row = state.motion_in(flows, from).at(to.tau - from.tau, true);
+        const MotionRow row = state.end_of(flows, k);
         const ImpactTime& m = state.borders[k];
-        if (state.input.sides) borders.push_back(fitted_border(state, m, row, to));
+        if (state.input.sides) borders.push_back(fitted_border(state, k, row));
         if (m.border == Border::gap) continue;
         add_border_condition(
             state, k, row, &OscillatorMotion::x, row.value.x_dot - to.x_dot, true,
@@ -283,9 +244,15 @@ void add_known_forcing(const JointFitState& state, JointEquations& equations) {
 
 }  // namespace
 
+double JointFitState::weight(double left, double noise, double scale) const {
+    const double plain = 1 / (noise * noise), off = std::abs(left) / scale;
+    if (off > ignored_sigmas && weights_trusted) return 0;
+    return off > huber_sigmas ? plain * huber_sigmas / off : plain;
+}
+
 JointEquations equations_of(JointFitState& state, bool first) {
     JointEquations equations(state.fit.intervals.size(), state.ridge);
-    const IntervalFlows flows(state.fit.values, state.oscillator_moves(), state.fit.epsilon);
+    const IntervalFlows flows(state.fit.values, !state.fit.fixed.oscillator(), state.fit.epsilon);
     if (!state.record.x.empty()) add_displacement(state, flows, first, equations);
     if (!state.record.x_ddot.empty()) add_acceleration(state, flows, first, equations);
     if (!first) add_impacts(state, flows, equations);

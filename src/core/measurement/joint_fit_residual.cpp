@@ -16,7 +16,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/measurement/joint_fit_state.hpp"
+#include "core/measurement/joint_equations.hpp"
 
 namespace vines {
 
@@ -105,7 +105,7 @@ ResidualStatistics statistics_of(
 
 /// Appends the fitted states at each border to fit.impacts.
 void evaluate_impacts(JointFitState& state) {
-    const IntervalFlows flows(state.fit.values, state.oscillator_moves(), state.fit.epsilon);
+    const IntervalFlows flows(state.fit.values, !state.fit.fixed.oscillator(), state.fit.epsilon);
     // Initial state of each interval fitted to its own samples alone, with the global parameters
     // fixed: s + N^-1 g, with covariance N^-1.
     std::vector<Eigen::Matrix2d> covariance;
@@ -126,24 +126,16 @@ void evaluate_impacts(JointFitState& state) {
     Eigen::RowVector2d by_x, by_x_dot;
     UnknownRow unused;
     for (std::size_t k = 0; k < state.borders.size(); ++k) {
-        const FittedInterval &from = state.fit.intervals[k], &to = state.fit.intervals[k + 1];
-        const MotionRow row = state.motion_in(flows, from).at(to.tau - from.tau, true);
+        const FittedInterval& from = state.fit.intervals[k];
+        const MotionRow row = state.end_of(flows, k);
         take_derivatives(row, &OscillatorMotion::x, by_x, unused);
         take_derivatives(row, &OscillatorMotion::x_dot, by_x_dot, unused);
         const Eigen::Vector2d moved(own[k](0) - from.x, own[k](1) - from.x_dot);
-        state.fit.impacts.push_back(
-            {.tau = to.tau,
-             .border = state.borders[k].border,
-             .x = to.x,
-             .x_dot_before = row.value.x_dot,
-             .x_dot_after = to.x_dot,
-             .x_ddot_before = row.value.x_ddot,
-             .x_ddot_after = state.acceleration_at(to),
-             .x_jump = row.value.x + by_x * moved - own[k + 1](0),
-             .x_jump_error =
-                 error(by_x * covariance[k] * by_x.transpose() + covariance[k + 1](0, 0)),
-             .x_dot_jump_error =
-                 error(by_x_dot * covariance[k] * by_x_dot.transpose() + covariance[k + 1](1, 1))});
+        FittedImpact& m = state.fit.impacts.emplace_back(state.motion_at_border(k, row));
+        m.x_jump = row.value.x + by_x * moved - own[k + 1](0);
+        m.x_jump_error = error(by_x * covariance[k] * by_x.transpose() + covariance[k + 1](0, 0));
+        m.x_dot_jump_error =
+            error(by_x_dot * covariance[k] * by_x_dot.transpose() + covariance[k + 1](1, 1));
     }
 }
 

@@ -9,7 +9,6 @@
 #include "core/measurement/robust.hpp"
 #include "core/measures/energy.hpp"
 #include "core/motion/elementary.hpp"
-#include "core/stability/exponent_statistics.hpp"
 
 namespace vines {
 

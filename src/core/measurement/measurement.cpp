@@ -14,12 +14,6 @@ namespace {
 /// Far above the impacts in a record of minutes.
 constexpr long most_forward_impacts = 100000;
 
-/// Takes R of each wall that has impacts, clamped to the range of an R.
-void take_restitution(Parameters& p, const Identification& found) {
-    if (std::isfinite(found.plus.R)) p.R_plus = std::clamp(found.plus.R, 0.0, 1.0);
-    if (std::isfinite(found.minus.R)) p.R_minus = std::clamp(found.minus.R, 0.0, 1.0);
-}
-
 /// The stretches, split at impacts whose relative speed is unknown.
 std::vector<KnownStretch> with_speeds(
     const std::vector<IdentifiedImpact>& impacts, const std::vector<KnownStretch>& stretches) {
@@ -46,7 +40,7 @@ std::optional<DirectEstimate> direct_estimate(
     const double pulse = refined.pulse.length();
     Identification found = identify_impacts(
         p, direct_motion(m.record, times, pulse), refined.side, refined.gaps, pulse);
-    if (!m.R_given) take_restitution(p, found);
+    if (!m.R_given) take_restitution(found.plus, found.minus, p);
     insert_hidden(hidden, found.impacts);
     complete_impacts(p, found.impacts, pulse);
     const MeasuredExponents faultless(
@@ -94,15 +88,6 @@ Identification identified(const FoundImpacts& refined, Parameters& p) {
     return found;
 }
 
-/// Identification of listed impacts, without a record.
-Identification of_impacts(const std::vector<IdentifiedImpact>& impacts) {
-    Identification found;
-    found.impacts = impacts;
-    found.plus = restitution_of(impacts, 1);
-    found.minus = restitution_of(impacts, -1);
-    return found;
-}
-
 }  // namespace
 
 double Measurement::step() const {
@@ -131,9 +116,11 @@ MeasurementResult evaluate_measurement(const Measurement& m, const Identificatio
         found = identified(*refined, p);
         doubts = doubts_of(p, *refined, found);
     } else {
-        found = of_impacts(m.impacts);
+        found.impacts = m.impacts;
+        found.plus = restitution_of(m.impacts, 1);
+        found.minus = restitution_of(m.impacts, -1);
     }
-    if (!m.R_given) take_restitution(p, found);
+    if (!m.R_given) take_restitution(found.plus, found.minus, p);
     std::optional<IdentifiedSystem> system;
     std::vector<HiddenContacts> hidden;
     if (refined) {

@@ -33,7 +33,7 @@ ImpactSearchState first_state(const ImpactSearchInput& in) {
     state.fixed[Unknown::stiffness] = state.fixed[Unknown::damping] = true;
     state.found.gaps = hiding_gaps(in.record);
     if (in.searches()) {
-        FirstCandidates first = first_candidates(in.searched_record(), in.progress);
+        FirstCandidates first = first_candidates(in);
         state.candidates = std::move(first.candidates);
         state.spoiled.a = first.extent;
         state.values[Unknown::x_delay] = first.x_delay;

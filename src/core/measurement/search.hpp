@@ -8,6 +8,17 @@
 
 namespace vines {
 
+/// A fitted impact at a wall, without the mass.
+inline IdentifiedImpact at_wall(const FittedImpact& m, int side) {
+    return {
+        .tau = m.tau,
+        .side = side,
+        .x = m.x,
+        .x_dot_before = m.x_dot_before,
+        .x_dot_after = m.x_dot_after,
+        .x_ddot_before = m.x_ddot_before};
+}
+
 struct FoundImpacts {
     JointFit fit;
     bool with_mass = false;     ///< the mass was part of the fit: its R and b are fitted

@@ -124,9 +124,7 @@ void limit_pulse_extent(ImpactSearchState& state) {
 bool free_oscillator(
     const ImpactSearchInput& in, ImpactSearchState& state, const MeasuredRecord& record,
     const std::vector<ImpactTime>& times) {
-    const bool is_free = !state.fixed[Unknown::stiffness] || !state.fixed[Unknown::damping];
-    if (!state.may_free_oscillator || is_free ||
-        (in.options.fixed[Unknown::stiffness] && in.options.fixed[Unknown::damping]))
+    if (!state.may_free_oscillator || !state.fixed.oscillator() || in.options.fixed.oscillator())
         return false;
     JointFitInput free = fit_input(in, state, record);
     free.fixed = in.options.fixed;
@@ -147,8 +145,7 @@ bool free_oscillator(
 }
 
 bool restore_given_oscillator(const ImpactSearchInput& in, ImpactSearchState& state) {
-    const bool is_free = !state.fixed[Unknown::stiffness] || !state.fixed[Unknown::damping];
-    if (!is_free || is_plausible(in, state.values)) return false;
+    if (state.fixed.oscillator() || is_plausible(in, state.values)) return false;
     const UnknownValues given = given_unknowns(in.parameters);
     state.may_free_oscillator = false;
     state.fixed[Unknown::stiffness] = state.fixed[Unknown::damping] = true;

@@ -38,13 +38,7 @@ ShownImpacts shown_impacts(const ImpactSearchInput& in, const ImpactSearchState&
         shown.candidates.back().sticks = false;
         const FittedImpact& m = state.found.fit.impacts[i];
         if (!state.candidates[i].is_impact()) continue;
-        shown.impacts.push_back(
-            {.tau = m.tau,
-             .side = state.sides[i],
-             .x = m.x,
-             .x_dot_before = m.x_dot_before,
-             .x_dot_after = m.x_dot_after,
-             .x_ddot_before = m.x_ddot_before});
+        shown.impacts.push_back(at_wall(m, state.sides[i]));
         const double promised = ratio * std::abs(state.candidates[i].height);
         shown.doubtful.push_back(
             in.searches() && !(std::abs(std::abs(m.jump()) - promised) <

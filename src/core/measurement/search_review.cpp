@@ -118,8 +118,7 @@ constexpr double most_overlooked = 0.1;
 
 /// Pulses away from the known impacts.
 std::vector<Candidate> overlooked_pulses(
-    const SearchedRecord& in, const JointFit& fit, const PulseExtent& extent,
-    IdentificationProgress& progress) {
+    const ImpactSearchInput& in, const JointFit& fit, const PulseExtent& extent) {
     const MeasuredRecord& r = in.record;
     PulseSignal signal{fit.a_residual, fit.noise_a};
     std::vector<char> passed_over = in.bad.a_without_clipped();
@@ -130,8 +129,8 @@ std::vector<Candidate> overlooked_pulses(
             passed_over[k] = 1;
     }
     std::vector<Candidate> found;
-    const PulseEvents seen =
-        pulse_events(r.tau, in.statistics.step, signal, passed_over, in.sigmas, progress);
+    const PulseEvents seen = pulse_events(
+        r.tau, in.statistics.step, signal, passed_over, in.options.sigmas, in.progress);
     for (const PulseEvent& e : seen.events) found.push_back(candidate_of(e));
     if (static_cast<double>(found.size()) >
         most_overlooked * static_cast<double>(fit.impacts.size()))
@@ -140,13 +139,13 @@ std::vector<Candidate> overlooked_pulses(
 }
 
 void add_overlooked_kinks(
-    const SearchedRecord& in, const JointFit& fit, double x_spoiled,
-    IdentificationProgress& progress, std::vector<Candidate>& found) {
+    const ImpactSearchInput& in, const JointFit& fit, double x_spoiled,
+    std::vector<Candidate>& found) {
     const UnknownValues& v = fit.values;
     const IntervalFlows flows(v, false, fit.epsilon);
     const double noise = std::max(fit.noise_x, in.statistics.x.noise);
     for (std::size_t i = 0; i < fit.intervals.size(); ++i) {
-        progress.look();
+        in.progress.look();
         const double from = fit.intervals[i].tau + x_spoiled,
                      to = (i + 1 < fit.intervals.size() ? fit.intervals[i + 1].tau
                                                         : in.record.tau.back()) -
@@ -157,17 +156,6 @@ void add_overlooked_kinks(
         if (missed)
             found.push_back({.tau = missed->tau, .jump = missed->jump / v[Unknown::x_gain]});
     }
-}
-
-/// Finds overlooked impacts: pulses in the residual of the acceleration, and kinks in intervals
-/// that one motion does not fit.
-std::vector<Candidate> overlooked_impacts(
-    const SearchedRecord& in, const JointFit& fit, const SpoiledExtents& spoiled,
-    IdentificationProgress& progress) {
-    std::vector<Candidate> found;
-    if (!fit.a_residual.empty()) found = overlooked_pulses(in, fit, spoiled.a, progress);
-    if (!in.record.x.empty()) add_overlooked_kinks(in, fit, spoiled.x, progress, found);
-    return found;
 }
 
 /// Drops false impacts; returns whether there were any.
@@ -186,11 +174,16 @@ bool drop_false_impacts(const ImpactSearchInput& in, ImpactSearchState& state) {
     return any;
 }
 
-/// Adds overlooked impacts that were not dropped before; returns whether there are any.
+/// Adds overlooked impacts that were not dropped before: pulses in the residual of the
+/// acceleration, and kinks in intervals that one motion does not fit. Returns whether there are
+/// any.
 bool add_overlooked_impacts(const ImpactSearchInput& in, ImpactSearchState& state) {
+    const JointFit& fit = state.found.fit;
+    std::vector<Candidate> overlooked;
+    if (!fit.a_residual.empty()) overlooked = overlooked_pulses(in, fit, state.spoiled.a);
+    if (!in.record.x.empty()) add_overlooked_kinks(in, fit, state.spoiled.x, overlooked);
     bool any = false;
-    for (const Candidate& c :
-         overlooked_impacts(in.searched_record(), state.found.fit, state.spoiled, in.progress)) {
+    for (const Candidate& c : overlooked) {
         const auto times = std::count_if(
             state.rejected.begin(), state.rejected.end(), [&](const RejectedCandidate& d) {
                 return std::abs(d.tau - c.tau) < same_steps * in.statistics.step;

@@ -8,35 +8,8 @@
 #include <functional>
 
 #include "core/measurement/candidates.hpp"
-#include "core/measurement/search.hpp"
 
 namespace vines {
-
-/// The record under search, and everything that stays the same during the search.
-struct ImpactSearchInput {
-    ImpactSearchInput(
-        const Parameters& p, const MeasuredRecord& r, const ImpactSearchOptions& o,
-        IdentificationProgress& progress_)
-        : parameters(p),
-          record(r),
-          options(o),
-          progress(progress_),
-          bad(bad_samples(r)),
-          statistics(r, bad) {}
-
-    /// False if the times of the impacts are given.
-    bool searches() const { return options.times.empty(); }
-    SearchedRecord searched_record() const {
-        return {parameters, record, bad, statistics, options.sigmas};
-    }
-
-    const Parameters& parameters;
-    const MeasuredRecord& record;
-    const ImpactSearchOptions& options;
-    IdentificationProgress& progress;
-    const BadSamples bad;
-    const RecordStatistics statistics;
-};
 
 /// Time around an impact in which it spoils the samples.
 struct SpoiledExtents {

@@ -73,6 +73,8 @@ public:
     using std::array<bool, unknowns>::operator[];
     bool& operator[](Unknown u) { return (*this)[static_cast<std::size_t>(u)]; }
     bool operator[](Unknown u) const { return (*this)[static_cast<std::size_t>(u)]; }
+    /// Whether k and c both keep their values.
+    bool oscillator() const { return (*this)[Unknown::stiffness] && (*this)[Unknown::damping]; }
 };
 
 /// Given parameters of the forcing f sin(Omega tau + phase).

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/motion/elementary.hpp"
-#include "core/motion/excursion.hpp"
 
 namespace vines {
 
@@ -60,7 +59,7 @@ void Energy::on_impact(const Impact& i) {
     // This impact, and the rounding of a stretch that ended slightly late, belong to the time
     // before the window.
     if (i.tau <= tau_start_) {
-        sum_ = {};
+        sum_.setZero();
         duration_ = peak_ = 0;
         start_ = energy_of(after, i.y_dot_after);
         last_ = {after, 0, i.y_dot_after, false, false};
@@ -91,11 +90,11 @@ double Energy::at_end() const {
     return energy_of(o, last_.is_stuck ? o.x_dot : last_.y_dot);
 }
 double Energy::input() const {
-    return parameters_.epsilon * parameters_.A() * integrals().x_dot_sin;
+    return parameters_.epsilon * parameters_.A() * integrals()(x_dot_sin);
 }
-double Energy::damper() const { return 2 * parameters_.zeta() * integrals().x_dot_squared; }
+double Energy::damper() const { return 2 * parameters_.zeta() * integrals()(x_dot_squared); }
 double Energy::rms() const {
-    return duration_ > 0 ? std::sqrt(integrals().x_squared / duration_) : 0;
+    return duration_ > 0 ? std::sqrt(integrals()(x_squared) / duration_) : 0;
 }
 
 EnergyBalance balance_of(const Parameters& p, const Energy& e, const Interval& window) {
@@ -131,7 +130,7 @@ double unattached_rms(const Parameters& p, const State& start, double duration) 
             ->over(
                 {start.x, start.x_dot, elementary::sin(p.phi()), elementary::cos(p.phi())},
                 duration);
-    return std::sqrt(sum.x_squared / duration);
+    return std::sqrt(sum(x_squared) / duration);
 }
 
 Unattached unattached(const Parameters& p, const State& start, double tau_start, double tau_end) {
@@ -142,7 +141,7 @@ Unattached unattached(const Parameters& p, const State& start, double tau_start,
     const double duration = tau_end - tau_start;
     return {
         duration > 0
-            ? std::sqrt(Quadrature::shared(flow)->over(begin, duration).x_squared / duration)
+            ? std::sqrt(Quadrature::shared(flow)->over(begin, duration)(x_squared) / duration)
             : 0,
         peak_beyond(0, flow, begin, duration), free_amplitude(p)};
 }

@@ -51,7 +51,7 @@ private:
     std::optional<Law> stuck_;  // set at the first sticking phase
     /// Integrals so far. While the closed form F is used, F at the end of the last stretch is
     /// missing; integrals() adds it.
-    Integrals sum_;
+    Integrals sum_ = Integrals::Zero();
     struct Last {
         Oscillation begin;
         double duration, y_dot;

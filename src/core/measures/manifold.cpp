@@ -7,7 +7,6 @@
 
 #include "core/measures/energy.hpp"
 #include "core/motion/elementary.hpp"
-#include "core/motion/excursion.hpp"
 
 namespace vines {
 
@@ -60,17 +59,6 @@ double manifold_b(double R, double C) {
     return k > 0 ? C * std::sqrt(quarter_turn * quarter_turn + k * k) / k : 0;
 }
 
-std::vector<ManifoldPoint> manifold_branch(
-    double R, double Omega, double b, double from, double to, std::size_t count) {
-    std::vector<ManifoldPoint> points;
-    for (std::size_t i = 0; i < count; ++i) {
-        const double V =
-            std::lerp(from, to, static_cast<double>(i) / static_cast<double>(count - 1));
-        points.push_back({manifold_C(R, Omega, b, V), V});
-    }
-    return points;
-}
-
 Manifold manifold_of(const Parameters& p, double V_max, std::size_t points) {
     assert(p.R_plus == p.R_minus && points >= 2);
     const double R = p.R_plus;
@@ -78,9 +66,15 @@ Manifold manifold_of(const Parameters& p, double V_max, std::size_t points) {
                         breaking = manifold_symmetry_breaking(R, p.Omega, p.b),
                         contact = manifold_second_contact(R, p.Omega, p.b);
     const double last = std::min(V_max > 0 ? V_max : 2 * breaking.V, contact.V);
+    // Equidistant in V.
     auto branch = [&](double from, double to) {
-        return from < to ? manifold_branch(R, p.Omega, p.b, from, to, points)
-                         : std::vector<ManifoldPoint>{};
+        std::vector<ManifoldPoint> curve;
+        for (std::size_t i = 0; from < to && i < points; ++i) {
+            const double V =
+                std::lerp(from, to, static_cast<double>(i) / static_cast<double>(points - 1));
+            curve.push_back({manifold_C(R, p.Omega, p.b, V), V});
+        }
+        return curve;
     };
     const auto free = free_amplitude(p);
     return {

@@ -44,10 +44,6 @@ ManifoldPoint manifold_second_contact(double R, double Omega, double b);
 /// The b whose fold lies at amplitude C, m; 0 for R = 1, where every fold is at C = 0.
 double manifold_b(double R, double C);
 
-/// `count` points from V_from to V_to, equidistant in V.
-std::vector<ManifoldPoint> manifold_branch(
-    double R, double Omega, double b, double V_from, double V_to, std::size_t count);
-
 /// The manifold as a curve, and its limits.
 struct Manifold {
     double R, Omega, b;

@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/motion/elementary.hpp"
-#include "core/motion/small_cache.hpp"
 
 namespace vines {
 
@@ -78,43 +78,44 @@ std::optional<Antiderivative> Antiderivative::solved_for(const Flow& flow) {
     system(7, 10) = system(9, 10) = 1;
     system(10, 7) = system(10, 9) = 1;
     const Eigen::FullPivLU<Eigen::Matrix<Wide, 11, 11>> factors(system);
-    const auto form = [&](int place, Wide entry) {
+    Antiderivative F;
+    // Entries of the integrands: x^2, x'^2 and x' sin(theta).
+    constexpr std::pair<int, Wide> entries[] = {{0, 1}, {4, 1}, {5, 0.5L}};
+    for (int k = 0; k < 3; ++k) {
         Eigen::Matrix<Wide, 11, 1> Q = Eigen::Matrix<Wide, 11, 1>::Zero();
-        Q(place) = entry;
+        Q(entries[k].first) = entries[k].second;
         const Eigen::Matrix<Wide, 11, 1> solution = factors.solve(Q);
         WideForm P = WideForm::Zero();
-        for (int k = 0; k < 10; ++k) P += solution(k) * symmetric(k);
-        return Form{P.cast<double>(), static_cast<double>(solution(10))};
-    };
-    Antiderivative F;
-    F.x_squared_ = form(0, 1);
-    F.x_dot_squared_ = form(4, 1);
-    F.x_dot_sin_ = form(5, 0.5L);
+        for (int place = 0; place < 10; ++place) P += solution(place) * symmetric(place);
+        F.P_[k] = P.cast<double>();
+        F.rate_(k) = static_cast<double>(solution(10));
+    }
     F.settled_ = 2 * std::numbers::pi + 1 / rate;
     return F;
 }
 
 Integrals Antiderivative::at(const Oscillation& o) const {
     const Eigen::Vector4d z = vector(o);
-    return {x_squared_.at(z), x_dot_squared_.at(z), x_dot_sin_.at(z)};
+    return {z.dot(P_[0] * z), z.dot(P_[1] * z), z.dot(P_[2] * z)};
 }
 
-double Antiderivative::Form::across(const Oscillation& o, double x_dot_before) const {
-    return (x_dot_before - o.x_dot) *
-           (P(1, 1) * (x_dot_before + o.x_dot) +
-            2 * (P(1, 0) * o.x + P(1, 2) * o.sin_theta + P(1, 3) * o.cos_theta));
-}
-
-Integrals Antiderivative::across(const Oscillation& after, double x_dot_before) const {
-    return {
-        x_squared_.across(after, x_dot_before), x_dot_squared_.across(after, x_dot_before),
-        x_dot_sin_.across(after, x_dot_before)};
+Integrals Antiderivative::across(const Oscillation& o, double x_dot_before) const {
+    Integrals jump;
+    for (int k = 0; k < 3; ++k) {
+        const Eigen::Matrix4d& P = P_[k];
+        jump(k) = (x_dot_before - o.x_dot) *
+                  (P(1, 1) * (x_dot_before + o.x_dot) +
+                   2 * (P(1, 0) * o.x + P(1, 2) * o.sin_theta + P(1, 3) * o.cos_theta));
+    }
+    return jump;
 }
 
 Quadrature::Quadrature(const Flow& flow) : flow_(flow) {
     const Oscillation unit[4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
     // The forms of one cell, in terms of the state at its start.
-    Forms cell{Form::Zero(), Form::Zero(), Form::Zero()};
+    const Eigen::Matrix4d zero = Eigen::Matrix4d::Zero();
+    Forms cell = {zero, zero, zero};
+    from_start_.push_back(cell);
     for (const Node& node : gauss) {
         const double d = node.at * flow.cell(), weight = node.weight * flow.cell();
         Eigen::Vector4d x, x_dot, sin;
@@ -122,19 +123,16 @@ Quadrature::Quadrature(const Flow& flow) : flow_(flow) {
             const Oscillation o = flow.along(flow.series(unit[j]), unit[j], d);
             x(j) = o.x, x_dot(j) = o.x_dot, sin(j) = o.sin_theta;
         }
-        cell.x_squared += weight * x * x.transpose();
-        cell.x_dot_squared += weight * x_dot * x_dot.transpose();
-        cell.x_dot_sin += weight * x_dot * sin.transpose();
+        cell[x_squared] += weight * x * x.transpose();
+        cell[x_dot_squared] += weight * x_dot * x_dot.transpose();
+        cell[x_dot_sin] += weight * x_dot * sin.transpose();
     }
-    from_start_.push_back({Form::Zero(), Form::Zero(), Form::Zero()});
     for (int k = 0; k < Flow::cells; ++k) {
         Eigen::Matrix4d over;
         for (int j = 0; j < 4; ++j) over.col(j) = vector(flow.at(unit[j], k));
-        const Forms& before = from_start_.back();
-        from_start_.push_back(
-            {before.x_squared + over.transpose() * cell.x_squared * over,
-             before.x_dot_squared + over.transpose() * cell.x_dot_squared * over,
-             before.x_dot_sin + over.transpose() * cell.x_dot_sin * over});
+        Forms next = from_start_.back();
+        for (int i = 0; i < 3; ++i) next[i] += over.transpose() * cell[i] * over;
+        from_start_.push_back(next);
     }
 }
 
@@ -145,25 +143,23 @@ std::shared_ptr<const Quadrature> Quadrature::shared(const Flow& flow) {
 
 Integrals Quadrature::over_part(const Oscillation& start, double duration) const {
     const Flow::TaylorSeries series = flow_.series(start);
-    Integrals sum;
+    Integrals sum = Integrals::Zero();
     for (const Node& node : gauss) {
         const Oscillation o = flow_.along(series, start, node.at * duration);
-        sum.x_squared += node.weight * o.x * o.x;
-        sum.x_dot_squared += node.weight * o.x_dot * o.x_dot;
-        sum.x_dot_sin += node.weight * o.x_dot * o.sin_theta;
+        const double x_dot = node.weight * o.x_dot;
+        sum += Integrals(node.weight * o.x * o.x, x_dot * o.x_dot, x_dot * o.sin_theta);
     }
-    sum.x_squared *= duration, sum.x_dot_squared *= duration, sum.x_dot_sin *= duration;
-    return sum;
+    return sum * duration;
 }
 
 Integrals Quadrature::over_grid(const Oscillation& start, int cells) const {
     const Eigen::Vector4d z = vector(start);
     const Forms& f = from_start_[cells];
-    return {z.dot(f.x_squared * z), z.dot(f.x_dot_squared * z), z.dot(f.x_dot_sin * z)};
+    return {z.dot(f[0] * z), z.dot(f[1] * z), z.dot(f[2] * z)};
 }
 
 Integrals Quadrature::over(Oscillation o, double duration) const {
-    Integrals sum;
+    Integrals sum = Integrals::Zero();
     for (; duration > flow_.reach(); duration -= flow_.reach()) {
         sum += over_grid(o, Flow::cells);
         o = flow_.at(o, Flow::cells);

@@ -14,22 +14,9 @@
 
 namespace vines {
 
-/// Integrals of x^2, x'^2 and x' sin(theta) over a time interval; dimensionless.
-struct Integrals {
-    double x_squared = 0, x_dot_squared = 0, x_dot_sin = 0;
-    Integrals& operator+=(const Integrals& more) {
-        x_squared += more.x_squared;
-        x_dot_squared += more.x_dot_squared;
-        x_dot_sin += more.x_dot_sin;
-        return *this;
-    }
-    Integrals& operator-=(const Integrals& less) {
-        x_squared -= less.x_squared;
-        x_dot_squared -= less.x_dot_squared;
-        x_dot_sin -= less.x_dot_sin;
-        return *this;
-    }
-};
+/// Integrals of the three integrands over a time interval; dimensionless.
+using Integrals = Eigen::Array3d;
+enum Integrand { x_squared, x_dot_squared, x_dot_sin };
 
 /// Functions F of the state z = (x, x', sin theta, cos theta) and rates c such that the integral
 /// over a time s, from z0 to z, is F(z) - F(z0) + c s. F is a quadratic form z^T P z with
@@ -52,21 +39,13 @@ public:
     /// at() before an impact minus at() after it: only x' has changed.
     Integrals across(const Oscillation& after, double x_dot_before) const;
     /// c s, one value per integrand.
-    Integrals over_time(double s) const {
-        return {x_squared_.rate * s, x_dot_squared_.rate * s, x_dot_sin_.rate * s};
-    }
+    Integrals over_time(double s) const { return rate_ * s; }
 
 private:
     static std::optional<Antiderivative> solved_for(const Flow& flow);
 
-    struct Form {
-        Eigen::Matrix4d P;
-        double rate;
-
-        double at(const Eigen::Vector4d& z) const { return z.dot(P * z); }
-        double across(const Oscillation& after, double x_dot_before) const;
-    };
-    Form x_squared_, x_dot_squared_, x_dot_sin_;
+    std::array<Eigen::Matrix4d, 3> P_;
+    Integrals rate_;
     double settled_;
 };
 
@@ -82,10 +61,8 @@ public:
     Integrals over(Oscillation start, double duration) const;
 
 private:
-    using Form = Eigen::Matrix4d;  // symmetric, in (x, x', sin theta, cos theta)
-    struct Forms {
-        Form x_squared, x_dot_squared, x_dot_sin;
-    };
+    /// Symmetric, in (x, x', sin theta, cos theta).
+    using Forms = std::array<Eigen::Matrix4d, 3>;
     Integrals over_grid(const Oscillation& start, int cells) const;
     Integrals over_part(const Oscillation& start, double duration) const;
 

@@ -6,8 +6,10 @@
 // infinities, NaN, the sign of a zero) are as in C unless stated otherwise.
 #pragma once
 
+#include <cmath>
 #include <complex>
 #include <limits>
+#include <numbers>
 
 namespace vines {
 
@@ -45,3 +47,23 @@ double hypot(double x, double y);
 inline double modulus(const std::complex<double>& z) { return hypot(z.real(), z.imag()); }
 
 }  // namespace vines::elementary
+
+namespace vines {
+
+// Random numbers that are the same everywhere: standard distributions differ between libraries.
+// `engine` returns 64 random bits (std::mt19937_64).
+
+/// Uniform in [from, to).
+template <class Engine>
+double uniform(Engine& engine, double from, double to) {
+    return from + (to - from) * static_cast<double>(engine() >> 11) * 0x1p-53;
+}
+
+/// Standard normal (Box-Muller).
+template <class Engine>
+double standard_normal(Engine& engine) {
+    const double u = uniform(engine, 1e-300, 1), v = uniform(engine, 0, 1);
+    return std::sqrt(-2 * elementary::log(u)) * elementary::cos(2 * std::numbers::pi * v);
+}
+
+}  // namespace vines

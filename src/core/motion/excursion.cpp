@@ -1,7 +1,8 @@
-#include "core/motion/excursion.hpp"
-
+// Peak displacement and path length of the linear oscillator between events.
 #include <algorithm>
 #include <cmath>
+
+#include "core/motion/flow.hpp"
 
 namespace vines {
 

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/motion/small_cache.hpp"
-
 namespace vines {
 
 namespace {
@@ -133,7 +131,7 @@ std::shared_ptr<const Flow> Flow::shared_sticking(const Parameters& p) {
 }
 
 FlowTables Flow::tables() const {
-    static_assert(sizeof(Row) == 10 * sizeof(double));  // as flight_search.inl reads them
+    static_assert(sizeof(Row) == 10 * sizeof(double));  // as flight_search.cpp reads them
     FlowTables t{
         .h = cell_,
         .reach = reach(),

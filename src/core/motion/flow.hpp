@@ -209,4 +209,34 @@ struct SeriesValue {
 };
 SeriesValue value_at(const Flow::TaylorSeries& series, double d);
 
+/// max(known, max |x|) over 0 <= s <= duration, in m. Where a bound on |x| shows that `known` is
+/// not exceeded, no maximum is searched for: in a long run that is most of the time.
+double peak_beyond(double known, const Flow& flow, Oscillation start, double duration);
+
+/// Total variation of x over 0 <= s <= duration, in m.
+double path_length(const Flow& flow, Oscillation start, double duration);
+
+/// Caches a pure function of a few numbers for its most recent keys; a new entry replaces the
+/// oldest. Declare it thread_local: no lock, and a thread's results do not depend on other threads.
+template <class Key, class Table, std::size_t most = 4>
+class SmallCache {
+public:
+    template <class Make>
+    std::shared_ptr<const Table> get(const Key& key, Make make) {
+        for (const Entry& e : entries_)
+            if (e.table && e.key == key) return e.table;
+        Entry& oldest = entries_[next_++ % most];
+        oldest = {key, std::make_shared<const Table>(make())};
+        return oldest.table;
+    }
+
+private:
+    struct Entry {
+        Key key;
+        std::shared_ptr<const Table> table;
+    };
+    std::array<Entry, most> entries_;
+    std::size_t next_ = 0;
+};
+
 }  // namespace vines

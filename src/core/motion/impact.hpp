@@ -10,6 +10,9 @@ namespace vines {
 /// Matrices act on deviations in the order (x', x, y', y), eq. (5).
 using Matrix4 = Eigen::Matrix4d;
 
+inline Eigen::Vector4d vector_of(const State& s) { return {s.x_dot, s.x, s.y_dot, s.y}; }
+inline State state_of(const Eigen::Vector4d& v) { return {v(0), v(1), v(2), v(3)}; }
+
 /// Four deviations as columns, stored by rows: one operation treats a component of all four.
 using Frame = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
 

@@ -65,13 +65,6 @@ namespace {
 
 constexpr double most_expected = 1e6;
 
-/// State of both masses at time s of a stretch, given the oscillator's state.
-State with_ball(const Stretch& stretch, const Oscillation& o, double s) {
-    if (stretch.sticking_side != 0)
-        return {o.x_dot, o.x, o.x_dot, o.x + (stretch.y - stretch.start.x)};
-    return {o.x_dot, o.x, stretch.y_dot, stretch.y + stretch.y_dot * s};
-}
-
 }  // namespace
 
 void SeriesRecord::expect(double tau_end) {
@@ -96,7 +89,7 @@ void SeriesRecord::on_stretch(const Stretch& stretch) {
     for (double at = next_ * step_; at < stretch.tau + stretch.duration; at = ++next_ * step_) {
         const double s = std::max(0.0, at - stretch.tau);
         const Oscillation o = oscillator.at(s);
-        add(at, with_ball(stretch, o, s), stretch.flow.acceleration(o));
+        add(at, stretch.at(s, o), stretch.flow.acceleration(o));
     }
     x_ddot_at_end_ = stretch.x_ddot(stretch.duration);
 }

@@ -184,12 +184,6 @@ void Run::stick(double chatter_left, int zeros) {
     notify(&Observer::on_release, clock_.tau());
 }
 
-State Stretch::at(double s) const {
-    const Oscillation o = flow.after(start, s);
-    if (sticking_side != 0) return {o.x_dot, o.x, o.x_dot, o.x + (y - start.x)};
-    return {o.x_dot, o.x, y_dot, y + y_dot * s};
-}
-
 Outcome simulate(
     const Parameters& parameters, const State& start, const Limits& limits,
     std::span<Observer* const> observers) {

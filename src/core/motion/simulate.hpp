@@ -25,7 +25,12 @@ struct Stretch {
     const Transfer* transfer = nullptr;  ///< flow.transfer(duration) if already known
 
     /// The state of both masses at 0 <= s <= duration.
-    State at(double s) const;
+    State at(double s) const { return at(s, flow.after(start, s)); }
+    /// The same, given the oscillator's state.
+    State at(double s, const Oscillation& o) const {
+        if (sticking_side != 0) return {o.x_dot, o.x, o.x_dot, o.x + (y - start.x)};
+        return {o.x_dot, o.x, y_dot, y + y_dot * s};
+    }
     /// Acceleration of the linear oscillator, m per unit of tau squared.
     double x_ddot(double s) const { return flow.acceleration(flow.after(start, s)); }
 };

@@ -40,9 +40,6 @@ constexpr double contact_rounding = 1e-9;
 // distance, in units of the scale: far above its closure, far below any relevant asymmetry.
 constexpr double symmetric_within = 1e-6;
 
-Eigen::Vector4d vector(const State& s) { return {s.x_dot, s.x, s.y_dot, s.y}; }
-State state(const Eigen::Vector4d& v) { return {v(0), v(1), v(2), v(3)}; }
-
 /// Product of all transfer matrices of a run.
 class Monodromy : public Observer {
 public:
@@ -136,14 +133,14 @@ std::optional<State> solve_return(
     const Parameters& p, State s, double tau, int cycles, const State& scale, double reach,
     const Stop& stop) {
     const State guess = s;
-    const Eigen::Vector4d unit = vector(scale);
+    const Eigen::Vector4d unit = vector_of(scale);
     double miss_before = infinity;
     for (int step = 0, worse = 0; step < most_steps; ++step) {
         Monodromy monodromy(p);
         Observer* const observers[] = {&monodromy};
         const auto back = after_period(p, s, tau, cycles, stop, observers);
         if (!back) return std::nullopt;
-        const Eigen::Vector4d miss = (vector(*back) - vector(s)).cwiseQuotient(unit);
+        const Eigen::Vector4d miss = (vector_of(*back) - vector_of(s)).cwiseQuotient(unit);
         const double size = miss.cwiseAbs().maxCoeff();
         if (size < rounding_tolerance ||
             (size < return_tolerance && size > least_improvement * miss_before))
@@ -156,10 +153,10 @@ std::optional<State> solve_return(
             return std::nullopt;
         // Neutral directions (a ball at rest, never hit) are left unchanged: the minimum-norm step.
         Eigen::Vector4d correction = -minimum_norm_solution(D, miss);
-        State next = state(vector(s) + correction.cwiseProduct(unit));
+        State next = state_of(vector_of(s) + correction.cwiseProduct(unit));
         for (int half = 0; half < most_halvings && std::abs(next.x - next.y) > p.b; ++half) {
             correction *= 0.5;
-            next = state(vector(s) + correction.cwiseProduct(unit));
+            next = state_of(vector_of(s) + correction.cwiseProduct(unit));
         }
         s = next;
         if (!(distance(s, guess, scale) < reach)) return std::nullopt;
@@ -181,7 +178,7 @@ State scale_of(const Parameters& p, std::span<const State> states) {
 }
 
 double distance(const State& a, const State& b, const State& scale) {
-    return (vector(a) - vector(b)).cwiseQuotient(vector(scale)).cwiseAbs().maxCoeff();
+    return (vector_of(a) - vector_of(b)).cwiseQuotient(vector_of(scale)).cwiseAbs().maxCoeff();
 }
 
 Exponents PeriodicOrbit::exponents(const Parameters& p) const {
@@ -259,7 +256,7 @@ bool is_symmetric(
     const Parameters& p, const PeriodicOrbit& orbit, const State& scale, const Stop& stop) {
     if (orbit.cycles % 2 == 0 || (p.R_plus != p.R_minus && orbit.impacts != 0)) return false;
     const auto half = follow(p, orbit.state, orbit.tau, 0.5 * orbit.cycles * p.cycle(), stop);
-    return half && distance(state(-vector(*half)), orbit.state, scale) < symmetric_within;
+    return half && distance(state_of(-vector_of(*half)), orbit.state, scale) < symmetric_within;
 }
 
 }  // namespace
@@ -297,14 +294,14 @@ std::complex<double> power(std::complex<double> z, int n) {
 class EigenCoordinates {
 public:
     EigenCoordinates(const PeriodicOrbit& orbit, const State& scale, bool oscillator_alone)
-        : at_(vector(orbit.state)),
-          unit_(vector(scale)) {
+        : at_(vector_of(orbit.state)),
+          unit_(vector_of(scale)) {
         Matrix4 D = unit_.asDiagonal().inverse() * orbit.monodromy * unit_.asDiagonal();
         if (oscillator_alone) D.bottomRows<2>().setZero(), D.rightCols<2>().setZero();
         base_ = eigen_basis_of(D);
     }
     Eigen::Vector4cd of(const State& s) const {
-        return base_.to_coordinates * (vector(s) - at_).cwiseQuotient(unit_);
+        return base_.to_coordinates * (vector_of(s) - at_).cwiseQuotient(unit_);
     }
     Eigen::Vector4cd after(Eigen::Vector4cd deviation, int periods) const {
         for (int k = 0; k < 4; ++k) deviation(k) *= power(base_.values(k), periods);

@@ -76,13 +76,11 @@ void TransferRecord::on_impact(const Impact& impact) {
     if (impact.tau < tau_start_ || impact.tau > tau_end_) return;
     if (begun_) {
         const auto legs = passage_.legs();
-        transfers.push_back(
+        add(
             {impact.tau,
              parameters_.epsilon,
              saltation(parameters_, impact),
              {legs.begin(), legs.end()}});
-        keep_last(transfers, most_);
-        ++seen;
     }
     begun_ = true;
     passage_.reset();

@@ -42,25 +42,21 @@ struct ImpactTransfer {
 
 /// The matrices of the impacts in [tau_start, tau_end], from the second one on; keeps the last
 /// `most` and up to half as many more.
-class TransferRecord : public Observer {
+class TransferRecord : public Observer, public LastOf<ImpactTransfer> {
 public:
     TransferRecord(
         const Parameters& parameters, double tau_start, double tau_end,
         std::size_t most = everything)
-        : parameters_(parameters),
+        : LastOf(most),
+          parameters_(parameters),
           tau_start_(tau_start),
-          tau_end_(tau_end),
-          most_(most) {}
+          tau_end_(tau_end) {}
     void on_stretch(const Stretch& stretch) override { passage_.extend(stretch); }
     void on_impact(const Impact& impact) override;
-
-    std::vector<ImpactTransfer> transfers;
-    long seen = 0;  ///< number of all transfers, stored or not
 
 private:
     const Parameters parameters_;
     const double tau_start_, tau_end_;
-    const std::size_t most_;
     LegSequence passage_;
     bool begun_ = false;
 };

@@ -13,6 +13,7 @@
 
 #include "core/analysis/analysis.hpp"
 #include "core/motion/parameters.hpp"
+#include "core/sweep/parallel.hpp"
 
 namespace vines {
 
@@ -160,5 +161,22 @@ struct RowSummary {
 };
 /// Summary of a row: the largest peaks, or without `largest` the smallest.
 RowSummary summary_of(std::span<const SweepPoint> row, bool largest, bool default_set);
+
+/// A point, its starts, and the receiver of the motions, in the order of the starts.
+struct PointTask {
+    PointSystem system;
+    std::vector<NamedStart> starts;
+    std::function<void(std::vector<Motion>)> done;  ///< called on the computing thread
+};
+
+/// Computes a motion by measure() on the calling thread. Throws Stopped on a stop request.
+PointResult run_point(
+    const PointSystem& system, const State& start, PointOptions options, RunControl& control);
+
+/// Computes task_at(0), ..., task_at(count - 1). Each task is created when it is due; an empty one
+/// is skipped. Throws Stopped after a stop request.
+void run_points(
+    std::size_t count, int threads, const PointOptions& options, RunControl& control,
+    const std::function<std::optional<PointTask>(std::size_t)>& task_at);
 
 }  // namespace vines

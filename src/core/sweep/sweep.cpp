@@ -1,4 +1,4 @@
-// Independent points are computed coarse to fine, as tasks that share all cores (points.hpp).
+// Independent points are computed coarse to fine, as tasks that share all cores (points.cpp).
 // Points that depend on a neighbour are computed in rows, as many rows at a time as there are
 // threads: first all motions whose starts need no neighbour; then, with the default set of starts,
 // a pass up and a pass down each row, which continue from each point's worst motion, or, with
@@ -10,8 +10,7 @@
 #include <bit>
 #include <cassert>
 
-#include "core/sweep/parallel.hpp"
-#include "core/sweep/points.hpp"
+#include "core/sweep/point.hpp"
 
 namespace vines {
 

@@ -44,7 +44,7 @@ Experiment measured(const TrueMotion& motion, const Sensors& sensors, const Give
     Experiment e{
         motion.parameters,
         motion.omega0,
-        synthetic_record(motion, sensors),
+        measured_record(motion, sensors),
         motion.impacts,
         motion.sticks,
         motion.exponents.qr()[0],

@@ -2,9 +2,9 @@
 // identification.
 #pragma once
 
+#include "../../laboratory/sensors.hpp"
 #include "../support.hpp"
 #include "core/measurement/measurement.hpp"
-#include "core/measurement/synthetic_record.hpp"
 #include "core/stability/verdict.hpp"
 
 namespace vines::test {

@@ -180,7 +180,7 @@ TEST_CASE(
         Experiment m = measured(motion_after(2, 0.015, 0.85, 0.85, 1), {.rate = 1024});
         m.record.x_ddot[m.record.tau.size() / 6] = -wild;
         const MeasurementResult r = identified(m);
-        CHECK(r.parameters.Omega == doctest::Approx(m.parameters.Omega).epsilon(1));  // finite
+        CHECK(std::abs(r.parameters.Omega / m.parameters.Omega - 1) < 0.02);
         CHECK(r.judged.verdict != Verdict::chaotic);
     }
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/measurement/listed_impacts.hpp"
+#include "core/measurement/identified_impact.hpp"
 #include "core/measurement/measurement.hpp"
 #include "laboratory.hpp"
 

@@ -24,8 +24,8 @@ Moduli cycle_moduli(double R, double Omega, double b, double V) {
     TransferRecord record_of(p, 0, 100);
     Observer* const observers[] = {&record_of};
     simulate(p, after_impact, {3.5 * std::numbers::pi, 1000, {}}, observers);
-    REQUIRE(record_of.transfers.size() >= 2);
-    return eigenvalue_moduli(record_of.transfers[1].T() * record_of.transfers[0].T());
+    REQUIRE(record_of.entries.size() >= 2);
+    return eigenvalue_moduli(record_of.entries[1].T() * record_of.entries[0].T());
 }
 
 /// Least distance of the ball from both walls during the flight of a symmetric motion, over a dense

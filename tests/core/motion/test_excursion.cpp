@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "../support.hpp"
-#include "core/motion/excursion.hpp"
+#include "core/motion/flow.hpp"
 
 using namespace vines;
 using namespace vines::test;

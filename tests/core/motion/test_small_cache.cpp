@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include "core/motion/small_cache.hpp"
+#include "core/motion/flow.hpp"
 
 using namespace vines;
 

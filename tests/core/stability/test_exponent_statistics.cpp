@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "../support.hpp"
-#include "core/stability/exponent_statistics.hpp"
 #include "core/stability/verdict.hpp"
 
 using namespace vines;

@@ -14,9 +14,9 @@ TEST_CASE(
     const Parameters p = table1(0.022, Damping::closed_form);
     TransferRecord transfers(p, 0, 1709);
     const Record run = record(p, default_state(p), 1709, 1000000, {&transfers});
-    REQUIRE(transfers.transfers.size() + 1 == run.impacts.size());
-    for (std::size_t i = 0; i < transfers.transfers.size(); ++i) {
-        const ImpactTransfer& t = transfers.transfers[i];
+    REQUIRE(transfers.entries.size() + 1 == run.impacts.size());
+    for (std::size_t i = 0; i < transfers.entries.size(); ++i) {
+        const ImpactTransfer& t = transfers.entries[i];
         CHECK(t.tau == run.impacts[i + 1].tau);
         if (t.rank() < 4) continue;
         const double decay = std::exp(-p.zeta() * (t.tau - run.impacts[i].tau));
@@ -57,7 +57,7 @@ TEST_CASE("after sticking J and T have rank two") {
     const Record run = record(p, default_state(p), 100, 1000000, {&transfers});
     REQUIRE(run.sticks.size() == 1);
     bool found = false;
-    for (const ImpactTransfer& t : transfers.transfers) {
+    for (const ImpactTransfer& t : transfers.entries) {
         if (t.rank() == 4) continue;
         found = true;
         CHECK(t.J_moduli()[2] == 0);

@@ -8,7 +8,7 @@
 #include "../support.hpp"
 #include "core/motion/batch_run.hpp"
 #include "core/sweep/parallel.hpp"
-#include "core/sweep/points.hpp"
+#include "core/sweep/point.hpp"
 
 using namespace vines;
 using namespace vines::test;
