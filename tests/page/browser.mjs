@@ -32,7 +32,6 @@ export async function startBrowser() {
       "--disable-background-networking",
       "--disable-component-update",
       "--disable-sync",
-      "--process-per-site", // another page of the service takes no new process
     ],
   });
   context.setDefaultTimeout(120000); // slow machines must not fail the tests
