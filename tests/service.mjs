@@ -10,31 +10,41 @@ process.once("exit", () => {
   for (const child of started) child.kill("SIGKILL");
 });
 
+// A machine under load starts a service within a second.
+const startLimit = 60000; // ms
+
 /**
  * Starts `vines serve`. freePort: on a free port; otherwise the port is in `flags` or
  * `environment`. Resolves to {url, pid, stop} once the service listens; stop() resolves to the exit
- * code. Rejects if the service ends before it listens.
+ * code. Rejects if the service does not start, or ends before it listens.
  */
 export async function startService(flags = [], environment = {}, freePort = true) {
   const child = spawn(program, ["serve", ...(freePort ? ["--port", "0"] : []), ...flags], {
     stdio: ["ignore", "pipe", "ignore"],
     env: {...process.env, ...environment},
   });
+  started.add(child);
   const ended = new Promise((resolve) => child.on("exit", resolve));
   ended.then(() => started.delete(child));
+  let late;
   const url = await new Promise((resolve, reject) => {
     let text = "";
+    const fail = (how) => reject(new Error(`${program} ${how}: ${text}`));
+    child.on("error", reject);
     child.stdout.on("data", (data) => {
       text += data;
       const found = text.match(/listens on (\S+)/);
       if (found) resolve(found[1]);
     });
-    ended.then((code) => reject(new Error(`${program} ended with ${code}: ${text}`)));
-  });
+    ended.then((code) => fail(`ended with ${code}`));
+    late = setTimeout(() => {
+      child.kill("SIGKILL");
+      fail("does not listen");
+    }, startLimit);
+  }).finally(() => clearTimeout(late));
   // A running service does not keep the test process alive; stop() waits for its end.
   child.unref();
   child.stdout.unref();
-  started.add(child);
   const stop = () => {
     child.ref();
     child.kill("SIGTERM");

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <map>
 #include <set>
 #include <string>
@@ -43,6 +44,16 @@ inline Json answer(const std::string& text) {
 inline const std::vector<std::string>& all_parts() {
     return find(simulate_fields(), "include")->choices;
 }
+
+/// True if two numbers agree relatively. (doctest's Approx treats small ones as equal.)
+inline bool is_near(const Json& value, double expected, double relative) {
+    return std::abs(value.get<double>() - expected) <= relative * std::abs(expected);
+}
+
+/// A platform of 12 kg, 14 Hz and .6 % of damping on a base that moves by .4 mm, with an absorber
+/// of .12 kg.
+inline const std::string platform =
+    R"("m1":12,"f0":14,"damping_ratio":0.006,"mass_ratio":0.01,"F":0.0004,"R":0.4,"b":0.03)";
 
 inline bool warns(const Json& a, const std::string& of) {
     for (const Json& w : a["warnings"])

@@ -279,7 +279,8 @@ TEST_CASE("a record without impacts, clipping, gaps, slow sampling and a wrong b
 
 TEST_CASE(
     "a wrong frequency is corrected with a warning; if fixed, the record is unexplained and there "
-    "is no verdict") {
+    "is no verdict" *
+    doctest::test_suite("long")) {
     const std::string csv = measured("fig15", 12);
     const Json good = identified(read_identify_request({{"preset", "fig15"}}, csv));
     CAPTURE(good["warnings"].dump());

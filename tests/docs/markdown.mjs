@@ -31,7 +31,7 @@ function marked(markdown, kind) {
 export const tables = (markdown, kind) =>
   marked(markdown, kind).map(({argument, lines}) => {
     const end = lines.findIndex((line) => !line.startsWith("|"));
-    const [header, , ...rest] = lines.slice(0, end);
+    const [header, , ...rest] = end < 0 ? lines : lines.slice(0, end);
     if (!header) throw new Error(`no table after <!-- ${kind}: ${argument} -->`);
     const names = cellsOf(header);
     const rows = rest.map((line) => {

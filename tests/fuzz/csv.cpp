@@ -24,13 +24,11 @@ void check(const api::Csv& csv) {
 
 }  // namespace
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    std::string_view text = fuzz::text_of(data, size);
+void fuzz::csv(std::string_view text) {
     const std::string_view query = fuzz::take_part(text, '\n');
     fuzz::or_problem([text] { check(api::parse_csv(text)); });
     fuzz::or_problem([&] {
         const api::Json fields = api::from_query(api::identify_fields(), api::parse_query(query));
         api::read_identify_request(fields, text);
     });
-    return 0;
 }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -13,14 +12,17 @@
 #include "api/problem.hpp"
 #include "api/schema/json.hpp"
 
-/// Runs one input; called by libFuzzer.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
-
 namespace vines::fuzz {
 
-inline std::string_view text_of(const std::uint8_t* data, std::size_t size) {
-    return {reinterpret_cast<const char*>(data), size};
-}
+/// The targets, each in the file of its name. They run one input.
+void json(std::string_view text);
+void query(std::string_view text);
+void csv(std::string_view text);
+void head(std::string_view bytes);
+void simulate(std::string_view text);
+void solver(std::string_view text);
+void sweep(std::string_view text);
+void identify(std::string_view text);
 
 /// Aborts if a condition does not hold; the fuzzer then keeps the input.
 inline void require(bool holds, const char* sentence) {

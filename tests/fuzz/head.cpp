@@ -109,20 +109,20 @@ void check_strictness(std::string_view bytes, const Head& head) {
 
 }  // namespace
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    const std::string_view bytes = fuzz::text_of(data, size);
-    const Reading whole = read_up_to(bytes, {size});
+void fuzz::head(std::string_view bytes) {
+    const Reading whole = read_up_to(bytes, {bytes.size()});
     fuzz::require(
         same(whole, read_up_to(bytes, some_ends(bytes))),
         "reading in pieces gives the same result");
     if (whole.head) {
         fuzz::require(
-            whole.size <= size && whole.size <= HeadReader::max_bytes, "a head is limited in size");
+            whole.size <= bytes.size() && whole.size <= HeadReader::max_bytes,
+            "a head is limited in size");
         check_strictness(bytes.substr(0, whole.size), *whole.head);
         fuzz::require(
             same(whole, read_up_to(bytes, {whole.size})), "following bytes do not matter");
     }
     if (!whole.is_over())
-        fuzz::require(size <= HeadReader::max_bytes, "a head that is too long is refused at once");
-    return 0;
+        fuzz::require(
+            bytes.size() <= HeadReader::max_bytes, "a head that is too long is refused at once");
 }

@@ -17,7 +17,7 @@ using namespace vines;
 namespace {
 
 // About a second under the sanitizers.
-constexpr long max_calls = 3000;
+constexpr long max_identify_calls = 3000;
 
 /// A record of Table 4's oscillator as CSV. The numbers of its motion and its sensors are followed
 /// by pairs of a sample's index and its new value.
@@ -66,10 +66,9 @@ api::IdentifyRequest request_of(std::string_view text) {
 
 }  // namespace
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    const std::string_view text = fuzz::text_of(data, size);
+void fuzz::identify(std::string_view text) {
     fuzz::or_problem([text] {
-        fuzz::CallLimit call_limit(max_calls);
+        fuzz::CallLimit call_limit(max_identify_calls);
         const api::Json answer =
             api::identify_answer(request_of(text), {.stop = [&] { return call_limit.is_over(); }});
         const std::string written = api::json_text(answer);
@@ -79,5 +78,4 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
                 answer["verdict_reason"].get<std::string>().starts_with("the motion dies out"),
             "an answer has a verdict, or the motion dies out");
     });
-    return 0;
 }

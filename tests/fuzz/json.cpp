@@ -6,8 +6,7 @@
 
 using namespace vines;
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    const std::string_view text = fuzz::text_of(data, size);
+void fuzz::json(std::string_view text) {
     fuzz::or_problem([text] {
         const api::Json object = api::parse_object(text);
         fuzz::require(api::Json::parse(text) == object, "the JSON library gives the same value");
@@ -15,5 +14,4 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
         fuzz::or_problem([&] { api::read_manifold_request(object); });
         fuzz::or_problem([&] { api::read_identify_request(object); });
     });
-    return 0;
 }

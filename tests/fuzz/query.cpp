@@ -17,14 +17,13 @@ std::string record() {
 
 }  // namespace
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+void fuzz::query(std::string_view text) {
     static const std::string csv = record();
-    const api::Query query = api::parse_query(fuzz::text_of(data, size));
+    const api::Query query = api::parse_query(text);
     fuzz::or_problem(
         [&] { api::read_simulate_request(api::from_query(api::simulate_fields(), query)); });
     fuzz::or_problem(
         [&] { api::read_manifold_request(api::from_query(api::manifold_fields(), query)); });
     fuzz::or_problem(
         [&] { api::read_identify_request(api::from_query(api::identify_fields(), query), csv); });
-    return 0;
 }

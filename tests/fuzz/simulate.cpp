@@ -10,20 +10,18 @@ using namespace vines;
 namespace {
 
 // A few tenths of a second under the sanitizers.
-constexpr long max_calls = 300;
+constexpr long max_simulate_calls = 300;
 constexpr std::size_t max_bytes = 100000;
 
 }  // namespace
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    const std::string_view text = fuzz::text_of(data, size);
+void fuzz::simulate(std::string_view text) {
     fuzz::or_problem([text] {
-        fuzz::CallLimit call_limit(max_calls);
+        fuzz::CallLimit call_limit(max_simulate_calls);
         const auto is_over = [&] { return call_limit.is_over(); };
         const api::Json answer = api::simulate_answer(
             api::read_simulate_request(api::parse_object(text)),
             {.requested = is_over, .analysis_late = is_over}, max_bytes);
         fuzz::require(api::Json::accept(api::json_text(answer)), "an answer is JSON");
     });
-    return 0;
 }

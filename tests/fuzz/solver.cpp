@@ -17,7 +17,7 @@ namespace {
 
 constexpr long most_impacts = 1000;
 // Calls of a stop function, which occur every 64 events.
-constexpr long max_calls = 100, max_analysis_calls = 400;
+constexpr long max_run_calls = 100, max_analysis_calls = 400;
 
 /// Checks momentum, restitution, energy, order and walls, and records the impacts for comparison.
 class Invariants : public Observer {
@@ -88,7 +88,7 @@ private:
 
 ObservedRun observe(RunPlan plan, bool vectorised) {
     Invariants invariants(plan.parameters, plan.limits.tau_start);
-    fuzz::CallLimit call_limit(max_calls);
+    fuzz::CallLimit call_limit(max_run_calls);
     plan.limits.stop = [&] { return call_limit.is_over(); };
     plan.observers = {&invariants};
     SingleRun line(plan);
@@ -132,8 +132,8 @@ void check_analysis(const Parameters& p, const State& start, double tau_end) {
 
 }  // namespace
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    fuzz::Numbers numbers(fuzz::text_of(data, size));
+void fuzz::solver(std::string_view text) {
+    fuzz::Numbers numbers(text);
     Parameters p;
     State start;
     for (const ParameterRange& r : parameter_ranges()) {
@@ -143,7 +143,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     start.y = start.x - std::clamp(start.y, -1.0, 1.0) * p.b;
     if (numbers.next(0) != 0) p.damping = Damping::closed_form;
     const double tau_end = numbers.next(100, 1e-6, 1e5), tau_start = numbers.next(0, -1e5, 1e5);
-    if (!validate(p, start).empty()) return 0;
+    if (!validate(p, start).empty()) return;
 
     const RunPlan plan{
         p,
@@ -152,5 +152,4 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const ObservedRun alone = observe(plan, false);
     check(alone, observe(plan, true));
     check_analysis(p, start, tau_end);
-    return 0;
 }

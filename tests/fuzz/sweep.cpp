@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t most_points = 64;
 // About a tenth of a second under the sanitizers.
-constexpr long max_calls = 400;
+constexpr long max_sweep_calls = 400;
 
 class ShortControl : public RunControl {
 public:
@@ -21,7 +21,7 @@ public:
     bool has_stopped() const { return stopped_; }
 
 private:
-    fuzz::CallLimit call_limit_{max_calls};
+    fuzz::CallLimit call_limit_{max_sweep_calls};
     bool stopped_ = false;
 };
 
@@ -31,7 +31,7 @@ void check_line(std::size_t index, const std::string& text) {
     fuzz::require(line["index"] == index, "a line contains its index");
 }
 
-void sweep(const api::SweepRequest& request) {
+void check_sweep(const api::SweepRequest& request) {
     const std::vector<std::size_t>& wanted = request.plan.lines;
     fuzz::require(api::Json::accept(api::start_line(request)), "the first line is JSON");
     ShortControl control;
@@ -47,9 +47,7 @@ void sweep(const api::SweepRequest& request) {
 
 }  // namespace
 
-int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    const std::string_view text = fuzz::text_of(data, size);
+void fuzz::sweep(std::string_view text) {
     fuzz::or_problem(
-        [text] { sweep(api::read_sweep_request(api::parse_object(text), most_points)); });
-    return 0;
+        [text] { check_sweep(api::read_sweep_request(api::parse_object(text), most_points)); });
 }

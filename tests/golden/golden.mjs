@@ -5,7 +5,7 @@
 // the others it reports the largest |a - b| of two numbers, divided by the largest magnitude in the
 // array of a, or by |a| outside arrays; it then exits with 1.
 // Version, commit and hashes are masked; a sweep's points are sorted, its progress is removed.
-import {spawn} from "node:child_process";
+import {execFileSync, spawn} from "node:child_process";
 import {mkdir, mkdtemp, readdir, readFile, rm, stat, writeFile} from "node:fs/promises";
 import {tmpdir} from "node:os";
 import {join, resolve} from "node:path";
@@ -13,9 +13,9 @@ import {program, startService} from "../service.mjs";
 import {commands, identifications, requests} from "./requests.mjs";
 
 const nameOf = (name) => name.replace(/[^A-Za-z0-9.]+/g, "_").slice(0, 100);
-/** The text without version, commit and hashes. */
-const masked = (text) =>
-  text.replace(/\b0\.\d+\.\d+\b/g, "VERSION").replace(/"(commit|sha256)":"[^"]*"/g, '"$1":"BUILD"');
+/** The text without version (a RegExp), commit and hashes. */
+const masked = (text, version) =>
+  text.replace(version, "VERSION").replace(/"(commit|sha256)":"[^"]*"/g, '"$1":"BUILD"');
 
 /** The lines of a sweep in the order of their indices. */
 const ordered = (text) => {
@@ -69,10 +69,12 @@ async function outcomeOf({args, input, environment, files = []}) {
 
 async function record(folder) {
   await mkdir(folder, {recursive: true});
+  const number = execFileSync(program, ["--version"], {encoding: "utf8"}).trim();
+  const version = new RegExp(`\\b${number.replaceAll(".", "\\.")}\\b`, "g");
   let count = 0;
   const keep = async (name, text) => {
     ++count;
-    await writeFile(join(folder, nameOf(name)), masked(text));
+    await writeFile(join(folder, nameOf(name)), masked(text, version));
   };
   const service = await startService(["--deadline", "600"]);
   const small = await startService(["--answer-limit", "2000000"]);

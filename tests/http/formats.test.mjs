@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
 import {after, before, test} from "node:test";
 import {startService} from "../service.mjs";
+import {computed} from "./raw.mjs";
 
 let service;
 before(async () => {
@@ -231,7 +232,7 @@ test("fields are limited in number and in work", async () => {
   const post = (fields) =>
     fetch(`${service.url}/v1/simulate`, {method: "POST", body: JSON.stringify(fields)});
   const windows = Array.from({length: 1000}, (_, k) => [k, k + 1]);
-  const began = performance.now();
+  const began = await computed(service.pid);
   for (const [fields, pointer] of [
     [Array.from({length: 60000}, (_, k) => `windows.${k}`), null],
     [Array.from({length: 2000}, (_, k) => `windows.${k}`), "/fields"],
@@ -246,7 +247,7 @@ test("fields are limited in number and in work", async () => {
     assert.equal(answer.status, 422);
     assert.equal((await answer.json()).errors[0].pointer, pointer);
   }
-  assert.ok(performance.now() - began < 3000);
+  assert.ok((await computed(service.pid)) - began < 3);
   const most = Array.from({length: 1000}, (_, k) => `windows.${k}`);
   const answer = await post({preset: "fig3", windows, fields: most});
   assert.equal(answer.status, 200);

@@ -65,7 +65,7 @@ before(() => {
     const lines = run("dpkg-deb", "-f", file)
       .trim()
       .split(/\n(?! )/);
-    const fields = Object.fromEntries(lines.map((line) => line.split(/: */s, 2)));
+    const fields = Object.fromEntries(lines.map((line) => /^(.*?): *(.*)/s.exec(line).slice(1)));
     const paths = run("dpkg-deb", "-c", file).match(/(?<= \.)\/.*[^/\n]$/gm);
     packages[name] = {file, fields, paths};
   }

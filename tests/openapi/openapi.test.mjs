@@ -156,9 +156,14 @@ test("responses to records match the document", async () => {
 test("an interrupted sweep matches the document, including its last line", async () => {
   const stopped = await startService();
   const body = {axes: [{parameter: "b", from: 0.008, to: 0.03, count: 50000}]};
-  const answer = ask(stopped.url, "/v1/sweep", {body});
-  setTimeout(() => stopped.stop(), 500);
-  const {status, headers, text} = await answer;
+  const options = {method: "POST", body: JSON.stringify(body)};
+  const {status, headers, body: stream} = await fetch(`${stopped.url}/v1/sweep`, options);
+  let text = "";
+  let ended;
+  for await (const piece of stream.pipeThrough(new TextDecoderStream())) {
+    text += piece;
+    if (text.includes('"point"') && text.includes('"progress"')) ended ??= stopped.stop();
+  }
   document.check({status, headers, text}, "/v1/sweep", "POST");
   const types = new Set(
     text

@@ -232,7 +232,11 @@ test("new input aborts a long run", async () => {
   await page.fill(input("cycles"), "100");
   await page.keyboard.press("Enter");
   await page.waitForFunction(() => !document.querySelector("#results.stale"));
-  assert.equal(runs.filter(({max_impacts: most}) => most === 2000000).length, 2);
+  const long = runs.findIndex(
+    ({cycles, max_impacts: most}) => cycles === 400000 && most === 2000000,
+  );
+  assert.ok(long >= 0 && long < runs.length - 1);
+  assert.equal(runs.at(-1).cycles, 100);
   assert.match(await page.textContent("#moment"), /τ = /);
   assert.ok((await page.getAttribute("#plot-x", "aria-valuemax")) < 700);
   browser.complaints.length = 0; // the aborted request
@@ -296,8 +300,11 @@ test("wheel, drag and keys zoom all plots together; edits and links keep the zoo
   const page = await still("?preset=fig9");
   const [x, y, box] = await middle(page, "x");
   await page.mouse.move(x, y);
-  for (let k = 0; k < 6; ++k) await page.mouse.wheel(0, -200);
-  await viewed(page);
+  for (let k = 0; k < 6; ++k) {
+    const address = page.url();
+    await page.mouse.wheel(0, -200);
+    await page.waitForFunction((address) => location.href !== address, address);
+  }
   const [from, to] = view(page);
   assert.ok(to - from < 300 && from < 854 && to > 854, `${from} to ${to}`);
   const pictures = await Promise.all(overTime.map((name) => hash(page, `#plot-${name} canvas`)));

@@ -261,7 +261,8 @@ long matched(
 
 TEST_CASE(
     "a mass that sticks to a wall is followed through its chatter and sticking phase to the "
-    "release") {
+    "release" *
+    doctest::test_suite("long")) {
     struct Case {
         double b, R, settling;
     };
