@@ -2,7 +2,7 @@
 FROM debian:bookworm-slim AS build
 RUN apt-get update \
     && DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends \
-        g++ cmake ninja-build pkg-config ca-certificates npm zopfli \
+        g++ cmake ninja-build pkg-config ca-certificates npm \
         libeigen3-dev libcpp-httplib-dev nlohmann-json3-dev libspdlog-dev libcli11-dev zlib1g-dev libssl-dev \
         prometheus-cpp-dev \
     && rm -rf /var/lib/apt/lists/*

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <iterator>
 #include <limits>
 #include <stdexcept>
 #include <string_view>
@@ -16,11 +15,6 @@
 namespace vines::http {
 
 namespace {
-
-struct Page {
-    const char *path, *file;
-};
-constexpr Page pages[] = {{"/", "index.html"}, {"/docs", "docs.html"}};
 
 constexpr std::size_t no_size_limit = std::numeric_limits<std::size_t>::max();
 
@@ -51,10 +45,7 @@ Response file_response(std::string_view path, std::string body, const std::strin
         .headers = {{"Content-Security-Policy", policy}, {"Referrer-Policy", "no-referrer"}}};
 }
 
-bool is_page(std::string_view path) {
-    return std::any_of(
-        std::begin(pages), std::end(pages), [path](const Page& page) { return path == page.path; });
-}
+bool is_page(std::string_view path) { return path == "/" || path == "/docs"; }
 
 std::vector<Route> embedded_routes(const std::string& policy) {
     std::vector<Route> routes;
@@ -92,13 +83,14 @@ bool is_page_asset(const std::filesystem::path& name) {
     return path.rfind("node_modules/", 0) != 0;
 }
 
-/// Lists the files once, at start-up; their contents are read at each request.
+/// Lists the files once, at start-up; their contents are read at each request. The build makes
+/// /docs, which is compiled in with its files.
 std::vector<Route> folder_routes(const std::filesystem::path& given, const std::string& policy) {
-    std::vector<Route> routes;
+    std::vector<Route> routes = embedded_routes(policy);
+    std::erase_if(routes, [](const Route& route) { return route.path == "/"; });
     try {
         const std::filesystem::path folder = std::filesystem::canonical(given);
-        for (const Page& page : pages)
-            routes.push_back(file_route(folder / page.file, page.path, policy));
+        routes.push_back(file_route(folder / "index.html", "/", policy));
         for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
             const std::filesystem::path name = entry.path().lexically_relative(folder);
             if (is_page_asset(name) && std::filesystem::is_regular_file(entry.symlink_status()))

@@ -22,7 +22,7 @@ struct Asset {
 std::span<const Asset> assets();
 
 struct PageOptions {
-    /// Serve scripts, style sheets and drawings from this folder, so that changes need no build;
+    /// Serve the page (all but /docs) from this folder, so that changes need no build;
     /// empty: the compiled-in files.
     std::string web_dir = {};
     /// Origins of pages that may show this one in a frame, such as "https://example.org:8443".

@@ -972,6 +972,7 @@ test("--web-dir serves only files of its folder", async (t) => {
   });
   const status = async (path) => (await fetch(one.url + path)).status;
   assert.equal(await status("/"), 200);
+  assert.equal(await status("/docs"), 200, "the compiled page");
   assert.equal(await status("/own.js"), 200);
   assert.equal(await status("/tab/plot.js"), 200);
   assert.equal(await status("/link.js"), 404);

@@ -7,7 +7,7 @@ import {test} from "node:test";
 import {startService} from "../service.mjs";
 import {browser, findings, fits, service} from "./support.mjs";
 
-/** The page at a hash, completely built. */
+/** The page at a hash, after its script has started. */
 async function visit(place = "", {url = service.url, viewport, colorScheme} = {}) {
   const page = await browser.context.newPage();
   if (viewport) await page.setViewportSize(viewport);
@@ -73,7 +73,7 @@ test("an operation shows each field with its type, range, default and meaning, a
   const fields = await page.$$eval('tr[id^="simulate_by_query."]', (rows) => rows.length);
   assert.equal(fields, parameters.length);
   await page.getByText("Other statuses").first().click();
-  await page.getByText("304 ").first().waitFor();
+  await page.getByText("304 If-None-Match").first().waitFor();
   const said = await page.$$eval(
     "#simulate_by_query summary code, #simulate_by_query p > code",
     (all) => all.map(({textContent}) => textContent),
@@ -90,7 +90,7 @@ test("a link opens the elements around its target and shows it", async () => {
     await page.close();
   }
   const page = await visit();
-  assert.equal(await page.$(".fields"), null, "what is folded is not there yet");
+  assert.equal(await page.isVisible(".fields"), false, "folded");
   await page.click("#docs-toc a[href='#manifold']");
   await page.waitForSelector("#manifold[open] .fields");
   assert.ok(await inView(page, "manifold"));
@@ -199,7 +199,21 @@ test("trying an example shows status, time and the first lines of the response",
   await page.close();
 });
 
-test("the page asks for a required key and then sends it", async (t) => {
+test("a response of the size limit is complete, a larger one truncated", async () => {
+  const page = await visit("#healthz");
+  for (const [bytes, said] of [
+    [1 << 20, "1048.6 kB"],
+    [(1 << 20) + 1, "more than 1048.6 kB, truncated"],
+  ]) {
+    await page.route("**/healthz", (route) => route.fulfill({body: "x".repeat(bytes)}));
+    const {status} = await tried(page, "healthz");
+    assert.match(status, new RegExp(`^200 OK · \\d+ ms · ${said} · beginning`));
+    await page.unroute("**/healthz");
+  }
+  await page.close();
+});
+
+test("an example asks for a required key, sends it, and all commands then contain it", async (t) => {
   const folder = await mkdtemp(join(tmpdir(), "vines-docs-"));
   const file = join(folder, "keys");
   await writeFile(file, "a-key-of-the-tests-0\n");
@@ -210,10 +224,10 @@ test("the page asks for a required key and then sends it", async (t) => {
   });
   const page = await browser.context.newPage();
   await page.goto(`${closed.url}/docs#presets`);
+  const answer = tried(page, "presets");
   await page.fill("dialog input", "a-key-of-the-tests-0");
   await page.keyboard.press("Enter");
-  await page.waitForSelector("#presets[open]");
-  assert.match((await tried(page, "presets")).status, /^200 OK/);
+  assert.match((await answer).status, /^200 OK/);
   const line = await page.textContent("#presets .example code");
   assert.equal(line, `curl -s -H "Authorization: Bearer $KEY" '${closed.url}/v1/presets'`);
   await page.close();
@@ -227,16 +241,16 @@ test("the page asks for a required key and then sends it", async (t) => {
 
 test("the page reports an unreachable service", async () => {
   const page = await browser.context.newPage();
-  await page.route("**/v1/openapi.json", (route) =>
+  await page.route("**/version", (route) =>
     route.fulfill({status: 503, json: {detail: "too busy"}}),
   );
   await page.goto(`${service.url}/docs`);
   await page.waitForSelector("#docs-message.fault");
   assert.equal(
     await page.textContent("#docs-message"),
-    "The OpenAPI document cannot be loaded: too busy.",
+    "The version of the server cannot be loaded: too busy.",
   );
-  await page.unroute("**/v1/openapi.json");
+  await page.unroute("**/version");
   await page.reload();
   await page.waitForSelector("#docs-message[data-done]", {state: "attached"});
   await page.click("#docs-toc a[href='#version']");
@@ -248,9 +262,10 @@ test("the page reports an unreachable service", async () => {
   browser.complaints.splice(0);
 });
 
-test("without JavaScript the page links to the document", async () => {
+test("without JavaScript the page shows the interface and links to the document", async () => {
   const html = await (await fetch(`${service.url}/docs`)).text();
   assert.match(html, /<noscript>.*href="v1\/openapi\.json".*<\/noscript>/);
+  assert.match(html, /<tr id="simulate_by_query\.b">.*half-width of the cavity/);
   const main = await (await fetch(`${service.url}/`)).text();
   assert.match(main, /<a href="docs">/, "the page leads here");
 });

@@ -3,7 +3,7 @@ import {sendRequest} from "../shared/api.js";
 import {element} from "../shared/dom.js";
 import {count} from "../shared/numbers.js";
 
-const maxBytes = 1 << 20; // of a response that are read
+const maxBytes = 1 << 20; // of a response that is shown completely
 const maxLines = 60;
 const maxCharacters = 6000;
 
@@ -11,13 +11,13 @@ const maxCharacters = 6000;
 export const pretty = (value) =>
   JSON.stringify(value, null, 2).replace(/\[[^[\]{}]*\]/g, (list) => list.replace(/\s+/g, " "));
 
-/** Reads until maxBytes are reached or the body ends: {text, bytes, complete: the body ended}. */
+/** Reads until the body ends or exceeds maxBytes: {text, bytes, complete: the body ended}. */
 async function read(response) {
   const reader = response.body?.getReader();
   const decoder = new TextDecoder();
   let text = "";
   let bytes = 0;
-  while (reader && bytes < maxBytes) {
+  while (reader && bytes <= maxBytes) {
     const {done, value} = await reader.read();
     if (done) return {text, bytes, complete: true};
     bytes += value.length;
@@ -64,8 +64,11 @@ async function send({path, type, body}, signal) {
   return {ok: response.ok, status: status.join(" · "), text: first};
 }
 
-/** Adds a "Try it" button to an example's actions; returns the nodes that show the response. */
-export function tryIt(request, actions) {
+/**
+ * Adds a "Try it" button to an example's actions; returns the nodes that show the response.
+ * answered: called after each response.
+ */
+export function tryIt(request, actions, answered) {
   const button = element("button", {type: "button", textContent: "Try it"});
   const status = element("p", {className: "message", role: "status"});
   const responseText = element("pre", {className: "answer", tabIndex: 0, hidden: true});
@@ -86,7 +89,8 @@ export function tryIt(request, actions) {
     const {signal} = running;
     await send(request, signal)
       .catch((error) => ({status: signal.aborted ? "stopped" : error.message, text: ""}))
-      .then(show);
+      .then(show)
+      .then(answered);
     button.textContent = "Try it";
     running = null;
   });

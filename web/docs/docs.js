@@ -1,90 +1,29 @@
-// The documentation page of the HTTP interface, generated from the OpenAPI document.
+// The documentation page of the HTTP interface. The build makes its HTML (page.mjs); this script
+// adds what depends on the service or on the visitor.
 import {absoluteUrl, get} from "../shared/api.js";
 import {$, element} from "../shared/dom.js";
-import {count} from "../shared/numbers.js";
-import {load, operationsByTag, resolved, schemaPlace, schemas} from "./document.js";
+import {startExamples} from "./example.js";
 import {startFinder} from "./finder.js";
-import {fold, reveal} from "./fold.js";
-import {operationView} from "./operation.js";
-import {code, schemaView} from "./schema.js";
 
-const link = (place, ...children) => element("a", {href: `#${place}`}, ...children);
-
-/** The header that carries a key. */
-const keyWords = ({scheme, description}) => [
-  `${description}: `,
-  code(`Authorization: ${scheme[0].toUpperCase()}${scheme.slice(1)} KEY`),
-];
-
-/** Absolute address of a server; the document can give a relative one. */
-const address = (url) => (url.startsWith("/") ? absoluteUrl(`.${url}`) : url);
-
-function showHead({info, servers, components}, {commit, compiler}) {
-  $("docs-version").textContent = `${info.title} ${info.version}`;
-  $("docs-summary").textContent = info.summary ?? "";
-  $("docs-description").textContent = info.description ?? "";
-  const about = [
-    ["Version", [info.version]],
-    ["Commit", [commit ? code(commit) : "unknown", `, ${compiler}`]],
-    ...servers.map(({url, description}) => ["Server", [code(address(url)), `, ${description}`]]),
-    ...Object.values(components.securitySchemes ?? {}).map((one) => ["Key", keyWords(one)]),
-  ];
-  $("docs-about").append(
-    ...about.flatMap(([name, nodes]) => [
-      element("dt", {textContent: name}),
-      element("dd", {}, ...nodes),
-    ]),
-  );
-  $("docs-head").hidden = false;
+/** Opens and focuses the element whose id is the fragment `hash` ("#id"), and scrolls to it. */
+function reveal(hash) {
+  const found = $(hash.slice(1));
+  if (!found) return;
+  for (let at = found.closest("details"); at; at = at.parentElement.closest("details"))
+    at.open = true;
+  const focused = found.tagName === "DETAILS" ? found.firstChild : found;
+  if (focused === found) found.tabIndex = -1;
+  focused.focus({preventScroll: true});
+  found.scrollIntoView({block: focused === found ? "center" : "start"});
 }
 
-function showOperations() {
-  for (const [{name, description}, operations] of operationsByTag()) {
-    const said = element("small", {textContent: description ?? ""});
-    const title = element("h2", {id: `docs-tag-${name}`}, name, " ", said);
-    const section = element("section", {}, title, ...operations.map(operationView));
-    section.setAttribute("aria-labelledby", title.id);
-    $("docs-operations").append(section);
-  }
-}
-
-function showSchemas() {
-  for (const [name, schema] of schemas()) {
-    const place = schemaPlace(name);
-    const {properties, description} = resolved(schema);
-    const fields = properties ? count(Object.keys(properties).length, "field") : "one of several";
-    const title = element("h3", {}, name, " ", element("small", {textContent: fields}));
-    const said = description ? [element("p", {textContent: description})] : [];
-    const view = fold([title], () => [...said, ...schemaView(schema, place)], place);
-    view.id = place;
-    $("docs-schemas").append(view);
-  }
-  $("docs-schemas").hidden = false;
-}
-
-/** Operations grouped by path: [path, operations]. */
-const byPath = (operations) =>
-  [...new Set(operations.map(({path}) => path))].map((path) => [
-    path,
-    operations.filter((operation) => operation.path === path),
-  ]);
-
-function showContents() {
-  const entry = ([path, list]) => {
-    const links = list.flatMap(({id, method}) => [link(id, method), " "]);
-    return element("li", {}, code(path), " ", ...links);
-  };
-  for (const [{name}, operations] of operationsByTag())
-    $("docs-toc").append(
-      element("h2", {textContent: name}),
-      element("ul", {}, ...byPath(operations).map(entry)),
-    );
-  const names = schemas().map(([name]) => element("li", {}, link(schemaPlace(name), name)));
-  $("docs-toc").append(
-    element("h2", {}, "schemas"),
-    fold([count(names.length, "schema")], () => [element("ul", {}, ...names)]),
-  );
-  $("docs-contents").open = matchMedia("(min-width: 1001px)").matches;
+/** Fills a fold with a copy of the fields of a schema or of the content of a template. */
+function fill(fold) {
+  const source = $(fold.dataset.copy);
+  const copy = (source.content ?? source.lastElementChild).cloneNode(true);
+  for (const node of copy.querySelectorAll("[id]")) node.removeAttribute("id");
+  fold.append(...copy.childNodes);
+  delete fold.dataset.copy;
 }
 
 const setAll = (open) => {
@@ -100,21 +39,36 @@ function listen() {
     const {hash} = target.closest("a[href^='#']") ?? {};
     if (hash && hash === location.hash) reveal(hash);
   });
+  // The event does not bubble.
+  document.addEventListener("toggle", ({target}) => target.dataset.copy && fill(target), true);
+}
+
+/** Addresses of the server; the document can give a relative one. */
+function showAddresses() {
+  for (const node of document.querySelectorAll("[data-address]")) {
+    const {address} = node.dataset;
+    node.textContent = address.startsWith("/") ? absoluteUrl(`.${address}`) : address;
+  }
+}
+
+async function showCommit() {
+  const {commit, compiler} = await get("version");
+  const known = commit ? element("code", {textContent: commit}) : "unknown";
+  $("docs-commit").replaceChildren(known, `, ${compiler}`);
 }
 
 async function start() {
-  const [described, version] = await Promise.all([load(), get("version")]);
-  showHead(described, version);
-  showOperations();
-  showSchemas();
-  showContents();
-  startFinder();
   listen();
+  showAddresses();
+  startExamples();
+  startFinder();
+  $("docs-contents").open = matchMedia("(min-width: 1001px)").matches;
   reveal(location.hash);
+  await showCommit();
   $("docs-message").dataset.done = 1;
 }
 
 start().catch((error) => {
-  $("docs-message").textContent = `The OpenAPI document cannot be loaded: ${error.message}.`;
+  $("docs-message").textContent = `The version of the server cannot be loaded: ${error.message}.`;
   $("docs-message").classList.add("fault");
 });

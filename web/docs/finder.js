@@ -1,9 +1,29 @@
-// Search for fields by name.
+// Search for fields by name. Each field is a table row with an id, such as
+// schema-Energy.without_absorber.rms or simulate_by_query.b.
 import {$, element} from "../shared/dom.js";
 import {count} from "../shared/numbers.js";
-import {allFields} from "./document.js";
 
 const most = 40; // names listed
+
+/** What a field belongs to: GET /v1/simulate, or Energy.without_absorber. */
+function ownerOf(row) {
+  const operation = row.closest(".operation");
+  if (operation) {
+    const [method, path] = operation.querySelectorAll(".method, h3 code");
+    return `${method.textContent}\u00a0${path.textContent}`;
+  }
+  const names = row.id.slice(0, row.id.lastIndexOf(".")).replace("schema-", "");
+  return names.replace(/\/\d+/g, ""); // a digit tells several parts of one field apart
+}
+
+/** Every field of a request or response: {name, place, of, description}. */
+const allFields = () =>
+  [...document.querySelectorAll("main tr[id]")].map((row) => ({
+    name: row.querySelector("code").textContent,
+    place: row.id,
+    of: ownerOf(row),
+    description: row.lastElementChild.textContent,
+  }));
 
 /** Sort order: exact matches, then prefixes, then others. */
 function rank(name, wanted) {

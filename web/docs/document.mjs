@@ -1,12 +1,12 @@
 // The OpenAPI document and the ids of its parts on the page. An id is an operation or a schema
 // followed by field names: schema-Energy.without_absorber.rms.
-import {get} from "../shared/api.js";
+import {readFileSync} from "node:fs";
 
-let root;
+export let root;
 
-export async function load() {
-  root = await get("v1/openapi.json");
-  return root;
+/** Reads the document that the other functions are about. */
+export function load(file) {
+  root = JSON.parse(readFileSync(file, "utf8"));
 }
 
 const unescaped = (name) => name.replaceAll("~1", "/").replaceAll("~0", "~");
@@ -25,6 +25,7 @@ export const nameOf = ($ref) => $ref.slice($ref.lastIndexOf("/") + 1);
 
 export const schemas = () => Object.entries(root.components.schemas);
 export const schemaPlace = (name) => `schema-${name}`;
+export const responsePlace = (name) => `response-${name}`;
 
 /**
  * All operations in document order, with path, method, resolved parameters, and their request body
@@ -69,29 +70,3 @@ export function placedParts(schema, place, taken = false) {
   const next = () => (n++ ? `${place}/${n}` : place);
   return parts(schema).map((part) => [part, part.$ref || !place ? null : next()]);
 }
-
-function* fieldsOf({properties = {}, ...rest}, place, of) {
-  for (const [name, field] of Object.entries(properties)) {
-    const at = `${place}.${name}`;
-    yield {name, place: at, of, description: resolved(field).description};
-    yield* fieldsOfParts(placedParts(field, at), `${of}.${name}`);
-  }
-  yield* fieldsOfParts(placedParts(rest, place, true), of);
-}
-
-function* fieldsOfParts(parts, of) {
-  for (const [part, place] of parts) if (place) yield* fieldsOf(part, place, of);
-}
-
-/** Every field of a request or response: {name, place, of, description}. */
-export const allFields = () => [
-  ...operations().flatMap(({id, method, path, parameters}) =>
-    parameters.map(({name, description}) => ({
-      name,
-      place: `${id}.${name}`,
-      of: `${method}\u00a0${path}`,
-      description,
-    })),
-  ),
-  ...schemas().flatMap(([name, schema]) => [...fieldsOf(schema, schemaPlace(name), name)]),
-];

@@ -1,10 +1,8 @@
 // Schemas as text and as tables of fields.
-import {element} from "../shared/dom.js";
 import {count} from "../shared/numbers.js";
-import {nameOf, placedParts, resolved, schemaPlace} from "./document.js";
-import {fold} from "./fold.js";
+import {nameOf, placedParts, resolved, schemaPlace} from "./document.mjs";
+import {code, copyFold, element, fold, small} from "./markup.mjs";
 
-export const code = (text) => element("code", {textContent: text});
 const json = (value) => code(JSON.stringify(value));
 const paragraph = (...children) => element("p", {}, ...children);
 
@@ -13,7 +11,7 @@ const alternatives = (list) => joined(list, " or ");
 
 const linkTo = ($ref) => {
   const name = nameOf($ref);
-  return element("a", {href: `#${schemaPlace(name)}`, textContent: name});
+  return element("a", {href: `#${schemaPlace(name)}`}, name);
 };
 
 function listWords({items = {}, minItems, maxItems}, many) {
@@ -54,41 +52,39 @@ function limits(schema) {
   return words;
 }
 
-const cell = (name, ...children) => element("td", {className: name}, ...children);
+const cell = (name, ...children) => element("td", {class: name}, ...children);
 
 /** Table row of a field {name, schema, required, description}, and one for its content. */
 function rows({name, schema, required, description}, place) {
   const at = place && `${place}.${name}`;
-  const head = element("th", {scope: "row"}, code(name));
-  if (required) head.append(" ", element("small", {textContent: "required"}));
+  const mark = required ? [" ", small("required")] : [];
+  const head = element("th", {scope: "row"}, code(name), ...mark);
   const words = [typeWords(schema), ...limits(schema)];
   const meaning = description ?? resolved(schema).description ?? "";
-  const row = element("tr", {}, head, cell("type", ...joined(words, ", ")), cell("", meaning));
-  if (at) row.id = at;
+  const type = cell("type", ...joined(words, ", "));
+  const row = element("tr", {id: at}, head, type, cell(null, meaning));
   const folds = placedParts(schema, at).map(([part, inside]) => partFold(part, inside));
   if (!folds.length) return [row];
-  return [row, element("tr", {className: "inside"}, element("td", {colSpan: 3}, ...folds))];
+  return [row, element("tr", {class: "inside"}, element("td", {colspan: 3}, ...folds))];
 }
 
 function partFold(part, place) {
   const fields = Object.keys(resolved(part).properties ?? {}).length;
-  const name = part.$ref ? [nameOf(part.$ref), " "] : [];
-  const number = element("small", {
-    textContent: fields ? count(fields, "field") : "one of several",
-  });
-  return fold([...name, number], () => schemaView(part, place), place);
+  const number = small(fields ? count(fields, "field") : "one of several");
+  if (part.$ref) return fieldsFold([nameOf(part.$ref), " ", number], part.$ref);
+  return fold([number], schemaView(part, place));
 }
+
+/** A fold of a component's fields. Components can be recursive. */
+export const fieldsFold = (summary, $ref) => copyFold(summary, schemaPlace(nameOf($ref)));
 
 /** A table of fields. place: id of their parent; null if they are not search targets. */
 export function fieldTable(fields, place, title) {
-  const heads = ["field", "type", "meaning"].map((textContent) =>
-    element("th", {scope: "col", textContent}),
-  );
+  const heads = ["field", "type", "meaning"].map((name) => element("th", {scope: "col"}, name));
   const body = element("tbody", {}, ...fields.flatMap((field) => rows(field, place)));
-  const table = element("table", {className: "fields"});
-  if (title) table.append(element("caption", {textContent: title}));
-  table.append(element("thead", {}, element("tr", {}, ...heads)), body);
-  return table;
+  const caption = title ? [element("caption", {}, title)] : [];
+  const head = element("thead", {}, element("tr", {}, ...heads));
+  return element("table", {class: "fields"}, ...caption, head, body);
 }
 
 /** A schema as nodes: its fields and alternatives. */
