@@ -105,6 +105,7 @@ function remark({exponents: {verdict, verdict_reason: why}, regime, warnings}, m
 }
 
 function showOrigins() {
+  request.showDamping(run.answer.parameters);
   if ($("more").open) request.form.showOrigins(run.answer.parameters);
 }
 
