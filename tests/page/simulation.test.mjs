@@ -966,6 +966,19 @@ test("a mass typed over a preset replaces its system, damping and window, and mi
   await page.close();
 });
 
+test("a field of the oscillator typed over an experiment keeps its other values, each given once", async () => {
+  const page = await still("?preset=fig20");
+  await unfold(page);
+  await page.fill(input("f0"), "8.4");
+  assert.ok(await page.isDisabled(input("k1")));
+  assert.equal(await page.inputValue(input("k1")), "");
+  assert.equal(await page.inputValue(input("c1")), "3.02");
+  await after(page, () => page.keyboard.press("Enter"));
+  assert.match(page.url(), /\?b=0\.015&R=0\.85&m1=4\.168&f0=8\.4&c1=3\.02&m2=0\.032&F=/);
+  assert.equal(await page.inputValue("#preset"), "");
+  await page.close();
+});
+
 test("a chosen damping and window stay when the system of a preset is replaced", async () => {
   const page = await still();
   await unfold(page);

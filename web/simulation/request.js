@@ -29,24 +29,17 @@ export class Request {
       this.form.set({damping: chosen?.parameters.damping, ...fields});
     } else this.giveValues(() => true);
     this.name = chosen?.name ?? "";
-    this.updateDisabled();
   }
 
   /** Fills empty fields with the values that the run shown has from the preset. */
   giveValues(isWanted) {
+    const {form, name: preset} = this;
     const {origins} = resolved(run?.answer.parameters ?? {});
-    const originOf = (name) => origins[name === "windows" ? "window" : name];
+    const isPresets = (name) =>
+      origins[name === "windows" ? "window" : name] === `preset ${preset}`;
+    form.updateDisabled(); // of a value that can be given in two ways, only one is filled
     for (const [name, value] of Object.entries(this.preset?.parameters ?? {}))
-      if (isWanted(name) && originOf(name) === `preset ${this.name}` && !this.form.filled(name))
-        this.form.replace(name, value);
-  }
-
-  /**
-   * Disables fields that exclude each other (SI and reduced), unless a preset is selected: a preset
-   * in SI can be combined with reduced fields.
-   */
-  updateDisabled() {
-    this.form.disable(this.preset ? [] : this.form.unmixable());
+      if (isWanted(name) && isPresets(name) && form.isEmpty(name)) form.replace(name, value);
   }
 
   /** Shows the damping of an answer; the service decides whether that of a preset applies. */
@@ -127,7 +120,6 @@ export class Request {
       this.giveValues((field) => !["damping", "window", "windows"].includes(field));
       this.name = "";
     }
-    this.updateDisabled();
     return replaced
       ? [`User-defined system in place of ${preset.source}`, ...changes].join("; ")
       : "";

@@ -184,7 +184,6 @@ function sliderMoved(fields, slider, dragging) {
   if (slider.name === "zeta") request.dampingChosen = true;
   const entries = Object.entries(fields);
   for (const [name, value] of entries) form.replace(name, value ?? "");
-  request.updateDisabled();
   note("");
   send({dragging});
 }
