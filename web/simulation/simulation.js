@@ -105,6 +105,7 @@ function remark({exponents: {verdict, verdict_reason: why}, regime, warnings}, m
 }
 
 function showOrigins() {
+  request.showDamping(run.answer.parameters);
   if ($("more").open) request.form.showOrigins(run.answer.parameters);
 }
 
@@ -183,7 +184,6 @@ function sliderMoved(fields, slider, dragging) {
   if (slider.name === "zeta") request.dampingChosen = true;
   const entries = Object.entries(fields);
   for (const [name, value] of entries) form.replace(name, value ?? "");
-  request.updateDisabled();
   note("");
   send({dragging});
 }
