@@ -1,6 +1,6 @@
 // Marks: what a plot draws over its frame. A mark is its options and draw(c, frame), where c is a
-// canvas context or an SvgPen. Marks are clipped to the plot; those `above` clip themselves and are
-// drawn last. Each kind documents its options; all have `alpha`, and a `label` in legend and table.
+// canvas context or an SvgPen. Marks are clipped to the plot, except those `above`, which are drawn
+// last. Each kind documents its options; all have `alpha`, and a `label` in legend and table.
 import {font} from "./frame.js";
 import {drawText, ink, stroke} from "./ink.js";
 import {clamp} from "./numbers.js";
@@ -127,24 +127,23 @@ export const bands = kind((c, {box: {left, right, top}, px, height}, {intervals,
  * Rectangles over intervals [{from, to, colour, text}] of x, `height` px high and `down` px below
  * the upper edge. Texts that fit are written `textDown` px below it.
  */
-const drawBlocks = (c, {box, px, ...frame}, {list, down = 0, height = frame.height, ...more}) => {
-  const {textDown = 0, size = 11} = more;
+export const blocks = kind((c, {box, px, ...frame}, options) => {
+  const {list, down = 0, height = frame.height, textDown = 0, size = 11} = options;
   const alpha = c.globalAlpha;
   for (const {from, to, colour, text = ""} of list) {
-    const [left, right] = [from, to].map((x) => Math.round(clamp(px(x), box.left, box.right)));
-    const width = right - left || 1; // whole pixels: no gaps between neighbours
+    const ends = [from, to].map((x) => clamp(px(x), box.left, box.right));
+    if (!(ends[1] > ends[0])) continue;
+    const [left, right] = ends.map(Math.round); // whole pixels: no gaps between neighbours
     ink(c, colour);
-    c.fillRect(left, box.top + down, width, height);
-    if (7 * text.length + 4 >= width) continue;
+    c.fillRect(left, box.top + down, right - left || 1, height);
+    if (!text || 7 * text.length + 4 >= right - left) continue;
     ink(c, "text");
     c.font = `600 ${font.replace("11", size)}`;
     c.globalAlpha = 1;
     drawText(c, text, (left + right) / 2, box.top + textDown, "center", "top");
     c.globalAlpha = alpha;
   }
-};
-export const blocks = kind(drawBlocks);
-export const blocksAbove = kind(drawBlocks, {above: true});
+});
 
 /** Corners of polygons and the angle of the first one. */
 const polygons = {
@@ -185,11 +184,23 @@ const many = 5000; // points above which the density is drawn
 
 /**
  * Symbols at points in any order; without y a point is not drawn. size: half the width, px; tints:
- * colour of each point in place of a common one.
+ * colour of each point in place of a common one; errors: half lengths of paler bars.
  */
 export const dots = kind((c, frame, options) => {
-  const {x, y, tints, shape = "square", size = 1.2, width = 1.2} = options;
+  const {x, y, tints, errors = [], shape = "square", size = 1.2, width = 1.2} = options;
   if (!tints && x.length > many) return pointDensity(c, frame, options);
+  const alpha = c.globalAlpha;
+  c.globalAlpha = 0.45 * alpha;
+  errors.forEach((error, i) => {
+    if (!error || y[i] == null) return;
+    ink(c, tints[i], Math.max(1, size / 2));
+    const end = (sign) => clamp(frame.py(y[i] + sign * error), frame.box.top, frame.box.bottom);
+    stroke(
+      c,
+      [-1, 1].map((sign) => [frame.px(x[i]), end(sign)]),
+    );
+  });
+  c.globalAlpha = alpha;
   let colour = null;
   for (let i = 0; i < x.length; ++i) {
     if (y[i] == null) continue;
@@ -203,18 +214,6 @@ export const dots = kind((c, frame, options) => {
     symbol(c, shape, frame.px(x[i]), frame.py(y[i]), size);
   }
   if (colour) finish(c, shape);
-});
-
-/** Vertical bars from low to high at x; none where low is null. */
-export const errorBars = kind((c, {px, py}, {x, low, high, tints, width}) => {
-  for (let i = 0; i < x.length; ++i) {
-    if (low[i] == null) continue;
-    ink(c, tints[i], width);
-    stroke(
-      c,
-      [low[i], high[i]].map((y) => [px(x[i]), py(y)]),
-    );
-  }
 });
 
 /**

@@ -1,6 +1,6 @@
 // The diagrams over the single axis of a sweep.
 import {rangeOf} from "../shared/frame.js";
-import {blocks, density, dots, errorBars, levels, line} from "../shared/marks.js";
+import {blocks, density, dots, levels, line} from "../shared/marks.js";
 import {clamp, short} from "../shared/numbers.js";
 import {
   coordinates,
@@ -74,12 +74,14 @@ class Diagram extends SweepPlot {
     return line({...this.columnsOf(start, of), colour, ...more});
   }
 
-  /** Dots of a start, in the colours nameOf(point). */
-  dots(frame, start, nameOf) {
-    const tints = this.view.byStart[start].map(({p}) => nameOf(p));
+  /** Dots of a start, in the colours nameOf(point) and with bars of errorOf(point). */
+  dots(frame, start, nameOf, errorOf = () => null) {
+    const [tints, errors] = [nameOf, errorOf].map((of) =>
+      this.view.byStart[start].map(({p}) => of(p)),
+    );
     const shape = startShapes[start % startShapes.length];
     const columns = this.columnsOf(start, (p) => this.drawn({p}));
-    return dots({...columns, tints, shape, size: this.radius(frame)});
+    return dots({...columns, tints, errors, shape, size: this.radius(frame)});
   }
 
   /**
@@ -189,22 +191,11 @@ export class LambdaDiagram extends Diagram {
       const colour = (p) => this.tint(s, verdictColour(p));
       return [
         this.line(s, lambda(1), this.tint(s, "second"), {alpha}),
-        this.bars(frame, s, colour),
-        this.dots(frame, s, colour),
+        this.dots(frame, s, colour, errorOf),
       ];
     };
     const zero = levels({y: 0, colour: "soft"});
     return [zero, ...this.view.starts().flatMap(ofStart), ...this.rings(frame, lambda(0))];
-  }
-
-  /** Standard errors of a start. */
-  bars(frame, start, colour) {
-    const {x, y} = this.columnsOf(start, (p) => this.drawn({p}));
-    const points = this.view.byStart[start].map(({p}) => p);
-    const end = (sign) => y.map((v, i) => (v === null ? null : v + sign * errorOf(points[i])));
-    const width = Math.max(1, this.radius(frame) / 2);
-    const [low, high] = [-1, 1].map(end);
-    return errorBars({x, low, high, tints: points.map(colour), width, alpha: 0.45});
   }
 
   columns() {

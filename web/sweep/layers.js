@@ -52,8 +52,9 @@ export class Layers {
     if (this.all.length > 1) list.sort((a, b) => a.at[0] - b.at[0]);
     const {borders} = this.base.axes[0];
     list.forEach((place, i) => {
+      const next = list[i + 1];
       place.low = i ? list[i - 1].high : borders[0];
-      place.high = i + 1 < list.length ? (place.at[0] + list[i + 1].at[0]) / 2 : borders.at(-1);
+      place.high = next ? (place.at[0] + next.at[0]) / 2 : borders.at(-1);
     });
     return list;
   }
