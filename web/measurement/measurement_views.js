@@ -6,24 +6,25 @@ import {addExportButton, captionOf} from "../shared/export_dialog.js";
 import {rangeOf} from "../shared/frame.js";
 import {makeAccessible} from "../shared/gestures.js";
 import {LinePlot} from "../shared/line_plot.js";
+import {bands, beads, dots, layer, levels, line, lines, symbols} from "../shared/marks.js";
 import {verdicts} from "../shared/quantities.js";
 import {ScatterPlot} from "../shared/scatter_plot.js";
-import {firstFrom, lastUpTo} from "../shared/search.js";
+import {firstFrom} from "../shared/search.js";
 import {Viewport} from "../shared/viewport.js";
 import {isLeftOut, kindOf} from "./impact_list.js";
 import {spikeNear} from "./record.js";
 
 const viewport = new Viewport();
-const line = (name) => [name, new LinePlot($(`plot-measured-${name}`), viewport)];
-const plane = (name) => [name, new ScatterPlot($(`plot-measured-${name}`))];
+const make = (Kind) => (name) => [name, new Kind($(`plot-measured-${name}`), viewport)];
 const planes = ["portrait", "section"];
 const plots = Object.fromEntries([
-  ...["a", "x", "qr", "raw", "R", "steps"].map(line),
-  ...planes.map(plane),
+  ...["a", "x", "qr", "raw", "R", "steps"].map(make(LinePlot)),
+  ...planes.map(make(ScatterPlot)),
 ]);
 const mm = (metres) => metres.map((v) => v * 1000);
 
-const drawLines = (name, options) => plots[name].draw({...options, x: "t (s)"});
+const x = {label: "t (s)", factor: 1};
+const drawLines = (name, options) => plots[name].draw({x, ...options});
 
 /** Figures of the paper that show the corresponding plot, by preset. */
 const figures = {
@@ -34,10 +35,10 @@ const figureOf = (name) => $(`plot-measured-${name}`).closest("figure");
 
 /** shown() returns {name, answer} of the record shown. */
 export function start(shown) {
-  viewport.onCursor(() => light(shown().answer));
   for (const [name, plot] of Object.entries(plots)) {
     const {title} = captionOf(figureOf(name));
-    makeAccessible(plot, title, () => shown().answer?.impacts.time_s ?? []);
+    const axis = planes.includes(name) ? null : viewport;
+    makeAccessible(plot, title, () => shown().answer?.impacts.time_s ?? [], axis);
     addExportButton(figureOf(name), plot, () => ({
       title,
       summary: summaryOf(shown()),
@@ -64,19 +65,6 @@ export function nameFigures(preset) {
   }
 }
 
-/** Rings the impact nearest to the cursor. */
-function light(answer) {
-  const {cursor} = viewport;
-  if (!answer || cursor === null) return;
-  const {time_s: t, x, x_dot_after: xDot, R} = answer.impacts;
-  const before = Math.max(lastUpTo(t, cursor), 0);
-  const i = t[before + 1] - cursor < cursor - t[before] ? before + 1 : before;
-  const {omega0} = answer.parameters.derived;
-  for (const name of planes) plots[name].light(x[i] * 1000, xDot[i] * 1000 * omega0);
-  plots.x.light(t[i], x[i] * 1000);
-  plots.R.light(t[i], R[i]);
-}
-
 export function redraw() {
   for (const plot of Object.values(plots)) plot.refresh();
 }
@@ -85,14 +73,12 @@ export function redraw() {
 const kinds = {plus: "plus", minus: "minus", "left-out": "wall", removed: "soft", edited: "c4"};
 
 /** Marks for the rows of the list at the heights y(row). */
-const marks = (rows, y, shape, size) =>
-  Object.entries(kinds)
-    .map(([kind, colour]) => {
-      const mine = rows.filter((row) => kindOf(row) === kind);
-      const stroke = colour === kind ? {size, width: 1.3} : {size: size * 1.6, width: 2};
-      return {x: mine.map((row) => row.t), y: mine.map(y), colour, shape, ...stroke};
-    })
-    .filter(({x}) => x.length);
+const marksOf = (rows, y, shape, size) =>
+  Object.entries(kinds).map(([kind, colour]) => {
+    const mine = rows.filter((row) => kindOf(row) === kind);
+    const stroke = colour === kind ? {size, width: 1.3} : {size: size * 1.6, width: 2};
+    return symbols({x: mine.map((row) => row.t), y: mine.map(y), colour, shape, ...stroke});
+  });
 
 /** A column, interpolated linearly. */
 function valueAt({t}, column, moment) {
@@ -112,14 +98,19 @@ export function mark(record, rows, answer) {
   const stuck = from.map((tau, i) => seconds([tau, to[i]]));
   const step = (t.at(-1) - t[0]) / (t.length - 1);
   const reach = (answer ? answer.signal.pulse_s / 2 : step) + step;
+  const points = answer && {x: answer.impacts.time_s, y: mm(answer.impacts.x)};
+  const under = (name, marks, more) => {
+    const intervals = bands({intervals: stuck, colour: "shade"});
+    plots[name].draw({...plots[name].last, under: [intervals, ...marks], ...more});
+  };
   if (a)
-    plots.a.mark(
-      marks(rows, (row) => a[spikeNear(record, row.t, reach)], "cross", 4),
-      stuck,
+    under(
+      "a",
+      marksOf(rows, (row) => a[spikeNear(record, row.t, reach)], "cross", 4),
     );
   if (!x) return;
-  const rings = marks(rows, (row) => valueAt(record, x, row.t), "ring", 3.5);
-  plots.x.mark([...forwardMarks(answer, seconds), ...rings], stuck);
+  const rings = marksOf(rows, (row) => valueAt(record, x, row.t), "ring", 3.5);
+  under("x", [...forwardMarks(answer, seconds), ...rings], {points});
 }
 
 /** Returns a function that converts tau to s. */
@@ -129,16 +120,15 @@ const secondsOf = (answer) => (taus) => taus.map((tau) => tau / answer.parameter
 function forwardMarks(answer, seconds) {
   if (!answer?.forward) return [];
   const {tau, x} = answer.forward.impacts;
-  return [{x: seconds(tau), y: mm(x), colour: "soft", shape: "dot", size: 1.4}];
+  return [symbols({x: seconds(tau), y: mm(x), colour: "soft", shape: "dot", size: 1.4})];
 }
 
 /** Draws the record alone; click: handler of clicks on the acceleration. */
 export function drawRecord({t, a, x}, click) {
-  const draw = (name, column, series, label, more) => {
-    $(`figure-measured-${name}`).hidden = !column;
-    const span = [t[0], t.at(-1)];
-    const trace = {label: series, colour: "trace"};
-    if (column) drawLines(name, {series: [trace], data: [t, column], span, label, ...more});
+  const draw = (name, y, series, label, more) => {
+    $(`figure-measured-${name}`).hidden = !y;
+    const marks = [line({label: series, colour: "trace", x: t, y})];
+    if (y) drawLines(name, {marks, y: {label}, span: [t[0], t.at(-1)], ...more});
   };
   draw("a", a, "x″", "acceleration (m/s²)", {click});
   draw("x", x, "x", "x (mm)");
@@ -148,31 +138,30 @@ function drawExponents(answer) {
   const {exponents, slope} = answer;
   const {lambda1: y, low: from, high: to} = slope;
   const shown = [y, from, to].filter((v) => v != null);
-  const range = exponentRange([exponents.qr?.history, exponents.raw_product?.history]);
-  const common = {
-    label: "λ",
-    range: [Math.min(range[0], ...shown), Math.max(range[1], ...shown)],
-    levels: [0],
-  };
+  const [least, most] = exponentRange([exponents.qr?.history, exponents.raw_product?.history]);
+  const range = [Math.min(least, ...shown), Math.max(most, ...shown)];
   $("figure-measured-raw").hidden = !exponents.raw_product;
-  const known = y != null && {
-    levels: [0, {y, colour: "before"}],
-    layers: [{from, to, colour: "interval"}],
-  };
+  const known = [layer({from, to, colour: "interval"}), levels({y, colour: "before"})];
   const seconds = secondsOf(answer);
-  drawLines("qr", {...common, ...historyOf(exponents.qr, seconds), ...known});
-  drawLines("raw", {...common, ...historyOf(exponents.raw_product, seconds)});
+  const draw = (name, estimator, under = []) =>
+    drawLines(name, {
+      under: [...under, levels({y: 0, colour: "soft"})],
+      marks: historyOf(estimator, seconds),
+      y: {label: "λ", range},
+    });
+  draw("qr", exponents.qr, y == null ? [] : known);
+  draw("raw", exponents.raw_product);
 }
 
 /** Exponents of an estimator over time; rings mark the final values. */
 function historyOf(estimator, seconds) {
-  if (!estimator?.history?.tau.length) return {series: [], data: [[]]};
+  if (!estimator?.history?.tau.length) return [];
   const {history, final: y} = estimator;
   const {series, columns} = exponentSeries(history);
   const t = seconds(history.tau);
   const x = y.map(() => t.at(-1));
-  const marks = [{x, y, colour: "text", shape: "ring", size: 3.5}];
-  return {series, data: [t, ...columns], marks};
+  const ends = symbols({x, y, colour: "text", shape: "ring", size: 3.5});
+  return [...lines(t, columns, series), ends];
 }
 
 /** R of each impact. Inconsistent values lie at their place or at the edge of the plot. */
@@ -184,26 +173,27 @@ function drawRestitution({impacts, restitution}) {
   const left = [...R.keys()].filter((i) => isLeftOut(status[i]) && R[i] != null);
   const crosses = {x: left.map((i) => t[i]), y: left.map((i) => R[i]), colour: "wall"};
   const walls = ["plus", "minus"];
+  const fitted = walls.filter((wall) => restitution[wall].R != null);
   drawLines("R", {
-    series: walls.map((colour, k) => ({label: `R at ${"+−"[k]}b`, colour, dots: 4.5})),
-    data: [t, ...columns],
-    range: rangeOf([around]) ?? [0, 1],
-    label: "R",
-    levels: walls.map((colour) => ({y: restitution[colour].R, colour})).filter(({y}) => y != null),
-    marks: [{...crosses, shape: "cross", size: 5, width: 2}],
+    marks: [
+      ...fitted.map((wall) => levels({y: restitution[wall].R, colour: wall})),
+      ...walls.map((colour, k) =>
+        beads({label: `R at ${"+−"[k]}b`, colour, size: 2.25, x: t, y: columns[k]}),
+      ),
+      symbols({...crosses, shape: "cross", size: 5, width: 2}),
+    ],
+    y: {range: rangeOf([around]) ?? [0, 1], label: "R"},
+    points: {x: t, y: R},
   });
 }
 
 function drawSteps({impacts: {tau, time_s: t}, parameters}) {
   const half = Math.PI / parameters.Omega;
-  const steps = tau.map((v, i) => (v - tau[i - 1]) / half || null); // none before the first
+  const y = tau.map((v, i) => (v - tau[i - 1]) / half || null); // none before the first
+  const label = "time since the previous impact";
   drawLines("steps", {
-    series: [{label: "time since the previous impact", colour: "c1", dots: 4}],
-    data: [t, steps],
-    log: true,
-    range: rangeOf([steps, [0.5, 2]], {log: true}),
-    label: "half periods",
-    levels: [1],
+    marks: [levels({y: 1, colour: "soft"}), beads({label, colour: "c1", size: 2, x: t, y})],
+    y: {log: true, range: rangeOf([y, [0.5, 2]], true), label: "half periods"},
   });
 }
 
@@ -212,20 +202,22 @@ function drawSections({impacts, parameters}) {
   const inSeconds = 1000 * parameters.derived.omega0; // mm/s per m per unit of tau
   const points = (velocity) => ({x, y: velocity.map((v) => v * inSeconds)});
   const after = points(impacts.x_dot_after);
-  const draw = (name, yLabel, groups) =>
+  const t = impacts.time_s;
+  const draw = (name, label, marks) =>
     plots[name].draw({
-      pick: {...after, use: (i) => viewport.point(impacts.time_s[i], "pick")},
-      groups,
-      xLabel: "x (mm)",
-      yLabel,
+      points: {...after, t, use: (i) => viewport.point(t[i], "pick")},
+      marks,
+      x: {label: "x (mm)"},
+      y: {label},
     });
+  const before = points(impacts.x_dot_before);
   draw("portrait", "x′ (mm/s)", [
-    {...points(impacts.x_dot_before), colour: "before", shape: "ring", size: 3.4},
-    {...after, colour: "after", shape: "cross", size: 2.8},
+    dots({...before, colour: "before", shape: "ring", size: 3.4, alpha: 0.75}),
+    dots({...after, colour: "after", shape: "cross", size: 2.8, alpha: 0.75}),
   ]);
   const atWall = (sign, colour) => {
     const of = (column) => column.filter((_, i) => impacts.side[i] === sign);
-    return {x: of(x), y: of(after.y), colour, size: 3.6, alpha: 1};
+    return dots({x: of(x), y: of(after.y), colour, size: 1.8});
   };
   draw("section", "x′ after (mm/s)", [atWall(1, "plus"), atWall(-1, "minus")]);
 }

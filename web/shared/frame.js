@@ -36,10 +36,11 @@ export class Frame {
   /**
    * width, height: px. x, y: {range, log, label, factor, bare, labels}: visible range, logarithmic
    * scale, name of the axis, factor of its numbers, whether the labels are omitted, and labels(min,
-   * max), which returns [{at, text}] in place of round numbers. beside: px at the right.
+   * max), which returns [{at, text}] in place of round numbers. beside, above: px at the right and
+   * at the top.
    */
-  constructor(width, height, x, y, beside = 10) {
-    const [left, top, right] = [50, 5, width - beside];
+  constructor(width, height, x, y, beside = 10, above = 5) {
+    const [left, top, right] = [50, above, width - beside];
     const below = x.bare ? 5 : 18 + (x.label ? 14 : 0);
     const bottom = Math.max(height - below, 15);
     const box = {left, top, right, bottom};

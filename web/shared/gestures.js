@@ -212,11 +212,10 @@ export function followKeys(node, viewport, impacts = () => []) {
 }
 
 /**
- * Names a plot for screen readers. A plot over a shared axis also gets the keys of followKeys and
- * the slider role; moments() returns the impact times for n and p.
+ * Names a plot for screen readers. A plot over a shared axis, `viewport`, also gets the keys of
+ * followKeys and the slider role; moments() returns the impact times for n and p.
  */
-export function makeAccessible(plot, name, moments, viewport = plot.viewport) {
-  const {container: node} = plot;
+export function makeAccessible({container: node}, name, moments, viewport) {
   attributes(node, {"aria-label": name, role: viewport ? "slider" : "img"});
   if (!viewport) return;
   node.tabIndex = 0;

@@ -2,7 +2,9 @@
 // which moves without redrawing. A plot of width zero (in a closed <details>) is drawn when it gets
 // a width.
 import {element} from "./dom.js";
-import {blank, Size} from "./frame.js";
+import {blank, font, Size} from "./frame.js";
+import {drawText, ink} from "./ink.js";
+import {nearest} from "./search.js";
 
 export class Plot {
   frame = null;
@@ -10,15 +12,26 @@ export class Plot {
   lit = [];
 
   /**
-   * container: the node whose size counts; layer: parent of the ring. Subclasses implement
-   * prepare(width, height, alone), which returns {frame, ...}, and paint(c, prepared) with a canvas
-   * context or an SvgPen. head: px above the canvas; offset: position of the canvas in `layer`, px.
+   * container: the node whose size counts; layer: parent of the ring; viewport: whose cursor the
+   * ring follows, if any. Subclasses implement prepare(width, height, alone), which returns {frame,
+   * marks}, or {empty} for a text in place of both, or null. head: px above the canvas; offset:
+   * position of the canvas in `layer`, px.
    */
-  constructor(canvas, container, layer) {
-    Object.assign(this, {canvas, container});
+  constructor(canvas, container, layer, viewport) {
+    Object.assign(this, {canvas, container, viewport});
     this.ring = element("div", {className: "lit", hidden: true});
     layer.append(this.ring);
     this.size = new Size(container, () => this.resized());
+    viewport?.onCursor(() => this.point());
+  }
+
+  /**
+   * points: {x, y, t}, of which the one nearest to the cursor is ringed; t: their places on the
+   * viewport, by default x. Further options are those of the subclass.
+   */
+  draw(options) {
+    this.last = options;
+    this.refresh();
   }
 
   resized() {
@@ -33,7 +46,8 @@ export class Plot {
     if (!prepared) return;
     this.frame = prepared.frame;
     this.place(height);
-    this.paint(blank(this.canvas, {width, height}), prepared);
+    paint(blank(this.canvas, {width, height}), {width, height, ...prepared});
+    this.point();
     this.light(...this.lit);
   }
 
@@ -43,7 +57,16 @@ export class Plot {
   /** Draws the plot for export. */
   paintAll(c, width, height) {
     const prepared = this.prepare(width, height, true);
-    if (prepared) this.paint(c, prepared);
+    if (prepared) paint(c, {width, height, ...prepared});
+  }
+
+  /** Follows the cursor. */
+  point() {
+    const {x, y, t = x} = this.last?.points ?? {};
+    const {cursor} = this.viewport ?? {};
+    if (!x || cursor == null) return;
+    const i = nearest(t, cursor);
+    this.light(x[i], y[i]);
   }
 
   /** Rings a point; hides the ring without one or when the point is out of view. */
@@ -56,4 +79,17 @@ export class Plot {
     const [right, down] = this.offset;
     ring.style.transform = `translate(${left + right}px, ${top + down}px)`;
   }
+}
+
+function paint(c, {frame, marks, empty, width, height}) {
+  if (!frame) {
+    c.font = font;
+    ink(c, "soft");
+    return drawText(c, empty, width / 2, height / 2);
+  }
+  frame.draw(c);
+  frame.clip(c);
+  for (const mark of marks) if (!mark.above) mark.draw(c, frame);
+  c.restore();
+  for (const mark of marks) if (mark.above) mark.draw(c, frame);
 }

@@ -17,3 +17,9 @@ export const firstFrom = (values, value) => place(values, (v) => v < value);
 
 /** The last index whose value is at most `value`; -1 if there is none. */
 export const lastUpTo = (values, value) => place(values, (v) => v <= value) - 1;
+
+/** The index of the value nearest to `value`; 0 without values. */
+export function nearest(values, value) {
+  const i = firstFrom(values, value);
+  return i && !(values[i] - value < value - values[i - 1]) ? i - 1 : i;
+}

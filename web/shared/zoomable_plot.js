@@ -14,13 +14,12 @@ export class ZoomablePlot extends Plot {
   constructor(container, viewport = new Viewport(), across = null) {
     const canvas = element("canvas");
     const over = element("div", {className: "over"});
-    super(canvas, container, over);
-    Object.assign(this, {viewport, across, over});
+    super(canvas, container, over, viewport);
+    Object.assign(this, {across, over});
     this.cursor = element("div", {className: "cursor", hidden: true});
     over.prepend(this.cursor);
     container.append(canvas, over);
     for (const each of [viewport, across]) each?.onZoom(() => this.soon());
-    viewport.onCursor(() => this.point());
     listen(over, viewport, (...where) => this.click(...where), across);
   }
 
@@ -30,11 +29,6 @@ export class ZoomablePlot extends Plot {
       this.waiting = 0;
       this.refresh();
     });
-  }
-
-  refresh() {
-    super.refresh();
-    this.point();
   }
 
   /** Positions the canvas and the element over it. */
@@ -47,6 +41,7 @@ export class ZoomablePlot extends Plot {
   }
 
   point() {
+    super.point();
     const {cursor, range, width} = this.viewport;
     const share = cursor === null ? -1 : (cursor - range[0]) / width;
     const inView = this.frame && share >= 0 && share <= 1;

@@ -6,8 +6,8 @@ import {Job} from "../shared/job.js";
 import {detailsOptions, overTime, planes} from "./details_plots.js";
 import {accountEnergy, summarise, tabulate} from "./details_summary.js";
 import {listParameters} from "./parameters.js";
-import {marksOf, PlotGroup} from "./plot_group.js";
-import {run, viewport} from "./run.js";
+import {commonOptions, PlotGroup} from "./plot_group.js";
+import {run} from "./run.js";
 
 const include = ["series", "impacts", "exponents", "eigenvalues", "section", "energy", "regime"];
 
@@ -45,18 +45,10 @@ function show() {
   listParameters(answer.parameters, fieldOf);
   tabulate(answer.windows, units);
   accountEnergy(answer.energy, units);
-  plots.marks = marksOf(answer);
+  plots.common = commonOptions(answer);
   for (const [name, options] of Object.entries(detailsOptions(answer))) plots.draw(name, options);
-  light();
   countUp(details);
   if (!$("model-sketch").hasChildNodes()) showModel().catch(() => {}); // optional
-}
-
-/** Rings the impact nearest to the cursor. */
-function light() {
-  if (!details.open || shown?.fields !== run?.fields) return;
-  const i = run.motion.impactNear(viewport.cursor);
-  for (const name of ["portrait", "velocities"]) plots.ring(name, i);
 }
 
 export const redraw = () => plots?.refresh();
@@ -68,7 +60,6 @@ export function start(table) {
   $("to-details").onclick = () => {
     details.open = true;
   };
-  viewport.onCursor(light);
 }
 
 export async function showModel() {

@@ -1,10 +1,11 @@
 // Plots of the details: lines over the time axis of the first screen, and sections.
 import {reveal} from "../shared/dom.js";
 import {exponentRange} from "../shared/exponents.js";
+import {beads, curve, dots, levels, line, lines} from "../shared/marks.js";
 import {digits} from "../shared/numbers.js";
 import {alongRun, inUnits, largestMagnitude, logRange, mm, positive} from "./columns.js";
-import {exponentLines, halves} from "./plot_group.js";
-import {pick, run} from "./run.js";
+import {exponentLines, halves, picked} from "./plot_group.js";
+import {run} from "./run.js";
 
 const estimators = ["qr", "eigenvalues", "raw_product"];
 const matrices = ["J", "M", "T"];
@@ -21,31 +22,26 @@ export const planes = ["portrait", "velocities", "stroboscopic", "multipliers"];
 /** An object with of(name) for each name. */
 const each = (names, of) => Object.fromEntries(names.map((name) => [name, of(name)]));
 
-const soft = {y: 1, colour: "soft"};
+const one = levels({y: 1, colour: "soft"});
 
 function acceleration({tau, x_ddot: values}) {
   const {of, unit} = run.units.acceleration;
-  return {
-    series: [{label: "x″", colour: "c4"}],
-    data: [tau, values.map(of)],
-    label: `x″ (${unit})`,
-  };
+  const marks = [line({label: "x″", colour: "c4", x: tau, y: values.map(of)})];
+  return {marks, y: {label: `x″ (${unit})`}};
 }
 
 function impactsPerCycle({tau, z}) {
+  const [x, y] = alongRun(tau, [z]);
   return {
-    series: [{label: "z", colour: "c4", width: 1.5}],
-    data: alongRun(tau, [z]),
-    range: [0, Math.max(3.4, largestMagnitude(z) * 1.08)],
-    label: "impacts per cycle",
-    levels: [1, 2, 3],
+    marks: [levels({y: [1, 2, 3]}), line({label: "z", colour: "c4", width: 1.5, x, y})],
+    y: {range: [0, Math.max(3.4, largestMagnitude(z) * 1.08)], label: "impacts per cycle"},
   };
 }
 
 /** All estimators with the same range. */
 function exponentPlots(exponents) {
   const range = exponentRange(estimators.map((name) => exponents[name]?.history));
-  return each(estimators, (name) => ({...exponentLines(exponents[name]), range}));
+  return each(estimators, (name) => exponentLines(exponents[name], range));
 }
 
 /**
@@ -54,38 +50,35 @@ function exponentPlots(exponents) {
  */
 function matrixPlot(name, eigenvalues) {
   const log = name === "T";
-  const ks = [0, 1, 2, 3];
-  const columns = ks.map((k) => eigenvalues[name].map((moduli) => moduli[k]));
+  const columns = [0, 1, 2, 3].map((k) => eigenvalues[name].map((moduli) => moduli[k]));
   const least = columns[3].reduce((a, v) => Math.min(a, v), 1);
-  return {
-    series: ks.map((k) => ({label: `|μ${"₁₂₃₄"[k]}|`, colour: `c${k + 1}`, dots: 5.4 - k})),
-    data: alongRun(eigenvalues.tau, log ? columns.map((one) => one.map(positive)) : columns),
-    log,
-    range: log ? logRange(columns) : [least - 0.08, 1.06],
-    label: `|μ| of ${name}`,
-    levels: [soft],
-  };
+  const drawn = log ? columns.map((column) => column.map(positive)) : columns;
+  const [x, ...padded] = alongRun(eigenvalues.tau, drawn);
+  const modulus = (y, k) =>
+    beads({label: `|μ${"₁₂₃₄"[k]}|`, colour: `c${k + 1}`, size: (5.4 - k) / 2, x, y});
+  const range = log ? logRange(columns) : [least - 0.08, 1.06];
+  return {marks: [one, ...padded.map(modulus)], y: {log, range, label: `|μ| of ${name}`}};
 }
 
 /** States at the impacts, before and after. */
 function impactPlanes(impacts) {
   const {velocity} = run.units;
   const speeds = (name, when) => inUnits(impacts[`${name}_dot_${when}`], velocity);
-  const label = (symbol) => `${symbol} (${velocity.unit})`;
+  const axis = (symbol) => ({label: `${symbol} (${velocity.unit})`});
   const plane = (of) => ({
-    groups: ["before", "after"].map((when) => ({...of(when), colour: when})),
-    pick: {...of("after"), use: (i, clicked) => pick(impacts.tau[i], clicked)},
+    marks: ["before", "after"].map((when) => dots({...of(when), colour: when, alpha: 0.75})),
+    points: picked(of("after"), impacts.tau),
   });
   return {
     portrait: {
       ...plane((when) => ({x: mm(impacts.x), y: speeds("x", when)})),
-      xLabel: "x (mm)",
-      yLabel: label("x′"),
+      x: {label: "x (mm)"},
+      y: axis("x′"),
     },
     velocities: {
       ...plane((when) => ({x: speeds("x", when), y: speeds("y", when)})),
-      xLabel: label("x′"),
-      yLabel: label("y′"),
+      x: axis("x′"),
+      y: axis("y′"),
     },
   };
 }
@@ -94,24 +87,22 @@ function stroboscopic({tau, x, x_dot: xDot}) {
   const {velocity} = run.units;
   const points = {x: mm(x), y: inUnits(xDot, velocity)};
   return {
-    groups: halves(points, [["c1", () => true]]),
-    xLabel: "x (mm)",
-    yLabel: `x′ (${velocity.unit})`,
+    marks: halves(points, [["c1", () => true]]),
+    x: {label: "x (mm)"},
+    y: {label: `x′ (${velocity.unit})`},
     empty: "no whole cycle in the window",
-    pick: {...points, use: (i, clicked) => pick(tau[i], clicked)},
+    points: picked(points, tau),
   };
 }
 
 /** Times between impacts. Chatter lies below the axis. */
 function differences({tau, time_difference: times}, Omega) {
   const inHalfPeriods = times.map((d) => (d === null ? null : (d * Omega) / Math.PI));
+  const [x, y] = alongRun(tau, [inHalfPeriods]);
+  const range = [0.1, Math.max(largestMagnitude(inHalfPeriods), 2) * 1.3];
   return {
-    series: [{label: "time since the previous impact", colour: "c1", dots: 3.5}],
-    data: alongRun(tau, [inHalfPeriods]),
-    log: true,
-    range: [0.1, Math.max(largestMagnitude(inHalfPeriods), 2) * 1.3],
-    label: "half periods",
-    levels: [soft],
+    marks: [one, beads({label: "time since the previous impact", colour: "c1", size: 1.75, x, y})],
+    y: {log: true, range, label: "half periods"},
   };
 }
 
@@ -119,14 +110,15 @@ const circle = Array.from({length: 181}, (_, i) => (i * Math.PI) / 90);
 
 function multiplierPlane({modulus, re, im}) {
   const reach = Math.max(1, ...modulus) * 1.12;
-  const extent = [-reach, reach];
+  const range = [-reach, reach];
   return {
-    groups: [{x: re, y: im, colour: "before", size: 7, alpha: 1}],
-    curves: [{x: circle.map(Math.cos), y: circle.map(Math.sin), colour: "soft"}],
-    extent: {x: extent, y: extent},
+    marks: [
+      dots({x: re, y: im, colour: "before", size: 3.5}),
+      curve({x: circle.map(Math.cos), y: circle.map(Math.sin), colour: "soft"}),
+    ],
     equal: true,
-    xLabel: "Re μ",
-    yLabel: "Im μ",
+    x: {label: "Re μ", range},
+    y: {label: "Im μ", range},
   };
 }
 
@@ -145,24 +137,14 @@ function fitted({tau, distance, slope: {lambda1, tau_start: from, tau_end: to}})
 function divergence(perturbation) {
   const {tau, distance, predicted, slope} = perturbation;
   const beyond = 10 * largestMagnitude(distance); // the prediction grows without bound
-  const plot = {
-    series: [
-      {label: "distance", colour: "c1", width: 1.4},
-      {label: "linear theory", colour: "soft", dash: [5, 4]},
-    ],
-    data: [
-      tau,
-      distance.map(positive),
-      predicted.distance.map((v) => (v < beyond ? positive(v) : null)),
-    ],
-    log: true,
-    label: "distance (m)",
-  };
-  if (slope) {
-    plot.series.push({label: `slope ${digits(slope.lambda1)}`, colour: "before", width: 2.5});
-    plot.data.push(fitted(perturbation));
-  }
-  return plot;
+  const linear = predicted.distance.map((v) => (v < beyond ? positive(v) : null));
+  const styles = [
+    {label: "distance", colour: "c1", width: 1.4},
+    {label: "linear theory", colour: "soft", dash: [5, 4]},
+    slope && {label: `slope ${digits(slope.lambda1)}`, colour: "before", width: 2.5},
+  ];
+  const columns = [distance.map(positive), linear, ...(slope ? [fitted(perturbation)] : [])];
+  return {marks: lines(tau, columns, styles), y: {log: true, label: "distance (m)"}};
 }
 
 /** Options of each plot by name, in the units of the run. */

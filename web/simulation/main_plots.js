@@ -3,12 +3,13 @@
 // in each.
 import {$, attributes, setTexts} from "../shared/dom.js";
 import {exponentRange} from "../shared/exponents.js";
+import {beads, curve, dots, levels, line, lines, symbols} from "../shared/marks.js";
 import {inMm, short} from "../shared/numbers.js";
 import {firstFrom, lastUpTo} from "../shared/search.js";
 import {unitsOf} from "../shared/units.js";
 import {alongRun, inUnits, largestMagnitude, logRange, mm, positive} from "./columns.js";
-import {exponentLines, halves, marksOf, PlotGroup} from "./plot_group.js";
-import {pick, run, viewport} from "./run.js";
+import {commonOptions, exponentLines, halves, PlotGroup, picked} from "./plot_group.js";
+import {run, viewport} from "./run.js";
 
 const mostSamples = 100000; // samples in an exported table
 const alone = matchMedia("(max-width: 700px)"); // one plot at a time is shown
@@ -23,8 +24,7 @@ let byWall = null; // the impacts at each wall, cached
 
 export function start() {
   plots = new PlotGroup(overTime, ["section", "manifold"]);
-  viewport.onCursor(light);
-  viewport.onZoom(light);
+  viewport.onCursor(tell);
 }
 
 export const redraw = () => plots.refresh();
@@ -38,13 +38,13 @@ const deferredPlots = ["largest", "manifold"];
  */
 function stepsOf(...names) {
   for (const name of deferredPlots) $(`figure-${name}`).classList.toggle("pending", !run.deferred);
-  return [...names.map((name) => () => plots.draw(name, optionsOf[name]())), light];
+  return [...names.map((name) => () => plots.draw(name, optionsOf[name]())), tell];
 }
 
 export function drawing() {
   traced = null;
   byWall = null;
-  plots.marks = marksOf(run.answer);
+  plots.common = commonOptions(run.answer);
   return stepsOf("x", "relative", "lambda", "section", ...(run.deferred ? deferredPlots : []));
 }
 
@@ -87,80 +87,88 @@ const impactsByWall = ({tau, side}) =>
     return {mine, x: mine.map((i) => tau[i]), colour, shape: "dot", size: 2.2};
   });
 
-/**
- * A component of the motion, x or gap, for the plots over time; at(i) is the height of the i-th
- * impact.
- */
-function partOf(name, label, at) {
-  const data = (lines) => [lines[0].tau, ...lines.map((line) => line[name])];
-  const trace = (...part) => {
-    const lines = inView(...part);
-    return {data: data(lines), dense: lines.at(-1).dense};
-  };
-  const samples = (from, to) => {
-    const columns = Math.ceil((8 * (to - from)) / run.motion.shortest) + 200;
-    return data(traces(from, to, Math.min(columns, mostSamples)));
-  };
-  const series = [{label, colour: "motion"}];
-  if (pinned) series.unshift({label: `${label}, pinned`, colour: "pinned"});
+/** A component of the motion, x or gap, for the plots over time; heights: of the impacts. */
+function partOf(name, label, heights) {
+  const styles = [{label, colour: "motion"}];
+  if (pinned) styles.unshift({label: `${label}, pinned`, colour: "pinned"});
   byWall ??= impactsByWall(run.answer.impacts);
-  const marks = byWall.map(({mine, ...wall}) => ({...wall, y: mine.map(at)}));
-  const bare = !alone.matches;
-  return {bare, unit: "mm", label: `${label} (mm)`, trace, samples, series, marks};
+  const impacts = byWall.map(({mine, ...style}) =>
+    symbols({...style, y: mine.map((i) => heights[i])}),
+  );
+  const linesOf = (motions) => {
+    const columns = motions.map((motion) => motion[name]);
+    const {tau, dense} = motions.at(-1);
+    return lines(
+      tau,
+      columns,
+      styles.map((style) => ({...style, dense})),
+    );
+  };
+  return {
+    bare: !alone.matches,
+    unit: "mm",
+    trace: (...part) => [...linesOf(inView(...part)), ...impacts],
+    samples(from, to) {
+      const columns = Math.ceil((8 * (to - from)) / run.motion.shortest) + 200;
+      return linesOf(traces(from, to, Math.min(columns, mostSamples)));
+    },
+    points: {x: run.answer.impacts.tau, y: heights},
+  };
 }
 
 /** The range does not change with the zoom. */
 function displacement() {
-  const {x} = run.answer.impacts;
   inView(0, run.motion.end, plots.all.x.columns); // also sets motion.reach
   const reach = 1080 * Math.max(run.motion.reach, pinned?.motion.reach ?? 0) || 1;
-  return {...partOf("x", "x", (i) => x[i] * 1000), range: [-reach, reach]};
+  return {
+    ...partOf("x", "x", mm(run.answer.impacts.x)),
+    y: {label: "x (mm)", range: [-reach, reach]},
+  };
 }
 
 function relative() {
   const b = run.motion.b * 1000;
-  const {side} = run.answer.impacts;
+  const heights = run.answer.impacts.side.map((side) => -side * b);
+  const {trace, ...rest} = partOf("gap", "y − x", heights);
   return {
-    ...partOf("gap", "y − x", (i) => -side[i] * b),
-    range: [-1.14 * b, 1.14 * b],
-    levels: [-b, b],
+    ...rest,
+    trace: (...part) => [levels({y: [-b, b]}), ...trace(...part)],
+    y: {label: "y − x (mm)", range: [-1.14 * b, 1.14 * b]},
   };
 }
 
 function largest() {
   const {tau, T} = run.deferred.eigenvalues;
   const moduli = T.map(([first]) => positive(first));
+  const [x, y] = alongRun(tau, [moduli]);
   return {
     bare: !alone.matches,
-    series: [{label: "|μ₁|", colour: "c3", width: 0.8, dots: 4}],
-    data: alongRun(tau, [moduli]),
-    label: "|μ| of T",
-    log: true,
-    range: logRange([moduli]),
-    levels: [1],
+    marks: [
+      levels({y: 1}),
+      line({label: "|μ₁|", colour: "c3", width: 0.8, x, y}),
+      beads({colour: "c3", size: 2, x, y}),
+    ],
+    y: {label: "|μ| of T", log: true, range: logRange([moduli])},
+    points: {x: tau, y: moduli},
   };
 }
 
 /** Exponents by qr, the largest of the raw product, and the largest of the pinned run. */
 function exponents() {
   const {qr} = run.answer.exponents;
-  const lines = exponentLines(qr);
+  const other = pinned?.answer.exponents.qr?.history;
+  const options = exponentLines(qr, exponentRange([qr?.history, other]));
+  const [x] = options.marks.filter(({label}) => label).map((mark) => mark.x);
   const beside = (history, style) => {
     if (!history?.tau.length) return;
     const {tau, lambda1, by = 1} = history;
     const at = (t) => (t * by <= tau.at(-1) ? lambda1[lastUpTo(tau, t * by)] : null) ?? null;
-    lines.series.push(style);
-    lines.data.push(lines.data[0].map(at));
+    options.marks.push(line({...style, x, y: x.map(at)}));
   };
-  beside(run.deferred?.exponents.raw_product?.history, {
-    label: "λ₁ raw",
-    colour: "soft",
-    width: 1.2,
-    dash: [5, 4],
-  });
-  const other = pinned?.answer.exponents.qr?.history;
+  const raw = run.deferred?.exponents.raw_product?.history;
+  beside(raw, {label: "λ₁ raw", colour: "soft", width: 1.2, dash: [5, 4]});
   beside(other && {...other, by: rate()}, {label: "λ₁ pinned", colour: "pinned", width: 1.6});
-  return {...lines, range: exponentRange([qr?.history, other])};
+  return options;
 }
 
 /** States after each impact, by wall. */
@@ -177,33 +185,17 @@ function section() {
     wallNames[name],
   ]);
   const points = place(impacts);
-  const groups = halves(points, kinds);
-  const style = {colour: "pinned", label: "pinned", size: 3, alpha: 1};
-  if (pinned)
-    groups.unshift({...place(pinned.answer.impacts, unitsOf(pinned.answer.parameters)), ...style});
+  const marks = halves(points, kinds);
+  if (pinned) {
+    const there = place(pinned.answer.impacts, unitsOf(pinned.answer.parameters));
+    marks.unshift(dots({...there, colour: "pinned", label: "pinned", size: 1.5}));
+  }
   return {
-    groups,
-    xLabel: "x (mm)",
-    yLabel: `x′ after (${velocity.unit})`,
-    pick: {...points, use: (i, clicked) => pick(impacts.tau[i], clicked)},
+    marks,
+    x: {label: "x (mm)"},
+    y: {label: `x′ after (${velocity.unit})`},
+    points: picked(points, impacts.tau),
   };
-}
-
-/** Rings the impact nearest to the cursor in all plots; by: the cause of the cursor's move. */
-function light(by) {
-  const {cursor} = viewport;
-  if (!plots.all.section.last || cursor === null) return;
-  const {motion, deferred} = run;
-  const {tau, x, side} = motion.impacts;
-  const i = motion.impactNear(cursor);
-  const modulus = modulusAt(tau[i]);
-  plots.all.x.light(tau[i], x[i] * 1000);
-  plots.all.relative.light(tau[i], -side[i] * motion.b * 1000);
-  plots.ring("section", i);
-  tell(modulus, by === "play");
-  if (!deferred) return;
-  plots.all.largest.light(tau[i], modulus);
-  plots.ring("manifold", firstFrom(deferred.manifold.points.tau, cursor));
 }
 
 /** The largest modulus of T at an impact; null if unknown. */
@@ -213,10 +205,13 @@ function modulusAt(tau) {
   return moments[k] === tau ? (T?.[k]?.[0] ?? null) : null;
 }
 
-/** Shows the values at the cursor next to the titles. */
-function tell(modulus, playing) {
+/** Shows the values at the cursor next to the titles; by: the cause of the cursor's move. */
+function tell(by) {
   const {cursor} = viewport;
-  const {x, y} = run.motion.at(cursor);
+  if (!run || cursor === null) return;
+  const {motion} = run;
+  const modulus = modulusAt(motion.impacts.tau[motion.impactNear(cursor)]);
+  const {x, y} = motion.at(cursor);
   const values = {
     x: inMm(x),
     relative: inMm(y - x),
@@ -224,7 +219,7 @@ function tell(modulus, playing) {
   };
   for (const [name, text] of Object.entries(values)) setTexts({[`value-${name}`]: text});
   setTexts({"value-lambda": `at ${run.units.at(cursor)}`}); // the legend shows the values
-  if (playing) return; // not announced 60 times a second
+  if (by === "play") return; // not announced 60 times a second
   for (const name of overTime)
     attributes($(`plot-${name}`), {
       "aria-valuetext": `${run.units.at(cursor)} ${values[name] ?? ""}`,
@@ -236,40 +231,41 @@ function tell(modulus, playing) {
  * fold and the free amplitude.
  */
 export function manifold() {
-  const {points, fold, free_amplitude: free, stable, unstable, asymmetric} = run.deferred.manifold;
+  const {points, fold, free_amplitude: free} = run.deferred.manifold;
+  const dash = [5, 4];
   const {velocity} = run.units;
   const place = ({V, C}) => ({x: inUnits(V, velocity), y: mm(C)});
-  const groups = [{...place(points), colour: "after", label: "half cycle", size: 2.2, alpha: 0.6}];
-  if (fold)
-    groups.push({
-      ...place({V: [fold.V], C: [fold.C]}),
-      colour: "wall",
-      label: "fold",
-      size: 8,
-      alpha: 1,
-    });
-  const dash = [5, 4];
-  const curves = [
-    stable && {...place(stable), colour: "c2", label: "stable"},
-    unstable && {...place(unstable), colour: "c3", dash, label: "unstable"},
-    asymmetric && {...place(asymmetric), colour: "c4", dash, label: "asymmetric"},
+  const marks = [
+    dots({...place(points), colour: "after", label: "half cycle", size: 1.1, alpha: 0.6}),
   ];
-  for (const [name, curve] of Object.entries({stable, unstable, asymmetric}))
-    document.querySelector(`#figure-manifold .key.${name}`).hidden = !curve;
+  if (fold) {
+    const at = place({V: [fold.V], C: [fold.C]});
+    marks.push(dots({...at, colour: "wall", label: "fold", size: 4}));
+  }
+  const styles = {
+    stable: {colour: "c2"},
+    unstable: {colour: "c3", dash},
+    asymmetric: {colour: "c4", dash},
+  };
+  for (const [label, style] of Object.entries(styles)) {
+    const branch = run.deferred.manifold[label];
+    document.querySelector(`#figure-manifold .key.${label}`).hidden = !branch;
+    if (branch) marks.push(curve({...place(branch), ...style, label}));
+  }
+  if (free)
+    marks.push(levels({y: free * 1000, colour: "wall", text: "amplitude without absorber"}));
   const reach = (values, ...others) => [
     0,
     Math.max(largestMagnitude(values), ...others) * 1.15 || 0.001,
   ];
+  const extent = place({
+    V: reach(points.V, 1.4 * (fold?.V ?? 0)),
+    C: reach(points.C, 1.6 * (fold?.C ?? 0), free ?? 0),
+  });
   return {
-    groups,
-    curves: curves.filter(Boolean),
-    levels: free ? [{y: free * 1000, colour: "wall", label: "amplitude without absorber"}] : [],
-    extent: place({
-      V: reach(points.V, 1.4 * (fold?.V ?? 0)),
-      C: reach(points.C, 1.6 * (fold?.C ?? 0), free ?? 0),
-    }),
-    pick: {...place(points), use: (i, clicked) => pick(points.tau[i], clicked)},
-    xLabel: `speed of the ball, V (${velocity.unit})`,
-    yLabel: "amplitude of x, C (mm)",
+    marks,
+    x: {label: `speed of the ball, V (${velocity.unit})`, range: extent.x},
+    y: {label: "amplitude of x, C (mm)", range: extent.y},
+    points: picked(place(points), points.tau),
   };
 }

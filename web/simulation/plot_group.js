@@ -4,10 +4,11 @@ import {exponentSeries} from "../shared/exponents.js";
 import {addExportButton} from "../shared/export_dialog.js";
 import {makeAccessible} from "../shared/gestures.js";
 import {LinePlot} from "../shared/line_plot.js";
+import {bands, dots, levels, lines, uprights} from "../shared/marks.js";
 import {ScatterPlot} from "../shared/scatter_plot.js";
 import {aboutFigure} from "./captions.js";
 import {alongRun} from "./columns.js";
-import {run, viewport} from "./run.js";
+import {pick, run, viewport} from "./run.js";
 
 export class PlotGroup {
   /** lines, planes: names. */
@@ -24,16 +25,9 @@ export class PlotGroup {
     for (const name of planes) add(name, ScatterPlot);
   }
 
-  /** marks: common to all plots over time, as from marksOf. */
+  /** common: options of all plots over time, as from commonOptions. */
   draw(name, options) {
-    this.all[name].draw({...this.marks, levelColour: "line", ...options});
-  }
-
-  /** Rings the i-th pickable point of a plane. */
-  ring(name, i) {
-    const plot = this.all[name];
-    const {x, y} = plot.last.pick;
-    plot.light(x[i], y[i]);
+    this.all[name].draw({...this.common, ...options});
   }
 
   refresh() {
@@ -41,12 +35,13 @@ export class PlotGroup {
   }
 }
 
-/** Options that draw the exponents of an estimator. */
-export function exponentLines(estimator) {
+/** Options that draw the exponents of an estimator; range: of y. */
+export function exponentLines(estimator, range) {
   const {history, status} = estimator ?? {};
   const {series, columns} = exponentSeries(history, status);
-  const lines = history ? columns : columns.map(() => []);
-  return {series, data: alongRun(history?.tau ?? [], lines), label: "λ", levels: [0]};
+  const own = history ? columns : columns.map(() => []);
+  const [tau, ...padded] = alongRun(history?.tau ?? [], own);
+  return {marks: [levels({y: 0}), ...lines(tau, padded, series)], y: {label: "λ", range}};
 }
 
 /**
@@ -54,24 +49,31 @@ export function exponentLines(estimator) {
  * kinds: [colour, test(i), name in tables].
  */
 export function halves({x, y}, kinds) {
-  const style = (late) => (late ? {alpha: 1, size: 3} : {alpha: 0.35, size: 2.4});
+  const style = (late) => (late ? {alpha: 1, size: 1.5} : {alpha: 0.35, size: 1.2});
   const group = (late, [colour, is, label]) => {
     const keep = (_, i) => is(i) && i >= x.length / 2 === late;
-    return {...style(late), colour, label, x: x.filter(keep), y: y.filter(keep)};
+    return dots({...style(late), colour, label, x: x.filter(keep), y: y.filter(keep)});
   };
   return [false, true].flatMap((late) => kinds.map((kind) => group(late, kind)));
 }
 
-/** Sticking phases, synchronised intervals, and borders of the requested windows. */
-export function marksOf({sticking, exponents, regime, parameters, status, windows = []}) {
+/** Points at the times t; a picked one moves the cursor. */
+export const picked = ({x, y}, t) => ({x, y, t, use: (i, clicked) => pick(t[i], clicked)});
+
+/** The time axis, sticking phases, synchronised intervals, and borders of the requested windows. */
+export function commonOptions({sticking, exponents, regime, parameters, status, windows = []}) {
   const {stretches} = regime;
   const pairs = ({tau_start: from, tau_end: to}) => from.map((tau, i) => [tau, to[i]]);
   const [from, to] = parameters.window ?? [0, Infinity];
   const part = from > 0 || to < status.tau;
+  const calm = pairs(stretches).filter((_, i) => stretches.synchronised[i]);
+  const borders = [...((part && exponents.window) || []), ...windows.flatMap((w) => w.asked)];
   return {
     x: run.units.x,
-    bands: pairs(sticking),
-    calm: pairs(stretches).filter((_, i) => stretches.synchronised[i]),
-    lines: [...((part && exponents.window) || []), ...windows.flatMap((w) => w.asked)],
+    under: [
+      bands({intervals: calm, colour: "calm"}),
+      bands({intervals: pairs(sticking), colour: "shade"}),
+      uprights({at: borders}),
+    ],
   };
 }

@@ -1,12 +1,15 @@
 // The regime strip: regimes and lambda1 along the parameter moved last, computed by a sweep from
 // coarse to fine. Its marker acts as the slider.
-import {jsonLines, sweep} from "../shared/api.js";
 import {$, attributes, countUp, element, setTexts} from "../shared/dom.js";
-import {blank, Frame, font, Size} from "../shared/frame.js";
-import {drawText, ink, stroke} from "../shared/ink.js";
-import {isTemporary, retryInterval} from "../shared/job.js";
+import {Frame} from "../shared/frame.js";
+import {Job} from "../shared/job.js";
+import {blocks, dots, levels} from "../shared/marks.js";
 import {clamp, digits, withError} from "../shared/numbers.js";
+import {Plot} from "../shared/plot.js";
 import {regimeColour, regimeText, verdictColour, verdicts} from "../shared/quantities.js";
+import {nearest} from "../shared/search.js";
+import {receive, SweepData} from "../sweep/data.js";
+import {Layers, stretches} from "../sweep/layers.js";
 import {run} from "./run.js";
 import {fieldsOf, moveSlider, spanOf, valueAt, written} from "./sliders.js";
 
@@ -18,164 +21,152 @@ const band = 13; // px, height of the regime band
 
 const canvas = $("strip");
 const marker = element("div", {className: "marker"});
-const size = new Size(canvas, redraw);
+const say = (text) => setTexts({"strip-trouble": text});
 let parameters;
 let slider; // the one moved last
 let range; // of the slider
+let parameter; // its field
 let key = null;
-let found = []; // points by position
+let layers = null; // the sweep drawn
 let stale = false;
-let abort;
 let waiting = 0;
 let drawing = 0;
-let frame = null;
 let pointed = false;
+
+const job = new Job({
+  ask: (fresh, signal) =>
+    receive(fresh, signal, () => {
+      if (layers?.base !== fresh) layers = new Layers(fresh);
+      stale = false;
+      say("");
+      if (!drawing) drawing = requestAnimationFrame(redraw);
+    }),
+  show: () => countUp(canvas),
+  fail(error) {
+    layers = null;
+    say(error.message);
+    redraw();
+  },
+  later: say,
+});
 
 /** Updates the strip for a run: system fields of its request, parameters, slider. */
 export function show(system, shown, turned) {
   parameters = shown;
   slider = turned;
   range = spanOf(slider);
-  const [parameter, ...others] = Object.keys(fieldsOf(slider, 0, parameters));
+  const names = Object.keys(fieldsOf(slider, 0, parameters));
+  if (parameter !== names[0]) layers = null;
+  [parameter] = names;
   const base = {...system};
-  for (const name of [parameter, ...others]) delete base[name];
+  for (const name of names) delete base[name];
   const wanted = JSON.stringify([base, parameter, range]);
   if (wanted === key) return place();
   if (key === null) listen();
   key = wanted;
-  abort?.abort();
-  clearTimeout(waiting);
   stale = true;
-  waiting = setTimeout(fill, pause, base, parameter);
-  setTexts({"strip-trouble": ""});
+  job.cancel();
+  clearTimeout(waiting);
+  waiting = setTimeout(() => job.start(request(base)), pause);
+  say("");
   const {symbol, unit} = slider;
   setTexts({"strip-parameter": unit ? `${symbol} (${unit})` : symbol});
   redraw();
 }
 
-/** Value at position i, in the slider's unit. */
-function at(i) {
+/** A value of the slider as one of the parameter, which is proportional to it. */
+const toParameter = (value) => fieldsOf(slider, value, parameters)[parameter];
+
+/** The least value of the slider; 0 is invalid for a clearance or forcing. */
+const least = () => range[0] || 0.002 * range[1];
+
+/**
+ * The sweep over the range. The marker's point comes first: its errors are reported for the whole
+ * sweep; errors of other points only at those points.
+ */
+function request(base) {
   const [from, to] = range;
-  const least = 0.002 * (to - from); // 0 is invalid for a clearance or forcing
-  return Math.max(from + ((to - from) * i) / (points - 1), from || least);
+  const step = (to - from) / (points - 1);
+  const values = Array.from({length: points}, (_, i) => (i ? from + i * step : least()));
+  const first = values[nearest(values, valueAt(slider, parameters))];
+  const axis = {parameter, values: [...new Set([first, ...values])].map(toParameter)};
+  return new SweepData({base, axes: [axis], cycles, transient_cycles: transient});
 }
 
-/** The position nearest to a value. */
-function nearest(value) {
-  const [from, to] = range;
-  return Math.round(clamp((value - from) / (to - from), 0, 1) * (points - 1));
+/** The point at a value of the slider, if it has been computed. */
+function pointAt(value) {
+  const data = layers?.base;
+  return data?.points[data.index(nearest(data.axes[0].values, toParameter(value)))];
 }
 
-async function fill(base, parameter) {
-  abort = new AbortController();
-  const {signal} = abort;
-  // The marker's point comes first: its errors are reported for the whole sweep; errors of other
-  // points only at those points.
-  const sequence = [...new Set([nearest(valueAt(slider, parameters)), ...Array(points).keys()])];
-  const values = sequence.map((i) => fieldsOf(slider, at(i), parameters)[parameter]);
-  try {
-    const body = {base, axes: [{parameter, values}], cycles, transient_cycles: transient};
-    const stream = await sweep(body, signal);
-    found = [];
-    stale = false;
-    setTexts({"strip-trouble": ""});
-    for await (const {value} of jsonLines(stream)) {
-      if (signal.aborted) return;
-      if (value.type !== "point" || value.error) continue;
-      found[sequence[value.index]] = value;
-      if (!drawing) drawing = requestAnimationFrame(redraw);
-    }
-    countUp(canvas);
-  } catch (error) {
-    if (signal.aborted) return;
-    found = [];
-    setTexts({"strip-trouble": error.message});
-    if (isTemporary(error)) waiting = setTimeout(fill, retryInterval * 1000, base, parameter);
+class StripPlot extends Plot {
+  prepare(width, height) {
+    if (!range) return null;
+    const [from, to] = range.map(toParameter);
+    const received = layers?.places(0) ?? [];
+    const isShown = ({p, value}) => lambdaOf(p) != null && value >= from && value <= to;
+    const exponents = received.filter(isShown);
+    const ofX = {range: [from, to], factor: range[1] / to};
+    const ofY = {range: rangeOf(exponents)};
+    const frame = new Frame(width, height, ofX, ofY, 14, band + 5);
+    const alpha = stale ? 0.5 : 1;
+    const own = [dotsOf(exponents, ofY.range, alpha), regimes(received, alpha)];
+    return {frame, marks: [levels({y: 0}), ...own]};
   }
-  redraw();
+
+  place() {
+    place();
+  }
 }
+
+const plot = new StripPlot(canvas, canvas, canvas.parentNode);
 
 export function redraw() {
   drawing = 0;
-  const {width, height} = size;
-  if (!range || !width) return;
-  const c = blank(canvas, size);
-  c.translate(0, band);
-  frame = new Frame(width, height - band, {range}, {range: rangeOfExponents()}, 14);
-  frame.draw(c);
-  if (stale) c.globalAlpha = 0.5;
-  drawExponents(c);
-  for (const stretch of stretches()) drawStretch(c, stretch);
-  c.globalAlpha = 1;
-  place();
+  plot.refresh();
 }
 
-/** Intervals of equal regime; borders lie midway between points. */
-function stretches() {
-  const there = Object.keys(found).map(Number);
-  const list = [];
-  there.forEach((i, k) => {
-    const {regime} = found[i];
-    const to = (i + (there[k + 1] ?? i)) / 2;
-    const last = list.at(-1);
-    if (last?.regime === regime) last.to = to;
-    else list.push({regime, from: last?.to ?? i, to});
-  });
-  return list;
-}
-
-/** Draws an interval, with its name if it fits. */
-function drawStretch(c, {regime, from, to}) {
-  const [left, right] = [from, to].map((i) => frame.px(at(i)));
-  ink(c, regime ? regimeColour(regime) : "nothing");
-  c.fillRect(left, frame.box.top - band, Math.max(right - left, 1) + 0.5, band);
-  if (!regime || regime === "none" || right - left < 18) return;
-  ink(c, "text");
-  c.font = `600 ${font}`;
-  drawText(c, regime, (left + right) / 2, frame.box.top + 2, "center", "top");
+/** Regimes as a band above the plot. */
+function regimes(places, alpha) {
+  const list = stretches(places).map(({regime, ...ends}) => ({
+    ...ends,
+    colour: regime ? regimeColour(regime) : "nothing",
+    text: regime && regime !== "none" ? regime : "",
+  }));
+  return blocks({list, down: -band, height: band, textDown: 2, alpha, above: true});
 }
 
 const lambdaOf = (p) => p?.lambda?.[0];
 
 /** The range of lambda1 without outliers. */
-function rangeOfExponents() {
-  const values = found.map(lambdaOf).filter((v) => v != null);
-  values.sort((a, b) => a - b);
+function rangeOf(exponents) {
+  const values = exponents.map(({p}) => lambdaOf(p)).sort((a, b) => a - b);
   const quantile = (share) => values[Math.floor(values.length * share)];
   const most = Math.max(quantile(0.98) ?? 0.1, 0.02) * 1.15;
   return [Math.min(quantile(0.05) ?? 0, -0.15 * most), most];
 }
 
-function drawExponents(c) {
-  const alpha = c.globalAlpha;
-  const py = (v) => frame.py(clamp(v, ...frame.y.range));
-  ink(c, "line");
-  frame.across(c, 0);
-  found.forEach((p, i) => {
-    const lambda = lambdaOf(p);
-    if (lambda == null) return;
-    const x = frame.px(at(i));
-    const error = p.standard_error?.[0] ?? 0;
-    ink(c, verdictColour(p));
-    c.globalAlpha = 0.4 * alpha;
-    stroke(
-      c,
-      [-error, error].map((by) => [x, py(lambda + by)]),
-    );
-    c.globalAlpha = alpha;
-    c.fillRect(x - 1.5, py(lambda) - 1.5, 3, 3);
+/** lambda1 with its standard error; outliers lie at the edge of the range. */
+const dotsOf = (exponents, ends, alpha) =>
+  dots({
+    x: exponents.map(({value}) => value),
+    y: exponents.map(({p}) => clamp(lambdaOf(p), ...ends)),
+    tints: exponents.map(({p}) => verdictColour(p)),
+    errors: exponents.map(({p}) => p.standard_error?.[0]),
+    size: 1.5,
+    alpha,
+    above: true,
   });
-}
 
 /** Moves the marker and describes its point. */
 function place() {
-  if (!frame) return;
+  if (!plot.frame) return;
   const value = valueAt(slider, parameters);
-  const [least, most] = range;
-  marker.style.transform = `translateX(${frame.px(value)}px)`;
+  const [from, to] = range;
+  marker.style.transform = `translateX(${plot.frame.px(toParameter(value))}px)`;
   attributes(canvas, {
-    "aria-valuemin": least,
-    "aria-valuemax": most,
+    "aria-valuemin": from,
+    "aria-valuemax": to,
     "aria-valuenow": value,
     "aria-valuetext": textAt(value),
   });
@@ -192,7 +183,7 @@ function tell(event) {
 }
 
 function differenceText() {
-  const p = found[nearest(valueAt(slider, parameters))];
+  const p = pointAt(valueAt(slider, parameters));
   if (stale || !p?.regime) return "";
   const {regime, exponents} = run.answer;
   const own = [regime.type, regime.periodic ? "regular" : exponents.verdict];
@@ -206,7 +197,7 @@ function differenceText() {
 function textAt(value) {
   const {symbol, unit} = slider;
   const where = `${symbol} = ${written(value, range)} ${unit}`.trim();
-  const p = found[nearest(value)];
+  const p = pointAt(value);
   if (!p?.regime) return where;
   const lambda = lambdaOf(p);
   const parts = [
@@ -218,11 +209,12 @@ function textAt(value) {
   return `${where}: ${parts.filter(Boolean).join(", ")}`;
 }
 
-const turn = (value, dragging) => moveSlider(slider, clamp(value, at(0), range[1]), dragging);
+const turn = (value, dragging) => moveSlider(slider, clamp(value, least(), range[1]), dragging);
 /** The value under the pointer. */
 function valueUnder({offsetX}) {
+  const {box, width} = plot.frame;
   const [from, to] = range;
-  return from + ((offsetX - frame.box.left) / frame.width) * (to - from);
+  return from + ((offsetX - box.left) / width) * (to - from);
 }
 const steps = {
   ArrowLeft: -1,

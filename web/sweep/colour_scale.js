@@ -1,12 +1,14 @@
 // Colour scales of maps, and the bar that shows them.
 import {colour, hex} from "../shared/colours.js";
 import {font} from "../shared/frame.js";
-import {short} from "../shared/numbers.js";
+import {drawText, drawTextUpwards, ink} from "../shared/ink.js";
+import {kind} from "../shared/marks.js";
+import {clamp, short} from "../shared/numbers.js";
 import {ticks} from "../shared/ticks.js";
 
 /** The colour at fraction t in [0, 1] of a list of colour stops. */
 function between(list, t) {
-  const at = Math.min(Math.max(t, 0), 1) * (list.length - 1);
+  const at = clamp(t, 0, 1) * (list.length - 1);
   const i = Math.min(Math.floor(at), list.length - 2);
   const part = at - i;
   return list[i].map((v, k) => Math.round(v + (list[i + 1][k] - v) * part));
@@ -66,36 +68,39 @@ export function scaleOf({diverging}, ends) {
 }
 
 export const barWidth = 86; // px next to the map
+const thickness = 12; // px of the bar
 
-export function drawBar(c, {box, height}, {stops, share, ends: [low, high], beyond}, title) {
-  const left = box.right + 12;
-  const width = 12;
-  const rows = Math.min(Math.round(height), 256);
-  const row = height / rows;
-  for (let y = 0; y < rows; ++y) {
-    c.fillStyle = `rgb(${between(stops, 1 - (y + 0.5) / rows)})`;
-    c.fillRect(left, box.top + y * row, width, row + 0.5);
-  }
-  c.font = font;
-  const most = Math.max(2, height / 45);
-  const inside = low < 0 && high > 0 ? [low, 0, high] : null;
-  const marks = [...new Set([low, ...(inside ?? ticks(low, high, most)), high])];
-  c.textAlign = "left";
-  c.textBaseline = "middle";
-  c.fillStyle = colour("soft");
-  let last = Infinity;
-  for (const mark of marks.sort((a, b) => a - b)) {
-    const y = box.bottom - share(mark) * height;
-    if (last - y < 12) continue;
-    last = y;
-    const sign = (mark === low && beyond[0] && "≤ ") || (mark === high && beyond[1] && "≥ ") || "";
-    const within = Math.min(Math.max(y, box.top + 5), box.bottom - 5);
-    c.fillText(`${sign}${short(Number(mark.toPrecision(6)))}`, left + width + 5, within);
-  }
-  c.save();
-  c.translate(left + barWidth - 20, (box.top + box.bottom) / 2);
-  c.rotate(-Math.PI / 2);
-  c.textAlign = "center";
-  c.fillText(title, 0, 0);
-  c.restore();
+/** The bar of a scale at the right of a plot, with its title. */
+export const bar = kind(
+  (c, {box, height}, {scale, title}) => {
+    const {stops, share, ends, beyond} = scale;
+    const [low, high] = ends;
+    const left = box.right + 12;
+    const rows = Math.min(Math.round(height), 256);
+    const row = height / rows;
+    for (let y = 0; y < rows; ++y) {
+      c.fillStyle = `rgb(${between(stops, 1 - (y + 0.5) / rows)})`;
+      c.fillRect(left, box.top + y * row, thickness, row + 0.5);
+    }
+    c.font = font;
+    ink(c, "soft");
+    let last = Infinity;
+    for (const value of marksOf(ends, height)) {
+      const y = box.bottom - share(value) * height;
+      if (last - y < 12) continue;
+      last = y;
+      const sign =
+        (value === low && beyond[0] && "≤ ") || (value === high && beyond[1] && "≥ ") || "";
+      const text = `${sign}${short(Number(value.toPrecision(6)))}`;
+      drawText(c, text, left + thickness + 5, clamp(y, box.top + 5, box.bottom - 5), "left");
+    }
+    drawTextUpwards(c, title, left + barWidth - 20, (box.top + box.bottom) / 2);
+  },
+  {above: true},
+);
+
+/** Values written next to a bar, ascending. */
+function marksOf([low, high], height) {
+  const inside = low < 0 && high > 0 ? [low, 0, high] : ticks(low, high, Math.max(2, height / 45));
+  return [...new Set([low, ...inside, high])].sort((a, b) => a - b);
 }

@@ -1,8 +1,7 @@
 // The diagrams over the single axis of a sweep.
-import {colour} from "../shared/colours.js";
-import {count, density} from "../shared/density.js";
 import {rangeOf} from "../shared/frame.js";
-import {short} from "../shared/numbers.js";
+import {blocks, density, dots, levels, line} from "../shared/marks.js";
+import {clamp, short} from "../shared/numbers.js";
 import {
   coordinates,
   otherMotion,
@@ -16,30 +15,13 @@ import {
 } from "../shared/quantities.js";
 import {inSeconds} from "../shared/units.js";
 import {phaseLabels} from "./axis_labels.js";
+import {stretches} from "./layers.js";
 import {SweepPlot} from "./sweep_view.js";
 
 const startColours = ["c1", "before", "c2", "c4", "c3"];
 const startColour = (s) => startColours[s % startColours.length];
 
-/** Symbols of the starts after the first (a disc): number of corners and first angle. */
-const polygons = [
-  [0, 0],
-  [4, Math.PI / 4],
-  [3, -Math.PI / 2],
-  [4, 0],
-  [3, Math.PI / 2],
-];
-
-function trace(c, start, x, y, r) {
-  const [n, turn] = polygons[start % polygons.length];
-  c.beginPath();
-  for (let i = 0; i < n; ++i) {
-    const angle = turn + (2 * Math.PI * i) / n;
-    c.lineTo(x + 1.3 * r * Math.cos(angle), y + 1.3 * r * Math.sin(angle));
-  }
-  if (!n) c.arc(x, y, r, 0, 2 * Math.PI);
-  c.closePath();
-}
+const startShapes = ["dot", "box", "triangle", "diamond", "pointed"];
 
 /** Applies `of` to the best or second motion of a point. */
 const ofOtherMotion = (of) => (p) => {
@@ -51,18 +33,12 @@ const ofOtherMotion = (of) => (p) => {
 export const countRegimes = (points) =>
   Object.keys(regimes).map((regime) => [regime, points.filter((p) => p?.regime === regime).length]);
 
-/** A plot of `view`, the DiagramView. Subclasses implement y() (as in Frame) and draw(). */
+/** A plot of `view`, the DiagramView. Subclasses implement y() (as in Frame) and marks(frame). */
 class Diagram extends SweepPlot {
   prepare(width, height) {
-    return this.view.byStart ? {frame: this.frameOf(width, height)} : null;
-  }
-
-  paint(c, {frame}) {
-    frame.draw(c);
-    frame.clip(c);
-    this.draw(c, frame);
-    this.strip(c, frame);
-    c.restore();
+    if (!this.view.byStart) return null;
+    const frame = this.frameOf(width, height);
+    return {frame, marks: [...this.marks(frame), ...this.strips()]};
   }
 
   /** The value of a point drawn as a single dot; null if it has several. */
@@ -84,102 +60,57 @@ class Diagram extends SweepPlot {
   radius(frame) {
     const {data, several} = this.view;
     const room = (frame.width / Math.max(this.view.visiblePlaces().length / data.starts, 1)) * 0.62;
-    return Math.max(1.3, Math.min(3.4, room)) * (several ? 1.15 : 1);
+    return clamp(room, 1.3, 3.4) * (several ? 1.15 : 1);
   }
 
-  rule(c, frame, levels, name) {
-    c.strokeStyle = colour(name);
-    c.lineWidth = 1;
-    c.setLineDash([]);
-    for (const level of levels) frame.across(c, level);
+  /** {x, y} of a start's points; y is null for a failed point or without a value. */
+  columnsOf(start, of) {
+    const places = this.view.byStart[start];
+    const y = places.map(({p}) => (p.error ? null : (of(p) ?? null)));
+    return {x: places.map(({value}) => value), y};
   }
 
-  /**
-   * Positions of a start's points: {p, v, x, y}; v is null for a failed point or without a value.
-   */
-  spots(frame, start, of) {
-    return this.view.byStart[start].map(({p, value}) => {
-      const v = p.error ? null : (of(p) ?? null);
-      return {p, v, x: frame.px(value), y: frame.py(v)};
-    });
+  line(start, of, colour, more) {
+    return line({...this.columnsOf(start, of), colour, ...more});
   }
 
-  /** A line through the points of a start; missing values interrupt it. */
-  line(c, frame, start, of, name, {width = 1, alpha = 1, dash = []} = {}) {
-    c.setLineDash(dash);
-    Object.assign(c, {strokeStyle: colour(name), lineWidth: width, globalAlpha: alpha});
-    c.beginPath();
-    let broken = true;
-    for (const {v, x, y} of this.spots(frame, start, of)) {
-      if (v !== null) c[broken ? "moveTo" : "lineTo"](x, y);
-      broken = v === null;
-    }
-    c.stroke();
-    c.setLineDash([]);
-    c.globalAlpha = 1;
+  /** Dots of a start, in the colours nameOf(point) and with bars of errorOf(point). */
+  dots(frame, start, nameOf, errorOf = () => null) {
+    const [tints, errors] = [nameOf, errorOf].map((of) =>
+      this.view.byStart[start].map(({p}) => of(p)),
+    );
+    const shape = startShapes[start % startShapes.length];
+    const columns = this.columnsOf(start, (p) => this.drawn({p}));
+    return dots({...columns, tints, errors, shape, size: this.radius(frame)});
   }
 
   /**
    * The best motion of each point, or one from another start that differs, as rings on a thin line.
    * Not drawn for several starts.
    */
-  rings(c, frame, of) {
-    if (this.view.several) return;
-    const r = this.radius(frame);
-    this.line(c, frame, 0, ofOtherMotion(of), "best", {alpha: 0.6});
-    c.lineWidth = 1.5;
-    for (const {v, x, y} of this.spots(frame, 0, ofOtherMotion(of))) {
-      if (v === null) continue;
-      trace(c, 0, x, y, r);
-      c.stroke();
-    }
+  rings(frame, of) {
+    if (this.view.several) return [];
+    const columns = {...this.columnsOf(0, ofOtherMotion(of)), colour: "best"};
+    const ring = {shape: "ring", size: this.radius(frame), width: 1.5};
+    return [line({...columns, alpha: 0.6}), dots({...columns, ...ring})];
   }
 
-  dots(c, frame, start, nameOf, errorOf = () => null) {
-    const r = this.radius(frame);
-    c.lineWidth = Math.max(1, r / 2);
-    for (const {p, v, x, y} of this.spots(frame, start, (point) => this.drawn({p: point}))) {
-      if (v === null) continue;
-      const error = errorOf(p);
-      c.fillStyle = c.strokeStyle = colour(nameOf(p));
-      if (error) {
-        c.globalAlpha = 0.45;
-        c.beginPath();
-        c.moveTo(x, frame.py(v - error));
-        c.lineTo(x, frame.py(v + error));
-        c.stroke();
-        c.globalAlpha = 1;
-      }
-      trace(c, start, x, y, r);
-      c.fill();
-    }
-  }
-
-  /** Merges neighbours of the same regime: f(regime, from, to) in px. */
-  stretches(frame, start, f) {
+  /** Stretches of the same regime of a start, as a list for blocks(). */
+  stretches(start) {
     const {from: value} = this.view.data.axes[0];
-    const {left, right} = frame.box;
-    const px = (at) => Math.min(Math.max(frame.px(value(at)), left), right);
-    const list = [];
-    for (const {p, low, high} of this.view.byStart[start]) {
-      const regime = p.regime ?? null;
-      const last = list.at(-1);
-      if (last?.regime === regime) last.high = high;
-      else list.push({regime, low, high});
-    }
-    for (const {regime, low, high} of list) {
-      const [from, to] = [px(low), px(high)];
-      if (regime && to > from) f(regime, from, to);
-    }
+    return stretches(this.view.byStart[start])
+      .filter(({regime}) => regime)
+      .map(({regime, from, to}) => ({
+        from: value(from),
+        to: value(to),
+        colour: regimeColour(regime),
+        regime,
+      }));
   }
 
   /** Regimes as a narrow strip along the top, a row for each start. */
-  strip(c, frame) {
-    for (const s of this.view.starts())
-      this.stretches(frame, s, (regime, from, to) => {
-        c.fillStyle = colour(regimeColour(regime));
-        c.fillRect(from, frame.box.top + 6 * s, to - from, 5);
-      });
+  strips() {
+    return this.view.starts().map((s) => blocks({list: this.stretches(s), down: 6 * s, height: 5}));
   }
 }
 
@@ -204,20 +135,17 @@ export class SectionDiagram extends Diagram {
     return {range: held, log, label, labels: turns && phaseLabels};
   }
 
-  draw(c, frame) {
-    const {column, levels = [], log = false} = this.shown();
-    this.rule(c, frame, levels, "line");
+  marks() {
+    const {column, levels: y = []} = this.shown();
     const {from: value} = this.view.data.axes[0];
-    const {left, top} = frame.box;
-    for (const s of this.view.starts()) {
-      const columns = this.view.byStart[s].map(({p, low, high}) => ({
-        from: frame.px(value(low)) - left,
-        to: frame.px(value(high)) - left,
-        values: section(p, column),
-      }));
-      const image = density(count(columns, frame, log), this.tint(s, "c1"));
-      c.drawImage(image, left, top, frame.width, frame.height);
-    }
+    const cell = ({p, low, high}) => ({
+      from: value(low),
+      to: value(high),
+      values: section(p, column),
+    });
+    const ofStart = (s) =>
+      density({columns: this.view.byStart[s].map(cell), colour: this.tint(s, "c1")});
+    return [levels({y}), ...this.view.starts().map(ofStart)];
   }
 
   columns() {
@@ -257,14 +185,17 @@ export class LambdaDiagram extends Diagram {
     return {range: rangeOf([[0], ...this.values(held)]), label: "λ"};
   }
 
-  draw(c, frame) {
-    this.rule(c, frame, [0], "soft");
+  marks(frame) {
     const alpha = this.view.several ? 0.5 : 1;
-    for (const s of this.view.starts()) {
-      this.line(c, frame, s, lambda(1), this.tint(s, "second"), {alpha});
-      this.dots(c, frame, s, (p) => this.tint(s, verdictColour(p)), errorOf);
-    }
-    this.rings(c, frame, lambda(0));
+    const ofStart = (s) => {
+      const colour = (p) => this.tint(s, verdictColour(p));
+      return [
+        this.line(s, lambda(1), this.tint(s, "second"), {alpha}),
+        this.dots(frame, s, colour, errorOf),
+      ];
+    };
+    const zero = levels({y: 0, colour: "soft"});
+    return [zero, ...this.view.starts().flatMap(ofStart), ...this.rings(frame, lambda(0))];
   }
 
   columns() {
@@ -309,32 +240,22 @@ export class QuantityDiagram extends Diagram {
   }
 
   /** Pale bands labelled with the regimes; omitted for several starts, whose regimes can differ. */
-  bands(c, frame) {
-    if (this.view.several) return;
-    const {top} = frame.box;
-    c.font = "600 12px system-ui, sans-serif";
-    Object.assign(c, {textAlign: "center", textBaseline: "top"});
-    this.stretches(frame, 0, (regime, from, to) => {
-      c.globalAlpha = 0.2;
-      c.fillStyle = colour(regimeColour(regime));
-      c.fillRect(from, top, to - from, frame.height);
-      c.globalAlpha = 1;
-      c.fillStyle = colour("text");
-      if (7 * regime.length + 4 < to - from) c.fillText(regime, (from + to) / 2, top + 12);
-    });
+  bands() {
+    if (this.view.several) return [];
+    const list = this.stretches(0).map((one) => ({...one, text: one.regime}));
+    return [blocks({list, alpha: 0.2, textDown: 12, size: 12})];
   }
 
-  draw(c, frame) {
-    const {of, levels = [], free} = this.quantity();
-    this.bands(c, frame);
-    this.rule(c, frame, levels, "line");
-    for (const s of this.view.starts()) {
+  marks(frame) {
+    const {of, levels: y = [], free} = this.quantity();
+    const ofStart = (s) => {
       const name = this.tint(s, "text");
-      this.line(c, frame, s, of, name, {alpha: 0.35});
-      this.dots(c, frame, s, () => name);
-      if (free) this.line(c, frame, s, free, "wall", {width: 1.4, dash: [6, 4]});
-    }
-    this.rings(c, frame, of);
+      const marks = [this.line(s, of, name, {alpha: 0.35}), this.dots(frame, s, () => name)];
+      if (free) marks.push(this.line(s, free, "wall", {width: 1.4, dash: [6, 4]}));
+      return marks;
+    };
+    const ofStarts = this.view.starts().flatMap(ofStart);
+    return [...this.bands(), levels({y}), ...ofStarts, ...this.rings(frame, of)];
   }
 
   columns() {

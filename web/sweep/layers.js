@@ -12,6 +12,18 @@ function placesOf(data, start) {
   });
 }
 
+/** Stretches of neighbouring places with the same regime, null without: {regime, from, to}. */
+export function stretches(places) {
+  const list = [];
+  for (const {p, low, high} of places) {
+    const regime = p.regime ?? null;
+    const last = list.at(-1);
+    if (last?.regime === regime) last.to = high;
+    else list.push({regime, from: low, to: high});
+  }
+  return list;
+}
+
 export class Layers {
   /** base: a SweepData. */
   constructor(base) {
@@ -40,8 +52,9 @@ export class Layers {
     if (this.all.length > 1) list.sort((a, b) => a.at[0] - b.at[0]);
     const {borders} = this.base.axes[0];
     list.forEach((place, i) => {
+      const next = list[i + 1];
       place.low = i ? list[i - 1].high : borders[0];
-      place.high = i + 1 < list.length ? (place.at[0] + list[i + 1].at[0]) / 2 : borders.at(-1);
+      place.high = next ? (place.at[0] + next.at[0]) / 2 : borders.at(-1);
     });
     return list;
   }

@@ -2,11 +2,13 @@
 // with a scale. Missing points take the colour of a coarser neighbour.
 
 import {rgb} from "../shared/colours.js";
+import {raster} from "../shared/marks.js";
 import {short} from "../shared/numbers.js";
 import {bestMotion, describe, quantityOf, regimeColour} from "../shared/quantities.js";
+import {pixel} from "../shared/raster.js";
 import {lastUpTo} from "../shared/search.js";
 import {Viewport} from "../shared/viewport.js";
-import {barWidth, drawBar, endsOf, scaleOf} from "./colour_scale.js";
+import {bar, barWidth, endsOf, scaleOf} from "./colour_scale.js";
 import {ascending} from "./data.js";
 import {missingPoint, SweepPlot, SweepView} from "./sweep_view.js";
 
@@ -14,9 +16,6 @@ import {missingPoint, SweepPlot, SweepView} from "./sweep_view.js";
 const moves = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
 
 const firstPass = 1 / 40; // fraction of the points after which the colour scale is fixed
-
-/** A colour as a pixel of an ImageData. */
-const opaque = ([r, g, b]) => ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0;
 
 export class MapView extends SweepView {
   constructor(root, ...rest) {
@@ -144,15 +143,10 @@ class MapPlot extends SweepPlot {
   prepare(width, height) {
     if (!this.view.layers) return null;
     const scale = this.scale();
-    return {scale, frame: this.frameOf(width, height, scale ? barWidth : 12)};
-  }
-
-  paint(c, {frame, scale}) {
-    frame.draw(c);
-    const {left, top} = frame.box;
-    c.imageSmoothingEnabled = false;
-    c.drawImage(this.image(frame, this.colours(scale)), left, top, frame.width, frame.height);
-    if (scale) drawBar(c, frame, scale, this.quantity().label);
+    const colourOf = this.colours(scale);
+    const marks = [raster({paint: (...image) => this.fill(...image, colourOf)})];
+    if (scale) marks.push(bar({scale, title: this.quantity().label}));
+    return {marks, frame: this.frameOf(width, height, scale ? barWidth : 12)};
   }
 
   /** Returns a function that gives the pixel of a point. */
@@ -160,16 +154,12 @@ class MapPlot extends SweepPlot {
     const colourOf = (v) => (scale ? scale.at(v) : rgb(regimeColour(v)));
     return (p) => {
       const v = this.valueOf(p);
-      return opaque(v === null ? rgb("nothing") : colourOf(v));
+      return pixel(v === null ? rgb("nothing") : colourOf(v));
     };
   }
 
-  /** All layers at the resolution of the screen. */
-  image(frame, colourOf) {
-    const width = Math.round(frame.width * devicePixelRatio);
-    const height = Math.round(frame.height * devicePixelRatio);
-    const image = new ImageData(width, height);
-    const pixels = new Uint32Array(image.data.buffer);
+  /** Sets the pixels of all layers. */
+  fill(pixels, width, height, colourOf) {
     for (const data of this.view.over()) {
       const [first, second] = data.axes;
       const columns = positions(first, this.viewport.range, width);
@@ -178,13 +168,10 @@ class MapPlot extends SweepPlot {
       for (let j = 0; j < height; ++j)
         for (let i = 0; i < width; ++i) {
           const inside = rows[j] >= 0 && columns[i] >= 0;
-          const pixel = inside && cells[rows[j] * first.at.length + columns[i]];
-          if (pixel) pixels[j * width + i] = pixel;
+          const colour = inside && cells[rows[j] * first.at.length + columns[i]];
+          if (colour) pixels[j * width + i] = colour;
         }
     }
-    const canvas = Object.assign(document.createElement("canvas"), {width, height});
-    canvas.getContext("2d").putImageData(image, 0, 0);
-    return canvas;
   }
 
   /** A pixel for each cell of a layer; 0 without a point. */

@@ -1,0 +1,270 @@
+// Marks: what a plot draws over its frame. A mark is its options and draw(c, frame), where c is a
+// canvas context or an SvgPen. Marks are clipped to the plot, except those `above`, which are drawn
+// last. Each kind documents its options; all have `alpha`, and a `label` in legend and table.
+import {font} from "./frame.js";
+import {drawText, ink, stroke} from "./ink.js";
+import {clamp} from "./numbers.js";
+import {columnDensity, drawPixels, pointDensity} from "./raster.js";
+import {firstFrom, lastUpTo} from "./search.js";
+
+/** A kind of mark from draw(c, frame, options). */
+export const kind =
+  (draw, more = {}) =>
+  (options) => ({
+    ...options,
+    ...more,
+    draw(c, frame) {
+      c.globalAlpha = options.alpha ?? 1;
+      draw(c, frame, options);
+      c.globalAlpha = 1;
+    },
+  });
+
+const isThere = (v) => v != null && !Number.isNaN(v);
+
+/**
+ * A line through points with ascending x, of which the visible ones are drawn; null and NaN
+ * interrupt it. dense: several points per pixel.
+ */
+export const line = kind((c, frame, {x, y, colour, width = 1, dash, dense}) => {
+  const [min, max] = frame.x.range;
+  // Visible points and one more on either side.
+  const from = Math.max(firstFrom(x, min) - 1, 0);
+  const to = Math.min(firstFrom(x, max) + 1, x.length);
+  ink(c, colour, width, dash);
+  c.beginPath();
+  const {add, end} = dense || to - from > 4 * frame.width ? envelope(c, width) : path(c);
+  for (let i = from; i < to; ++i) add(frame.px(x[i]), isThere(y[i]) ? frame.py(y[i]) : null);
+  end();
+});
+
+/** Lines over common x; styles: further options of each. */
+export const lines = (x, columns, styles) => columns.map((y, k) => line({x, y, ...styles[k]}));
+
+/** Connects points directly. */
+function path(c) {
+  let broken = true;
+  const add = (px, py) => {
+    if (py !== null) c[broken ? "moveTo" : "lineTo"](px, py);
+    broken = py === null;
+  };
+  return {add, end: () => c.stroke()};
+}
+
+/**
+ * Draws minimum and maximum of each pixel, joined to the previous pixel, so that spikes stay
+ * visible and no gaps appear.
+ */
+function envelope(c, width) {
+  let column = null;
+  let low; // px, downwards
+  let high;
+  let before = null;
+  const end = () => {
+    if (column === null) return;
+    before ??= {low, high};
+    const top = Math.min(high, before.low);
+    const bottom = Math.max(low, before.high);
+    c.fillRect(column, top - width / 2, 1, bottom - top + width);
+    before = {low, high};
+  };
+  const add = (px, py) => {
+    if (py === null) return;
+    const at = Math.floor(px);
+    if (at !== column) {
+      end();
+      column = at;
+      low = high = py;
+    } else if (py > low) low = py;
+    else if (py < high) high = py;
+  };
+  return {add, end};
+}
+
+/** A line through points in any order. */
+export const curve = kind((c, {px, py}, {x, y, colour, width = 1.6, dash}) => {
+  ink(c, colour, width, dash);
+  stroke(
+    c,
+    x.map((v, i) => [px(v), py(y[i])]),
+  );
+});
+
+/** Horizontal lines at y, one or several; text: above the right end. */
+export const levels = kind((c, frame, {y, colour = "line", text = ""}) => {
+  ink(c, colour);
+  for (const level of [y].flat()) {
+    frame.across(c, level);
+    if (text) drawText(c, text, frame.box.right - 4, frame.py(level) - 2, "right", "bottom");
+  }
+});
+
+/** Dashed vertical lines at the values `at`. */
+export const uprights = kind((c, frame, {at}) => {
+  ink(c, "wall", 1, [6, 4]);
+  for (const x of at) frame.upright(c, x);
+});
+
+/** A shaded range of y. */
+export const layer = kind((c, {box, py, width}, {from, to, colour}) => {
+  ink(c, colour);
+  c.fillRect(box.left, py(to), width, py(from) - py(to));
+});
+
+/** Shaded intervals of x as one path, so that intervals in the same pixel do not darken it. */
+export const bands = kind((c, {box: {left, right, top}, px, height}, {intervals, colour}) => {
+  ink(c, colour);
+  c.beginPath();
+  for (const [from, to] of intervals) {
+    const a = Math.max(px(from), left);
+    const b = Math.min(px(to), right);
+    if (b > left && a < right) c.rect(a, top, Math.max(b - a, 1), height);
+  }
+  c.fill();
+});
+
+/**
+ * Rectangles over intervals [{from, to, colour, text}] of x, `height` px high and `down` px below
+ * the upper edge. Texts that fit are written `textDown` px below it.
+ */
+export const blocks = kind((c, {box, px, ...frame}, options) => {
+  const {list, down = 0, height = frame.height, textDown = 0, size = 11} = options;
+  const alpha = c.globalAlpha;
+  for (const {from, to, colour, text = ""} of list) {
+    const ends = [from, to].map((x) => clamp(px(x), box.left, box.right));
+    if (!(ends[1] > ends[0])) continue;
+    const [left, right] = ends.map(Math.round); // whole pixels: no gaps between neighbours
+    ink(c, colour);
+    c.fillRect(left, box.top + down, right - left || 1, height);
+    if (!text || 7 * text.length + 4 >= right - left) continue;
+    ink(c, "text");
+    c.font = `600 ${font.replace("11", size)}`;
+    c.globalAlpha = 1;
+    drawText(c, text, (left + right) / 2, box.top + textDown, "center", "top");
+    c.globalAlpha = alpha;
+  }
+});
+
+/** Corners of polygons and the angle of the first one. */
+const polygons = {
+  box: [4, Math.PI / 4],
+  triangle: [3, -Math.PI / 2],
+  diamond: [4, 0],
+  pointed: [3, Math.PI / 2],
+};
+
+/**
+ * Adds a symbol to a path: "ring" and "dot" are circles, "cross" and the polygons are paths; a
+ * "square" is filled immediately, which is fast.
+ */
+function symbol(c, shape, x, y, r) {
+  if (shape === "square") c.fillRect(x - r, y - r, 2 * r, 2 * r);
+  else if (shape === "cross")
+    for (const up of [r, -r]) {
+      c.moveTo(x - r, y - up);
+      c.lineTo(x + r, y + up);
+    }
+  else if (polygons[shape]) {
+    const [n, turn] = polygons[shape];
+    for (let i = 0; i < n; ++i) {
+      const angle = turn + (2 * Math.PI * i) / n;
+      const [right, down] = [1.3 * r * Math.cos(angle), 1.3 * r * Math.sin(angle)];
+      c[i ? "lineTo" : "moveTo"](x + right, y + down);
+    }
+    c.closePath();
+  } else {
+    c.moveTo(x + r, y);
+    c.arc(x, y, r, 0, 2 * Math.PI);
+  }
+}
+
+const finish = (c, shape) => (shape === "ring" || shape === "cross" ? c.stroke() : c.fill());
+
+const many = 5000; // points above which the density is drawn
+
+/**
+ * Symbols at points in any order; without y a point is not drawn. size: half the width, px; tints:
+ * colour of each point in place of a common one; errors: half lengths of paler bars.
+ */
+export const dots = kind((c, frame, options) => {
+  const {x, y, tints, errors = [], shape = "square", size = 1.2, width = 1.2} = options;
+  if (!tints && x.length > many) return pointDensity(c, frame, options);
+  const alpha = c.globalAlpha;
+  c.globalAlpha = 0.45 * alpha;
+  errors.forEach((error, i) => {
+    if (!error || y[i] == null) return;
+    ink(c, tints[i], Math.max(1, size / 2));
+    const end = (sign) => clamp(frame.py(y[i] + sign * error), frame.box.top, frame.box.bottom);
+    stroke(
+      c,
+      [-1, 1].map((sign) => [frame.px(x[i]), end(sign)]),
+    );
+  });
+  c.globalAlpha = alpha;
+  let colour = null;
+  for (let i = 0; i < x.length; ++i) {
+    if (y[i] == null) continue;
+    const own = tints?.[i] ?? options.colour;
+    if (own !== colour) {
+      if (colour) finish(c, shape);
+      ink(c, own, width);
+      c.beginPath();
+      colour = own;
+    }
+    symbol(c, shape, frame.px(x[i]), frame.py(y[i]), size);
+  }
+  if (colour) finish(c, shape);
+});
+
+/**
+ * Symbols at ascending x, smaller where there are many. Values out of range lie on the edge of the
+ * plot; `clipped` symbols are cut there.
+ */
+export const symbols = kind(
+  (c, frame, {x, y, colour, shape, size = 4, width = 1.3, clipped}) => {
+    const {top, bottom} = frame.box;
+    const [min, max] = frame.x.range;
+    const [from, to] = [firstFrom(x, min), lastUpTo(x, max) + 1];
+    const room = Math.sqrt(frame.width / (3 * Math.max(to - from, 1)));
+    const r = Math.max(size * Math.min(room, 1), 0.75);
+    const crowded = to - from > (shape === "dot" ? 100 : 2000); // a path of many discs is slow
+    const drawn = new Set(); // half pixels: a symbol on top of another is invisible
+    frame.clip(c, clipped ? 0 : r);
+    ink(c, colour, width);
+    c.beginPath();
+    for (let i = from; i < to; ++i) {
+      if (y[i] == null) continue;
+      const px = frame.px(x[i]);
+      const py = clamp(frame.py(y[i]), top, bottom);
+      const place = Math.round(2 * py) * 1e5 + Math.round(2 * px);
+      if (drawn.has(place)) continue;
+      drawn.add(place);
+      symbol(c, crowded ? "square" : shape, px, py, crowded ? 0.85 * r : r);
+    }
+    finish(c, shape);
+    c.restore();
+  },
+  {above: true},
+);
+
+/** Dots over ascending x as a series, cut at the edge of the plot. */
+export const beads = (options) => symbols({shape: "dot", clipped: true, ...options});
+
+/** Names of series in their colours, for pictures without a legend. */
+export const names = kind(
+  (c, {box}, {series}) =>
+    series.forEach(({label, colour}, k) => {
+      ink(c, colour);
+      drawText(c, label, box.left + 8 + 90 * k, box.top + 4, "left", "top");
+    }),
+  {above: true},
+);
+
+/** Density of the values of columns [{from, to, values}] of x. */
+export const density = kind((c, frame, {columns, colour}) => {
+  const inPixels = ({from, to, values}) => ({from: frame.px(from), to: frame.px(to), values});
+  columnDensity(c, frame, {columns: columns.map(inPixels), colour});
+});
+
+/** Pixels set by paint(pixels, width, height). */
+export const raster = kind((c, frame, {paint}) => drawPixels(c, frame, paint));
