@@ -275,6 +275,41 @@ test("an error of a field is shown at the field, and correcting it draws the run
   await page.close();
 });
 
+test("a failed request for the version is not reported: the page is usable", async () => {
+  const page = await browser.context.newPage();
+  let fail;
+  await page.route("**/version", (route) => {
+    fail = () => route.fulfill({status: 500, json: {title: "broken"}});
+  });
+  const asking = page.waitForRequest("**/version");
+  await page.goto(`${service.url}/?preset=fig11`);
+  await drawn(page, 1);
+  await asking;
+  await fail();
+  await painted(page);
+  assert.equal(await page.textContent("#message"), "");
+  await page.close();
+  browser.complaints.length = 0; // Chromium logs the 500
+});
+
+test("a zoom just before another tab is opened leaves the address of that tab unchanged", async () => {
+  const page = await visit("?tab=measurement&preset=fig15");
+  await page.click("#tab-simulation");
+  await drawn(page, 1);
+  await page.clock.install();
+  await page.evaluate(() => {
+    document
+      .getElementById("plot-x")
+      .dispatchEvent(new KeyboardEvent("keydown", {key: "+", bubbles: true}));
+    document.getElementById("tab-measurement").click();
+  });
+  await page.clock.fastForward(1000); // the address is written after 200 ms
+  assert.match(page.url(), /\?tab=measurement&preset=fig15$/);
+  await page.goBack();
+  assert.match(page.url(), /\?preset=fig3&view=\d/);
+  await page.close();
+});
+
 test("unknown names in the address are reported", async () => {
   const page = await still("?b=0.018&clearence=3&tau_end=400");
   assert.match(await page.textContent("#message"), /unknown names in the address: "clearence"/);
@@ -766,6 +801,16 @@ test("a key typed while another request is pending is used for that request", (t
         document.getElementById("results").dataset.done || document.querySelector("dialog[open]"),
     );
     assert.equal(await page.locator("dialog[open]").count(), 0, "no further question");
+  }));
+
+test("a dialog closed by Escape stores no key", (t) =>
+  withRequiredKey(t, async (page, url) => {
+    await page.goto(url);
+    await page.fill("dialog[open] input[type=password]", "λ".repeat(20)); // not allowed in a header
+    await page.keyboard.press("Escape");
+    await page.waitForSelector("#message.fault");
+    assert.match(await page.textContent("#message"), /could not start: .*API key/);
+    assert.equal(await page.evaluate(() => sessionStorage.length), 0);
   }));
 
 test("a printed page shows the results without the controls", async () => {
