@@ -239,6 +239,32 @@ test("new input aborts a long run", async () => {
   await page.close();
 });
 
+test("a run that is sent again gets its deferred results", async () => {
+  const page = await still("?preset=fig11");
+  await page.clock.install();
+  let answer;
+  await page.route("**/v1/simulate", async (route) => {
+    const isDeferred = route.request().postDataJSON().include.includes("manifold");
+    if (!isDeferred) return route.continue();
+    await new Promise((resolve) => {
+      answer = resolve;
+    });
+    return route.continue();
+  });
+  const run = async (n) => {
+    await page.click("#simulate");
+    await page.waitForFunction((n) => document.getElementById("results").dataset.shown === n, n);
+    await page.clock.fastForward(1000); // the deferred results are requested after 100 ms
+  };
+  const deferred = page.waitForRequest((request) => request.postData()?.includes("manifold"));
+  await run("2");
+  await deferred;
+  await run("3");
+  answer();
+  await drawn(page, 2);
+  await page.close();
+});
+
 test("an unreachable server is reported, and the request is repeated until it answers", async () => {
   const own = await startService();
   const page = await browser.context.newPage();

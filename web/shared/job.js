@@ -35,13 +35,17 @@ export class Job {
   later() {}
 
   /**
-   * Starts a request, unless it equals the running one. dragging: one of many requests of a slider;
-   * the running request is then completed, so that intermediate results are shown.
+   * Starts a request; one that equals the running request gets its answer instead. dragging: one of
+   * many requests of a slider; the running one is then completed, so that intermediate results are
+   * shown.
    */
   start(request, {dragging = false} = {}) {
     const running = this.#running;
     const same = JSON.stringify(request) === running?.text;
-    if (same && !this.#next && !running.abort.signal.aborted) return;
+    if (same && !this.#next && !running.abort.signal.aborted) {
+      running.newest = request;
+      return;
+    }
     this.#next = request;
     if (!running) this.#work();
     else if (!dragging || !running.answers) running.abort.abort();
@@ -63,15 +67,16 @@ export class Job {
   async #compute(request) {
     const abort = new AbortController();
     const {signal} = abort;
-    this.#running = {abort, answers: true, text: JSON.stringify(request)};
+    const running = {newest: request, abort, answers: true, text: JSON.stringify(request)};
+    this.#running = running;
     const late = setTimeout(() => this.busy(true), lateAfter);
     const began = performance.now();
     let cancelled = false;
     try {
       const answer = await this.#answer(request, signal);
-      if (!signal.aborted) await this.show(answer, request, performance.now() - began);
+      if (!signal.aborted) await this.show(answer, running.newest, performance.now() - began);
     } catch (error) {
-      if (!signal.aborted) this.fail(error, request);
+      if (!signal.aborted) this.fail(error, running.newest);
       else cancelled = !this.#next;
     } finally {
       clearTimeout(late);
