@@ -1,17 +1,20 @@
 // The page: tabs and the address. The address names the tab and holds its request, so links and the
 // Back button restore what was shown.
 
-import {MeasurementTab} from "./measurement/measurement.js";
 import {get} from "./shared/api.js";
 import {onColours} from "./shared/colours.js";
 import {$, attributes, on} from "./shared/dom.js";
 import {SimulationTab} from "./simulation/simulation.js";
-import {SweepTab} from "./sweep/sweep.js";
 
-// A RequestTab for each name, made with (tables, changed, others) when it is first shown. tables:
-// the answer of /v1/parameters, and presets; changed(): see addressChanged; others:
-// {simulate(fields), measure(answer)} open another tab.
-const classes = {simulation: SimulationTab, sweep: SweepTab, measurement: MeasurementTab};
+// The class of each tab, a RequestTab; all but the first are loaded on demand. It is made with
+// (tables, changed, others) when it is first shown. tables: the answer of /v1/parameters, and
+// presets; changed(): see addressChanged; others: {simulate(fields), measure(answer)} open another
+// tab.
+const loaders = {
+  simulation: async () => SimulationTab,
+  sweep: async () => (await import("./sweep/sweep.js")).SweepTab,
+  measurement: async () => (await import("./measurement/measurement.js")).MeasurementTab,
+};
 const tabs = {};
 const queryOf = (name) => tabs[name]?.query() ?? "";
 const scrolled = {};
@@ -99,23 +102,28 @@ function addressChanged(name, {edit = false, soon = false} = {}) {
 }
 
 /** Shows the tab and request of the address. */
-function openAddress() {
+async function openAddress() {
   cancelPending();
   const query = new URLSearchParams(location.search);
   query.delete("embed");
   const named = query.get("tab");
-  const name = Object.hasOwn(classes, named) ? named : "simulation";
+  const name = Object.hasOwn(loaders, named) ? named : "simulation";
   if (name === named) query.delete("tab"); // any other value stays, and open() reports it
   showPanel(name);
-  const changed = (how) => addressChanged(name, how);
-  tabs[name] ??= new classes[name](tables, changed, {simulate: simulatePoint, measure: measureRun});
-  tabs[name].open(query);
+  try {
+    const Tab = await loaders[name]();
+    const changed = (how) => addressChanged(name, how);
+    tabs[name] ??= new Tab(tables, changed, {simulate: simulatePoint, measure: measureRun});
+  } catch (error) {
+    return fail(`the tab could not be loaded: ${error.message}`);
+  }
+  if (current === name) tabs[name].open(query);
 }
 
 function navigate(name, query) {
   writePending();
   history.pushState(null, "", address(name, query));
-  openAddress();
+  return openAddress();
 }
 
 /** Opens the simulation of a sweep's point. */
@@ -125,9 +133,16 @@ function simulatePoint(fields) {
 }
 
 /** Opens the record of a run, an answer of /v1/simulate with impacts, in Measurement. */
-function measureRun(answer) {
-  navigate("measurement", queryOf("measurement"));
-  tabs.measurement.measure(answer);
+async function measureRun(answer) {
+  await navigate("measurement", queryOf("measurement"));
+  tabs.measurement?.measure(answer); // missing if it could not be loaded
+}
+
+/** Shows a fault in the panel that is visible. */
+function fail(text) {
+  const message = $(`panel-${current ?? "simulation"}`).querySelector(".message");
+  message.textContent = text;
+  message.classList.add("fault");
 }
 
 async function start() {
@@ -138,7 +153,7 @@ async function start() {
   onColours(() => {
     for (const tab of Object.values(tabs)) tab.redraw();
   });
-  openAddress();
+  await openAddress();
 }
 
 async function showVersion() {
@@ -148,8 +163,5 @@ async function showVersion() {
 
 start().then(
   () => showVersion().catch(() => {}), // the page is usable without it
-  (error) => {
-    $("message").textContent = `the page could not start: ${error.message}`;
-    $("message").classList.add("fault");
-  },
+  (error) => fail(`the page could not start: ${error.message}`),
 );

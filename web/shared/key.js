@@ -31,8 +31,8 @@ async function showDialog() {
     title: "16 or more letters, digits or -._~+/=",
     autocomplete: "current-password",
   });
-  const rejection = hasKey() ? "The server does not accept this key. " : "";
   const submit = element("button", {value: "use"}, "Use key");
+  const rejection = hasKey() ? "The server does not accept this key. " : "";
   const dialog = element(
     "dialog",
     {},
