@@ -7,6 +7,7 @@ import {copy, formsOf} from "../shared/export.js";
 import {Form, unknownText} from "../shared/form.js";
 import {Job} from "../shared/job.js";
 import {Motion} from "../shared/motion.js";
+import {roundedRange} from "../shared/numbers.js";
 import {RequestTab} from "../shared/request_tab.js";
 import {showRemarks} from "../shared/tables.js";
 import {onUnits, unitsOf, unitsSwitch} from "../shared/units.js";
@@ -37,12 +38,6 @@ const idle = 100; // ms without an edit before the deferred parts are requested
 function homeOf({parameters, status}) {
   const to = parameters.window?.[1];
   return to && to < 0.9 * status.tau ? [0, to] : [0, status.tau];
-}
-
-/** Digits for a ten-thousandth of the range. */
-function viewText([from, to]) {
-  const places = Math.max(0, 4 - Math.floor(Math.log10(to - from)));
-  return [from, to].map((t) => Number(t.toFixed(Math.min(places, 15)))).join(",");
 }
 
 /** Shows the remarks: the reason for an undecided verdict, and warnings. */
@@ -268,7 +263,7 @@ export class SimulationTab extends RequestTab {
     const view = this.wantedView ?? (viewport.changed ? viewport.range : null);
     const pinned = pin.query();
     const more = [
-      view && `view=${viewText(view)}`,
+      view && `view=${roundedRange(view)}`,
       pinned !== null && `pinned=${encodeURIComponent(pinned)}`,
     ];
     return [this.asked, ...more].filter(Boolean).join("&");
