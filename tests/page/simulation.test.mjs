@@ -8,7 +8,7 @@ import {join} from "node:path";
 import {test} from "node:test";
 import {promisify} from "node:util";
 import {startService} from "../service.mjs";
-import {drawn, frames, open, painted} from "./browser.mjs";
+import {drawn, frames, open, painted, swept} from "./browser.mjs";
 import {
   asked,
   beyond,
@@ -138,6 +138,19 @@ test("the first view loads at most 90 kB, compressed", async () => {
   await page.close();
 });
 
+test("other tabs are loaded when they are opened", async () => {
+  const page = await visit("?preset=fig11");
+  const loaded = [];
+  page.on("request", (request) => loaded.push(new URL(request.url()).pathname));
+  await page.click("#tab-sweep");
+  await swept(page, 1);
+  assert.ok(
+    loaded.some((path) => /\/sweep[^/]*\.js$/.test(path)),
+    loaded.join(" "),
+  );
+  await page.close();
+});
+
 test("each preset stays in the address and tags the plots of its figure", async () => {
   const {presets} = await (await fetch(`${service.url}/v1/presets`)).json();
   assert.equal(presets.length, 37);
@@ -242,6 +255,32 @@ test("new input aborts a long run", async () => {
   await page.close();
 });
 
+test("a run that is sent again gets its deferred results", async () => {
+  const page = await still("?preset=fig11");
+  await page.clock.install();
+  let answer;
+  await page.route("**/v1/simulate", async (route) => {
+    const isDeferred = route.request().postDataJSON().include.includes("manifold");
+    if (!isDeferred) return route.continue();
+    await new Promise((resolve) => {
+      answer = resolve;
+    });
+    return route.continue();
+  });
+  const run = async (n) => {
+    await page.click("#simulate");
+    await page.waitForFunction((n) => document.getElementById("results").dataset.shown === n, n);
+    await page.clock.fastForward(1000); // the deferred results are requested after 100 ms
+  };
+  const deferred = page.waitForRequest((request) => request.postData()?.includes("manifold"));
+  await run("2");
+  await deferred;
+  await run("3");
+  answer();
+  await drawn(page, 2);
+  await page.close();
+});
+
 test("an unreachable server is reported, and the request is repeated until it answers", async () => {
   const own = await startService();
   const page = await browser.context.newPage();
@@ -275,6 +314,41 @@ test("an error of a field is shown at the field, and correcting it draws the run
   });
   assert.equal(await page.textContent("#error-windows"), "");
   browser.complaints.length = 0; // Chromium logs each 422
+  await page.close();
+});
+
+test("a failed request for the version is not reported: the page is usable", async () => {
+  const page = await browser.context.newPage();
+  let fail;
+  await page.route("**/version", (route) => {
+    fail = () => route.fulfill({status: 500, json: {title: "broken"}});
+  });
+  const asking = page.waitForRequest("**/version");
+  await page.goto(`${service.url}/?preset=fig11`);
+  await drawn(page, 1);
+  await asking;
+  await fail();
+  await painted(page);
+  assert.equal(await page.textContent("#message"), "");
+  await page.close();
+  browser.complaints.length = 0; // Chromium logs the 500
+});
+
+test("a zoom just before another tab is opened leaves the address of that tab unchanged", async () => {
+  const page = await visit("?tab=measurement&preset=fig15");
+  await page.click("#tab-simulation");
+  await drawn(page, 1);
+  await page.clock.install();
+  await page.evaluate(() => {
+    document
+      .getElementById("plot-x")
+      .dispatchEvent(new KeyboardEvent("keydown", {key: "+", bubbles: true}));
+    document.getElementById("tab-measurement").click();
+  });
+  await page.clock.fastForward(1000); // the address is written after 200 ms
+  assert.match(page.url(), /\?tab=measurement&preset=fig15$/);
+  await page.goBack();
+  assert.match(page.url(), /\?preset=fig3&view=\d/);
   await page.close();
 });
 
@@ -772,6 +846,16 @@ test("a key typed while another request is pending is used for that request", (t
         document.getElementById("results").dataset.done || document.querySelector("dialog[open]"),
     );
     assert.equal(await page.locator("dialog[open]").count(), 0, "no further question");
+  }));
+
+test("a dialog closed by Escape stores no key", (t) =>
+  withRequiredKey(t, async (page, url) => {
+    await page.goto(url);
+    await page.fill("dialog[open] input[type=password]", "λ".repeat(20)); // not allowed in a header
+    await page.keyboard.press("Escape");
+    await page.waitForSelector("#message.fault");
+    assert.match(await page.textContent("#message"), /could not start: .*API key/);
+    assert.equal(await page.evaluate(() => sessionStorage.length), 0);
   }));
 
 test("a printed page shows the results without the controls", async () => {

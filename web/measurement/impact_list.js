@@ -1,5 +1,5 @@
 // The editable list of impacts: remove, move, add.
-import {$, element} from "../shared/dom.js";
+import {$, button, element} from "../shared/dom.js";
 import {digits, toNumber} from "../shared/numbers.js";
 
 const most = 2000; // rows; more would scroll slowly
@@ -108,38 +108,33 @@ export class ImpactList {
       digits(row.R),
       statusOf(row),
     ];
-    const className = kindOf(row);
-    return element("tr", {className}, ...cells.map((cell) => element("td", {}, cell)));
+    return element("tr", {className: kindOf(row)}, ...cells.map((cell) => element("td", {}, cell)));
   }
 
   timeInput(row, i) {
-    const input = element("input", {
-      type: "text",
-      inputMode: "decimal",
-      value: row.t.toFixed(5),
-      ariaLabel: `time of impact ${i + 1} in s`,
-      disabled: row.removed,
-      onchange: () => {
-        const t = toNumber(input.value);
-        if (!this.inside(t)) return refuse(input);
-        row.t = t === Number(row.found?.toFixed(5)) ? row.found : t;
-        this.update(row);
-        this.lines.get(row)?.querySelector("input").focus();
-      },
-    });
-    return input;
+    const onchange = ({target}) => {
+      const t = toNumber(target.value);
+      if (!this.inside(t)) return refuse(target);
+      row.t = t === Number(row.found?.toFixed(5)) ? row.found : t;
+      this.update(row);
+      this.lines.get(row)?.querySelector("input").focus();
+    };
+    const ariaLabel = `time of impact ${i + 1} in s`;
+    const [value, disabled] = [row.t.toFixed(5), row.removed];
+    const type = {type: "text", inputMode: "decimal"};
+    return element("input", {...type, value, ariaLabel, disabled, onchange});
   }
 
   removeButton(row, i) {
-    const textContent = row.removed ? "Restore" : "Remove";
-    const onclick = () => {
+    const verb = row.removed ? "Restore" : "Remove";
+    const toggle = () => {
       row.removed = !row.removed;
       if (row.status === "added") this.rows.splice(i, 1);
       this.update();
       const line = this.lines.get(row) ?? this.body.rows[i] ?? this.body.lastChild;
       line?.querySelector("button").focus();
     };
-    const ariaLabel = `${textContent.toLowerCase()} impact ${i + 1} at ${row.t.toFixed(4)} s`;
-    return element("button", {type: "button", textContent, ariaLabel, onclick});
+    const ariaLabel = `${verb.toLowerCase()} impact ${i + 1} at ${row.t.toFixed(4)} s`;
+    return button(verb, toggle, {ariaLabel});
   }
 }

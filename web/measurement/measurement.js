@@ -1,28 +1,14 @@
 // The measurement tab: a file and the form are sent as one request, and the identified system is
 // shown. The list of impacts can be edited and sent again.
 
-import {
-  identify,
-  identifyJson,
-  Problem,
-  sendFileAsCurl,
-  simulate,
-  wholeMessage,
-} from "../shared/api.js";
-import {$, countUp, element, sayIn, scrollToResults} from "../shared/dom.js";
+import {identify, identifyJson, sendFileAsCurl, simulate} from "../shared/api.js";
+import {$, attributes, button, countUp, element, reveal, setTexts} from "../shared/dom.js";
 import {copy, save} from "../shared/export.js";
 import {Form} from "../shared/form.js";
-import {Job} from "../shared/job.js";
+import {RequestTab} from "../shared/request_tab.js";
 import {ImpactList} from "./impact_list.js";
 import {showFit, summariseMeasurement} from "./measurement_summary.js";
-import {
-  draw,
-  drawRecord,
-  mark,
-  nameFigures,
-  redraw,
-  start as startViews,
-} from "./measurement_views.js";
+import * as views from "./measurement_views.js";
 import * as picker from "./picker.js";
 import {asJson, parse, recordOf, spikeNear} from "./record.js";
 import {oscillatorOf, recordOfRun} from "./sample.js";
@@ -36,23 +22,6 @@ const groups = {
 const samples = {fig15: "b = 9 mm, periodic", fig20: "b = 15 mm, chaotic"};
 const longestQuery = 6000; // characters; servers and proxies accept addresses of about 8 kB
 const sampleCycles = 330; // about 40 s
-const presets = {}; // of the experiments, by name
-
-let form;
-let list;
-let file = null;
-let parsed = null; // content of the file
-let record = null; // parsed columns as selected by the form
-let answer = null;
-let sent = null; // fields that the answer belongs to
-let newest = 0; // counts the records requested; only the newest is shown
-let ticking = 0;
-let shown = null;
-let remembered = () => {};
-
-const results = $("measure-results");
-
-const say = sayIn("measure-message");
 
 /**
  * Changes to the service's fields: column names are typed or taken from the file's header; the
@@ -71,307 +40,314 @@ const fieldsOf = (fields) =>
     .filter((f) => !["impact_times_s", "F"].includes(f.name))
     .map((f) => ({...f, ...(isColumn(f.name) && {type: "text"}), ...changes[f.name]}));
 
-const preset = () => $("measure-preset").value;
-
-/** Fields of the chosen oscillator, without those that are estimated. */
-function base() {
-  const {R, F, cycles, ...oscillator} = presets[preset()]?.parameters ?? {};
-  return oscillator;
-}
-
 /** Fields as a query; commas stay readable. */
 const asQuery = (fields) => String(new URLSearchParams(fields)).replaceAll("%2C", ",");
 
-export const query = () => shown;
-
 const pick = (fields, isWanted) => Object.fromEntries(Object.entries(fields).filter(isWanted));
 
-/** Updates the address with the form. The file itself is not part of a link. */
-function remember() {
-  const given = base();
-  const differing = pick(form.values(), ([name, value]) => value !== given[name]);
-  shown = asQuery({...(preset() && {preset: preset()}), ...differing});
-  remembered();
-  compare();
-}
+const presetMenu = $("measure-preset");
 
-/** Selects an oscillator; more: further fields. */
-function choosePreset(name, more) {
-  $("measure-preset").value = Object.hasOwn(presets, name) ? name : "";
-  form.set({...base(), ...more});
-}
-/** Column fields of the form, which are kept when the oscillator changes. */
-function ofColumns() {
-  const names = form.fields.filter((f) => f.group === "record").map((f) => f.name);
-  return pick(form.values(), ([name]) => names.includes(name));
-}
+export class MeasurementTab extends RequestTab {
+  presets = {}; // of the experiments, by name
+  records = 0; // counts the records requested; only the newest is shown
+  file = null;
+  parsed = null; // content of the file
+  record = null; // parsed columns as selected by the form
+  answer = null;
+  sent = null; // fields that the answer belongs to
+  shown = null; // the form as a query
 
-export async function open(given) {
-  const fields = Object.fromEntries(given);
-  if (asQuery(fields) === shown) return;
-  const {preset: name = given.size ? "" : "fig20", ...rest} = fields;
-  choosePreset(name, rest);
-  remember();
-}
-
-export {redraw};
-
-/** Draws the columns selected by the fields, with the impacts known. */
-function drawFile(fields) {
-  record = parsed && recordOf(parsed, fields);
-  for (const id of ["measure-parts", "measure-list", "measure-add-at"]) $(id).hidden = !record;
-  if (parsed) picker.show(parsed, fields);
-  if (!record) return;
-  drawRecord(record, addAt);
-  // Without an answer the list starts empty, so that impacts can be added by hand.
-  list.set(answer?.impacts ?? {time_s: []}, [record.t[0], record.t.at(-1)]);
-}
-
-function edited() {
-  for (const id of ["measure-again", "measure-reset"]) $(id).disabled = !list.edited;
-  mark(record, list.rows, answer);
-}
-
-/** Adds the impact at a clicked spike of the acceleration, while adding is switched on. */
-function addAt(t, reach) {
-  if (!$("plot-measured-a").matches(".adding")) return;
-  const at = spikeNear(record, t, reach);
-  if (at !== null && list.add(record.t[at])) say(`added an impact at ${record.t[at].toFixed(4)} s`);
-}
-
-/** Sets the answer of the record; null: not identified yet. */
-function setAnswer(next, fields) {
-  answer = next;
-  sent = fields;
-  results.classList.toggle("known", answer !== null);
-  compare();
-}
-
-/** Clears chosen columns that a new file does not have. */
-function forgetColumns(names) {
-  for (const [name, value] of Object.entries(ofColumns()))
-    if (isColumn(name) && names.length && !names.includes(value)) form.replace(name, "");
-}
-
-/** Quotes the lines around one with an error. */
-function quoteLine(detail = "") {
-  const line = Number(/^line (\d+)/.exec(detail)?.[1]);
-  const first = Math.max(line - 1, 1);
-  const around = parsed?.text.split("\n", line + 1).slice(first - 1) ?? [];
-  const lines = around.map((text, k) => {
-    const n = first + k;
-    const textContent = `${String(n).padStart(7)}  ${text.slice(0, 120).trimEnd()}\n`;
-    return element("span", {className: n === line ? "at-fault" : "", textContent});
-  });
-  $("measure-lines").replaceChildren(...lines);
-  $("measure-lines").hidden = !lines.length;
-}
-
-/** Reads a chosen file, draws it and, if its columns are known, identifies it. */
-async function readFile(chosen) {
-  if (!chosen) return;
-  ++newest;
-  job.cancel();
-  const input = $("measure-file");
-  if (input.files[0] !== chosen) input.value = ""; // allows choosing the same file again
-  file = chosen;
-  parsed = null;
-  setAnswer(null, null);
-  const megabytes = (chosen.size / 1e6).toFixed(chosen.size < 1e5 ? 3 : 1);
-  $("measure-about").textContent = `${chosen.name}, ${megabytes} MB`;
-  quoteLine();
-  say("reading …");
-  try {
-    const read = await parse(chosen, (share) => {
-      if (file === chosen) say(`reading … ${(100 * share).toFixed(0)} %`);
+  constructor({identify_fields: fields, presets}, changed) {
+    super("measure-", changed);
+    views.start(() => ({name: this.file?.name ?? "", answer: this.answer}));
+    const own = {prefix: "measure-", grouped: groups};
+    this.form = new Form($("measure-fields"), fieldsOf(fields), own);
+    for (const [name, input] of this.form.inputs)
+      if (isColumn(name)) attributes(input, {list: "measure-columns"});
+    this.list = new ImpactList(() => {
+      for (const id of ["measure-again", "measure-reset"]) $(id).disabled = !this.list.edited;
+      views.mark(this.record, this.list.rows, this.answer);
     });
-    if (file !== chosen) return;
-    parsed = read;
-    const {names, columns} = parsed;
-    $("measure-columns").replaceChildren(...names.map((value) => element("option", {value})));
-    $("measure-about").textContent += `, ${columns[0]?.length ?? 0} samples`;
-    forgetColumns(names);
-    drawFile(form.values());
-    if (record || !names.length) run();
-    else say("choose which column is the time, and which the displacement or acceleration", true);
-  } catch (error) {
-    if (file !== chosen) return;
-    file = null;
-    drawFile();
-    say(`${chosen.name} cannot be read: ${error.message}`, true);
+    presetMenu.append(new Option("user-defined oscillator", ""));
+    for (const {name, title, ...preset} of presets) {
+      if (!(name in samples)) continue;
+      this.presets[name] = preset;
+      presetMenu.append(new Option(`Table 4, ${title.replace("experiment, ", "")}`, name));
+      const simulateIt = () => this.readSample(name);
+      $("measure-samples").append(" ", button(samples[name], simulateIt, {className: "small"}));
+    }
+    this.listen();
+    this.listenToFiles();
   }
-}
 
-/** Sends the file unchanged or, if the address would be too long, everything as JSON. */
-function request(fields, signal) {
-  const text = asQuery(fields);
-  return text.length <= longestQuery
-    ? identify(text, file, signal)
-    : identifyJson(asJson(parsed, fields), signal);
-}
+  listen() {
+    presetMenu.onchange = () => {
+      this.choosePreset(presetMenu.value, this.ofColumns());
+      this.remember();
+    };
+    $("measure-fields").onchange = () => {
+      this.remember();
+      if (this.parsed && !this.answer) this.drawFile(this.form.values());
+    };
+    picker.start((field, name) => {
+      this.form.replace(field, name);
+      this.remember();
+      if (!this.parsed) return;
+      this.setAnswer(null, null);
+      this.drawFile(this.form.values());
+      if (this.record) this.run();
+    });
+    $("measure-again").onclick = () => this.run({impact_times_s: this.list.times()});
+    $("measure-reset").onclick = () => this.list.reset();
+    $("measure-add-at").onclick = ({currentTarget}) =>
+      attributes(currentTarget, {"aria-pressed": $("plot-measured-a").classList.toggle("adding")});
+    $("measure-download").onclick = () => {
+      const text = JSON.stringify(this.answer, null, 1);
+      const name = this.file.name.replace(/\.[^.]*$/, "");
+      save(new Blob([text], {type: "application/json"}), `${name}-identified.json`);
+    };
+    $("measure-copy").onclick = () => {
+      const path = `v1/identify?${asQuery(this.sent ?? this.form.values())}`;
+      copy(sendFileAsCurl(path, "text/csv", this.file?.name ?? "record.csv"), this.say);
+    };
+  }
 
-const job = new Job({
-  ask: ({fields}, signal) => request(fields, signal),
-  show(got, {fields}, milliseconds) {
-    setAnswer(got, fields);
+  /** Files are chosen or dropped on the tab. */
+  listenToFiles() {
+    const input = $("measure-file");
+    input.onchange = () => this.readFile(input.files[0]);
+    const drag = (event) => {
+      event.preventDefault();
+      $("measure-drop").classList.toggle("over", event.type === "dragover");
+      if (event.type === "drop") this.readFile(event.dataTransfer.files[0]);
+    };
+    for (const type of ["ondragover", "ondragleave", "ondrop"]) $("panel-measurement")[type] = drag;
+  }
+
+  query() {
+    return this.shown;
+  }
+
+  open(given) {
+    const fields = Object.fromEntries(given);
+    if (asQuery(fields) === this.shown) return;
+    const {preset = given.size ? "" : "fig20", ...rest} = fields;
+    this.choosePreset(preset, rest);
+    this.remember();
+  }
+
+  /** Selects an oscillator; more: further fields. */
+  choosePreset(name, more) {
+    presetMenu.value = Object.hasOwn(this.presets, name) ? name : "";
+    this.form.set({...this.base(), ...more});
+  }
+
+  /** Fields of the chosen oscillator, without those that are estimated. */
+  base() {
+    const {R, F, cycles, ...oscillator} = this.presets[presetMenu.value]?.parameters ?? {};
+    return oscillator;
+  }
+
+  /** Column fields of the form, which are kept when the oscillator changes. */
+  ofColumns() {
+    const names = this.form.fields.filter((f) => f.group === "record").map((f) => f.name);
+    return pick(this.form.values(), ([name]) => names.includes(name));
+  }
+
+  /** Updates the address with the form. The file itself is not part of a link. */
+  remember() {
+    const given = this.base();
+    const differing = pick(this.form.values(), ([name, value]) => value !== given[name]);
+    const {value: preset} = presetMenu;
+    this.shown = asQuery({...(preset && {preset}), ...differing});
+    this.changed();
+    this.markStale();
+  }
+
+  isStale(busy) {
+    const {impact_times_s: _, ...fields} = this.sent ?? {};
+    return busy || (this.sent !== null && asQuery(this.form.values()) !== asQuery(fields));
+  }
+
+  submit() {
+    this.run();
+    if (this.file) this.scrollToResults();
+  }
+
+  run(more = {}) {
+    if (!this.file) {
+      this.say("choose a file first", true);
+      $("measure-file").focus();
+      return;
+    }
+    if (!this.parsed) return; // identified after reading
+    this.form.showErrors([]);
+    this.quoteLine();
+    this.say("identifying …");
+    const {name, size, lastModified} = this.file;
+    this.start({fields: {...this.form.values(), ...more}, file: [name, size, lastModified]});
+  }
+
+  /** Sends the file unchanged or, if the address would be too long, everything as JSON. */
+  ask({fields}, signal) {
+    const text = asQuery(fields);
+    return text.length <= longestQuery
+      ? identify(text, this.file, signal)
+      : identifyJson(asJson(this.parsed, fields), signal);
+  }
+
+  show(answer, {fields}, milliseconds) {
+    this.setAnswer(answer, fields);
     summariseMeasurement(answer, milliseconds);
-    nameFigures(preset());
+    views.nameFigures(presetMenu.value);
     showFit(answer);
-    remember();
-    say("");
-    drawFile(fields);
-    if (record) draw(answer);
-    countUp(results);
-  },
+    this.remember();
+    this.say("");
+    this.drawFile(fields);
+    if (this.record) views.draw(answer);
+    countUp(this.results);
+  }
+
   fail(error) {
-    const left = error instanceof Problem ? form.showErrors(error.errors) : [];
-    say(wholeMessage(error, left), true);
-    quoteLine(error.message);
-  },
+    super.fail(error);
+    this.quoteLine(error.message);
+  }
+
   busy(is, cancelled) {
-    $("measure-cancel").hidden = !is;
-    compare(is);
-    results.setAttribute("aria-busy", is);
-    clearInterval(ticking);
+    super.busy(is, cancelled);
+    clearInterval(this.ticking);
     let seconds = 0;
-    if (is) ticking = setInterval(() => tick(++seconds), 1000);
-    if (cancelled) say("cancelled");
-  },
-  later: (text) => say(text, true),
-});
-
-function tick(seconds) {
-  if ($("measure-message").matches(".fault")) return;
-  const of = record ? ` ${record.t.length} samples` : "";
-  say(`identifying${of} … ${seconds} s`);
-}
-
-function run(more = {}) {
-  if (!file) {
-    say("choose a file first", true);
-    $("measure-file").focus();
-    return;
+    if (is) this.ticking = setInterval(() => this.tick(++seconds), 1000);
   }
-  if (!parsed) return; // identified after reading
-  form.showErrors([]);
-  quoteLine();
-  say("identifying …");
-  const {name, size, lastModified} = file;
-  job.start({fields: {...form.values(), ...more}, file: [name, size, lastModified]});
-}
 
-const readRun = (run, name) => readFile(new File([recordOfRun(run)], name, {type: "text/csv"}));
-
-/** Identifies the record of a simulated run {parameters, impacts, sticking, status}. */
-export async function measure(run) {
-  const {parameters} = run;
-  choosePreset("", oscillatorOf(parameters));
-  remember();
-  await readRun(run, `run-b${parameters.b * 1000}mm.csv`);
-}
-
-/** Identifies a simulated record of one of the experiments. */
-async function readSample(name) {
-  const mine = ++newest;
-  job.cancel();
-  choosePreset(name, ofColumns());
-  remember();
-  say("simulating …");
-  const {parameters} = presets[name];
-  const fields = {...parameters, cycles: sampleCycles, include: ["impacts", "regime"]};
-  try {
-    const run = await simulate(fields);
-    if (newest === mine) await readRun(run, `sample-${name}.csv`);
-  } catch (error) {
-    if (newest === mine) say(error.message, true);
+  tick(seconds) {
+    if ($("measure-message").matches(".fault")) return;
+    const count = this.record ? ` ${this.record.t.length} samples` : "";
+    this.say(`identifying${count} … ${seconds} s`);
   }
-}
 
-function download() {
-  const text = JSON.stringify(answer, null, 1);
-  const name = file.name.replace(/\.[^.]*$/, "");
-  save(new Blob([text], {type: "application/json"}), `${name}-identified.json`);
-}
+  /** Sets the answer of the record; null: not identified yet. */
+  setAnswer(answer, fields) {
+    Object.assign(this, {answer, sent: fields});
+    this.results.classList.toggle("known", answer !== null);
+    this.markStale();
+  }
 
-function command() {
-  const path = `v1/identify?${asQuery(sent ?? form.values())}`;
-  return sendFileAsCurl(path, "text/csv", file?.name ?? "record.csv");
-}
+  /** Draws the columns selected by the fields, with the impacts known. */
+  drawFile(fields) {
+    const {parsed} = this;
+    this.record = parsed && recordOf(parsed, fields);
+    const known = this.record !== null;
+    reveal({"measure-parts": known, "measure-list": known, "measure-add-at": known});
+    if (parsed) picker.show(parsed, fields);
+    if (!known) return;
+    const {t} = this.record;
+    views.drawRecord(this.record, (...clicked) => this.addAt(...clicked));
+    // Without an answer the list starts empty, so that impacts can be added by hand.
+    this.list.set(this.answer?.impacts ?? {time_s: []}, [t[0], t.at(-1)]);
+  }
 
-/** Files are chosen or dropped on the tab. */
-function listenToFiles() {
-  const input = $("measure-file");
-  input.onchange = () => readFile(input.files[0]);
-  const drag = (event) => {
-    event.preventDefault();
-    $("measure-drop").classList.toggle("over", event.type === "dragover");
-    if (event.type === "drop") readFile(event.dataTransfer.files[0]);
-  };
-  for (const type of ["ondragover", "ondragleave", "ondrop"]) $("panel-measurement")[type] = drag;
-}
+  /** Adds the impact at a clicked spike of the acceleration, while adding is switched on. */
+  addAt(time, reach) {
+    if (!$("plot-measured-a").matches(".adding")) return;
+    const {t} = this.record;
+    const i = spikeNear(this.record, time, reach);
+    if (i !== null && this.list.add(t[i])) this.say(`added an impact at ${t[i].toFixed(4)} s`);
+  }
 
-/** identify_fields: of /v1/parameters; presets; changed(): called when the query changes. */
-export function start({identify_fields: fields, presets: all}, changed) {
-  remembered = changed;
-  startViews(() => ({name: file?.name ?? "", answer}));
-  form = new Form($("measure-fields"), fieldsOf(fields), {prefix: "measure-", grouped: groups});
-  for (const [name, input] of form.inputs)
-    if (isColumn(name)) input.setAttribute("list", "measure-columns");
-  list = new ImpactList(edited);
-  $("measure-preset").append(new Option("user-defined oscillator", ""));
-  for (const {name, title, ...preset} of all) {
-    if (!(name in samples)) continue;
-    presets[name] = preset;
-    $("measure-preset").append(new Option(`Table 4, ${title.replace("experiment, ", "")}`, name));
-    const button = element("button", {
-      type: "button",
-      className: "small",
-      textContent: samples[name],
-      onclick: () => readSample(name),
+  /** Quotes the lines around one with an error. */
+  quoteLine(detail = "") {
+    const line = Number(/^line (\d+)/.exec(detail)?.[1]);
+    const first = Math.max(line - 1, 1);
+    const around = this.parsed?.text.split("\n", line + 1).slice(first - 1) ?? [];
+    const lines = around.map((text, k) => {
+      const n = first + k;
+      const textContent = `${String(n).padStart(7)}  ${text.slice(0, 120).trimEnd()}\n`;
+      return element("span", {className: n === line ? "at-fault" : "", textContent});
     });
-    $("measure-samples").append(" ", button);
+    $("measure-lines").replaceChildren(...lines);
+    reveal({"measure-lines": lines.length});
   }
-  listen();
-  listenToFiles();
-}
 
-/**
- * Marks the results as stale if they do not belong to the form's fields, or are about to be
- * replaced.
- */
-function compare(isBusy = false) {
-  const {impact_times_s: _, ...fields} = sent ?? {};
-  const isOld = sent !== null && asQuery(form.values()) !== asQuery(fields);
-  results.classList.toggle("stale", isBusy || isOld);
-}
+  /** Gives up the previous record. Returns isNewest(), which is false after the next call. */
+  beginRecord() {
+    this.cancel();
+    const mine = ++this.records;
+    return () => this.records === mine;
+  }
 
-function listen() {
-  $("measure-preset").onchange = () => {
-    choosePreset(preset(), ofColumns());
-    remember();
-  };
-  $("measure-fields").onchange = () => {
-    remember();
-    if (parsed && !answer) drawFile(form.values());
-  };
-  picker.start((field, name) => {
-    form.replace(field, name);
-    remember();
-    if (!parsed) return;
-    setAnswer(null, null);
-    drawFile(form.values());
-    if (record) run();
-  });
-  $("measure-form").onsubmit = (event) => {
-    event.preventDefault();
-    run();
-    if (file) scrollToResults("measure");
-  };
-  $("measure-cancel").onclick = () => job.cancel();
-  $("measure-again").onclick = () => run({impact_times_s: list.times()});
-  $("measure-reset").onclick = () => list.reset();
-  $("measure-add-at").onclick = ({currentTarget: button}) =>
-    button.setAttribute("aria-pressed", $("plot-measured-a").classList.toggle("adding"));
-  $("measure-download").onclick = download;
-  $("measure-copy").onclick = () => copy(command(), say);
+  /** Reads a chosen file, draws it and, if its columns are known, identifies it. */
+  async readFile(file) {
+    if (!file) return;
+    const isNewest = this.beginRecord();
+    const input = $("measure-file");
+    if (input.files[0] !== file) input.value = ""; // allows choosing the same file again
+    Object.assign(this, {file, parsed: null});
+    this.setAnswer(null, null);
+    const about = `${file.name}, ${(file.size / 1e6).toFixed(file.size < 1e5 ? 3 : 1)} MB`;
+    setTexts({"measure-about": about});
+    this.quoteLine();
+    this.say("reading …");
+    try {
+      const parsed = await parse(file, (share) => {
+        if (isNewest()) this.say(`reading … ${(100 * share).toFixed(0)} %`);
+      });
+      if (!isNewest()) return;
+      this.parsed = parsed;
+      const {names, columns} = parsed;
+      $("measure-columns").replaceChildren(...names.map((value) => element("option", {value})));
+      setTexts({"measure-about": `${about}, ${columns[0]?.length ?? 0} samples`});
+      this.forgetColumns(names);
+      this.drawFile(this.form.values());
+      if (this.record || !names.length) this.run();
+      else
+        this.say(
+          "choose which column is the time, and which the displacement or acceleration",
+          true,
+        );
+    } catch (error) {
+      if (!isNewest()) return;
+      this.file = null;
+      this.drawFile();
+      this.say(`${file.name} cannot be read: ${error.message}`, true);
+    }
+  }
+
+  /** Clears chosen columns that a new file does not have. */
+  forgetColumns(names) {
+    for (const [name, value] of Object.entries(this.ofColumns()))
+      if (isColumn(name) && names.length && !names.includes(value)) this.form.replace(name, "");
+  }
+
+  readRun(run, name) {
+    return this.readFile(new File([recordOfRun(run)], name, {type: "text/csv"}));
+  }
+
+  /** Identifies the record of a simulated run {parameters, impacts, sticking, status}. */
+  measure(run) {
+    const {parameters} = run;
+    this.choosePreset("", oscillatorOf(parameters));
+    this.remember();
+    return this.readRun(run, `run-b${parameters.b * 1000}mm.csv`);
+  }
+
+  /** Identifies a simulated record of one of the experiments. */
+  async readSample(name) {
+    const isNewest = this.beginRecord();
+    this.choosePreset(name, this.ofColumns());
+    this.remember();
+    this.say("simulating …");
+    const {parameters} = this.presets[name];
+    const fields = {...parameters, cycles: sampleCycles, include: ["impacts", "regime"]};
+    try {
+      const run = await simulate(fields);
+      if (isNewest()) await this.readRun(run, `sample-${name}.csv`);
+    } catch (error) {
+      if (isNewest()) this.say(error.message, true);
+    }
+  }
+
+  redraw() {
+    views.redraw();
+  }
 }

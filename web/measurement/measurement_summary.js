@@ -6,26 +6,20 @@ import {verdicts} from "../shared/quantities.js";
 import {cards, listWarnings} from "../shared/tables.js";
 import {isLeftOut} from "./impact_list.js";
 
-export const rounded = (value, n) => (value == null ? "–" : String(Number(value.toPrecision(n))));
+/** At most n digits; a dash for a missing value. */
+const rounded = (value, n) => (value == null ? "–" : String(Number(value.toPrecision(n))));
 
-const wall = (name, {R, standard_error: error, impacts}) => [
-  `R at ${name}`,
-  withError(R, error, 4),
-  count(impacts, "impact"),
-];
-
-function exponentCards({
-  parameters,
-  exponents: {qr},
-  slope,
-  verdict,
-  verdict_reason: reason,
-  forward,
-}) {
+function exponentCards({parameters, exponents: {qr}, slope, forward, ...answer}) {
   const error = qr?.standard_error[0];
-  const damping = `damping ζ = ${digits(parameters.derived.zeta)}`;
+  const {lambda1, low, high} = slope;
+  const zeta = `damping ζ = ${digits(parameters.derived.zeta)}`;
+  const source = forward ? "simulated from the first known state" : "no state is known";
   return [
-    ["verdict", verdicts[verdict] ?? "–", reason.replace("damping zeta", damping)],
+    [
+      "verdict",
+      verdicts[answer.verdict] ?? "–",
+      answer.verdict_reason.replace("damping zeta", zeta),
+    ],
     [
       "λ₁ (qr)",
       digits(qr?.final[0]),
@@ -33,14 +27,10 @@ function exponentCards({
     ],
     [
       "slope of λ₁ τ",
-      digits(slope.lambda1),
-      slope.low == null ? "" : `90 %: ${digits(slope.low)} to ${digits(slope.high)}`,
+      digits(lambda1),
+      low == null ? "" : `90 %: ${digits(low)} to ${digits(high)}`,
     ],
-    [
-      "λ₁ of the identified system",
-      digits(forward?.lambda[0]),
-      forward ? "simulated from the first known state" : "no state is known",
-    ],
+    ["λ₁ of the identified system", digits(forward?.lambda[0]), source],
   ];
 }
 
@@ -58,33 +48,33 @@ function impactsCard({impacts: {status, tau}, sticking}) {
   return ["impacts", tau.length, notes.filter(Boolean).join("; ")];
 }
 
+const restitutionCard = (wall, {R, standard_error: error, impacts}) => [
+  `R at ${wall}`,
+  withError(R, error, 4),
+  count(impacts, "impact"),
+];
+
 /** The fitted clearance, compared with the given one. */
 function clearanceCard({b, standard_error: error}, parameters) {
-  const card = (remark) => [
+  const off = (b / parameters.b - 1) * 100;
+  const agreement = Math.abs(off) < 0.05 ? "agrees" : `off by ${digits(off, 1)} %`;
+  const given = `given ${rounded(parameters.b * 1000, 5)} mm${b == null ? "" : `, ${agreement}`}`;
+  const isUsed = parameters.origin.b === "fitted to the record";
+  return [
     "b fitted",
     b == null ? "–" : `${withError(b * 1000, error * 1000, 2)} mm`,
-    remark,
+    isUsed ? "used in place of the given value" : given,
   ];
-  if (parameters.origin.b === "fitted to the record")
-    return card("used in place of the given value");
-  const given = `given ${rounded(parameters.b * 1000, 5)} mm`;
-  if (b == null) return card(given);
-  const off = (b / parameters.b - 1) * 100;
-  return card(`${given}, ${Math.abs(off) < 0.05 ? "agrees" : `off by ${digits(off, 1)} %`}`);
 }
 
 function signalCards(signal, milliseconds) {
   const {noise_displacement: x, noise_acceleration: a, pulse_s: pulse} = signal;
   const {samples, sampling_rate: rate} = signal;
-  const seconds = (samples / rate).toFixed(1);
-  const answered = `answered in ${milliseconds.toFixed(0)} ms`;
+  const duration = `${count(samples, "sample")}, ${(samples / rate).toFixed(1)} s`;
+  const noise = a == null ? "" : `${rounded(a, 3)} m/s²`;
   return [
     ["forcing G", `${rounded(signal.G * 1000, 4)} mm`, "fitted"],
-    [
-      "noise",
-      x == null ? "–" : `${rounded(x * 1e6, 3)} µm`,
-      a == null ? "" : `${rounded(a, 3)} m/s²`,
-    ],
+    ["noise", x == null ? "–" : `${rounded(x * 1e6, 3)} µm`, noise],
     [
       "pulse of an impact",
       `${rounded(pulse * 1000, 3)} ms`,
@@ -93,7 +83,7 @@ function signalCards(signal, milliseconds) {
     [
       "sampling",
       `${rounded(rate, 5)} Hz`,
-      `${count(samples, "sample")}, ${seconds} s; ${answered}`,
+      `${duration}; answered in ${milliseconds.toFixed(0)} ms`,
     ],
   ];
 }
@@ -103,8 +93,8 @@ export function summariseMeasurement(answer, milliseconds) {
   cards($("measure-summary"), [
     ...exponentCards(answer),
     impactsCard(answer),
-    wall("+b", restitution.plus),
-    wall("−b", restitution.minus),
+    restitutionCard("+b", restitution.plus),
+    restitutionCard("−b", restitution.minus),
     clearanceCard(fitted, parameters),
     ...signalCards(signal, milliseconds),
   ]);

@@ -5,7 +5,7 @@ import {askForKey, currentKey, keyHeaders} from "./key.js";
  * A problem document (RFC 9457) as an Error. `errors` lists {pointer, value, range, detail} per
  * invalid field.
  */
-export class Problem extends Error {
+class Problem extends Error {
   constructor({detail, title, status, errors = []}) {
     super(detail ?? title);
     Object.assign(this, {status, errors});
@@ -14,10 +14,6 @@ export class Problem extends Error {
 
 /** A temporary failure: the same request can succeed later. */
 export class TemporaryError extends Error {}
-
-/** The error's message, followed by the details of `errors` that differ from it. */
-export const wholeMessage = (error, errors) =>
-  [error.message, ...errors.map((e) => e.detail).filter((d) => d !== error.message)].join("; ");
 
 async function read(response) {
   const noJson = {title: `the server answered ${response.status} without JSON`};

@@ -71,10 +71,3 @@ export function fillMenu(menu, entries, wish = menu.value) {
   menu.replaceChildren(...entries.map(([value, text = value]) => new Option(text, value)));
   choose(menu, wish);
 }
-
-/** On small screens the results of a tab lie below its form: scrolls to them. */
-export function scrollToResults(tab) {
-  const form = $(`${tab}-form`);
-  const results = $(`${tab}-results`);
-  if (results.offsetLeft < form.offsetLeft + form.offsetWidth) results.scrollIntoView();
-}

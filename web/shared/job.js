@@ -2,7 +2,7 @@
 // start.
 import {TemporaryError} from "./api.js";
 
-const staleDelay = 120; // ms after which an outdated result is marked as stale
+const lateAfter = 120; // ms after which a computation is reported as busy
 export const retryInterval = 2; // s between attempts while the service is unreachable or busy
 
 /** Waits some seconds, or until the signal is aborted. */
@@ -15,78 +15,84 @@ const sleep = (seconds, signal) =>
 /** True for temporary failures: no answer, a broken answer or 503. */
 export const isTemporary = (error) => error instanceof TemporaryError || error.status === 503;
 
+/**
+ * ask(request, signal) returns the answer as a promise; show(answer, request, ms) can be
+ * asynchronous; fail(error, request) gets permanent errors. Optional: busy(is, cancelled), called
+ * when a computation takes longer than `lateAfter` and when it ends; later(text), called with a
+ * message while attempts fail temporarily. They are given to the constructor or are methods of a
+ * subclass.
+ */
 export class Job {
-  running = null;
-  next = null;
+  #running = null;
+  #next = null;
 
-  /**
-   * ask(request, signal) returns the answer as a promise; show(answer, request, ms) can be
-   * asynchronous; fail(error, request) gets permanent errors. Optional: busy(is, cancelled), called
-   * when a computation takes longer than `staleDelay` and when it ends; later(text), called with a
-   * message while attempts fail temporarily. A request equal to the running one is ignored.
-   */
   constructor(parts) {
     Object.assign(this, parts);
-  }
-
-  /**
-   * Starts a request. dragging: one of many requests of a slider; the running request is then
-   * completed, so that intermediate results are shown.
-   */
-  start(request, {dragging = false} = {}) {
-    const {running} = this;
-    const same = JSON.stringify(request) === running?.text;
-    if (same && !this.next && !running.abort.signal.aborted) return;
-    this.next = request;
-    if (!running) this.run();
-    else if (!dragging || !running.answers) running.abort.abort();
   }
 
   busy() {}
 
   later() {}
 
-  cancel() {
-    this.next = null;
-    this.running?.abort.abort();
+  /**
+   * Starts a request; one that equals the running request gets its answer instead. dragging: one of
+   * many requests of a slider; the running one is then completed, so that intermediate results are
+   * shown.
+   */
+  start(request, {dragging = false} = {}) {
+    const running = this.#running;
+    const same = JSON.stringify(request) === running?.text;
+    if (same && !this.#next && !running.abort.signal.aborted) {
+      running.newest = request;
+      return;
+    }
+    this.#next = request;
+    if (!running) this.#work();
+    else if (!dragging || !running.answers) running.abort.abort();
   }
 
-  async run() {
-    while (this.next) {
-      const request = this.next;
-      this.next = null;
-      await this.one(request);
+  cancel() {
+    this.#next = null;
+    this.#running?.abort.abort();
+  }
+
+  async #work() {
+    while (this.#next) {
+      const request = this.#next;
+      this.#next = null;
+      await this.#compute(request);
     }
   }
 
-  async one(request) {
+  async #compute(request) {
     const abort = new AbortController();
     const {signal} = abort;
-    this.running = {abort, answers: true, text: JSON.stringify(request)};
-    const late = setTimeout(() => this.busy(true), staleDelay);
+    const running = {newest: request, abort, answers: true, text: JSON.stringify(request)};
+    this.#running = running;
+    const late = setTimeout(() => this.busy(true), lateAfter);
     const began = performance.now();
     let cancelled = false;
     try {
-      const answer = await this.answer(request, signal);
-      if (!signal.aborted) await this.show(answer, request, performance.now() - began);
+      const answer = await this.#answer(request, signal);
+      if (!signal.aborted) await this.show(answer, running.newest, performance.now() - began);
     } catch (error) {
-      if (!signal.aborted) this.fail(error, request);
-      else cancelled = !this.next;
+      if (!signal.aborted) this.fail(error, running.newest);
+      else cancelled = !this.#next;
     } finally {
       clearTimeout(late);
-      this.running = null;
-      if (!this.next) this.busy(false, cancelled);
+      this.#running = null;
+      if (!this.#next) this.busy(false, cancelled);
     }
   }
 
   /** Repeats the request while it fails temporarily. */
-  async answer(request, signal) {
+  async #answer(request, signal) {
     for (;;)
       try {
         return await this.ask(request, signal);
       } catch (error) {
         if (signal.aborted || !isTemporary(error)) throw error;
-        this.running.answers = false;
+        this.#running.answers = false;
         this.later(`${error.message}; retrying every ${retryInterval} s`);
         await sleep(retryInterval, signal);
       }

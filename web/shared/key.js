@@ -12,8 +12,8 @@ export const hasKey = () => currentKey() !== null;
 export const keyHeaders = () => (hasKey() ? {Authorization: `Bearer ${currentKey()}`} : {});
 
 /**
- * Prompts for a key after a 401 response. Resolves to true if a text was entered before the dialog
- * closed; that text is then the key.
+ * Prompts for a key after a 401 response. Resolves to true if a valid key was entered, and to false
+ * if the dialog was closed by Escape.
  */
 export function askForKey() {
   openPrompt ??= showDialog().finally(() => {
@@ -31,8 +31,8 @@ async function showDialog() {
     title: "16 or more letters, digits or -._~+/=",
     autocomplete: "current-password",
   });
+  const submit = element("button", {value: "use"}, "Use key");
   const rejection = hasKey() ? "The server does not accept this key. " : "";
-  const submit = element("button", {}, "Use key");
   const dialog = element(
     "dialog",
     {},
@@ -46,7 +46,7 @@ async function showDialog() {
     dialog.onclose = resolve;
   });
   dialog.remove();
-  const key = input.value.trim();
-  if (key) sessionStorage.setItem(name, key);
-  return Boolean(key);
+  const entered = dialog.returnValue === submit.value; // the form was valid
+  if (entered) sessionStorage.setItem(name, input.value.trim());
+  return entered;
 }

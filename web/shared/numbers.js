@@ -3,6 +3,12 @@
 /** Limits a value to [least, most]. */
 export const clamp = (value, least, most) => Math.min(Math.max(value, least), most);
 
+/** A range with digits for about a ten-thousandth of its width. */
+export function roundedRange([from, to]) {
+  const places = clamp(4 - Math.floor(Math.log10(to - from)), 0, 15);
+  return [from, to].map((v) => Number(v.toFixed(places)));
+}
+
 export const minus = (text) => text.replace("-", "−");
 
 /** Wraps a formatter: a missing value becomes a dash. */

@@ -1,22 +1,14 @@
 // The simulation tab: every change is sent as one request and its answer shown immediately. The
 // address holds the request and the visible range.
 
-import {Problem, simulate, wholeMessage} from "../shared/api.js";
-import {
-  $,
-  attributes,
-  button,
-  countUp,
-  nextTask,
-  press,
-  reveal,
-  sayIn,
-  setTexts,
-} from "../shared/dom.js";
+import {simulate} from "../shared/api.js";
+import {$, attributes, button, countUp, nextTask, press, reveal, setTexts} from "../shared/dom.js";
 import {copy, formsOf} from "../shared/export.js";
 import {Form, unknownText} from "../shared/form.js";
 import {Job} from "../shared/job.js";
 import {Motion} from "../shared/motion.js";
+import {roundedRange} from "../shared/numbers.js";
+import {RequestTab} from "../shared/request_tab.js";
 import {showRemarks} from "../shared/tables.js";
 import {onUnits, unitsOf, unitsSwitch} from "../shared/units.js";
 import {describe} from "./captions.js";
@@ -42,55 +34,6 @@ const deferredParts = {
 const large = 20000; // impacts above which a run is drawn in several tasks
 const idle = 100; // ms without an edit before the deferred parts are requested
 
-let request;
-let lastMoved = "b";
-let shown = null;
-let wantedView = null;
-let remembered = () => {};
-let deferring = 0;
-
-const say = sayIn("message");
-
-/** Marks the results as those of another request. */
-const setStale = (is) => $("results").classList.toggle("stale", is);
-
-const job = new Job({
-  ask: (fields, signal) => simulate({...fields, ...firstParts}, signal),
-  show: present,
-  fail: showError,
-  busy(is, cancelled) {
-    if (is || cancelled) setStale(true);
-    attributes($("results"), {"aria-busy": is});
-    reveal({cancel: is});
-    if (is && !$("message").classList.contains("fault")) say("computing …");
-    else if (cancelled) say("cancelled: the previous run is shown");
-  },
-  later: (text) => say(text, true),
-});
-
-const deferredJob = new Job({
-  ask: (fields, signal) => simulate({...fields, ...deferredParts}, signal),
-  show(answer, fields) {
-    if (fields !== run.fields) return;
-    run.deferred = answer;
-    remark(run.answer, answer);
-    mainPlots.showDeferred();
-    details.follow();
-    countUp($("results"));
-  },
-  fail: (error) => say(`T, the raw product and the manifold are missing: ${error.message}`, true),
-});
-
-function showError(error) {
-  setStale(true);
-  if (!run) setTexts({sentence: "No results yet."});
-  if (!(error instanceof Problem)) return say(wholeMessage(error, []), true);
-  const left = request.form.showErrors(error.errors, false);
-  const turned = sliders.showErrors(error.errors);
-  if (left.length + turned.length < error.errors.length) $("more").open = true;
-  say(turned.length ? turned.join("; ") : wholeMessage(error, left), true);
-}
-
 /** The range first in view: the window, if it ends well before the run. */
 function homeOf({parameters, status}) {
   const to = parameters.window?.[1];
@@ -104,208 +47,249 @@ function remark({exponents: {verdict, verdict_reason: why}, regime, warnings}, m
   showRemarks("remarks", [...new Set([...(open ? [`not decided: ${why}`] : []), ...all])]);
 }
 
-function showOrigins() {
-  request.showDamping(run.answer.parameters);
-  if ($("more").open) request.form.showOrigins(run.answer.parameters);
-}
+export class SimulationTab extends RequestTab {
+  asked = null; // query of the request in the address
+  mistyped = false; // true while a slider's number differs from the request
+  wantedView = null; // of the next run, from the address
+  lastMoved = "b"; // name of the slider moved last
 
-/** Draws a run; a large one in several tasks, between which the browser handles events. */
-async function present(answer, fields) {
-  const pause = answer.impacts.tau.length > large ? nextTask : null;
-  if (pause) await pause();
-  const fresh = run === null || fields.fresh;
-  setRun({fields, answer, motion: new Motion(answer), units: unitsOf(answer.parameters)});
-  say(unknownText(fields.unknown));
-  setStale(false);
-  request.form.showErrors([]);
-  showOrigins();
-  remark(answer);
-  reveal({units: answer.parameters.si});
-  viewport.span(0, answer.status.tau, homeOf(answer), fresh);
-  if (wantedView) viewport.range = wantedView;
-  wantedView = null;
-  reveal({whole: viewport.changed});
-  for (const step of drawing(fresh)) {
-    if (pause) await pause();
-    if (run.answer !== answer) return;
-    step();
-  }
-  countUp($("results"), "shown");
-  clearTimeout(deferring);
-  deferring = setTimeout(() => deferredJob.start(fields), idle);
-}
-
-/** The steps that draw the run in the chosen units. */
-function drawing(fresh = false) {
-  const {answer, fields, units} = run;
-  const slider = sliders.sliderOf(lastMoved, answer.parameters);
-  const tell = () => {
-    sliders.show(answer.parameters, {fresh, dragged: fields.dragged}, slider);
-    showSentence(answer, slider, units);
-  };
-  const end = () => {
-    player.show();
-    describe(answer, request.textOf(fields, answer.parameters));
-    presetMenu.markPlots(request.edited ? null : request.preset);
-    strip.show(request.systemOf(fields), answer.parameters, slider);
-  };
-  return [tell, ...mainPlots.drawing(), end];
-}
-
-/**
- * Sends the form. dragging: while a slider is dragged; fresh: not changed by a slider; unknown: names
- * in the address.
- */
-function send({dragging = false, fresh = false, unknown = []} = {}) {
-  const fields = request.fields();
-  const about = {fresh, unknown, dragged: dragging};
-  for (const [name, value] of Object.entries(about)) Object.defineProperty(fields, name, {value});
-  presetMenu.markChip(request.name, request.edited);
-  if (dragging) player.hold();
-  remember(toQuery(fields), dragging);
-  job.start(fields, {dragging});
-}
-
-/** Updates the address; Back undoes an edit. */
-function remember(query, soon) {
-  if (query === shown) {
-    if (!soon) remembered(); // the edit is complete
-    return;
-  }
-  const edit = shown !== null;
-  shown = query;
-  remembered({edit, soon});
-}
-
-/** Called when a slider or the strip's marker moves. */
-function sliderMoved(fields, slider, dragging) {
-  lastMoved = slider.name;
-  const {form} = request;
-  if (slider.name === "zeta") request.dampingChosen = true;
-  const entries = Object.entries(fields);
-  for (const [name, value] of entries) form.replace(name, value ?? "");
-  note("");
-  send({dragging});
-}
-
-/** Shows the preset's note, or that the preset was changed. */
-function note(text) {
-  const {preset, edited} = request;
-  const changed = preset && edited ? `${preset.source}, changed` : (preset?.note ?? "");
-  setTexts({"preset-note": text || changed});
-}
-
-function choosePreset(name) {
-  lastMoved = "b";
-  request.choose(name);
-  note("");
-  send({fresh: true});
-}
-
-/** The query of the requested run with its visible range; null before the first. */
-export function query() {
-  if (shown === null) return null;
-  const view = wantedView ?? (viewport.changed ? viewport.range : null);
-  const pinned = pin.query();
-  const more = [
-    view && `view=${viewText(view)}`,
-    pinned !== null && `pinned=${encodeURIComponent(pinned)}`,
-  ];
-  return [shown, ...more].filter(Boolean).join("&");
-}
-
-/** Digits for a ten-thousandth of the range. */
-function viewText([from, to]) {
-  const places = Math.max(0, 4 - Math.floor(Math.log10(to - from)));
-  return [from, to].map((t) => Number(t.toFixed(Math.min(places, 15)))).join(",");
-}
-
-/** Shows the run of a query; by default the paper's Fig. 3. */
-export function open(given) {
-  const rest = new URLSearchParams(given);
-  const view = rest.get("view")?.split(",").map(Number);
-  const pinned = rest.get("pinned");
-  for (const name of ["view", "pinned"]) rest.delete(name);
-  pin.restore(pinned, firstParts);
-  if (String(rest) === shown) return;
-  const isView = view?.length === 2 && view[0] < view[1];
-  wantedView = isView ? view : null;
-  const unknown = request.read(rest);
-  if (view && !isView) unknown.push(`view=${new URLSearchParams(given).get("view")}`);
-  lastMoved = "b";
-  note("");
-  shown = toQuery(request.fields());
-  send({fresh: true, unknown});
-  remembered(); // in canonical form
-}
-
-export function redraw() {
-  mainPlots.redraw();
-  details.redraw();
-  strip.redraw();
-  machine.redraw();
-}
-
-/**
- * fields: of /v1/parameters; presets; changed({edit}): called when the query changes;
- * measure(answer): opens the run in Measurement.
- */
-export function start({fields, presets: list}, changed, {measure}) {
-  remembered = changed;
-  const form = new Form($("fields"), fields);
-  request = new Request(form, fields, list);
-  mainPlots.start();
-  player.start();
-  const refused = (text, {label}) => {
-    setStale(true);
-    say(`${label}: “${text}” is not a number`, true);
-  };
-  const old = () => run && toQuery(run.fields) !== shown;
-  sliders.start(sliderMoved, refused, (differs) => setStale(differs || old()));
-  details.start(request.fieldOf);
-  presetMenu.start(list, choosePreset);
-  pin.start(changed, (other) => {
-    request.read(other);
-    send();
+  deferred = new Job({
+    ask: (fields, signal) => simulate({...fields, ...deferredParts}, signal),
+    show: (answer, fields) => {
+      if (fields !== run.fields) return;
+      run.deferred = answer;
+      remark(run.answer, answer);
+      mainPlots.showDeferred();
+      details.follow();
+      countUp(this.results);
+    },
+    fail: ({message}) =>
+      this.say(`T, the raw product and the manifold are missing: ${message}`, true),
   });
-  startSmallScreen();
-  listen(form, measure);
-}
 
-function listen(form, measure) {
-  for (const [name, input] of form.inputs) {
-    input.oninput = () => note(request.fieldEdited(name));
-    input.onchange = () => {
-      if (name === "damping") request.dampingChosen = true;
-      send();
+  constructor({fields, presets}, changed, {measure}) {
+    super("", changed);
+    this.form = new Form($("fields"), fields);
+    this.request = new Request(this.form, fields, presets);
+    mainPlots.start();
+    player.start();
+    const refused = (text, {label}) => {
+      this.mark(true);
+      this.say(`${label}: “${text}” is not a number`, true);
     };
+    sliders.start(
+      (...moved) => this.sliderMoved(...moved),
+      refused,
+      (differs) => this.mark(differs),
+    );
+    details.start(this.request.fieldOf);
+    presetMenu.start(presets, (name) => this.choosePreset(name));
+    pin.start(changed, (other) => {
+      this.request.read(other);
+      this.send();
+    });
+    this.listen(measure);
+    startSmallScreen();
   }
-  viewport.onZoom(() => {
+
+  listen(measure) {
+    const {form, request} = this;
+    for (const [name, input] of form.inputs) {
+      input.oninput = () => this.note(request.fieldEdited(name));
+      input.onchange = () => {
+        if (name === "damping") request.dampingChosen = true;
+        this.send();
+      };
+    }
+    viewport.onZoom(() => {
+      reveal({whole: viewport.changed});
+      this.changed({soon: true});
+    });
+    $("whole").onclick = () => viewport.reset();
+    $("more").ontoggle = () => {
+      if (run) this.showOrigins();
+      if ($("more").open) $("more").scrollIntoView({block: "nearest"});
+    };
+    unitsSwitch($("units"));
+    onUnits(() => {
+      if (!run) return;
+      run.units = unitsOf(run.answer.parameters);
+      for (const step of this.drawing()) step();
+      details.follow();
+    });
+    $("measure-this").onclick = () => run && measure(run.answer);
+    const texts = formsOf("v1/simulate", () => request.fields());
+    for (const [name, text] of Object.entries(texts)) {
+      const title = `copy this run as ${name}`;
+      const copyText = () => copy(text(), this.say);
+      $("copies").append(button(name, copyText, {className: "small", title}));
+    }
+  }
+
+  ask(fields, signal) {
+    return simulate({...fields, ...firstParts}, signal);
+  }
+
+  isStale(busy) {
+    return busy || this.mistyped || !run || toQuery(run.fields) !== this.asked;
+  }
+
+  mark(mistyped) {
+    this.mistyped = mistyped;
+    this.markStale();
+  }
+
+  busy(is, cancelled) {
+    super.busy(is, cancelled);
+    if (is && !$("message").classList.contains("fault")) this.say("computing …");
+    else if (cancelled) this.say("cancelled: the previous run is shown");
+  }
+
+  /** Errors are shown at sliders, or else at fields, without moving the focus. */
+  fail({message, errors = []}) {
+    if (!run) setTexts({sentence: "No results yet."});
+    const left = this.form.showErrors(errors, false);
+    const ofSliders = sliders.showErrors(errors);
+    if (left.length + ofSliders.length < errors.length) $("more").open = true;
+    if (ofSliders.length) this.sayFault(ofSliders);
+    else this.sayFault([message, ...left.map(({detail}) => detail)]);
+  }
+
+  showOrigins() {
+    this.request.showDamping(run.answer.parameters);
+    if ($("more").open) this.form.showOrigins(run.answer.parameters);
+  }
+
+  /** Draws a run; a large one in several tasks, between which the browser handles events. */
+  async show(answer, fields) {
+    const pause = answer.impacts.tau.length > large ? nextTask : null;
+    if (pause) await pause();
+    const fresh = run === null || fields.fresh;
+    setRun({fields, answer, motion: new Motion(answer), units: unitsOf(answer.parameters)});
+    this.say(unknownText(fields.unknown));
+    this.mark(false);
+    this.form.showErrors([]);
+    this.showOrigins();
+    remark(answer);
+    reveal({units: answer.parameters.si});
+    viewport.span(0, answer.status.tau, homeOf(answer), fresh);
+    if (this.wantedView) viewport.range = this.wantedView;
+    this.wantedView = null;
     reveal({whole: viewport.changed});
-    remembered({soon: true});
-  });
-  $("whole").onclick = () => viewport.reset();
-  $("more").ontoggle = () => {
-    if (run) showOrigins();
-    if ($("more").open) $("more").scrollIntoView({block: "nearest"});
-  };
-  unitsSwitch($("units"));
-  onUnits(() => {
-    if (!run) return;
-    run.units = unitsOf(run.answer.parameters);
-    for (const step of drawing()) step();
-    details.follow();
-  });
-  $("form").onsubmit = (event) => {
-    event.preventDefault();
-    if (!$("form").querySelector(".slider [aria-invalid=true]")) send();
-  };
-  $("cancel").onclick = () => job.cancel();
-  $("measure-this").onclick = () => run && measure(run.answer);
-  const forms = formsOf("v1/simulate", () => request.fields());
-  for (const [name, text] of Object.entries(forms)) {
-    const title = `copy this run as ${name}`;
-    $("copies").append(button(name, () => copy(text(), say), {className: "small", title}));
+    for (const step of this.drawing(fresh)) {
+      if (pause) await pause();
+      if (run.answer !== answer) return;
+      step();
+    }
+    countUp(this.results, "shown");
+    clearTimeout(this.deferring);
+    this.deferring = setTimeout(() => this.deferred.start(fields), idle);
+  }
+
+  /** The steps that draw the run in the chosen units. */
+  drawing(fresh = false) {
+    const {request} = this;
+    const {answer, fields, units} = run;
+    const slider = sliders.sliderOf(this.lastMoved, answer.parameters);
+    const tell = () => {
+      sliders.show(answer.parameters, {fresh, dragged: fields.dragged}, slider);
+      showSentence(answer, slider, units);
+    };
+    const end = () => {
+      player.show();
+      describe(answer, request.textOf(fields, answer.parameters));
+      presetMenu.markPlots(request.edited ? null : request.preset);
+      strip.show(request.systemOf(fields), answer.parameters, slider);
+    };
+    return [tell, ...mainPlots.drawing(), end];
+  }
+
+  submit() {
+    if (!$("form").querySelector(".slider [aria-invalid=true]")) this.send();
+  }
+
+  /**
+   * Sends the form. dragging: while a slider is dragged; fresh: not changed by a slider; unknown:
+   * names in the address.
+   */
+  send({dragging = false, fresh = false, unknown = []} = {}) {
+    const fields = this.request.fields();
+    const about = {fresh, unknown, dragged: dragging};
+    for (const [name, value] of Object.entries(about)) Object.defineProperty(fields, name, {value});
+    presetMenu.markChip(this.request.name, this.request.edited);
+    if (dragging) player.hold();
+    this.remember(toQuery(fields), dragging);
+    this.start(fields, {dragging});
+  }
+
+  /** Updates the address; Back undoes an edit. */
+  remember(query, soon) {
+    if (query === this.asked) {
+      if (!soon) this.changed(); // the edit is complete
+      return;
+    }
+    const edit = this.asked !== null;
+    this.asked = query;
+    this.changed({edit, soon});
+  }
+
+  /** Called when a slider or the strip's marker moves. */
+  sliderMoved(fields, slider, dragging) {
+    const {form, request} = this;
+    this.lastMoved = slider.name;
+    if (slider.name === "zeta") request.dampingChosen = true;
+    for (const [name, value] of Object.entries(fields)) form.replace(name, value ?? "");
+    this.note("");
+    this.send({dragging});
+  }
+
+  /** Shows the preset's note, or that the preset was changed. */
+  note(text) {
+    const {preset, edited} = this.request;
+    const changed = preset && edited ? `${preset.source}, changed` : (preset?.note ?? "");
+    setTexts({"preset-note": text || changed});
+  }
+
+  choosePreset(name) {
+    this.lastMoved = "b";
+    this.request.choose(name);
+    this.note("");
+    this.send({fresh: true});
+  }
+
+  /** The query of the requested run with its visible range; null before the first. */
+  query() {
+    if (this.asked === null) return null;
+    const view = this.wantedView ?? (viewport.changed ? viewport.range : null);
+    const pinned = pin.query();
+    const more = [
+      view && `view=${roundedRange(view)}`,
+      pinned !== null && `pinned=${encodeURIComponent(pinned)}`,
+    ];
+    return [this.asked, ...more].filter(Boolean).join("&");
+  }
+
+  /** Shows the run of a query; by default the paper's Fig. 3. */
+  open(given) {
+    const rest = new URLSearchParams(given);
+    const view = rest.get("view")?.split(",").map(Number);
+    const pinned = rest.get("pinned");
+    for (const name of ["view", "pinned"]) rest.delete(name);
+    pin.restore(pinned, firstParts);
+    if (String(rest) === this.asked) return;
+    const isView = view?.length === 2 && view[0] < view[1];
+    this.wantedView = isView ? view : null;
+    const unknown = this.request.read(rest);
+    if (view && !isView) unknown.push(`view=${given.get("view")}`);
+    this.lastMoved = "b";
+    this.note("");
+    this.asked = toQuery(this.request.fields());
+    this.send({fresh: true, unknown});
+    this.changed(); // in canonical form
+  }
+
+  redraw() {
+    for (const part of [mainPlots, details, strip, machine]) part.redraw();
   }
 }
 

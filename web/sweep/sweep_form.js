@@ -74,6 +74,9 @@ function noteOf({description, unit: own}) {
   return unit ? `${description}, in ${unit}` : description;
 }
 
+/** A count with its digits in groups of three. */
+export const grouped = (n) => String(n).replace(/\B(?=(\d{3})+$)/g, " ");
+
 const standardOf = (form, name) => form.fields.find((f) => f.name === name).default;
 
 /**
@@ -169,7 +172,7 @@ export class SweepForm {
   }
 
   /**
-   * Adapts ranges, units and disabled fields to the chosen parameters. reduce: the reduction to
+   * Adapts ranges, units, disabled fields and the size to the fields. reduce: the reduction to
    * select, if it changes.
    */
   adapt(reduce) {
@@ -185,6 +188,7 @@ export class SweepForm {
     }
     this.base.disable(swept);
     this.adaptRun(swept, reduce);
+    this.showSize();
   }
 
   /**
@@ -278,15 +282,18 @@ export class SweepForm {
     return name === "max_impacts" ? [this.run, name] : [this.base, name];
   }
 
-  /** The number of points and cycles, as far as the fields are filled. */
-  size() {
+  /** Shows the number of points and cycles, if the fields are filled. */
+  showSize() {
     const {axes, starts: given, ...run} = this.request();
     const several = given === defaultSet;
     const starts = several ? 1 : given?.length || 1;
-    const counts = axes.map((axis) => axis.count ?? NaN);
+    const counts = axes.map(({count}) => count ?? NaN);
     const points = counts.reduce((a, n) => a * n, starts);
     const cyclesOf = (name) => run[name] ?? standardOf(this.run, name);
-    const cycles = cyclesOf("transient_cycles") + cyclesOf("cycles");
-    return {counts, starts, points, cycles: points * (several ? 5 : 1) * cycles};
+    const each = (several ? 5 : 1) * (cyclesOf("transient_cycles") + cyclesOf("cycles"));
+    const factors = [...counts, ...(starts > 1 ? [`${starts} starts`] : [])];
+    const product = factors.length > 1 ? `${factors.join(" × ")} = ` : "";
+    const size = `${product}${grouped(points)} points, ${grouped(points * each)} cycles`;
+    setTexts({"sweep-size": Number.isFinite(points) ? size : ""});
   }
 }

@@ -3,6 +3,7 @@
 import {$, button, element} from "../shared/dom.js";
 import {addExportButton} from "../shared/export_dialog.js";
 import {Frame} from "../shared/frame.js";
+import {roundedRange} from "../shared/numbers.js";
 import {ZoomablePlot} from "../shared/zoomable_plot.js";
 import {sameAxis, startNote} from "./axis_labels.js";
 
@@ -200,17 +201,10 @@ export class SweepView {
     return this.labels.fields({...base, ...run});
   }
 
-  /**
-   * Ends of the visible ranges as values, rounded to about 1e-4 of the range; empty for the full
-   * range.
-   */
+  /** Ends of the visible ranges as rounded values; empty for the full range. */
   ends() {
     if (!this.viewports.some(({zoomed}) => zoomed)) return [];
-    return this.viewports.flatMap(({range}, i) => {
-      const ends = range.map(this.data.axes[i].from);
-      const digits = 4 - Math.floor(Math.log10(ends[1] - ends[0]));
-      return ends.map((v) => Number(v.toFixed(Math.max(digits, 0))));
-    });
+    return this.viewports.flatMap(({range}, i) => roundedRange(range.map(this.data.axes[i].from)));
   }
 
   /** Zooms to the ranges returned by ends(); an empty list resets the zoom. */
