@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 
 #include <cerrno>
-#include <charconv>
+#include <climits>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "cli/files.hpp"
+#include "program/whole_number.hpp"
 
 namespace vines::cli {
 
@@ -28,16 +29,12 @@ namespace {
 constexpr int max_links = 40;  // as in Linux (MAXSYMLINKS)
 
 /// Number of the file descriptor of this process that the path stands for, as /dev/fd/3 does.
-std::optional<int> descriptor_number(const std::string& path) {
+std::optional<std::size_t> descriptor_number(const std::string& path) {
     if (path == "/dev/stdout") return STDOUT_FILENO;
     if (path == "/dev/stderr") return STDERR_FILENO;
-    for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
-        if (!path.starts_with(folder)) continue;
-        int number = -1;
-        const char* const end = path.data() + path.size();
-        const auto [rest, fault] = std::from_chars(path.data() + folder.size(), end, number);
-        if (fault == std::errc() && rest == end && number >= 0) return number;
-    }
+    for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"})
+        if (path.starts_with(folder))
+            return whole_number(std::string_view(path).substr(folder.size()), 0, INT_MAX);
     return std::nullopt;
 }
 
@@ -99,7 +96,8 @@ Destination destination_of(const std::string& path) {
     // further, and a missing target can be created.
     std::string at = path;
     for (int links = 0;; ++links) {
-        if (const auto number = descriptor_number(at)) return open_descriptor(path, *number);
+        if (const auto number = descriptor_number(at))
+            return open_descriptor(path, static_cast<int>(*number));
         struct stat entry{};
         const bool is_link = ::lstat(at.c_str(), &entry) == 0 && S_ISLNK(entry.st_mode);
         if (!is_link) break;

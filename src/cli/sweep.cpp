@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstddef>
 #include <cstdlib>
 #include <memory>
@@ -20,6 +19,7 @@
 #include "cli/sweep_file.hpp"
 #include "cli/sweep_run.hpp"
 #include "program/subcommand.hpp"
+#include "program/whole_number.hpp"
 
 namespace vines::cli {
 
@@ -31,22 +31,8 @@ struct Shard {
     std::size_t count = 1;
 };
 
-/// Parses a non-negative decimal integer; -1 for any other text.
-long number(const std::string& text) {
-    char* end = nullptr;
-    errno = 0;
-    const long value = std::strtol(text.c_str(), &end, 10);
-    return text.empty() || *end || errno || value < 0 ? -1 : value;
-}
-
-/// Throws Problem 422 unless 0 <= index < count.
-Shard make_shard(const std::string& index, const std::string& count) {
-    const long i = number(index), n = number(count);
-    if (i < 0 || n < 1 || i >= n)
-        throw api::Problem(
-            422, fmt::format("a shard is i/N with 0 <= i < N, not {}/{}", index, count));
-    return {static_cast<std::size_t>(i), static_cast<std::size_t>(n)};
-}
+// Largest number of shards, and largest id of a Slurm array's first task.
+constexpr std::size_t max_shards = max_points;
 
 /// Value of an environment variable; empty if unset.
 std::string variable(const char* name) {
@@ -54,29 +40,52 @@ std::string variable(const char* name) {
     return value ? value : "";
 }
 
-Shard shard_of_environment(const std::string& shards) {
-    if (const std::string id = variable("SLURM_ARRAY_TASK_ID"); !id.empty()) {
-        const long first = std::strtol(variable("SLURM_ARRAY_TASK_MIN").c_str(), nullptr, 10);
-        return make_shard(
-            fmt::format("{}", std::strtol(id.c_str(), nullptr, 10) - first),
-            shards.empty() ? variable("SLURM_ARRAY_TASK_COUNT") : shards);
-    }
-    if (const std::string index = variable("JOB_COMPLETION_INDEX"); !index.empty())
-        return make_shard(index, shards);
+/// The same as a number. Throws Problem 422 unless it is a whole number from `least` to `most`.
+std::size_t number_in_variable(const char* name, std::size_t least, std::size_t most) {
+    const std::string text = variable(name);
+    if (const auto value = whole_number(text, least, most)) return *value;
     throw api::Problem(
         422,
-        "--shard auto needs SLURM_ARRAY_TASK_ID and SLURM_ARRAY_TASK_COUNT, or "
-        "JOB_COMPLETION_INDEX and --shards, in the environment");
+        fmt::format(
+            "{} is {}, not a whole number from {} to {}", name, api::shortened(text), least, most));
+}
+
+/// `shards`: N if above 0, in place of SLURM_ARRAY_TASK_COUNT. Throws Problem 422 for a missing or
+/// invalid variable.
+Shard shard_of_environment(std::size_t shards) {
+    if (!variable("SLURM_ARRAY_TASK_ID").empty()) {
+        if (shards == 0 && variable("SLURM_ARRAY_TASK_COUNT").empty())
+            throw api::Problem(
+                422, "--shard auto in a Slurm array needs SLURM_ARRAY_TASK_COUNT or --shards");
+        if (shards == 0) shards = number_in_variable("SLURM_ARRAY_TASK_COUNT", 1, max_shards);
+        const std::size_t first = variable("SLURM_ARRAY_TASK_MIN").empty()
+                                      ? 0
+                                      : number_in_variable("SLURM_ARRAY_TASK_MIN", 0, max_shards);
+        return {
+            number_in_variable("SLURM_ARRAY_TASK_ID", first, first + shards - 1) - first, shards};
+    }
+    if (variable("JOB_COMPLETION_INDEX").empty())
+        throw api::Problem(
+            422,
+            "--shard auto needs SLURM_ARRAY_TASK_ID and SLURM_ARRAY_TASK_COUNT, or "
+            "JOB_COMPLETION_INDEX and --shards, in the environment");
+    if (shards == 0)
+        throw api::Problem(422, "--shard auto with JOB_COMPLETION_INDEX needs --shards");
+    return {number_in_variable("JOB_COMPLETION_INDEX", 0, shards - 1), shards};
 }
 
 /// Reads "i/N", "" (the whole sweep), or "auto": then i and N are taken from the environment of a
-/// Slurm array or a Kubernetes Indexed Job, where `shards` replaces N if it is above 0. Throws
-/// Problem 422 for other texts.
-Shard read_shard(const std::string& text, int shards) {
+/// Slurm array or a Kubernetes Indexed Job. Throws Problem 422 for other texts.
+Shard read_shard(const std::string& text, std::size_t shards) {
     if (text.empty()) return {};
-    if (text == "auto") return shard_of_environment(shards > 0 ? fmt::format("{}", shards) : "");
-    const std::size_t slash = std::min(text.find('/'), text.size());
-    return make_shard(text.substr(0, slash), slash < text.size() ? text.substr(slash + 1) : "");
+    if (text == "auto") return shard_of_environment(shards);
+    const std::size_t slash = std::min(text.find('/'), text.size() - 1);
+    const auto count = whole_number(text.substr(slash + 1), 1, max_shards);
+    const auto index = whole_number(text.substr(0, slash), 0, count.value_or(1) - 1);
+    if (!index || !count)
+        throw api::Problem(
+            422, fmt::format("a shard is i/N with 0 <= i < N, not {}", api::shortened(text)));
+    return {*index, *count};
 }
 
 struct SweepOptions {
@@ -92,7 +101,7 @@ struct SweepOptions {
 /// The request, limited to the shard's lines of output.
 api::SweepRequest read_request(const SweepOptions& o) {
     api::SweepRequest request = api::read_sweep_request(read_sweep(o.files, o.fields), max_points);
-    const Shard shard = read_shard(o.shard, o.shards);
+    const Shard shard = read_shard(o.shard, static_cast<std::size_t>(o.shards));
     request.plan.lines = api::shard_of(request, shard.index, shard.count);
     return request;
 }

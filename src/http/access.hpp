@@ -59,6 +59,10 @@ std::vector<std::pair<std::string, std::string>> cors_headers(
 /// True for localhost, names below it, and loopback addresses: 127.0.0.1, [::1].
 bool is_loopback(std::string_view host);
 
+/// True for http:// or https://, a host (a name, an IPv4 address, or an IPv6 address in brackets)
+/// and optionally a port from 1 to 65535.
+bool is_origin(std::string_view text);
+
 /// The address as written in a URL: IPv6 in brackets.
 std::string in_url(const std::string& address);
 

@@ -31,6 +31,14 @@ inline std::string lower_case(std::string_view text) {
     return lower;
 }
 
+/// True if the text consists of ASCII letters, digits and the characters in `others`.
+inline bool consists_of(std::string_view text, std::string_view others) {
+    return std::all_of(text.begin(), text.end(), [others](char c) {
+        return (c >= '0' && c <= '9') || (lower_case(c) >= 'a' && lower_case(c) <= 'z') ||
+               others.find(c) != std::string_view::npos;
+    });
+}
+
 /// The media type of a Content-Type, in lower case and without parameters.
 inline std::string media_type(std::string_view content_type) {
     return lower_case(next_part(content_type, ';'));

@@ -38,7 +38,7 @@ std::string policy_of(const std::vector<std::string>& embed_origins) {
 /// Content type by the extension of the request path; the paths of pages have none.
 std::string content_type_of(std::string_view path) {
     const std::string_view ending = path.substr(std::min(path.rfind('.'), path.size()));
-    if (ending == ".js" || ending == ".mjs") return "text/javascript; charset=utf-8";
+    if (ending == ".js") return "text/javascript; charset=utf-8";
     if (ending == ".css") return "text/css; charset=utf-8";
     if (ending == ".svg") return "image/svg+xml";
     return "text/html; charset=utf-8";
@@ -112,18 +112,6 @@ std::vector<Route> folder_routes(const std::filesystem::path& given, const std::
 }
 
 }  // namespace
-
-/// Checks only the scheme and that the rest consists of characters of a host and port.
-bool is_origin(const std::string& text) {
-    const std::size_t scheme =
-        text.rfind("https://", 0) == 0 ? 8 : (text.rfind("http://", 0) == 0 ? 7 : 0);
-    const std::string host = text.substr(scheme);
-    const auto allowed = [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-               c == '.' || c == '-' || c == ':' || c == '[' || c == ']';
-    };
-    return scheme > 0 && !host.empty() && std::all_of(host.begin(), host.end(), allowed);
-}
 
 std::vector<Route> page_routes(const PageOptions& options) {
     const std::string policy = policy_of(options.embed_origins);

@@ -29,9 +29,6 @@ struct PageOptions {
     std::vector<std::string> embed_origins = {};
 };
 
-/// True for an origin: http or https, a host and an optional port, nothing else.
-bool is_origin(const std::string& text);
-
 /// The routes of all files. Throws std::runtime_error if the folder cannot be read.
 std::vector<Route> page_routes(const PageOptions& options);
 
