@@ -9,7 +9,6 @@
 #include <tuple>
 
 #include "api/problem.hpp"
-#include "http/header_text.hpp"
 #include "program/whole_number.hpp"
 
 namespace vines::http {

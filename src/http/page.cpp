@@ -1,17 +1,17 @@
 #include "http/page.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
-#include <limits>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
 #include "http/message.hpp"
-#include "http/regular_file.hpp"
+#include "program/descriptor.hpp"
 
 namespace vines::http {
 
@@ -21,8 +21,6 @@ struct Page {
     const char *path, *file;
 };
 constexpr Page pages[] = {{"/", "index.html"}, {"/docs", "docs.html"}};
-
-constexpr std::size_t no_size_limit = std::numeric_limits<std::size_t>::max();
 
 /// Content security policy: scripts, styles and connections from this server only, and no inline
 /// code; images can also be data: URLs.
@@ -71,13 +69,25 @@ std::vector<Route> embedded_routes(const std::string& policy) {
     return routes;
 }
 
-/// Reads the file at each request. Rejects symbolic links, which could lead out of the folder.
+/// Opens a file without following symbolic links in any part of its absolute path: a link could
+/// lead out of the folder. Opens one name after the other, so that renaming a folder meanwhile
+/// cannot redirect the path.
+Descriptor open_without_links(const std::filesystem::path& path) {
+    constexpr int to_folder = O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
+    Descriptor folder(::open(path.root_path().c_str(), to_folder));
+    for (const std::filesystem::path& name : path.relative_path().parent_path())
+        folder = Descriptor(::openat(folder.number(), name.c_str(), to_folder));
+    return Descriptor(
+        ::openat(folder.number(), path.filename().c_str(), open_regular | O_NOFOLLOW));
+}
+
+/// Reads the file at each request.
 Route file_route(
     const std::filesystem::path& file, const std::string& path, const std::string& policy) {
     return {.method = "GET", .path = path, .answer = [=](const Request&) {
                 try {
                     return file_response(
-                        path, read_regular_file_no_links(file, no_size_limit), policy);
+                        path, read_regular(open_without_links(file), file), policy);
                 } catch (const std::runtime_error&) {
                     return problem_response(404, "there is no " + path);
                 }

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "http/route.hpp"
+#include "http/message.hpp"
 
 namespace vines::http {
 
