@@ -11,12 +11,9 @@
 
 #include "api/schema/field.hpp"
 #include "api/version.hpp"
-#include "cli/commands.hpp"
-#include "cli/stop_signals.hpp"
-#include "http/commands.hpp"
-#include "program/standard_streams.hpp"
+#include "cli/exit.hpp"
+#include "program/process.hpp"
 #include "program/subcommand.hpp"
-#include "report/command.hpp"
 
 namespace {
 
@@ -32,16 +29,12 @@ std::string name_of_selected(const CLI::App& app) {
     return "vines" + (selected.empty() ? "" : " " + selected[0]->get_name());
 }
 
-std::vector<std::string> names_of(const std::vector<vines::Command>& commands) {
-    std::vector<std::string> names;
-    for (const vines::Command& command : commands) names.push_back(command.app->get_name());
-    return names;
-}
-
 /// Error message for the first argument, which must be a subcommand or a flag of the program; empty
 /// if it is valid.
-std::string first_argument_error(
-    const CLI::App& app, const std::vector<std::string>& names, const std::string& first) {
+std::string first_argument_error(const CLI::App& app, const std::string& first) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+        names.push_back(command->get_name());
     if (first.empty())
         return fmt::format("no subcommand given; expected one of: {}", fmt::join(names, ", "));
     if (first[0] == '-') return app.get_option_no_throw(first) ? "" : "unknown flag " + first;
@@ -127,7 +120,7 @@ int main(int argc, char** argv) {
         vines::cli::add_manual(app)};
     vines::add_examples(app, examples);  // after the subcommands, which would inherit the examples
     const std::string first = argc > 1 ? argv[1] : "";
-    const std::string error = first_argument_error(app, names_of(commands), first);
+    const std::string error = first_argument_error(app, first);
     if (!error.empty()) return usage_error(error, "vines");
     try {
         // The variables are restored before --help is printed, which lists all of them.

@@ -16,35 +16,46 @@
 #include "api/schema/enum_names.hpp"
 #include "api/schema/field.hpp"
 #include "api/schema/tables.hpp"
-#include "cli/commands.hpp"
-#include "cli/exit_code.hpp"
+#include "cli/exit.hpp"
 #include "cli/files.hpp"
 #include "cli/output.hpp"
-#include "cli/stop_signals.hpp"
-#include "program/standard_streams.hpp"
+#include "program/process.hpp"
 #include "program/subcommand.hpp"
 
 namespace vines::cli {
 
 namespace {
 
-/// Options shared by `presets` and `parameters`.
-struct ListingOptions {
-    std::string name;  ///< empty: all
-    std::string format = "text";
-
-    bool is_json() const { return format == "json"; }
+/// What a listing prints: its JSON, and its text for all names ("") or for one.
+struct Listing {
+    api::Json (*json)();
+    std::string (*text)(const std::string& name);
 };
 
-/// `about` is the help text of the positional `name`.
-void add_listing(CLI::App& command, ListingOptions& listing, const std::string& about) {
-    command.add_option("name", listing.name, about);
+/// `about_name` is the help text of the positional `name`.
+Command with_listing(
+    CLI::App* command, const Listing& listing, const std::string& about_name,
+    const std::string& examples) {
+    struct Options {
+        std::string name, format = "text";
+    };
+    const auto options = std::make_shared<Options>();
+    command->add_option("name", options->name, about_name);
     command
-        .add_option(
-            "--format", listing.format,
+        ->add_option(
+            "--format", options->format,
             "text, or json: the service's answer, always the whole list")
         ->check(CLI::IsMember({"text", "json"}))
         ->capture_default_str();
+    return with_exit_codes(
+        command,
+        [options, listing] {
+            print(
+                options->format == "json" ? api::json_text(listing.json()) + "\n"
+                                          : listing.text(options->name));
+            return complete;
+        },
+        examples);
 }
 
 /// Throws Problem 422 for an unknown name; `nearest` is the nearest known name or empty.
@@ -75,7 +86,8 @@ std::string text_of(const api::Preset& p) {
     return text + fmt::format("vines simulate -p preset={} --plot\n", p.name);
 }
 
-std::string text_of_preset(const std::string& name) {
+std::string text_of_presets(const std::string& name) {
+    if (name.empty()) return all_presets();
     std::vector<std::string> names;
     for (const api::Preset& p : api::presets()) {
         if (p.name == name) return text_of(p);
@@ -83,25 +95,6 @@ std::string text_of_preset(const std::string& name) {
     }
     refuse_name("preset", name, api::nearest_name(names, name));
 }
-
-}  // namespace
-
-Command add_presets(CLI::App& app) {
-    const auto listing = std::make_shared<ListingOptions>();
-    CLI::App* command =
-        app.add_subcommand("presets", "the paper's figures and tables, as requests");
-    add_listing(*command, *listing, "show only this preset, with its parameters");
-    return with_exit_codes(
-        command,
-        [listing] {
-            if (listing->is_json()) print(api::json_text(api::describe_presets()) + "\n");
-            else print(listing->name.empty() ? all_presets() : text_of_preset(listing->name));
-            return static_cast<int>(complete);
-        },
-        "vines presets\nvines presets fig3\nvines presets --format json | jq length");
-}
-
-namespace {
 
 using api::Field;
 using api::FieldTable;
@@ -148,8 +141,9 @@ void append_field(const Field& f, const std::string& before, std::string& text) 
     for (const Field& part : f.fields) text += "  " + f.name + "." + line_of(part).substr(2);
 }
 
-/// Description of a field in each table that has it. Throws Problem 422 if no table has it.
-std::string text_of_field(const std::string& name) {
+/// All fields, or a field in each table that has it. Throws Problem 422 if no table has it.
+std::string text_of_fields(const std::string& name) {
+    if (name.empty()) return all_fields();
     std::string text;
     FieldTable all;
     for (const auto& [title, table] : tables()) {
@@ -165,19 +159,19 @@ std::string text_of_field(const std::string& name) {
 
 }  // namespace
 
+Command add_presets(CLI::App& app) {
+    return with_listing(
+        app.add_subcommand("presets", "the paper's figures and tables, as requests"),
+        {api::describe_presets, text_of_presets}, "show only this preset, with its parameters",
+        "vines presets\nvines presets fig3\nvines presets --format json | jq length");
+}
+
 Command add_parameters(CLI::App& app) {
-    const auto listing = std::make_shared<ListingOptions>();
-    CLI::App* command = app.add_subcommand("parameters", "the fields of requests");
-    add_listing(*command, *listing, "show only this field, with its default and range");
-    return with_exit_codes(
-        command,
-        [listing] {
-            if (listing->is_json()) print(api::json_text(api::describe_fields()) + "\n");
-            else print(listing->name.empty() ? all_fields() : text_of_field(listing->name));
-            return static_cast<int>(complete);
-        },
-        "vines parameters\nvines parameters b\nvines parameters --format json | jq "
-        "'.fields[].name'");
+    return with_listing(
+        app.add_subcommand("parameters", "the fields of requests"),
+        {api::describe_fields, text_of_fields}, "show only this field, with its default and range",
+        "vines parameters\nvines parameters b\n"
+        "vines parameters --format json | jq '.fields[].name'");
 }
 
 Command add_openapi(CLI::App& app) {
@@ -189,17 +183,12 @@ Command add_openapi(CLI::App& app) {
                              }});
 }
 
-namespace {
-
-struct ExampleOptions {
-    std::string what;
-    Files files;
-};
-
-}  // namespace
-
 Command add_example(CLI::App& app) {
-    const auto options = std::make_shared<ExampleOptions>();
+    struct Options {
+        std::string what;
+        Files files;
+    };
+    const auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("example", "an example record for identify");
     command
         ->add_option(
@@ -213,7 +202,7 @@ Command add_example(CLI::App& app) {
         command,
         [options] {
             write_all(options->files.output, api::example_record());
-            return static_cast<int>(complete);
+            return complete;
         },
         "vines example record > record.csv");
 }

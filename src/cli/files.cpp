@@ -1,30 +1,11 @@
 #include "cli/files.hpp"
 
 #include <fcntl.h>
-#include <poll.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
-#include <cerrno>
-
-#include "program/descriptor.hpp"
-#include "program/standard_streams.hpp"
+#include "program/process.hpp"
 
 namespace vines::cli {
-
-namespace {
-
-constexpr std::size_t piece_read = 1 << 16;
-
-/// Initial buffer size. For a regular file it is one byte more than the file, so that read()
-/// reaches the end without enlarging the buffer.
-std::size_t size_of(int descriptor) {
-    struct stat entry{};
-    const bool known = ::fstat(descriptor, &entry) == 0 && S_ISREG(entry.st_mode);
-    return known ? static_cast<std::size_t>(entry.st_size) + 1 : piece_read;
-}
-
-}  // namespace
 
 void add_files(CLI::App& command, Files& files) {
     command
@@ -58,31 +39,16 @@ std::string read_all(const std::string& path) {
 }
 
 std::string read_file(const std::string& path) {
-    if (path == "/dev/stdin")
-        return read_open(STDIN_FILENO, path);  // a socket cannot be opened by
-                                               // its path
+    // A socket cannot be opened by its path.
+    if (path == "/dev/stdin") return read_open(STDIN_FILENO, path);
     const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
     if (!file) fail_at("read", path);
     return read_open(file.number(), path);
 }
 
 std::string read_open(int descriptor, const std::string& name) {
-    std::string text(size_of(descriptor), '\0');
-    std::size_t length = 0;
-    for (;;) {
-        if (length == text.size()) text.resize(2 * length);
-        const ssize_t n = ::read(descriptor, text.data() + length, text.size() - length);
-        if (n == 0) break;
-        if (n > 0) {
-            length += static_cast<std::size_t>(n);
-        } else if (errno == EAGAIN) {  // set non-blocking by another process
-            pollfd readable{descriptor, POLLIN, 0};
-            ::poll(&readable, 1, -1);
-        } else if (errno != EINTR) {
-            fail_at("read", name);
-        }
-    }
-    text.resize(length);
+    std::string text;
+    if (const int failed = read_fully(descriptor, text)) fail_at("read", name, failed);
     return text;
 }
 

@@ -1,15 +1,8 @@
 // Input and output files of a command.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
-#include <cerrno>
-#include <cstring>
-#include <stdexcept>
 #include <string>
-
-#include "program/standard_streams.hpp"
 
 namespace vines::cli {
 
@@ -35,12 +28,5 @@ std::string read_open(int descriptor, const std::string& name);
 
 /// Returns whether a text is JSON rather than a file of columns.
 bool is_json(const std::string& text);
-
-/// Throws std::runtime_error such as "cannot write PATH: No space left on device", or BrokenPipe
-/// for EPIPE. `reason` is an errno value; the default is valid only directly after the failed call.
-[[noreturn]] inline void fail_at(const char* what, const std::string& path, int reason = errno) {
-    if (reason == EPIPE) throw BrokenPipe();
-    throw std::runtime_error(fmt::format("cannot {} {}: {}", what, path, std::strerror(reason)));
-}
 
 }  // namespace vines::cli

@@ -7,10 +7,9 @@
 #include <utility>
 
 #include "api/version.hpp"
-#include "cli/commands.hpp"
-#include "cli/stop_signals.hpp"
+#include "cli/exit.hpp"
 #include "cli/usage.hpp"
-#include "program/standard_streams.hpp"
+#include "program/process.hpp"
 #include "program/subcommand.hpp"
 
 namespace vines::cli {
@@ -63,6 +62,18 @@ std::string flag_meaning(const FlagUsage& flag) {
     if (!flag.default_value.empty()) text += " Default: " + flag.default_value + ".";
     if (!flag.environment.empty()) text += " Environment: " + flag.environment + ".";
     return lines_kept(text) + "\n";
+}
+
+/// Placeholder for an option's value; empty if it takes none.
+std::string value_word(const FlagUsage& flag) {
+    switch (flag.value) {
+        case ValueKind::none: return "";
+        case ValueKind::file: return "file";
+        case ValueKind::folder: return "folder";
+        case ValueKind::choice:
+        case ValueKind::text: break;
+    }
+    return "value";
 }
 
 /// Entry in the option list of a command.

@@ -6,12 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "cli/commands.hpp"
-#include "cli/exit_code.hpp"
+#include "cli/exit.hpp"
 #include "cli/files.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep_file.hpp"
-#include "program/standard_streams.hpp"
+#include "program/process.hpp"
 
 namespace vines::cli {
 

@@ -1,5 +1,3 @@
-// Output and AppendFile.
-//
 // Output opens the existing target, which proves that it is writable, and locks it. It writes a
 // temporary file, which end() renames to the target; the target keeps its old content until then.
 // Streams and descriptors are written directly. AppendFile locks its file in the same way and
@@ -12,32 +10,74 @@
 #include <sys/stat.h>
 
 #include <cerrno>
-#include <charconv>
+#include <climits>
+#include <cstdio>
 #include <filesystem>
+#include <mutex>
 #include <optional>
+#include <random>
+#include <set>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
 #include "cli/files.hpp"
+#include "program/whole_number.hpp"
 
 namespace vines::cli {
 
 namespace {
 
+constexpr mode_t new_mode = 0666;  // reduced by umask
+constexpr mode_t private_mode = 0600;
+constexpr mode_t kept_bits = 0777;
+
+/// Existing temporary files. The mutex is held while one is created, renamed or removed.
+struct Temporaries {
+    std::mutex mutex;
+    std::set<std::string> paths;
+};
+
+/// Never destroyed: a signal can end the program during destruction of its static objects.
+Temporaries& temporaries() {
+    static auto* const all = new Temporaries;
+    return *all;
+}
+
+std::string folder_of(const std::string& path) {
+    const std::string folder = std::filesystem::path(path).parent_path().string();
+    return folder.empty() ? "." : folder;
+}
+
+/// Hidden, so that a shell's pattern does not match it. The name does not contain the target's,
+/// which can have the maximum length.
+std::string new_path(const std::string& target) {
+    std::random_device random;
+    return fmt::format("{}/.vines-{:08x}{:08x}", folder_of(target), random(), random());
+}
+
+/// Copies owner, group and mode, as far as this process is permitted to.
+void copy_owner_and_mode(int file, const struct stat& old) {
+    if (::fchown(file, old.st_uid, old.st_gid) != 0)
+        (void)!::fchown(file, static_cast<uid_t>(-1), old.st_gid);
+    ::fchmod(file, old.st_mode & kept_bits);
+}
+
+/// Makes the new name survive a power failure. Some file systems do not support that.
+void sync_folder(const std::string& path) {
+    const Descriptor folder(::open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (folder) ::fsync(folder.number());
+}
+
 constexpr int max_links = 40;  // as in Linux (MAXSYMLINKS)
 
 /// Number of the file descriptor of this process that the path stands for, as /dev/fd/3 does.
-std::optional<int> descriptor_number(const std::string& path) {
+std::optional<std::size_t> descriptor_number(const std::string& path) {
     if (path == "/dev/stdout") return STDOUT_FILENO;
     if (path == "/dev/stderr") return STDERR_FILENO;
-    for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
-        if (!path.starts_with(folder)) continue;
-        int number = -1;
-        const char* const end = path.data() + path.size();
-        const auto [rest, fault] = std::from_chars(path.data() + folder.size(), end, number);
-        if (fault == std::errc() && rest == end && number >= 0) return number;
-    }
+    for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"})
+        if (path.starts_with(folder))
+            return whole_number(std::string_view(path).substr(folder.size()), 0, INT_MAX);
     return std::nullopt;
 }
 
@@ -61,8 +101,6 @@ Destination open_stream(const std::string& name, const std::string& path) {
     return {name, std::move(stream), ""};
 }
 
-constexpr mode_t mode_of_new = 0666;  // reduced by umask
-
 void lock(int descriptor, const std::string& name) {
     if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
     throw std::runtime_error(
@@ -82,7 +120,7 @@ bool is_still_at(int descriptor, const std::string& path) {
 /// opened. File systems without locks are written unlocked.
 Descriptor open_locked(const Destination& to, int flags) {
     for (;;) {
-        Descriptor file(::open(to.file.c_str(), flags | O_CLOEXEC, mode_of_new));
+        Descriptor file(::open(to.file.c_str(), flags | O_CLOEXEC, new_mode));
         if (!file && errno == ENOENT && !(flags & O_CREAT)) return file;
         if (!file) fail_at("write", to.name);
         lock(file.number(), to.name);
@@ -99,7 +137,8 @@ Destination destination_of(const std::string& path) {
     // further, and a missing target can be created.
     std::string at = path;
     for (int links = 0;; ++links) {
-        if (const auto number = descriptor_number(at)) return open_descriptor(path, *number);
+        if (const auto number = descriptor_number(at))
+            return open_descriptor(path, static_cast<int>(*number));
         struct stat entry{};
         const bool is_link = ::lstat(at.c_str(), &entry) == 0 && S_ISLNK(entry.st_mode);
         if (!is_link) break;
@@ -114,6 +153,49 @@ Destination destination_of(const std::string& path) {
     if (S_ISDIR(entry.st_mode)) fail_at("write", path, EISDIR);
     if (S_ISREG(entry.st_mode)) return {path, Descriptor(), at};
     return open_stream(path, at);
+}
+
+TemporaryFile::TemporaryFile(std::string target, std::string name)
+    : target_(std::move(target)),
+      name_(std::move(name)) {
+    struct stat old{};
+    const bool replaces = ::stat(target_.c_str(), &old) == 0;
+    const std::lock_guard lock(temporaries().mutex);
+    do {
+        path_ = new_path(target_);
+        file_ = Descriptor(::open(
+            path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC,
+            replaces ? private_mode : new_mode));
+    } while (!file_ && errno == EEXIST);
+    if (!file_) fail_at("write", name_);
+    temporaries().paths.insert(path_);
+    if (replaces) copy_owner_and_mode(file_.number(), old);
+}
+
+TemporaryFile::~TemporaryFile() {
+    const std::lock_guard lock(temporaries().mutex);
+    if (path_.empty()) return;
+    ::unlink(path_.c_str());
+    temporaries().paths.erase(path_);
+}
+
+void TemporaryFile::write(std::string_view text) {
+    if (const int failed = write_fully(file_.number(), text)) fail_at("write", name_, failed);
+}
+
+void TemporaryFile::replace_target() {
+    if (::fsync(file_.number()) != 0) fail_at("write", name_);
+    {
+        const std::lock_guard lock(temporaries().mutex);
+        if (::rename(path_.c_str(), target_.c_str()) != 0) fail_at("write", name_);
+        temporaries().paths.erase(std::exchange(path_, ""));
+    }
+    sync_folder(target_);
+}
+
+void remove_temporary_files() {
+    temporaries().mutex.lock();  // never unlocked
+    for (const std::string& path : temporaries().paths) ::unlink(path.c_str());
 }
 
 Output::Output(Destination to) : to_(std::move(to)) {

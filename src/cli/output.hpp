@@ -7,7 +7,6 @@
 #include <string>
 #include <string_view>
 
-#include "cli/temporary_file.hpp"
 #include "program/descriptor.hpp"
 
 namespace vines::cli {
@@ -26,6 +25,32 @@ struct Destination {
 /// the process has open. Opening a named pipe blocks until it has a reader. Throws
 /// std::runtime_error with the reason if the path is a directory or cannot be resolved.
 Destination destination_of(const std::string& path);
+
+/// A file that replaces another one atomically. Created in the target's folder, with the target's
+/// mode if that exists. The destructor removes it unless it has replaced the target; so does
+/// remove_temporary_files() when a signal ends the program.
+class TemporaryFile {
+public:
+    /// `name` is used in messages. The constructor and all members throw std::runtime_error with
+    /// the reason.
+    TemporaryFile(std::string target, std::string name);
+    ~TemporaryFile();
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+    void write(std::string_view text);
+    /// Syncs the file to disk first, so that a power failure leaves the old or the new content.
+    void replace_target();
+
+private:
+    const std::string target_, name_;
+    std::string path_;  ///< empty after it has replaced the target
+    Descriptor file_;
+};
+
+/// Removes all temporary files and blocks the creation and renaming of others for good. Called by
+/// the thread that ends the program after a signal.
+void remove_temporary_files();
 
 /// A file is replaced atomically by end(): other processes see the old or the new content. A stream
 /// is written at once. All members throw std::runtime_error with the reason, or BrokenPipe.

@@ -17,13 +17,4 @@ std::vector<plot::Plot> plots_of(const api::Json& start, const std::vector<api::
 /// Writes SVG if the file's name ends with .svg, else characters. Throws like write_all().
 void draw(const std::vector<plot::Plot>& plots, const std::string& path);
 
-/// Plots of x, of y - x with its contacts, and of the exponents' history by QR, for those that the
-/// answer has. `answer` is the response of POST /v1/simulate.
-std::vector<plot::Plot> run_plots(const api::Json& answer);
-
-/// Plots of the section (bifurcation diagram), of lambda1 by verdict, and of the response by regime
-/// (the peaks, for a reduced sweep), for those that the points have. Throws std::runtime_error for
-/// a sweep along more than one axis. `start` and `points` are lines of a sweep.
-std::vector<plot::Plot> sweep_plots(const api::Json& start, const std::vector<api::Json>& points);
-
 }  // namespace vines::cli

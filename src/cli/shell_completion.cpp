@@ -7,10 +7,9 @@
 #include <map>
 #include <memory>
 
-#include "cli/commands.hpp"
-#include "cli/stop_signals.hpp"
+#include "cli/exit.hpp"
 #include "cli/usage.hpp"
-#include "program/standard_streams.hpp"
+#include "program/process.hpp"
 #include "program/subcommand.hpp"
 
 namespace vines::cli {
@@ -22,6 +21,23 @@ std::vector<std::string> all_names(const std::vector<FlagUsage>& flags) {
     for (const FlagUsage& flag : flags)
         names.insert(names.end(), flag.names.begin(), flag.names.end());
     return names;
+}
+
+/// Escapes these characters and backslashes by a backslash.
+std::string escaped(const std::string& text, const std::string& special) {
+    std::string result;
+    for (const char c : text) {
+        if (c == '\\' || special.find(c) != std::string::npos) result += '\\';
+        result += c;
+    }
+    return result;
+}
+
+/// In single quotes, valid in sh, bash and zsh.
+std::string shell_quoted(const std::string& text) {
+    std::string quoted = "'";
+    for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return quoted + "'";
 }
 
 /// Assignment for a value of this kind in the script; empty: nothing to complete.
@@ -111,16 +127,6 @@ std::string bash_completion(const ProgramUsage& usage) {
     return text + fmt::format(fmt::runtime(after_branches), program);
 }
 
-/// Escapes these characters by a backslash.
-std::string zsh_escaped(const std::string& text, const std::string& special) {
-    std::string result;
-    for (const char c : text) {
-        if (c == '\\' || special.find(c) != std::string::npos) result += '\\';
-        result += c;
-    }
-    return result;
-}
-
 /// Action of _arguments for a value.
 std::string zsh_action(const FlagUsage& flag) {
     switch (flag.value) {
@@ -140,10 +146,9 @@ std::string specifications(const FlagUsage& flag) {
     for (const std::string& name : flag.names) {
         const bool is_long = name.starts_with("--");
         const char* follows = flag.value == ValueKind::none ? "" : is_long ? "=" : "+";
-        text +=
-            " \\\n                " + shell_quoted(fmt::format(
-                                          "{}{}{}[{}]{}", others, name, follows,
-                                          zsh_escaped(flag.description, "[]"), zsh_action(flag)));
+        text += " \\\n                " + shell_quoted(fmt::format(
+                                              "{}{}{}[{}]{}", others, name, follows,
+                                              escaped(flag.description, "[]"), zsh_action(flag)));
     }
     return text;
 }
@@ -152,8 +157,8 @@ std::string specification_of_positional(const FlagUsage& flag) {
     const std::string what = flag.value == ValueKind::text ? ": " : zsh_action(flag).substr(1);
     const std::string kind = what.substr(what.find(':'));
     return " \\\n                " +
-           shell_quoted(fmt::format(
-               "{}:{}{}", flag.repeats ? "*" : "", zsh_escaped(flag.names[0], ":"), kind));
+           shell_quoted(
+               fmt::format("{}:{}{}", flag.repeats ? "*" : "", escaped(flag.names[0], ":"), kind));
 }
 
 std::string zsh_arguments(const CommandUsage& command) {
@@ -194,7 +199,7 @@ std::string zsh_completion(const ProgramUsage& usage) {
     std::string cases =
         fmt::format("        -*)\n{}            ;;\n", zsh_arguments(usage.program));
     for (const CommandUsage& command : usage.commands) {
-        const std::string entry = command.name + ":" + zsh_escaped(command.description, "");
+        const std::string entry = command.name + ":" + escaped(command.description, "");
         commands += "        " + shell_quoted(entry) + "\n";
         cases +=
             fmt::format("        {})\n{}            ;;\n", command.name, zsh_arguments(command));
@@ -202,15 +207,8 @@ std::string zsh_completion(const ProgramUsage& usage) {
     return fmt::format(fmt::runtime(zsh_script), usage.program.name, commands, cases);
 }
 
-/// In single quotes. In them fish escapes a quote and a backslash by a backslash.
-std::string fish_quoted(const std::string& text) {
-    std::string quoted = "'";
-    for (const char c : text) {
-        if (c == '\'' || c == '\\') quoted += '\\';
-        quoted += c;
-    }
-    return quoted + "'";
-}
+/// In single quotes.
+std::string fish_quoted(const std::string& text) { return "'" + escaped(text, "'") + "'"; }
 
 /// Values of an option or a positional.
 std::string fish_values(const FlagUsage& flag) {

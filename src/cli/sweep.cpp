@@ -1,25 +1,39 @@
-// `vines sweep`: computes a sweep or a shard of one.
+// `vines sweep`: computes a sweep or a shard of one on several threads. The points are
+// - appended to a file in order of completion; a later run can complete it, and it is sorted at the
+//   end;
+// - or written to a stream in the order of their index;
+// - or collected in memory, for plots and CSV, which need all of them.
+// After a signal the points computed so far are kept.
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <algorithm>
-#include <cerrno>
+#include <atomic>
 #include <cstddef>
 #include <cstdlib>
+#include <exception>
+#include <functional>
+#include <map>
 #include <memory>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "api/format/encode.hpp"
+#include "api/json_text.hpp"
 #include "api/problem.hpp"
-#include "cli/commands.hpp"
-#include "cli/exit_code.hpp"
+#include "api/sweep.hpp"
+#include "cli/exit.hpp"
 #include "cli/files.hpp"
 #include "cli/output.hpp"
 #include "cli/plots.hpp"
 #include "cli/request_fields.hpp"
 #include "cli/sweep_file.hpp"
-#include "cli/sweep_run.hpp"
-#include "program/subcommand.hpp"
+#include "cli/terminal.hpp"
+#include "program/process.hpp"
+#include "program/whole_number.hpp"
 
 namespace vines::cli {
 
@@ -31,22 +45,8 @@ struct Shard {
     std::size_t count = 1;
 };
 
-/// Parses a non-negative decimal integer; -1 for any other text.
-long number(const std::string& text) {
-    char* end = nullptr;
-    errno = 0;
-    const long value = std::strtol(text.c_str(), &end, 10);
-    return text.empty() || *end || errno || value < 0 ? -1 : value;
-}
-
-/// Throws Problem 422 unless 0 <= index < count.
-Shard make_shard(const std::string& index, const std::string& count) {
-    const long i = number(index), n = number(count);
-    if (i < 0 || n < 1 || i >= n)
-        throw api::Problem(
-            422, fmt::format("a shard is i/N with 0 <= i < N, not {}/{}", index, count));
-    return {static_cast<std::size_t>(i), static_cast<std::size_t>(n)};
-}
+// Largest number of shards, and largest id of a Slurm array's first task.
+constexpr std::size_t max_shards = max_points;
 
 /// Value of an environment variable; empty if unset.
 std::string variable(const char* name) {
@@ -54,29 +54,52 @@ std::string variable(const char* name) {
     return value ? value : "";
 }
 
-Shard shard_of_environment(const std::string& shards) {
-    if (const std::string id = variable("SLURM_ARRAY_TASK_ID"); !id.empty()) {
-        const long first = std::strtol(variable("SLURM_ARRAY_TASK_MIN").c_str(), nullptr, 10);
-        return make_shard(
-            fmt::format("{}", std::strtol(id.c_str(), nullptr, 10) - first),
-            shards.empty() ? variable("SLURM_ARRAY_TASK_COUNT") : shards);
-    }
-    if (const std::string index = variable("JOB_COMPLETION_INDEX"); !index.empty())
-        return make_shard(index, shards);
+/// The same as a number. Throws Problem 422 unless it is a whole number from `least` to `most`.
+std::size_t number_in_variable(const char* name, std::size_t least, std::size_t most) {
+    const std::string text = variable(name);
+    if (const auto value = whole_number(text, least, most)) return *value;
     throw api::Problem(
         422,
-        "--shard auto needs SLURM_ARRAY_TASK_ID and SLURM_ARRAY_TASK_COUNT, or "
-        "JOB_COMPLETION_INDEX and --shards, in the environment");
+        fmt::format(
+            "{} is {}, not a whole number from {} to {}", name, api::shortened(text), least, most));
+}
+
+/// `shards`: N if above 0, in place of SLURM_ARRAY_TASK_COUNT. Throws Problem 422 for a missing or
+/// invalid variable.
+Shard shard_of_environment(std::size_t shards) {
+    if (!variable("SLURM_ARRAY_TASK_ID").empty()) {
+        if (shards == 0 && variable("SLURM_ARRAY_TASK_COUNT").empty())
+            throw api::Problem(
+                422, "--shard auto in a Slurm array needs SLURM_ARRAY_TASK_COUNT or --shards");
+        if (shards == 0) shards = number_in_variable("SLURM_ARRAY_TASK_COUNT", 1, max_shards);
+        const std::size_t first = variable("SLURM_ARRAY_TASK_MIN").empty()
+                                      ? 0
+                                      : number_in_variable("SLURM_ARRAY_TASK_MIN", 0, max_shards);
+        return {
+            number_in_variable("SLURM_ARRAY_TASK_ID", first, first + shards - 1) - first, shards};
+    }
+    if (variable("JOB_COMPLETION_INDEX").empty())
+        throw api::Problem(
+            422,
+            "--shard auto needs SLURM_ARRAY_TASK_ID and SLURM_ARRAY_TASK_COUNT, or "
+            "JOB_COMPLETION_INDEX and --shards, in the environment");
+    if (shards == 0)
+        throw api::Problem(422, "--shard auto with JOB_COMPLETION_INDEX needs --shards");
+    return {number_in_variable("JOB_COMPLETION_INDEX", 0, shards - 1), shards};
 }
 
 /// Reads "i/N", "" (the whole sweep), or "auto": then i and N are taken from the environment of a
-/// Slurm array or a Kubernetes Indexed Job, where `shards` replaces N if it is above 0. Throws
-/// Problem 422 for other texts.
-Shard read_shard(const std::string& text, int shards) {
+/// Slurm array or a Kubernetes Indexed Job. Throws Problem 422 for other texts.
+Shard read_shard(const std::string& text, std::size_t shards) {
     if (text.empty()) return {};
-    if (text == "auto") return shard_of_environment(shards > 0 ? fmt::format("{}", shards) : "");
-    const std::size_t slash = std::min(text.find('/'), text.size());
-    return make_shard(text.substr(0, slash), slash < text.size() ? text.substr(slash + 1) : "");
+    if (text == "auto") return shard_of_environment(shards);
+    const std::size_t slash = std::min(text.find('/'), text.size() - 1);
+    const auto count = whole_number(text.substr(slash + 1), 1, max_shards);
+    const auto index = whole_number(text.substr(0, slash), 0, count.value_or(1) - 1);
+    if (!index || !count)
+        throw api::Problem(
+            422, fmt::format("a shard is i/N with 0 <= i < N, not {}", api::shortened(text)));
+    return {*index, *count};
 }
 
 struct SweepOptions {
@@ -92,7 +115,7 @@ struct SweepOptions {
 /// The request, limited to the shard's lines of output.
 api::SweepRequest read_request(const SweepOptions& o) {
     api::SweepRequest request = api::read_sweep_request(read_sweep(o.files, o.fields), max_points);
-    const Shard shard = read_shard(o.shard, o.shards);
+    const Shard shard = read_shard(o.shard, static_cast<std::size_t>(o.shards));
     request.plan.lines = api::shard_of(request, shard.index, shard.count);
     return request;
 }
@@ -114,11 +137,245 @@ void check(const SweepOptions& o, const api::SweepRequest& request) {
             422, "--plot needs a sweep along one axis; the web page draws maps of two");
 }
 
-int sweep_all_points(const SweepRun& run, const SweepOptions& o) {
-    return sweep_collected(run, [&o](const api::Json& header, const auto& points) {
-        if (o.plot) draw(plots_of(header, points), o.files.output);
-        else write_all(o.files.output, api::csv_text(api::sweep_table(points)));
+struct SweepRun {
+    api::SweepRequest request;  ///< with the points still to be computed
+    std::size_t total;          ///< number of points requested
+    int threads;
+};
+
+/// Stops on a signal, or after a line could not be written.
+class SweepControl : public SignalControl {
+public:
+    bool stop_or_yield() override { return given_up_ || SignalControl::stop_or_yield(); }
+    void give_up() { given_up_ = true; }
+
+private:
+    std::atomic<bool> given_up_ = false;
+};
+
+/// Receives the line of a point.
+using LineHandler = std::function<void(std::size_t index, const std::string& line)>;
+
+/// Passes the lines to `take` in order of completion, one at a time, until all are computed or a
+/// signal stops the sweep. An exception of `take` ends the computation and is rethrown. Returns a
+/// warning about all points, or "".
+std::string compute(const SweepRun& run, const LineHandler& take) {
+    ProgressBar bar(run.total - run.request.plan.lines.size(), run.total);
+    SweepControl control;
+    // Rethrown after all threads have ended: run_sweep() would report the stop instead.
+    std::exception_ptr failure;
+    std::string warning = api::run_sweep(
+        run.request, run.threads, control, [&](std::size_t index, const std::string& line) {
+            if (failure) return;
+            try {
+                take(index, line);
+                bar.step();
+            } catch (...) {
+                failure = std::current_exception();
+                control.give_up();
+            }
+        });
+    if (failure) std::rethrow_exception(failure);
+    return warning;
+}
+
+/// Prints "stopped after 7 of 40 points" and a hint.
+void print_stopped(std::size_t done, std::size_t total, const std::string& hint = "") {
+    print_message(fmt::format("stopped after {} of {} points{}", done, total, hint));
+}
+
+constexpr const char* resume_hint = "; --resume completes the file";
+
+void refuse_to_overwrite(const std::string& name) {
+    throw std::runtime_error(name + " exists already; --resume completes it");
+}
+
+bool exists(const std::string& path) {
+    struct stat entry{};
+    return ::stat(path.c_str(), &entry) == 0;
+}
+
+/// Parses the file of an earlier run. Throws std::runtime_error if it belongs to another sweep or
+/// holds points that are not requested now.
+SweepFile parsed_earlier_file(
+    const std::string& text, const std::string& name, const std::string& start,
+    const std::vector<std::size_t>& wanted) {
+    SweepFile file = parse_sweep_file(text, name, LineChecks::full);
+    if (file.start.empty() ? !start.starts_with(text) : file.start != start)
+        throw std::runtime_error(
+            name + " belongs to another sweep (or another version): its first line differs");
+    for (const auto& [index, line] : file.points)
+        if (!std::binary_search(wanted.begin(), wanted.end(), index))
+            fail_in_line(
+                name, line.number,
+                fmt::format(
+                    "point {} is not requested: the file belongs to another shard or to the whole "
+                    "sweep",
+                    index));
+    return file;
+}
+
+/// The output file while it is extended.
+class ResumableFile {
+public:
+    ResumableFile(
+        const Destination& to, bool resume, const std::string& start,
+        const std::vector<std::size_t>& wanted)
+        : to_(to),
+          out_(to) {
+        const std::string text = out_.read();
+        if (!text.empty() && !resume) refuse_to_overwrite(to.name);
+        file_ = parsed_earlier_file(text, to.name, start, wanted);
+        out_.truncate(file_.complete_bytes);
+        done_ = file_.points.size();
+        if (!file_.start.empty()) return;
+        file_.start = start;
+        out_.append(start + "\n");
+    }
+
+    const SweepFile& contents() const { return file_; }
+    /// Thread-safe.
+    std::size_t done() const { return done_; }
+
+    void add(std::size_t index, const std::string& line) {
+        out_.append(line + "\n");
+        if (file_.ended || (!file_.points.empty() && index < file_.points.rbegin()->first))
+            file_.in_order = false;
+        file_.points[index] = {line};
+        ++done_;
+    }
+
+    /// Call it after the last point.
+    void complete() {
+        if (file_.in_order) {
+            if (!file_.ended) out_.append(api::done_line(file_.points.size()));
+            return out_.sync();
+        }
+        TemporaryFile sorted(to_.file, to_.name);
+        sorted.write(file_.text());
+        sorted.replace_target();
+    }
+
+private:
+    const Destination& to_;
+    AppendFile out_;
+    SweepFile file_;
+    std::atomic<std::size_t> done_ = 0;
+};
+
+/// Adds to a write error how many points are kept.
+[[noreturn]] void fail(const std::runtime_error& reason, std::size_t done, std::size_t total) {
+    throw std::runtime_error(
+        done < total
+            ? fmt::format(
+                  "{}; {} of {} points are kept, --resume completes the file", reason.what(), done,
+                  total)
+            : fmt::format(
+                  "{}; all {} points are kept but not sorted: --resume sorts them if there "
+                  "is space for a second copy, `vines merge` in another folder",
+                  reason.what(), total));
+}
+
+/// Appends each line at once, after removing an incomplete line of a killed run. Once complete, the
+/// points are sorted: if they are not in order, a sorted copy replaces the file. Returns the exit
+/// code. Throws std::runtime_error if the file exists and is not to be resumed, cannot be resumed,
+/// is being written by another run, or a line cannot be written; existing lines are kept.
+int sweep_to_file(SweepRun run, const Destination& to, bool resume) {
+    if (!resume && exists(to.file)) refuse_to_overwrite(to.name);
+    std::vector<std::size_t>& left = run.request.plan.lines;
+    ResumableFile file(to, resume, api::json_text(api::sweep_start(run.request)), left);
+    std::erase_if(left, [&](std::size_t i) { return file.contents().points.contains(i); });
+    const Stoppable stoppable([&] { print_stopped(file.done(), run.total, resume_hint); });
+    try {
+        const std::string warning = compute(
+            run, [&file](std::size_t index, const std::string& line) { file.add(index, line); });
+        if (!warning.empty()) print_message(warning);
+        if (file.done() == run.total) {
+            file.complete();
+            return complete;
+        }
+    } catch (const std::runtime_error& reason) {
+        fail(reason, file.done(), run.total);
+    }
+    print_stopped(file.done(), run.total, resume_hint);
+    return stopped_code();
+}
+
+/// Writes lines in the order of their index.
+class OrderedLines {
+public:
+    /// `indices`: all expected indices, ascending.
+    OrderedLines(const std::vector<std::size_t>& indices, Output& out)
+        : indices_(indices),
+          out_(out) {}
+
+    void take(std::size_t index, const std::string& line) {
+        waiting_[index] = line;
+        while (!waiting_.empty() && waiting_.begin()->first == indices_[written_]) write_first();
+    }
+
+    /// After a stop: writes the remaining lines, despite missing ones between them.
+    void write_rest() {
+        while (!waiting_.empty()) write_first();
+    }
+
+    std::size_t written() const { return written_; }
+
+private:
+    void write_first() {
+        out_.write(waiting_.begin()->second + "\n");
+        waiting_.erase(waiting_.begin());
+        ++written_;
+    }
+
+    const std::vector<std::size_t>& indices_;
+    Output& out_;
+    std::map<std::size_t, std::string> waiting_;
+    std::atomic<std::size_t> written_ = 0;
+};
+
+/// Writes the lines sorted by index, each as soon as all before it are computed: the content of a
+/// complete file. Returns the exit code. Throws std::runtime_error if a line cannot be written,
+/// BrokenPipe if the pipe is closed.
+int sweep_to_stream(SweepRun run, Destination to) {
+    run.request.plan.in_order = true;
+    Output out(std::move(to));
+    OrderedLines lines(run.request.plan.lines, out);
+    // A reader that does not read can block a write for any time, hence a Stoppable with a limit.
+    const Stoppable stoppable([&] { print_stopped(lines.written(), run.total); });
+    out.write(api::json_text(api::sweep_start(run.request)) + "\n");
+    const std::string warning = compute(
+        run, [&lines](std::size_t index, const std::string& line) { lines.take(index, line); });
+    lines.write_rest();
+    if (lines.written() == run.total) out.write(api::done_line(run.total));
+    if (!warning.empty()) print_message(warning);
+    if (lines.written() == run.total) return complete;
+    print_stopped(lines.written(), run.total);
+    return stopped_code();
+}
+
+/// Computes all points, or those up to a signal, and draws them or writes a table. Returns the exit
+/// code.
+int sweep_collected(const SweepRun& run, const SweepOptions& o) {
+    std::map<std::size_t, api::Json> lines;
+    std::optional<Stoppable> stoppable(std::in_place);
+    const std::string warning = compute(run, [&lines](std::size_t index, const std::string& line) {
+        lines[index] = api::Json::parse(line);
     });
+    stoppable.reset();
+    std::vector<api::Json> points;
+    for (auto& [index, line] : lines) points.push_back(std::move(line));
+    // The start is parsed again from its text: api::sweep_start() returns packed lists.
+    const std::string& path = o.files.output;
+    if (!points.empty() && o.plot)
+        draw(
+            plots_of(api::Json::parse(api::json_text(api::sweep_start(run.request))), points),
+            path);
+    else if (!points.empty()) write_all(path, api::csv_text(api::sweep_table(points)));
+    if (!warning.empty()) print_message(warning);
+    if (points.size() == run.total) return complete;
+    print_stopped(points.size(), run.total);
+    return stopped_code();
 }
 
 int sweep(const SweepOptions& o) {
@@ -126,7 +383,7 @@ int sweep(const SweepOptions& o) {
     check(o, request);
     const std::size_t total = request.plan.lines.size();
     SweepRun run{std::move(request), total, o.threads > 0 ? o.threads : cores()};
-    if (needs_all_points(o)) return sweep_all_points(run, o);
+    if (needs_all_points(o)) return sweep_collected(run, o);
     Destination to = destination_of(o.files.output);
     return to.is_stream() ? sweep_to_stream(std::move(run), std::move(to))
                           : sweep_to_file(std::move(run), to, o.resume);

@@ -14,11 +14,6 @@ namespace vines::cli {
 
 namespace {
 
-std::string type_of(const api::Json& line) {
-    const bool typed = line.is_object() && line.contains("type") && line["type"].is_string();
-    return typed ? line["type"].get<std::string>() : "";
-}
-
 /// Returns whether a line contains no point.
 bool is_between_points(const std::string& type) {
     return type == "done" || type == "progress" || type == "warning" || type == "error";
@@ -33,7 +28,7 @@ public:
         ++number_;
         file_.complete_bytes += line.size() + 1;
         const api::Json json = parse_answer(line);
-        const std::string type = type_of(json);
+        const std::string type = word_at(json, "type");
         if (number_ == 1 && type == "start") return take_start(std::move(line));
         if (number_ == 1 || (type != "point" && !is_between_points(type)))
             fail_in_line(name_, number_, "not a line of a sweep");

@@ -14,16 +14,10 @@ namespace {
 constexpr std::size_t min_bar = 10;  // characters between the brackets
 constexpr auto update_interval = std::chrono::milliseconds(100);
 
-/// Shortens a text to the line, without its last column, where some terminals wrap.
-std::string shortened(std::string text, std::size_t width) {
-    text.resize(std::min(text.size(), width - std::min<std::size_t>(width, 1)));
-    return text;
-}
-
 /// A bar in the columns that the words leave free; only the words if that is too narrow.
 std::string with_bar(const std::string& words, double fraction, std::size_t width) {
     const std::size_t frame = words.size() + 4;  // brackets, a space, the last column
-    if (width < frame + min_bar) return shortened(words, width);
+    if (width < frame + min_bar) return words;
     const std::size_t columns = width - frame;
     const auto full = static_cast<std::size_t>(fraction * static_cast<double>(columns));
     return fmt::format("[{:.<{}}] {}", std::string(full, '#'), columns, words);
@@ -38,11 +32,15 @@ std::size_t terminal_width(int stream) {
     return known ? size.ws_col : usual_terminal_width;
 }
 
-void show_in_place(const std::string& text, std::size_t before) {
-    std::string line = "\r" + text;
-    if (text.size() < before) line += std::string(before - text.size(), ' ') + "\r" + text;
+void StatusLine::show(const std::string& text) {
+    if (!is_shown_) return;
+    // Leaves the last column free, where some terminals wrap.
+    const std::string shown = text.substr(0, std::max<std::size_t>(terminal_width(), 1) - 1);
+    std::string line = "\r" + shown;
+    if (shown.size() < length_) line += std::string(length_ - shown.size(), ' ') + "\r" + shown;
     std::fputs(line.c_str(), stderr);
     std::fflush(stderr);
+    length_ = shown.size();
 }
 
 ProgressBar::ProgressBar(std::size_t done, std::size_t total)
@@ -53,7 +51,7 @@ ProgressBar::ProgressBar(std::size_t done, std::size_t total)
 }
 
 ProgressBar::~ProgressBar() {
-    if (shown_) std::fputs("\n", stderr);
+    if (line_.is_shown()) std::fputs("\n", stderr);
 }
 
 void ProgressBar::step() {
@@ -63,12 +61,10 @@ void ProgressBar::step() {
 
 void ProgressBar::draw(bool always) {
     const auto now = Clock::now();
-    if (!shown_ || (!always && now - drawn_ < update_interval)) return;
+    if (!line_.is_shown() || (!always && now - drawn_ < update_interval)) return;
     drawn_ = now;
     const double fraction = total_ ? static_cast<double>(done_) / static_cast<double>(total_) : 1;
-    const std::string line = with_bar(words(), fraction, terminal_width());
-    show_in_place(line, length_);
-    length_ = line.size();
+    line_.show(with_bar(words(), fraction, terminal_width()));
 }
 
 std::string ProgressBar::words() const {
@@ -79,15 +75,6 @@ std::string ProgressBar::words() const {
     return text + fmt::format(
                       ", {:.3g} per second, {:.0f} s left", rate,
                       static_cast<double>(total_ - done_) / rate);
-}
-
-StageLine::~StageLine() { show(""); }
-
-void StageLine::show(const std::string& stage) {
-    if (!shown_) return;
-    const std::string line = shortened(stage, terminal_width());
-    show_in_place(line, length_);
-    length_ = line.size();
 }
 
 }  // namespace vines::cli

@@ -9,15 +9,23 @@
 
 namespace vines::cli {
 
-// Width in columns if the terminal does not report it.
+/// Width in columns if the terminal does not report it.
 inline constexpr std::size_t usual_terminal_width = 80;
 
 /// Width in columns; 0 if the stream is not a terminal.
 std::size_t terminal_width(int stream = STDERR_FILENO);
 
-/// Replaces a text of `before` characters in the current line of stderr. The text must fit into a
-/// line.
-void show_in_place(const std::string& text, std::size_t before);
+/// The current line of stderr, if that is a terminal.
+class StatusLine {
+public:
+    bool is_shown() const { return is_shown_; }
+    /// Replaces the text, shortened to the terminal's width.
+    void show(const std::string& text);
+
+private:
+    const bool is_shown_ = terminal_width() > 0;
+    std::size_t length_ = 0;  ///< characters shown at present
+};
 
 /// Progress bar over the width of the terminal.
 class ProgressBar {
@@ -37,25 +45,19 @@ private:
     std::string words() const;
     std::size_t done_;
     const std::size_t total_, done_before_;
-    const bool shown_ = terminal_width() > 0;
-    std::size_t length_ = 0;  ///< characters shown at present
+    StatusLine line_;
     const Clock::time_point started_ = Clock::now();
     Clock::time_point drawn_{};
 };
 
 /// Current stage of a computation, shown in place.
-class StageLine {
+class StageLine : public StatusLine {
 public:
     StageLine() = default;
     /// Clears the line.
-    ~StageLine();
+    ~StageLine() { show(""); }
     StageLine(const StageLine&) = delete;
     StageLine& operator=(const StageLine&) = delete;
-    void show(const std::string& stage);
-
-private:
-    const bool shown_ = terminal_width() > 0;
-    std::size_t length_ = 0;  ///< characters shown at present
 };
 
 }  // namespace vines::cli

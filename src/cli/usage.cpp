@@ -4,31 +4,26 @@ namespace vines::cli {
 
 namespace {
 
-/// Parts of a type as CLI11 writes it: TEXT:{json,text}, INT:[0 - 65535], TEXT:DIR, FILE.
-std::vector<std::string> type_parts(const std::string& type) {
-    return CLI::detail::split(type, ':');
-}
-
-std::string inner(const std::string& text, std::size_t ends) {
-    return text.substr(ends, text.size() - 2 * ends);
-}
+/// A text without its brackets.
+std::string inner(const std::string& text) { return text.substr(1, text.size() - 2); }
 
 /// "[0 - 65535]" as "0 to 65535".
 std::string range_in_words(const std::string& part) {
-    std::string range = inner(part, 1);
+    std::string range = inner(part);
     if (const std::size_t dash = range.find(" - "); dash != std::string::npos)
         range.replace(dash, 3, " to ");
     return range;
 }
 
+/// Reads a type as CLI11 writes it: TEXT:{json,text}, INT:[0 - 65535], TEXT:DIR, FILE.
 void read_type(const std::string& type, FlagUsage& flag) {
-    for (const std::string& part : type_parts(type)) {
+    for (const std::string& part : CLI::detail::split(type, ':')) {
         if (part == "FILE") flag.value = ValueKind::file;
         if (part == "DIR") flag.value = ValueKind::folder;
         if (part.starts_with('[')) flag.range = range_in_words(part);
         if (part.starts_with('{')) {
             flag.value = ValueKind::choice;
-            flag.choices = CLI::detail::split(inner(part, 1), ',');
+            flag.choices = CLI::detail::split(inner(part), ',');
         }
     }
 }
@@ -77,26 +72,6 @@ ProgramUsage usage_of(const CLI::App& app) {
     for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
         usage.commands.push_back(read_command(*command));
     return usage;
-}
-
-std::string value_word(const FlagUsage& flag) {
-    switch (flag.value) {
-        case ValueKind::none: return "";
-        case ValueKind::file: return "file";
-        case ValueKind::folder: return "folder";
-        case ValueKind::choice:
-        case ValueKind::text: break;
-    }
-    return "value";
-}
-
-std::string shell_quoted(const std::string& text) {
-    std::string quoted = "'";
-    for (const char c : text) {
-        if (c == '\'') quoted += "'\\''";
-        else quoted += c;
-    }
-    return quoted + "'";
 }
 
 }  // namespace vines::cli

@@ -36,10 +36,4 @@ struct ProgramUsage {
 /// Call it after all subcommands are registered.
 ProgramUsage usage_of(const CLI::App& app);
 
-/// Placeholder for a value in a text without a list of choices; empty: the option takes no value.
-std::string value_word(const FlagUsage& flag);
-
-/// In single quotes, valid in sh, bash and zsh.
-std::string shell_quoted(const std::string& text);
-
 }  // namespace vines::cli

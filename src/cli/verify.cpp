@@ -9,20 +9,17 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
+#include <utility>
 
 #include "api/format/answer_request.hpp"
 #include "api/parse.hpp"
 #include "api/sweep.hpp"
 #include "api/version.hpp"
-#include "cli/commands.hpp"
-#include "cli/exit_code.hpp"
+#include "cli/exit.hpp"
 #include "cli/files.hpp"
 #include "cli/json_values.hpp"
-#include "cli/stop_signals.hpp"
 #include "cli/sweep_file.hpp"
-#include "cli/sweep_run.hpp"
-#include "program/standard_streams.hpp"
+#include "program/process.hpp"
 
 namespace vines::cli {
 
@@ -116,28 +113,20 @@ api::AnswerRequest rebuilt_request(const api::Provenance& p, const std::string& 
     return api::read_answer_request(p.route, std::move(fields), {record, is_columns});
 }
 
-/// Recomputes the answer. Throws Problem if the request has none.
-Recomputed recomputed(const api::Provenance& p, const std::string& record) {
-    api::Answer answer = api::compute_answer(
-        rebuilt_request(p, record),
-        {.stop = {.requested = stopped}, .most_bytes = p.answer_limit.value_or(api::any_size)});
-    Recomputed computed{.text = {}, .provenance = std::move(*answer.provenance)};
-    answer.provenance.reset();
-    RunControl control;
-    api::write_answer(std::move(answer), control, [&computed](std::string_view piece) {
-        computed.text += piece;
-    });
-    computed.text.pop_back();  // line feed
-    return computed;
-}
-
-/// The same; empty if a signal stops it.
-std::optional<Recomputed> recomputed_unless_stopped(
-    const api::Provenance& p, const std::string& record) {
+/// Recomputes the answer. Empty if a signal stops it. Throws Problem if the request has no answer.
+std::optional<Recomputed> recomputed(const api::Provenance& p, const std::string& record) {
     const Stoppable stoppable(print_early_stop);
     Recomputed computed;
     try {
-        computed = recomputed(p, record);
+        api::Answer answer = api::compute_answer(
+            rebuilt_request(p, record),
+            {.stop = {.requested = stopped}, .most_bytes = p.answer_limit.value_or(api::any_size)});
+        computed.provenance = std::move(*std::exchange(answer.provenance, {}));
+        RunControl control;
+        api::write_answer(std::move(answer), control, [&computed](std::string_view piece) {
+            computed.text += piece;
+        });
+        computed.text.pop_back();    // line feed
     } catch (const api::Problem&) {  // thrown by a stopped identification
         if (!stopped()) throw;
     }
@@ -204,7 +193,7 @@ int verify_answer(const api::Unsealed& stored, const VerifyOptions& o) {
         return incomplete;
     }
     const std::optional<Recomputed> computed =
-        recomputed_unless_stopped(read_provenance(stored.provenance), record);
+        recomputed(read_provenance(stored.provenance), record);
     if (!computed) {
         print_early_stop();
         return stopped_code();

@@ -10,11 +10,71 @@
 #include <stdexcept>
 
 #include "api/problem.hpp"
-#include "http/header_text.hpp"
-#include "http/message.hpp"
-#include "http/regular_file.hpp"
+#include "api/schema/field.hpp"
+#include "program/descriptor.hpp"
+#include "program/whole_number.hpp"
 
 namespace vines::http {
+
+// --- Routes ---
+
+const Route* find_route(
+    const std::vector<Route>& routes, std::string_view method, std::string_view path) {
+    for (const Route& r : routes)
+        if (r.path == path && (r.method == method || (r.method == "GET" && method == "HEAD")))
+            return &r;
+    return nullptr;
+}
+
+namespace {
+
+/// The methods of a path, as listed in the header Allow; empty if the path is unknown.
+std::string allowed_methods(const std::vector<Route>& routes, std::string_view path) {
+    std::vector<std::string> methods;
+    for (const Route& r : routes) {
+        if (r.path != path) continue;
+        methods.push_back(r.method);
+        if (r.method == "GET") methods.push_back("HEAD");
+    }
+    return api::joined(methods);
+}
+
+/// Checks the body's encoding, type and length.
+std::optional<Response> body_refusal(const Head& head, std::size_t limit) {
+    if (head.has("content-encoding")) return problem_response(415, "send the body uncompressed");
+    if (media_type(head.header("content-type")).starts_with("multipart/"))
+        return problem_response(
+            415, "send the JSON object as the body itself, not as multipart/form-data");
+    if (head.method == "POST" && !head.has("content-length"))
+        return problem_response(411, "send a body with its Content-Length");
+    if (head.method != "POST" && head.content_length > 0)
+        return problem_response(400, fmt::format("a {} has no body", head.method));
+    if (head.content_length > limit)
+        return problem_response(413, fmt::format("the body is larger than {} bytes", limit));
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Response> request_refusal(
+    const Head& head, const Route* route, const std::vector<Route>& routes,
+    std::size_t body_limit) {
+    // 200 overlapping ranges would be 200 answers.
+    if (head.has("range"))
+        return problem_response(
+            416, "this service does not send parts of an answer; leave out the Range header");
+    if (!route) {
+        const std::string path = api::shortened(std::string(head.path()));
+        const std::string methods = allowed_methods(routes, head.path());
+        if (methods.empty())
+            return problem_response(404, fmt::format("there is nothing at {}", path));
+        Response response = problem_response(
+            405, fmt::format("{} takes {}, not {}", path, methods, api::shortened(head.method)));
+        response.headers.emplace_back("Allow", methods);
+        return response;
+    }
+    return body_refusal(head, std::max(body_limit, route->body_limit));
+}
 
 // --- API keys ---
 
@@ -23,28 +83,23 @@ namespace {
 // About ten thousand keys.
 constexpr std::size_t max_key_file_size = 1 << 20;
 
-/// True if the key consists of the characters of RFC 6750's b64token.
-bool is_key(std::string_view key) {
-    return std::all_of(key.begin(), key.end(), [](char c) {
-        return (c >= '0' && c <= '9') || (lower_case(c) >= 'a' && lower_case(c) <= 'z') ||
-               std::string_view("-._~+/=").find(c) != std::string_view::npos;
-    });
-}
+constexpr std::string_view key_characters = "-._~+/=";  // and letters and digits (RFC 6750)
 
 }  // namespace
 
 ApiKeys ApiKeys::read(const std::string& path) {
-    std::istringstream in(read_regular_file(path, max_key_file_size));
+    std::istringstream in(
+        read_regular(Descriptor(::open(path.c_str(), open_regular)), path, max_key_file_size));
     ApiKeys keys;
     std::size_t number = 0;
     for (std::string line; std::getline(in, line);) {
         ++number;
         line = trimmed(line.substr(0, line.find('\r')));
         if (line.empty() || line[0] == '#') continue;
-        if (line.size() < min_length || !is_key(line))
+        if (line.size() < min_length || !consists_of(line, key_characters))
             throw std::runtime_error(fmt::format(
-                "{}, line {}: a key must have {} or more characters: letters, digits or -._~+/=",
-                path, number, min_length));
+                "{}, line {}: a key must have {} or more characters: letters, digits or {}", path,
+                number, min_length, key_characters));
         keys.keys_.push_back(line);
     }
     if (keys.keys_.empty()) throw std::runtime_error(fmt::format("{} contains no key", path));
@@ -66,15 +121,16 @@ bool ApiKeys::accepts(std::string_view authorization) const {
 
 namespace {
 
-bool ends_with(std::string_view text, std::string_view ending) {
-    return text.size() >= ending.size() && text.substr(text.size() - ending.size()) == ending;
+/// Length of the host in HOST or HOST:PORT, with the brackets of an IPv6 address.
+std::size_t host_length(std::string_view authority) {
+    const std::size_t bracket = authority.rfind(']');
+    const std::size_t from = bracket == std::string_view::npos ? 0 : bracket;
+    return std::min(authority.find(':', from), authority.size());
 }
 
 /// The host of HOST or HOST:PORT, in lower case; an IPv6 address keeps its brackets.
 std::string host_of(std::string_view authority) {
-    const std::size_t bracket = authority.rfind(']');
-    const std::size_t from = bracket == std::string_view::npos ? 0 : bracket;
-    std::string host = lower_case(authority.substr(0, authority.find(':', from)));
+    std::string host = lower_case(authority.substr(0, host_length(authority)));
     if (host.size() > 1 && host.back() == '.') host.pop_back();
     return host;
 }
@@ -84,6 +140,17 @@ bool is_address(std::string_view host) {
     const bool six = host.size() > 2 && host.front() == '[' && host.back() == ']';
     const std::string text(six ? host.substr(1, host.size() - 2) : host);
     return ::inet_pton(six ? AF_INET6 : AF_INET, text.c_str(), bytes.data()) == 1;
+}
+
+/// True for a host name (RFC 1123) whose last label is not a number, which would be an address.
+bool is_name(const std::string& host) {
+    const std::vector<std::string> labels = api::split(host, '.');
+    const auto is_label = [](const std::string& label) {
+        return !label.empty() && consists_of(label, "-") && label.front() != '-' &&
+               label.back() != '-';
+    };
+    return !labels.empty() && std::all_of(labels.begin(), labels.end(), is_label) &&
+           !whole_number(labels.back());
 }
 
 /// DNS rebinding: an attacker's page has a host name with a dot, registered by the attacker, who
@@ -105,7 +172,7 @@ std::string authority_of(std::string_view origin) {
     std::string authority =
         lower_case(scheme == std::string_view::npos ? origin : origin.substr(scheme + 3));
     for (const std::string_view port : {":80", ":443"})
-        if (ends_with(authority, port)) authority.erase(authority.size() - port.size());
+        if (authority.ends_with(port)) authority.erase(authority.size() - port.size());
     return authority;
 }
 
@@ -143,8 +210,17 @@ Response key_refusal() {
 }  // namespace
 
 bool is_loopback(std::string_view host) {
-    return host == "localhost" || ends_with(host, ".localhost") || host == "[::1]" ||
+    return host == "localhost" || host.ends_with(".localhost") || host == "[::1]" ||
            host == "::1" || (is_address(host) && host.substr(0, 4) == "127.");
+}
+
+bool is_origin(std::string_view text) {
+    if (!text.starts_with("http://") && !text.starts_with("https://")) return false;
+    const std::string_view authority = text.substr(text.find("//") + 2),
+                           port = authority.substr(host_length(authority));
+    const std::string host = host_of(authority);
+    return (is_address(host) || is_name(host)) &&
+           (port.empty() || whole_number(port.substr(1), 1, 65535));
 }
 
 std::string in_url(const std::string& address) {

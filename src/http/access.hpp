@@ -1,3 +1,4 @@
+// Decisions by a request's head, before its body is read: its route, and whether it is acceptable.
 // Access control: API keys, the host a request names, and the origin of the page that sends it.
 // Any web page can make its visitor's browser send requests to this server. The checks here keep
 // pages of other sites from reading answers or starting computations.
@@ -10,9 +11,18 @@
 #include <vector>
 
 #include "http/head.hpp"
-#include "http/route.hpp"
+#include "http/message.hpp"
 
 namespace vines::http {
+
+/// The route for a method and path; null if none.
+const Route* find_route(
+    const std::vector<Route>& routes, std::string_view method, std::string_view path);
+
+/// Refuses what the head shows to be unacceptable for any client; nothing if the request is fine.
+/// route: null if no route matches; body_limit: bytes, for routes without their own limit.
+std::optional<Response> request_refusal(
+    const Head& head, const Route* route, const std::vector<Route>& routes, std::size_t body_limit);
 
 class ApiKeys {
 public:
@@ -58,6 +68,10 @@ std::vector<std::pair<std::string, std::string>> cors_headers(
 
 /// True for localhost, names below it, and loopback addresses: 127.0.0.1, [::1].
 bool is_loopback(std::string_view host);
+
+/// True for http:// or https://, a host (a name, an IPv4 address, or an IPv6 address in brackets)
+/// and optionally a port from 1 to 65535.
+bool is_origin(std::string_view text);
 
 /// The address as written in a URL: IPv6 in brackets.
 std::string in_url(const std::string& address);

@@ -10,7 +10,6 @@
 // waits only if it needs longer (Permit).
 #pragma once
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -19,12 +18,13 @@
 #include <memory>
 #include <mutex>
 #include <stop_token>
-#include <thread>
+
+#include "program/process.hpp"
 
 namespace vines::http {
 
 struct AdmissionLimits {
-    int running = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    int running = cores();
     int waiting = 64;  ///< foreground requests in the queue, in addition to the running ones
     int sweeps = 4;    ///< sweeps at once; they share the slots that requests leave free
 };
@@ -37,14 +37,13 @@ struct AdmissionLoad {
 
 /// Must outlive the slots that it hands out.
 class AdmissionControl {
-    struct Release {
-        void operator()(AdmissionControl* admission) const { admission->release(); }
-    };
-    struct ReleaseSweep {
-        void operator()(AdmissionControl* admission) const { admission->release_sweep(); }
-    };
-    struct EndGrace {
-        void operator()(AdmissionControl* admission) const { admission->end_grace(); }
+    void release();
+    void release_sweep();
+    void end_grace();
+    /// Calls one of these functions.
+    template <auto function>
+    struct Deleter {
+        void operator()(AdmissionControl* admission) const { (admission->*function)(); }
     };
 
 public:
@@ -55,9 +54,9 @@ public:
     int threads() const { return limits_.running; }
 
     /// The right to compute, or null. The destructor gives it back.
-    using Slot = std::unique_ptr<AdmissionControl, Release>;
+    using Slot = std::unique_ptr<AdmissionControl, Deleter<&AdmissionControl::release>>;
     /// The right to compute for a moment without a slot; counts towards the queue's limit.
-    using Grace = std::unique_ptr<AdmissionControl, EndGrace>;
+    using Grace = std::unique_ptr<AdmissionControl, Deleter<&AdmissionControl::end_grace>>;
     /// Result of try_acquire(): a slot, a grace period or neither.
     struct Attempt {
         Slot slot;
@@ -78,7 +77,7 @@ public:
     bool background_waits() const { return background_waits_; }
 
     /// The right to run one sweep. Null if the limit is reached or sweeps are stopped.
-    using SweepSlot = std::unique_ptr<AdmissionControl, ReleaseSweep>;
+    using SweepSlot = std::unique_ptr<AdmissionControl, Deleter<&AdmissionControl::release_sweep>>;
     SweepSlot acquire_sweep();
 
     /// Running sweeps end at their next check and no new one starts. Requests still compute.
@@ -98,9 +97,6 @@ private:
     };
     using Queue = std::list<Waiter*>;
 
-    void release();
-    void release_sweep();
-    void end_grace();
     bool is_full() const;
     void assign_slots();
     bool end_wait(Queue& queue, Waiter& waiter);

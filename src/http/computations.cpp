@@ -1,4 +1,4 @@
-#include "http/computations.hpp"
+#include "http/routes.hpp"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@
 #include "api/version.hpp"
 #include "http/admission_control.hpp"
 #include "http/encoding.hpp"
-#include "http/header_text.hpp"
+#include "http/head.hpp"
 #include "http/memory.hpp"
 #include "http/streams.hpp"
 
@@ -123,8 +123,7 @@ auto read_in_time(const Request& r, const Service& service, const Read& read) {
         return read();
     } catch (const api::Cancelled&) {
         if (r.left()) throw_client_left();
-        if (service.admission.all_stopped())
-            throw Problem::unavailable("stopping", "the server is stopping");
+        if (service.admission.all_stopped()) throw *stopping_refusal().problem;
         throw Problem(
             413,
             fmt::format(
@@ -140,18 +139,17 @@ Json body_of(const Request& r, const api::ReadLimits& reading) {
     return api::parse_object(r.body, reading);
 }
 
-api::AnswerRequest asked_run(
-    const Request& r, const api::FieldTable& table, const api::ReadLimits& reading) {
-    return api::read_answer_request(
-        r.path, r.method == "POST" ? body_of(r, reading) : api::from_query(table, r.query));
-}
-
-api::AnswerRequest asked_identification(const Request& r, const api::ReadLimits& reading) {
+/// The fields of an identification's CSV file are in the query, like those of a GET.
+api::AnswerRequest asked(const Request& r, const api::ReadLimits& reading) {
+    const bool identifies = r.path == "/v1/identify";
     const std::string type = media_type(r.content_type);
-    const bool is_columns = type == "text/csv" || type == "text/plain";
-    return api::read_answer_request(
-        r.path, is_columns ? api::from_query(api::identify_fields(), r.query) : body_of(r, reading),
-        {r.body, is_columns}, reading);
+    const bool is_columns = identifies && (type == "text/csv" || type == "text/plain");
+    const api::FieldTable& table = identifies                 ? api::identify_fields()
+                                   : r.path == "/v1/manifold" ? api::manifold_fields()
+                                                              : api::simulate_fields();
+    Json fields =
+        r.method == "POST" && !is_columns ? body_of(r, reading) : api::from_query(table, r.query);
+    return api::read_answer_request(r.path, std::move(fields), {r.body, is_columns}, reading);
 }
 
 const std::pair<std::string, std::string> varies{"Vary", "Accept"};
@@ -185,44 +183,26 @@ std::string encoded(
     }
 }
 
-/// Records phases, with the time that the permit waited counted as "queue".
-class Phases {
-public:
-    Phases(Stopwatch& watch, const Permit& permit) : watch_(watch), permit_(permit) {}
-    void end(const char* phase) {
-        watch_.lap(phase);
-        const auto waited = permit_.waited();
-        watch_.move(phase, "queue", waited - waited_);
-        waited_ = waited;
-    }
+}  // namespace
 
-private:
-    Stopwatch& watch_;
-    const Permit& permit_;
-    decltype(std::declval<const Permit>().waited()) waited_{};
-};
-
-Response answer(
-    const Request& r, const Service& service, Stopwatch& watch,
-    const std::function<api::AnswerRequest(const Request&, const api::ReadLimits&)>& read) {
+Response answer(const Request& r, const Service& service, Stopwatch& watch) {
     Permit permit = permit_for(r, service.admission, watch);
     const RouteOptions& options = service.options;
     const api::Stop stop = stop_conditions(options.deadline, r, service.admission, permit);
-    Phases phases(watch, permit);
-    api::AnswerRequest asked =
-        read_in_time(r, service, [&] { return read(r, reading_of(options, stop)); });
-    std::optional<api::Format>& format = asked.form.format;
+    api::AnswerRequest request =
+        read_in_time(r, service, [&] { return asked(r, reading_of(options, stop)); });
+    std::optional<api::Format>& format = request.form.format;
     if (!format) format = accepted_format(r.accept);
-    const std::string provenance = api::describe(asked.provenance, nullptr).dump();
+    const std::string provenance = api::describe(request.provenance, nullptr).dump();
     std::string tag = tag_of(r, *format, options.answer_limit, provenance);
     if (!tag.empty() && matches_tag(r.if_none_match, tag))
         return {.status = 304, .tag = tag, .headers = {varies}};
-    phases.end("parse");
+    watch.lap("parse", permit.waited());
     api::Answer answer = api::compute_answer(
-        std::move(asked),
+        std::move(request),
         {.stop = stop, .most_bytes = options.answer_limit, .most_kept = options.most_kept_impacts});
     const bool renewed = permit.renew();
-    phases.end("solve");
+    watch.lap("solve", permit.waited());
     if (!renewed) throw_client_left();
     service.metrics.count_impacts(answer.impacts);
     if (answer.run) {
@@ -239,26 +219,8 @@ Response answer(
         .tag = std::move(tag),
         .headers = {varies}};
     if (!compress(response, r, [&] { return !permit.renew() || r.left(); })) throw_client_left();
-    phases.end("encode");
+    watch.lap("encode", permit.waited());
     return response;
-}
-
-}  // namespace
-
-Response simulate(const Request& r, const Service& service, Stopwatch& watch) {
-    return answer(r, service, watch, [](const Request& request, const api::ReadLimits& reading) {
-        return asked_run(request, api::simulate_fields(), reading);
-    });
-}
-
-Response manifold(const Request& r, const Service& service, Stopwatch& watch) {
-    return answer(r, service, watch, [](const Request& request, const api::ReadLimits& reading) {
-        return asked_run(request, api::manifold_fields(), reading);
-    });
-}
-
-Response identify(const Request& r, const Service& service, Stopwatch& watch) {
-    return answer(r, service, watch, asked_identification);
 }
 
 Response sweep(const Request& r, const Service& service, Stopwatch& watch) {
@@ -268,7 +230,7 @@ Response sweep(const Request& r, const Service& service, Stopwatch& watch) {
     api::SweepRequest request = read_in_time(r, service, [&] {
         return api::read_sweep_request(body_of(r, reading_of(options, stop)), options.sweep_points);
     });
-    Phases(watch, permit).end("parse");
+    watch.lap("parse", permit.waited());
     return stream_sweep(
         std::move(request), service.options.sweep_deadline, r.id, service.admission,
         service.metrics);

@@ -12,7 +12,6 @@
 #include "http/head.hpp"
 #include "http/memory.hpp"
 #include "http/message.hpp"
-#include "http/route.hpp"
 
 namespace vines::http {
 

@@ -204,7 +204,8 @@ void EventLoop::hand_over(Owned connection) {
     ++in_flight_;
     if (workers_.add(connection)) return;
     --in_flight_;
-    connection->refuse(handlers_.overloaded());
+    connection->refuse(problem_response(api::Problem::unavailable(
+        "threads", "all worker threads are busy and their queue is full")));
     answer_here(*connection, connection->take());
     watch(std::move(connection));
 }

@@ -22,8 +22,6 @@ struct Handlers {
     HeadCheck check_head;
     /// Sends the answer; false if the connection cannot be reused.
     std::function<bool(Connection&, Exchange, WriteTimeout)> answer;
-    /// The answer if all workers are busy and the queue is full.
-    std::function<Response()> overloaded;
 };
 
 struct ConnectionLimits {

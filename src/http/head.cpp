@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <random>
 #include <string_view>
 #include <tuple>
 
 #include "api/problem.hpp"
-#include "http/header_text.hpp"
+#include "program/whole_number.hpp"
 
 namespace vines::http {
 
@@ -24,17 +23,9 @@ using api::Problem;
     throw Problem(400, "the request could not be read: " + what);
 }
 
-bool is_letter_or_digit(char c) {
-    return (c >= '0' && c <= '9') || (lower_case(c) >= 'a' && lower_case(c) <= 'z');
-}
-
 /// True for a token (RFC 9110, 5.6.2).
 bool is_token(std::string_view text) {
-    const auto allowed = [](char c) {
-        return is_letter_or_digit(c) ||
-               std::string_view("!#$%&'*+-.^_`|~").find(c) != std::string_view::npos;
-    };
-    return !text.empty() && std::all_of(text.begin(), text.end(), allowed);
+    return !text.empty() && consists_of(text, "!#$%&'*+-.^_`|~");
 }
 
 bool is_printable(std::string_view text) {
@@ -49,11 +40,9 @@ bool is_authority(std::string_view text) {
         std::min(text.size(), in_brackets ? text.find(']') + 1 : text.find(':'));
     const std::string_view port = text.substr(end);
     const std::string_view host = in_brackets ? text.substr(1, end - 2) : text.substr(0, end);
-    const auto allowed = [in_brackets](char c) {
-        return is_letter_or_digit(c) || (in_brackets && c == ':') ||
-               std::string_view("-._~!$&'()*+,;=%").find(c) != std::string_view::npos;
-    };
-    return std::all_of(host.begin(), host.end(), allowed) && (port.empty() || port[0] == ':') &&
+    constexpr std::string_view colon_and_others = ":-._~!$&'()*+,;=%";
+    return consists_of(host, colon_and_others.substr(in_brackets ? 0 : 1)) &&
+           (port.empty() || port[0] == ':') &&
            port.find_first_not_of("0123456789", 1) == std::string_view::npos;
 }
 
@@ -72,14 +61,6 @@ std::pair<std::string, std::string> split_absolute(std::string_view target) {
     std::string rest(target.substr(end));
     if (rest.empty() || rest[0] != '/') rest.insert(0, "/");
     return {std::string(target.substr(begin, end - begin)), rest};
-}
-
-std::size_t length_of(std::string_view text) {
-    std::size_t length = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), length);
-    if (text.empty() || error != std::errc() || end != text.data() + text.size())
-        throw Problem(400, "the Content-Length must be one whole number");
-    return length;
 }
 
 /// True for those headers that the server reads and that a client can send several times, each with
@@ -217,15 +198,15 @@ void HeadReader::finish() {
     if (!is_authority(head_.host) || !is_authority(head_.header("host")))
         malformed("its Host must be HOST or HOST:PORT");
     if (head_.host.empty()) head_.host = head_.header("host");
-    if (times("content-length") > 1)
+    const auto length = whole_number(head_.header("content-length"));
+    if (times("content-length") > (length ? 1 : 0))
         throw Problem(400, "the Content-Length must be one whole number");
     if (head_.has("transfer-encoding")) {
         if (head_.has("content-length") || is_old)
             malformed("it has a Transfer-Encoding together with a Content-Length, or in HTTP/1.0");
         throw Problem(411, "send the body with a Content-Length, not in chunks");
     }
-    if (head_.has("content-length"))
-        head_.content_length = length_of(head_.header("content-length"));
+    head_.content_length = length.value_or(0);
     head_.takes_chunks = !is_old;
     const bool ends = list_contains(head_, "connection", "close");
     head_.keep_alive = !ends && (!is_old || list_contains(head_, "connection", "keep-alive"));
@@ -251,12 +232,7 @@ bool is_hexadecimal(std::string_view text) {
 }
 
 bool is_word(std::string_view text) {
-    const auto allowed = [](char c) {
-        return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-               c == '.' || c == '_' || c == '-';
-    };
-    return !text.empty() && text.size() <= max_id_length &&
-           std::all_of(text.begin(), text.end(), allowed);
+    return !text.empty() && text.size() <= max_id_length && consists_of(text, "._-");
 }
 
 bool is_zero(std::string_view digits) {

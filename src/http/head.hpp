@@ -1,9 +1,11 @@
-// The head of a request: request line and headers (RFC 9112).
+// The head of a request: request line and headers (RFC 9112), and the parts of header values.
 // It is read strictly. Where two programs could take the same bytes for different requests (request
 // smuggling), the request is refused.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdlib>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -60,5 +62,57 @@ private:
 /// to 64 letters, digits, ".", "_" or "-"; else the trace-id of a traceparent (W3C Trace Context);
 /// else 16 random hexadecimal digits.
 std::string request_id(const Head& head);
+
+inline std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view blanks = " \t";
+    text.remove_prefix(std::min(text.size(), text.find_first_not_of(blanks)));
+    return text.substr(0, text.find_last_not_of(blanks) + 1);
+}
+
+/// Removes the part before the separator from a text; returns it without surrounding blanks.
+inline std::string_view next_part(std::string_view& text, char separator) {
+    const std::string_view part = text.substr(0, text.find(separator));
+    text.remove_prefix(std::min(text.size(), part.size() + 1));
+    return trimmed(part);
+}
+
+inline char lower_case(char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+inline std::string lower_case(std::string_view text) {
+    std::string lower(text);
+    for (char& c : lower) c = lower_case(c);
+    return lower;
+}
+
+/// True if the text consists of ASCII letters, digits and the characters in `others`.
+inline bool consists_of(std::string_view text, std::string_view others) {
+    return std::all_of(text.begin(), text.end(), [others](char c) {
+        return (c >= '0' && c <= '9') || (lower_case(c) >= 'a' && lower_case(c) <= 'z') ||
+               others.find(c) != std::string_view::npos;
+    });
+}
+
+/// The media type of a Content-Type, in lower case and without parameters.
+inline std::string media_type(std::string_view content_type) {
+    return lower_case(next_part(content_type, ';'));
+}
+
+/// One element of an Accept or Accept-Encoding header, such as "gzip;q=0.5" (RFC 9110, 12.4.2). A
+/// weight of 0 refuses it, and so does a weight that is not a number.
+struct Preference {
+    std::string name;  ///< in lower case
+    double weight = 1;
+};
+inline Preference preference_of(std::string_view element) {
+    Preference preference{lower_case(next_part(element, ';'))};
+    while (!element.empty()) {
+        const std::string parameter = lower_case(next_part(element, ';'));
+        if (parameter.starts_with("q="))
+            preference.weight = std::strtod(parameter.c_str() + 2, nullptr);
+    }
+    return preference;
+}
 
 }  // namespace vines::http

@@ -4,7 +4,7 @@
 #include <exception>
 #include <string>
 
-#include "http/stopwatch.hpp"
+#include "http/message.hpp"
 
 namespace vines::http {
 

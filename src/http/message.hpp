@@ -1,4 +1,4 @@
-// Request and response as the routes see them, independent of the HTTP library.
+// Request, response and route, independent of the HTTP library.
 #pragma once
 
 #include <chrono>
@@ -11,12 +11,39 @@
 
 #include "api/parse.hpp"
 #include "api/problem.hpp"
-#include "http/stopwatch.hpp"
 
 namespace vines::http {
 
 // Interval at which a computation checks whether its client has left.
 inline constexpr auto client_check_interval = std::chrono::milliseconds(50);
+
+/// Duration of each phase by name, ms.
+using Timing = std::vector<std::pair<std::string, double>>;
+
+/// Measures the phases of a request's work.
+class Stopwatch {
+public:
+    using Clock = std::chrono::steady_clock;
+
+    /// Ends a phase that began at the previous call. `queued`: time of this and earlier phases that
+    /// counts as "queue", which must be the first phase.
+    void lap(const char* name, Clock::duration queued = {}) {
+        const auto now = Clock::now(), began = std::exchange(last_, now);
+        const auto waited = queued - std::exchange(queued_, queued);
+        if (!laps_.empty()) laps_[0].second += in_ms(waited);
+        laps_.emplace_back(name, in_ms(now - began - waited));
+    }
+    Timing take() { return std::move(laps_); }
+
+private:
+    static double in_ms(Clock::duration time) {
+        return std::chrono::duration<double, std::milli>(time).count();
+    }
+
+    Clock::time_point last_ = Clock::now();
+    Clock::duration queued_{};
+    Timing laps_;
+};
 
 struct Request {
     std::string method, path;
@@ -58,14 +85,39 @@ struct Response {
     Timing timing = {};  ///< header Server-Timing
 };
 
+/// The function that answers a method and path.
+struct Route {
+    std::string method = {};  ///< GET (which includes HEAD) or POST
+    std::string path = {};
+    std::string name = {};  ///< label in the metrics
+    std::function<Response(const Request&)> answer = {};
+    std::size_t body_limit = 0;  ///< bytes, if larger than the server's limit
+    /// Small and without computation: answered by the event loop, however busy the workers are.
+    bool on_event_loop = false;
+    bool sets_frame_policy = false;  ///< its answers state which pages may show it in a frame
+    bool is_public = false;          ///< needs no API key
+};
+
 /// A problem document (RFC 9457) as a response; 503 with Retry-After. Its body, which contains the
 /// request's id, is made when it is sent.
-Response problem_response(const api::Problem& problem);
-Response problem_response(int status, const std::string& detail);
+inline Response problem_response(const api::Problem& problem) {
+    Response response{
+        .status = problem.status, .content_type = "application/problem+json", .problem = problem};
+    if (problem.status == 503) response.headers.emplace_back("Retry-After", "1");
+    return response;
+}
+inline Response problem_response(int status, const std::string& detail) {
+    return problem_response(api::Problem(status, detail));
+}
 
 /// 503: the memory limit is reached.
-Response memory_refusal();
+inline Response memory_refusal() {
+    return problem_response(api::Problem::unavailable(
+        "memory", "the server has reached its memory limit for requests and answers"));
+}
 /// 503: the server is stopping; the request can be sent to another server.
-Response stopping_refusal();
+inline Response stopping_refusal() {
+    return problem_response(api::Problem::unavailable("stopping", "the server is stopping"));
+}
 
 }  // namespace vines::http

@@ -24,7 +24,8 @@
 
 namespace vines::http {
 
-/*PL*/
+namespace {
+
 /// Resource use of this process, by the names of Prometheus' client libraries; 0 if unknown.
 struct ProcessLoad {
     double cpu_seconds = 0;
@@ -33,10 +34,6 @@ struct ProcessLoad {
     double open_fds = 0, max_fds = 0;
     double threads = 0;
 };
-
-ProcessLoad process_load();
-
-namespace {
 
 /// Boot time of the system, seconds since 1970.
 double boot_time() {
@@ -68,8 +65,6 @@ void read_stat(ProcessLoad& load) {
     load.resident_memory_bytes = pages * static_cast<double>(::sysconf(_SC_PAGESIZE));
 }
 
-}  // namespace
-
 ProcessLoad process_load() {
     ProcessLoad load;
     read_stat(load);
@@ -82,8 +77,6 @@ ProcessLoad process_load() {
     if (::getrlimit(RLIMIT_NOFILE, &limit) == 0) load.max_fds = static_cast<double>(limit.rlim_cur);
     return load;
 }
-
-namespace {
 
 using prometheus::ClientMetric;
 using prometheus::MetricFamily;
@@ -102,11 +95,13 @@ std::string method_label(const std::string& method) {
 // In the order of SweepEnd.
 constexpr std::array sweep_ends{"complete", "client_left", "deadline", "stopping", "failed"};
 
+/// A metric without labels, at its present value.
 MetricFamily sampled(
-    std::string name, std::string help, double value, MetricType type = MetricType::Gauge) {
+    const char* name, const char* help, auto value, MetricType type = MetricType::Gauge) {
     ClientMetric metric;
-    (type == MetricType::Counter ? metric.counter.value : metric.gauge.value) = value;
-    return {std::move(name), std::move(help), type, {std::move(metric)}};
+    (type == MetricType::Counter ? metric.counter.value : metric.gauge.value) =
+        static_cast<double>(value);
+    return {name, help, type, {std::move(metric)}};
 }
 
 MetricFamily build_info() {
@@ -119,19 +114,20 @@ MetricFamily build_info() {
 
 void add_process(std::vector<MetricFamily>& all) {
     const ProcessLoad load = process_load();
-    all.push_back(sampled(
-        "process_cpu_seconds_total", "User and system time.", load.cpu_seconds,
-        MetricType::Counter));
-    all.push_back(sampled(
-        "process_start_time_seconds", "Start of the process, since 1970.",
-        load.start_time_seconds));
-    all.push_back(
-        sampled("process_resident_memory_bytes", "Memory in use.", load.resident_memory_bytes));
-    all.push_back(sampled(
-        "process_virtual_memory_bytes", "Memory that is mapped.", load.virtual_memory_bytes));
-    all.push_back(sampled("process_open_fds", "Open file descriptors.", load.open_fds));
-    all.push_back(sampled("process_max_fds", "File descriptors that may be open.", load.max_fds));
-    all.push_back(sampled("process_threads", "Threads.", load.threads));
+    const MetricFamily families[] = {
+        sampled(
+            "process_cpu_seconds_total", "User and system time.", load.cpu_seconds,
+            MetricType::Counter),
+        sampled(
+            "process_start_time_seconds", "Start of the process, since 1970.",
+            load.start_time_seconds),
+        sampled("process_resident_memory_bytes", "Memory in use.", load.resident_memory_bytes),
+        sampled(
+            "process_virtual_memory_bytes", "Memory that is mapped.", load.virtual_memory_bytes),
+        sampled("process_open_fds", "Open file descriptors.", load.open_fds),
+        sampled("process_max_fds", "File descriptors that may be open.", load.max_fds),
+        sampled("process_threads", "Threads.", load.threads)};
+    all.insert(all.end(), std::begin(families), std::end(families));
 }
 
 /// Members of a metric family by one key: a look-up by labels takes as long as a small request.
@@ -199,23 +195,18 @@ struct Metrics::Implementation {
 
     void add_load(std::vector<MetricFamily>& all) const {
         const AdmissionLoad load = admission.load();
+        all.push_back(sampled("vines_compute_running", "Computations running.", load.running));
         all.push_back(sampled(
-            "vines_compute_running", "Computations running.", static_cast<double>(load.running)));
-        all.push_back(sampled(
-            "vines_compute_queue_depth", "Requests that wait for a compute slot.",
-            static_cast<double>(load.waiting)));
-        all.push_back(
-            sampled("vines_sweeps_running", "Sweeps running.", static_cast<double>(load.sweeps)));
+            "vines_compute_queue_depth", "Requests that wait for a compute slot.", load.waiting));
+        all.push_back(sampled("vines_sweeps_running", "Sweeps running.", load.sweeps));
         if (!connections) return;
         const ConnectionLoad now = connections();
-        all.push_back(
-            sampled("vines_http_connections", "Open connections.", static_cast<double>(now.open)));
+        all.push_back(sampled("vines_http_connections", "Open connections.", now.open));
         all.push_back(sampled(
             "vines_http_requests_in_flight", "Requests received and not yet answered.",
-            static_cast<double>(now.in_flight)));
+            now.in_flight));
         all.push_back(sampled(
-            "vines_http_held_bytes", "Bytes of requests and answers in memory.",
-            static_cast<double>(now.held_bytes)));
+            "vines_http_held_bytes", "Bytes of requests and answers in memory.", now.held_bytes));
     }
 };
 
@@ -264,7 +255,7 @@ std::string Metrics::text() const {
     implementation_->add_load(all);
     all.push_back(sampled(
         "vines_log_lines_dropped_total", "Log lines dropped because stderr was full.",
-        static_cast<double>(log_lines_dropped()), MetricType::Counter));
+        log_lines_dropped(), MetricType::Counter));
     add_process(all);
     all.push_back(build_info());
     return prometheus::TextSerializer().Serialize(all);

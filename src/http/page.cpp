@@ -1,22 +1,20 @@
 #include "http/page.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <limits>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
 #include "http/message.hpp"
-#include "http/regular_file.hpp"
+#include "program/descriptor.hpp"
 
 namespace vines::http {
 
 namespace {
-
-constexpr std::size_t no_size_limit = std::numeric_limits<std::size_t>::max();
 
 /// Content security policy: scripts, styles and connections from this server only, and no inline
 /// code; images can also be data: URLs.
@@ -32,7 +30,7 @@ std::string policy_of(const std::vector<std::string>& embed_origins) {
 /// Content type by the extension of the request path; the paths of pages have none.
 std::string content_type_of(std::string_view path) {
     const std::string_view ending = path.substr(std::min(path.rfind('.'), path.size()));
-    if (ending == ".js" || ending == ".mjs") return "text/javascript; charset=utf-8";
+    if (ending == ".js") return "text/javascript; charset=utf-8";
     if (ending == ".css") return "text/css; charset=utf-8";
     if (ending == ".svg") return "image/svg+xml";
     return "text/html; charset=utf-8";
@@ -62,13 +60,25 @@ std::vector<Route> embedded_routes(const std::string& policy) {
     return routes;
 }
 
-/// Reads the file at each request. Rejects symbolic links, which could lead out of the folder.
+/// Opens a file without following symbolic links in any part of its absolute path: a link could
+/// lead out of the folder. Opens one name after the other, so that renaming a folder meanwhile
+/// cannot redirect the path.
+Descriptor open_without_links(const std::filesystem::path& path) {
+    constexpr int to_folder = O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
+    Descriptor folder(::open(path.root_path().c_str(), to_folder));
+    for (const std::filesystem::path& name : path.relative_path().parent_path())
+        folder = Descriptor(::openat(folder.number(), name.c_str(), to_folder));
+    return Descriptor(
+        ::openat(folder.number(), path.filename().c_str(), open_regular | O_NOFOLLOW));
+}
+
+/// Reads the file at each request.
 Route file_route(
     const std::filesystem::path& file, const std::string& path, const std::string& policy) {
     return {.method = "GET", .path = path, .answer = [=](const Request&) {
                 try {
                     return file_response(
-                        path, read_regular_file_no_links(file, no_size_limit), policy);
+                        path, read_regular(open_without_links(file), file), policy);
                 } catch (const std::runtime_error&) {
                     return problem_response(404, "there is no " + path);
                 }
@@ -104,18 +114,6 @@ std::vector<Route> folder_routes(const std::filesystem::path& given, const std::
 }
 
 }  // namespace
-
-/// Checks only the scheme and that the rest consists of characters of a host and port.
-bool is_origin(const std::string& text) {
-    const std::size_t scheme =
-        text.rfind("https://", 0) == 0 ? 8 : (text.rfind("http://", 0) == 0 ? 7 : 0);
-    const std::string host = text.substr(scheme);
-    const auto allowed = [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-               c == '.' || c == '-' || c == ':' || c == '[' || c == ']';
-    };
-    return scheme > 0 && !host.empty() && std::all_of(host.begin(), host.end(), allowed);
-}
 
 std::vector<Route> page_routes(const PageOptions& options) {
     const std::string policy = policy_of(options.embed_origins);

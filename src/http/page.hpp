@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "http/route.hpp"
+#include "http/message.hpp"
 
 namespace vines::http {
 
@@ -28,9 +28,6 @@ struct PageOptions {
     /// Origins of pages that may show this one in a frame, such as "https://example.org:8443".
     std::vector<std::string> embed_origins = {};
 };
-
-/// True for an origin: http or https, a host and an optional port, nothing else.
-bool is_origin(const std::string& text);
 
 /// The routes of all files. Throws std::runtime_error if the folder cannot be read.
 std::vector<Route> page_routes(const PageOptions& options);

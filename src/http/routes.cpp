@@ -9,7 +9,6 @@
 #include "api/presets.hpp"
 #include "api/schema/tables.hpp"
 #include "api/version.hpp"
-#include "http/computations.hpp"
 #include "http/encoding.hpp"
 #include "http/message.hpp"
 #include "http/page.hpp"
@@ -71,23 +70,22 @@ Route health(std::string path, std::function<Response(const Request&)> answer) {
 std::vector<Route> make_routes(
     const RouteOptions& options, AdmissionControl& admission, Metrics& metrics) {
     std::vector<Route> routes;
-    using Computation = Response (*)(const Request&, const Service&, Stopwatch&);
     const auto service = std::make_shared<const Service>(Service{options, admission, metrics});
-    const auto compute = [&](const char* method, const char* path, Computation answer) {
+    const auto compute = [&](const char* method, const char* path, Computation* computation) {
         routes.push_back(
-            {.method = method, .path = path, .answer = [answer, service](const Request& r) {
+            {.method = method, .path = path, .answer = [computation, service](const Request& r) {
                  Stopwatch watch;
-                 Response response = answer_of([&] { return answer(r, *service, watch); });
+                 Response response = answer_of([&] { return computation(r, *service, watch); });
                  response.timing = watch.take();
                  return response;
              }});
     };
     for (const char* method : {"GET", "POST"}) {
-        compute(method, "/v1/simulate", simulate);
-        compute(method, "/v1/manifold", manifold);
+        compute(method, "/v1/simulate", answer);
+        compute(method, "/v1/manifold", answer);
     }
     compute("POST", "/v1/sweep", sweep);
-    compute("POST", "/v1/identify", identify);
+    compute("POST", "/v1/identify", answer);
     routes.back().body_limit = options.record_limit;
     routes.push_back(document("/v1/presets", api::describe_presets));
     routes.push_back(document("/v1/parameters", api::describe_fields));

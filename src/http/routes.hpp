@@ -8,7 +8,6 @@
 #include "http/admission_control.hpp"
 #include "http/metrics.hpp"
 #include "http/page.hpp"
-#include "http/route.hpp"
 
 namespace vines::http {
 
@@ -23,6 +22,21 @@ struct RouteOptions {
     std::size_t most_kept_impacts = api::most_kept_impacts;
     PageOptions page = {};
 };
+
+struct Service {
+    const RouteOptions options;
+    AdmissionControl& admission;
+    Metrics& metrics;
+};
+
+/// Answers of the routes that compute. Each function waits for admission, reads the request,
+/// computes, and encodes the answer. A Problem that it throws is its answer. It records the
+/// durations of these phases in the stopwatch.
+using Computation = Response(const Request& request, const Service& service, Stopwatch& watch);
+/// /v1/simulate, /v1/manifold and /v1/identify, which also takes a CSV file with the fields in the
+/// query.
+Computation answer;
+Computation sweep;  ///< /v1/sweep
 
 /// All routes; `admission` and `metrics` must outlive them. Throws std::runtime_error if the folder
 /// of the web page cannot be read.

@@ -1,8 +1,9 @@
-// `vines serve`: options, start, and the end by a signal.
-// Shutdown: on SIGTERM or SIGINT sweeps end at once and /readyz answers 503. Requests are still
-// accepted for --drain seconds. Then the server stops: requests in progress have 10 s to finish;
-// after that computations end with the results they have, and 5 s later the process ends, with code
-// 3 if requests are left unanswered. A second signal ends it immediately.
+// `vines serve`: options, start, and the end by a signal; `vines healthcheck`, which queries a
+// running service, for containers without curl. Shutdown: on SIGTERM or SIGINT sweeps end at once
+// and /readyz answers 503. Requests are still accepted for --drain seconds. Then the server stops:
+// requests in progress have 10 s to finish; after that computations end with the results they have,
+// and 5 s later the process ends, with code 3 if requests are left unanswered. A second signal ends
+// it immediately.
 #include <fmt/format.h>
 #include <malloc.h>
 #include <unistd.h>
@@ -10,20 +11,22 @@
 #include <chrono>
 #include <cstdlib>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <thread>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "api/version.hpp"
 #include "http/admission_control.hpp"
-#include "http/commands.hpp"
 #include "http/log.hpp"
 #include "http/routes.hpp"
 #include "http/server.hpp"
-#include "program/end_signals.hpp"
-#include "program/standard_streams.hpp"
+#include "program/process.hpp"
 #include "program/subcommand.hpp"
+
+#include <httplib.h>  // after Eigen's headers, which one of its macros breaks
 
 namespace vines::http {
 
@@ -50,17 +53,25 @@ CLI::Option* add_flag(
     return command.add_option(name, value, help)->envname(variable)->capture_default_str();
 }
 
+/// An option with a number from `least` to `most`.
+template <class Value>
+CLI::Option* add_number(
+    CLI::App& command, const char* name, const char* variable, Value& value,
+    std::type_identity_t<Value> least, std::type_identity_t<Value> most, const char* help) {
+    return add_flag(command, name, variable, value, help)->check(number_between(least, most));
+}
+
 void add_server_flags(CLI::App& c, ServerOptions& o) {
     add_flag(c, "--host", "VINES_HOST", o.host, "address to listen on");
-    add_flag(c, "--port", "VINES_PORT", o.port, "port to listen on, 0 for any free one")
-        ->check(number_between(0, 65535));
-    add_flag(
-        c, "--threads", "VINES_THREADS", o.threads, "worker threads: requests answered at once")
-        ->check(number_between(1, 4096));
-    add_flag(
-        c, "--connections", "VINES_CONNECTIONS", o.connections,
-        "connections open at once; beyond that the connection that has been idle longest is closed")
-        ->check(number_between(1, 1000000));
+    add_number(
+        c, "--port", "VINES_PORT", o.port, 0, 65535, "port to listen on, 0 for any free one");
+    add_number(
+        c, "--threads", "VINES_THREADS", o.threads, 1, 4096,
+        "worker threads: requests answered at once");
+    add_number(
+        c, "--connections", "VINES_CONNECTIONS", o.connections, 1, 1000000,
+        "connections open at once; beyond that the connection that has been idle longest is "
+        "closed");
 }
 
 void add_access_flags(CLI::App& c, AccessOptions& o, std::string& key_file) {
@@ -84,54 +95,44 @@ void add_access_flags(CLI::App& c, AccessOptions& o, std::string& key_file) {
 }
 
 void add_compute_flags(CLI::App& c, ServeOptions& o) {
-    add_flag(
-        c, "--compute-threads", "VINES_COMPUTE_THREADS", o.compute.running, "computations at once")
-        ->default_str("the cores")
-        ->check(number_between(1, 1024));
-    add_flag(
-        c, "--compute-queue", "VINES_COMPUTE_QUEUE", o.compute.waiting,
-        "computations that wait; beyond that: 503")
-        ->check(number_between(0, 100000));
-    add_flag(
-        c, "--sweeps", "VINES_SWEEPS", o.compute.sweeps,
-        "sweeps at once, which share the free computing slots; beyond that: 503")
-        ->check(number_between(0, 1000));
-    add_flag(
-        c, "--sweep-points", "VINES_SWEEP_POINTS", o.routes.sweep_points,
-        "maximum number of points of one sweep")
-        ->check(number_between(1, 10000000));
-    add_flag(
-        c, "--drain", "VINES_DRAIN", o.drain,
+    add_number(
+        c, "--compute-threads", "VINES_COMPUTE_THREADS", o.compute.running, 1, 1024,
+        "computations at once")
+        ->default_str("the cores");
+    add_number(
+        c, "--compute-queue", "VINES_COMPUTE_QUEUE", o.compute.waiting, 0, 100000,
+        "computations that wait; beyond that: 503");
+    add_number(
+        c, "--sweeps", "VINES_SWEEPS", o.compute.sweeps, 0, 1000,
+        "sweeps at once, which share the free computing slots; beyond that: 503");
+    add_number(
+        c, "--sweep-points", "VINES_SWEEP_POINTS", o.routes.sweep_points, 1, 10000000,
+        "maximum number of points of one sweep");
+    add_number(
+        c, "--drain", "VINES_DRAIN", o.drain, 0, 3600,
         "seconds after SIGTERM during which /readyz answers 503 and requests are still accepted, "
-        "so that a proxy notices")
-        ->check(number_between(0.0, 3600.0));
-    add_flag(
-        c, "--sweep-deadline", "VINES_SWEEP_DEADLINE", o.routes.sweep_deadline,
-        "seconds of one sweep; then its stream ends, and the missing points can be requested")
-        ->check(number_between(0.001, 31536000.0));
-    add_flag(
-        c, "--deadline", "VINES_DEADLINE", o.routes.deadline,
-        "seconds of computing for one request; then it ends with the results so far")
-        ->check(number_between(0.001, 86400.0));
+        "so that a proxy notices");
+    add_number(
+        c, "--sweep-deadline", "VINES_SWEEP_DEADLINE", o.routes.sweep_deadline, 0.001, 31536000,
+        "seconds of one sweep; then its stream ends, and the missing points can be requested");
+    add_number(
+        c, "--deadline", "VINES_DEADLINE", o.routes.deadline, 0.001, 86400,
+        "seconds of computing for one request; then it ends with the results so far");
 }
 
 void add_size_flags(CLI::App& c, ServeOptions& o) {
-    add_flag(
-        c, "--payload-limit", "VINES_PAYLOAD_LIMIT", o.server.payload_limit,
-        "largest request body, bytes")
-        ->check(number_between(1, 1 << 30));
-    add_flag(
-        c, "--memory-limit", "VINES_MEMORY_LIMIT", o.server.memory_limit,
-        "requests and answers held at once, bytes; beyond that: 503")
-        ->check(number_between(std::size_t{1}, std::size_t{1} << 50));
-    add_flag(
-        c, "--record-limit", "VINES_RECORD_LIMIT", o.routes.record_limit,
-        "largest record sent to /v1/identify, bytes")
-        ->check(number_between(1, 1 << 30));
-    add_flag(
-        c, "--answer-limit", "VINES_ANSWER_LIMIT", o.routes.answer_limit,
-        "largest JSON answer, bytes; a larger one is thinned, or refused if that is impossible")
-        ->check(number_between(std::size_t{1}, std::size_t{1} << 40));
+    add_number(
+        c, "--payload-limit", "VINES_PAYLOAD_LIMIT", o.server.payload_limit, 1, 1 << 30,
+        "largest request body, bytes");
+    add_number(
+        c, "--memory-limit", "VINES_MEMORY_LIMIT", o.server.memory_limit, 1, std::size_t{1} << 50,
+        "requests and answers held at once, bytes; beyond that: 503");
+    add_number(
+        c, "--record-limit", "VINES_RECORD_LIMIT", o.routes.record_limit, 1, 1 << 30,
+        "largest record sent to /v1/identify, bytes");
+    add_number(
+        c, "--answer-limit", "VINES_ANSWER_LIMIT", o.routes.answer_limit, 1, std::size_t{1} << 40,
+        "largest JSON answer, bytes; a larger one is thinned, or refused if that is impossible");
 }
 
 void add_log_flags(CLI::App& c, std::string& format) {
@@ -226,33 +227,26 @@ int serve(const ServeOptions& options) {
 #endif
     AdmissionControl admission(options.compute);
     Metrics metrics(admission);
-    ServerOptions chosen;
-    std::vector<Route> routes;
-    try {  // before signals are blocked: a disk can be slow and a folder large
-        chosen = server_options(options);
-        routes = make_routes(options.routes, admission, metrics);
-    } catch (const std::runtime_error& e) {
-        print_message(e.what());
-        end(2);
-    }
-    block_end_signals();
-    start_log(options.log == "text" ? LogFormat::text : LogFormat::json);
-    Server server(chosen, std::move(routes), metrics);
+    std::optional<Server> server;
     int port = 0;
     try {
-        port = server.bind();
+        // Read before signals are blocked: a disk can be slow and a folder large.
+        const ServerOptions chosen = server_options(options);
+        std::vector<Route> routes = make_routes(options.routes, admission, metrics);
+        block_end_signals();
+        start_log(options.log == "text" ? LogFormat::text : LogFormat::json);
+        server.emplace(chosen, std::move(routes), metrics);
+        port = server->bind();
     } catch (const std::runtime_error& e) {
         print_message(e.what());
         end(2);
     }
-    const std::string greeting = fmt::format(
-        "vines {} listens on http://{}:{}\n", api::version(), in_url(options.server.host), port);
-    print_greeting(greeting);
-    log_event(fmt::format(
-        "vines {} listens on {}:{}", api::version(), in_url(options.server.host), port));
+    const std::string host = in_url(options.server.host);
+    print_greeting(fmt::format("vines {} listens on http://{}:{}\n", api::version(), host, port));
+    log_event(fmt::format("vines {} listens on {}:{}", api::version(), host, port));
 
-    std::thread([&] { stop_on_signal(options.drain, admission, server); }).detach();
-    server.run();
+    std::thread([&] { stop_on_signal(options.drain, admission, *server); }).detach();
+    server->run();
     log_event("stopped");
     end(0);
 }
@@ -274,6 +268,31 @@ Command add_serve(CLI::App& app) {
         "vines serve --host 0.0.0.0 --allow-host vines.example.org --api-key-file keys\n"
         "VINES_PORT=9000 vines serve --deadline 60 --log-format text");
     return {command, [options] { return serve(*options); }};
+}
+
+namespace {
+
+/// True if GET /healthz is answered with 200 within 2 s.
+bool is_healthy(const ServerOptions& target) {
+    httplib::Client client(target.host, target.port);
+    client.set_connection_timeout(2);  // s
+    client.set_read_timeout(2);
+    const auto result = client.Get("/healthz");
+    return result && result->status == 200;
+}
+
+}  // namespace
+
+Command add_healthcheck(CLI::App& app) {
+    const auto target = std::make_shared<ServerOptions>();
+    CLI::App* command =
+        app.add_subcommand("healthcheck", "check a running service: exit code 0 if healthy");
+    command->add_option("--host", target->host, "address of the service")->capture_default_str();
+    command->add_option("--port", target->port, "port of the service")
+        ->envname("VINES_PORT")
+        ->capture_default_str();
+    add_examples(*command, "vines healthcheck --port 8080 && echo well");
+    return {command, [target] { return is_healthy(*target) ? 0 : 1; }};
 }
 
 }  // namespace vines::http

@@ -21,7 +21,6 @@
 #include "http/log.hpp"
 #include "http/memory.hpp"
 #include "http/message.hpp"
-#include "http/route.hpp"
 #include "http/send.hpp"
 
 namespace vines::http {
@@ -252,11 +251,6 @@ struct Server::Implementation {
             .answer =
                 [this](Connection& connection, Exchange exchange, WriteTimeout timeout) {
                     return answer(connection, std::move(exchange), std::move(timeout));
-                },
-            .overloaded =
-                [] {
-                    return problem_response(api::Problem::unavailable(
-                        "threads", "all worker threads are busy and their queue is full"));
                 }};
     }
 };

@@ -1,6 +1,6 @@
 // The HTTP server. A request passes these phases:
-// 1. The event loop reads its head (head.hpp). Access control (access.hpp) and the route
-//    (route.hpp) accept or refuse it before its body is read (connection.hpp).
+// 1. The event loop reads its head (head.hpp). Its route and access control
+//    (access.hpp) accept or refuse it before its body is read (connection.hpp).
 // 2. A worker takes the complete request and calls the route's function. Routes that compute wait
 //    for admission (admission_control.hpp).
 // 3. The worker sends the answer through httplib (send.hpp), logs and counts it, and returns the
@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "http/access.hpp"
+#include "http/message.hpp"
 #include "http/metrics.hpp"
-#include "http/route.hpp"
 
 namespace vines::http {
 

@@ -31,7 +31,14 @@ Range widened(const Range& r, double share) {
 
 }  // namespace
 
-double on_ordinate(const Plot& plot, double y) { return plot.logarithmic ? std::log10(y) : y; }
+double on_ordinate(const Plot& plot, double y) {
+    return plot.logarithmic ? std::log10(std::max(y, 0.)) : y;
+}
+
+Range error_bar(const Plot& plot, const Curve& curve, std::size_t i) {
+    const double y = curve.y[i], error = curve.error.empty() ? 0 : curve.error[i];
+    return {on_ordinate(plot, y - error), on_ordinate(plot, y + error)};
+}
 
 Range x_range(const std::vector<Plot>& plots) {
     Range x = nothing;
@@ -52,8 +59,9 @@ Range y_range(const Plot& plot) {
     Range y = nothing;
     for (const Curve& c : plot.curves) {
         for (std::size_t i = 0; i < c.x.size(); ++i) {
-            const double v = on_ordinate(plot, c.y[i]), e = c.error.empty() ? 0 : c.error[i];
-            if (std::isfinite(v)) y = extended(y, v - e, v + e);
+            const double v = on_ordinate(plot, c.y[i]);
+            const auto [low, high] = error_bar(plot, c, i);
+            if (std::isfinite(v)) y = extended(y, std::isfinite(low) ? low : v, high);
         }
     }
     if (y.first > y.second) y = {0, 1};

@@ -16,8 +16,10 @@ Range x_range(const std::vector<Plot>& plots);
 /// Ordinate range of a plot: fixed, or of curves and error bars; log10 if logarithmic.
 Range y_range(const Plot& plot);
 
-/// Position of a value on the ordinate: y, or log10 y.
+/// Position of a value on the ordinate: y, or log10 y; -infinity for the logarithm of a y <= 0.
 double on_ordinate(const Plot& plot, double y);
+/// Positions of the ends of a point's error bar; equal without errors.
+Range error_bar(const Plot& plot, const Curve& curve, std::size_t i);
 
 /// About `count` ticks in steps of 1, 2 or 5 times a power of ten; none if the step is below the
 /// rounding of the values.

@@ -15,6 +15,11 @@ struct Curve {
     bool dots = false;            ///< points instead of a line
     std::string dash{};           ///< SVG's stroke-dasharray; ignored by text()
     std::vector<double> error{};  ///< half-lengths of the error bars; empty or the size of y
+
+    void add(double at, double value) {
+        x.push_back(at);
+        y.push_back(value);
+    }
 };
 
 struct Plot {

@@ -162,9 +162,10 @@ private:
         for (std::size_t i = 0; i < c.x.size(); ++i) {
             const double x = px(c.x[i]), v = value(c.y[i]);
             if (!std::isfinite(v) || !inside(c.x[i], v)) continue;
+            const auto [low, high] = error_bar(plot_, c, i);
             if (!c.error.empty())
                 rule(
-                    x, py(v - c.error[i]), x, py(v + c.error[i]),
+                    x, py(std::max(low, y_.first)), x, py(std::min(high, y_.second)),
                     fmt::format(R"(stroke="{}")", c.colour));
             dot(x, py(v), radius, c.colour);
         }

@@ -36,11 +36,14 @@ unsigned braille_dot(int across, int down) {
     return bits[static_cast<std::size_t>(across)][static_cast<std::size_t>(down)];
 }
 
-/// Number of a colour "#rrggbb" in the 6 x 6 x 6 colour cube of terminals, by uniform levels.
+/// Number of the colour in the 6 x 6 x 6 colour cube of terminals that is nearest to "#rrggbb".
 int terminal_colour(const std::string& hex) {
-    const auto level = [&hex](std::size_t at) {
-        return static_cast<int>(std::strtol(hex.substr(at, 2).c_str(), nullptr, 16) * 5 + 127) /
-               255;
+    constexpr std::array levels = {0, 95, 135, 175, 215, 255};
+    const auto level = [&](std::size_t at) {
+        const int wanted = std::stoi(hex.substr(at, 2), nullptr, 16);
+        const auto nearest = std::ranges::min_element(
+            levels, {}, [wanted](int shown) { return std::abs(shown - wanted); });
+        return static_cast<int>(nearest - levels.begin());
     };
     return 16 + 36 * level(1) + 6 * level(3) + level(5);
 }
@@ -176,8 +179,8 @@ private:
         for (std::size_t i = 0; i < c.x.size(); ++i) {
             const double x = c.x[i], v = on_ordinate(plot_, c.y[i]);
             if (!inside(x, v)) continue;
-            if (!c.error.empty()) stroke(x, v - c.error[i], x, v + c.error[i], c);
-            dot(across(x), down(v), c);
+            const auto [low, high] = error_bar(plot_, c, i);
+            stroke(x, low, x, high, c);
             if (!is_marked) continue;
             Cell& at = cell(across(x) / dots_across, down(v) / dots_down);
             at.mark = point_mark(c);

@@ -1,4 +1,4 @@
-// A subcommand of the program: its options and help, and the function that runs it.
+// Subcommands of the program: their common parts, and the list of all.
 #pragma once
 
 #include <fmt/format.h>
@@ -15,6 +15,30 @@ struct Command {
     CLI::App* app;
     std::function<int()> run;
 };
+
+/// Registers a subcommand with its options and help.
+using AddCommand = Command(CLI::App& app);
+
+/// Subcommands that need no server. They read and write the same JSON as the service, from a file
+/// or stdin to a file or stdout.
+namespace cli {
+AddCommand add_simulate, add_manifold;
+AddCommand add_identify;  ///< input that begins with "{" is JSON; any other is CSV
+AddCommand add_sweep;     ///< computes a sweep or a shard, or completes the file of one
+AddCommand add_merge;     ///< combines the files of all shards, byte for byte
+AddCommand add_verify;    ///< recomputes an answer and compares it byte for byte
+AddCommand add_plot;      ///< draws an answer in the terminal or as SVG
+AddCommand add_presets, add_parameters, add_openapi, add_example;  ///< print built-in data
+/// Completion script of a shell, and manual page, of the subcommands that `app` has when they run.
+AddCommand add_completion, add_manual;
+}  // namespace cli
+namespace http {
+AddCommand add_serve;        ///< serves until SIGTERM or SIGINT, then exits with code 0
+AddCommand add_healthcheck;  ///< exits with code 0 if a running service is healthy, else 1
+}  // namespace http
+namespace report {
+AddCommand add_reproduce;  ///< exits with code 0 if every verdict is the expected one, else 1
+}  // namespace report
 
 /// Sets the help footer: `lines`, one example command per line, then `paragraph`, if any.
 inline void add_examples(

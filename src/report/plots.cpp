@@ -34,19 +34,15 @@ double highest_late(const ExponentHistory& h) {
 
 Plot displacement(const Series& series, double to) {
     Curve c;
-    for (std::size_t i = 0; i < series.tau.size() && series.tau[i] <= to; ++i) {
-        c.x.push_back(series.tau[i]);
-        c.y.push_back(1000 * series.x[i]);
-    }
+    for (std::size_t i = 0; i < series.tau.size() && series.tau[i] <= to; ++i)
+        c.add(series.tau[i], 1000 * series.x[i]);
     return {.x_label = "tau", .y_label = "x (mm)", .curves = {std::move(c)}};
 }
 
 Plot relative_displacement(const PaperRun& r, double from, double to) {
     Curve c;
     const auto add = [&](double tau, double gap) {
-        if (tau < from || tau > to) return;
-        c.x.push_back(tau);
-        c.y.push_back(1000 * gap);
+        if (tau >= from && tau <= to) c.add(tau, 1000 * gap);
     };
     const double b = r.parameters.b;
     auto impact = r.run.impacts.begin();

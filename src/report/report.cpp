@@ -8,12 +8,15 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 
 #include "core/motion/elementary.hpp"
 #include "plot/plot.hpp"
-#include "report/chapters.hpp"
+#include "program/process.hpp"
+#include "program/subcommand.hpp"
+#include "report/runs.hpp"
 
 namespace vines::report {
 
@@ -56,17 +59,6 @@ std::string row(const std::vector<std::string>& cells) {
 }
 std::string head(const std::vector<std::string>& columns) {
     return row(columns) + row(std::vector<std::string>(columns.size(), "---"));
-}
-
-std::string markdown(const Heading& h) { return "\n## " + h.text + "\n\n"; }
-std::string markdown(const Paragraph& p) { return p.text + "\n\n"; }
-std::string markdown(const DataTable& t) {
-    std::string text = head(t.columns);
-    for (const auto& cells : t.rows) text += row(cells);
-    return text + "\n";
-}
-std::string markdown(const Picture& p) {
-    return fmt::format("![{0}]({1}.svg)\n*{0}*\n\n", p.caption, p.name);
 }
 
 void write(const std::filesystem::path& path, const std::string& content) {
@@ -135,44 +127,60 @@ std::string markdown_table(const std::vector<Finding>& findings) {
     return text;
 }
 
+void Report::table(const DataTable& table) {
+    body += head(table.columns);
+    for (const auto& cells : table.rows) body += row(cells);
+    body += "\n";
+}
+
+void Report::picture(Picture picture) {
+    body += fmt::format("![{0}]({1}.svg)\n*{0}*\n\n", picture.caption, picture.name);
+    pictures.push_back(std::move(picture));
+}
+
 void write_markdown(const Report& report, const std::string& folder) {
     const std::filesystem::path to(folder);
-    std::string text =
-        introduction + summary(report.findings) + glossary + markdown_table(report.findings);
-    for (const auto& part : report.body) {
-        if (const auto* picture = std::get_if<Picture>(&part))
-            write(
-                to / (picture->name + ".svg"),
-                plot::svg(picture->plots, picture_width, picture->height));
-        text += std::visit([](const auto& p) { return markdown(p); }, part);
-    }
-    write(to / "report.md", text);
+    for (const Picture& p : report.pictures)
+        write(to / (p.name + ".svg"), plot::svg(p.plots, picture_width, p.height));
+    write(
+        to / "report.md", introduction + summary(report.findings) + glossary +
+                              markdown_table(report.findings) + report.body);
 }
 
 namespace {
 
-constexpr Chapter* chapters[] = {
-    model,                // Table 1, eqs. (8) to (11)
-    strongly_modulated,   // Figs. 3 and 4
-    transient_exponents,  // Fig. 5
-    transfer_matrices,    // Figs. 6 to 9
-    table_2,
-    other_regimes,  // Figs. 10 to 14
-    table_3,
-    experiment,  // Table 4, Figs. 15 to 24
-    open_questions,
-};
-
-}  // namespace
-
-Report reproduce(const std::string& folder) {
+/// Computes the report and prints its table. Writes report.md and its SVG plots into `folder`,
+/// which is created; "" writes nothing. Returns the exit code: 1 if a verdict differs from the
+/// expected one.
+int reproduce(const std::string& folder) {
     // Created first, so that an invalid folder is reported before the long computation.
     if (!folder.empty()) std::filesystem::create_directories(folder);
     Report report;
     RunCache runs;
-    for (Chapter* chapter : chapters) chapter(report, runs);
+    for (Chapter* chapter :
+         {model, strongly_modulated, transient_exponents, transfer_matrices, table_2, other_regimes,
+          table_3, experiment, open_questions})
+        chapter(report, runs);
     if (!folder.empty()) write_markdown(report, folder);
-    return report;
+    print(markdown_table(report.findings));
+    if (!folder.empty()) print_message(fmt::format("wrote {}/report.md and its plots", folder));
+    if (!report.as_expected()) print_message("a verdict differs from the expected one");
+    return report.as_expected() ? 0 : 1;
+}
+
+}  // namespace
+
+Command add_reproduce(CLI::App& app) {
+    const auto folder = std::make_shared<std::string>();
+    CLI::App* command =
+        app.add_subcommand("reproduce", "recompute the paper's results and compare them");
+    command
+        ->add_option(
+            "--output", *folder,
+            "folder for report.md and its SVG plots, in addition to the printed table")
+        ->type_name("DIR");
+    add_examples(*command, "vines reproduce\nvines reproduce --output report");
+    return {command, [folder] { return reproduce(*folder); }};
 }
 
 }  // namespace vines::report

@@ -1,13 +1,11 @@
 // The report: findings that compare the paper with computed results, and the text and pictures that
-// go with them. The chapters (chapters.hpp) fill it; report.cpp writes it as Markdown with SVG
-// pictures.
+// go with them. The chapters fill it; report.cpp writes it as Markdown with SVG pictures.
 #pragma once
 
 #include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "plot/plot.hpp"
@@ -89,12 +87,6 @@ inline const char* text_of(ClaimVerdict verdict, bool computed_record = false) {
     return "";
 }
 
-struct Heading {
-    std::string text;
-};
-struct Paragraph {
-    std::string text;  ///< Markdown
-};
 struct DataTable {
     std::vector<std::string> columns;
     std::vector<std::vector<std::string>> rows{};
@@ -108,13 +100,15 @@ struct Picture {
 
 struct Report {
     std::vector<Finding> findings;
-    std::vector<std::variant<Heading, Paragraph, DataTable, Picture>> body;
+    std::string body;  ///< Markdown
+    std::vector<Picture> pictures;
 
     void add(Finding finding) { findings.push_back(std::move(finding)); }
-    void heading(std::string text) { body.emplace_back(Heading{std::move(text)}); }
-    void paragraph(std::string text) { body.emplace_back(Paragraph{std::move(text)}); }
-    void table(DataTable table) { body.emplace_back(std::move(table)); }
-    void picture(Picture picture) { body.emplace_back(std::move(picture)); }
+    // These are added to the body.
+    void heading(const std::string& text) { body += "\n## " + text + "\n\n"; }
+    void paragraph(const std::string& text) { body += text + "\n\n"; }
+    void table(const DataTable& table);
+    void picture(Picture picture);
 
     bool as_expected() const { return std::ranges::all_of(findings, &Finding::as_expected); }
 };
@@ -126,8 +120,20 @@ std::string markdown_table(const std::vector<Finding>& findings);
 /// cannot be written.
 void write_markdown(const Report& report, const std::string& folder);
 
-/// Computes the report and writes report.md and its SVG plots into `folder`, which is created; ""
-/// writes nothing. Throws std::runtime_error if a file cannot be written.
-Report reproduce(const std::string& folder);
+class RunCache;
+
+/// A chapter runs the system, compares the paper's statements with the result, and adds its
+/// findings and pictures to the report. `report.cpp` sets their order.
+using Chapter = void(Report&, RunCache&);
+
+Chapter model;                ///< Table 1, the closed form against eq. (1), Fig. 2
+Chapter strongly_modulated;   ///< Figs. 3 and 4: the motion at b = 22 mm
+Chapter transient_exponents;  ///< Fig. 5: its Lyapunov exponents
+Chapter transfer_matrices;    ///< Figs. 6 to 9: the eigenvalues of its J, M and T
+Chapter table_2;              ///< Table 2: its exponents over other windows
+Chapter other_regimes;        ///< Figs. 10 to 14: Types I and III to VI
+Chapter table_3;              ///< Table 3: the exponents at ten values of b
+Chapter experiment;           ///< Table 4, Figs. 15 to 24: exponents from measurements
+Chapter open_questions;       ///< the borders of the regimes; misprints
 
 }  // namespace vines::report

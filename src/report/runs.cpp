@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <thread>
 
 #include "core/motion/elementary.hpp"
 #include "core/motion/record.hpp"
 #include "core/sweep/parallel.hpp"
+#include "program/process.hpp"
 
 namespace vines::report {
 
@@ -95,7 +95,7 @@ struct Case {
 };
 std::vector<Regime> regimes_of(const std::vector<Case>& cases, const Interval& window) {
     std::vector<Regime> regimes(cases.size());
-    parallel(cases.size(), all_threads(), [&](std::size_t i) {
+    parallel(cases.size(), cores(), [&](std::size_t i) {
         AnalysisRequest wanted = run_to(cases[i].parameters, cases[i].start, window.to);
         wanted.window.from = window.from;
         wanted.parts = {.regime = true};
@@ -108,7 +108,7 @@ std::vector<Regime> regimes_of(const std::vector<Case>& cases, const Interval& w
 Ensemble make_ensemble(double b, WindowsOf size, Damping damping) {
     const Parameters p = table1(b, damping);
     std::vector<Ensemble> each(Ensemble::runs);
-    parallel(each.size(), all_threads(), [&](std::size_t run) {
+    parallel(each.size(), cores(), [&](std::size_t run) {
         each[run] = one_run(p, start_beside(p, run), size);
     });
     Ensemble all;
@@ -129,8 +129,6 @@ Moments finite_moments(const std::vector<Ensemble::Window>& windows, auto&& valu
 }
 
 }  // namespace
-
-int all_threads() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
 
 Parameters table1(double b, Damping damping) {
     Parameters p;
@@ -198,44 +196,53 @@ std::string Typical::in_words(int decimals) const {
         decimals);
 }
 
+namespace {
+
+/// The value of a key, made at its first use.
+template <class Map>
+typename Map::mapped_type& cached(Map& map, const typename Map::key_type& key, auto make) {
+    const auto found = map.find(key);
+    return found != map.end() ? found->second : map.emplace(key, make()).first->second;
+}
+
+}  // namespace
+
 const PaperRun& RunCache::paper_run(double b, Damping damping) {
-    const auto found = responses_.find({b, damping});
-    if (found != responses_.end()) return found->second;
-    const Parameters p = table1(b, damping);
-    AnalysisRequest wanted = run_to(p, default_state(p), window_end);
-    wanted.parts = {
-        .series = true,
-        .impacts = true,
-        .exponents = true,
-        .moduli = true,
-        .matrices = true,
-        .regime = true,
-        .before_capture = true,
-        .manifold = true};
-    wanted.estimators = all_estimators;
-    return responses_.emplace(std::pair{b, damping}, PaperRun{p, analyse(wanted)}).first->second;
+    return cached(responses_, {b, damping}, [&] {
+        const Parameters p = table1(b, damping);
+        AnalysisRequest wanted = run_to(p, default_state(p), window_end);
+        wanted.parts = {
+            .series = true,
+            .impacts = true,
+            .exponents = true,
+            .moduli = true,
+            .matrices = true,
+            .regime = true,
+            .before_capture = true,
+            .manifold = true};
+        wanted.estimators = all_estimators;
+        return PaperRun{p, analyse(wanted)};
+    });
 }
 
 const std::vector<PaperRun>& RunCache::neighbours(double b, Damping damping) {
-    const auto found = neighbours_.find({b, damping});
-    if (found != neighbours_.end()) return found->second;
-    const Parameters p = table1(b, damping);
-    std::vector<std::optional<Analysis>> runs(neighbour_runs);
-    parallel(neighbour_runs, all_threads(), [&](std::size_t k) {
-        AnalysisRequest wanted = run_to(p, start_beside(p, k), window_end);
-        wanted.parts = {.series = true, .exponents = true, .moduli = true, .regime = true};
-        wanted.estimators = {.qr = true, .raw_product = true};
-        runs[k].emplace(analyse(wanted));
+    return cached(neighbours_, {b, damping}, [&] {
+        const Parameters p = table1(b, damping);
+        std::vector<std::optional<Analysis>> runs(neighbour_runs);
+        parallel(neighbour_runs, cores(), [&](std::size_t k) {
+            AnalysisRequest wanted = run_to(p, start_beside(p, k), window_end);
+            wanted.parts = {.series = true, .exponents = true, .moduli = true, .regime = true};
+            wanted.estimators = {.qr = true, .raw_product = true};
+            runs[k].emplace(analyse(wanted));
+        });
+        std::vector<PaperRun> responses;
+        for (auto& run : runs) responses.push_back({p, std::move(*run)});
+        return responses;
     });
-    std::vector<PaperRun> responses;
-    for (auto& run : runs) responses.push_back({p, std::move(*run)});
-    return neighbours_.emplace(std::pair{b, damping}, std::move(responses)).first->second;
 }
 
 const Ensemble& RunCache::ensemble(double b, WindowsOf size, Damping damping) {
-    const auto [at, is_new] = ensembles_.try_emplace({b, size, damping});
-    if (is_new) at->second = make_ensemble(b, size, damping);
-    return at->second;
+    return cached(ensembles_, {b, size, damping}, [&] { return make_ensemble(b, size, damping); });
 }
 
 }  // namespace vines::report

@@ -16,8 +16,6 @@ namespace vines::report {
 /// End of the window of the paper's exponents (Table 2, first row), tau.
 inline constexpr double window_end = 1708.9;
 
-int all_threads();  ///< threads of the machine, for parallel()
-
 Parameters table1(double b, Damping damping);  ///< Table 1 with the clearance b, m
 
 /// Number that stands for a regime in findings: I is 1, VI is 6.

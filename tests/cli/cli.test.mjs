@@ -321,8 +321,61 @@ test("an invalid request gives a problem document on stderr and exit code 2, a m
   }
   assert.equal((await run(["simulate", at("nowhere.json")])).code, 1);
   assert.equal((await run(["sweep", "-o", "/proc/nowhere/x"], {input: sweep})).code, 1);
-  assert.equal((await run(["sweep", "--shard", "3/3"], {input: sweep})).code, 2);
-  assert.equal((await run(["sweep", "--shard", "auto"], {input: sweep})).code, 2);
+});
+
+test("an invalid shard is refused with the text or the variable that is wrong, and the valid range", async () => {
+  const slurm = (id, more = {}) => ({
+    SLURM_ARRAY_TASK_ID: id,
+    SLURM_ARRAY_TASK_MIN: "10",
+    SLURM_ARRAY_TASK_COUNT: "4",
+    ...more,
+  });
+  const form = (text) => `a shard is i/N with 0 <= i < N, not ${text}`;
+  const variable = (name, text, range) => `${name} is ${text}, not a whole number from ${range}`;
+  const index = (text) => variable("SLURM_ARRAY_TASK_ID", text, "10 to 13");
+  for (const [shard, env, detail] of [
+    ["3", {}, form("3")],
+    ["3/", {}, form("3/")],
+    ["a/4", {}, form("a/4")],
+    ["4/4", {}, form("4/4")],
+    ["-1/4", {}, form("-1/4")],
+    ["1/4x", {}, form("1/4x")],
+    ["auto", slurm("abc"), index("abc")],
+    ["auto", slurm("9"), index("9")],
+    ["auto", slurm("14"), index("14")],
+    ["auto", slurm("99999999999999999999"), index("99999999999999999999")],
+    [
+      "auto",
+      slurm("11", {SLURM_ARRAY_TASK_MIN: "1O"}),
+      variable("SLURM_ARRAY_TASK_MIN", "1O", "0 to 10000000"),
+    ],
+    [
+      "auto",
+      slurm("11", {SLURM_ARRAY_TASK_COUNT: "0"}),
+      variable("SLURM_ARRAY_TASK_COUNT", "0", "1 to 10000000"),
+    ],
+    [
+      "auto",
+      slurm("11", {SLURM_ARRAY_TASK_COUNT: ""}),
+      "--shard auto in a Slurm array needs SLURM_ARRAY_TASK_COUNT or --shards",
+    ],
+    [
+      "auto",
+      {JOB_COMPLETION_INDEX: "3", VINES_SHARDS: "3"},
+      variable("JOB_COMPLETION_INDEX", "3", "0 to 2"),
+    ],
+    ["auto", {JOB_COMPLETION_INDEX: "2"}, "--shard auto with JOB_COMPLETION_INDEX needs --shards"],
+    [
+      "auto",
+      {},
+      "--shard auto needs SLURM_ARRAY_TASK_ID and SLURM_ARRAY_TASK_COUNT, or " +
+        "JOB_COMPLETION_INDEX and --shards, in the environment",
+    ],
+  ]) {
+    const {code, out, errors} = await run(["sweep", "--shard", shard], {input: sweep, env});
+    assert.deepEqual({code, out}, {code: 2, out: ""}, detail);
+    assert.equal(JSON.parse(errors).detail, detail);
+  }
 });
 
 test("an interrupted simulation writes its answer up to that time, with exit code 130", async () => {

@@ -6,7 +6,6 @@
 #include <random>
 
 #include "fuzz.hpp"
-#include "http/header_text.hpp"
 
 using namespace vines;
 using http::Head;

@@ -196,7 +196,7 @@ test("a refusal for lack of memory carries the CORS headers, too", async (t) => 
   assert.equal(answer.headers.get("access-control-allow-origin"), "https://lab.example.org");
 });
 
-test("--cors-origin * lets every page use the service; a value that is not an origin is refused", async (t) => {
+test("--cors-origin * lets every page use the service", async (t) => {
   const service = await startService(["--cors-origin", "*"]);
   t.after(() => service.stop());
   const answer = await fetch(`${service.url}/v1/manifold`, {
@@ -206,13 +206,58 @@ test("--cors-origin * lets every page use the service; a value that is not an or
   });
   assert.equal(answer.status, 200);
   assert.equal(answer.headers.get("access-control-allow-origin"), "https://any.example.net");
-  const {status, stderr} = spawnSync(
-    program,
-    ["serve", "--port", "0", "--cors-origin", "lab.example.org"],
-    {encoding: "utf8", timeout: 5000},
-  );
-  assert.equal(status, 2);
-  assert.match(stderr, /lab\.example\.org is not an origin such as https:/);
+});
+
+test("an origin is a scheme, a host and optionally a port; any other value is refused", () => {
+  // The missing key file ends the program after the check of its flags.
+  const start = (flag, origin) =>
+    spawnSync(program, ["serve", "--api-key-file", "/nowhere", flag, origin], {
+      encoding: "utf8",
+      timeout: 5000,
+    });
+  for (const flag of ["--cors-origin", "--embed-origin"]) {
+    for (const origin of [
+      "lab.example.org",
+      "ftp://lab.example.org",
+      "http://",
+      "http://:",
+      "http://:80",
+      "http://a:",
+      "http://a:b",
+      "http://a:0",
+      "http://a:65536",
+      "http://a:8x",
+      "http://a/",
+      "http://a..b",
+      "http://-a.b",
+      "http://a-",
+      "http://a_b",
+      "http://a;b",
+      "http://1.2.3.256",
+      "http://1.2.3",
+      "http://::1",
+      "http://[::1",
+      "http://[1.2.3.4]",
+      "http://[::g]",
+      "http://[::1]80",
+      "http://]::[",
+      "http://user@a",
+    ]) {
+      const {status, stderr} = start(flag, origin);
+      assert.equal(status, 2, origin);
+      assert.ok(stderr.includes(`${origin} is not an origin such as https:`), stderr);
+    }
+    for (const origin of [
+      "https://lab.example.org",
+      "https://Lab-1.example.org.",
+      "http://localhost:1",
+      "https://xn--bcher-kva.example:65535",
+      "http://127.0.0.1:8080",
+      "http://[::1]",
+      "http://[2001:db8::7]:8443",
+    ])
+      assert.doesNotMatch(start(flag, origin).stderr, /not an origin/, origin);
+  }
 });
 
 test("a preflight of an allowed origin needs no key", async (t) => {

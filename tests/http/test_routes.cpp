@@ -4,6 +4,7 @@
 #include <string>
 
 #include "api/schema/json.hpp"
+#include "http/access.hpp"
 #include "http/encoding.hpp"
 #include "http/routes.hpp"
 

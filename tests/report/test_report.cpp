@@ -209,6 +209,60 @@ TEST_CASE("a curve has a gap where it is not finite") {
     CHECK(lines({nan, nan}) == 0);
 }
 
+namespace {
+
+/// Numbers of an SVG attribute, in the order of the document.
+std::vector<double> attributes(const std::string& svg, const std::string& name) {
+    std::vector<double> numbers;
+    const std::string begin = " " + name + "=\"";
+    for (auto at = svg.find(begin); at != std::string::npos; at = svg.find(begin, at + 1))
+        numbers.push_back(std::stod(svg.substr(at + begin.size())));
+    return numbers;
+}
+
+/// Points with error bars on a logarithmic ordinate; the last bar is the only one with a length.
+vines::plot::Plot logarithmic(const std::vector<double>& y, double last_error) {
+    vines::plot::Curve curve{.y = y, .dots = true};
+    for (std::size_t i = 0; i < y.size(); ++i) curve.x.push_back(static_cast<double>(i));
+    curve.error.resize(y.size());
+    curve.error.back() = last_error;
+    return {.curves = {curve}, .logarithmic = true};
+}
+
+}  // namespace
+
+TEST_CASE(
+    "an error bar on a logarithmic ordinate goes from the value less its error to their sum") {
+    const std::string svg = vines::plot::svg({logarithmic({1, 19, 10}, 9)}, 400, 200);
+    const std::vector<double> values = attributes(svg, "cy");
+    REQUIRE(values.size() == 3);
+    CHECK(attributes(svg, "y1").back() == values[0]);
+    CHECK(attributes(svg, "y2").back() == values[1]);
+    // From 10 to 190, a third of the four decades shown in 12 lines; the point hides one of them.
+    const std::string text = vines::plot::text({logarithmic({1, 1e4, 100}, 90)}, {.ascii = true});
+    CHECK(occurrences(text, "*") == 3);
+}
+
+TEST_CASE("an error bar that reaches zero on a logarithmic ordinate goes down to the frame") {
+    const std::string svg = vines::plot::svg({logarithmic({1, 100, 10}, 10)}, 400, 200);
+    CHECK(attributes(svg, "y1").back() == attributes(svg, "y2").front());  // of a grid line
+}
+
+TEST_CASE("a colour is shown as the nearest one of the terminal's colour cube") {
+    const auto number_of = [](const std::string& colour) {
+        const std::string text = vines::plot::text(
+            {{.curves = {{.x = {0, 1}, .y = {0, 1}, .colour = colour}}}}, {.colours = true});
+        return std::stoi(text.substr(text.find("38;5;") + 5));
+    };
+    // The levels of the cube are 0, 95, 135, 175, 215 and 255.
+    CHECK(number_of("#000000") == 16);
+    CHECK(number_of("#ffffff") == 231);
+    CHECK(number_of("#5f87af") == 16 + 36 * 1 + 6 * 2 + 3);
+    CHECK(number_of("#2f30d8") == 16 + 36 * 0 + 6 * 1 + 4);
+    CHECK(number_of(vines::plot::colours[0]) == 16 + 36 * 0 + 6 * 1 + 3);
+    CHECK(number_of(vines::plot::red) == 16 + 36 * 3);
+}
+
 TEST_CASE("the rank correlation is 1 for equal order and -1 for opposite order") {
     CHECK(rank_correlation({1, 2, 3, 4}, {10, 11, 50, 1000}) == doctest::Approx(1));
     CHECK(rank_correlation({1, 2, 3, 4}, {4, 3, 2, 1}) == doctest::Approx(-1));

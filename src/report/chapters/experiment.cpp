@@ -15,9 +15,11 @@
 
 #include "core/motion/elementary.hpp"
 #include "core/sweep/parallel.hpp"
-#include "report/chapters.hpp"
+#include "program/process.hpp"
 #include "report/exponent_claims.hpp"
 #include "report/plots.hpp"
+#include "report/report.hpp"
+#include "report/runs.hpp"
 
 namespace vines::report {
 
@@ -101,9 +103,8 @@ Experiment measure(const RecordPlan& plan) {
 MeasuredResponses measure_responses() {
     constexpr RecordPlan plans[] = {{0.015, 20, 20}, {0.009, 20, 12}, {0.009, 0, 12}};
     std::array<std::optional<Experiment>, std::size(plans)> measured;
-    parallel(measured.size(), all_threads(), [&](std::size_t i) {
-        measured[i].emplace(measure(plans[i]));
-    });
+    parallel(
+        measured.size(), cores(), [&](std::size_t i) { measured[i].emplace(measure(plans[i])); });
     return {std::move(*measured[0]), std::move(*measured[1]), std::move(*measured[2])};
 }
 
@@ -190,15 +191,10 @@ Plot over_time(
     const Experiment& e, const std::string& label, const std::vector<double>& values, double scale,
     double to, auto&& at_impact) {
     Curve curve, dots{.colour = red, .label = "impacts", .dots = true};
-    for (std::size_t i = 0; i < e.record.tau.size() && e.seconds(e.record.tau[i]) <= to; ++i) {
-        curve.x.push_back(e.seconds(e.record.tau[i]));
-        curve.y.push_back(scale * values[i]);
-    }
-    for (const IdentifiedImpact& i : e.result.found.impacts) {
-        if (e.seconds(i.tau) > to) break;
-        dots.x.push_back(e.seconds(i.tau));
-        dots.y.push_back(scale * at_impact(i));
-    }
+    for (std::size_t i = 0; i < e.record.tau.size() && e.seconds(e.record.tau[i]) <= to; ++i)
+        curve.add(e.seconds(e.record.tau[i]), scale * values[i]);
+    for (const IdentifiedImpact& i : e.result.found.impacts)
+        if (e.seconds(i.tau) <= to) dots.add(e.seconds(i.tau), scale * at_impact(i));
     return {.x_label = "t (s)", .y_label = label, .curves = {curve, dots}};
 }
 
@@ -224,14 +220,10 @@ void phase_portrait(Report& report, const Experiment& e, int figure) {
     const double mm_per_second = 1000 * e.truth.omega0;
     Curve curve{.colour = grey}, before{.colour = red, .label = "before impacts", .dots = true},
         after{.colour = colours[0], .label = "after", .dots = true};
-    for (const OscillatorMotion& m : motion) {
-        curve.x.push_back(1000 * m.x);
-        curve.y.push_back(mm_per_second * m.x_dot);
-    }
+    for (const OscillatorMotion& m : motion) curve.add(1000 * m.x, mm_per_second * m.x_dot);
     for (const IdentifiedImpact& i : e.result.found.impacts) {
-        before.x.push_back(1000 * i.x), after.x.push_back(1000 * i.x);
-        before.y.push_back(mm_per_second * i.x_dot_before);
-        after.y.push_back(mm_per_second * i.x_dot_after);
+        before.add(1000 * i.x, mm_per_second * i.x_dot_before);
+        after.add(1000 * i.x, mm_per_second * i.x_dot_after);
     }
     report.picture(
         {.name = fmt::format("fig{}", figure),
@@ -310,10 +302,8 @@ void section(Report& report, const Experiment& e, int figure) {
             .colour = side > 0 ? colours[0] : red,
             .label = side > 0 ? "x - y = b" : "x - y = -b",
             .dots = true};
-        for (std::size_t i = 0; i < g.x.size(); ++i) {
-            c.x.push_back(1000 * g.x[i]);
-            c.y.push_back(1000 * e.truth.omega0 * g.x_dot[i]);
-        }
+        for (std::size_t i = 0; i < g.x.size(); ++i)
+            c.add(1000 * g.x[i], 1000 * e.truth.omega0 * g.x_dot[i]);
         plot.curves.push_back(std::move(c));
     }
     report.picture(

@@ -20,10 +20,8 @@ namespace {
 void histories(Report& report, const Experiment& e, int figure, const std::string& which = "") {
     const auto curve = [&](const ExponentHistory& h, const char* colour, const char* label) {
         Curve c{.colour = colour, .label = label};
-        for (std::size_t i = 0; i < h.tau.size(); ++i) {
-            c.x.push_back(h.tau[i] - h.tau.front());
-            c.y.push_back(h.lambda[i][0]);
-        }
+        for (std::size_t i = 0; i < h.tau.size(); ++i)
+            c.add(h.tau[i] - h.tau.front(), h.lambda[i][0]);
         return c;
     };
     const DirectEstimate& direct = *e.result.direct;
@@ -275,7 +273,7 @@ void assumed_restitution(Report& report, const Experiment& regular, const Experi
          .because = "all; in part: half or more",
          .partly = Band{all / 2.0, static_cast<double>(all)},
          .computed_record = true});
-    report.table(std::move(table));
+    report.table(table);
 }
 
 vines::Verdict verdict_on_run(Parameters p, double b, double R_plus, double R_minus) {
@@ -305,7 +303,7 @@ void true_restitution(Report& report) {
     report.paragraph(
         "The table above uses the same two records. If the walls themselves are different, the "
         "motion is different:");
-    report.table(std::move(table));
+    report.table(table);
 }
 
 }  // namespace

@@ -14,9 +14,10 @@
 #include <limits>
 
 #include "core/motion/elementary.hpp"
-#include "report/chapters.hpp"
 #include "report/exponent_claims.hpp"
 #include "report/plots.hpp"
+#include "report/report.hpp"
+#include "report/runs.hpp"
 #include "report/statistics.hpp"
 
 namespace vines::report {
@@ -274,7 +275,7 @@ void lambda3(Report& report, const Ensemble& e) {
     report.paragraph(
         "If the printed lambda3 is rounding, it lies about ln(1/2.2e-16)/T = 36.0/T below lambda1, "
         "as by raw_product; if it is the exponent, as by qr.");
-    report.table(std::move(table));
+    report.table(table);
 }
 
 }  // namespace

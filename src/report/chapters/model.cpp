@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/chapters.hpp"
 #include "report/plots.hpp"
+#include "report/report.hpp"
+#include "report/runs.hpp"
 
 #include "core/motion/elementary.hpp"
 

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/chapters.hpp"
+#include "report/report.hpp"
+#include "report/runs.hpp"
 #include "report/symmetric_motion.hpp"
 
 #include "core/motion/elementary.hpp"

@@ -6,9 +6,10 @@
 #include <algorithm>
 #include <map>
 
-#include "report/chapters.hpp"
 #include "report/exponent_claims.hpp"
 #include "report/plots.hpp"
+#include "report/report.hpp"
+#include "report/runs.hpp"
 
 #include "core/motion/elementary.hpp"
 

@@ -4,8 +4,9 @@
 
 #include "core/motion/elementary.hpp"
 #include "core/motion/flow.hpp"
-#include "report/chapters.hpp"
 #include "report/plots.hpp"
+#include "report/report.hpp"
+#include "report/runs.hpp"
 
 namespace vines::report {
 

@@ -9,9 +9,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/chapters.hpp"
 #include "report/exponent_claims.hpp"
 #include "report/plots.hpp"
+#include "report/report.hpp"
+#include "report/runs.hpp"
 
 #include "core/motion/elementary.hpp"
 
@@ -53,7 +54,7 @@ void rows(Report& report, RunCache& runs) {
              fmt::format("{:.5f}", row.difference()), fmt::format("{:.0f}", length_of(row, here)),
              fmt::format("{:.0f}", contacts_of(row, here))});
     }
-    report.table(std::move(table));
+    report.table(table);
 }
 
 /// Sum of squared deviations, each in standard deviations.
@@ -260,8 +261,7 @@ Plot comparison(RunCache& runs) {
         by_equation{.colour = grey, .label = "equation_of_motion", .dots = true};
     for (const Table3Row& row : printed_table_3) {
         const auto add = [&](Curve& c, const Moments& lambda1) {
-            c.x.push_back(1000 * row.b);
-            c.y.push_back(lambda1.mean);
+            c.add(1000 * row.b, lambda1.mean);
             c.error.push_back(lambda1.deviation);
         };
         add(paper, {row.lambda1, 0});

@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/chapters.hpp"
 #include "report/plots.hpp"
+#include "report/report.hpp"
+#include "report/runs.hpp"
 
 #include "core/motion/elementary.hpp"
 
@@ -151,6 +152,11 @@ Intervals synchronised_stretches(const Regime& regime) {
     return stretches;
 }
 
+bool is_inside(const Intervals& stretches, double tau) {
+    return std::ranges::any_of(
+        stretches, [tau](const auto& s) { return tau > s.first && tau <= s.second; });
+}
+
 /// T's largest modulus in and outside synchronised stretches; without those impacts of a chatter
 /// that are so close to each other that rounding hides it.
 struct LargestOfT {
@@ -160,10 +166,8 @@ struct LargestOfT {
 LargestOfT largest_of_T(const PaperRun& r, const Intervals& stretches) {
     LargestOfT found;
     for (std::size_t i = 0; i < r.run.moduli->tau.size(); ++i) {
-        const double tau = r.run.moduli->tau[i];
         if (std::isnan(r.run.moduli->T[i][0])) continue;
-        const bool synchronised = std::ranges::any_of(
-            stretches, [tau](const auto& s) { return tau > s.first && tau <= s.second; });
+        const bool synchronised = is_inside(stretches, r.run.moduli->tau[i]);
         (synchronised ? found.synchronised : found.desynchronised).push_back(r.run.moduli->T[i][0]);
     }
     return found;
@@ -246,8 +250,7 @@ GrowthRates growth_rates(const PaperRun& r, const Intervals& stretches) {
     double grown[2] = {0, 0}, lasted[2] = {0, 0};
     for (std::size_t i = 1; i < qr.tau.size(); ++i) {
         const double from = qr.tau[i - 1], to = qr.tau[i];
-        const bool synchronised = std::ranges::any_of(
-            stretches, [&](const auto& s) { return to > s.first && to <= s.second; });
+        const bool synchronised = is_inside(stretches, to);
         grown[synchronised] +=
             qr.lambda[i][0] * (to - start) - qr.lambda[i - 1][0] * (from - start);
         lasted[synchronised] += to - from;

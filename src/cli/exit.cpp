@@ -1,21 +1,32 @@
-#include "cli/stop_signals.hpp"
+#include "cli/exit.hpp"
 
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <mutex>
 #include <thread>
 #include <utility>
 
-#include "cli/exit_code.hpp"
-#include "cli/temporary_file.hpp"
-#include "program/end_signals.hpp"
+#include "api/problem.hpp"
+#include "cli/output.hpp"
+#include "program/process.hpp"
 
 namespace vines::cli {
 
 namespace {
+
+const char* const exit_codes =
+    "Exit codes:\n"
+    "  0    complete\n"
+    "  1    a file cannot be read or written, or the files do not belong together\n"
+    "  2    invalid request; a problem document on stderr gives the reason\n"
+    "  3    ended by SIGTERM, or points are missing; the output so far is usable\n"
+    "  130  ended by Ctrl-C; the output so far is kept\n"
+    "  141  the reader of the output closed the pipe\n"
+    "  143  ended by SIGTERM before any output";
 
 /// A stopped command ends within .1 s, whatever it waits for.
 constexpr auto grace_period = std::chrono::milliseconds(80);
@@ -59,11 +70,6 @@ void wait_for_signals() {
 
 }  // namespace
 
-void stop_on_signals() {
-    block_end_signals();
-    std::thread(wait_for_signals).detach();
-}
-
 bool stopped() { return stop_signal != 0; }
 
 int stopped_code() { return stop_signal == SIGINT ? 128 + SIGINT : static_cast<int>(incomplete); }
@@ -85,9 +91,22 @@ Stoppable::~Stoppable() {
 
 Command ended_by_signals(Command command) {
     return {command.app, [run = std::move(command.run)] {
-                stop_on_signals();
+                block_end_signals();
+                std::thread(wait_for_signals).detach();
                 return run();
             }};
+}
+
+Command with_exit_codes(CLI::App* app, std::function<int()> run, const std::string& examples) {
+    add_examples(*app, examples, exit_codes);
+    return ended_by_signals({app, [run = std::move(run)]() -> int {
+                                 try {
+                                     return run();
+                                 } catch (const api::Problem& problem) {
+                                     std::fputs((problem.body() + "\n").c_str(), stderr);
+                                     return refused;
+                                 }
+                             }});
 }
 
 }  // namespace vines::cli

@@ -1,0 +1,377 @@
+// Plots of answers, drawn as SVG or in characters; `vines plot`.
+#include "cli/plots.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "api/json_text.hpp"
+#include "api/parse.hpp"
+#include "api/schema/field.hpp"
+#include "cli/exit.hpp"
+#include "cli/files.hpp"
+#include "cli/json_values.hpp"
+#include "cli/output.hpp"
+#include "cli/terminal.hpp"
+#include "plot/plot.hpp"
+
+namespace vines::cli {
+
+namespace {
+
+// --- A run ---
+
+using api::Json;
+using plot::Curve;
+using plot::Plot;
+
+/// Value at a JSON pointer such as "/exponents/qr"; null if missing.
+const Json& part(const Json& answer, const std::string& path) {
+    static const Json none;
+    const Json::json_pointer at(path);
+    return answer.contains(at) ? answer[at] : none;
+}
+
+/// Returns whether the object has these lists with equal lengths and the first has no gaps.
+bool has(const Json& object, const std::vector<const char*>& names) {
+    const auto is_list = [&](const char* name) {
+        return object.contains(name) && object[name].is_array() && !object[name].empty() &&
+               object[name].size() == object[names[0]].size();
+    };
+    return std::all_of(names.begin(), names.end(), is_list) &&
+           std::all_of(object[names[0]].begin(), object[names[0]].end(), [](const Json& entry) {
+               return entry.is_number();
+           });
+}
+
+/// lambda1 with its standard error, if known; empty if lambda1 is missing.
+std::string lambda1_of(const Json& qr) {
+    const double lambda1 = first_at(qr, "final"), error = first_at(qr, "standard_error");
+    if (!std::isfinite(lambda1)) return "";
+    return fmt::format("lambda1 = {:.3g}", lambda1) +
+           (std::isfinite(error) ? fmt::format(" +- {:.2g}", error) : "");
+}
+
+/// Result of the run in one line.
+std::string title_of(const Json& answer) {
+    const double b = number_at(part(answer, "/parameters"), "b") / mm;
+    const std::string regime = word_at(part(answer, "/regime"), "type");
+    std::vector<std::string> parts = {
+        regime.empty() ? "" : "regime " + regime, word_at(part(answer, "/exponents"), "verdict"),
+        lambda1_of(part(answer, "/exponents/qr"))};
+    std::erase(parts, "");
+    if (!std::isfinite(b)) return api::joined(parts);
+    return fmt::format("b = {:.4g} mm", b) + (parts.empty() ? "" : ": ") + api::joined(parts);
+}
+
+Plot displacement(const Json& series) {
+    return {
+        .x_label = "tau",
+        .y_label = "x (mm)",
+        .curves = {{.x = numbers_of(series["tau"]), .y = numbers_of(series["x"], mm)}}};
+}
+
+/// Includes the contacts between the samples, where |y - x| = b.
+Plot relative_displacement(const Json& answer) {
+    const Json &series = answer["series"], &impacts = part(answer, "/impacts");
+    const double b = number_at(part(answer, "/parameters"), "b") / mm;
+    const bool has_walls = std::isfinite(b);
+    std::vector<std::pair<double, double>> points;
+    const std::vector<double> tau = numbers_of(series["tau"]), x = numbers_of(series["x"], mm),
+                              y = numbers_of(series["y"], mm);
+    for (std::size_t i = 0; i < tau.size(); ++i) points.emplace_back(tau[i], y[i] - x[i]);
+    if (has_walls && has(impacts, {"tau", "side"})) {
+        const std::vector<double> at = numbers_of(impacts["tau"]),
+                                  side = numbers_of(impacts["side"]);
+        for (std::size_t n = 0; n < at.size(); ++n)
+            if (at[n] >= tau.front() && at[n] <= tau.back())
+                points.emplace_back(at[n], -side[n] * b);
+    }
+    std::stable_sort(points.begin(), points.end(), [](const auto& a, const auto& c) {
+        return a.first < c.first;
+    });
+    Curve curve;
+    for (const auto& [at, gap] : points) curve.add(at, gap);
+    Plot p{.x_label = "tau", .y_label = "y - x (mm)", .curves = {std::move(curve)}};
+    if (has_walls) {  // visible even if the motion does not reach them
+        p.y_range = {-1.12 * b, 1.12 * b};
+        p.levels = {-b, b};
+    }
+    return p;
+}
+
+/// Range of the last three quarters of all curves: the first values vary widely.
+std::pair<double, double> late_range(const std::vector<Curve>& curves) {
+    std::pair<double, double> range{0, 0};
+    for (const Curve& c : curves)
+        for (std::size_t i = c.y.size() / 4; i < c.y.size(); ++i)
+            if (std::isfinite(c.y[i]))
+                range = {std::min(range.first, c.y[i]), std::max(range.second, c.y[i])};
+    const double margin = 0.2 * std::max(range.second - range.first, 1e-3);
+    return {range.first - margin, range.second + margin};
+}
+
+Plot exponents(const Json& history) {
+    Plot p{.x_label = "tau", .y_label = "exponents (qr)", .levels = {0}};
+    for (int k = 0; k < 4; ++k) {
+        const std::string name = fmt::format("lambda{}", k + 1);
+        if (!has(history, {"tau", name.c_str()})) continue;
+        p.curves.push_back(
+            {.x = numbers_of(history["tau"]),
+             .y = numbers_of(history[name]),
+             .colour = plot::colours[k],
+             .label = name});
+    }
+    p.y_range = late_range(p.curves);
+    return p;
+}
+
+/// Plots of x, of y - x with its contacts, and of the exponents' history by QR, for those that the
+/// answer of POST /v1/simulate has.
+std::vector<Plot> run_plots(const Json& answer) {
+    std::vector<Plot> plots;
+    const Json &series = part(answer, "/series"), &history = part(answer, "/exponents/qr/history");
+    if (has(series, {"tau", "x"})) plots.push_back(displacement(series));
+    if (has(series, {"tau", "x", "y"})) plots.push_back(relative_displacement(answer));
+    if (has(history, {"tau", "lambda1"})) plots.push_back(exponents(history));
+    if (!plots.empty()) plots[0].title = title_of(answer);
+    return plots;
+}
+
+// --- A sweep ---
+
+/// An axis of the sweep as abscissa.
+struct Abscissa {
+    std::string parameter;
+    double unit;
+
+    std::string label() const { return parameter + (unit == mm ? " (mm)" : ""); }
+    double of(const Json& point) const { return number_at(point, parameter) / unit; }
+};
+
+/// The axis with more than one value, or the first one if all have one. Throws std::runtime_error
+/// if several axes have more than one value.
+Abscissa abscissa_of(const Json& start, const std::vector<Json>& points) {
+    std::optional<std::string> first, found;
+    for (const Json& axis : start["axes"]) {
+        const std::string parameter = word_at(axis, "parameter");
+        if (word_at(points[0], "reduce").ends_with(" " + parameter)) continue;
+        if (!first) first = parameter;
+        if (!axis.contains("values") || axis["values"].size() < 2) continue;
+        if (found)
+            throw std::runtime_error(
+                "only a sweep along one axis can be drawn here; the web page draws maps of two");
+        found = parameter;
+    }
+    const std::string parameter = found ? *found : first.value_or("");
+    return {parameter, parameter == "b" ? mm : 1};
+}
+
+/// Skips values that are not finite.
+void add(Curve& curve, double x, double y, std::optional<double> error = {}) {
+    if (!std::isfinite(x) || !std::isfinite(y)) return;
+    curve.add(x, y);
+    if (error) curve.error.push_back(std::isfinite(*error) ? *error : 0);
+}
+
+/// States in the section: at impacts (where |x - y| = b) or at whole forcing cycles.
+std::optional<Plot> section(const std::vector<Json>& points, const Abscissa& at) {
+    const Json::json_pointer states("/section/x");
+    Plot p{.y_label = "x in the section (mm)", .curves = {{.dots = true}}};
+    for (const Json& point : points) {
+        if (!point.contains(states)) continue;
+        for (const double x : numbers_of(point[states], mm)) add(p.curves[0], at.of(point), x);
+    }
+    if (p.curves[0].x.empty()) return std::nullopt;
+    return p;
+}
+
+/// One curve of dots for each word that a field can have.
+std::vector<Curve> by_word(
+    const std::vector<Json>& points, const Abscissa& at, const char* field,
+    const std::vector<std::pair<std::string, const char*>>& colours,
+    const std::function<std::pair<double, double>(const Json&)>& value_and_error) {
+    std::vector<Curve> curves;
+    for (const auto& [word, colour] : colours) {
+        Curve curve{.colour = colour, .label = word, .dots = true};
+        for (const Json& point : points) {
+            const auto [value, error] = value_and_error(point);
+            if (word_at(point, field) == word) add(curve, at.of(point), value, error);
+        }
+        if (!curve.x.empty()) curves.push_back(std::move(curve));
+    }
+    return curves;
+}
+
+Plot lambda1(const std::vector<Json>& points, const Abscissa& at) {
+    return {
+        .y_label = "lambda1, by verdict",
+        .curves = by_word(
+            points, at, "verdict",
+            {{"chaotic", plot::red}, {"regular", plot::colours[0]}, {"not_decided", plot::grey}},
+            [](const Json& p) {
+                return std::pair(first_at(p, "lambda"), first_at(p, "standard_error"));
+            }),
+        .levels = {0}};
+}
+
+Plot response(
+    const std::vector<Json>& points, const Abscissa& at, const std::string& label,
+    const char* field, double unit) {
+    return {
+        .y_label = label + ", by regime",
+        .curves = by_word(
+            points, at, "regime",
+            {{"I", "#b8780b"},
+             {"II", plot::red},
+             {"III", plot::colours[0]},
+             {"IV", plot::colours[1]},
+             {"V", plot::colours[3]},
+             {"VI", "#39424a"},
+             {"none", plot::grey}},
+            [field, unit](const Json& p) { return std::pair(number_at(p, field) / unit, 0.); })};
+}
+
+/// Request fields except axes, as "name = value, ...", including those of the base.
+std::string fields_except_axes(const Json& request) {
+    std::string text;
+    for (const auto& [name, value] : request.items()) {
+        if (name == "axes" || name == "indices") continue;
+        const std::string part =
+            name == "base" ? fields_except_axes(value) : name + " = " + api::json_text(value);
+        if (!part.empty()) text += (text.empty() ? "" : ", ") + part;
+    }
+    return text;
+}
+
+/// Plots of the section (bifurcation diagram), of lambda1 by verdict, and of the response by regime
+/// (the peaks, for a reduced sweep), for those that the points have. Throws std::runtime_error for
+/// a sweep along more than one axis. `start` and `points` are lines of a sweep.
+std::vector<Plot> sweep_plots(const Json& start, const std::vector<Json>& points) {
+    if (points.empty()) return {};
+    const Abscissa at = abscissa_of(start, points);
+    std::vector<Plot> plots;
+    if (std::optional<Plot> states = section(points, at)) plots.push_back(std::move(*states));
+    plots.push_back(lambda1(points, at));
+    plots.push_back(response(points, at, "rms ratio of x", "x_rms_ratio", 1));
+    plots.push_back(response(points, at, "max |x| (mm)", "x_max", mm));
+    plots.push_back(response(points, at, "peak of |x| (mm)", "x_peak", mm));
+    std::erase_if(plots, [](const Plot& p) { return p.curves.empty(); });
+    for (Plot& p : plots) p.x_label = at.label();
+    if (!plots.empty()) plots[0].title = fields_except_axes(start.value("request", Json::object()));
+    return plots;
+}
+
+// --- Drawing ---
+
+constexpr int picture_width = 860, plot_height = 230;  // px
+
+std::vector<Plot> plots_of_lines(const std::string& text) {
+    std::istringstream lines(text);
+    api::Json start;
+    std::vector<api::Json> points;
+    for (std::string line; std::getline(lines, line);) {
+        if (line.empty()) continue;
+        // The last line of a killed run can be incomplete.
+        if (lines.eof() && !api::Json::accept(line)) break;
+        api::Json read = api::parse_object(line);
+        if (word_at(read, "type") == "start") start = std::move(read);
+        else if (word_at(read, "type") == "point") points.push_back(std::move(read));
+    }
+    if (!start.contains("axes") || !start["axes"].is_array())
+        throw std::runtime_error("the first line of the sweep is missing");
+    return plots_of(start, points);
+}
+
+bool is_sweep(const std::string& text) { return text.starts_with(R"({"type":)"); }
+
+/// Returns whether the locale states a character set other than UTF-8. Without a locale it is
+/// false.
+bool has_ascii_alone() {
+    for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
+        const char* const value = std::getenv(name);
+        if (!value || !*value) continue;
+        std::string locale = value;
+        std::transform(locale.begin(), locale.end(), locale.begin(), [](unsigned char c) {
+            return static_cast<char>(std::tolower(c));
+        });
+        return locale.find("utf-8") == std::string::npos &&
+               locale.find("utf8") == std::string::npos;
+    }
+    return false;
+}
+
+/// NO_COLOR: see no-color.org.
+bool has_colours() {
+    const char *const no = std::getenv("NO_COLOR"), *const kind = std::getenv("TERM");
+    return !(no && *no) && kind && std::string(kind) != "dumb";
+}
+
+/// For the terminal, or for a text that can be shown in one later.
+std::string in_characters(const std::vector<Plot>& plots, bool is_stdout) {
+    const std::size_t width = is_stdout ? terminal_width(STDOUT_FILENO) : 0;
+    return plot::text(
+        plots, {.width = static_cast<int>(width > 0 ? width : usual_terminal_width),
+                .height = plots.size() > 2 ? 8 : 12,
+                .colours = width > 0 && has_colours(),
+                .ascii = has_ascii_alone()});
+}
+
+std::vector<Plot> drawable(std::vector<Plot> plots) {
+    if (plots.empty())
+        throw std::runtime_error(
+            "nothing to draw: plots need a run's series or exponents, or points of a sweep");
+    return plots;
+}
+
+}  // namespace
+
+std::vector<Plot> plots_of(const api::Json& start, const std::vector<api::Json>& points) {
+    return drawable(sweep_plots(start, points));
+}
+
+std::vector<Plot> plots_of(const std::string& answer) {
+    return is_sweep(answer) ? plots_of_lines(answer)
+                            : drawable(run_plots(api::parse_object(answer)));
+}
+
+void draw(const std::vector<Plot>& plots, const std::string& path) {
+    write_all(
+        path, path.ends_with(".svg") ? plot::svg(plots, picture_width, plot_height)
+                                     : in_characters(plots, is_standard(path)));
+}
+
+Command add_plot(CLI::App& app) {
+    const auto files = std::make_shared<Files>();
+    CLI::App* command = app.add_subcommand("plot", "draw an answer in the terminal or as SVG");
+    command
+        ->add_option(
+            "answer", files->input,
+            "file with a run's answer or a sweep's lines; - or nothing: stdin")
+        ->type_name("FILE");
+    command
+        ->add_option(
+            "--output,-o", files->output, "SVG file, FILE.svg; nothing: draw in the terminal")
+        ->type_name("FILE");
+    return with_exit_codes(
+        command,
+        [files] {
+            draw(plots_of(read_all(files->input)), files->output);
+            return complete;
+        },
+        "vines simulate -p preset=fig11 -o answer.json; vines plot answer.json\n"
+        "vines plot sweep.ndjson -o sweep.svg");
+}
+
+}  // namespace vines::cli

@@ -1,0 +1,74 @@
+// The process: its standard streams, the signals that end it, its cores.
+#pragma once
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <string_view>
+#include <thread>
+
+#include "program/descriptor.hpp"
+
+namespace vines {
+
+/// Ignores SIGPIPE and SIGXFSZ, so that a failing write returns an error. Opens a standard stream
+/// that was closed before the start on /dev/null in the wrong direction, so that its use fails:
+/// otherwise the first file opened would get its number, and messages for stderr would end up in
+/// that file. Call before any file is opened.
+inline void prepare_streams() {
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);  // raised at the limit of `ulimit -f`
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        if (::fcntl(stream, F_GETFD) < 0)  // open() takes the lowest free number: this one
+            (void)::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+}
+
+/// Writes the whole text to stdout. Throws BrokenPipe if the pipe is closed, std::runtime_error
+/// with the reason for any other error.
+inline void print(std::string_view text) {
+    if (const int failed = write_fully(STDOUT_FILENO, text)) fail_at("write", "to stdout", failed);
+}
+
+/// Writes "vines: MESSAGE" to stderr. Ignores errors: a closed terminal does not stop the
+/// computation.
+inline void print_message(std::string_view message) {
+    std::fputs(fmt::format("vines: {}\n", message).c_str(), stderr);
+}
+
+/// SIGTERM, SIGINT and SIGHUP end the program. One thread waits for them with sigwait(), outside a
+/// signal handler, and therefore can take locks and write logs.
+inline sigset_t end_signals() {
+    sigset_t signals;
+    sigemptyset(&signals);
+    // SIGHUP arrives when the terminal closes; it stays ignored under nohup.
+    struct sigaction hangup{};
+    sigaction(SIGHUP, nullptr, &hangup);
+    if (hangup.sa_handler != SIG_IGN) sigaddset(&signals, SIGHUP);
+    sigaddset(&signals, SIGTERM);
+    sigaddset(&signals, SIGINT);
+    return signals;
+}
+
+/// Blocks these signals in this thread and in those that it starts later. Call it before the first
+/// thread is started.
+inline void block_end_signals() {
+    const sigset_t signals = end_signals();
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+}
+
+/// Returns the next signal, including one that has arrived since they were blocked.
+inline int wait_for_end_signal() {
+    const sigset_t signals = end_signals();
+    int signal = 0;
+    sigwait(&signals, &signal);
+    return signal;
+}
+
+/// Number of the machine's threads, at least 1.
+inline int cores() { return static_cast<int>(std::max(1u, std::thread::hardware_concurrency())); }
+
+}  // namespace vines
