@@ -227,11 +227,17 @@ export class Form {
       const {set} = typeOf(field);
       if (set) set(this.inputs.get(name), value ?? field.default);
       else this.setValue(name, value ?? "");
-      if (value !== undefined && !smallScreen) this.parts.get(field.group).open = true;
       this.showOrigin(name);
     }
+    this.unfold(values);
     this.updateDisabled();
     this.showErrors([]);
+  }
+
+  /** Opens the groups of the given values; on a small screen they stay closed. */
+  unfold(values) {
+    for (const {name, group} of smallScreen ? [] : this.fields)
+      if (values[name] !== undefined) this.parts.get(group).open = true;
   }
 
   /**

@@ -27,6 +27,7 @@ export class Request {
     if (chosen || fields) {
       this.dampingChosen = "damping" in {...fields};
       this.form.set({damping: chosen?.parameters.damping, ...fields});
+      this.form.unfold({...chosen?.parameters});
     } else this.giveValues(() => true);
     this.name = chosen?.name ?? "";
   }
