@@ -16,14 +16,13 @@ const web = dirname(fileURLToPath(import.meta.url));
 /** Source file of each page by request path. */
 const pages = {"/": "index.html", "/docs": "docs.html"};
 
-/** One script and one style sheet for each page; what a script imports on demand or shares is split off. */
+/** One script and one style sheet for each page. */
 const {outputFiles} = buildSync({
   absWorkingDir: web,
   entryPoints: ["main.js", "style.css", "docs/docs.js", "docs/docs.css"],
   outbase: ".",
   outdir: "built",
   bundle: true,
-  splitting: true,
   minify: true,
   format: "esm",
   target: "es2022",

@@ -8,7 +8,7 @@ import {join} from "node:path";
 import {test} from "node:test";
 import {promisify} from "node:util";
 import {startService} from "../service.mjs";
-import {drawn, frames, open, painted, swept} from "./browser.mjs";
+import {drawn, frames, open, painted} from "./browser.mjs";
 import {
   asked,
   beyond,
@@ -130,21 +130,11 @@ test("the page's files are compressed, and cached until their content changes", 
   assert.equal(script.headers.get("content-encoding"), "gzip");
 });
 
-test("the page is at most 60 kB compressed at first, and loads other tabs when they are opened", async () => {
-  const bytes = await weigh(service.url);
-  const names = Object.keys(bytes).map((path) => path.replace(/^[0-9a-f]{12}\//, ""));
-  for (const name of ["", "icon.svg", "style.css", "main.js", "system.svg"])
-    assert.ok(names.includes(name), name);
-  assert.ok(sum(bytes) <= 60000, JSON.stringify(bytes));
-  const page = await visit("?preset=fig11");
-  const loaded = [];
-  page.on("request", (request) => loaded.push(new URL(request.url()).pathname));
-  await page.click("#tab-sweep");
-  await swept(page, 1);
-  assert.ok(
-    loaded.some((path) => /\/sweep[^/]*\.js$/.test(path)),
-    loaded.join(" "),
-  );
+test("the first view loads at most 90 kB, compressed", async () => {
+  const page = await still();
+  const bytes = await weigh(page);
+  for (const name of ["", "style.css", "main.js"]) assert.ok(bytes[name] > 0, name);
+  assert.ok(sum(bytes) <= 90000, JSON.stringify(bytes));
   await page.close();
 });
 
