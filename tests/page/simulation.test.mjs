@@ -994,17 +994,26 @@ test("each field shows the origin of its value, and an empty field shows its def
   await page.close();
 });
 
-test("a field of a preset that was emptied stays empty in a link", async () => {
+test("an empty field stands for the preset's value, and a field that is emptied returns to it", async () => {
   const page = await still("?preset=fig3&tau_end=600&window=100,500");
-  assert.match(page.url(), /preset=fig3/);
   await unfold(page);
-  await after(page, async () => {
-    await page.fill(input("window"), "");
-    await page.keyboard.press("Enter");
-  });
-  assert.doesNotMatch(page.url(), /preset|window/);
-  assert.equal(await page.inputValue("#preset"), "");
-  assert.deepEqual(await marked(page), []);
+  assert.equal(await page.inputValue(input("b")), "");
+  assert.equal(await page.getAttribute(input("b"), "placeholder"), "22");
+  for (const [name, query] of Object.entries({window: "&tau_end=600", tau_end: ""})) {
+    await after(page, async () => {
+      await page.fill(input(name), "");
+      await page.keyboard.press("Enter");
+    });
+    assert.equal(new URL(page.url()).search, `?preset=fig3${query}`);
+  }
+  assert.equal(await page.getAttribute(input("window"), "placeholder"), "18.13, 1708.9");
+  assert.deepEqual(await marked(page), [["figure-x", "Fig. 3"]]);
+  await after(page, () => page.selectOption("#preset", ""));
+  assert.equal(await page.inputValue(input("window")), "18.13, 1708.9");
+  assert.match(
+    page.url(),
+    /\?b=0\.022&damping=closed_form&tau_end=5521\.3&window=18\.13%2C1708\.9/,
+  );
   await page.close();
 });
 
@@ -1024,6 +1033,19 @@ test("a mass typed over a preset replaces its system, damping and window, and mi
     await page.waitForSelector(`#error-${name}:not(:empty)`);
   assert.match(await page.textContent("#error-k1"), /k1 \(or f0\) is missing/);
   browser.complaints.length = 0; // Chromium logs each 422
+  await page.close();
+});
+
+test("a field of the oscillator typed over an experiment keeps its other values, each given once", async () => {
+  const page = await still("?preset=fig20");
+  await unfold(page);
+  await page.fill(input("f0"), "8.4");
+  assert.ok(await page.isDisabled(input("k1")));
+  assert.equal(await page.inputValue(input("k1")), "");
+  assert.equal(await page.inputValue(input("c1")), "3.02");
+  await after(page, () => page.keyboard.press("Enter"));
+  assert.match(page.url(), /\?b=0\.015&R=0\.85&m1=4\.168&f0=8\.4&c1=3\.02&m2=0\.032&F=/);
+  assert.equal(await page.inputValue("#preset"), "");
   await page.close();
 });
 
@@ -1186,6 +1208,24 @@ for (const width of [390, 360])
     assert.deepEqual(await beyond(page, parts, ".scroll"), []);
     await page.close();
   });
+
+test("the titles of the form and of the displacement fit into one line", async () => {
+  for (const width of [1440, 390, 360]) {
+    const page = await still("", {viewport: {width, height: 900}});
+    const clipped = await page.$$eval("#figure-x figcaption small", (notes) =>
+      notes.filter((n) => n.scrollWidth > n.clientWidth).map((n) => n.textContent),
+    );
+    assert.deepEqual(clipped, [], `${width} px`);
+    if (width < 700) await page.click("#sheet");
+    const lines = await page.$eval("#more > summary", (summary) => {
+      const text = document.createRange();
+      text.selectNodeContents(summary);
+      return new Set([...text.getClientRects()].map(({top}) => top)).size;
+    });
+    assert.equal(lines, 1, `${width} px`);
+    await page.close();
+  }
+});
 
 test("one finger scrolls a zoomed plot, two zoom", async () => {
   const page = await still("?preset=fig9", {viewport: {width: 390, height: 780}});

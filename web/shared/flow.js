@@ -5,20 +5,14 @@
 
 const terms = 22; // of the series; 1/22! is below 1e-21
 
-const states = [
-  [1, 0, 0, 0],
-  [0, 1, 0, 0],
-  [0, 0, 1, 0],
-  [0, 0, 0, 1],
-];
-
 /**
- * Builds the linear map from `after`, which advances a state: it is applied to the four unit
- * states. Returns a function that advances a state in place, fast enough for thousands of samples.
+ * The linear map of advance(state), which is applied to the four unit states. Returns a function that
+ * advances a state in place, fast enough for thousands of samples.
  */
-function mapOf(after) {
-  const [[xx, vx], [xv, vv], [xs, vs, cos, minusSin], [xc, vc]] = states.map((state) =>
-    after([...state]),
+function mapOf(advance) {
+  const unit = (k) => [0, 1, 2, 3].map((i) => Number(i === k));
+  const [[xx, vx], [xv, vv], [xs, vs, cos, minusSin], [xc, vc]] = [0, 1, 2, 3].map((k) =>
+    advance(unit(k)),
   );
   return (state) => {
     const x = state[0]; // indexing is much faster than destructuring here
@@ -47,33 +41,21 @@ export class Flow {
     return this.forcing * sin - this.stiffness * x - this.damping * v;
   }
 
-  /** The state a time 0 <= s <= cell later. */
+  /** The state a time 0 <= s <= cell later: the sum of the terms (A s)^n/n! of its series. */
   near(state, s) {
-    const v0 = state[1];
-    const sin0 = state[2];
-    const cos0 = state[3];
     const {stiffness, damping, forcing, Omega} = this;
-    const turn = Omega * s;
-    const phase = [sin0 * forcing, cos0 * forcing];
-    let a = state[0];
-    let b = v0 * s; // last two terms of x
-    let x = a + b;
-    let v = v0;
-    // Terms of f sin(theta + Omega s): sin, cos, -sin, -cos, ...
-    let forced = s * s;
-    for (let n = 2; n < terms; ++n) {
-      const sign = n & 2 ? 1 : -1;
-      const push = sign * phase[n & 1] * forced;
-      const next = (push - stiffness * s * s * a - damping * s * (n - 1) * b) / (n * (n - 1));
-      x += next;
-      v += (n * next) / (s || 1);
-      a = b;
-      b = next;
-      forced *= turn / (n - 1);
+    let [x, v, sin, cos] = state; // the n-th term
+    const sum = [x, v, sin, cos];
+    for (let n = 1; n <= terms; ++n) {
+      const h = s / n;
+      const force = forcing * sin - stiffness * x - damping * v;
+      [x, v, sin, cos] = [h * v, h * force, h * Omega * cos, -h * Omega * sin];
+      sum[0] += x;
+      sum[1] += v;
+      sum[2] += sin;
+      sum[3] += cos;
     }
-    const cos = Math.cos(turn);
-    const sin = Math.sin(turn);
-    return [x, v, sin0 * cos + cos0 * sin, cos0 * cos - sin0 * sin];
+    return sum;
   }
 
   /** The state any time s >= 0 later. */

@@ -227,11 +227,17 @@ export class Form {
       const {set} = typeOf(field);
       if (set) set(this.inputs.get(name), value ?? field.default);
       else this.setValue(name, value ?? "");
-      if (value !== undefined && !smallScreen) this.parts.get(field.group).open = true;
       this.showOrigin(name);
     }
+    this.unfold(values);
     this.updateDisabled();
     this.showErrors([]);
+  }
+
+  /** Opens the groups of the given values; on a small screen they stay closed. */
+  unfold(values) {
+    for (const {name, group} of smallScreen ? [] : this.fields)
+      if (values[name] !== undefined) this.parts.get(group).open = true;
   }
 
   /**
@@ -266,29 +272,34 @@ export class Form {
   replace(name, value) {
     this.setValue(name, value);
     this.showOrigin(name);
+    this.updateDisabled();
   }
 
   filled(name) {
     return Boolean(this.inputs.get(name)?.value?.trim());
   }
 
-  /**
-   * Empty fields that cannot be combined with the filled or `named` ones: a system is given either
-   * in SI or reduced.
-   */
-  unmixable(named = []) {
-    const of = (group) => this.fields.filter((f) => f.group === group).map((f) => f.name);
-    const some = (group) => of(group).some((name) => this.filled(name) || named.includes(name));
-    const si = some("SI");
-    const reduced = some("reduced");
-    return si === reduced ? [] : of(si ? "reduced" : "SI").filter((name) => !this.filled(name));
+  /** True for an empty field that can be filled. */
+  isEmpty(name) {
+    return !this.filled(name) && !this.inputs.get(name).disabled;
   }
 
-  /** Disables fields that are set elsewhere or follow from another field. */
+  /** The group that no field can be given of: a system is given either in SI or reduced. */
+  get excludedGroup() {
+    const given = (f) => this.filled(f.name) || this.replaced.includes(f.name);
+    const [si, reduced] = ["SI", "reduced"].map((group) =>
+      this.fields.some((f) => f.group === group && given(f)),
+    );
+    if (si === reduced) return null;
+    return si ? "reduced" : "SI";
+  }
+
+  /** Disables fields that are set elsewhere, follow from another field or cannot be combined. */
   updateDisabled() {
-    for (const {name} of this.fields) {
+    const {excludedGroup} = this;
+    for (const {name, group} of this.fields) {
       const other = others[name];
-      const follows = this.filled(other) && !this.filled(name);
+      const follows = !this.filled(name) && (this.filled(other) || group === excludedGroup);
       const off = follows || [name, other].some((each) => this.replaced.includes(each));
       this.inputs.get(name).disabled = off;
       this.rows.get(name).classList.toggle("off", off);

@@ -109,15 +109,10 @@ export class Motion {
     const within = dense ? 0.5 : 0;
     const place = (_, k) => from + ((k + within) * width) / 2;
     const tau = Float64Array.from({length: 2 * columns}, place);
-    const line = () => tau.map((_, k) => (k % 2 ? -Infinity : Infinity));
+    const line = () => tau.map(() => NaN); // as outside the run
     const lines = {dense, tau, x: line(), gap: line()};
-    if (dense) {
-      this.extremes(from, width / samples, samples, lines);
-      for (const line of [lines.x, lines.gap])
-        line.forEach((value, k) => {
-          if (!Number.isFinite(value)) line[k] = NaN; // outside the run
-        });
-    } else
+    if (dense) this.extremes(from, width / samples, samples, lines);
+    else
       this.sample(from, width / 2, 2 * columns, (k, x, gap) => {
         lines.x[k] = x;
         lines.gap[k] = gap;
@@ -130,8 +125,8 @@ export class Motion {
   /** Extremes of each column of `samples` samples, including the impacts, which reach the walls. */
   extremes(from, step, samples, {x, gap}) {
     const widen = (line, k, value) => {
-      if (value < line[k]) line[k] = value;
-      if (value > line[k + 1]) line[k + 1] = value;
+      if (!(value >= line[k])) line[k] = value;
+      if (!(value <= line[k + 1])) line[k + 1] = value;
     };
     const columns = x.length / 2;
     this.sample(from, step, samples * columns, (k, value, distance) => {
@@ -148,7 +143,7 @@ export class Motion {
     }
   }
 
-  /** Calls use(k, x, y - x) for k = 0 .. count - 1 at from + k step; NaN outside the run. */
+  /** Calls use(k, x, y - x) for each k = 0 .. count - 1 at from + k step within the run. */
   sample(from, step, count, use) {
     let i = Math.max(lastUpTo(this.starts, from), 0) - 1;
     let next = -Infinity; // end of the current piece
@@ -157,10 +152,7 @@ export class Motion {
     let state;
     for (let k = 0; k < count; ++k) {
       const tau = from + k * step;
-      if (tau < 0 || tau > this.end) {
-        use(k, NaN, NaN);
-        continue;
-      }
+      if (tau < 0 || tau > this.end) continue;
       if (tau >= next) {
         while (this.starts[i + 1] <= tau) ++i;
         next = this.starts[i + 1] ?? Infinity;

@@ -173,6 +173,13 @@ const symbols = {
   R_plus: "R₊",
   R_minus: "R₋",
   tau_end: "τ end",
+  zeta: "ζ",
+  omega0: "ω₀",
+  omega_d: "ω_d/ω₀",
+  phi: "φ",
+  cycle: "2π/Ω",
+  cycle_s: "1/f",
+  time_end_s: "t",
 };
 export const symbolOf = (parameter) => symbols[parameter] ?? parameter;
 

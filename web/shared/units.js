@@ -1,6 +1,6 @@
 // Units of the results. A system given in SI is shown in s, mm/s, m/s², N s and J or, by choice, in
 // units of tau = omega0 t. Other systems are shown in units of tau.
-import {attributes, button} from "./dom.js";
+import {button, press} from "./dom.js";
 
 const key = "vines-units";
 const tau = "τ";
@@ -17,7 +17,6 @@ function remembered(f) {
 
 let chosen = remembered((store) => store.getItem(key)) === tau ? tau : seconds;
 const listeners = [];
-const buttons = [];
 
 /** True when seconds are chosen; they apply to systems in SI only. */
 export const inSeconds = () => chosen === seconds;
@@ -29,12 +28,7 @@ function choose(units) {
   if (units === chosen) return;
   chosen = units;
   remembered((store) => store.setItem(key, units));
-  showChosen();
   for (const f of listeners) f();
-}
-
-function showChosen() {
-  for (const each of buttons) attributes(each, {"aria-pressed": each.textContent === chosen});
 }
 
 const titles = {
@@ -47,9 +41,10 @@ export function unitsSwitch(container) {
   const own = Object.entries(titles).map(([units, title]) =>
     button(units, () => choose(units), {className: "small", title}),
   );
+  const show = () => press(own, (one) => one.textContent === chosen);
   container.append(...own);
-  buttons.push(...own);
-  showChosen();
+  onUnits(show);
+  show();
 }
 
 /** of(value) converts a value to `unit`. */

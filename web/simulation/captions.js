@@ -22,20 +22,18 @@ function factsOf({energy, impacts, regime, exponents, parameters, status}) {
   };
 }
 
-let caption = "";
-let facts = {};
-
-/** Title, description, caption and file name of an exported plot. */
+/** Title, description, caption and file name of an exported plot of the run shown. */
 export function aboutFigure(name) {
   const {title, notes} = captionOf($(`figure-${name}`));
-  const summary = [`${title} ${notes}`, facts[name]].filter(Boolean).join(": ");
+  const facts = run && factsOf(run.answer)[name];
+  const summary = [`${title} ${notes}`, facts].filter(Boolean).join(": ");
+  const caption = run ? parameterLine(run.answer.parameters) : "";
   return {title, summary, caption, name: `vines-${name}`};
 }
 
 /** Describes the figures of the first screen; `system`: the parameters in brief. */
 export function describe(answer, system) {
-  caption = parameterLine(answer.parameters);
-  facts = factsOf(answer);
+  const caption = parameterLine(answer.parameters);
   setTexts({"key-stuck": answer.sticking.tau_start.length ? ", orange: sticking" : ""});
   for (const figure of document.querySelectorAll("#instrument figure")) {
     const name = figure.id.replace("figure-", "");

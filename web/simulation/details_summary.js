@@ -10,10 +10,6 @@ import {verdicts} from "../shared/quantities.js";
 import {cards, tableOf} from "../shared/tables.js";
 import {largestMagnitude} from "./columns.js";
 
-/** Number of positive exponents of an estimator. */
-const positives = (estimator) =>
-  estimator?.final[0] == null ? null : estimator.final.filter((v) => v > 0).length;
-
 const exponent = ({final, status}, k) => (status[k] === "minus_infinity" ? "−∞" : digits(final[k]));
 
 function regimeCard({type, description, capture}, units) {
@@ -61,14 +57,12 @@ function lambdaCard({qr}, {time}) {
  * decided.
  */
 function positivesCard({qr, raw_product: product, verdict}) {
-  const byQr = positives(qr);
-  const raw = positives(product);
-  const differs = `${raw} by the raw product`;
-  const remark = raw === null || raw === byQr ? "" : differs;
-  const open = verdict === "not_decided" ? "not decided" : "–";
-  const decided = {regular: "none in the long run", chaotic: String(byQr ?? "–")};
-  const shown = decided[verdict] ?? open;
-  return ["positive exponents (qr)", shown, remark];
+  const positives = (estimator) =>
+    estimator?.final[0] == null ? "–" : String(estimator.final.filter((v) => v > 0).length);
+  const [byQr, raw] = [qr, product].map(positives);
+  const decided = {regular: "none in the long run", chaotic: byQr, not_decided: "not decided"};
+  const remark = raw === "–" || raw === byQr ? "" : `${raw} by the raw product`;
+  return ["positive exponents (qr)", decided[verdict] ?? "–", remark];
 }
 
 function residualCard({qr, sum_rule_residual: residual, impacts}) {
@@ -76,37 +70,30 @@ function residualCard({qr, sum_rule_residual: residual, impacts}) {
   return ["sum rule residual", "–", qr && impacts > 1 ? "undefined after sticking" : ""];
 }
 
-/** The median; of an even count, the upper of the middle two. */
-const median = (values) => values.toSorted((a, b) => a - b)[values.length >> 1];
-
 const inUnit = (value, {of, unit}) => `${shortTo(3, of(value))} ${unit}`;
 
-function forcingCard({si, derived}) {
+/** Cards in SI; the median of an even count is the upper of the middle two. */
+function engineeringCards({impacts, series, parameters}, units) {
+  const {si, derived} = parameters;
+  const {relative_speed: speed, impulse} = impacts;
   const ratio = shortTo(4, si.f / derived.f0);
-  return ["forcing", `${shortTo(3, si.f)} Hz`, `${ratio} of f₀; base ± ${inMm(si.F)}`];
+  const median = (values) => values.toSorted((a, b) => a - b)[values.length >> 1];
+  const highest = shortTo(3, units.velocity.of(largestMagnitude(speed)));
+  const blow = inUnit(median(impulse.map(Math.abs)), units.impulse);
+  return [
+    ["forcing", `${shortTo(3, si.f)} Hz`, `${ratio} of f₀; base ± ${inMm(si.F)}`],
+    [
+      "impact speed",
+      inUnit(median(speed), units.velocity),
+      speed.length ? `median; at most ${highest}; impulse ${blow}` : "",
+    ],
+    [
+      "peak acceleration",
+      inUnit(largestMagnitude(series.x_ddot), units.acceleration),
+      "of m₁ between the impacts",
+    ],
+  ];
 }
-
-function impactSpeedCard({relative_speed: speed, impulse}, {velocity, impulse: blow}) {
-  const highest = shortTo(3, velocity.of(largestMagnitude(speed)));
-  const remark = `median; at most ${highest}; impulse ${inUnit(median(impulse.map(Math.abs)), blow)}`;
-  return ["impact speed", inUnit(median(speed), velocity), speed.length ? remark : ""];
-}
-
-/** Empty if the amplitude without absorber is unknown. */
-function amplitudeCards({without_absorber: {amplitude: free}, peak}) {
-  const remark = `with absorber: |x| up to ${inMm(peak)}`;
-  return free == null ? [] : [["amplitude without absorber", inMm(free), remark]];
-}
-
-const engineeringCards = ({impacts, series, parameters}, units) => [
-  forcingCard(parameters),
-  impactSpeedCard(impacts, units),
-  [
-    "peak acceleration",
-    inUnit(largestMagnitude(series.x_ddot), units.acceleration),
-    "of m₁ between the impacts",
-  ],
-];
 
 /** Title of the window's cards. */
 function windowTitle({window, impacts}, {at}, requested) {
@@ -118,6 +105,7 @@ function windowTitle({window, impacts}, {at}, requested) {
 export function summarise(answer, units) {
   const {exponents, regime, energy, impacts, sticking, parameters} = answer;
   const stickingPhases = sticking.side.length;
+  const {amplitude: free} = energy.without_absorber;
   setTexts({"summary-title": windowTitle(exponents, units, parameters.window)});
   cards($("summary"), [
     regimeCard(regime, units),
@@ -128,7 +116,15 @@ export function summarise(answer, units) {
     residualCard(exponents),
     ["dissipated by impacts", percent(energy.share_impacts), "of all dissipation"],
     ["rms of x", percent(energy.rms_ratio), "of that without absorber"],
-    ...amplitudeCards(energy),
+    ...(free == null
+      ? []
+      : [
+          [
+            "amplitude without absorber",
+            inMm(free),
+            `with absorber: |x| up to ${inMm(energy.peak)}`,
+          ],
+        ]),
   ]);
   cards($("summary-run"), [
     ["impacts", String(impacts.tau.length), "chatter included"],
@@ -152,9 +148,11 @@ export function tabulate(windows = [], {time}) {
   $("windows").replaceChildren(...tableOf(names, rows));
 }
 
+const span = (className, textContent = "") => element("span", {className, textContent});
+
 /** A bar whose length is a fraction of the whole. */
 function bar(fraction, className) {
-  const node = element("span", {className});
+  const node = span(className);
   node.style.width = `${clamp(fraction, 0, 1) * 100}%`;
   return node;
 }
@@ -163,17 +161,15 @@ function bar(fraction, className) {
 function compare(term, withAbsorber, without) {
   const whole = Math.max(withAbsorber, without) || 1;
   const line = (name, value, className) => [
-    element("span", {className: "name", textContent: name}),
+    span("name", name),
     element("span", {className: "track"}, bar(value / whole, className)),
-    element("span", {className: "amount", textContent: inMm(value)}),
+    span("amount", inMm(value)),
   ];
-  return element(
-    "div",
-    {className: "compare"},
-    element("b", {textContent: term}),
+  const lines = [
     ...line("with absorber", withAbsorber, "with"),
     ...line("without", without, "without"),
-  );
+  ];
+  return element("div", {className: "compare"}, element("b", {}, term), ...lines);
 }
 
 /** Energy supplied, and the decay times of a free decay. */
@@ -189,15 +185,13 @@ function energyNote({input, at_start: start, decay}, units) {
 /** Times at which half and a tenth of the energy are left, with and without the absorber. */
 function decayTimes(decay, {at}) {
   const timeOf = (tau, before = "") => (tau == null ? "not in this run" : before + at(tau));
-  const line = ([what, name]) => {
-    const withIt = decay[name];
-    const without = decay.without_absorber[name];
-    const known = withIt != null || without != null;
-    return (
-      known && `${what} is left ${timeOf(withIt, "at ")} (without absorber: ${timeOf(without)})`
+  return Object.entries({tau_half: "half of the energy", tau_tenth: "a tenth"})
+    .map(([name, what]) => [what, decay[name], decay.without_absorber[name]])
+    .filter(([, ...taus]) => taus.some((tau) => tau != null))
+    .map(
+      ([what, tau, without]) =>
+        `${what} is left ${timeOf(tau, "at ")} (without absorber: ${timeOf(without)})`,
     );
-  };
-  return Object.entries({"half of the energy": "tau_half", "a tenth": "tau_tenth"}).map(line);
 }
 
 /**
@@ -214,15 +208,16 @@ export function accountEnergy(energy, units) {
     ["left", "left at the end", left],
   ];
   const bars = parts.map(([className, , value]) => bar(value / total, className));
-  const keys = parts.map(([className, name, value]) =>
-    element(
+  const keys = parts.map(([className, name, value]) => {
+    const amount = element("small", {}, inUnit(value, units.energy));
+    return element(
       "li",
       {},
-      element("span", {className: `key ${className}`, textContent: name}),
-      element("b", {textContent: percent(value / total)}),
-      element("small", {textContent: inUnit(value, units.energy)}),
-    ),
-  );
+      span(`key ${className}`, name),
+      element("b", {}, percent(value / total)),
+      amount,
+    );
+  });
   reveal({"energy-scale": !units.si});
   $("energy").replaceChildren(
     element("div", {className: "stack"}, ...bars),

@@ -2,7 +2,7 @@
 // with a short trail; impacts flash.
 import {$} from "../shared/dom.js";
 import {blank, font, Size} from "../shared/frame.js";
-import {drawText, ink, stroke} from "../shared/ink.js";
+import {drawText, ink} from "../shared/ink.js";
 import {clamp} from "../shared/numbers.js";
 import {run, viewport} from "./run.js";
 
@@ -15,49 +15,33 @@ const ball = 11; // px
 const nameWidth = 76; // px of the ball's name, which stays over the cavity
 const rim = 14; // px of the oscillator outside its walls
 
+/** Draws a path in the notation of SVG. */
+const line = (c, path) => c.stroke(new Path2D(path));
+
 function spring(c, to, y) {
   const turns = 8;
   const ends = 10;
   const step = (to - anchor - 2 * ends) / turns;
-  const coils = Array.from({length: turns}, (_, k) => [
-    anchor + ends + (k + 0.5) * step,
-    y + (k % 2 ? 7 : -7),
-  ]);
+  const coil = (_, k) => `L${anchor + ends + (k + 0.5) * step} ${y + (k % 2 ? 7 : -7)}`;
   ink(c, "text", 2);
-  stroke(c, [[anchor, y], [anchor + ends, y], ...coils, [to - ends, y], [to, y]]);
+  const coils = Array.from({length: turns}, coil).join("");
+  line(c, `M${anchor} ${y}h${ends}${coils}L${to - ends} ${y}h${ends}`);
 }
 
 function damper(c, to, y) {
   const piston = anchor + 0.55 * (to - anchor);
   const [from, end] = [piston - 14, piston + 10];
   ink(c, "text", 1.5);
-  stroke(c, [
-    [anchor, y],
-    [from, y],
-  ]);
-  stroke(c, [
-    [end, y - 6],
-    [from, y - 6],
-    [from, y + 6],
-    [end, y + 6],
-  ]);
-  stroke(c, [
-    [piston, y - 4],
-    [piston, y + 4],
-  ]);
-  stroke(c, [
-    [piston, y],
-    [to, y],
-  ]);
+  line(c, `M${anchor} ${y}H${from}M${end} ${y - 6}H${from}v12H${end}`);
+  line(c, `M${piston} ${y - 4}v8m0 -4H${to}`);
 }
 
 function ground(c, floor, width) {
-  const line = (...ends) => stroke(c, ends);
   ink(c, "soft");
-  line([anchor, floor + 0.5], [width - 8, floor + 0.5]);
-  for (let x = anchor + 8; x < width - 8; x += 14) line([x, floor + 1], [x - 6, floor + 8]);
+  line(c, `M${anchor} ${floor + 0.5}H${width - 8}`);
+  for (let x = anchor + 8; x < width - 8; x += 14) line(c, `M${x} ${floor + 1}l-6 7`);
   ink(c, "soft", 3);
-  line([anchor, 14], [anchor, floor]);
+  line(c, `M${anchor} 14V${floor}`);
 }
 
 function body(c, left, right, floor) {
@@ -75,8 +59,8 @@ function flash(c, x, y, inwards, share) {
   ink(c, "flash", 2.5);
   for (const angle of [-0.9, -0.35, 0.35, 0.9]) {
     const [cos, sin] = [Math.cos(angle) * inwards, Math.sin(angle)];
-    const end = [x + (12 + 6 * share) * cos, y + (26 + 8 * share) * sin];
-    stroke(c, [[x + 5 * cos, y + 16 * sin], end]);
+    const end = `${x + (12 + 6 * share) * cos} ${y + (26 + 8 * share) * sin}`;
+    line(c, `M${x + 5 * cos} ${y + 16 * sin}L${end}`);
   }
   c.globalAlpha = 1;
 }

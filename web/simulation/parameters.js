@@ -5,17 +5,17 @@ import {inMm, minus} from "../shared/numbers.js";
 import {symbolOf} from "../shared/quantities.js";
 import {resolved} from "../shared/value_origins.js";
 
-// Derived parameters: symbol, unit and what they follow from.
+// Derived parameters: unit and what they follow from.
 const derived = {
-  zeta: ["ζ", "", "epsilon, lambda, damping"],
-  omega0: ["ω₀", "rad/s", "k1, m1"],
-  omega_d: ["ω_d/ω₀", "", "zeta"],
-  A: ["A", "m", "G, epsilon, lambda, Omega"],
-  phi: ["φ", "rad", "epsilon, lambda, Omega"],
-  cycle: ["2π/Ω", "", "Omega"],
-  cycle_s: ["1/f", "s", "f"],
-  time_end_s: ["t", "s", "tau_end, omega0"],
-  window_s: ["", "s", "window, omega0"],
+  zeta: ["", "epsilon, lambda, damping"],
+  omega0: ["rad/s", "k1, m1"],
+  omega_d: ["", "zeta"],
+  A: ["m", "G, epsilon, lambda, Omega"],
+  phi: ["rad", "epsilon, lambda, Omega"],
+  cycle: ["", "Omega"],
+  cycle_s: ["s", "f"],
+  time_end_s: ["s", "tau_end, omega0"],
+  window_s: ["s", "window, omega0"],
 };
 
 function precise(value) {
@@ -45,12 +45,12 @@ export function listParameters(parameters, fieldOf) {
   const all = {...parameters.derived, ...values, R: null}; // each wall has its own row
   const row = (name) => {
     const {unit, description = ""} = fieldOf[name] ?? {};
-    const [symbol, ownUnit, from] = derived[name] ?? [symbolText(name), unit, ""];
+    const [ownUnit, from] = derived[name] ?? [unit, ""];
     const shown = element("span", {className: "unit", textContent: unitText(all[name], ownUnit)});
     const origin = origins[name]?.replace("follows from", "from") ?? (from && `from ${from}`);
     const cells = [
       element("td", {}, ...breakable(name)),
-      element("td", {textContent: symbol}),
+      element("td", {textContent: symbolText(name)}),
       element("td", {}, precise(all[name]), shown),
       element("td", {textContent: origin}),
     ];

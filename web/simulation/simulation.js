@@ -156,6 +156,7 @@ export class SimulationTab extends RequestTab {
   }
 
   showOrigins() {
+    this.request.showDamping(run.answer.parameters);
     if ($("more").open) this.form.showOrigins(run.answer.parameters);
   }
 
@@ -238,7 +239,6 @@ export class SimulationTab extends RequestTab {
     this.lastMoved = slider.name;
     if (slider.name === "zeta") request.dampingChosen = true;
     for (const [name, value] of Object.entries(fields)) form.replace(name, value ?? "");
-    request.updateDisabled();
     this.note("");
     this.send({dragging});
   }

@@ -45,7 +45,6 @@ const reduced = [
   slider("G", "Forcing", "amplitude of the base divided by ε", {...mm, rangeOf: () => [0, 40]}),
   slider("Omega", "Frequency", "relative to the natural frequency", {rangeOf: () => [0.9, 1.1]}),
   slider("zeta", "Damping", "damping ratio of the oscillator", {
-    symbol: "ζ",
     rangeOf: () => [0, 0.04],
     of: ({derived}) => derived.zeta,
     fields: (zeta, parameters) => ({lambda: zeta / zetaOver(parameters)}),
@@ -131,9 +130,7 @@ export function parameterLine(parameters) {
 
 const rows = new Map(); // {node, number, range, note, span} of each slider
 let shown; // parameters
-let change;
-let refuse;
-let typing;
+let handlers; // of start()
 
 /** The current range of a slider. */
 export const spanOf = (one) => rows.get(one).span;
@@ -144,9 +141,7 @@ export const spanOf = (one) => rows.get(one).span;
  * number differs from the one shown.
  */
 export function start(changed, refused, typed) {
-  change = changed;
-  refuse = refused;
-  typing = typed;
+  handlers = {changed, refused, typed};
 }
 
 /**
@@ -176,8 +171,8 @@ function rowOf(one) {
     id,
     autocomplete: "off",
     onchange: () => typed(one, number),
-    oninput: () => typing(number.value !== number.defaultValue),
-    onblur: () => typing(number.matches("[aria-invalid=true]")),
+    oninput: () => handlers.typed(number.value !== number.defaultValue),
+    onblur: () => handlers.typed(number.matches("[aria-invalid=true]")),
   });
   const range = element("input", {
     type: "range",
@@ -232,10 +227,10 @@ export function moveSlider(one, value, dragging) {
 function typed(one, input) {
   const value = toNumber(input.value);
   attributes(input, {"aria-invalid": value === null});
-  if (value === null) refuse(input.value, one);
+  if (value === null) handlers.refused(input.value, one);
   else apply(one, value, false);
 }
 
 function apply(one, value, dragging) {
-  change(fieldsOf(one, value, shown), one, dragging);
+  handlers.changed(fieldsOf(one, value, shown), one, dragging);
 }

@@ -186,7 +186,7 @@ export class SweepForm {
       for (const name of ends)
         axis.inputs.get(name).placeholder = `${name} ${axis.shown(name, range[name])}`;
     }
-    this.base.disable([...swept, ...this.base.unmixable(swept)]);
+    this.base.disable(swept);
     this.adaptRun(swept, reduce);
     this.showSize();
   }
