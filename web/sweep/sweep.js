@@ -41,11 +41,11 @@ function requestOf(query) {
   const request = new URLSearchParams(query);
   for (const name of [...Object.keys(menus), "view"]) request.delete(name);
   request.sort();
-  return request;
+  return String(request);
 }
 
-const isSame = (one, other) => String(requestOf(one)) === String(requestOf(other));
-const exampleOf = (given) => examples.findIndex(([, example]) => isSame(example, given));
+const exampleOf = (query) =>
+  examples.findIndex(([, example]) => requestOf(example) === requestOf(query));
 
 function time(seconds) {
   if (seconds < 1) return "less than a second";
@@ -168,7 +168,7 @@ export class SweepTab extends RequestTab {
 
   /** The request of the sweep shown, as a query; null before the first. */
   shown() {
-    return this.data && String(SweepForm.toQuery(this.data.request));
+    return this.data && SweepForm.toQuery(this.data.request);
   }
 
   query() {
@@ -183,7 +183,7 @@ export class SweepTab extends RequestTab {
   open(given) {
     const numbers = given.get("view")?.split(",").map(Number) ?? [];
     const ends = numbers.every(Number.isFinite) ? numbers : [];
-    if (this.data && isSame(given, this.shown())) {
+    if (this.data && requestOf(given) === requestOf(this.shown())) {
       // The same sweep with other menus: Back or Forward.
       for (const [name, menu] of Object.entries(menus)) choose(menu, given.get(name));
       this.view?.zoomTo(ends);
@@ -193,11 +193,10 @@ export class SweepTab extends RequestTab {
 
   /** Runs the sweep of a query, or the first example if it names none. */
   openSweep(given, ends) {
-    const named = requestOf(given);
-    const request = String(named) ? named : requestOf(examples[0][1]);
+    const request = requestOf(given) || requestOf(examples[0][1]);
     const standard = Object.keys(menus).map((name) => [name, ""]); // the first entry
     this.wanted = Object.fromEntries([...standard, ...given]);
-    this.form.setQuery(request, exampleOf(request) >= 0);
+    this.form.setQuery(new URLSearchParams(request), exampleOf(request) >= 0);
     this.run(ends);
   }
 
@@ -262,7 +261,7 @@ export class SweepTab extends RequestTab {
   }
 
   isStale() {
-    return this.data !== null && String(SweepForm.toQuery(this.form.request())) !== this.shown();
+    return this.data !== null && SweepForm.toQuery(this.form.request()) !== this.shown();
   }
 
   /** Shows the empty diagrams of a new sweep. */

@@ -233,7 +233,7 @@ export class SweepForm {
       query.set(axisNames[i], parts.join(","));
     }
     for (const [name, value] of Object.entries({...run, ...base})) query.set(name, textOf(value));
-    return query;
+    return String(query);
   }
 
   /**
