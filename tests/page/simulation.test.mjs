@@ -8,7 +8,7 @@ import {join} from "node:path";
 import {test} from "node:test";
 import {promisify} from "node:util";
 import {startService} from "../service.mjs";
-import {drawn, frames, open, painted} from "./browser.mjs";
+import {drawn, frames, open, painted, swept} from "./browser.mjs";
 import {
   asked,
   beyond,
