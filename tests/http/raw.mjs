@@ -38,7 +38,7 @@ export const statuses = (text) =>
   [...text.matchAll(/^HTTP\/1\.1 ([2-5]\d\d) /gm)].map((found) => Number(found[1]));
 
 /** Sends bytes and returns everything received until the server closes or `ms` are over. */
-export async function exchange(url, bytes, ms = 4000) {
+export async function exchange(url, bytes, ms = 20000) {
   const connection = await connect(url);
   connection.socket.write(bytes);
   const late = setTimeout(() => connection.socket.destroy(), ms);

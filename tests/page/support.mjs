@@ -8,7 +8,7 @@ import {open, startBrowser} from "./browser.mjs";
 export let service;
 export let browser;
 before(async () => {
-  service = await startService();
+  service = await startService(["--deadline", "600"]); // slow machines must not fail the tests
   browser = await startBrowser();
 });
 after(async () => {
