@@ -21,16 +21,6 @@ const shown = (page, n = 1) =>
     n,
   );
 
-/** Files of the first view. */
-async function weight(context, url) {
-  const page = await context.newPage();
-  await page.goto(url);
-  await shown(page);
-  const bytes = sum(await weigh(page));
-  row("files of the first view, gzipped", `${(bytes / 1000).toFixed(1)} kB`, "90 kB");
-  await page.close();
-}
-
 /** Time from navigation to the first plots, and the layout shift meanwhile. */
 async function navigation(context, url) {
   const times = [];
@@ -147,7 +137,8 @@ async function many(context, url) {
 const service = await startService();
 const browser = await startBrowser();
 try {
-  await weight(browser.context, service.url);
+  const bytes = sum(await weigh(service.url));
+  row("files of the first view, gzipped", `${(bytes / 1000).toFixed(1)} kB`, "90 kB");
   await navigation(browser.context, service.url);
   await slider(browser.context, service.url);
   await many(browser.context, service.url);

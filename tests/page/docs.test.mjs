@@ -87,6 +87,8 @@ test("a link opens the elements around its target and shows it", async () => {
     const page = await visit(`#${place}`);
     assert.ok(await isOpen(page, place.split(".")[0]), place);
     assert.ok(await inView(page, place), place);
+    const focused = `[id="${place}"]:focus, [id="${place}"] > summary:focus`;
+    assert.equal(await page.locator(focused).count(), 1, place);
     await page.close();
   }
   const page = await visit();

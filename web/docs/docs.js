@@ -57,12 +57,16 @@ async function showCommit() {
   $("docs-commit").replaceChildren(known, `, ${compiler}`);
 }
 
+/** Resolves when the browser has gone to the address's fragment itself, which takes the focus away. */
+const loaded = new Promise((resolve) => addEventListener("load", resolve));
+
 async function start() {
   listen();
   showAddresses();
   startExamples();
   startFinder();
   $("docs-contents").open = matchMedia("(min-width: 1001px)").matches;
+  await loaded;
   reveal(location.hash);
   await showCommit();
   $("docs-message").dataset.done = 1;
