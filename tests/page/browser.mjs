@@ -9,11 +9,11 @@ const require = createRequire(new URL("../../web/package.json", import.meta.url)
 const {chromium} = require("playwright-core");
 
 /**
- * True for requests aborted by the page because newer input replaced them. Chromium sometimes also
- * reports a fully read stream as aborted.
+ * True for requests aborted by the page because newer input replaced them, or an example read as much
+ * as it shows. Chromium sometimes also reports a fully read stream as aborted.
  */
 const brokenOff = (request) =>
-  /\/v1\/(simulate|sweep|identify)\b/.test(request.url()) &&
+  /\/(v1\/(simulate|sweep|identify)|healthz)\b/.test(request.url()) &&
   request.failure().errorText === "net::ERR_ABORTED";
 
 /**

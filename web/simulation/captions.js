@@ -34,7 +34,7 @@ export function aboutFigure(name) {
 /** Describes the figures of the first screen; `system`: the parameters in brief. */
 export function describe(answer, system) {
   const caption = parameterLine(answer.parameters);
-  setTexts({"key-stuck": answer.sticking.tau_start.length ? ", orange: sticking" : ""});
+  setTexts({"key-stuck": answer.sticking.tau_start.length ? ", orange sticking" : ""});
   for (const figure of document.querySelectorAll("#instrument figure")) {
     const name = figure.id.replace("figure-", "");
     const params = figure.querySelector(".params");
