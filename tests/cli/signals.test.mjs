@@ -167,7 +167,7 @@ test("a sweep writes each line to a pipe in order as it is computed, also when i
   assert.deepEqual(indices.slice(0, 4), [0, 1, 2, 3]);
   assert.deepEqual(
     indices,
-    indices.toSorted((a, b) => a - b),
+    [...indices].sort((a, b) => a - b),
   );
   assert.match(errors, new RegExp(`^vines: stopped after ${points.length} of 40 points\n$`, "m"));
 });

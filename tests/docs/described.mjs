@@ -104,8 +104,11 @@ class Walk {
 }
 
 /** The first of the keys with each path. */
-const distinct = (keys) =>
-  [...new Map(keys.toReversed().map((key) => [key.path, key])).values()].toReversed();
+function distinct(keys) {
+  const first = new Map();
+  for (const key of keys) if (!first.has(key.path)) first.set(key.path, key);
+  return [...first.values()];
+}
 
 const inSi = /^(\w+) in (?:s|m\/s|m\/s\^2|N s|J), for a system in SI$/;
 

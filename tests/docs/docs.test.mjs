@@ -8,7 +8,17 @@ import {after, before, test} from "node:test";
 import {program, startService} from "../service.mjs";
 import {answeredKeys} from "./answers.mjs";
 import {describedKeys, withKeyTables} from "./described.mjs";
-import {anchors, between, codes, links, read, root, tables, transcripts} from "./markdown.mjs";
+import {
+  anchors,
+  between,
+  codes,
+  links,
+  read,
+  root,
+  tables,
+  transcripts,
+  withoutBlocks,
+} from "./markdown.mjs";
 
 const documents = {};
 let service;
@@ -165,8 +175,9 @@ test("every key of every answer is in the OpenAPI document, and no other one", a
 test("the tables of keys are the OpenAPI document's", async () => {
   const text = documents["docs/api.md"];
   const generated = withKeyTables(text, describedKeys(openapi));
-  if (process.env.PUBLISH) await writeFile(new URL("docs/api.md", root), generated);
-  else assert.equal(text, generated);
+  if (process.env.PUBLISH) return writeFile(new URL("docs/api.md", root), generated);
+  const [own, expected] = [text, generated].map((one) => one.split("\n"));
+  for (const [n, line] of expected.entries()) assert.equal(own[n], line, `line ${n + 1}`);
 });
 
 // The command line.
@@ -286,6 +297,36 @@ test("links lead to files and headings that are there", async () => {
       const headings = anchors(documents[target] ?? "");
       assert.ok(headings.includes(url.hash.slice(1)), `${name}: ${link}`);
     }
+});
+
+test("the architecture names only files and identifiers that exist", async () => {
+  const folders = ["src", "web", "tests", "scripts", "clients", "deploy", "packaging", ".ci"];
+  const listed = await Promise.all(
+    folders.map(async (folder) => {
+      const names = await readdir(new URL(folder, root), {recursive: true});
+      return names
+        .filter((name) => !name.includes("node_modules"))
+        .map((name) => `${folder}/${name}`);
+    }),
+  );
+  const files = [...listed.flat(), ...(await readdir(root))];
+  const isSource = /\.(cpp|hpp|js|mjs|css|html|cmake|txt|py|service)$|scripts\/[\w-]+$/;
+  const sources = await Promise.all(files.filter((name) => isSource.test(name)).map(read));
+  const known = new Set(`${sources.join("\n")} ${files.join(" ")}`.match(/\w+/g));
+  const placeholders = /[A-Z]{4}/; // NAME, PREFIX
+  for (const code of codes(withoutBlocks(documents["docs/design.md"]))) {
+    if (code.startsWith("#include")) continue;
+    const [file] = code.match(/[\w./*-]+\.(cpp|hpp|js|mjs|css|html)\b/) ?? [];
+    if (file && !placeholders.test(file)) {
+      const pattern = file.replaceAll(".", "\\.").replaceAll("*", "[^/]*");
+      assert.ok(
+        files.some((name) => new RegExp(`(^|/)${pattern}$`).test(name)),
+        code,
+      );
+    }
+    for (const word of code.match(/[A-Za-z_]\w{3,}/g) ?? [])
+      assert.ok(known.has(word) || placeholders.test(word), code);
+  }
 });
 
 test("every document is linked from the README", () => {

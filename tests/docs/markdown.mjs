@@ -67,7 +67,7 @@ export function between(markdown, name) {
   return markdown.slice(from + begin.length, to);
 }
 
-const withoutBlocks = (markdown) => markdown.replace(/^```[\s\S]*?^```$/gm, "");
+export const withoutBlocks = (markdown) => markdown.replace(/^```[\s\S]*?^```$/gm, "");
 
 /** Targets of the links and images of a document. */
 export const links = (markdown) =>
