@@ -79,7 +79,6 @@ Json side() { return {{"type", "integer"}, {"enum", {1, -1}}}; }
 namespace {
 
 Json schema_of(ValueType type) {
-    const Json moduli = list_of(number(), 4);
     switch (type) {
         case ValueType::number: return number();
         case ValueType::number_or_null: return or_null(number());
@@ -88,9 +87,9 @@ Json schema_of(ValueType type) {
         case ValueType::flag: return flag();
         case ValueType::word: return text();
         case ValueType::component: return one_of({"x_dot", "x", "y_dot", "y"});
-        case ValueType::moduli: return moduli;
+        case ValueType::moduli: return list_of(number(), 4);
         case ValueType::exponents: return list_of(or_null(number()), 4);
-        case ValueType::matrix: return list_of(moduli, 4);
+        case ValueType::matrix: return list_of(list_of(number(), 4), 4);
     }
     return nullptr;
 }

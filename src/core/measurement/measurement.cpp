@@ -88,6 +88,21 @@ Identification identified(const FoundImpacts& refined, Parameters& p) {
     return found;
 }
 
+/// The exponents with their verdict: not decided for a measurement that is not sound, or whose
+/// impacts weaken although the motion is forced; none for a motion that dies out.
+IdentifiedExponents judged_exponents(
+    const Parameters& p, const MeasuredOscillator& oscillator, const MeasuredExponents& exponents,
+    const std::vector<IdentifiedImpact>& impacts, bool is_sound) {
+    IdentifiedExponents judged = judge_exponents(oscillator, exponents, is_representative(impacts));
+    if (!is_sound) {
+        judged.verdict = Verdict::not_decided;
+    } else if (p.G == 0 || weakens(impacts)) {
+        judged.weakens = !is_unforced(p, impacts);
+        judged.verdict = judged.weakens ? Verdict::not_decided : Verdict::none;
+    }
+    return judged;
+}
+
 }  // namespace
 
 double Measurement::step() const {
@@ -132,15 +147,9 @@ MeasurementResult evaluate_measurement(const Measurement& m, const Identificatio
     progress.reach(IdentificationStage::exponents);
     Continuity continuity = continuity_of(p, found.impacts, time_gaps(m.record));
     MeasuredExponents exponents(p, oscillator, found.impacts, continuity.stretches, m.estimators);
-    IdentifiedExponents judged =
-        judge_exponents(oscillator, exponents, is_representative(found.impacts));
-    if (!doubts.empty() || continuity.share > Continuity::most)
-        judged.verdict = Verdict::not_decided;
-    else if (p.G == 0 || weakens(found.impacts)) {
-        judged.weakens = !is_unforced(p, found.impacts);
-        judged.verdict = judged.weakens ? Verdict::not_decided : Verdict::none;
-    }
-
+    const bool is_sound = doubts.empty() && continuity.share <= Continuity::most;
+    const IdentifiedExponents judged =
+        judged_exponents(p, oscillator, exponents, found.impacts, is_sound);
     progress.look();
     auto direct = refined
                       ? direct_estimate(m, p.b, oscillator, *refined, hidden, continuity.stretches)
