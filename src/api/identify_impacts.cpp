@@ -142,8 +142,7 @@ void take_motion(IdentifyRequest& r, CancelCheck& cancel) {
         r.notes.push_back(fmt::format(
             "no forcing at this frequency leads from each impact to the next: the states miss it "
             "by {:.2g} of the oscillator's speed. Is f, a mass, a stiffness or a unit wrong, or "
-            "are "
-            "impacts missing?",
+            "are impacts missing?",
             forcing.misfit));
         r.measurement.doubts.push_back(Doubt::no_forcing);
         return;

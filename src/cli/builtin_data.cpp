@@ -26,7 +26,7 @@ namespace vines::cli {
 
 namespace {
 
-/// What a listing prints: its JSON, and its text for all names ("") or for one.
+/// Output of a listing: its JSON, and its text for all names ("") or for one.
 struct Listing {
     api::Json (*json)();
     std::string (*text)(const std::string& name);

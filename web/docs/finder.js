@@ -5,7 +5,7 @@ import {count} from "../shared/numbers.js";
 
 const most = 40; // names listed
 
-/** What a field belongs to: GET /v1/simulate, or Energy.without_absorber. */
+/** The operation or object of a field: GET /v1/simulate, or Energy.without_absorber. */
 function ownerOf(row) {
   const operation = row.closest(".operation");
   if (operation) {

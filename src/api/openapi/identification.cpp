@@ -26,8 +26,7 @@ Json signal() {
           "motion that the model does not explain"},
          {"pulse_s", number(),
           "length of the pulse of an impact in the acceleration, of a half sine of the same width "
-          "at "
-          "half height; 0 if too few pulses are visible"},
+          "at half height; 0 if too few pulses are visible"},
          {"pulse_delay_s", or_null(number()),
           "time from an impact to the peak of its pulse; null if too few pulses are visible"},
          {"pulse_spoils_s", interval(),
@@ -146,8 +145,7 @@ Json identification() {
              object_of(
                  {{"lambda1", or_null(number()),
                    "long-term slope of lambda1(tau) tau, without the first tenth of the impacts "
-                   "and "
-                   "corrected for the phase of the modulation at both ends"},
+                   "and corrected for the phase of the modulation at both ends"},
                   {"low", or_null(number()), "lower end of its 90 % interval"},
                   {"high", or_null(number()), "upper end of its 90 % interval"}}),
              "growth of lambda1(tau) tau"},

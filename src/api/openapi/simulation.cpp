@@ -18,15 +18,14 @@ Json run_status() {
     return with_si(object_of(
         {{"reason", one_of({"tau_end", "max_impacts", "deadline"}),
           "tau_end, max_impacts, deadline (the time limit of the server for one request), or on "
-          "the "
-          "command line interrupted"},
+          "the command line interrupted"},
          value_of(quantity.tau.with("time at which the run ended")),
          {"message", text(), "a sentence"}}));
 }
 
 Json section() {
     return object_of(
-        {{"impact", object_of(columns_of(impact_section_columns())), "Poincare section at impact"},
+        {{"impact", table_of(impact_section_columns()), "Poincare section at impact"},
          {"stroboscopic",
           object_of(
               Keys{column_of(
@@ -72,8 +71,7 @@ Json capture() {
     return object_of(
         {{"tau", or_null(number()),
           "time at which the orbit captured the run; null if the run ends before; if the time "
-          "limit "
-          "ended the run, it can be later than the capture"},
+          "limit ended the run, it can be later than the capture"},
          {"status", one_of({"captured", "on_its_way"}),
           "captured, or on_its_way: the run ends before its capture"},
          {"chaotic_before", or_null(flag()), "true after a chaotic transient; null if unknown"},
@@ -199,8 +197,7 @@ Json simulation() {
             part(
                 "perturbation", "Perturbation",
                 "a second run with a perturbed start, and its distance from the first; only with "
-                "the "
-                "field perturbation")});
+                "the field perturbation")});
 }
 
 }  // namespace

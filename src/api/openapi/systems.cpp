@@ -86,8 +86,7 @@ Json provenance() {
               "for an identification: hash of the file or JSON that was sent"}),
          {"sha256", or_null(text()),
           "hash of the response's text up to the comma before its last member provenance, followed "
-          "by "
-          "}; null in CBOR and npz"}});
+          "by }; null in CBOR and npz"}});
 }
 
 }  // namespace
