@@ -14,7 +14,7 @@ using namespace vines::api;
 namespace {
 
 // Around the limits at which CBOR's length field becomes wider.
-const std::vector<std::size_t> lengths{0, 1, 23, 24, 255, 256, 65535, 65536, 100000};
+const std::vector<std::size_t> lengths{0, 1, 23, 24, 255, 256, 65535, 65536};
 
 std::vector<double> numbers_of(std::size_t length) {
     std::vector<double> numbers(length);
@@ -24,7 +24,7 @@ std::vector<double> numbers_of(std::size_t length) {
 
 /// An answer with one table.
 Json long_answer() {
-    const std::vector<double> numbers = numbers_of(100000);
+    const std::vector<double> numbers = numbers_of(50000);
     Json lists;
     lists["tau"] = column(numbers);
     lists["lambda"] = column(numbers, [](double x) { return Quadruple{x, 2 * x, 3 * x, 4 * x}; });
@@ -41,6 +41,13 @@ std::string typed_by_library(const std::vector<double>& numbers) {
     return bytes;
 }
 
+/// The first bytes of an array of this length, as the JSON library encodes it.
+std::string array_head(std::size_t length) {
+    std::string bytes;
+    Json::to_cbor(Json(std::vector<bool>(length)), bytes);
+    return bytes.substr(0, bytes.size() - length);
+}
+
 }  // namespace
 
 TEST_CASE("encoding stops when it is cancelled, in every format") {
@@ -53,8 +60,8 @@ TEST_CASE("encoding stops when it is cancelled, in every format") {
                   return false;
               }) == whole);
         CHECK(polls >= 4);
-        // Cancels at up to seven of the polls.
-        for (int stops_at = 1; stops_at <= polls; stops_at += 1 + polls / 7) {
+        // Cancels at up to four of the polls.
+        for (int stops_at = 1; stops_at <= polls; stops_at += 1 + polls / 4) {
             int times = 0;
             CHECK_THROWS_AS(
                 encoded(
@@ -72,17 +79,11 @@ TEST_CASE(
         CAPTURE(length);
         const std::vector<double> numbers = numbers_of(length);
         CHECK(cbor_bytes(column(numbers)) == typed_by_library(numbers));
-        Json flags = Json::array(), rows = Json::array();
-        for (const double x : numbers) {
-            flags.push_back(x > 1);
-            rows.push_back(Json::from_cbor(
-                typed_by_library({x, x, x, x}), true, true, Json::cbor_tag_handler_t::store));
-        }
         std::string expected;
-        Json::to_cbor(flags, expected);
-        CHECK(cbor_bytes(column(numbers, [](double x) { return x > 1; })) == expected);
-        expected.clear();
-        Json::to_cbor(rows, expected);
+        Json::to_cbor(Json(std::vector<bool>(length)), expected);
+        CHECK(cbor_bytes(column(numbers, [](double x) { return x < 0; })) == expected);
+        expected = array_head(length);
+        for (const double x : numbers) expected += typed_by_library({x, x, x, x});
         CHECK(cbor_bytes(column(numbers, [](double x) {
                   return Quadruple{x, x, x, x};
               })) == expected);

@@ -125,14 +125,25 @@ export async function unfold(page) {
 
 const require = createRequire(new URL("../../web/package.json", import.meta.url));
 
-/** Accessibility violations reported by axe-core, a text for each. */
-export async function findings(page) {
+/** Accessibility violations reported by axe-core, a text for each; of all rules, unless `rules` names some. */
+export async function findings(page, rules) {
   const axe = await readFile(require.resolve("axe-core/axe.min.js"), "utf8");
-  return page.evaluate(async (source) => {
-    new Function(source)();
-    const {violations} = await window.axe.run(document, {resultTypes: ["violations"]});
-    return violations.flatMap(({id, nodes}) =>
-      nodes.map(({target, failureSummary}) => `${id}: ${target.join(" ")}: ${failureSummary}`),
-    );
-  }, axe);
+  return page.evaluate(
+    async ([source, runOnly]) => {
+      new Function(source)();
+      const {violations} = await window.axe.run(document, {runOnly, resultTypes: ["violations"]});
+      return violations.flatMap(({id, nodes}) =>
+        nodes.map(({target, failureSummary}) => `${id}: ${target.join(" ")}: ${failureSummary}`),
+      );
+    },
+    [axe, rules],
+  );
+}
+
+/** Violations in the light colours, and of the contrasts, the only rule that depends on colours, in the dark ones. */
+export async function findingsInBothSchemes(page) {
+  await page.emulateMedia({colorScheme: "light"});
+  const light = await findings(page);
+  await page.emulateMedia({colorScheme: "dark"});
+  return [...light, ...(await findings(page, ["color-contrast"])).map((text) => `dark: ${text}`)];
 }

@@ -284,7 +284,9 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("a motion that sticks in each cycle gets no wrong verdict at b = 17, 17.5 and 18 mm") {
+TEST_CASE(
+    "a motion that sticks in each cycle gets no wrong verdict at b = 17, 17.5 and 18 mm" *
+    doctest::test_suite("long")) {
     for (const double b : {0.017, 0.0175, 0.018}) {
         CAPTURE(b);
         const Experiment e = measured(motion_after(20, b, 0.3, 0.3, 10), {});

@@ -36,7 +36,7 @@ TEST_CASE("the fitted motion at one time does not depend on the other times requ
     fit.intervals = {{0, 0.01, 0}, {50, -0.02, 0.02}, {50.1, 0.03, -0.01}};
     // The first and the last interval are longer than the flow's table.
     std::vector<double> times;
-    for (int k = 0; k < 3000; ++k) times.push_back(0.041 * k);
+    for (int k = 0; k < 300; ++k) times.push_back(0.41 * k);
     const std::vector<OscillatorMotion> all = motion_at(fit, times);
     for (std::size_t k = 0; k < times.size(); ++k) {
         const OscillatorMotion alone = motion_at(fit, {times[k]})[0];
@@ -90,7 +90,8 @@ TEST_CASE("a fixed value stays as given, and a record that contradicts it gets n
     CHECK(r.judged.verdict == Verdict::not_decided);
 }
 
-TEST_CASE("noise coloured by a filter is not taken for missed motion") {
+TEST_CASE(
+    "noise coloured by a filter is not taken for missed motion" * doctest::test_suite("long")) {
     const TrueMotion motion = settled_motion(0.015, 0.85, 0.85, 20);
     for (const double corner : {0.4, 0.2}) {
         CAPTURE(corner);

@@ -76,7 +76,9 @@ struct Invariants : Observer {
 
 }  // namespace
 
-TEST_CASE("thousands of random systems satisfy every invariant of the motion") {
+TEST_CASE(
+    "thousands of random systems satisfy every invariant of the motion" *
+    doctest::test_suite("long")) {
     std::mt19937_64 engine(2018);
     long impacts = 0, sticks = 0;
     for (int n = 0; n < 3000; ++n) {
