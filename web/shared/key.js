@@ -8,13 +8,7 @@ export const currentKey = () => sessionStorage.getItem(name);
 
 export const hasKey = () => currentKey() !== null;
 
-/** The request headers with the key, if there is one. */
-export const keyHeaders = () => (hasKey() ? {Authorization: `Bearer ${currentKey()}`} : {});
-
-/**
- * Prompts for a key after a 401 response. Resolves to true if a valid key was entered, and to false
- * if the dialog was closed by Escape.
- */
+/** Prompts for a key after a 401 response. Resolves to whether a valid key was entered. */
 export function askForKey() {
   openPrompt ??= showDialog().finally(() => {
     openPrompt = null;

@@ -4,8 +4,8 @@ import {element} from "./dom.js";
 import {Frame, rangeOf} from "./frame.js";
 import {names} from "./marks.js";
 import {short} from "./numbers.js";
+import {ZoomablePlot} from "./plot.js";
 import {firstFrom, lastUpTo} from "./search.js";
-import {ZoomablePlot} from "./zoomable_plot.js";
 
 const columnsOf = (width) => Math.max(width - 60, 10);
 
@@ -67,13 +67,8 @@ export class LinePlot extends ZoomablePlot {
     const {range} = this.viewport;
     const marks = this.marks(width);
     const series = seriesOf(marks);
-    const ofY = {
-      range: rangeOf(
-        series.map((one) => one.y),
-        y.log,
-      ) ?? [0, 1],
-      ...y,
-    };
+    const columns = series.map((one) => one.y);
+    const ofY = {range: rangeOf(columns, y.log) ?? [0, 1], ...y};
     const frame = new Frame(width, height, {...x, range, bare: bare && !alone}, ofY);
     const named = alone && series.length > 1 ? [names({series})] : [];
     return {frame, marks: [...under, ...marks, ...named]};
@@ -95,10 +90,17 @@ export class LinePlot extends ZoomablePlot {
     };
   }
 
-  /** Shows the cursor and the values there. */
+  /** Shows the cursor, and the values there in the legend. */
   point() {
     super.point();
-    if (this.last?.marks) this.tell(this.viewport.cursor);
+    const {cursor: t} = this.viewport;
+    seriesOf(this.last?.marks ?? []).forEach(({x, y, text = shortOrNone}, k) => {
+      const i = t === null ? -1 : lastUpTo(x, t);
+      const within = t > x[i] ? i + 1 : i; // a line has no value after its end
+      const value = y[within] === null ? null : (y[i] ?? null);
+      const shown = text(value, y.findLastIndex((v) => v !== null) < within);
+      if (this.values[k].textContent !== shown) this.values[k].textContent = shown;
+    });
   }
 
   cursorText(cursor) {
@@ -120,16 +122,5 @@ export class LinePlot extends ZoomablePlot {
     this.legend.hidden = keys.length < 2;
     this.legend.replaceChildren(...(this.legend.hidden ? [] : keys));
     this.head = this.legend.offsetHeight;
-  }
-
-  /** Shows the values at the cursor in the legend. */
-  tell(t) {
-    seriesOf(this.last.marks).forEach(({x, y, text = shortOrNone}, k) => {
-      const i = t === null ? -1 : lastUpTo(x, t);
-      const within = t > x[i] ? i + 1 : i; // a line has no value after its end
-      const value = y[within] === null ? null : (y[i] ?? null);
-      const shown = text(value, y.findLastIndex((v) => v !== null) < within);
-      if (this.values[k].textContent !== shown) this.values[k].textContent = shown;
-    });
   }
 }

@@ -1,9 +1,6 @@
 // Origins of the parameters of a run, as the form and the parameter table show them.
 
-/**
- * Pairs of SI fields that express the same quantity. The origin of the other field shows which one
- * was given.
- */
+/** Pairs of SI fields of one quantity. The origin of one shows whether the other was given. */
 export const equivalents = {
   f0: "k1",
   damping_ratio: "c1",
