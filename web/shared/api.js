@@ -1,5 +1,5 @@
 // Calls to the service. Routes are relative to the page, so they also work below a path prefix.
-import {askForKey, currentKey, hasKey} from "./key.js";
+import {element} from "./dom.js";
 
 /** A problem document (RFC 9457). errors: {pointer, value, range, detail} per invalid field. */
 class Problem extends Error {
@@ -18,6 +18,51 @@ async function read(response) {
   if (!response.ok) throw new Problem({status: response.status, ...(body ?? noJson)});
   if (body === null) throw new TemporaryError("the response was cut off");
   return body;
+}
+
+// The key is kept until the browser tab is closed.
+const keyName = "vines-api-key";
+let openPrompt = null; // one dialog for all waiting requests
+
+const currentKey = () => sessionStorage.getItem(keyName);
+
+export const hasKey = () => currentKey() !== null;
+
+/** Prompts for a key after a 401 response. Resolves to whether a valid key was entered. */
+function askForKey() {
+  openPrompt ??= showDialog().finally(() => {
+    openPrompt = null;
+  });
+  return openPrompt;
+}
+
+async function showDialog() {
+  const input = element("input", {
+    type: "password",
+    name: "key",
+    required: true,
+    pattern: "\\s*[A-Za-z0-9._~+\\/=\\-]{16,}\\s*", // the format that the service accepts
+    title: "16 or more letters, digits or -._~+/=",
+    autocomplete: "current-password",
+  });
+  const submit = element("button", {value: "use"}, "Use key");
+  const rejection = hasKey() ? "The server does not accept this key. " : "";
+  const dialog = element(
+    "dialog",
+    {},
+    element("h2", {}, "API key"),
+    element("p", {}, `${rejection}This server requires an API key.`),
+    element("form", {method: "dialog"}, element("label", {}, "Key ", input, " ", submit)),
+  );
+  document.body.append(dialog);
+  dialog.showModal();
+  await new Promise((resolve) => {
+    dialog.onclose = resolve;
+  });
+  dialog.remove();
+  const entered = dialog.returnValue === submit.value; // the form was valid
+  if (entered) sessionStorage.setItem(keyName, input.value.trim());
+  return entered;
 }
 
 /** Sends a request and returns its response. Asks for an API key while the service answers 401. */
