@@ -136,13 +136,8 @@ export const blocks = kind((c, {box, px, ...frame}, options) => {
   }
 });
 
-/** Corners of polygons and the angle of the first one. */
-const polygons = {
-  box: [4, Math.PI / 4],
-  triangle: [3, -Math.PI / 2],
-  diamond: [4, 0],
-  pointed: [3, Math.PI / 2],
-};
+/** Corners of polygons, and the angle of the first one in right angles. */
+const polygons = {box: [4, 0.5], triangle: [3, -1], diamond: [4, 0], pointed: [3, 1]};
 
 /** Adds a circle, a cross or a polygon to a path; a "square" is filled at once, which is fast. */
 function symbol(c, shape, x, y, r) {
@@ -155,7 +150,7 @@ function symbol(c, shape, x, y, r) {
   else if (polygons[shape]) {
     const [n, turn] = polygons[shape];
     for (let i = 0; i < n; ++i) {
-      const angle = turn + (2 * Math.PI * i) / n;
+      const angle = (turn * Math.PI) / 2 + (2 * Math.PI * i) / n;
       const [right, down] = [1.3 * r * Math.cos(angle), 1.3 * r * Math.sin(angle)];
       c[i ? "lineTo" : "moveTo"](x + right, y + down);
     }
