@@ -52,16 +52,12 @@ const servedFiles = [
   ...files.map(([name, text]) => [`/${hash}/${name}`, text]),
 ];
 
-const bytes = (buffer) => [...buffer].join(",");
-const arrays = [];
-const table = servedFiles.map(([path, text], n) => {
-  const plain = Buffer.from(text);
-  arrays.push(
-    `const unsigned char file${n}[] = {${bytes(plain)}};`,
-    `const unsigned char gzipped${n}[] = {${bytes(gzipSync(plain, {level: 9}))}};`,
-  );
-  return `    {"${path}", view(file${n}), view(gzipped${n})},`;
-});
+const array = (name, bytes) => `const unsigned char ${name}[] = {${[...bytes].join(",")}};\n`;
+const arrays = servedFiles.map(
+  ([, text], n) =>
+    array(`file${n}`, Buffer.from(text)) + array(`gzipped${n}`, gzipSync(text, {level: 9})),
+);
+const table = servedFiles.map(([path], n) => `    {"${path}", view(file${n}), view(gzipped${n})},`);
 
 writeFileSync(
   output,
@@ -76,7 +72,7 @@ std::string_view view(const unsigned char (&bytes)[size]) {
     return {reinterpret_cast<const char*>(bytes), size};
 }
 
-${arrays.join("\n")}
+${arrays.join("")}
 const Asset table[] = {
 ${table.join("\n")}
 };

@@ -1,7 +1,7 @@
 // The documentation page of the HTTP interface. The build makes its HTML (page.mjs); this script
 // adds what depends on the service or on the visitor.
 import {absoluteUrl, get} from "../shared/api.js";
-import {$, element} from "../shared/dom.js";
+import {$, element, sayIn, setTexts} from "../shared/dom.js";
 import {startExamples} from "./example.js";
 import {startFinder} from "./finder.js";
 
@@ -31,8 +31,8 @@ const setAll = (open) => {
 };
 
 function listen() {
-  $("docs-unfold").addEventListener("click", () => setAll(true));
-  $("docs-fold").addEventListener("click", () => setAll(false));
+  $("docs-unfold").onclick = () => setAll(true);
+  $("docs-fold").onclick = () => setAll(false);
   addEventListener("hashchange", () => reveal(location.hash));
   // A click on the current hash fires no hashchange event.
   document.addEventListener("click", ({target}) => {
@@ -43,36 +43,22 @@ function listen() {
   document.addEventListener("toggle", ({target}) => target.dataset.copy && fill(target), true);
 }
 
-/** Addresses of the server; the document can give a relative one. */
-function showAddresses() {
-  for (const node of document.querySelectorAll("[data-address]")) {
-    const {address} = node.dataset;
-    node.textContent = address.startsWith("/") ? absoluteUrl(`.${address}`) : address;
-  }
-}
-
-async function showCommit() {
-  const {commit, compiler} = await get("version");
-  const known = commit ? element("code", {textContent: commit}) : "unknown";
-  $("docs-commit").replaceChildren(known, `, ${compiler}`);
-}
-
 /** Resolves when the browser has gone to the address's fragment itself, which takes the focus away. */
 const loaded = new Promise((resolve) => addEventListener("load", resolve));
 
 async function start() {
   listen();
-  showAddresses();
+  setTexts({"docs-address": absoluteUrl("./")});
   startExamples();
   startFinder();
   $("docs-contents").open = matchMedia("(min-width: 1001px)").matches;
   await loaded;
   reveal(location.hash);
-  await showCommit();
+  const {commit, compiler} = await get("version");
+  const known = commit ? element("code", {}, commit) : "unknown";
+  $("docs-commit").replaceChildren(known, `, ${compiler}`);
   $("docs-message").dataset.done = 1;
 }
 
-start().catch((error) => {
-  $("docs-message").textContent = `The version of the server cannot be loaded: ${error.message}.`;
-  $("docs-message").classList.add("fault");
-});
+const say = sayIn("docs-message");
+start().catch(({message}) => say(`The version of the server cannot be loaded: ${message}.`, true));

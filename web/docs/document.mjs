@@ -1,5 +1,4 @@
-// The OpenAPI document and the ids of its parts on the page. An id is an operation or a schema
-// followed by field names: schema-Energy.without_absorber.rms.
+// The OpenAPI document, and the ids of its components on the page.
 import {readFileSync} from "node:fs";
 
 export let root;
@@ -9,13 +8,11 @@ export function load(file) {
   root = JSON.parse(readFileSync(file, "utf8"));
 }
 
-const unescaped = (name) => name.replaceAll("~1", "/").replaceAll("~0", "~");
-
 /** The target of a $ref, merged with its siblings; any other node unchanged. */
 export function resolved(node) {
   if (!node.$ref) return node;
   const {$ref, ...beside} = node;
-  const names = $ref.slice(2).split("/").map(unescaped);
+  const names = $ref.slice(2).split("/");
   const there = names.reduce((inside, name) => inside[name], root);
   return {...resolved(there), ...beside};
 }
@@ -27,46 +24,20 @@ export const schemas = () => Object.entries(root.components.schemas);
 export const schemaPlace = (name) => `schema-${name}`;
 export const responsePlace = (name) => `response-${name}`;
 
-/**
- * All operations in document order, with path, method, resolved parameters, and their request body
- * by media type.
- */
-export const operations = () =>
+/** All operations in document order, with path, method and resolved parameters. */
+const operations = () =>
   Object.entries(root.paths).flatMap(([path, methods]) =>
-    Object.entries(methods).map(([method, operation]) => ({
+    Object.entries(methods).map(([method, {parameters = [], ...operation}]) => ({
       ...operation,
       path,
       method: method.toUpperCase(),
-      id: operation.operationId ?? `${method}${path}`,
-      parameters: (operation.parameters ?? []).map(resolved),
-      body: resolved(operation.requestBody ?? {}).content ?? {},
+      parameters: parameters.map(resolved),
     })),
   );
 
-/** [tag, operations] for tags with operations. */
-export function operationsByTag() {
-  const all = operations();
-  const of = (name) => all.filter(({tags}) => tags?.[0] === name);
-  const listed = (root.tags ?? []).map((tag) => [tag, of(tag.name)]);
-  const rest = all.filter((operation) => !listed.some(([, list]) => list.includes(operation)));
-  return [...listed, [{name: "other"}, rest]].filter(([, list]) => list.length);
-}
-
-/** The objects and components that a value of a schema can be or contain, one level deep. */
-function parts(schema) {
-  if (schema.$ref || schema.properties) return [schema];
-  const {items, additionalProperties, anyOf = [], oneOf = [], allOf = []} = schema;
-  return [items, additionalProperties, ...anyOf, ...oneOf, ...allOf]
-    .filter((inner) => typeof inner === "object")
-    .flatMap(parts);
-}
-
-/**
- * parts() with the id of their fields: null for a component, whose fields have their own ids.
- * place: of the schema, or null; taken: its id is in use already.
- */
-export function placedParts(schema, place, taken = false) {
-  let n = Number(taken);
-  const next = () => (n++ ? `${place}/${n}` : place);
-  return parts(schema).map((part) => [part, part.$ref || !place ? null : next()]);
-}
+/** {name, description, operations} of each tag. Each operation has one tag. */
+export const tags = () =>
+  root.tags.map((tag) => ({
+    ...tag,
+    operations: operations().filter((operation) => operation.tags[0] === tag.name),
+  }));

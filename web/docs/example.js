@@ -1,15 +1,84 @@
-// Examples of an operation: a curl command that can be copied, and a button that sends the request.
-import {asCurl, getAsCurl, sendFileAsCurl} from "../shared/api.js";
+// Examples of an operation: a curl command that can be copied, and a button that sends the request
+// and shows the beginning of the response.
+import {asCurl, hasKey, post, sendRequest} from "../shared/api.js";
 import {button, element} from "../shared/dom.js";
 import {copy} from "../shared/export.js";
-import {hasKey} from "../shared/key.js";
-import {tryIt} from "./attempt.js";
+import {count} from "../shared/numbers.js";
+
+const maxBytes = 1 << 20; // of a response that is shown completely
+const maxLines = 60;
+const maxCharacters = 6000;
 
 /** A request as curl command, without buffering for streams. flags: further ones. */
-export function commandOf({path, body, file, type, streams}, flags = "") {
-  const all = (streams ? "-sN" : "-s") + flags;
-  if (file) return sendFileAsCurl(path, type, file, all);
-  return body ? asCurl(path, body, all) : getAsCurl(path, all);
+export const commandOf = (request, flags = "") =>
+  asCurl(request, (request.streams ? "-sN" : "-s") + flags);
+
+/** Indented JSON with innermost lists on one line. */
+export const pretty = (value) =>
+  JSON.stringify(value, null, 2).replace(/\[[^[\]{}]*\]/g, (list) => list.replace(/\s+/g, " "));
+
+/** Reads until the body ends or exceeds maxBytes: {text, bytes, complete: the body ended}. */
+async function read(response) {
+  const reader = response.body?.getReader();
+  const decoder = new TextDecoder();
+  let text = "";
+  let bytes = 0;
+  while (reader && bytes <= maxBytes) {
+    const {done, value} = await reader.read();
+    if (done) return {text, bytes, complete: true};
+    bytes += value.length;
+    text += decoder.decode(value, {stream: true});
+  }
+  reader?.cancel().catch(() => {}); // the rest is not needed
+  return {text, bytes, complete: !reader};
+}
+
+const size = (bytes) => (bytes < 1000 ? `${bytes} bytes` : `${(bytes / 1000).toFixed(1)} kB`);
+
+/** Sends a request: {ok, status, text}, summary and beginning of the response, JSON indented. */
+async function send({path, type, body}, signal) {
+  const began = performance.now();
+  const response = await (body
+    ? post(path, JSON.stringify(body), signal, type)
+    : sendRequest(path, {signal}));
+  const {text, bytes, complete} = await read(response);
+  const took = Math.round(performance.now() - began);
+  const isJson = /[/+]json\b/.test(response.headers.get("Content-Type") ?? "");
+  const shown = isJson && complete && text ? pretty(JSON.parse(text)) : text;
+  const lines = shown.trimEnd().split("\n");
+  const first = lines.slice(0, maxLines).join("\n");
+  const cut = lines.length > maxLines || first.length > maxCharacters;
+  const status = [`${response.status} ${response.statusText}`.trim(), `${took} ms`];
+  status.push(complete ? size(bytes) : `more than ${size(bytes)}, truncated`);
+  if (cut) status.push(complete ? `beginning of ${count(lines.length, "line")}` : "beginning");
+  const beginning = first.slice(0, maxCharacters) + (cut ? " …" : "");
+  return {ok: response.ok, status: status.join(" · "), text: beginning};
+}
+
+/** A "Try it" button, and the nodes that show the response. */
+function trial(request) {
+  const status = element("p", {className: "message", role: "status"});
+  const own = {className: "answer", tabIndex: 0, hidden: true, role: "group"};
+  const answer = element("pre", {...own, ariaLabel: "Response"});
+  let running = null;
+  const start = button("Try it", async () => {
+    if (running) return running.abort();
+    running = new AbortController();
+    start.textContent = "Stop";
+    status.textContent = "…";
+    const {signal} = running;
+    const got = await send(request, signal).catch((error) => ({
+      status: signal.aborted ? "stopped" : error.message,
+      text: "",
+    }));
+    status.className = got.ok ? "message" : "message fault";
+    status.textContent = got.status;
+    Object.assign(answer, {textContent: got.text, hidden: !got.text});
+    writeCommands();
+    start.textContent = "Try it";
+    running = null;
+  });
+  return [start, status, answer];
 }
 
 const examples = () => document.querySelectorAll(".example");
@@ -32,10 +101,9 @@ function addActions(view) {
     copy(view.querySelector("code").textContent, (text) => {
       said.textContent = text === "copied" ? text : "the browser does not allow copying";
     });
-  const actions = view.querySelector(".actions");
-  actions.append(button("Copy curl", copyCommand));
-  if (!request.file) view.append(...tryIt(request, actions, writeCommands));
-  actions.append(said);
+  const [start = "", ...response] = request.file ? [] : trial(request);
+  view.querySelector(".actions").append(button("Copy curl", copyCommand), start, said);
+  view.append(...response);
 }
 
 export function startExamples() {

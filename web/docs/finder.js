@@ -16,62 +16,51 @@ function ownerOf(row) {
   return names.replace(/\/\d+/g, ""); // a digit tells several parts of one field apart
 }
 
-/** Every field of a request or response: {name, place, of, description}. */
-const allFields = () =>
-  [...document.querySelectorAll("main tr[id]")].map((row) => ({
-    name: row.querySelector("code").textContent,
-    place: row.id,
-    of: ownerOf(row),
-    description: row.lastElementChild.textContent,
-  }));
-
 /** Sort order: exact matches, then prefixes, then others. */
 function rank(name, wanted) {
   if (name === wanted) return 0;
   return name.startsWith(wanted) ? 1 : 2;
 }
 
-/** [name, fields] for names that contain a text. */
-function find(fields, wanted) {
-  const names = new Map();
-  for (const field of fields) {
-    const name = field.name.toLowerCase();
-    if (name.includes(wanted)) names.set(field.name, [...(names.get(field.name) ?? []), field]);
+/** [name, rows] for names that contain a text. */
+function find(rows, wanted) {
+  const found = new Map();
+  for (const row of rows) {
+    const name = row.querySelector("code").textContent;
+    if (name.toLowerCase().includes(wanted)) found.set(name, [...(found.get(name) ?? []), row]);
   }
   const ranked = ([name]) => rank(name.toLowerCase(), wanted);
-  return [...names].sort((a, b) => ranked(a) - ranked(b));
+  return [...found].sort((a, b) => ranked(a) - ranked(b));
 }
 
 /** A path with optional line breaks after its points. */
-const broken = (path) =>
-  path.split(/(?<=\.)/).flatMap((part, i) => (i ? [element("wbr"), part] : [part]));
+const broken = (path) => path.split(/(?<=\.)/).flatMap((part) => [part, element("wbr")]);
 
-function foundView([name, fields]) {
-  const links = fields.map(({place, of}) => element("a", {href: `#${place}`}, ...broken(of)));
-  const {description = ""} = fields.find((field) => field.description) ?? {};
-  const spaced = links.flatMap((link) => [link, " "]);
+function foundView([name, rows]) {
+  const link = (row) => element("a", {href: `#${row.id}`}, ...broken(ownerOf(row)));
+  const descriptions = rows.map((row) => row.lastElementChild.textContent);
   return element(
     "li",
     {},
-    element("code", {textContent: name}),
-    element("p", {className: "note", textContent: description}),
-    element("p", {}, ...spaced),
+    element("code", {}, name),
+    element("p", {className: "note"}, descriptions.find(Boolean) ?? ""),
+    element("p", {}, ...rows.flatMap((row) => [link(row), " "])),
   );
 }
 
 export function startFinder() {
-  const fields = allFields();
+  const rows = document.querySelectorAll("main tr[id]");
   const box = $("docs-filter");
   const list = $("docs-found");
   const look = () => {
     const wanted = box.value.trim().toLowerCase();
-    const found = wanted ? find(fields, wanted) : [];
+    const found = wanted ? find(rows, wanted) : [];
     list.replaceChildren(...found.slice(0, most).map(foundView));
     list.hidden = !found.length;
     $("docs-contents").hidden = Boolean(wanted);
     const listed = found.length > most ? `, ${most} shown` : "";
     $("docs-found-count").textContent = wanted ? count(found.length, "name") + listed : "";
   };
-  box.addEventListener("input", look);
+  box.oninput = look;
   look();
 }

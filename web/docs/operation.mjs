@@ -1,126 +1,106 @@
 // One operation: examples, request and responses.
-import {pretty} from "./attempt.js";
 import {nameOf, resolved, responsePlace} from "./document.mjs";
-import {commandOf} from "./example.js";
-import {code, copyFold, element, fold, small} from "./markup.mjs";
+import {commandOf, pretty} from "./example.js";
+import {copyFold, fold, html} from "./markup.mjs";
 import {fieldsFold, fieldTable, schemaView, typeWords} from "./schema.mjs";
 
-const titled = (title, nodes) => (nodes.length ? [element("h4", {}, title), ...nodes] : []);
-const places = {query: "Query", header: "Header", path: "Path", cookie: "Cookie"};
+const titled = (title, nodes) => (nodes.length ? [html`<h4>${title}</h4>`, nodes] : []);
 
 /** Parameters, in a table for each part of the request. */
-function parametersView({id, parameters}) {
-  return Object.entries(places).flatMap(([where, title]) => {
-    const fields = parameters.filter((parameter) => parameter.in === where);
-    return fields.length ? [fieldTable(fields, id, title)] : [];
+const parametersView = ({operationId, parameters}) =>
+  ["Query", "Header"].flatMap((title) => {
+    const fields = parameters.filter((parameter) => parameter.in === title.toLowerCase());
+    return fields.length ? [fieldTable(fields, operationId, title)] : [];
   });
-}
 
-/** A media type with its schema. open: fields are visible; otherwise folded, with the example. */
-function mediaView(type, {schema = {}, example}, open) {
-  const description = schema.description ? `: ${schema.description}` : "";
-  const nodes = [element("p", {}, code(type), " ", ...typeWords(schema), description)];
-  if (open && schema.$ref) nodes.push(...schemaView(schema, null));
-  if (!open && schema.$ref) nodes.push(fieldsFold(["Fields"], schema.$ref));
-  if (!open && example !== undefined)
-    nodes.push(fold(["Example"], [element("pre", {}, code(pretty(example)))]));
-  return nodes;
-}
+/** Media types with their schemas. open: fields are visible; otherwise folded, with the example. */
+const contentView = (content = {}, open = false) =>
+  Object.entries(content).flatMap(([type, {schema = {}, example}]) => {
+    const description = schema.description ? `: ${schema.description}` : "";
+    const nodes = [html`<p><code>${type}</code> ${typeWords(schema)}${description}</p>`];
+    if (schema.$ref)
+      nodes.push(open ? schemaView(schema, null) : fieldsFold("Fields", schema.$ref));
+    if (!open && example !== undefined)
+      nodes.push(fold("Example", html`<pre><code>${pretty(example)}</code></pre>`));
+    return nodes;
+  });
 
-const contentView = (content, open) =>
-  Object.entries(content ?? {}).flatMap(([type, media]) => mediaView(type, media, open));
-
-function headersView(headers = {}) {
-  const fields = Object.entries(headers).map(([name, header]) => ({name, ...resolved(header)}));
-  return fields.length ? [fold(["Headers"], [fieldTable(fields, null)])] : [];
-}
-
-const statusWords = (status, {description}) => [code(status), " ", description];
-export const answerView = ({content, headers}) => [
-  ...contentView(content),
-  ...headersView(headers),
+const statusWords = (status, answer) => [
+  html`<code>${status}</code> `,
+  resolved(answer).description,
 ];
 
-/** Other statuses, each folded to a line. Operations share them: components, which are on the page once. */
-function refusalsView(answers) {
-  if (!answers.length) return [];
-  const views = answers.map(([status, answer]) => {
-    const words = statusWords(status, resolved(answer));
-    return answer.$ref
-      ? copyFold(words, responsePlace(nameOf(answer.$ref)))
-      : fold(words, answerView(answer));
-  });
-  const statuses = answers.map(([status]) => status).join(" ");
-  return [fold(["Other statuses ", small(statuses)], views)];
+export function answerView(answer) {
+  const {content, headers = {}} = resolved(answer);
+  const fields = Object.entries(headers).map(([name, header]) => ({name, ...resolved(header)}));
+  return [contentView(content), fields.length ? fold("Headers", fieldTable(fields, null)) : []];
 }
 
+/** Responses; those that are no success are folded to a line each. Operations share components. */
 function answersView({responses}) {
   const all = Object.entries(responses);
-  const isAnswer = ([status]) => status.startsWith("2");
-  return [
-    ...all
-      .filter(isAnswer)
-      .map(([status, answer]) => [status, resolved(answer)])
-      .flatMap(([status, answer]) => [
-        element("p", {}, ...statusWords(status, answer)),
-        ...answerView(answer),
-      ]),
-    ...refusalsView(all.filter((one) => !isAnswer(one))),
+  const isSuccess = ([status]) => status.startsWith("2");
+  const others = all.filter((one) => !isSuccess(one));
+  const statuses = others.map(([status]) => status).join(" ");
+  const success = ([status, answer]) => [
+    html`<p>${statusWords(status, answer)}</p>`,
+    answerView(answer),
   ];
+  const folded = ([status, answer]) => {
+    const words = statusWords(status, answer);
+    if (answer.$ref) return copyFold(words, responsePlace(nameOf(answer.$ref)));
+    return fold(words, answerView(answer));
+  };
+  const title = html`Other statuses <small>${statuses}</small>`;
+  const rest = others.length ? fold(title, others.map(folded)) : [];
+  return [all.filter(isSuccess).map(success), rest];
 }
 
 /** A query of the parameters with examples. */
 function exampleQuery(parameters) {
-  const given = parameters.filter(
-    (parameter) => parameter.in === "query" && "example" in parameter,
-  );
-  const written = given.map(
-    ({name, example}) => `${name}=${[example].flat().map(encodeURIComponent).join()}`,
-  );
+  const written = parameters
+    .filter((parameter) => parameter.in === "query" && "example" in parameter)
+    .map(({name, example}) => `${name}=${[example].flat().map(encodeURIComponent).join()}`);
   return written.length ? `?${written.join("&")}` : "";
 }
 
-/**
- * Requests {path, body, file, type, summary, streams, keyless}; those with a file cannot be sent
- * from the page.
- */
-function requestsOf({method, path, parameters, body, security, responses}) {
+/** Requests {path, body, file, type, summary, streams, keyless}; a page cannot send a file. */
+function requestsOf({method, path, parameters, requestBody, security, responses}) {
   const common = {
     path: path.slice(1),
-    streams: Object.keys(responses[200]?.content ?? {}).includes("application/x-ndjson"),
+    streams: "application/x-ndjson" in (responses[200].content ?? {}),
     keyless: security?.length === 0,
   };
   if (method === "GET") return [{...common, path: common.path + exampleQuery(parameters)}];
-  return Object.entries(body).flatMap(([type, {examples, example}]) => {
-    const given = Object.values(examples ?? (example ? [{value: example}] : []));
-    if (!given.length) return [{...common, type, file: "FILE", summary: `a file of ${type}`}];
-    return given.map(({summary, value}) => ({...common, type, summary, body: value}));
-  });
+  return Object.entries(requestBody.content).flatMap(([type, {examples}]) =>
+    examples
+      ? Object.values(examples).map(({summary, value}) => ({...common, type, summary, body: value}))
+      : [{...common, type, file: "FILE", summary: `a file of ${type}`}],
+  );
 }
 
 /** An example; example.js adds the buttons. */
 function exampleView({summary, ...request}) {
-  const said = summary ? [element("p", {}, summary)] : [];
-  const command = element("pre", {}, code(commandOf(request)));
-  const actions = element("p", {class: "actions"});
-  const attributes = {class: "example", "data-request": JSON.stringify(request)};
-  return element("div", attributes, ...said, command, actions);
+  const said = summary ? html`<p>${summary}</p>` : "";
+  const command = html`<pre><code>${commandOf(request)}</code></pre><p class="actions"></p>`;
+  return html`<div class="example" data-request="${JSON.stringify(request)}">${said}${command}</div>`;
 }
 
 function inside(operation) {
-  const {description = "", body, security} = operation;
+  const {description, requestBody = {}, security} = operation;
   const keyless = security?.length === 0 ? " No key is needed." : "";
   return [
-    element("p", {}, description + keyless),
-    ...titled("Examples", requestsOf(operation).map(exampleView)),
-    ...titled("Request", [...parametersView(operation), ...contentView(body, true)]),
-    ...titled("Responses", answersView(operation)),
+    html`<p>${description + keyless}</p>`,
+    titled("Examples", requestsOf(operation).map(exampleView)),
+    titled("Request", [...parametersView(operation), ...contentView(requestBody.content, true)]),
+    titled("Responses", answersView(operation)),
   ];
 }
 
 export function operationView(operation) {
-  const {id, method, path, summary = ""} = operation;
-  const verb = element("span", {class: `method ${method.toLowerCase()}`}, method);
-  const title = element("h3", {}, verb, " ", code(path), " ", small(summary));
-  return fold([title], inside(operation), {id, class: "operation"});
+  const {operationId, method, path, summary} = operation;
+  const verb = html`<span class="method ${method.toLowerCase()}">${method}</span>`;
+  const title = html`<h3>${verb} <code>${path}</code> <small>${summary}</small></h3>`;
+  const begin = html`<details id="${operationId}" class="operation"><summary>${title}</summary>`;
+  return [begin, inside(operation), html`</details>`];
 }

@@ -1,93 +1,67 @@
 // The page /docs, made from the OpenAPI document at build time.
 import {count} from "../shared/numbers.js";
-import {
-  load,
-  operationsByTag,
-  resolved,
-  responsePlace,
-  root,
-  schemaPlace,
-  schemas,
-} from "./document.mjs";
-import {code, element, fold, html, small} from "./markup.mjs";
+import {load, resolved, responsePlace, root, schemaPlace, schemas, tags} from "./document.mjs";
+import {fold, html} from "./markup.mjs";
 import {answerView, operationView} from "./operation.mjs";
 import {schemaView} from "./schema.mjs";
 
 // Address of the service in the examples until example.js replaces it.
 globalThis.location = {href: "http://127.0.0.1:8080/docs"};
 
-const link = (place, text) => element("a", {href: `#${place}`}, text);
-const paragraph = (text = "") => element("p", {}, text);
+const link = (place, text) => html`<a href="#${place}">${text}</a>`;
 
-/** The header that carries a key. */
-const keyWords = ({scheme, description}) => [
-  `${description}: `,
-  code(`Authorization: ${scheme[0].toUpperCase()}${scheme.slice(1)} KEY`),
-];
-
-/** Version, server and key. docs.js replaces relative addresses and adds the commit. */
+/** Version, server and key. docs.js fills in the address and the commit. */
 function about() {
   const {info, servers, components} = root;
-  const server = ({url, description}) => [
-    element("code", {"data-address": url}, url),
-    `, ${description}`,
-  ];
-  const rows = [
-    ["Version", [info.version]],
-    ["Commit", [element("span", {id: "docs-commit"}, "unknown")]],
-    ...servers.map((one) => ["Server", server(one)]),
-    ...Object.values(components.securitySchemes ?? {}).map((one) => ["Key", keyWords(one)]),
-  ];
-  return rows.flatMap(([name, nodes]) => [element("dt", {}, name), element("dd", {}, ...nodes)]);
+  const [{url, description}] = servers;
+  const {description: key} = components.securitySchemes.api_key;
+  return Object.entries({
+    Version: info.version,
+    Commit: html`<span id="docs-commit">unknown</span>`,
+    Server: html`<code id="docs-address">${url}</code>, ${description}`,
+    Key: html`${key}: <code>Authorization: Bearer KEY</code>`,
+  }).map(([name, words]) => html`<dt>${name}</dt><dd>${words}</dd>`);
 }
 
-function operationsView() {
-  return operationsByTag().map(([{name, description}, operations]) => {
+const operationsView = () =>
+  tags().map(({name, description, operations}) => {
     const id = `docs-tag-${name}`;
-    const title = element("h2", {id}, name, " ", small(description ?? ""));
-    return element("section", {"aria-labelledby": id}, title, ...operations.map(operationView));
+    const title = html`<h2 id="${id}">${name} <small>${description}</small></h2>`;
+    return html`<section aria-labelledby="${id}">${title}${operations.map(operationView)}</section>`;
   });
-}
 
 /** The schemas, each with its description and, as last element, its fields. */
-function schemasView() {
-  return schemas().map(([name, schema]) => {
+const schemasView = () =>
+  schemas().map(([name, schema]) => {
     const id = schemaPlace(name);
     const {properties, description} = resolved(schema);
     const fields = properties ? count(Object.keys(properties).length, "field") : "one of several";
-    const title = element("h3", {}, name, " ", small(fields));
-    const said = description ? [paragraph(description)] : [];
-    return fold([title], [...said, element("div", {}, ...schemaView(schema, id))], {id});
+    const said = description ? html`<p>${description}</p>` : "";
+    const title = html`<summary><h3>${name} <small>${fields}</small></h3></summary>`;
+    return html`<details id="${id}">${title}${said}<div>${schemaView(schema, id)}</div></details>`;
   });
-}
 
 /** Content of the responses that operations share. */
 const responseTemplates = () =>
-  Object.entries(root.components.responses).map(([name, response]) =>
-    element("template", {id: responsePlace(name)}, ...answerView(response)),
+  Object.entries(root.components.responses).map(
+    ([name, response]) =>
+      html`<template id="${responsePlace(name)}">${answerView(response)}</template>`,
   );
 
-/** Operations grouped by path: [path, operations]. */
-const byPath = (operations) =>
-  [...new Set(operations.map(({path}) => path))].map((path) => [
-    path,
-    operations.filter((operation) => operation.path === path),
-  ]);
-
 function contents() {
-  const entry = ([path, list]) => {
-    const links = list.flatMap(({id, method}) => [link(id, method), " "]);
-    return element("li", {}, code(path), " ", ...links);
+  const entry = (path, operations) => {
+    const own = operations.filter((operation) => operation.path === path);
+    const links = own.map(({operationId, method}) => [link(operationId, method), " "]);
+    return html`<li><code>${path}</code> ${links}</li>`;
   };
-  const tags = operationsByTag().flatMap(([{name}, operations]) => [
-    element("h2", {}, name),
-    element("ul", {}, ...byPath(operations).map(entry)),
-  ]);
-  const names = schemas().map(([name]) => element("li", {}, link(schemaPlace(name), name)));
+  const names = schemas().map(([name]) => html`<li>${link(schemaPlace(name), name)}</li>`);
   return [
-    ...tags,
-    element("h2", {}, "schemas"),
-    fold([count(names.length, "schema")], [element("ul", {}, ...names)]),
+    tags().map(({name, operations}) => {
+      const paths = [...new Set(operations.map(({path}) => path))];
+      return html`<h2>${name}</h2><ul>${paths.map((path) => entry(path, operations))}</ul>`;
+    }),
+    html`<h2>schemas</h2>`,
+    fold(count(names.length, "schema"), html`<ul>${names}</ul>`),
   ];
 }
 
@@ -96,16 +70,13 @@ export function docsPage(template, file) {
   load(file);
   const {title, version, summary, description} = root.info;
   const parts = {
-    version: [`${title} ${version}`],
+    version: `${title} ${version}`,
     contents: contents(),
-    summary: [summary],
-    description: [description],
+    summary,
+    description,
     about: about(),
-    operations: [...operationsView(), ...responseTemplates()],
+    operations: [operationsView(), responseTemplates()],
     schemas: schemasView(),
   };
-  return Object.entries(parts).reduce(
-    (text, [name, nodes]) => text.replace(`{{${name}}}`, () => html(nodes)),
-    template,
-  );
+  return template.replace(/\{\{(\w+)\}\}/g, (_, name) => html`${parts[name]}`);
 }

@@ -1,7 +1,7 @@
 // The measurement tab: a file and the form are sent as one request, and the identified system is
 // shown. The list of impacts can be edited and sent again.
 
-import {identify, identifyJson, sendFileAsCurl, simulate} from "../shared/api.js";
+import {asCurl, identify, identifyJson, simulate} from "../shared/api.js";
 import {$, attributes, button, countUp, element, reveal, setTexts} from "../shared/dom.js";
 import {copy, save} from "../shared/export.js";
 import {Form} from "../shared/form.js";
@@ -108,7 +108,7 @@ export class MeasurementTab extends RequestTab {
     };
     $("measure-copy").onclick = () => {
       const path = `v1/identify?${asQuery(this.sent ?? this.form.values())}`;
-      copy(sendFileAsCurl(path, "text/csv", this.file?.name ?? "record.csv"), this.say);
+      copy(asCurl({path, type: "text/csv", file: this.file?.name ?? "record.csv"}), this.say);
     };
   }
 

@@ -1,10 +1,7 @@
 // Calls to the service. Routes are relative to the page, so they also work below a path prefix.
-import {askForKey, currentKey, keyHeaders} from "./key.js";
+import {element} from "./dom.js";
 
-/**
- * A problem document (RFC 9457) as an Error. `errors` lists {pointer, value, range, detail} per
- * invalid field.
- */
+/** A problem document (RFC 9457). errors: {pointer, value, range, detail} per invalid field. */
 class Problem extends Error {
   constructor({detail, title, status, errors = []}) {
     super(detail ?? title);
@@ -23,6 +20,51 @@ async function read(response) {
   return body;
 }
 
+// The key is kept until the browser tab is closed.
+const keyName = "vines-api-key";
+let openPrompt = null; // one dialog for all waiting requests
+
+const currentKey = () => sessionStorage.getItem(keyName);
+
+export const hasKey = () => currentKey() !== null;
+
+/** Prompts for a key after a 401 response. Resolves to whether a valid key was entered. */
+function askForKey() {
+  openPrompt ??= showDialog().finally(() => {
+    openPrompt = null;
+  });
+  return openPrompt;
+}
+
+async function showDialog() {
+  const input = element("input", {
+    type: "password",
+    name: "key",
+    required: true,
+    pattern: "\\s*[A-Za-z0-9._~+\\/=\\-]{16,}\\s*", // the format that the service accepts
+    title: "16 or more letters, digits or -._~+/=",
+    autocomplete: "current-password",
+  });
+  const submit = element("button", {value: "use"}, "Use key");
+  const rejection = hasKey() ? "The server does not accept this key. " : "";
+  const dialog = element(
+    "dialog",
+    {},
+    element("h2", {}, "API key"),
+    element("p", {}, `${rejection}This server requires an API key.`),
+    element("form", {method: "dialog"}, element("label", {}, "Key ", input, " ", submit)),
+  );
+  document.body.append(dialog);
+  dialog.showModal();
+  await new Promise((resolve) => {
+    dialog.onclose = resolve;
+  });
+  dialog.remove();
+  const entered = dialog.returnValue === submit.value; // the form was valid
+  if (entered) sessionStorage.setItem(keyName, input.value.trim());
+  return entered;
+}
+
 /** Sends a request and returns its response. Asks for an API key while the service answers 401. */
 export async function sendRequest(path, options = {}) {
   // The first response can be one that the browser preloaded, without a key: a stored key is
@@ -39,8 +81,9 @@ export async function sendRequest(path, options = {}) {
 
 /** Throws TemporaryError without a response, also if `options.signal` aborts the request. */
 async function fetchWithKey(path, options) {
+  const key = hasKey() && {Authorization: `Bearer ${currentKey()}`};
   try {
-    return await fetch(path, {...options, headers: {...options.headers, ...keyHeaders()}});
+    return await fetch(path, {...options, headers: {...options.headers, ...key}});
   } catch {
     throw new TemporaryError("the server does not answer");
   }
@@ -48,7 +91,7 @@ async function fetchWithKey(path, options) {
 
 export const get = async (path) => read(await sendRequest(path));
 
-const post = (path, body, signal, type = "application/json") =>
+export const post = (path, body, signal, type = "application/json") =>
   sendRequest(path, {method: "POST", headers: {"Content-Type": type}, body, signal});
 
 const postingJson = (path) => async (fields, signal) =>
@@ -72,16 +115,16 @@ export async function sweep(request, signal) {
 const quoted = (text) => `'${text.replaceAll("'", "'\\''")}'`;
 export const absoluteUrl = (path) => new URL(path, location.href.split("?")[0]).href;
 
-/** A curl command that posts `fields` as JSON, for which the service needs no Content-Type. */
-export const asCurl = (path, fields, flags = "-s") =>
-  `curl ${flags} ${absoluteUrl(path)} -d ${quoted(JSON.stringify(fields))}`;
-
-export const getAsCurl = (path, flags = "-s") => `curl ${flags} ${quoted(absoluteUrl(path))}`;
-
-/** A curl command that posts the file `name`. */
-export function sendFileAsCurl(path, type, name, flags = "-s") {
-  const address = path.includes("?") ? quoted(absoluteUrl(path)) : absoluteUrl(path);
-  return `curl ${flags} ${address} -H 'Content-Type: ${type}' --data-binary ${quoted(`@${name}`)}`;
+/**
+ * A curl command that posts `body` as JSON, for which the service needs no Content-Type, or the
+ * file of the name `file`; a GET without both.
+ */
+export function asCurl({path, body, file, type}, flags = "-s") {
+  const url = absoluteUrl(path);
+  if (body) return `curl ${flags} ${url} -d ${quoted(JSON.stringify(body))}`;
+  if (!file) return `curl ${flags} ${quoted(url)}`;
+  const address = path.includes("?") ? quoted(url) : url;
+  return `curl ${flags} ${address} -H 'Content-Type: ${type}' --data-binary ${quoted(`@${file}`)}`;
 }
 
 /**

@@ -7,10 +7,7 @@ const styles = [{width: 2}, {}, {dash: [7, 3]}, {dash: [2, 3]}];
 
 const absent = (status, ended) => (ended && status === "minus_infinity" ? "−∞" : "");
 
-/**
- * {series, columns} of a history: four exponents and, if present, the rounding floor. An exponent
- * of minus infinity has no line; its legend shows −∞.
- */
+/** {series, columns} of a history: exponents, and any rounding floor. −∞ has no line. */
 export function exponentSeries(history, status = []) {
   const series = styles.map((style, k) => ({
     colour: `c${k + 1}`,
@@ -27,10 +24,7 @@ export function exponentSeries(history, status = []) {
   return {series, columns};
 }
 
-/**
- * A common range for the exponents of several histories. It fits the settled values (the last three
- * quarters); the initial transient is cut off.
- */
+/** A common range of several histories, for the settled values (the last three quarters). */
 export function exponentRange(histories) {
   const late = ({tau, ...columns}) =>
     names.flatMap((name) => columns[name].slice(Math.floor(tau.length / 4)));

@@ -35,7 +35,7 @@ print(result["exponents"].get("qr", {}).get("final"), result["regime"]["type"])
 /** Functions that return the text, by form. request() returns the fields of the request. */
 export const formsOf = (path, request) => ({
   link: () => location.href,
-  curl: () => asCurl(path, request()),
+  curl: () => asCurl({path, body: request()}),
   Python: () => asPython(path, {...request(), include: ["impacts", "exponents", "regime"]}),
   JSON: () => JSON.stringify(request(), null, 2),
 });

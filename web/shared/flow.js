@@ -5,10 +5,7 @@
 
 const terms = 22; // of the series; 1/22! is below 1e-21
 
-/**
- * The linear map of advance(state), which is applied to the four unit states. Returns a function that
- * advances a state in place, fast enough for thousands of samples.
- */
+/** The linear map of advance(state), as a function that advances a state in place, but faster. */
 function mapOf(advance) {
   const unit = (k) => [0, 1, 2, 3].map((i) => Number(i === k));
   const [[xx, vx], [xv, vv], [xs, vs, cos, minusSin], [xc, vc]] = [0, 1, 2, 3].map((k) =>

@@ -4,7 +4,6 @@ import {element} from "./dom.js";
 import {toNumber} from "./numbers.js";
 import {symbolOf} from "./quantities.js";
 import {unitShown} from "./units.js";
-import {equivalents, originText, resolved} from "./value_origins.js";
 
 // Groups of /v1/simulate: title, whether it is open at first, note.
 export const groups = {
@@ -19,9 +18,57 @@ export const groups = {
   run: ["Run", true],
   output: ["Output", false],
 };
+/** Masses, spring and damper, to which a preset's `damping` belongs; as in the service. */
+export const isOfSystem = (name) =>
+  /^(epsilon|lambda|m1|c1|damping_ratio|k1|f0|m2|mass_ratio)$/.test(name);
+
+/** True for fields of /v1/parameters that affect the motion. */
+export const isOfMotion = (field) =>
+  ["system", "reduced", "SI", "start"].includes(field?.group) ||
+  ["tau_end", "cycles"].includes(field?.name);
+
 // The preset has a menu outside the form; the page chooses `include` and never shows a perturbed
 // run.
 const hidden = new Set(["preset", "include", "perturbation"]);
+
+/** Pairs of SI fields of one quantity; the origin of the second shows if the first was given. */
+const equivalents = {
+  f0: "k1",
+  damping_ratio: "c1",
+  mass_ratio: "m2",
+  x_velocity0: "x_dot0",
+  y_velocity0: "y_dot0",
+};
+
+function originOfEquivalent(name, origin) {
+  const other = equivalents[name];
+  const text = origin[other] ?? "";
+  if (text.startsWith(`follows from ${name}`)) return "given";
+  if (text === "default") return text;
+  return `follows from ${other}${name === "f0" || name === "mass_ratio" ? ", m1" : ""}`;
+}
+
+/** {values, origins} by field name, from `parameters` of an answer. */
+export function resolved({si, derived = {}, origin = {}, ...own}) {
+  const values = {...own, ...si};
+  const origins = {...origin};
+  if (own.R_plus === own.R_minus && origin.R_plus === origin.R_minus)
+    [values.R, origins.R] = [own.R_plus, origin.R_plus];
+  if (si) {
+    for (const name of ["f0", "damping_ratio", "mass_ratio"]) values[name] = derived[name];
+    for (const name of Object.keys(equivalents)) origins[name] = originOfEquivalent(name, origin);
+  }
+  return {values, origins};
+}
+
+/** Short text for the form; empty for given values. */
+function originText(origin) {
+  if (!origin || origin === "given") return "";
+  return origin
+    .replace(/^preset /, "")
+    .replace(/^follows from/, "from")
+    .replace(/^swept:.*/, "swept");
+}
 
 const isObject = (value) => typeof value === "object" && value !== null;
 
@@ -47,11 +94,7 @@ function assignment(text) {
 }
 const state = (text) =>
   text.includes("=") ? Object.fromEntries(text.split(",").map(assignment)) : text.trim();
-const listOf = (read) => (text) =>
-  text
-    .split(";")
-    .filter((part) => part.trim())
-    .map(read);
+const partsOf = (text) => text.split(";").filter((part) => part.trim());
 export const defaultSet = "default set"; // value of `starts` in place of a list
 
 // Types of fields other than number. Menus and check boxes: make(field) creates the input,
@@ -62,9 +105,7 @@ const types = {
     wide: true,
     make: ({choices}) => element("select", {}, ...choices.map((c) => new Option(c))),
     get: ({value}, standard) => (value === standard ? undefined : value),
-    set(input, value) {
-      input.value = value;
-    },
+    set: (input, value) => Object.assign(input, {value}),
   },
   choices: {
     wide: true,
@@ -82,10 +123,14 @@ const types = {
     },
   },
   interval: {read: interval},
-  intervals: {wide: true, read: listOf(interval), hint: "none; e.g. 0,500; 500,1000"},
+  intervals: {
+    wide: true,
+    read: (text) => partsOf(text).map(interval),
+    hint: "none; e.g. 0,500; 500,1000",
+  },
   states: {
     wide: true,
-    read: (text) => (text.trim() === defaultSet ? defaultSet : listOf(state)(text)),
+    read: (text) => (text.trim() === defaultSet ? defaultSet : partsOf(text).map(state)),
     hint: "one; e.g. x0=0.01; x0=0, y0=0.002",
   },
   text: {wide: true, read: (text) => text.trim()},
@@ -96,13 +141,8 @@ const textInput = (field) =>
   element("input", {type: "text", inputMode: typeOf(field).read ? "text" : "decimal"});
 
 // Pairs of fields that express the same quantity: when one is filled, the other follows from it.
-const alternatives = Object.entries({...equivalents, cycles: "tau_end"});
-const others = Object.fromEntries(
-  alternatives.flatMap(([a, b]) => [
-    [a, b],
-    [b, a],
-  ]),
-);
+const pairs = Object.entries({...equivalents, cycles: "tau_end"});
+const others = Object.fromEntries([...pairs, ...pairs.map((pair) => pair.toReversed())]);
 
 function rounded(value) {
   if (Array.isArray(value)) return value.map(rounded);
@@ -128,10 +168,7 @@ export class Form {
   exact = new Map(); // of numbers shown in another unit: {text, value}
   replaced = [];
 
-  /**
-   * prefix: prepended to ids, since a page can have several forms; grouped: the groups to show, as
-   * in `groups`.
-   */
+  /** prefix: of ids, since a page can have several forms; grouped: the groups to show. */
   constructor(container, fields, {prefix = "", grouped = groups} = {}) {
     this.prefix = prefix;
     this.fields = fields.filter((f) => !hidden.has(f.name) && f.group in grouped);
@@ -240,10 +277,7 @@ export class Form {
       if (values[name] !== undefined) this.parts.get(group).open = true;
   }
 
-  /**
-   * Shows the origin of each value, and the value itself as placeholder of empty inputs.
-   * `parameters` belongs to an answer.
-   */
+  /** Shows the origins in `parameters` of an answer, its values as placeholders of empty inputs. */
   showOrigins(parameters) {
     const {values, origins} = resolved(parameters);
     for (const field of this.fields) {
@@ -306,10 +340,7 @@ export class Form {
     }
   }
 
-  /**
-   * Shows errors of a problem document at their fields and returns those without a field. lead:
-   * focus the first field at fault.
-   */
+  /** Shows errors at their fields, focuses the first if `lead`; returns those without a field. */
   showErrors(errors, lead = true) {
     for (const {name} of this.fields) {
       this.errors.get(name).textContent = "";

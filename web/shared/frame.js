@@ -3,7 +3,6 @@
 import {colour} from "./colours.js";
 import {drawText, drawTextUpwards, ink, stroke} from "./ink.js";
 import {clamp, minus, shortTo} from "./numbers.js";
-import {logTicks, ticks} from "./ticks.js";
 
 export const font = "11px system-ui, sans-serif";
 const letter = 3.4; // px, half the width of a digit
@@ -12,6 +11,33 @@ function scaleOf({range, log}, from, to) {
   const at = log ? Math.log : (v) => v;
   const [low, high] = range.map(at);
   return (v) => from + ((at(v) - low) / (high - low)) * (to - from);
+}
+
+function multiples(step, min, max) {
+  const list = [];
+  for (let k = Math.ceil(min / step); k * step <= max; ++k) list.push(k * step);
+  return list;
+}
+
+/** Multiples of 1, 2 or 5 times a power of ten: about `count`, but at least two where possible. */
+export function ticks(min, max, count) {
+  const raw = (max - min) / count;
+  const power = 10 ** Math.floor(Math.log10(raw));
+  const round = [1, 2, 5, 10].find((m) => m * power >= raw);
+  const steps = [round, ...[5, 4, 2, 1, 0.5].filter((m) => m < round)];
+  const lists = steps.map((m) => multiples(m * power, min, max));
+  return lists.find((list) => list.length > 1) ?? lists[0];
+}
+
+/** Powers of ten, every n-th where they are many; with 2 and 5 between where they are few. */
+function logTicks(min, max) {
+  const from = Math.floor(Math.log10(min));
+  const to = Math.ceil(Math.log10(max));
+  const step = Math.ceil((to - from) / 8);
+  const factors = to - from < 4 ? [1, 2, 5] : [1];
+  const list = [];
+  for (let k = from; k <= to; k += step) for (const m of factors) list.push(m * 10 ** k);
+  return list.filter((v) => v >= min && v <= max);
 }
 
 /** Labels {at, text}, at most `most`, with enough digits to distinguish neighbours. */
@@ -65,18 +91,14 @@ export class Frame {
 
   across(c, y) {
     const {left, right} = this.box;
-    stroke(
-      c,
-      [left, right].map((end) => [end, sharp(this.py(y))]),
-    );
+    const at = sharp(this.py(y));
+    stroke(c, [left, at], [right, at]);
   }
 
   upright(c, x) {
     const {top, bottom} = this.box;
-    stroke(
-      c,
-      [top, bottom].map((end) => [sharp(this.px(x)), end]),
-    );
+    const at = sharp(this.px(x));
+    stroke(c, [at, top], [at, bottom]);
   }
 
   draw(c) {
@@ -119,10 +141,7 @@ export function rangeOf(columns, log = false) {
   return [min - more, max + more];
 }
 
-/**
- * The size of a node; draw() is called when it changes. The size is cached because reading it
- * forces a layout.
- */
+/** The cached size of a node, since reading it forces a layout; draw() follows a change. */
 export class Size {
   constructor(node, draw) {
     const changes = () => {

@@ -66,10 +66,7 @@ const ordered = (a, b) => (a < b ? [a, b] : [b, a]);
 const isMouse = (event) => event.pointerType === "mouse";
 const isZoomed = ({directions}) => directions.some((direction) => direction.viewport.zoomed);
 
-/**
- * A drag zooms and does not end in a click. A double click shows the full range and does not count
- * as two clicks.
- */
+/** A drag zooms and ends in no click. A double click, no two clicks, shows the full range. */
 function followMouse(plot, where, click) {
   const {over, directions} = plot;
   const selection = element("div", {className: "selection", hidden: true});
@@ -118,10 +115,7 @@ function followMouse(plot, where, click) {
   });
 }
 
-/**
- * The wheel zooms; turned sideways it scrolls the plot. Zooming out of the full range scrolls the
- * page.
- */
+/** The wheel zooms, or scrolls sideways; zooming out of the full range scrolls the page. */
 function followWheel(plot) {
   const {over, viewport, directions} = plot;
   const zoom = (event) => {

@@ -47,7 +47,7 @@ export class Job {
       return;
     }
     this.#next = request;
-    if (!running) this.#work();
+    if (!running) this.#compute();
     else if (!dragging || !running.answers) running.abort.abort();
   }
 
@@ -56,15 +56,10 @@ export class Job {
     this.#running?.abort.abort();
   }
 
-  async #work() {
-    while (this.#next) {
-      const request = this.#next;
-      this.#next = null;
-      await this.#compute(request);
-    }
-  }
-
-  async #compute(request) {
+  /** Computes the next request, and those that come in the meantime. */
+  async #compute() {
+    const request = this.#next;
+    this.#next = null;
     const abort = new AbortController();
     const {signal} = abort;
     const running = {newest: request, abort, answers: true, text: JSON.stringify(request)};
@@ -81,7 +76,8 @@ export class Job {
     } finally {
       clearTimeout(late);
       this.#running = null;
-      if (!this.#next) this.busy(false, cancelled);
+      if (this.#next) this.#compute();
+      else this.busy(false, cancelled);
     }
   }
 

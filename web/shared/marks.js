@@ -22,10 +22,7 @@ export const kind =
 
 const isThere = (v) => v != null && !Number.isNaN(v);
 
-/**
- * A line through points with ascending x, of which the visible ones are drawn; null and NaN
- * interrupt it. dense: several points per pixel.
- */
+/** A line at ascending x; null and NaN interrupt it. dense: it has several points per pixel. */
 export const line = kind((c, frame, {x, y, colour, width = 1, dash, dense}) => {
   const [min, max] = frame.x.range;
   // Visible points and one more on either side.
@@ -51,10 +48,7 @@ function path(c) {
   return {add, end: () => c.stroke()};
 }
 
-/**
- * Draws minimum and maximum of each pixel, joined to the previous pixel, so that spikes stay
- * visible and no gaps appear.
- */
+/** Joins minimum and maximum of each pixel to the previous pixel: spikes stay, without gaps. */
 function envelope(c, width) {
   let column = null;
   let low; // px, downwards
@@ -84,10 +78,7 @@ function envelope(c, width) {
 /** A line through points in any order. */
 export const curve = kind((c, {px, py}, {x, y, colour, width = 1.6, dash}) => {
   ink(c, colour, width, dash);
-  stroke(
-    c,
-    x.map((v, i) => [px(v), py(y[i])]),
-  );
+  stroke(c, ...x.map((v, i) => [px(v), py(y[i])]));
 });
 
 /** Horizontal lines at y, one or several; text: above the right end. */
@@ -145,18 +136,10 @@ export const blocks = kind((c, {box, px, ...frame}, options) => {
   }
 });
 
-/** Corners of polygons and the angle of the first one. */
-const polygons = {
-  box: [4, Math.PI / 4],
-  triangle: [3, -Math.PI / 2],
-  diamond: [4, 0],
-  pointed: [3, Math.PI / 2],
-};
+/** Corners of polygons, and the angle of the first one in right angles. */
+const polygons = {box: [4, 0.5], triangle: [3, -1], diamond: [4, 0], pointed: [3, 1]};
 
-/**
- * Adds a symbol to a path: "ring" and "dot" are circles, "cross" and the polygons are paths; a
- * "square" is filled immediately, which is fast.
- */
+/** Adds a circle, a cross or a polygon to a path; a "square" is filled at once, which is fast. */
 function symbol(c, shape, x, y, r) {
   if (shape === "square") c.fillRect(x - r, y - r, 2 * r, 2 * r);
   else if (shape === "cross")
@@ -167,7 +150,7 @@ function symbol(c, shape, x, y, r) {
   else if (polygons[shape]) {
     const [n, turn] = polygons[shape];
     for (let i = 0; i < n; ++i) {
-      const angle = turn + (2 * Math.PI * i) / n;
+      const angle = (turn * Math.PI) / 2 + (2 * Math.PI * i) / n;
       const [right, down] = [1.3 * r * Math.cos(angle), 1.3 * r * Math.sin(angle)];
       c[i ? "lineTo" : "moveTo"](x + right, y + down);
     }
@@ -195,10 +178,7 @@ export const dots = kind((c, frame, options) => {
     if (!error || y[i] == null) return;
     ink(c, tints[i], Math.max(1, size / 2));
     const end = (sign) => clamp(frame.py(y[i] + sign * error), frame.box.top, frame.box.bottom);
-    stroke(
-      c,
-      [-1, 1].map((sign) => [frame.px(x[i]), end(sign)]),
-    );
+    stroke(c, ...[-1, 1].map((sign) => [frame.px(x[i]), end(sign)]));
   });
   c.globalAlpha = alpha;
   let colour = null;
@@ -260,11 +240,7 @@ export const names = kind(
   {above: true},
 );
 
-/** Density of the values of columns [{from, to, values}] of x. */
-export const density = kind((c, frame, {columns, colour}) => {
-  const inPixels = ({from, to, values}) => ({from: frame.px(from), to: frame.px(to), values});
-  columnDensity(c, frame, {columns: columns.map(inPixels), colour});
-});
+export const density = kind(columnDensity);
 
 /** Pixels set by paint(pixels, width, height). */
 export const raster = kind((c, frame, {paint}) => drawPixels(c, frame, paint));

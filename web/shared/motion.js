@@ -67,10 +67,7 @@ export class Motion {
       : {state, y: piece.y + piece.y_dot * s, y_dot: piece.y_dot};
   }
 
-  /**
-   * {x, x_dot, x_ddot, y, y_dot, side} at a time of the run; m, m per unit of tau, m per unit of
-   * tau squared.
-   */
+  /** {x, x_dot, x_ddot, y, y_dot, side} at a time of the run; in m and units of tau. */
   at(tau) {
     const piece = this.pieces[Math.max(lastUpTo(this.starts, tau), 0)];
     const {state, y, y_dot} = this.stateOf(piece, tau);

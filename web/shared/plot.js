@@ -1,10 +1,14 @@
-// Base of all plots: a canvas that is redrawn when its size changes, and a ring around one point,
+// All plots. A plot is a canvas that is redrawn when its size changes, and a ring around one point,
 // which moves without redrawing. A plot of width zero (in a closed <details>) is drawn when it gets
 // a width.
-import {element} from "./dom.js";
-import {blank, font, Size} from "./frame.js";
+import {element, on} from "./dom.js";
+import {blank, Frame, font, rangeOf, Size} from "./frame.js";
+import {listen} from "./gestures.js";
 import {drawText, ink} from "./ink.js";
-import {nearest} from "./search.js";
+import {names} from "./marks.js";
+import {short} from "./numbers.js";
+import {firstFrom, lastUpTo, nearest} from "./search.js";
+import {Viewport} from "./viewport.js";
 
 export class Plot {
   frame = null;
@@ -25,10 +29,7 @@ export class Plot {
     viewport?.onCursor(() => this.point());
   }
 
-  /**
-   * points: {x, y, t}, of which the one nearest to the cursor is ringed; t: their places on the
-   * viewport, by default x. Further options are those of the subclass.
-   */
+  /** points: {x, y, t = x}, ringed where t is nearest to the cursor; more options: subclasses. */
   draw(options) {
     this.last = options;
     this.refresh();
@@ -81,6 +82,53 @@ export class Plot {
   }
 }
 
+/** A plot over a viewport. Plots that share a viewport zoom together and show one cursor. */
+export class ZoomablePlot extends Plot {
+  /**
+   * viewport: of x; across: of y, where the plot zooms in both directions. In addition to the
+   * methods of Plot, subclasses implement cursorText(cursor) and click(at, reach, {top, y, touch}).
+   */
+  constructor(container, viewport = new Viewport(), across = null) {
+    const canvas = element("canvas");
+    const over = element("div", {className: "over"});
+    super(canvas, container, over, viewport);
+    Object.assign(this, {across, over});
+    this.cursor = element("div", {className: "cursor", hidden: true});
+    over.prepend(this.cursor);
+    container.append(canvas, over);
+    for (const each of [viewport, across]) each?.onZoom(() => this.soon());
+    listen(over, viewport, (...where) => this.click(...where), across);
+  }
+
+  /** Redraws once before the next frame. */
+  soon() {
+    this.waiting ||= requestAnimationFrame(() => {
+      this.waiting = 0;
+      this.refresh();
+    });
+  }
+
+  /** Positions the canvas and the element over it. */
+  place(height) {
+    const {box, width, height: high} = this.frame;
+    this.offset = [-box.left, -box.top];
+    const place = {left: box.left, top: box.top + this.head, width, height: high};
+    for (const [name, px] of Object.entries(place)) this.over.style[name] = `${px}px`;
+    this.canvas.style.height = `${height}px`;
+  }
+
+  point() {
+    super.point();
+    const {cursor, range, width} = this.viewport;
+    const share = cursor === null ? -1 : (cursor - range[0]) / width;
+    const inView = this.frame && share >= 0 && share <= 1;
+    this.cursor.hidden = !inView;
+    if (!inView) return;
+    this.cursor.style.transform = `translateX(${Math.round(share * this.frame.width)}px)`;
+    this.cursor.dataset.at = this.cursorText(cursor);
+  }
+}
+
 function paint(c, {frame, marks, empty, width, height}) {
   if (!frame) {
     c.font = font;
@@ -92,4 +140,195 @@ function paint(c, {frame, marks, empty, width, height}) {
   for (const mark of marks) if (!mark.above) mark.draw(c, frame);
   c.restore();
   for (const mark of marks) if (mark.above) mark.draw(c, frame);
+}
+
+const columnsOf = (width) => Math.max(width - 60, 10);
+
+const shortOrNone = (value) => (value === null ? "" : short(value));
+
+/** The marks with a label; they share x. */
+const seriesOf = (marks) => marks.filter(({label}) => label);
+
+/** Lines over a shared axis, drawn where visible; their legend shows the values at the cursor. */
+export class LinePlot extends ZoomablePlot {
+  /** viewport: shared with other plots over the same time. */
+  constructor(container, viewport) {
+    super(container, viewport);
+    this.legend = element("div", {className: "legend"});
+    container.prepend(this.legend);
+  }
+
+  /**
+   * x: {label, factor}; y: {range, log, label}, the range by default that of the series; bare: no
+   * labels along x; span: [from, to] of the full axis, if this plot sets it; unit: of the series;
+   * click(x, reach): reach is 6 px in units of x; points: as in Plot.
+   *
+   * marks: the labelled ones are series, whose text(value, ended) is their value in the legend; or
+   * trace(from, to, columns), which returns the marks of the visible range, and samples(from, to),
+   * which returns those for the table. under: further marks, drawn first.
+   */
+  draw(options) {
+    if (options.span) this.viewport.span(...options.span);
+    super.draw(options);
+  }
+
+  resized() {
+    this.head = this.legend.offsetHeight;
+    this.refresh();
+  }
+
+  click(...where) {
+    this.last?.click?.(...where);
+  }
+
+  /** Number of min-max columns of a dense line. */
+  get columns() {
+    return columnsOf(this.size.width);
+  }
+
+  refresh() {
+    if (this.last) this.writeLegend(seriesOf(this.marks(this.size.width)));
+    super.refresh();
+  }
+
+  /** The marks of the visible range. */
+  marks(width) {
+    return this.last.marks ?? this.last.trace(...this.viewport.range, columnsOf(width));
+  }
+
+  /** alone: for export, with labels along x and the names of the series. */
+  prepare(width, height, alone = false) {
+    if (!this.last) return null;
+    const {x, y, bare, under = []} = this.last;
+    const {range} = this.viewport;
+    const marks = this.marks(width);
+    const series = seriesOf(marks);
+    const columns = series.map((one) => one.y);
+    const ofY = {range: rangeOf(columns, y.log) ?? [0, 1], ...y};
+    const frame = new Frame(width, height, {...x, range, bare: bare && !alone}, ofY);
+    const named = alone && series.length > 1 ? [names({series})] : [];
+    return {frame, marks: [...under, ...marks, ...named]};
+  }
+
+  /** {names, columns} of the visible range. */
+  numbers() {
+    const {x, marks, samples, unit} = this.last;
+    const [from, to] = this.viewport.range;
+    const series = seriesOf(marks ?? samples(from, to));
+    const time = series[0]?.x ?? [];
+    const part = ([...column]) => column.slice(firstFrom(time, from), lastUpTo(time, to) + 1);
+    return {
+      names: [x.label, ...series.map(({label}) => (unit ? `${label} (${unit})` : label))],
+      columns: [part(time).map((t) => t * x.factor), ...series.map((one) => part(one.y))],
+    };
+  }
+
+  /** Shows the cursor, and the values there in the legend. */
+  point() {
+    super.point();
+    const {cursor: t} = this.viewport;
+    seriesOf(this.last?.marks ?? []).forEach(({x, y, text = shortOrNone}, k) => {
+      const i = t === null ? -1 : lastUpTo(x, t);
+      const within = t > x[i] ? i + 1 : i; // a line has no value after its end
+      const value = y[within] === null ? null : (y[i] ?? null);
+      const shown = text(value, y.findLastIndex((v) => v !== null) < within);
+      if (this.values[k].textContent !== shown) this.values[k].textContent = shown;
+    });
+  }
+
+  cursorText(cursor) {
+    return short(cursor * this.last.x.factor);
+  }
+
+  /** The legend; empty for a single series. */
+  writeLegend(series) {
+    const written = JSON.stringify(series.map(({label, colour, dash}) => [label, colour, dash]));
+    if (this.written === written) return;
+    this.written = written;
+    this.values = series.map(() => element("b"));
+    const keys = series.map(({label, colour, dash}, i) => {
+      const className = `key line${dash ? " dashed" : ""}`;
+      const key = element("span", {className}, label, " ", this.values[i]);
+      key.style.setProperty("--key", `var(--${colour})`);
+      return key;
+    });
+    this.legend.hidden = keys.length < 2;
+    this.legend.replaceChildren(...(this.legend.hidden ? [] : keys));
+    this.head = this.legend.offsetHeight;
+  }
+}
+
+const reach = 14; // px within which a point is picked
+
+/** Plots of points and curves in a plane. Points can be picked with the pointer. */
+export class ScatterPlot extends Plot {
+  /** viewport: whose cursor the ring follows. */
+  constructor(canvas, viewport) {
+    super(canvas, canvas, canvas.parentNode, viewport);
+    const hover = (event) => this.hover(event);
+    on(canvas, {pointermove: hover, click: hover});
+    this.resized();
+  }
+
+  resized() {
+    this.offset = [this.canvas.offsetLeft, this.canvas.offsetTop];
+    this.refresh();
+  }
+
+  /** The marks with points. */
+  get groups() {
+    return this.last.marks.filter(({x, y}) => x && y);
+  }
+
+  /**
+   * Options of draw(): marks; x, y: {label, range}, the range by default that of the points; equal:
+   * same scale on both axes; empty: text shown without points; points: as in Plot; they can be
+   * picked where they have use(i, clicked).
+   */
+  prepare(width, height) {
+    if (!this.last) return null;
+    const {marks, equal, empty = "no impacts"} = this.last;
+    const axes = ["x", "y"].map((key) => {
+      const range = rangeOf(this.groups.map((group) => group[key]));
+      return {range, ...this.last[key]};
+    });
+    if (!axes.every(({range}) => range)) return {frame: null, empty};
+    const frame = new Frame(width, height, ...axes);
+    return {marks, frame: equal ? new Frame(width, height, ...sameScale(axes, frame)) : frame};
+  }
+
+  /** {names, columns}: points and curves with their group. */
+  numbers() {
+    const {x, y} = this.last;
+    const all = (key) => this.groups.flatMap((group) => group[key]);
+    const labels = this.groups.flatMap((group) => group.x.map(() => group.label ?? group.colour));
+    return {names: [x.label, y.label, "group"], columns: [all("x"), all("y"), labels]};
+  }
+
+  /** Picks the point nearest to the pointer. */
+  hover({offsetX, offsetY, type}) {
+    const {x, y, use} = this.last?.points ?? {};
+    if (!use || !this.frame) return;
+    const {px, py} = this.frame;
+    let best = reach;
+    let found = -1;
+    x.forEach((v, i) => {
+      const distance = Math.hypot(px(v) - offsetX, py(y[i]) - offsetY);
+      if (distance < best) [best, found] = [distance, i];
+    });
+    if (found < 0) return;
+    this.light(x[found], y[found]);
+    use(found, type === "click");
+  }
+}
+
+/** Axes extended so that a unit has the same length on both. */
+function sameScale(axes, {width, height}) {
+  const pixels = [width, height];
+  const size = ({range: [min, max]}) => max - min;
+  const unit = Math.min(...axes.map((axis, i) => pixels[i] / size(axis)));
+  return axes.map((axis, i) => {
+    const more = (pixels[i] / unit - size(axis)) / 2;
+    return {...axis, range: [axis.range[0] - more, axis.range[1] + more]};
+  });
 }

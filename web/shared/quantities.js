@@ -81,10 +81,7 @@ export function menuOf(data) {
   return names.map((name) => [name, quantityOf(name, data).title]);
 }
 
-/**
- * The best motion of a point, or a different one from the second start, as a point; null when all
- * starts lead to the same motion.
- */
+/** The best motion of a point, or that of its second start, as a point; null if all are equal. */
 export function otherMotion(p) {
   const m = p?.depends_on_start ? (p.best ?? p.second_start) : null;
   if (m?.x_max == null) return null;
@@ -211,10 +208,7 @@ function describeStarts(p, where) {
 const exponentText = ({lambda, status, standard_error: errors}) =>
   status?.[0] === "minus_infinity" ? "−∞" : withError(lambda[0], errors?.[0], 4);
 
-/**
- * A motion that ends on an orbit is regular, even if the transient, which lambda1 includes, was
- * not.
- */
+/** A motion that ends on an orbit is regular, even if its transient, part of λ₁, was not. */
 function verdictText({verdict, periodic, lambda, standard_error: errors}) {
   const way = periodic && lambda?.[0] > 2 * (errors?.[0] ?? 0);
   return way ? "regular in the end; λ₁ includes the transient" : verdicts[verdict];

@@ -19,62 +19,49 @@ export function drawPixels(c, {box, width, height}, paint) {
   c.drawImage(canvas, box.left, box.top, width, height);
 }
 
-/** The number of points at each pixel. */
-class Counts {
-  constructor(pixels, width, height) {
-    Object.assign(this, {pixels, width, height, most: 8});
-    this.ratio = devicePixelRatio; // read once: reading it is slower than counting
-  }
-
-  /** A length or position in px as device pixels. */
-  round(px) {
-    return Math.round(px * this.ratio);
-  }
-
-  /** Counts a rectangle of pixels, clipped to the plot. */
-  add(left, top, right, bottom) {
-    const [first, last] = [Math.max(left, 0), Math.min(right, this.width)];
-    const end = Math.min(bottom, this.height);
-    for (let j = Math.max(top, 0); j < end; ++j)
-      for (let i = first; i < last; ++i) {
-        const n = ++this.pixels[j * this.width + i];
-        if (n > this.most) this.most = n;
-      }
-  }
-}
-
-/** Draws counts in one colour, whose opacity grows with the logarithm of the count. */
-const drawDensity = (c, frame, colour, count) =>
+/**
+ * Draws the number of rectangles at each pixel in one colour, whose opacity grows with the logarithm
+ * of the number. count(add, round, height): add(left, top, right, bottom) counts a rectangle,
+ * clipped to the plot; round(px): a length or position in device pixels, as all of these are.
+ */
+function drawDensity(c, frame, colour, count) {
+  const ratio = devicePixelRatio; // read once: reading it is slower than counting
   drawPixels(c, frame, (pixels, width, height) => {
-    const counts = new Counts(pixels, width, height);
-    count(counts);
+    let most = 8;
+    const add = (left, top, right, bottom) => {
+      const [first, last] = [Math.max(left, 0), Math.min(right, width)];
+      const end = Math.min(bottom, height);
+      for (let j = Math.max(top, 0); j < end; ++j)
+        for (let i = first; i < last; ++i) {
+          const n = ++pixels[j * width + i];
+          if (n > most) most = n;
+        }
+    };
+    count(add, (px) => Math.round(px * ratio), height);
     const own = rgb(colour);
-    const scale = 0.58 / Math.log(counts.most);
-    const shades = []; // by count
+    const scale = 0.58 / Math.log(most);
+    const shades = []; // by number
     for (let i = 0; i < pixels.length; ++i) {
       const n = pixels[i];
       if (n) pixels[i] = shades[n] ??= pixel(own, 255 * (0.42 + scale * Math.log(n)));
     }
   });
+}
 
-/**
- * Density of the values of columns [{from, to, values}], where from and to are in px. Values of a
- * broad column are drawn in its middle.
- */
+/** Density of columns [{from, to, values}] of x; a broad column is drawn in its middle. */
 export function columnDensity(c, frame, {columns, colour}) {
   const [min, max] = frame.y.range;
   const {left, top} = frame.box;
-  drawDensity(c, frame, colour, (counts) => {
-    const [broad, thick] = [4, 1.4].map((v) => Math.max(1, counts.round(v)));
+  drawDensity(c, frame, colour, (add, round, height) => {
+    const [broad, thick] = [4, 1.4].map((v) => Math.max(1, round(v)));
     for (const {from, to, values} of columns) {
-      const [begin, end] = [from, to].map((px) => counts.round(px - left));
+      const [begin, end] = [from, to].map((x) => round(frame.px(x) - left));
       const across = clamp(end - begin, 1, broad);
       const start = end - begin > broad ? Math.round((begin + end - broad) / 2) : begin;
       for (const v of values) {
         if (!(v >= min && v <= max)) continue;
-        const middle = Math.min(counts.round(frame.py(v) - top), counts.height - 1);
-        const row = middle - (thick >> 1);
-        counts.add(start, row, start + across, row + thick);
+        const row = Math.min(round(frame.py(v) - top), height - 1) - (thick >> 1);
+        add(start, row, start + across, row + thick);
       }
     }
   });
@@ -83,12 +70,12 @@ export function columnDensity(c, frame, {columns, colour}) {
 /** Density of points, each 2 px wide. */
 export function pointDensity(c, frame, {x, y, colour}) {
   const {left, top} = frame.box;
-  drawDensity(c, frame, colour, (counts) => {
-    const size = Math.max(2, counts.round(2));
+  drawDensity(c, frame, colour, (add, round) => {
+    const size = Math.max(2, round(2));
     for (let i = 0; i < x.length; ++i) {
-      const column = counts.round(frame.px(x[i]) - left) - (size >> 1);
-      const row = counts.round(frame.py(y[i]) - top) - (size >> 1);
-      counts.add(column, row, column + size, row + size);
+      const column = round(frame.px(x[i]) - left) - (size >> 1);
+      const row = round(frame.py(y[i]) - top) - (size >> 1);
+      add(column, row, column + size, row + size);
     }
   });
 }

@@ -14,10 +14,7 @@ import {Job} from "./job.js";
  * redraw(): draws in other colours.
  */
 export class RequestTab extends Job {
-  /**
-   * prefix: of the ids of the tab's form, results, message and cancel button; changed({edit, soon}):
-   * called when query() changes.
-   */
+  /** prefix: of the ids of the tab; changed({edit, soon}): called when query() changes. */
   constructor(prefix, changed) {
     super({changed, say: sayIn(`${prefix}message`), results: $(`${prefix}results`)});
     this.formElement = $(`${prefix}form`);

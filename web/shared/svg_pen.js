@@ -8,8 +8,8 @@ const baselines = {top: "hanging", middle: "central", bottom: "text-after-edge"}
 /** An SVG element; numbers are rounded to two decimals. */
 function svg(tag, all, ...children) {
   const node = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  const written = Object.entries(all).map(([name, v]) => [name, v?.toFixed ? fixed(v) : v]);
-  attributes(node, Object.fromEntries(written));
+  for (const [name, v] of Object.entries(all))
+    attributes(node, {[name]: v?.toFixed ? fixed(v) : v});
   node.append(...children);
   return node;
 }

@@ -11,9 +11,7 @@ export function cards(list, entries) {
   list.replaceChildren(...entries.map(card));
 }
 
-/**
- * Lists remarks in the <details id>, whose summary is their number; hides it when there are none.
- */
+/** Lists remarks in the <details id>, with their number as summary; hides it without any. */
 export function showRemarks(id, remarks) {
   const details = $(id);
   details.hidden = !remarks.length;

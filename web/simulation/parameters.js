@@ -1,9 +1,8 @@
 // Table of a run's parameters: symbol, value, unit and origin.
 import {$, element} from "../shared/dom.js";
-import {groups} from "../shared/form.js";
+import {groups, resolved} from "../shared/form.js";
 import {inMm, minus} from "../shared/numbers.js";
 import {symbolOf} from "../shared/quantities.js";
-import {resolved} from "../shared/value_origins.js";
 
 // Derived parameters: unit and what they follow from.
 const derived = {

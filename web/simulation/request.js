@@ -4,9 +4,7 @@
 // them with the preset, and its answer has the values and origins of the others. A field of the
 // system replaces the preset: the system is then user-defined. A reduced (dimensionless) field over
 // a preset in SI is an exception: it only changes the preset's system.
-import {textOf} from "../shared/form.js";
-import {isOfMotion, isOfSystem} from "../shared/presets.js";
-import {resolved} from "../shared/value_origins.js";
+import {isOfMotion, isOfSystem, resolved, textOf} from "../shared/form.js";
 import {run} from "./run.js";
 import {differenceText, parameterLine} from "./sliders.js";
 

@@ -1,10 +1,9 @@
 // Colour scales of maps, and the bar that shows them.
 import {colour, hex} from "../shared/colours.js";
-import {font} from "../shared/frame.js";
+import {font, ticks} from "../shared/frame.js";
 import {drawText, drawTextUpwards, ink} from "../shared/ink.js";
 import {kind} from "../shared/marks.js";
 import {clamp, short} from "../shared/numbers.js";
-import {ticks} from "../shared/ticks.js";
 
 /** The colour at fraction t in [0, 1] of a list of colour stops. */
 function between(list, t) {

@@ -163,7 +163,8 @@ export class SweepTab extends RequestTab {
       const names = this.data.request.axes.map((a) => a.parameter).join("-");
       save(this.data.file(), `sweep-${names}.ndjson`);
     };
-    $("sweep-copy").onclick = () => copy(asCurl("v1/sweep", this.form.request(), "-sN"), this.say);
+    $("sweep-copy").onclick = () =>
+      copy(asCurl({path: "v1/sweep", body: this.form.request()}, "-sN"), this.say);
   }
 
   /** The request of the sweep shown, as a query; null before the first. */

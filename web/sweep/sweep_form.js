@@ -1,8 +1,7 @@
 // The form of a sweep: axes, run of each point, shared fields; and its conversion to and from a
 // query.
 import {element, fillMenu, setTexts} from "../shared/dom.js";
-import {defaultSet, Form, groups, textOf, unknownText} from "../shared/form.js";
-import {isOfSystem} from "../shared/presets.js";
+import {defaultSet, Form, groups, isOfSystem, textOf, unknownText} from "../shared/form.js";
 import {unitShown} from "../shared/units.js";
 
 const none = "none";

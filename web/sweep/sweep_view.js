@@ -4,7 +4,7 @@ import {$, button, element} from "../shared/dom.js";
 import {addExportButton} from "../shared/export_dialog.js";
 import {Frame} from "../shared/frame.js";
 import {roundedRange} from "../shared/numbers.js";
-import {ZoomablePlot} from "../shared/zoomable_plot.js";
+import {ZoomablePlot} from "../shared/plot.js";
 import {sameAxis, startNote} from "./axis_labels.js";
 
 /** Pressing the button must not move the focus, which would hide the tooltip before the click. */
