@@ -3,7 +3,7 @@
 import {simulate} from "../shared/api.js";
 import {$, countUp, sayIn} from "../shared/dom.js";
 import {Job} from "../shared/job.js";
-import {detailsOptions, overTime, planes} from "./details_plots.js";
+import {detailsOptions} from "./details_plots.js";
 import {accountEnergy, summarise, tabulate} from "./details_summary.js";
 import {listParameters} from "./parameters.js";
 import {commonOptions, PlotGroup} from "./plot_group.js";
@@ -40,7 +40,7 @@ function show() {
   const {answer} = shown;
   const {units} = run;
   say("");
-  plots ??= new PlotGroup(overTime, planes);
+  plots ??= new PlotGroup(details);
   summarise(answer, units);
   listParameters(answer.parameters, fieldOf);
   tabulate(answer.windows, units);

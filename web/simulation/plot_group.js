@@ -1,28 +1,27 @@
-// The plots of a run by name: lines over time, and planes.
-import {$} from "../shared/dom.js";
+// The plots of a run: lines over time and planes.
 import {exponentSeries} from "../shared/exponents.js";
 import {addExportButton} from "../shared/export_dialog.js";
 import {makeAccessible} from "../shared/gestures.js";
 import {LinePlot} from "../shared/line_plot.js";
 import {bands, dots, levels, lines, uprights} from "../shared/marks.js";
 import {ScatterPlot} from "../shared/scatter_plot.js";
-import {aboutFigure} from "./captions.js";
 import {alongRun} from "./columns.js";
 import {pick, run, viewport} from "./run.js";
+import {aboutFigure} from "./words.js";
 
+/** The plots inside an element by name: canvases are planes, the others lines over time. */
 export class PlotGroup {
-  /** lines, planes: names. */
-  constructor(lines, planes) {
+  constructor(container) {
     this.all = {};
-    const add = (name, Kind) => {
-      const plot = new Kind($(`plot-${name}`), viewport);
+    for (const node of container.querySelectorAll("[id^=plot-]")) {
+      const Kind = node.matches("canvas") ? ScatterPlot : LinePlot;
+      const name = node.id.replace("plot-", "");
+      const plot = new Kind(node, viewport);
       const about = () => aboutFigure(name);
-      addExportButton($(`figure-${name}`), plot, about);
+      addExportButton(node.closest("figure"), plot, about);
       makeAccessible(plot, about().title, () => run?.answer.impacts.tau ?? [], viewport);
       this.all[name] = plot;
-    };
-    for (const name of lines) add(name, LinePlot);
-    for (const name of planes) add(name, ScatterPlot);
+    }
   }
 
   /** common: options of all plots over time, as from commonOptions. */
