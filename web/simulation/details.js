@@ -13,7 +13,6 @@ const include = ["series", "impacts", "exponents", "eigenvalues", "section", "en
 
 const details = $("details");
 const say = sayIn("details-message");
-let shown = null; // {fields, answer}
 let plots;
 let fieldOf;
 
@@ -21,7 +20,7 @@ const job = new Job({
   ask: (fields, signal) => simulate({perturbation: {size: 1e-9}, ...fields, include}, signal),
   show(answer, fields) {
     if (fields !== run.fields) return;
-    shown = {fields, answer};
+    run.details = answer;
     show();
   },
   fail: (error) => say(error.message),
@@ -32,13 +31,12 @@ const job = new Job({
 /** Called for a new run or other units. */
 export function follow() {
   if (!details.open || !run) return;
-  if (shown?.fields === run.fields) show();
+  if (run.details) show();
   else job.start(run.fields);
 }
 
 function show() {
-  const {answer} = shown;
-  const {units} = run;
+  const {details: answer, units} = run;
   say("");
   plots ??= new PlotGroup(details);
   summarise(answer, units);
@@ -62,8 +60,8 @@ export function start(table) {
   };
 }
 
-export async function showModel() {
-  const text = await (await fetch($("model-sketch").dataset.src)).text();
-  const drawing = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
-  $("model-sketch").append(document.importNode(drawing, true));
+/** Shows the drawing of the system in the page's colours. */
+async function showModel() {
+  const sketch = $("model-sketch");
+  sketch.innerHTML = await (await fetch(sketch.dataset.src)).text();
 }

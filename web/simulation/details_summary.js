@@ -95,6 +95,12 @@ function engineeringCards({impacts, series, parameters}, units) {
   ];
 }
 
+const freeAmplitudeCard = (free, {peak}) => [
+  "amplitude without absorber",
+  inMm(free),
+  `with absorber: |x| up to ${inMm(peak)}`,
+];
+
 /** Title of the window's cards. */
 function windowTitle({window, impacts}, {at}, requested) {
   if (!window) return requested ? "Window without impacts" : "Run without impacts";
@@ -116,15 +122,7 @@ export function summarise(answer, units) {
     residualCard(exponents),
     ["dissipated by impacts", percent(energy.share_impacts), "of all dissipation"],
     ["rms of x", percent(energy.rms_ratio), "of that without absorber"],
-    ...(free == null
-      ? []
-      : [
-          [
-            "amplitude without absorber",
-            inMm(free),
-            `with absorber: |x| up to ${inMm(energy.peak)}`,
-          ],
-        ]),
+    ...(free == null ? [] : [freeAmplitudeCard(free, energy)]),
   ]);
   cards($("summary-run"), [
     ["impacts", String(impacts.tau.length), "chatter included"],

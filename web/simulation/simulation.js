@@ -178,18 +178,21 @@ export class SimulationTab extends RequestTab {
   drawing(fresh = false) {
     const {request} = this;
     const {answer, fields, units} = run;
-    const slider = sliders.sliderOf(this.lastMoved, answer.parameters);
-    const tell = () => {
-      sliders.show(answer.parameters, {fresh, dragged: fields.dragged}, slider);
-      showSentence(answer, slider, units);
-    };
-    const end = () => {
-      player.show();
-      describe(answer, request.textOf(fields, answer.parameters));
-      presetMenu.markPlots(request.edited ? null : request.preset);
-      strip.show(request.systemOf(fields), answer.parameters, slider);
-    };
-    return [tell, ...mainPlots.drawing(), end];
+    const {parameters} = answer;
+    const slider = sliders.sliderOf(this.lastMoved, parameters);
+    return [
+      () => {
+        sliders.show(parameters, {fresh, dragged: fields.dragged}, slider);
+        showSentence(answer, slider, units);
+      },
+      ...mainPlots.drawing(),
+      () => {
+        player.show();
+        describe(answer, request.textOf(fields, parameters));
+        presetMenu.markPlots(request.edited ? null : request.preset);
+        strip.show(request.systemOf(fields), parameters, slider);
+      },
+    ];
   }
 
   submit() {
