@@ -6,7 +6,7 @@ import {LinePlot} from "../shared/line_plot.js";
 import {bands, dots, levels, lines, uprights} from "../shared/marks.js";
 import {ScatterPlot} from "../shared/scatter_plot.js";
 import {alongRun} from "./columns.js";
-import {pick, run, viewport} from "./run.js";
+import {run, viewport} from "./run.js";
 import {aboutFigure} from "./words.js";
 
 /** The plots inside an element by name: canvases are planes, the others lines over time. */
@@ -56,8 +56,15 @@ export function halves({x, y}, kinds) {
   return [false, true].flatMap((late) => kinds.map((kind) => group(late, kind)));
 }
 
-/** Points at the times t; a picked one moves the cursor. */
-export const picked = ({x, y}, t) => ({x, y, t, use: (i, clicked) => pick(t[i], clicked)});
+/** Points at the times t; a picked one moves the cursor, and a click also scrolls to it. */
+export const picked = (points, t) => ({
+  ...points,
+  t,
+  use(i, clicked) {
+    if (clicked) viewport.reveal(t[i]);
+    if (viewport.holds(t[i])) viewport.point(t[i], "pick");
+  },
+});
 
 /** The time axis, sticking phases, synchronised intervals, and borders of the requested windows. */
 export function commonOptions({sticking, exponents, regime, parameters, status, windows = []}) {

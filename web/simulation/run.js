@@ -9,9 +9,3 @@ export let run = null;
 export function setRun(newest) {
   run = newest;
 }
-
-/** Moves the cursor to a time picked in a plane; a click also scrolls to it. */
-export function pick(tau, clicked) {
-  if (clicked) viewport.reveal(tau);
-  if (viewport.holds(tau)) viewport.point(tau, "pick");
-}
