@@ -28,6 +28,12 @@ document.body.classList.toggle("embedded", embedded);
 const buttons = [...document.querySelectorAll("[role=tab]")];
 const nameOf = (button) => button.id.replace("tab-", "");
 
+/** Gives keys and bars the colour that they name. */
+function colourKeys() {
+  for (const {style, dataset} of document.querySelectorAll("[data-colour]"))
+    style.setProperty("--key", `var(--${dataset.colour})`);
+}
+
 /** Shows the panel of a tab, scrolled as it was left. */
 function showPanel(name) {
   if (current === name) return;
@@ -146,6 +152,7 @@ function fail(text) {
 }
 
 async function start() {
+  colourKeys();
   const [fields, {presets}] = await Promise.all([get("v1/parameters"), get("v1/presets")]);
   tables = {...fields, presets};
   listenToButtons();

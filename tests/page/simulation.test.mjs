@@ -115,6 +115,16 @@ test("the page opens with the paper's Fig. 3 on one screen: a sentence, the mach
   await page.close();
 });
 
+test("texts have the system's font, in the size and line height of the style sheet", async () => {
+  const page = await still();
+  const font = await page.$eval("body", (body) => {
+    const {fontFamily, fontSize, lineHeight} = getComputedStyle(body);
+    return [fontFamily, fontSize, lineHeight];
+  });
+  assert.deepEqual(font, ["system-ui, sans-serif", "15px", "21.75px"]);
+  await page.close();
+});
+
 test("the content security policy lets no inline script run", async () => {
   const policy = (await fetch(service.url)).headers.get("content-security-policy");
   assert.match(policy, /default-src 'none'/);

@@ -70,11 +70,13 @@ const survey = (page, selector, name = "text") =>
         draw(context);
         return new Uint32Array(context.getImageData(0, 0, width, height).data.buffer);
       };
-      const style = getComputedStyle(document.documentElement);
+      const probe = document.body.appendChild(document.createElement("i"));
+      probe.style.color = `var(--${name})`; // as in light or dark
       const [wanted] = read(1, 1, (c) => {
-        c.fillStyle = style.getPropertyValue(`--${name}`).trim();
+        c.fillStyle = getComputedStyle(probe).color;
         c.fillRect(0, 0, 1, 1);
       });
+      probe.remove();
       const canvas = document.querySelector(selector);
       const seen = new Set();
       let pixels = 0;

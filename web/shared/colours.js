@@ -1,18 +1,20 @@
 // Colours by their name in the style sheet; they follow the colour scheme.
 
+const dark = matchMedia("screen and (prefers-color-scheme: dark)");
 const known = new Map();
 
 /** f() is called when the colours change: light or dark scheme, print. */
 export function onColours(f) {
-  for (const scheme of ["(prefers-color-scheme: dark)", "print"])
-    matchMedia(scheme).addEventListener("change", f);
+  for (const scheme of [dark, matchMedia("print")]) scheme.addEventListener("change", f);
 }
 onColours(() => known.clear());
 
 export function colour(name) {
   if (!known.has(name)) {
     const style = getComputedStyle(document.documentElement);
-    known.set(name, style.getPropertyValue(`--${name}`).trim());
+    const schemes = style.getPropertyValue(`--${name}`).trim();
+    const pair = /light-dark\(\s*([^,]*),\s*([^)]*?)\s*\)/;
+    known.set(name, schemes.replace(pair, dark.matches ? "$2" : "$1"));
   }
   return known.get(name);
 }

@@ -3,7 +3,7 @@
 import {simulate} from "../shared/api.js";
 import {$, countUp, sayIn} from "../shared/dom.js";
 import {Job} from "../shared/job.js";
-import {detailsOptions, overTime, planes} from "./details_plots.js";
+import {detailsOptions} from "./details_plots.js";
 import {accountEnergy, summarise, tabulate} from "./details_summary.js";
 import {listParameters} from "./parameters.js";
 import {commonOptions, PlotGroup} from "./plot_group.js";
@@ -13,7 +13,6 @@ const include = ["series", "impacts", "exponents", "eigenvalues", "section", "en
 
 const details = $("details");
 const say = sayIn("details-message");
-let shown = null; // {fields, answer}
 let plots;
 let fieldOf;
 
@@ -21,7 +20,7 @@ const job = new Job({
   ask: (fields, signal) => simulate({perturbation: {size: 1e-9}, ...fields, include}, signal),
   show(answer, fields) {
     if (fields !== run.fields) return;
-    shown = {fields, answer};
+    run.details = answer;
     show();
   },
   fail: (error) => say(error.message),
@@ -32,15 +31,14 @@ const job = new Job({
 /** Called for a new run or other units. */
 export function follow() {
   if (!details.open || !run) return;
-  if (shown?.fields === run.fields) show();
+  if (run.details) show();
   else job.start(run.fields);
 }
 
 function show() {
-  const {answer} = shown;
-  const {units} = run;
+  const {details: answer, units} = run;
   say("");
-  plots ??= new PlotGroup(overTime, planes);
+  plots ??= new PlotGroup(details);
   summarise(answer, units);
   listParameters(answer.parameters, fieldOf);
   tabulate(answer.windows, units);
@@ -62,8 +60,8 @@ export function start(table) {
   };
 }
 
-export async function showModel() {
-  const text = await (await fetch($("model-sketch").dataset.src)).text();
-  const drawing = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
-  $("model-sketch").append(document.importNode(drawing, true));
+/** Shows the drawing of the system in the page's colours. */
+async function showModel() {
+  const sketch = $("model-sketch");
+  sketch.innerHTML = await (await fetch(sketch.dataset.src)).text();
 }

@@ -9,15 +9,6 @@ import {run} from "./run.js";
 
 const estimators = ["qr", "eigenvalues", "raw_product"];
 const matrices = ["J", "M", "T"];
-export const overTime = [
-  "acceleration",
-  "z",
-  "differences",
-  "divergence",
-  ...matrices,
-  ...estimators,
-];
-export const planes = ["portrait", "velocities", "stroboscopic", "multipliers"];
 
 /** An object with of(name) for each name. */
 const each = (names, of) => Object.fromEntries(names.map((name) => [name, of(name)]));

@@ -4,7 +4,7 @@
 // units: {si, time, velocity, ..., at(tau)}. A quantity is {of(value), unit}: of() converts a
 // dimensionless value, unit is the suffix. at(tau) formats a time.
 
-import {$, element, reveal, setTexts} from "../shared/dom.js";
+import {$, reveal, setTexts} from "../shared/dom.js";
 import {clamp, count, digits, inMm, minus, percent, shortTo} from "../shared/numbers.js";
 import {verdicts} from "../shared/quantities.js";
 import {cards, tableOf} from "../shared/tables.js";
@@ -95,6 +95,12 @@ function engineeringCards({impacts, series, parameters}, units) {
   ];
 }
 
+const freeAmplitudeCard = (free, {peak}) => [
+  "amplitude without absorber",
+  inMm(free),
+  `with absorber: |x| up to ${inMm(peak)}`,
+];
+
 /** Title of the window's cards. */
 function windowTitle({window, impacts}, {at}, requested) {
   if (!window) return requested ? "Window without impacts" : "Run without impacts";
@@ -116,15 +122,7 @@ export function summarise(answer, units) {
     residualCard(exponents),
     ["dissipated by impacts", percent(energy.share_impacts), "of all dissipation"],
     ["rms of x", percent(energy.rms_ratio), "of that without absorber"],
-    ...(free == null
-      ? []
-      : [
-          [
-            "amplitude without absorber",
-            inMm(free),
-            `with absorber: |x| up to ${inMm(energy.peak)}`,
-          ],
-        ]),
+    ...(free == null ? [] : [freeAmplitudeCard(free, energy)]),
   ]);
   cards($("summary-run"), [
     ["impacts", String(impacts.tau.length), "chatter included"],
@@ -146,30 +144,6 @@ export function tabulate(windows = [], {time}) {
     return [...requested, String(w.impacts), ...lambda, verdicts[w.verdict] ?? "–"];
   });
   $("windows").replaceChildren(...tableOf(names, rows));
-}
-
-const span = (className, textContent = "") => element("span", {className, textContent});
-
-/** A bar whose length is a fraction of the whole. */
-function bar(fraction, className) {
-  const node = span(className);
-  node.style.width = `${clamp(fraction, 0, 1) * 100}%`;
-  return node;
-}
-
-/** Two amounts as bars of the same scale. */
-function compare(term, withAbsorber, without) {
-  const whole = Math.max(withAbsorber, without) || 1;
-  const line = (name, value, className) => [
-    span("name", name),
-    element("span", {className: "track"}, bar(value / whole, className)),
-    span("amount", inMm(value)),
-  ];
-  const lines = [
-    ...line("with absorber", withAbsorber, "with"),
-    ...line("without", without, "without"),
-  ];
-  return element("div", {className: "compare"}, element("b", {}, term), ...lines);
 }
 
 /** Energy supplied, and the decay times of a free decay. */
@@ -194,36 +168,34 @@ function decayTimes(decay, {at}) {
     );
 }
 
+/** Sets the length of a bar: a fraction of the whole. */
+function lengthen(id, fraction) {
+  $(id).style.width = `${clamp(fraction, 0, 1) * 100}%`;
+}
+
 /**
  * Shows the energy balance: the energy supplied by the base or present at the start is dissipated by
  * the damper and the impacts, or is left at the end. The fractions are of the sum of these three,
- * which equals the energy supplied.
+ * which equals the energy supplied. Compares rms and peak of x with those without the absorber.
  */
 export function accountEnergy(energy, units) {
   const {damper, impacts, at_end: left, without_absorber: without} = energy;
   const total = damper + impacts + left || 1;
-  const parts = [
-    ["damper", "damper", damper],
-    ["impacts", "impacts", impacts],
-    ["left", "left at the end", left],
-  ];
-  const bars = parts.map(([className, , value]) => bar(value / total, className));
-  const keys = parts.map(([className, name, value]) => {
-    const amount = element("small", {}, inUnit(value, units.energy));
-    return element(
-      "li",
-      {},
-      span(`key ${className}`, name),
-      element("b", {}, percent(value / total)),
-      amount,
-    );
-  });
+  for (const [name, value] of Object.entries({damper, impacts, left})) {
+    lengthen(`bar-${name}`, value / total);
+    setTexts({
+      [`fraction-${name}`]: percent(value / total),
+      [`amount-${name}`]: inUnit(value, units.energy),
+    });
+  }
+  for (const name of ["rms", "peak"]) {
+    const values = {with: energy[name], without: without[name]};
+    const longest = Math.max(...Object.values(values)) || 1;
+    for (const [which, value] of Object.entries(values)) {
+      lengthen(`bar-${name}-${which}`, value / longest);
+      setTexts({[`${name}-${which}`]: inMm(value)});
+    }
+  }
+  setTexts({"energy-note": energyNote(energy, units)});
   reveal({"energy-scale": !units.si});
-  $("energy").replaceChildren(
-    element("div", {className: "stack"}, ...bars),
-    element("ul", {className: "parts"}, ...keys),
-    element("p", {className: "note", textContent: energyNote(energy, units)}),
-    compare("rms of x", energy.rms, without.rms),
-    compare("peak of |x|", energy.peak, without.peak),
-  );
 }

@@ -47,7 +47,7 @@ function ground(c, floor, width) {
 function body(c, left, right, floor) {
   c.beginPath();
   c.roundRect(left, top - 12, right - left, floor + 11 - top, 5);
-  ink(c, "body");
+  ink(c, "oscillator");
   c.fill();
   ink(c, "accent", 1.2);
   c.stroke();

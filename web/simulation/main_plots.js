@@ -3,7 +3,7 @@
 // in each.
 import {$, attributes, setTexts} from "../shared/dom.js";
 import {exponentRange} from "../shared/exponents.js";
-import {beads, curve, dots, levels, line, lines, symbols} from "../shared/marks.js";
+import {beads, curve, dots, levels, line, symbols} from "../shared/marks.js";
 import {inMm, short} from "../shared/numbers.js";
 import {firstFrom, lastUpTo} from "../shared/search.js";
 import {unitsOf} from "../shared/units.js";
@@ -13,17 +13,16 @@ import {run, viewport} from "./run.js";
 
 const mostSamples = 100000; // samples in an exported table
 const alone = matchMedia("(max-width: 700px)"); // one plot at a time is shown
-const walls = {plus: 1, minus: -1}; // by colour
-const wallNames = {plus: "y − x = −b", minus: "y − x = b"};
-const overTime = ["x", "relative", "largest", "lambda"];
+// By colour: the side of the impacts, and the name in tables.
+const walls = {plus: [1, "y − x = −b"], minus: [-1, "y − x = b"]};
 
 let plots;
 let pinned = null; // {answer, motion} of the run to compare with
 let traced = null; // the motion in the visible range, cached
-let byWall = null; // the impacts at each wall, cached
+let byWall; // the impacts at each wall
 
 export function start() {
-  plots = new PlotGroup(overTime, ["section", "manifold"]);
+  plots = new PlotGroup($("instrument"));
   viewport.onCursor(tell);
 }
 
@@ -43,7 +42,7 @@ function stepsOf(...names) {
 
 export function drawing() {
   traced = null;
-  byWall = null;
+  byWall = impactsByWall(run.answer.impacts);
   plots.common = commonOptions(run.answer);
   return stepsOf("x", "relative", "lambda", "section", ...(run.deferred ? deferredPlots : []));
 }
@@ -82,7 +81,7 @@ function inView(...part) {
 
 /** Impacts of each wall: {mine: indices, x: times, ...style}. */
 const impactsByWall = ({tau, side}) =>
-  Object.entries(walls).map(([colour, wall]) => {
+  Object.entries(walls).map(([colour, [wall]]) => {
     const mine = [...tau.keys()].filter((i) => side[i] === wall);
     return {mine, x: mine.map((i) => tau[i]), colour, shape: "dot", size: 2.2};
   });
@@ -91,18 +90,12 @@ const impactsByWall = ({tau, side}) =>
 function partOf(name, label, heights) {
   const styles = [{label, colour: "motion"}];
   if (pinned) styles.unshift({label: `${label}, pinned`, colour: "pinned"});
-  byWall ??= impactsByWall(run.answer.impacts);
   const impacts = byWall.map(({mine, ...style}) =>
     symbols({...style, y: mine.map((i) => heights[i])}),
   );
   const linesOf = (motions) => {
-    const columns = motions.map((motion) => motion[name]);
     const {tau, dense} = motions.at(-1);
-    return lines(
-      tau,
-      columns,
-      styles.map((style) => ({...style, dense})),
-    );
+    return styles.map((style, k) => line({...style, dense, x: tau, y: motions[k][name]}));
   };
   return {
     bare: !alone.matches,
@@ -179,13 +172,9 @@ function section() {
     x: mm(of.x),
     y: inUnits(of.x_dot_after, units.velocity),
   });
-  const kinds = Object.entries(walls).map(([name, wall]) => [
-    name,
-    (i) => impacts.side[i] === wall,
-    wallNames[name],
-  ]);
+  const kindOf = ([colour, [wall, label]]) => [colour, (i) => impacts.side[i] === wall, label];
   const points = place(impacts);
-  const marks = halves(points, kinds);
+  const marks = halves(points, Object.entries(walls).map(kindOf));
   if (pinned) {
     const there = place(pinned.answer.impacts, unitsOf(pinned.answer.parameters));
     marks.unshift(dots({...there, colour: "pinned", label: "pinned", size: 1.5}));
@@ -212,18 +201,18 @@ function tell(by) {
   const {motion} = run;
   const modulus = modulusAt(motion.impacts.tau[motion.impactNear(cursor)]);
   const {x, y} = motion.at(cursor);
-  const values = {
+  const at = run.units.at(cursor);
+  const texts = {
     x: inMm(x),
     relative: inMm(y - x),
     largest: modulus == null ? "" : short(modulus),
+    lambda: `at ${at}`, // the legend shows the values
   };
-  for (const [name, text] of Object.entries(values)) setTexts({[`value-${name}`]: text});
-  setTexts({"value-lambda": `at ${run.units.at(cursor)}`}); // the legend shows the values
-  if (by === "play") return; // not announced 60 times a second
-  for (const name of overTime)
-    attributes($(`plot-${name}`), {
-      "aria-valuetext": `${run.units.at(cursor)} ${values[name] ?? ""}`,
-    });
+  for (const [name, text] of Object.entries(texts)) {
+    setTexts({[`value-${name}`]: text});
+    if (by === "play") continue; // not announced 60 times a second
+    attributes($(`plot-${name}`), {"aria-valuetext": name === "lambda" ? at : `${at} ${text}`});
+  }
 }
 
 /**

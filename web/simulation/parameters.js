@@ -56,16 +56,13 @@ export function listParameters(parameters, fieldOf) {
     return element("tr", {title: description}, ...cells);
   };
   const table = (title, names) => {
-    const present = names.filter((name) => all[name] != null);
-    if (!present.length) return [];
-    const caption = element("caption", {textContent: title});
-    const body = element("tbody", {}, ...present.map(row));
-    return [element("table", {className: "table parameters"}, caption, body)];
+    const rows = names.filter((name) => all[name] != null).map(row);
+    const parts = [element("caption", {}, title), element("tbody", {}, ...rows)];
+    return element("table", {className: "table parameters", hidden: !rows.length}, ...parts);
   };
   const fields = Object.values(fieldOf);
   const ofGroup = (group) => fields.filter((f) => f.group === group).map((f) => f.name);
-  const tables = ["system", "reduced", "SI", "start", "run"].flatMap((group) =>
-    table(groups[group][0], ofGroup(group)),
-  );
-  $("parameters-tables").replaceChildren(...tables, ...table("Derived", Object.keys(derived)));
+  const given = ["system", "reduced", "SI", "start", "run"];
+  const tables = given.map((group) => table(groups[group][0], ofGroup(group)));
+  $("parameters-tables").replaceChildren(...tables, table("Derived", Object.keys(derived)));
 }

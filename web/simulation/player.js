@@ -6,7 +6,6 @@ import * as machine from "./machine.js";
 import {run, viewport} from "./run.js";
 
 const holdTime = 150; // ms of pause after an edit
-const speeds = [0.1, 0.25, 0.5, 1, 2, 5, 20]; // forcing cycles per second
 
 let frame = 0;
 let held = 0;
@@ -25,8 +24,6 @@ function knock(strength) {
 }
 
 export function start() {
-  $("speed").append(...speeds.map((v) => new Option(`${count(v, "cycle")}/s`, v)));
-  $("speed").value = 1;
   $("play").onclick = () => (frame ? pause() : play());
   $("restart").onclick = () => restart("restart");
   $("sound").onclick = toggleSound;

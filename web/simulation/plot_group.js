@@ -1,27 +1,26 @@
-// The plots of a run by name: lines over time, and planes.
-import {$} from "../shared/dom.js";
+// The plots of a run: lines over time and planes.
 import {exponentSeries} from "../shared/exponents.js";
 import {addExportButton} from "../shared/export_dialog.js";
 import {makeAccessible} from "../shared/gestures.js";
 import {bands, dots, levels, lines, uprights} from "../shared/marks.js";
 import {LinePlot, ScatterPlot} from "../shared/plot.js";
-import {aboutFigure} from "./captions.js";
 import {alongRun} from "./columns.js";
-import {pick, run, viewport} from "./run.js";
+import {run, viewport} from "./run.js";
+import {aboutFigure} from "./words.js";
 
+/** The plots inside an element by name: canvases are planes, the others lines over time. */
 export class PlotGroup {
-  /** lines, planes: names. */
-  constructor(lines, planes) {
+  constructor(container) {
     this.all = {};
-    const add = (name, Kind) => {
-      const plot = new Kind($(`plot-${name}`), viewport);
+    for (const node of container.querySelectorAll("[id^=plot-]")) {
+      const Kind = node.matches("canvas") ? ScatterPlot : LinePlot;
+      const name = node.id.replace("plot-", "");
+      const plot = new Kind(node, viewport);
       const about = () => aboutFigure(name);
-      addExportButton($(`figure-${name}`), plot, about);
+      addExportButton(node.closest("figure"), plot, about);
       makeAccessible(plot, about().title, () => run?.answer.impacts.tau ?? [], viewport);
       this.all[name] = plot;
-    };
-    for (const name of lines) add(name, LinePlot);
-    for (const name of planes) add(name, ScatterPlot);
+    }
   }
 
   /** common: options of all plots over time, as from commonOptions. */
@@ -56,8 +55,15 @@ export function halves({x, y}, kinds) {
   return [false, true].flatMap((late) => kinds.map((kind) => group(late, kind)));
 }
 
-/** Points at the times t; a picked one moves the cursor. */
-export const picked = ({x, y}, t) => ({x, y, t, use: (i, clicked) => pick(t[i], clicked)});
+/** Points at the times t; a picked one moves the cursor, and a click also scrolls to it. */
+export const picked = (points, t) => ({
+  ...points,
+  t,
+  use(i, clicked) {
+    if (clicked) viewport.reveal(t[i]);
+    if (viewport.holds(t[i])) viewport.point(t[i], "pick");
+  },
+});
 
 /** The time axis, sticking phases, synchronised intervals, and borders of the requested windows. */
 export function commonOptions({sticking, exponents, regime, parameters, status, windows = []}) {

@@ -3,15 +3,9 @@ import {Viewport} from "../shared/viewport.js";
 
 export const viewport = new Viewport();
 
-/** {fields, answer, motion, units, deferred}; deferred: the second answer, once it has arrived. */
+/** {fields, answer, motion, units, deferred, details}; the last two are answers that arrive later. */
 export let run = null;
 
 export function setRun(newest) {
   run = newest;
-}
-
-/** Moves the cursor to a time picked in a plane; a click also scrolls to it. */
-export function pick(tau, clicked) {
-  if (clicked) viewport.reveal(tau);
-  if (viewport.holds(tau)) viewport.point(tau, "pick");
 }

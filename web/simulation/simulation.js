@@ -2,7 +2,7 @@
 // address holds the request and the visible range.
 
 import {simulate} from "../shared/api.js";
-import {$, attributes, button, countUp, nextTask, press, reveal, setTexts} from "../shared/dom.js";
+import {$, attributes, countUp, nextTask, press, reveal, setTexts} from "../shared/dom.js";
 import {copy, formsOf} from "../shared/export.js";
 import {Form, unknownText} from "../shared/form.js";
 import {Job} from "../shared/job.js";
@@ -11,7 +11,6 @@ import {roundedRange} from "../shared/numbers.js";
 import {RequestTab} from "../shared/request_tab.js";
 import {showRemarks} from "../shared/tables.js";
 import {onUnits, unitsOf, unitsSwitch} from "../shared/units.js";
-import {describe} from "./captions.js";
 import * as details from "./details.js";
 import * as machine from "./machine.js";
 import * as mainPlots from "./main_plots.js";
@@ -20,9 +19,9 @@ import * as player from "./player.js";
 import * as presetMenu from "./preset_menu.js";
 import {Request, toQuery} from "./request.js";
 import {run, setRun, viewport} from "./run.js";
-import {showSentence} from "./sentence.js";
 import * as sliders from "./sliders.js";
 import * as strip from "./strip.js";
+import {describe, showSentence} from "./words.js";
 
 // Parts requested for every slider movement, and parts requested once it rests.
 const firstParts = {include: ["impacts", "exponents", "regime", "energy"], exponents: ["qr"]};
@@ -73,15 +72,7 @@ export class SimulationTab extends RequestTab {
     this.request = new Request(this.form, fields, presets);
     mainPlots.start();
     player.start();
-    const refused = (text, {label}) => {
-      this.mark(true);
-      this.say(`${label}: “${text}” is not a number`, true);
-    };
-    sliders.start(
-      (...moved) => this.sliderMoved(...moved),
-      refused,
-      (differs) => this.mark(differs),
-    );
+    sliders.start(this);
     details.start(this.request.fieldOf);
     presetMenu.start(presets, (name) => this.choosePreset(name));
     pin.start(changed, (other) => {
@@ -119,11 +110,8 @@ export class SimulationTab extends RequestTab {
     });
     $("measure-this").onclick = () => run && measure(run.answer);
     const texts = formsOf("v1/simulate", () => request.fields());
-    for (const [name, text] of Object.entries(texts)) {
-      const title = `copy this run as ${name}`;
-      const copyText = () => copy(text(), this.say);
-      $("copies").append(button(name, copyText, {className: "small", title}));
-    }
+    for (const one of $("copies").children)
+      one.onclick = () => copy(texts[one.textContent](), this.say);
   }
 
   ask(fields, signal) {
@@ -190,18 +178,21 @@ export class SimulationTab extends RequestTab {
   drawing(fresh = false) {
     const {request} = this;
     const {answer, fields, units} = run;
-    const slider = sliders.sliderOf(this.lastMoved, answer.parameters);
-    const tell = () => {
-      sliders.show(answer.parameters, {fresh, dragged: fields.dragged}, slider);
-      showSentence(answer, slider, units);
-    };
-    const end = () => {
-      player.show();
-      describe(answer, request.textOf(fields, answer.parameters));
-      presetMenu.markPlots(request.edited ? null : request.preset);
-      strip.show(request.systemOf(fields), answer.parameters, slider);
-    };
-    return [tell, ...mainPlots.drawing(), end];
+    const {parameters} = answer;
+    const slider = sliders.sliderOf(this.lastMoved, parameters);
+    return [
+      () => {
+        sliders.show(parameters, {fresh, dragged: fields.dragged}, slider);
+        showSentence(answer, slider, units);
+      },
+      ...mainPlots.drawing(),
+      () => {
+        player.show();
+        describe(answer, request.textOf(fields, parameters));
+        presetMenu.markPlots(request.edited ? null : request.preset);
+        strip.show(request.systemOf(fields), parameters, slider);
+      },
+    ];
   }
 
   submit() {
@@ -233,7 +224,16 @@ export class SimulationTab extends RequestTab {
     this.changed({edit, soon});
   }
 
-  /** Called when a slider or the strip's marker moves. */
+  /** Called when the text in a slider's number is not a number. */
+  sliderRefused({label, number}) {
+    this.mark(true);
+    this.say(`${label}: “${number.value}” is not a number`, true);
+  }
+
+  /**
+   * Called when a slider or the strip's marker moves. fields: to set, null to clear one; dragging:
+   * the slider is being dragged.
+   */
   sliderMoved(fields, slider, dragging) {
     const {form, request} = this;
     this.lastMoved = slider.name;
@@ -298,10 +298,10 @@ function startSmallScreen() {
   const buttons = document.querySelectorAll("#switch button");
   for (const one of buttons)
     one.onclick = () => {
-      $("instrument").dataset.plot = one.dataset.plot;
       press(buttons, (b) => b === one);
+      for (const figure of document.querySelectorAll("#instrument figure"))
+        figure.classList.toggle("chosen", figure.id === `figure-${one.dataset.plot}`);
     };
-  buttons[0].click();
   $("sheet").onclick = () => {
     const open = $("form").classList.toggle("open");
     attributes($("sheet"), {"aria-expanded": open});

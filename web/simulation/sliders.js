@@ -1,35 +1,36 @@
-// The main parameters, each with a slider, a number and a unit. They set fields of the form.
-import {$, attributes, element} from "../shared/dom.js";
+// The main parameters, each with a slider, a number and a unit. They set fields of the
+// form.
+import {$, attributes} from "../shared/dom.js";
 import {inMm, short, shortTo, toNumber} from "../shared/numbers.js";
 import {symbolOf} from "../shared/quantities.js";
 
 /**
- * of(parameters): value in the field's unit; fields(value, parameters): fields to set, null to
- * clear one; rangeOf(parameters): in the slider's unit; about: description, or aboutOf(parameters)
- * where it depends on the system; textOf(parameters): the value as text.
+ * A slider from its row of the page. of(parameters): value in the field's unit; fields(value,
+ * parameters): fields to set, null to clear one; usualRange(parameters): in the slider's unit;
+ * aboutOf(parameters): description where it depends on the system; textOf(parameters): the value as
+ * text. span: the current range, once it is shown.
  */
-const slider = (name, label, about, more) => ({
-  name,
-  label,
-  about,
-  symbol: symbolOf(name),
-  unit: "",
-  factor: 1,
-  of: (p) => p[name] ?? p.si[name],
-  fields: (value) => ({[name]: value}),
-  ...more,
-});
+function slider(name, more) {
+  const node = $(`slider-${name}`).parentNode;
+  const [title, number, {textContent: unit}, range, note] = node.children;
+  return {
+    ...{name, unit, node, number, range, note},
+    label: title.firstChild.textContent.trim(),
+    about: note.textContent,
+    symbol: symbolOf(name),
+    factor: unit === "mm" ? 1000 : 1,
+    of: (p) => p[name] ?? p.si[name],
+    fields: (value) => ({[name]: value}),
+    ...more,
+  };
+}
 
-const mm = {unit: "mm", factor: 1000};
 /** zeta divided by lambda: eq. (3), or the paper's closed form. */
 const zetaOver = ({epsilon, damping}) => (damping === "closed_form" ? epsilon : epsilon / 2);
 
-const clearance = slider("b", "Clearance", "half-width of the cavity", {
-  ...mm,
-  rangeOf: () => [1, 45],
-});
-const restitution = slider("R", "Restitution", "of both walls", {
-  rangeOf: () => [0, 1],
+const clearance = slider("b", {usualRange: () => [1, 45]});
+const restitution = slider("R", {
+  usualRange: () => [0, 1],
   of: ({R_plus: plus, R_minus: minus}) => (plus + minus) / 2,
   fields: (value) => ({R: value, R_plus: null, R_minus: null}),
   textOf: ({R_plus: plus, R_minus: minus}) =>
@@ -42,10 +43,10 @@ const restitution = slider("R", "Restitution", "of both walls", {
 const reduced = [
   clearance,
   restitution,
-  slider("G", "Forcing", "amplitude of the base divided by ε", {...mm, rangeOf: () => [0, 40]}),
-  slider("Omega", "Frequency", "relative to the natural frequency", {rangeOf: () => [0.9, 1.1]}),
-  slider("zeta", "Damping", "damping ratio of the oscillator", {
-    rangeOf: () => [0, 0.04],
+  slider("G", {usualRange: () => [0, 40]}),
+  slider("Omega", {usualRange: () => [0.9, 1.1]}),
+  slider("zeta", {
+    usualRange: () => [0, 0.04],
     of: ({derived}) => derived.zeta,
     fields: (zeta, parameters) => ({lambda: zeta / zetaOver(parameters)}),
   }),
@@ -53,20 +54,14 @@ const reduced = [
 const si = [
   clearance,
   restitution,
-  slider("F", "Forcing", "amplitude of the base", {
-    ...mm,
-    rangeOf: ({si: {F}}) => [0, 2500 * F || 1],
-  }),
-  slider("f", "Frequency", "of the base", {
-    unit: "Hz",
-    rangeOf: ({derived: {f0}}) => [0.9 * f0, 1.1 * f0],
-  }),
-  slider("c1", "Damping", "of the oscillator", {
-    unit: "N s/m",
-    rangeOf: ({si: {c1}}) => [0, 3 * c1 || 1],
+  slider("F", {usualRange: ({si: {F}}) => [0, 2500 * F || 1]}),
+  slider("f", {usualRange: ({derived: {f0}}) => [0.9 * f0, 1.1 * f0]}),
+  slider("c1", {
+    usualRange: ({si: {c1}}) => [0, 3 * c1 || 1],
     fields: (value) => ({c1: value, damping_ratio: null}),
   }),
 ];
+const all = new Set([...reduced, ...si]);
 const slidersOf = (parameters) => (parameters.si ? si : reduced);
 
 /** A slider by name; clearance if the system has none of that name. */
@@ -81,9 +76,9 @@ export const fieldsOf = ({fields, factor}, value, parameters) =>
 const holds = ([least, most], value) => value >= least && value <= most;
 
 /** [least, most] in the slider's unit; extended if it does not contain the value. */
-function rangeOf({rangeOf: usual, ...rest}, parameters) {
-  const value = valueAt(rest, parameters);
-  const range = usual(parameters);
+function rangeOf(one, parameters) {
+  const value = valueAt(one, parameters);
+  const range = one.usualRange(parameters);
   if (holds(range, value)) return range;
   const power = 10 ** Math.floor(Math.log10(value || 1));
   return [0, Math.ceil((2 * value) / power) * power];
@@ -128,20 +123,22 @@ export function parameterLine(parameters) {
   );
 }
 
-const rows = new Map(); // {node, number, range, note, span} of each slider
-let shown; // parameters
-let handlers; // of start()
+let shown = null; // parameters
+let tab; // of start()
 
-/** The current range of a slider. */
-export const spanOf = (one) => rows.get(one).span;
-
-/**
- * changed(fields, slider, dragging): fields to set, null to clear one; dragging: it is being
- * dragged. refused(text, slider): the text is no number; typed(differs): while typing, whether the
- * number differs from the one shown.
- */
-export function start(changed, refused, typed) {
-  handlers = {changed, refused, typed};
+/** its: the tab, which has sliderMoved(), sliderRefused() and mark(). */
+export function start(its) {
+  tab = its;
+  for (const one of all) {
+    const {number, range} = one;
+    Object.assign(number, {
+      onchange: () => typed(one),
+      oninput: () => tab.mark(number.value !== number.defaultValue),
+      onblur: () => tab.mark(number.matches("[aria-invalid=true]")),
+    });
+    range.oninput = () => moveSlider(one, Number(range.value), true);
+    range.onchange = () => moveSlider(one, Number(range.value), false);
+  }
 }
 
 /**
@@ -150,66 +147,38 @@ export function start(changed, refused, typed) {
  */
 export function show(parameters, {fresh, dragged}, last) {
   shown = parameters;
+  $("sliders").inert = false;
   const kind = slidersOf(parameters);
-  if (!kind.every((one) => rows.has(one))) {
-    rows.clear();
-    $("sliders").replaceChildren(...kind.map(rowOf));
+  for (const one of all) {
+    one.node.hidden = !kind.includes(one);
+    one.node.classList.toggle("last", one === last);
   }
-  for (const [one, row] of rows) {
-    set(one, row, fresh, dragged);
-    row.node.classList.toggle("last", one === last);
-  }
+  for (const one of kind) set(one, fresh, dragged);
 }
 
-function rowOf(one) {
-  const {label, symbol} = one;
-  const id = `slider-${one.name}`;
-  const title = element("label", {htmlFor: id}, `${label} `, element("i", {textContent: symbol}));
-  const number = element("input", {
-    type: "text",
-    inputMode: "decimal",
-    id,
-    autocomplete: "off",
-    onchange: () => typed(one, number),
-    oninput: () => handlers.typed(number.value !== number.defaultValue),
-    onblur: () => handlers.typed(number.matches("[aria-invalid=true]")),
-  });
-  const range = element("input", {
-    type: "range",
-    ariaLabel: `${label} ${symbol}`,
-    oninput: () => moveSlider(one, Number(range.value), true),
-    onchange: () => moveSlider(one, Number(range.value), false),
-  });
-  const note = element("small");
-  title.title = one.about;
-  const unit = element("span", {className: "unit", textContent: one.unit});
-  const node = element("div", {className: "slider"}, title, number, unit, range, note);
-  rows.set(one, {node, number, range, note, span: null});
-  return node;
-}
-
-function set(one, row, fresh, dragged) {
-  const {number, range} = row;
+function set(one, fresh, dragged) {
+  const {number, range} = one;
   const value = valueAt(one, shown);
-  if (!dragged || !row.span || !holds(row.span, value)) row.span = rangeOf(one, shown);
-  const [min, max] = row.span;
+  if (!dragged || !one.span || !holds(one.span, value)) one.span = rangeOf(one, shown);
+  const [min, max] = one.span;
   const put = (input, text) => {
     if (fresh || document.activeElement !== input) input.value = text;
   };
   Object.assign(range, {min, max, step: (max - min) / 1000});
   put(range, value);
-  attributes(range, {"aria-valuetext": `${written(value, row.span)} ${one.unit}`});
+  attributes(range, {"aria-valuetext": `${written(value, one.span)} ${one.unit}`});
   attributes(number, {"aria-invalid": false});
-  number.defaultValue = textAt(one, shown, row.span);
+  number.defaultValue = textAt(one, shown, one.span);
   put(number, number.defaultValue);
-  row.note.textContent = one.aboutOf?.(shown) || one.about;
+  one.note.textContent = one.aboutOf?.(shown) || one.about;
 }
 
 /** Marks sliders with invalid values; returns messages in their units. */
 export function showErrors(errors) {
-  const of = ({pointer}) => [...rows].find(([one]) => one.name === pointer.slice(1));
+  const sliders = shown ? slidersOf(shown) : [];
+  const of = ({pointer}) => sliders.find(({name}) => name === pointer.slice(1));
   return errors.filter(of).map((error) => {
-    const [{label, name, unit, factor}, {number}] = of(error);
+    const {label, name, unit, factor, number} = of(error);
     attributes(number, {"aria-invalid": true});
     const ends = error.range?.map((v) => short(v * factor)).join(" to ");
     const range = ends ? `${name} must lie in ${ends} ${unit}`.trim() : error.detail;
@@ -219,18 +188,17 @@ export function showErrors(errors) {
 
 /** Sets a slider to a value, rounded as its number shows it. */
 export function moveSlider(one, value, dragging) {
-  const {number, span} = rows.get(one);
-  number.value = written(value, span);
-  apply(one, Number(number.value), dragging);
+  one.number.value = written(value, one.span);
+  apply(one, Number(one.number.value), dragging);
 }
 
-function typed(one, input) {
-  const value = toNumber(input.value);
-  attributes(input, {"aria-invalid": value === null});
-  if (value === null) handlers.refused(input.value, one);
+function typed(one) {
+  const value = toNumber(one.number.value);
+  attributes(one.number, {"aria-invalid": value === null});
+  if (value === null) tab.sliderRefused(one);
   else apply(one, value, false);
 }
 
 function apply(one, value, dragging) {
-  handlers.changed(fieldsOf(one, value, shown), one, dragging);
+  tab.sliderMoved(fieldsOf(one, value, shown), one, dragging);
 }

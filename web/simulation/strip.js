@@ -1,6 +1,6 @@
 // The regime strip: regimes and lambda1 along the parameter moved last, computed by a sweep from
 // coarse to fine. Its marker acts as the slider.
-import {$, attributes, countUp, element, setTexts} from "../shared/dom.js";
+import {$, attributes, countUp, setTexts} from "../shared/dom.js";
 import {Frame} from "../shared/frame.js";
 import {Job} from "../shared/job.js";
 import {blocks, dots, levels} from "../shared/marks.js";
@@ -11,7 +11,7 @@ import {nearest} from "../shared/search.js";
 import {receive, SweepData} from "../sweep/data.js";
 import {Layers, stretches} from "../sweep/layers.js";
 import {run} from "./run.js";
-import {fieldsOf, moveSlider, spanOf, valueAt, written} from "./sliders.js";
+import {fieldsOf, moveSlider, valueAt, written} from "./sliders.js";
 
 const cycles = 300; // measured at each point
 const transient = 150; // cycles discarded before
@@ -20,7 +20,7 @@ const pause = 180; // ms without an edit before it starts
 const band = 13; // px, height of the regime band
 
 const canvas = $("strip");
-const marker = element("div", {className: "marker"});
+const marker = canvas.nextElementSibling;
 const say = (text) => setTexts({"strip-trouble": text});
 let parameters;
 let slider; // the one moved last
@@ -54,7 +54,7 @@ const job = new Job({
 export function show(system, shown, turned) {
   parameters = shown;
   slider = turned;
-  range = spanOf(slider);
+  range = slider.span;
   const names = Object.keys(fieldsOf(slider, 0, parameters));
   if (parameter !== names[0]) layers = null;
   [parameter] = names;
@@ -224,8 +224,6 @@ const steps = {
   Home: -Infinity,
   End: Infinity,
 };
-
-canvas.parentNode.append(marker);
 
 function listen() {
   Object.assign(canvas, {
