@@ -1,6 +1,6 @@
 // The results of a measurement as cards, and the table of fitted parameters.
 
-import {$, element} from "../shared/dom.js";
+import {$} from "../shared/dom.js";
 import {count, digits, minus, withError} from "../shared/numbers.js";
 import {verdicts} from "../shared/quantities.js";
 import {cards, listWarnings} from "../shared/tables.js";
@@ -99,36 +99,19 @@ export function summariseMeasurement(answer, milliseconds) {
     ...signalCards(signal, milliseconds),
   ]);
   listWarnings($("measure-warnings"), warnings);
+  showFit(answer);
 }
 
-/** Key in the answer's `fitted`: description, unit, factor from SI. */
-const rows = [
-  ["f", "frequency of the forcing", "Hz"],
-  ["F", "amplitude F of the base", "mm", 1e3],
-  ["phase", "its phase at t = 0", "rad"],
-  ["displacement_offset", "offset of the displacement", "µm", 1e6],
-  ["displacement_drift", "its drift over the record", "µm", 1e6],
-  ["displacement_gain", "its scale relative to the acceleration"],
-  ["displacement_delay_s", "its delay relative to the acceleration", "ms", 1e3],
-  ["acceleration_offset", "offset of the acceleration", "m/s²"],
-  ["acceleration_drift", "its drift over the record", "m/s²"],
-  ["omega0", "ω₀ of the oscillator", "rad/s"],
-  ["zeta", "its damping ratio ζ"],
-  ["b", "clearance b", "mm", 1e3],
-  ["R_plus", "R at +b"],
-  ["R_minus", "R at −b"],
-];
-
-export function showFit({fitted, signal: {forcing}}) {
-  const row = ([key, name, unit = "", factor = 1]) => {
+/** Fills in the table of fitted values; each cell states its key in `fitted`, unit and factor. */
+function showFit({fitted, signal: {forcing}}) {
+  for (const cell of $("measure-fitted").querySelectorAll("[data-value]")) {
+    const {value: key, unit = "", factor = 1} = cell.dataset;
     const {value, standard_error: error, fixed} = fitted[key];
     const shown = fixed
       ? minus(rounded(value * factor, 6))
       : withError(value * factor, error * factor, 4);
-    const text = `${shown} ${unit}`.trim() + (fixed ? ", as given" : "");
-    return element("tr", {}, element("td", {}, name), element("td", {}, text));
-  };
-  $("measure-fitted").replaceChildren(...rows.map(row));
+    cell.textContent = `${shown} ${unit}`.trim() + (fixed ? ", as given" : "");
+  }
   $("measure-channel").textContent = forcing
     ? `The forcing channel gives f = ${forcing.f.toPrecision(7)} Hz and ` +
       `F = ${(forcing.F * 1000).toPrecision(4)} mm; in the motion it appears ` +

@@ -15,7 +15,6 @@ import {
 } from "../shared/quantities.js";
 import {inSeconds} from "../shared/units.js";
 import {phaseLabels} from "./axis_labels.js";
-import {stretches} from "./layers.js";
 import {SweepPlot} from "./sweep_view.js";
 
 const startColours = ["c1", "before", "c2", "c4", "c3"];
@@ -95,17 +94,17 @@ class Diagram extends SweepPlot {
     return [line({...columns, alpha: 0.6}), dots({...columns, ...ring})];
   }
 
-  /** Stretches of the same regime of a start, as a list for blocks(). */
+  /** Stretches of neighbouring places with the same regime of a start, as a list for blocks(). */
   stretches(start) {
     const {from: value} = this.view.data.axes[0];
-    return stretches(this.view.byStart[start])
-      .filter(({regime}) => regime)
-      .map(({regime, from, to}) => ({
-        from: value(from),
-        to: value(to),
-        colour: regimeColour(regime),
-        regime,
-      }));
+    const list = [];
+    for (const {p, low, high} of this.view.byStart[start]) {
+      const {regime} = p;
+      const to = value(high);
+      if (list.at(-1)?.regime === regime) list.at(-1).to = to;
+      else list.push({regime, from: value(low), to, colour: regimeColour(regime)});
+    }
+    return list.filter(({regime}) => regime);
   }
 
   /** Regimes as a narrow strip along the top, a row for each start. */
@@ -223,7 +222,7 @@ export class LambdaDiagram extends Diagram {
 
 export class QuantityDiagram extends Diagram {
   quantity() {
-    return quantityOf(this.view.choice.quantity, this.view.data);
+    return quantityOf(this.view.choice.beside, this.view.data);
   }
 
   drawn({p}) {

@@ -15,37 +15,31 @@ import {Layers} from "./layers.js";
 import {MapView} from "./map_view.js";
 import {showPeaks} from "./peaks.js";
 import {Refiner} from "./refine.js";
-import {examples, grouped, SweepForm} from "./sweep_form.js";
+import {grouped, SweepForm} from "./sweep_form.js";
 
 const cyclesOfPoint = 272; // for the simulation of a point; tau = 1709 as in the paper
 
 // Menus by their name in the query. The first entry is the default and not mentioned there.
-const menus = {
+const ofQuery = {
   coordinate: $("sweep-coordinate"),
   beside: $("sweep-quantity"),
   map: $("sweep-mapped"),
 };
-const startMenu = $("sweep-start");
-const sliceMenu = $("sweep-slice");
-const choice = () => ({
-  coordinate: menus.coordinate.value,
-  quantity: menus.beside.value,
-  map: menus.map.value,
-  start: Number(startMenu.value) || 0,
-  best: startMenu.value === "best",
-  slice: Number(sliceMenu.value),
-});
+const menus = {...ofQuery, start: $("sweep-start"), slice: $("sweep-slice")};
 
 /** The part of a query that is the request, in canonical order. */
 function requestOf(query) {
   const request = new URLSearchParams(query);
-  for (const name of [...Object.keys(menus), "view"]) request.delete(name);
+  for (const name of [...Object.keys(ofQuery), "view"]) request.delete(name);
   request.sort();
   return String(request);
 }
 
+const exampleMenu = $("sweep-example");
+const [custom, ...examples] = exampleMenu.options;
+/** The entry of the examples that has the request of a query. */
 const exampleOf = (query) =>
-  examples.findIndex(([, example]) => requestOf(example) === requestOf(query));
+  examples.find(({dataset}) => requestOf(dataset.query) === requestOf(query)) ?? custom;
 
 function time(seconds) {
   if (seconds < 1) return "less than a second";
@@ -142,9 +136,6 @@ export class SweepTab extends RequestTab {
         changed({soon: true});
         this.refiner.schedule();
       });
-    reveal({"sweep-keys": false});
-    const titles = examples.map(([title], i) => [i, title]);
-    fillMenu($("sweep-example"), [["-1", "custom sweep"], ...titles]);
     unitsSwitch($("sweep-units"));
     onUnits(() => this.redraw());
     this.listen();
@@ -152,9 +143,10 @@ export class SweepTab extends RequestTab {
 
   listen() {
     this.results.onchange = () => this.menuChanged();
-    $("sweep-example").onchange = ({target}) => {
-      if (!examples[target.value]) return;
-      this.openSweep(new URLSearchParams(examples[target.value][1]));
+    exampleMenu.onchange = () => {
+      const [{dataset}] = exampleMenu.selectedOptions;
+      if (!dataset.query) return;
+      this.openSweep(new URLSearchParams(dataset.query));
       this.scrollToResults();
     };
     $("sweep-resume").onclick = () => this.complete(this.data);
@@ -173,7 +165,7 @@ export class SweepTab extends RequestTab {
 
   query() {
     if (!this.data) return null;
-    const menu = Object.entries(menus)
+    const menu = Object.entries(ofQuery)
       .filter(([, {selectedIndex}]) => selectedIndex > 0)
       .map(([name, {value}]) => `${name}=${value}`);
     const ends = this.view?.ends().join(",");
@@ -185,7 +177,7 @@ export class SweepTab extends RequestTab {
     const ends = numbers.every(Number.isFinite) ? numbers : [];
     if (this.data && requestOf(given) === requestOf(this.shown())) {
       // The same sweep with other menus: Back or Forward.
-      for (const [name, menu] of Object.entries(menus)) choose(menu, given.get(name));
+      for (const [name, menu] of Object.entries(ofQuery)) choose(menu, given.get(name));
       this.view?.zoomTo(ends);
       this.menuChanged();
     } else this.openSweep(given, ends);
@@ -193,10 +185,10 @@ export class SweepTab extends RequestTab {
 
   /** Runs the sweep of a query, or the first example if it names none. */
   openSweep(given, ends) {
-    const request = requestOf(given) || requestOf(examples[0][1]);
-    const standard = Object.keys(menus).map((name) => [name, ""]); // the first entry
-    this.wanted = Object.fromEntries([...standard, ...given]);
-    this.form.setQuery(new URLSearchParams(request), exampleOf(request) >= 0);
+    const request = requestOf(given) || requestOf(examples[0].dataset.query);
+    const standard = {coordinate: "", beside: "", map: ""}; // the first entry
+    this.wanted = {...standard, ...Object.fromEntries(given)};
+    this.form.setQuery(new URLSearchParams(request), exampleOf(request) !== custom);
     this.run(ends);
   }
 
@@ -256,7 +248,7 @@ export class SweepTab extends RequestTab {
 
   /** Marks the results if the form differs, and selects the example that the form shows. */
   markStale() {
-    $("sweep-example").value = exampleOf(SweepForm.toQuery(this.form.request()));
+    exampleOf(SweepForm.toQuery(this.form.request())).selected = true;
     super.markStale();
   }
 
@@ -271,7 +263,7 @@ export class SweepTab extends RequestTab {
     this.data = data;
     data.folded = data.reduced && labels.of(data.reduced);
     this.view = this.views[data.axes.length];
-    this.form.base.showOrigins(data.parameters);
+    this.form.showOrigins(data.parameters);
     this.fillMenus();
     const key = (state, s) => element("li", {}, element("span", startKey(state, s, labels)));
     $("sweep-starts").replaceChildren(...data.states.map(key));
@@ -286,20 +278,19 @@ export class SweepTab extends RequestTab {
   /** Fills the menus for a new sweep; unused ones are empty. */
   fillMenus() {
     const {section, defaultSet, axes, states} = this.data;
-    const titles = Object.entries(coordinates[section] ?? {}).map(([name, {title}]) => [
-      name,
-      title,
-    ]);
-    const entries = {coordinate: titles, [axes.length > 1 ? "map" : "beside"]: menuOf(this.data)};
+    const {parameter, values} = axes[2] ?? {values: []};
+    const entries = {
+      coordinate: Object.entries(coordinates[section] ?? {}).map(([name, {title}]) => [
+        name,
+        title,
+      ]),
+      [axes.length > 1 ? "map" : "beside"]: menuOf(this.data),
+      start: defaultSet ? [[0, "worst"], ["best"]] : states.map((_, s) => [s, s + 1]),
+      slice: values.map((v, m) => [m, this.labels.value(parameter, v)]),
+    };
     for (const [name, menu] of Object.entries(menus))
       fillMenu(menu, entries[name] ?? [], this.wanted[name]);
     this.wanted = {};
-    const numbered = states.map((_, s) => [s, s + 1]);
-    const ofDefaultSet = [[0, "worst"], ["best"]];
-    fillMenu(startMenu, defaultSet ? ofDefaultSet : numbered);
-    const {parameter, values} = axes[2] ?? {values: []};
-    const slices = values.map((v, m) => [m, this.labels.value(parameter, v)]);
-    fillMenu(sliceMenu, slices);
   }
 
   menuChanged() {
@@ -329,7 +320,8 @@ export class SweepTab extends RequestTab {
     clearTimeout(this.redrawing);
     this.redrawing = 0;
     const began = performance.now();
-    this.view?.refresh(choice());
+    const values = Object.entries(menus).map(([name, {value}]) => [name, value]);
+    this.view?.refresh(Object.fromEntries(values));
     showPeaks(this.data, this.labels);
     showParts(this.data);
     showRegimes(this.data);
