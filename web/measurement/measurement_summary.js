@@ -13,23 +13,14 @@ function exponentCards({parameters, exponents: {qr}, slope, forward, ...answer})
   const error = qr?.standard_error[0];
   const {lambda1, low, high} = slope;
   const zeta = `damping ζ = ${digits(parameters.derived.zeta)}`;
+  const reason = answer.verdict_reason.replace("damping zeta", zeta);
+  const atEnd = error == null ? "" : `± ${digits(error)}, at the last impact`;
+  const interval = low == null ? "" : `90 %: ${digits(low)} to ${digits(high)}`;
   const source = forward ? "simulated from the first known state" : "no state is known";
   return [
-    [
-      "verdict",
-      verdicts[answer.verdict] ?? "–",
-      answer.verdict_reason.replace("damping zeta", zeta),
-    ],
-    [
-      "λ₁ (qr)",
-      digits(qr?.final[0]),
-      error == null ? "" : `± ${digits(error)}, at the last impact`,
-    ],
-    [
-      "slope of λ₁ τ",
-      digits(lambda1),
-      low == null ? "" : `90 %: ${digits(low)} to ${digits(high)}`,
-    ],
+    ["verdict", verdicts[answer.verdict] ?? "–", reason],
+    ["λ₁ (qr)", digits(qr?.final[0]), atEnd],
+    ["slope of λ₁ τ", digits(lambda1), interval],
     ["λ₁ of the identified system", digits(forward?.lambda[0]), source],
   ];
 }
@@ -60,31 +51,22 @@ function clearanceCard({b, standard_error: error}, parameters) {
   const agreement = Math.abs(off) < 0.05 ? "agrees" : `off by ${digits(off, 1)} %`;
   const given = `given ${rounded(parameters.b * 1000, 5)} mm${b == null ? "" : `, ${agreement}`}`;
   const isUsed = parameters.origin.b === "fitted to the record";
-  return [
-    "b fitted",
-    b == null ? "–" : `${withError(b * 1000, error * 1000, 2)} mm`,
-    isUsed ? "used in place of the given value" : given,
-  ];
+  const fitted = b == null ? "–" : `${withError(b * 1000, error * 1000, 2)} mm`;
+  return ["b fitted", fitted, isUsed ? "used in place of the given value" : given];
 }
 
 function signalCards(signal, milliseconds) {
   const {noise_displacement: x, noise_acceleration: a, pulse_s: pulse} = signal;
   const {samples, sampling_rate: rate} = signal;
-  const duration = `${count(samples, "sample")}, ${(samples / rate).toFixed(1)} s`;
   const noise = a == null ? "" : `${rounded(a, 3)} m/s²`;
+  const width = `${rounded(pulse * rate, 2)} samples long`;
+  const duration = `${count(samples, "sample")}, ${(samples / rate).toFixed(1)} s`;
+  const answered = `answered in ${milliseconds.toFixed(0)} ms`;
   return [
     ["forcing G", `${rounded(signal.G * 1000, 4)} mm`, "fitted"],
     ["noise", x == null ? "–" : `${rounded(x * 1e6, 3)} µm`, noise],
-    [
-      "pulse of an impact",
-      `${rounded(pulse * 1000, 3)} ms`,
-      `${rounded(pulse * rate, 2)} samples long`,
-    ],
-    [
-      "sampling",
-      `${rounded(rate, 5)} Hz`,
-      `${duration}; answered in ${milliseconds.toFixed(0)} ms`,
-    ],
+    ["pulse of an impact", `${rounded(pulse * 1000, 3)} ms`, width],
+    ["sampling", `${rounded(rate, 5)} Hz`, `${duration}; ${answered}`],
   ];
 }
 

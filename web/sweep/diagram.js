@@ -14,7 +14,8 @@ import {
   verdicts,
 } from "../shared/quantities.js";
 import {inSeconds} from "../shared/units.js";
-import {phaseLabels} from "./axis_labels.js";
+import * as labels from "./axis_labels.js";
+import {stretches} from "./layers.js";
 import {SweepPlot} from "./sweep_view.js";
 
 const startColours = ["c1", "before", "c2", "c4", "c3"];
@@ -94,17 +95,17 @@ class Diagram extends SweepPlot {
     return [line({...columns, alpha: 0.6}), dots({...columns, ...ring})];
   }
 
-  /** Stretches of neighbouring places with the same regime of a start, as a list for blocks(). */
+  /** Stretches of the same regime of a start, as a list for blocks(). */
   stretches(start) {
     const {from: value} = this.view.data.axes[0];
-    const list = [];
-    for (const {p, low, high} of this.view.byStart[start]) {
-      const {regime} = p;
-      const to = value(high);
-      if (list.at(-1)?.regime === regime) list.at(-1).to = to;
-      else list.push({regime, from: value(low), to, colour: regimeColour(regime)});
-    }
-    return list.filter(({regime}) => regime);
+    return stretches(this.view.byStart[start])
+      .filter(({regime}) => regime)
+      .map(({regime, from, to}) => ({
+        from: value(from),
+        to: value(to),
+        colour: regimeColour(regime),
+        regime,
+      }));
   }
 
   /** Regimes as a narrow strip along the top, a row for each start. */
@@ -112,6 +113,13 @@ class Diagram extends SweepPlot {
     return this.view.starts().map((s) => blocks({list: this.stretches(s), down: 6 * s, height: 5}));
   }
 }
+
+const turns = ["0", "π/2", "π", "3π/2", "2π"];
+/** Labels of a phase axis at quarter turns. */
+const phaseLabels = (min, max) =>
+  turns
+    .map((text, i) => ({at: (i * Math.PI) / 2, text}))
+    .filter(({at}) => at >= min - 1e-9 && at <= max + 1e-9);
 
 /** A column of a point's section, from SweepData. */
 const section = (p, column) => p.section?.[column] ?? [];
@@ -128,10 +136,10 @@ export class SectionDiagram extends Diagram {
   }
 
   y() {
-    const {column, range, log, least = -Infinity, turns, label} = this.shown();
+    const {column, range, log, least = -Infinity, turns: phase, label} = this.shown();
     const large = (p) => section(p, column).filter((v) => !(v <= least));
     const held = range ?? rangeOf(this.values(large), {log}) ?? (log ? [0.1, 10] : [-1, 1]);
-    return {range: held, log, label, labels: turns && phaseLabels};
+    return {range: held, log, label, labels: phase && phaseLabels};
   }
 
   marks() {
@@ -275,7 +283,7 @@ export class QuantityDiagram extends Diagram {
 }
 
 /** Legend entry of a start: its symbol and state. */
-export const startKey = (state, s, labels) => ({
+export const startKey = (state, s) => ({
   className: `key start start${s % startColours.length}`,
   style: `color: var(--${startColour(s)})`,
   textContent: `${s + 1}: ${labels.fields(state)}`,

@@ -3,6 +3,7 @@
 
 import {describe, startNames} from "../shared/quantities.js";
 import {Viewport} from "../shared/viewport.js";
+import * as labels from "./axis_labels.js";
 import {LambdaDiagram, QuantityDiagram, SectionDiagram} from "./diagram.js";
 import {missingPoint, SweepView} from "./sweep_view.js";
 
@@ -68,7 +69,7 @@ export class DiagramView extends SweepView {
 
   /** Tooltip rows of each start; at most five each when there are several. */
   rowsOf(place) {
-    const {labels, data, several} = this;
+    const {data, several} = this;
     const rows = this.placesAt(place).map((found, s) => {
       const own = found ? describe(found.p, labels.where(data)) : missingPoint;
       return several ? [[`start ${s + 1}`, ""], ...own.slice(0, 5)] : own;

@@ -12,6 +12,18 @@ function placesOf(data, start) {
   });
 }
 
+/** Stretches of neighbouring places with the same regime, null without: {regime, from, to}. */
+export function stretches(places) {
+  const list = [];
+  for (const {p, low, high} of places) {
+    const regime = p.regime ?? null;
+    const last = list.at(-1);
+    if (last?.regime === regime) last.to = high;
+    else list.push({regime, from: low, to: high});
+  }
+  return list;
+}
+
 export class Layers {
   /** base: a SweepData. */
   constructor(base) {

@@ -8,6 +8,7 @@ import {bestMotion, describe, quantityOf, regimeColour} from "../shared/quantiti
 import {pixel} from "../shared/raster.js";
 import {lastUpTo} from "../shared/search.js";
 import {Viewport} from "../shared/viewport.js";
+import * as labels from "./axis_labels.js";
 import {bar, barWidth, endsOf, scaleOf} from "./colour_scale.js";
 import {ascending} from "./data.js";
 import {missingPoint, SweepPlot, SweepView} from "./sweep_view.js";
@@ -75,8 +76,8 @@ export class MapView extends SweepView {
 
   rowsOf({p, data, value, height}) {
     const [first, second] = data.axes;
-    const places = [this.labels.place(first, value), this.labels.place(second, height)];
-    return [...places, ...(p ? describe(p, this.labels.where(data)) : missingPoint)];
+    const places = [labels.place(first, value), labels.place(second, height)];
+    return [...places, ...(p ? describe(p, labels.where(data)) : missingPoint)];
   }
 
   /** Moves the tooltip to the neighbouring cell; it starts in the middle. */
@@ -85,12 +86,8 @@ export class MapView extends SweepView {
     if (!way) return false;
     const middle = ({range: [from, to]}) => (from + to) / 2;
     const from = this.nearest({at: this.current?.at ?? this.viewports.map(middle)});
-    const beyond = (at, i) => {
-      const {borders} = from.data.axes[i];
-      const [first, last] = this.viewports[i].full;
-      const border = borders[lastUpTo(borders, at) + (way[i] > 0 ? 1 : 0)];
-      return way[i] ? border + way[i] * 1e-9 * (last - first) : at;
-    };
+    const halfCell = ({borders, at}) => (borders.at(-1) - borders[0]) / at.length / 2;
+    const beyond = (at, i) => at + way[i] * 1.001 * halfCell(from.data.axes[i]);
     const next = this.current && this.nearest({at: from.at.map(beyond)});
     this.goTo(...(next ?? from).at);
     return true;
@@ -183,7 +180,7 @@ class MapPlot extends SweepPlot {
     const {axes, defaultSet, starts} = this.view.data;
     const third = axes[2];
     const of = [
-      third && this.view.labels.fields({[third.parameter]: third.values[slice]}),
+      third && labels.fields({[third.parameter]: third.values[slice]}),
       defaultSet && `${best ? "best" : "worst"} start`,
       starts > 1 && `start ${start + 1}`,
     ];
@@ -197,7 +194,7 @@ class MapPlot extends SweepPlot {
     const {title} = this.quantity();
     const scale = this.scale();
     const of = this.shown();
-    const [first, second] = this.view.data.axes.map((a) => this.view.labels.label(a.parameter));
+    const [first, second] = this.view.data.axes.map((a) => labels.label(a.parameter));
     const colours = scale ? `, colours from ${scale.ends.map(short).join(" to ")}` : "";
     return {
       title: `Map of ${title}${of}`,

@@ -3,6 +3,7 @@
 import {$, reveal} from "../shared/dom.js";
 import {regimeText, startNames, symbolOf, verdicts} from "../shared/quantities.js";
 import {tableOf} from "../shared/tables.js";
+import * as labels from "./axis_labels.js";
 
 const names = {...startNames, free: "without the absorber"};
 
@@ -33,8 +34,8 @@ const cellsOf = (m, numberOf) => [
   verdicts[m.verdict] ?? "–",
 ];
 
-/** Shows the table if the sweep has peaks; `labels` gives the texts. */
-export function showPeaks(data, labels) {
+/** Shows the table if the sweep has peaks. */
+export function showPeaks(data) {
   const {reduced, axes, defaultSet, request} = data;
   const bare = reduced && !axes.length;
   const shown = bare || (defaultSet && axes.length === 1 && !reduced);

@@ -7,7 +7,7 @@ import {coordinates, menuOf, otherMotion, regimes, symbolOf} from "../shared/qua
 import {RequestTab} from "../shared/request_tab.js";
 import {showRemarks} from "../shared/tables.js";
 import {onUnits, unitsSwitch} from "../shared/units.js";
-import {AxisLabels} from "./axis_labels.js";
+import * as labels from "./axis_labels.js";
 import {receive, SweepData} from "./data.js";
 import {countRegimes, startKey} from "./diagram.js";
 import {DiagramView} from "./diagram_view.js";
@@ -59,36 +59,29 @@ function remarksOn({points}) {
   return [...found].map(([what, n]) => `${grouped(n)} points ${what}`).join("; ");
 }
 
-/** Shows the parts that a sweep has, and their texts. */
+/** Shows the elements whose data-if names something that holds for the sweep. */
 function showParts({axes, section, defaultSet, starts, parameters, reduced, points}) {
-  const third = axes[2];
-  const overOne = axes.length === 1;
   const several = starts > 1;
-  const apart = defaultSet || (!several && points.some(otherMotion));
-  reveal({
-    "sweep-download": true,
-    "sweep-keys": true,
-    "sweep-stack": overOne,
-    "sweep-map": axes.length > 1,
-    "figure-sweep-section": section !== "none",
-    "figure-sweep-lambda": reduced === null,
-    "sweep-units": parameters.si,
-    "sweep-free": menus.beside.value === "x_max",
-    "sweep-start-of": several || defaultSet, // of a map
-    "sweep-slice-of": third,
-    "sweep-starts": several,
-    "sweep-verdicts": !several, // the colours then distinguish the starts
-    "sweep-motions": overOne && apart,
-    "sweep-worst": defaultSet,
-  });
-  setTexts({
-    "sweep-where": section === "impact" ? "at impact:" : "once a cycle:",
-    "sweep-start-word": defaultSet ? "start:" : "from start",
-    "sweep-slice-word": third ? `where ${symbolOf(third.parameter)} =` : "",
-    "sweep-other": defaultSet
-      ? "best start, where the motions differ"
-      : "from a second start, where the motion differs",
-  });
+  const holds = {
+    begun: true,
+    diagrams: axes.length === 1,
+    map: axes.length > 1,
+    third: axes.length > 2,
+    section: section !== "none",
+    impact: section === "impact",
+    stroboscopic: section === "stroboscopic",
+    lambda: reduced === null,
+    si: parameters.si,
+    free: menus.beside.value === "x_max",
+    several,
+    verdicts: !several, // the colours otherwise distinguish the starts
+    startMenu: several || defaultSet,
+    motions: axes.length === 1 && (defaultSet || (!several && points.some(otherMotion))),
+    defaultSet,
+    second: !defaultSet,
+  };
+  for (const node of document.querySelectorAll("#sweep-results [data-if]"))
+    node.hidden = !holds[node.dataset.if];
 }
 
 /** Shows the number of points of each regime. */
@@ -125,11 +118,11 @@ export class SweepTab extends RequestTab {
   constructor(tables, changed, {simulate}) {
     super("sweep-", changed);
     this.form = new SweepForm($("sweep-fields"), tables, () => this.markStale());
-    this.labels = new AxisLabels((parameter) => this.form.parameters.get(parameter)?.unit);
+    labels.useFields(tables.fields);
     const openPoint = ({data, index, best}) =>
       simulate({...data.fields(index, best), cycles: cyclesOfPoint});
-    const diagrams = new DiagramView($("sweep-stack"), this.labels, openPoint);
-    const map = new MapView($("sweep-map"), this.labels, openPoint);
+    const diagrams = new DiagramView($("sweep-stack"), openPoint);
+    const map = new MapView($("sweep-map"), openPoint);
     this.views = [null, diagrams, map, map]; // by the number of axes
     for (const viewport of [...diagrams.viewports, ...map.viewports])
       viewport.onZoom(() => {
@@ -259,13 +252,12 @@ export class SweepTab extends RequestTab {
   /** Shows the empty diagrams of a new sweep. */
   present(data) {
     const edit = this.data && !data.ends;
-    const {labels} = this;
     this.data = data;
     data.folded = data.reduced && labels.of(data.reduced);
     this.view = this.views[data.axes.length];
     this.form.showOrigins(data.parameters);
     this.fillMenus();
-    const key = (state, s) => element("li", {}, element("span", startKey(state, s, labels)));
+    const key = (state, s) => element("li", {}, element("span", startKey(state, s)));
     $("sweep-starts").replaceChildren(...data.states.map(key));
     this.view?.show(new Layers(data));
     this.refiner.follow(this.view);
@@ -278,7 +270,8 @@ export class SweepTab extends RequestTab {
   /** Fills the menus for a new sweep; unused ones are empty. */
   fillMenus() {
     const {section, defaultSet, axes, states} = this.data;
-    const {parameter, values} = axes[2] ?? {values: []};
+    const {parameter = "", values = []} = axes[2] ?? {};
+    setTexts({"sweep-slice-word": `where ${symbolOf(parameter)} =`});
     const entries = {
       coordinate: Object.entries(coordinates[section] ?? {}).map(([name, {title}]) => [
         name,
@@ -286,7 +279,7 @@ export class SweepTab extends RequestTab {
       ]),
       [axes.length > 1 ? "map" : "beside"]: menuOf(this.data),
       start: defaultSet ? [[0, "worst"], ["best"]] : states.map((_, s) => [s, s + 1]),
-      slice: values.map((v, m) => [m, this.labels.value(parameter, v)]),
+      slice: values.map((v, m) => [m, labels.valueText(parameter, v)]),
     };
     for (const [name, menu] of Object.entries(menus))
       fillMenu(menu, entries[name] ?? [], this.wanted[name]);
@@ -322,7 +315,7 @@ export class SweepTab extends RequestTab {
     const began = performance.now();
     const values = Object.entries(menus).map(([name, {value}]) => [name, value]);
     this.view?.refresh(Object.fromEntries(values));
-    showPeaks(this.data, this.labels);
+    showPeaks(this.data);
     showParts(this.data);
     showRegimes(this.data);
     this.cost = performance.now() - began;

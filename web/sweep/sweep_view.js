@@ -6,7 +6,7 @@ import {Frame} from "../shared/frame.js";
 import {makeAccessible} from "../shared/gestures.js";
 import {roundedRange} from "../shared/numbers.js";
 import {ZoomablePlot} from "../shared/zoomable_plot.js";
-import {sameAxis, startNote} from "./axis_labels.js";
+import * as labels from "./axis_labels.js";
 
 const gap = 14; // px between a place and its tooltip
 const zooms = {"+": 1.5, "=": 1.5, "-": 1 / 1.5};
@@ -39,8 +39,11 @@ export class SweepPlot extends ZoomablePlot {
 
   /** beside: px reserved at the right, for example for a colour bar. */
   frameOf(width, height, beside) {
-    const {labels, data, viewports} = this.view;
-    const [x, y = this.y()] = viewports.map(({range}, i) => labels.frameAxis(data.axes[i], range));
+    const [x, y = this.y()] = this.view.viewports.map(({range}, i) => {
+      const {parameter, log, from} = this.view.data.axes[i];
+      const {factor} = labels.of(parameter);
+      return {range: range.map(from), log, label: labels.label(parameter), factor};
+    });
     return new Frame(width, height, x, y, beside);
   }
 
@@ -68,7 +71,7 @@ export class SweepPlot extends ZoomablePlot {
 
   /** {names, columns} of the visible points. */
   numbers() {
-    const {labels, data, viewports, several} = this.view;
+    const {data, viewports, several} = this.view;
     const shown = data.axes.slice(0, viewports.length).map(({parameter}) => parameter);
     const names = shown.map((parameter) => labels.label(parameter));
     if (several) names.push("start");
@@ -97,11 +100,11 @@ export class SweepPlot extends ZoomablePlot {
  */
 export class SweepView {
   /**
-   * root: contains the plots and receives the keys; labels: texts of the axes; open({data, index,
-   * best}): called for a chosen point.
+   * root: contains the plots and receives the keys; open({data, index, best}): called for a chosen
+   * point.
    */
-  constructor(root, viewports, labels, open) {
-    Object.assign(this, {root, viewports, labels, open, layers: null, current: null});
+  constructor(root, viewports, open) {
+    Object.assign(this, {root, viewports, open, layers: null, current: null});
     this.tip = element("div", {className: "tip", hidden: true, ariaLive: "polite"});
     root.append(this.tip);
     root.onpointerleave = (event) => {
@@ -121,7 +124,8 @@ export class SweepView {
 
   /** Shows another sweep, given as Layers. The zoom is kept if the axes are the same. */
   show(layers) {
-    const fresh = this.viewports.some((_, i) => !sameAxis(layers.base.axes[i], this.data?.axes[i]));
+    const isSame = (one, other) => one.parameter === other?.parameter && one.log === other.log;
+    const fresh = this.viewports.some((_, i) => !isSame(layers.base.axes[i], this.data?.axes[i]));
     this.layers = layers;
     this.hideTip();
     for (const [i, viewport] of this.viewports.entries()) {
@@ -161,7 +165,7 @@ export class SweepView {
   /** Subtitle of an exported picture: the shared fields. */
   caption() {
     const {base, axes, ...run} = this.data.request;
-    return this.labels.fields({...base, ...run});
+    return labels.fields({...base, ...run});
   }
 
   /** Ends of the visible ranges as rounded values; empty for the full range. */
@@ -195,9 +199,9 @@ export class SweepView {
     this.showTip({plot: this.plots.find(({size}) => size.width), at, act: true});
   }
 
-  /** Text that describes the initial state of the simulation of a place. */
+  /** Text about the initial state of the simulation of a place, where it differs from the sweep's. */
   startOf({data}) {
-    return startNote(data);
+    return data.carried ? ", not from its neighbour's final state" : "";
   }
 
   choose(current) {
