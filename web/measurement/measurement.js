@@ -2,16 +2,7 @@
 // shown. The list of impacts can be edited and sent again.
 
 import {identify, identifyJson, sendFileAsCurl, simulate} from "../shared/api.js";
-import {
-  $,
-  attributes,
-  choose,
-  countUp,
-  element,
-  fillMenu,
-  reveal,
-  setTexts,
-} from "../shared/dom.js";
+import {$, choose, countUp, element, fillMenu, reveal, setTexts} from "../shared/dom.js";
 import {copy, save} from "../shared/export.js";
 import {Form} from "../shared/form.js";
 import {RequestTab} from "../shared/request_tab.js";
@@ -68,7 +59,7 @@ export class MeasurementTab extends RequestTab {
     const own = {prefix: "measure-", grouped: groups};
     this.form = new Form($("measure-fields"), fieldsOf(fields), own);
     for (const [name, input] of this.form.inputs)
-      if (isColumn(name)) attributes(input, {list: "measure-columns"});
+      if (isColumn(name)) input.setAttribute("list", "measure-columns");
     this.list = new ImpactList(() => {
       for (const id of ["measure-again", "measure-reset"]) $(id).disabled = !this.list.edited;
       views.mark(this.record, this.list.rows, this.answer);
@@ -92,8 +83,9 @@ export class MeasurementTab extends RequestTab {
     $("measure-samples").onclick = ({target}) => target.value && this.readSample(target.value);
     $("measure-again").onclick = () => this.run({impact_times_s: this.list.times()});
     $("measure-reset").onclick = () => this.list.reset();
-    $("measure-add-at").onclick = ({currentTarget}) =>
-      attributes(currentTarget, {"aria-pressed": $("plot-measured-a").classList.toggle("adding")});
+    $("measure-add-at").onclick = ({currentTarget}) => {
+      currentTarget.ariaPressed = $("plot-measured-a").classList.toggle("adding");
+    };
     $("measure-download").onclick = () => {
       const text = JSON.stringify(this.answer, null, 1);
       const name = this.file.name.replace(/\.[^.]*$/, "");

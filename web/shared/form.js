@@ -130,7 +130,7 @@ export class Form {
 
   /**
    * prefix: prepended to ids, since a page can have several forms; grouped: the groups to show, as
-   * in `groups`.
+   * in `groups`. A field's `label` is shown in place of its name.
    */
   constructor(container, fields, {prefix = "", grouped = groups} = {}) {
     this.prefix = prefix;

@@ -10,7 +10,6 @@ import {lastUpTo} from "../shared/search.js";
 import {Viewport} from "../shared/viewport.js";
 import * as labels from "./axis_labels.js";
 import {bar, barWidth, endsOf, scaleOf} from "./colour_scale.js";
-import {ascending} from "./data.js";
 import {missingPoint, SweepPlot, SweepView} from "./sweep_view.js";
 
 /** Steps of the keys over the cells. */
@@ -113,13 +112,6 @@ class MapPlot extends SweepPlot {
     return p.error ? null : (this.quantity().of(this.motion(p)) ?? null);
   }
 
-  /** All values of the base layer. */
-  values() {
-    return [...this.view.cells(this.view.data)]
-      .map(({p}) => this.valueOf(p))
-      .filter((v) => v !== null);
-  }
-
   /**
    * The colour scale; null for categories. It is fixed for each quantity once a coarse picture of
    * the whole map exists, and holds for all slices and starts.
@@ -130,7 +122,8 @@ class MapPlot extends SweepPlot {
     const {layers, data, choice} = this.view;
     const chosen = layers.ends[choice.map];
     if (chosen) return scaleOf(quantity, chosen);
-    const values = this.values();
+    const drawn = [...this.view.cells(data)].map(({p}) => this.valueOf(p));
+    const values = drawn.filter((v) => v !== null);
     const ends = endsOf(quantity, values);
     const seen = data.complete || data.received > Math.max(firstPass * data.total, 50);
     if (seen && values.length) layers.ends[choice.map] = ends;
@@ -214,18 +207,17 @@ const coarsest = (n) => 2 ** Math.floor(Math.log2(Math.max(Math.floor(n / 8), 1)
 
 /**
  * Gives missing cells the colour of the preceding point on a coarser grid, in the order in which
- * the service computes. columns, rows: index of each position in the requested axis.
+ * the service computes. columns, rows: index of each position in the requested axis, ascending or
+ * descending, which makes them their own inverses.
  */
 function fill(cells, columns, rows) {
   const n = columns.length;
-  const [column, row] = [ascending(columns), ascending(rows)]; // position of each entry
   const [widest, highest] = [coarsest(n), coarsest(rows.length)];
-  const known = cells.slice();
   for (let l = 0; l < rows.length; ++l)
     for (let k = 0; k < n; ++k)
       for (let step = 2; !cells[l * n + k] && step <= Math.max(widest, highest); step *= 2) {
         const [across, up] = [Math.min(step, widest), Math.min(step, highest)];
-        const from = row[rows[l] - (rows[l] % up)] * n + column[columns[k] - (columns[k] % across)];
-        cells[l * n + k] = known[from];
+        const row = rows[rows[l] - (rows[l] % up)];
+        cells[l * n + k] = cells[row * n + columns[columns[k] - (columns[k] % across)]];
       }
 }

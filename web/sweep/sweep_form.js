@@ -199,10 +199,9 @@ export class SweepForm extends Form {
     setTexts({"sweep-note": unknownText(Object.keys(fields).filter((name) => !isKnown(name)))});
     const given = axisNames.filter((name) => fields[name]).map((name) => fields[name].split(","));
     for (const [i, axis] of axisNames.entries()) {
-      const [parameter = i ? undefined : "b", ...others] = given[i] ?? [];
-      this.scale(axis, parameter);
-      for (const [k, text] of [parameter, ...others].entries())
-        fields[`${axis}_${axisParts[k]}`] = text;
+      const parts = given[i] ?? (i ? [] : ["b"]);
+      this.scale(axis, parts[0]);
+      for (const [k, text] of parts.entries()) fields[`${axis}_${axisParts[k]}`] = text;
     }
     this.set(fields);
     this.adapt(fields.reduce);
