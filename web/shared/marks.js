@@ -266,10 +266,5 @@ export const density = kind((c, frame, {columns, colour}) => {
   columnDensity(c, frame, {columns: columns.map(inPixels), colour});
 });
 
-/** `rows` rows of `columns` equal cells over [from, to] of x and y; paint(pixels) sets the colours. */
-export const cells = kind((c, {px, py}, {x, y, columns, rows, paint}) => {
-  const [left, right] = x.map(px);
-  const [bottom, top] = y.map(py);
-  const box = {left, top, width: right - left, height: bottom - top};
-  drawPixels(c, box, columns, rows, paint);
-});
+/** Pixels set by paint(pixels, width, height). */
+export const raster = kind((c, frame, {paint}) => drawPixels(c, frame, paint));

@@ -8,17 +8,15 @@ import {clamp} from "./numbers.js";
 export const pixel = ([r, g, b], alpha = 255) =>
   ((Math.round(alpha) << 24) | (b << 16) | (g << 8) | r) >>> 0;
 
-/**
- * Draws the pixels that paint(pixels) sets, `rows` rows of `columns`, stretched over a box; 0 is
- * transparent.
- */
-export function drawPixels(c, {left, top, width, height}, columns, rows, paint) {
-  const image = new ImageData(columns, rows);
-  paint(new Uint32Array(image.data.buffer));
-  const canvas = element("canvas", {width: columns, height: rows});
+/** Fills a plot with the pixels that paint(pixels, width, height) sets; 0 is transparent. */
+export function drawPixels(c, {box, width, height}, paint) {
+  const [w, h] = [width, height].map((v) => Math.round(v * devicePixelRatio));
+  const image = new ImageData(w, h);
+  paint(new Uint32Array(image.data.buffer), w, h);
+  const canvas = element("canvas", {width: w, height: h});
   canvas.getContext("2d").putImageData(image, 0, 0);
   c.imageSmoothingEnabled = false;
-  c.drawImage(canvas, left, top, width, height);
+  c.drawImage(canvas, box.left, box.top, width, height);
 }
 
 /** The number of points at each pixel. */
@@ -46,9 +44,8 @@ class Counts {
 }
 
 /** Draws counts in one colour, whose opacity grows with the logarithm of the count. */
-function drawDensity(c, {box, ...size}, colour, count) {
-  const [width, height] = [size.width, size.height].map((v) => Math.round(v * devicePixelRatio));
-  drawPixels(c, {...box, ...size}, width, height, (pixels) => {
+const drawDensity = (c, frame, colour, count) =>
+  drawPixels(c, frame, (pixels, width, height) => {
     const counts = new Counts(pixels, width, height);
     count(counts);
     const own = rgb(colour);
@@ -59,7 +56,6 @@ function drawDensity(c, {box, ...size}, colour, count) {
       if (n) pixels[i] = shades[n] ??= pixel(own, 255 * (0.42 + scale * Math.log(n)));
     }
   });
-}
 
 /**
  * Density of the values of columns [{from, to, values}], where from and to are in px. Values of a

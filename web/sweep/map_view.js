@@ -2,7 +2,7 @@
 // with a scale. Missing points take the colour of a coarser neighbour.
 
 import {rgb} from "../shared/colours.js";
-import {cells} from "../shared/marks.js";
+import {raster} from "../shared/marks.js";
 import {short} from "../shared/numbers.js";
 import {bestMotion, describe, quantityOf, regimeColour} from "../shared/quantities.js";
 import {pixel} from "../shared/raster.js";
@@ -133,31 +133,46 @@ class MapPlot extends SweepPlot {
   prepare(width, height) {
     if (!this.view.layers) return null;
     const scale = this.scale();
-    const marks = this.view.over().map((data) => this.image(data, scale));
+    const colourOf = this.colours(scale);
+    const marks = [raster({paint: (...image) => this.fill(...image, colourOf)})];
     if (scale) marks.push(bar({scale, title: this.quantity().label}));
     return {marks, frame: this.frameOf(width, height, scale ? barWidth : 12)};
   }
 
-  /** The cells of a layer in their colours; those without a point are transparent. */
-  image(data, scale) {
-    const [first, second] = data.axes;
-    const [columns, rows] = [first.at.length, second.at.length];
-    const [x, y] = [first, second].map(({borders, from}) => [
-      from(borders[0]),
-      from(borders.at(-1)),
-    ]);
-    const nothing = pixel(rgb("nothing"));
-    const colourOf = (v) => pixel(scale ? scale.at(v) : rgb(regimeColour(v)));
-    const paint = (pixels) => {
-      for (const {p, k, l} of this.view.cells(data)) {
-        const v = this.valueOf(p);
-        pixels[(rows - 1 - l) * columns + k] = v === null ? nothing : colourOf(v);
-      }
-      // Only the base layer is filled: below a finer layer the coarser one shows through.
-      if (!data.complete && data === this.view.data)
-        fill(pixels, first.order, second.order.toReversed());
+  /** Returns a function that gives the pixel of a point. */
+  colours(scale) {
+    const colourOf = (v) => (scale ? scale.at(v) : rgb(regimeColour(v)));
+    return (p) => {
+      const v = this.valueOf(p);
+      return pixel(v === null ? rgb("nothing") : colourOf(v));
     };
-    return cells({x, y, columns, rows, paint});
+  }
+
+  /** Sets the pixels of all layers. */
+  fill(pixels, width, height, colourOf) {
+    for (const data of this.view.over()) {
+      const [first, second] = data.axes;
+      const columns = positions(first, this.viewport.range, width);
+      const rows = positions(second, this.across.range, height).reverse();
+      const cells = this.pixels(data, colourOf);
+      for (let j = 0; j < height; ++j)
+        for (let i = 0; i < width; ++i) {
+          const inside = rows[j] >= 0 && columns[i] >= 0;
+          const colour = inside && cells[rows[j] * first.at.length + columns[i]];
+          if (colour) pixels[j * width + i] = colour;
+        }
+    }
+  }
+
+  /** A pixel for each cell of a layer; 0 without a point. */
+  pixels(data, colourOf) {
+    const [first, second] = data.axes;
+    const n = first.at.length;
+    const pixels = new Uint32Array(n * second.at.length);
+    for (const {p, k, l} of this.view.cells(data)) pixels[l * n + k] = colourOf(p);
+    // Only the base layer is filled: below a finer layer the coarser one shows through.
+    if (!data.complete && data === this.view.data) fill(pixels, first.order, second.order);
+    return pixels;
   }
 
   columns() {
@@ -200,6 +215,12 @@ class MapPlot extends SweepPlot {
 function positionAt({borders}, at) {
   if (at < borders[0] || at > borders.at(-1)) return -1;
   return Math.min(lastUpTo(borders, at), borders.length - 2);
+}
+
+/** Index of the cell at each pixel of a visible range. */
+function positions(axis, [from, to], pixels) {
+  const step = (to - from) / pixels;
+  return Int32Array.from({length: pixels}, (_, i) => positionAt(axis, from + (i + 0.5) * step));
 }
 
 /** Step of the coarsest grid along an axis of n values; the service starts with that grid. */
