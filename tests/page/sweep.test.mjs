@@ -99,7 +99,7 @@ test("a sweep fills its diagrams and counts its points, and a link shows the sam
   );
   await page.selectOption("#sweep-coordinate", "y_dot_after");
   await page.selectOption("#sweep-quantity", "share_impacts");
-  await page.fill(field("sweep-axis1-error-count"), "12");
+  await page.fill(field("sweep-error-axis1_count"), "12");
   await page.click("#sweep-run");
   await swept(page, 2);
   assert.match(await page.textContent("#sweep-rate"), /12 of 12/);
@@ -230,16 +230,16 @@ test("errors of a sweep are shown at their fields", async () => {
     assert.equal(await page.getAttribute(field(id), "aria-invalid"), "true");
     await page.fill(field(id), before);
   };
-  await fault("sweep-axis1-error-count", "0", "must lie in");
-  await fault("sweep-axis1-error-from", "-1", "must lie in");
+  await fault("sweep-error-axis1_count", "0", "must lie in");
+  await fault("sweep-error-axis1_from", "-1", "must lie in");
   await fault("sweep-error-cycles", "-1", "must lie in");
-  await fault("sweep-base-error-R", "7", "must lie in");
+  await fault("sweep-error-R", "7", "must lie in");
   await fault("sweep-error-starts", "x0=0; x9=1", "unknown field");
-  await fault("sweep-axis1-error-count", "1000000", "at most");
-  await page.selectOption(field("sweep-axis2-error-parameter"), "b");
+  await fault("sweep-error-axis1_count", "1000000", "at most");
+  await page.selectOption(field("sweep-error-axis2_parameter"), "b");
   await page.click("#sweep-run");
   await page.waitForFunction(() =>
-    document.getElementById("sweep-axis2-error-from").textContent.includes("needs from"),
+    document.getElementById("sweep-error-axis2_from").textContent.includes("needs from"),
   );
   assert.match(await page.textContent("#sweep-rate"), /24 of 24/, "the last sweep is still there");
   browser.complaints.length = 0; // Chromium logs each 422
@@ -380,8 +380,8 @@ test("a reduction removes an axis: the peak and its place are drawn over the oth
     assert.ok((await pixels(page, "#plot-sweep-other canvas", name)) > least, name);
   await hoverAt(page, "#plot-sweep-other", 0.5);
   assert.match(await tip(page), /^b30 mm.*largest \|x\|2\d\.\d+ mm at f = 1[34]\.\d+ Hz/);
-  await page.selectOption(field("sweep-axis2-error-parameter"), "none");
-  await page.fill(`#sweep-base-group-system .field-b input`, "30");
+  await page.selectOption(field("sweep-error-axis2_parameter"), "none");
+  await page.fill(`#sweep-group-system .field-b input`, "30");
   await page.click("#sweep-run");
   await swept(page, 3);
   assert.equal(await page.isVisible("#sweep-stack"), false);
@@ -425,12 +425,12 @@ test("the warnings of a sweep are listed", async () => {
 
 test("system fields typed over an example, or swept, reset its damping unless it was chosen; fields show their origin", async () => {
   const page = await visit("?tab=sweep");
-  const damping = field("sweep-base-error-damping");
+  const damping = field("sweep-error-damping");
   assert.equal(await page.inputValue(damping), "closed_form");
-  const epsilon = "#sweep-base-group-reduced .field-epsilon";
+  const epsilon = "#sweep-group-reduced .field-epsilon";
   assert.equal(await page.textContent(`${epsilon} .origin`), "default");
   assert.equal(await page.getAttribute(`${epsilon} input`, "placeholder"), "0.00840557");
-  await page.selectOption(field("sweep-axis1-error-parameter"), "lambda");
+  await page.selectOption(field("sweep-error-axis1_parameter"), "lambda");
   assert.equal(await page.inputValue(damping), "equation_of_motion");
   assert.match(await page.textContent("#sweep-note"), /damping is equation_of_motion/);
   await page.selectOption("#sweep-example", {label: "Map over b and R"});
@@ -439,8 +439,8 @@ test("system fields typed over an example, or swept, reset its damping unless it
   await page.click("#sweep-cancel");
   await page.selectOption(damping, "equation_of_motion");
   await page.selectOption(damping, "closed_form");
-  await page.click("#sweep-base-group-SI > summary");
-  await page.fill("#sweep-base-group-SI .field-m1 input", "12");
+  await page.click("#sweep-group-SI > summary");
+  await page.fill("#sweep-group-SI .field-m1 input", "12");
   assert.equal(await page.inputValue(damping), "closed_form");
   assert.ok(await page.isDisabled(`${epsilon} input`));
   await page.close();
@@ -656,7 +656,7 @@ test("results that differ from the form look stale; a new sweep over the same ax
   await page.waitForFunction(() => location.search.includes("view="));
   const view = new URL(page.url()).searchParams.get("view");
   assert.equal(await isStale(), false);
-  await page.fill(`#sweep-base-group-system .field-R input`, "0.62");
+  await page.fill(`#sweep-group-system .field-R input`, "0.62");
   assert.ok(await isStale());
   await page.click("#sweep-run");
   await swept(page, 2);
@@ -723,7 +723,7 @@ test("a tap shows a point's tooltip, whose button simulates the point", async ()
 
 test("Back and Forward between sweeps restore their menus", async () => {
   const page = await visit(`?${small}&beside=x_max`);
-  await page.fill(`#sweep-base-group-system .field-R input`, "0.5");
+  await page.fill(`#sweep-group-system .field-R input`, "0.5");
   await page.click("#sweep-run");
   await swept(page, 2);
   await page.goBack();
@@ -744,15 +744,15 @@ test("Back and Forward between sweeps restore their menus", async () => {
 test("a map after diagrams starts with lambda1, and diagrams after a map with their first quantity", async () => {
   const page = await visit(`?${small}`);
   const beside = await page.inputValue("#sweep-quantity");
-  await page.selectOption(field("sweep-axis2-error-parameter"), "R");
+  await page.selectOption(field("sweep-error-axis2_parameter"), "R");
   for (const [name, text] of Object.entries({from: "0.5", to: "0.6", count: "3"}))
-    await page.fill(field(`sweep-axis2-error-${name}`), text);
+    await page.fill(field(`sweep-error-axis2_${name}`), text);
   await page.click("#sweep-run");
   await swept(page, 2);
   assert.equal(await page.inputValue("#sweep-mapped"), "lambda1");
   assert.doesNotMatch(page.url(), /map=|beside=/);
   await page.selectOption("#sweep-mapped", "z");
-  await page.selectOption(field("sweep-axis2-error-parameter"), "none");
+  await page.selectOption(field("sweep-error-axis2_parameter"), "none");
   await page.click("#sweep-run");
   await swept(page, 3);
   assert.equal(await page.inputValue("#sweep-quantity"), beside);
@@ -772,9 +772,9 @@ test("a link opens a reduction that leaves no axis", async () => {
 test("a new parameter of an axis clears its ends, which are typed in the unit shown", async () => {
   const page = await visit("?tab=sweep&axis1=Omega,0.94,1.06,8&cycles=30");
   const requests = asked(page, "/v1/sweep");
-  await page.selectOption(field("sweep-axis1-error-parameter"), "b");
-  await page.fill(field("sweep-axis1-error-from"), "0.94");
-  await page.fill(field("sweep-axis1-error-to"), "15");
+  await page.selectOption(field("sweep-error-axis1_parameter"), "b");
+  await page.fill(field("sweep-error-axis1_from"), "0.94");
+  await page.fill(field("sweep-error-axis1_to"), "15");
   await page.click("#sweep-run");
   await swept(page, 2);
   const [{from, to}] = requests.at(-1).axes;

@@ -2,15 +2,14 @@
 // shown. The list of impacts can be edited and sent again.
 
 import {asCurl, identify, identifyJson, simulate} from "../shared/api.js";
-import {$, attributes, button, countUp, element, reveal, setTexts} from "../shared/dom.js";
+import {$, choose, countUp, element, fillMenu, reveal, setTexts} from "../shared/dom.js";
 import {copy, save} from "../shared/export.js";
 import {Form} from "../shared/form.js";
 import {RequestTab} from "../shared/request_tab.js";
 import {ImpactList} from "./impact_list.js";
-import {showFit, summariseMeasurement} from "./measurement_summary.js";
+import {summariseMeasurement} from "./measurement_summary.js";
 import * as views from "./measurement_views.js";
-import * as picker from "./picker.js";
-import {asJson, parse, recordOf, spikeNear} from "./record.js";
+import {asJson, columnsOf, parse, recordOf, spikeNear} from "./record.js";
 import {oscillatorOf, recordOfRun} from "./sample.js";
 
 const groups = {
@@ -18,8 +17,6 @@ const groups = {
   SI: ["Oscillator", true],
   record: ["Columns and units", false],
 };
-/** Experiments of Table 4: label of the button for a simulated record. */
-const samples = {fig15: "b = 9 mm, periodic", fig20: "b = 15 mm, chaotic"};
 const longestQuery = 6000; // characters; servers and proxies accept addresses of about 8 kB
 const sampleCycles = 330; // about 40 s
 
@@ -48,7 +45,6 @@ const pick = (fields, isWanted) => Object.fromEntries(Object.entries(fields).fil
 const presetMenu = $("measure-preset");
 
 export class MeasurementTab extends RequestTab {
-  presets = {}; // of the experiments, by name
   records = 0; // counts the records requested; only the newest is shown
   file = null;
   parsed = null; // content of the file
@@ -63,44 +59,33 @@ export class MeasurementTab extends RequestTab {
     const own = {prefix: "measure-", grouped: groups};
     this.form = new Form($("measure-fields"), fieldsOf(fields), own);
     for (const [name, input] of this.form.inputs)
-      if (isColumn(name)) attributes(input, {list: "measure-columns"});
+      if (isColumn(name)) input.setAttribute("list", "measure-columns");
     this.list = new ImpactList(() => {
       for (const id of ["measure-again", "measure-reset"]) $(id).disabled = !this.list.edited;
       views.mark(this.record, this.list.rows, this.answer);
     });
-    presetMenu.append(new Option("user-defined oscillator", ""));
-    for (const {name, title, ...preset} of presets) {
-      if (!(name in samples)) continue;
-      this.presets[name] = preset;
-      presetMenu.append(new Option(`Table 4, ${title.replace("experiment, ", "")}`, name));
-      const simulateIt = () => this.readSample(name);
-      $("measure-samples").append(" ", button(samples[name], simulateIt, {className: "small"}));
-    }
+    this.presets = Object.fromEntries(presets.map(({name, ...preset}) => [name, preset]));
     this.listen();
     this.listenToFiles();
   }
 
   listen() {
-    presetMenu.onchange = () => {
-      this.choosePreset(presetMenu.value, this.ofColumns());
-      this.remember();
-    };
+    presetMenu.onchange = () => this.choosePreset(presetMenu.value, this.ofColumns());
     $("measure-fields").onchange = () => {
       this.remember();
       if (this.parsed && !this.answer) this.drawFile(this.form.values());
     };
-    picker.start((field, name) => {
-      this.form.replace(field, name);
+    $("measure-picker").onchange = ({target}) => {
+      this.form.replace(`${target.name}_column`, target.value);
       this.remember();
-      if (!this.parsed) return;
-      this.setAnswer(null, null);
-      this.drawFile(this.form.values());
-      if (this.record) this.run();
-    });
+      if (this.parsed) this.useColumns();
+    };
+    $("measure-samples").onclick = ({target}) => target.value && this.readSample(target.value);
     $("measure-again").onclick = () => this.run({impact_times_s: this.list.times()});
     $("measure-reset").onclick = () => this.list.reset();
-    $("measure-add-at").onclick = ({currentTarget}) =>
-      attributes(currentTarget, {"aria-pressed": $("plot-measured-a").classList.toggle("adding")});
+    $("measure-add-at").onclick = ({currentTarget}) => {
+      currentTarget.ariaPressed = $("plot-measured-a").classList.toggle("adding");
+    };
     $("measure-download").onclick = () => {
       const text = JSON.stringify(this.answer, null, 1);
       const name = this.file.name.replace(/\.[^.]*$/, "");
@@ -133,13 +118,13 @@ export class MeasurementTab extends RequestTab {
     if (asQuery(fields) === this.shown) return;
     const {preset = given.size ? "" : "fig20", ...rest} = fields;
     this.choosePreset(preset, rest);
-    this.remember();
   }
 
   /** Selects an oscillator; more: further fields. */
   choosePreset(name, more) {
-    presetMenu.value = Object.hasOwn(this.presets, name) ? name : "";
+    choose(presetMenu, name);
     this.form.set({...this.base(), ...more});
+    this.remember();
   }
 
   /** Fields of the chosen oscillator, without those that are estimated. */
@@ -200,7 +185,6 @@ export class MeasurementTab extends RequestTab {
     this.setAnswer(answer, fields);
     summariseMeasurement(answer, milliseconds);
     views.nameFigures(presetMenu.value);
-    showFit(answer);
     this.remember();
     this.say("");
     this.drawFile(fields);
@@ -239,12 +223,23 @@ export class MeasurementTab extends RequestTab {
     this.record = parsed && recordOf(parsed, fields);
     const known = this.record !== null;
     reveal({"measure-parts": known, "measure-list": known, "measure-add-at": known});
-    if (parsed) picker.show(parsed, fields);
+    if (parsed) this.showColumns(parsed, fields);
     if (!known) return;
     const {t} = this.record;
     views.drawRecord(this.record, (...clicked) => this.addAt(...clicked));
     // Without an answer the list starts empty, so that impacts can be added by hand.
     this.list.set(this.answer?.impacts ?? {time_s: []}, [t[0], t.at(-1)]);
+  }
+
+  /** Shows the columns selected by the fields; the menus are disabled for a file without names. */
+  showColumns({names}, fields) {
+    const found = columnsOf(names, fields);
+    for (const menu of $("measure-picker").querySelectorAll("select")) {
+      const k = found[menu.name];
+      fillMenu(menu, [["", k < 0 ? "– none –" : "by name"], ...names.map((name) => [name])]);
+      menu.selectedIndex = k + 1;
+      menu.disabled = !names.length;
+    }
   }
 
   /** Adds the impact at a clicked spike of the acceleration, while adding is switched on. */
@@ -297,14 +292,10 @@ export class MeasurementTab extends RequestTab {
       const {names, columns} = parsed;
       $("measure-columns").replaceChildren(...names.map((value) => element("option", {value})));
       setTexts({"measure-about": `${about}, ${columns[0]?.length ?? 0} samples`});
-      this.forgetColumns(names);
-      this.drawFile(this.form.values());
-      if (this.record || !names.length) this.run();
-      else
-        this.say(
-          "choose which column is the time, and which the displacement or acceleration",
-          true,
-        );
+      // Clears chosen columns that the file does not have.
+      for (const [name, value] of Object.entries(this.ofColumns()))
+        if (isColumn(name) && names.length && !names.includes(value)) this.form.replace(name, "");
+      this.useColumns();
     } catch (error) {
       if (!isNewest()) return;
       this.file = null;
@@ -313,10 +304,13 @@ export class MeasurementTab extends RequestTab {
     }
   }
 
-  /** Clears chosen columns that a new file does not have. */
-  forgetColumns(names) {
-    for (const [name, value] of Object.entries(this.ofColumns()))
-      if (isColumn(name) && names.length && !names.includes(value)) this.form.replace(name, "");
+  /** Draws the record and, if its columns are known, identifies it. */
+  useColumns() {
+    this.setAnswer(null, null);
+    this.drawFile(this.form.values());
+    if (this.record || !this.parsed.names.length) this.run();
+    else
+      this.say("choose which column is the time, and which the displacement or acceleration", true);
   }
 
   readRun(run, name) {
@@ -327,7 +321,6 @@ export class MeasurementTab extends RequestTab {
   measure(run) {
     const {parameters} = run;
     this.choosePreset("", oscillatorOf(parameters));
-    this.remember();
     return this.readRun(run, `run-b${parameters.b * 1000}mm.csv`);
   }
 
@@ -335,7 +328,6 @@ export class MeasurementTab extends RequestTab {
   async readSample(name) {
     const isNewest = this.beginRecord();
     this.choosePreset(name, this.ofColumns());
-    this.remember();
     this.say("simulating …");
     const {parameters} = this.presets[name];
     const fields = {...parameters, cycles: sampleCycles, include: ["impacts", "regime"]};

@@ -1,6 +1,6 @@
 // The results of a measurement as cards, and the table of fitted parameters.
 
-import {$, element} from "../shared/dom.js";
+import {$} from "../shared/dom.js";
 import {count, digits, minus, withError} from "../shared/numbers.js";
 import {verdicts} from "../shared/quantities.js";
 import {cards, listWarnings} from "../shared/tables.js";
@@ -13,23 +13,14 @@ function exponentCards({parameters, exponents: {qr}, slope, forward, ...answer})
   const error = qr?.standard_error[0];
   const {lambda1, low, high} = slope;
   const zeta = `damping ζ = ${digits(parameters.derived.zeta)}`;
+  const reason = answer.verdict_reason.replace("damping zeta", zeta);
+  const atEnd = error == null ? "" : `± ${digits(error)}, at the last impact`;
+  const interval = low == null ? "" : `90 %: ${digits(low)} to ${digits(high)}`;
   const source = forward ? "simulated from the first known state" : "no state is known";
   return [
-    [
-      "verdict",
-      verdicts[answer.verdict] ?? "–",
-      answer.verdict_reason.replace("damping zeta", zeta),
-    ],
-    [
-      "λ₁ (qr)",
-      digits(qr?.final[0]),
-      error == null ? "" : `± ${digits(error)}, at the last impact`,
-    ],
-    [
-      "slope of λ₁ τ",
-      digits(lambda1),
-      low == null ? "" : `90 %: ${digits(low)} to ${digits(high)}`,
-    ],
+    ["verdict", verdicts[answer.verdict] ?? "–", reason],
+    ["λ₁ (qr)", digits(qr?.final[0]), atEnd],
+    ["slope of λ₁ τ", digits(lambda1), interval],
     ["λ₁ of the identified system", digits(forward?.lambda[0]), source],
   ];
 }
@@ -60,31 +51,22 @@ function clearanceCard({b, standard_error: error}, parameters) {
   const agreement = Math.abs(off) < 0.05 ? "agrees" : `off by ${digits(off, 1)} %`;
   const given = `given ${rounded(parameters.b * 1000, 5)} mm${b == null ? "" : `, ${agreement}`}`;
   const isUsed = parameters.origin.b === "fitted to the record";
-  return [
-    "b fitted",
-    b == null ? "–" : `${withError(b * 1000, error * 1000, 2)} mm`,
-    isUsed ? "used in place of the given value" : given,
-  ];
+  const fitted = b == null ? "–" : `${withError(b * 1000, error * 1000, 2)} mm`;
+  return ["b fitted", fitted, isUsed ? "used in place of the given value" : given];
 }
 
 function signalCards(signal, milliseconds) {
   const {noise_displacement: x, noise_acceleration: a, pulse_s: pulse} = signal;
   const {samples, sampling_rate: rate} = signal;
-  const duration = `${count(samples, "sample")}, ${(samples / rate).toFixed(1)} s`;
   const noise = a == null ? "" : `${rounded(a, 3)} m/s²`;
+  const width = `${rounded(pulse * rate, 2)} samples long`;
+  const duration = `${count(samples, "sample")}, ${(samples / rate).toFixed(1)} s`;
+  const answered = `answered in ${milliseconds.toFixed(0)} ms`;
   return [
     ["forcing G", `${rounded(signal.G * 1000, 4)} mm`, "fitted"],
     ["noise", x == null ? "–" : `${rounded(x * 1e6, 3)} µm`, noise],
-    [
-      "pulse of an impact",
-      `${rounded(pulse * 1000, 3)} ms`,
-      `${rounded(pulse * rate, 2)} samples long`,
-    ],
-    [
-      "sampling",
-      `${rounded(rate, 5)} Hz`,
-      `${duration}; answered in ${milliseconds.toFixed(0)} ms`,
-    ],
+    ["pulse of an impact", `${rounded(pulse * 1000, 3)} ms`, width],
+    ["sampling", `${rounded(rate, 5)} Hz`, `${duration}; ${answered}`],
   ];
 }
 
@@ -99,36 +81,19 @@ export function summariseMeasurement(answer, milliseconds) {
     ...signalCards(signal, milliseconds),
   ]);
   listWarnings($("measure-warnings"), warnings);
+  showFit(answer);
 }
 
-/** Key in the answer's `fitted`: description, unit, factor from SI. */
-const rows = [
-  ["f", "frequency of the forcing", "Hz"],
-  ["F", "amplitude F of the base", "mm", 1e3],
-  ["phase", "its phase at t = 0", "rad"],
-  ["displacement_offset", "offset of the displacement", "µm", 1e6],
-  ["displacement_drift", "its drift over the record", "µm", 1e6],
-  ["displacement_gain", "its scale relative to the acceleration"],
-  ["displacement_delay_s", "its delay relative to the acceleration", "ms", 1e3],
-  ["acceleration_offset", "offset of the acceleration", "m/s²"],
-  ["acceleration_drift", "its drift over the record", "m/s²"],
-  ["omega0", "ω₀ of the oscillator", "rad/s"],
-  ["zeta", "its damping ratio ζ"],
-  ["b", "clearance b", "mm", 1e3],
-  ["R_plus", "R at +b"],
-  ["R_minus", "R at −b"],
-];
-
-export function showFit({fitted, signal: {forcing}}) {
-  const row = ([key, name, unit = "", factor = 1]) => {
+/** Fills in the table of fitted values; each cell states its key in `fitted`, unit and factor. */
+function showFit({fitted, signal: {forcing}}) {
+  for (const cell of $("measure-fitted").querySelectorAll("[data-value]")) {
+    const {value: key, unit = "", factor = 1} = cell.dataset;
     const {value, standard_error: error, fixed} = fitted[key];
     const shown = fixed
       ? minus(rounded(value * factor, 6))
       : withError(value * factor, error * factor, 4);
-    const text = `${shown} ${unit}`.trim() + (fixed ? ", as given" : "");
-    return element("tr", {}, element("td", {}, name), element("td", {}, text));
-  };
-  $("measure-fitted").replaceChildren(...rows.map(row));
+    cell.textContent = `${shown} ${unit}`.trim() + (fixed ? ", as given" : "");
+  }
   $("measure-channel").textContent = forcing
     ? `The forcing channel gives f = ${forcing.f.toPrecision(7)} Hz and ` +
       `F = ${(forcing.F * 1000).toPrecision(4)} mm; in the motion it appears ` +

@@ -25,11 +25,9 @@ const mm = (metres) => metres.map((v) => v * 1000);
 const x = {label: "t (s)", factor: 1};
 const drawLines = (name, options) => plots[name].draw({x, ...options});
 
-/** Figures of the paper that show the corresponding plot, by preset. */
-const figures = {
-  fig15: {a: 15, x: 16, portrait: 17, section: 18, qr: 19, raw: 19},
-  fig20: {a: 20, x: 21, portrait: 22, section: 23, qr: 24, raw: 24},
-};
+/** Figures of the paper: the first of each preset, and the number of each plot after it. */
+const firstFigures = {fig15: 15, fig20: 20};
+const figures = {a: 0, x: 1, portrait: 2, section: 3, qr: 4, raw: 4};
 const figureOf = (name) => $(`plot-measured-${name}`).closest("figure");
 
 /** shown() returns {name, answer} of the record shown. */
@@ -56,10 +54,11 @@ function summaryOf({answer}) {
 
 /** Tags the plots of an experiment with the figures of the paper. */
 export function nameFigures(preset) {
+  const title = "the corresponding figure of the paper, for its own record";
   for (const tag of document.querySelectorAll("#measure-results .tag")) tag.remove();
-  for (const [name, number] of Object.entries(figures[preset] ?? {})) {
-    const title = "the corresponding figure of the paper, for its own record";
-    const tag = element("span", {className: "tag", textContent: `as Fig. ${number}`, title});
+  for (const [name, number] of preset in firstFigures ? Object.entries(figures) : []) {
+    const textContent = `as Fig. ${firstFigures[preset] + number}`;
+    const tag = element("span", {className: "tag", textContent, title});
     figureOf(name).querySelector("figcaption").append(tag);
   }
 }

@@ -34,17 +34,11 @@ async function textOf(file) {
 
 /** The cells of a line with quotation marks; a quoted decimal comma becomes a point. */
 function quotedCellsOf(line, separator) {
-  const cells = [];
-  for (let from = 0; from <= line.length; ) {
-    const [opening] = /^[ \t]*"/.exec(line.slice(from)) ?? [];
-    const quote = opening ? line.indexOf('"', from + opening.length) : -1;
-    const at = line.indexOf(separator, quote < 0 ? from : quote);
-    const end = at < 0 ? line.length : at;
-    const cell = line.slice(from, end).trim();
-    cells.push(quote < 0 ? cell : cell.replace(/^"([^"]*)"$/, (_, inside) => asPoint(inside)));
-    from = end + 1;
-  }
-  return cells;
+  const end = separator.replace(/\W/, "\\$&");
+  const other = `[^${end}]*`;
+  const cell = new RegExp(`([ \\t]*"[^"]*"${other}|${other})(?:${end}|$)`, "g");
+  const cells = [...line.matchAll(cell)].map(([, text]) => text.trim());
+  return cells.map((text) => text.replace(/^"([^"]*)"$/, (_, inside) => asPoint(inside)));
 }
 const asPoint = (cell) =>
   /^[\s+-]*\d*,\d*(e[+-]?\d+)?\s*$/i.test(cell) ? cell.replace(",", ".") : cell;
@@ -117,7 +111,6 @@ export async function parse(file, onProgress) {
   let separator;
   let heading;
   let columns = [];
-  let rows = 0;
   let lines = 0;
   for (const {0: line, index} of text.matchAll(/[^\n]+/g)) {
     if (++lines % atOnce === 0) {
@@ -140,17 +133,14 @@ export async function parse(file, onProgress) {
       const count = cellsOf(line, separator).length;
       heading = headingOf(above, count, separator);
       if (!heading) break;
-      // A number and its separator take at least two characters.
-      const most = Math.ceil((text.length - index) / (2 * count)) + 1;
-      columns = heading[0].map(() => new Float64Array(most));
+      columns = heading[0].map(() => []);
     }
     const values = cellsOf(line, separator).map((cell) => numberOf(cell, separator));
-    if (values.length !== columns.length) continue;
-    for (const [k, column] of columns.entries()) column[rows] = values[k];
-    if (values.every(Number.isFinite)) ++rows;
+    if (values.length !== columns.length || !values.every(Number.isFinite)) continue;
+    for (const [k, column] of columns.entries()) column.push(values[k]);
   }
   const [names = [], units = []] = heading ?? [];
-  return {text, names, units, columns: columns.map((column) => column.slice(0, rows))};
+  return {text, names, units, columns: columns.map((column) => Float64Array.from(column))};
 }
 
 /**

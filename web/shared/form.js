@@ -168,7 +168,10 @@ export class Form {
   exact = new Map(); // of numbers shown in another unit: {text, value}
   replaced = [];
 
-  /** prefix: of ids, since a page can have several forms; grouped: the groups to show. */
+  /**
+   * prefix: of ids, since a page can have several forms; grouped: the groups to show. A field's
+   * `label` is shown in place of its name.
+   */
   constructor(container, fields, {prefix = "", grouped = groups} = {}) {
     this.prefix = prefix;
     this.fields = fields.filter((f) => !hidden.has(f.name) && f.group in grouped);
@@ -189,7 +192,7 @@ export class Form {
   }
 
   row(field) {
-    const {name, type, minimum, maximum} = field;
+    const {name, label: title = name, type, minimum, maximum} = field;
     const {make = textInput, set, wide} = typeOf(field);
     const input = make(field);
     if (set) set(input, field.default);
@@ -199,12 +202,12 @@ export class Form {
     input.addEventListener("input", () => this.showOrigin(name));
     const {unit} = unitShown(field.unit);
     const shownUnit = element("span", {className: "unit"}, unit && `, ${unit}`);
-    const named = element("span", {}, symbolOf(name).replaceAll("_", " "), shownUnit);
+    const named = element("span", {}, symbolOf(title).replaceAll("_", " "), shownUnit);
     const ends = [minimum, maximum].map((v) => this.shown(name, v));
     const range = minimum === undefined ? "" : ` [${ends.join(" to ")}]`;
     const label = element(
       type === "choices" ? "div" : "label",
-      {title: `${name}: ${field.description}${range}`},
+      {title: `${title}: ${field.description}${range}`},
       element("span", {className: "name"}, named, element("span", {className: "origin"})),
       input,
     );
@@ -347,7 +350,6 @@ export class Form {
       this.inputs.get(name).removeAttribute("aria-invalid");
     }
     const left = [];
-    let first = null;
     for (const error of errors) {
       const name = error.pointer.split("/")[1];
       const place = this.errors.get(name);
@@ -359,9 +361,9 @@ export class Form {
       const input = this.inputs.get(name);
       input.setAttribute("aria-invalid", "true");
       input.closest("details").open = true;
-      first ??= input;
     }
-    if (lead) first?.focus();
+    const first = this.fields.find(({name}) => this.errors.get(name).textContent);
+    if (lead && first) this.inputs.get(first.name).focus();
     return left;
   }
 }

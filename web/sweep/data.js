@@ -5,7 +5,7 @@ import {defaultSet} from "../shared/form.js";
 import {coordinates} from "../shared/quantities.js";
 
 /** The indices that sort `values`. */
-export const ascending = (values) => values.map((_, i) => i).sort((a, b) => values[a] - values[b]);
+const ascending = (values) => values.map((_, i) => i).sort((a, b) => values[a] - values[b]);
 
 const same = (v) => v;
 

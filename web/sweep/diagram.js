@@ -1,22 +1,26 @@
-// The diagrams over the single axis of a sweep.
+// A sweep over one axis: the bifurcation diagram of its section, lambda1, and another quantity with
+// the regimes, stacked. They share the axis and the tooltip.
 import {rangeOf} from "../shared/frame.js";
 import {blocks, density, dots, levels, line} from "../shared/marks.js";
 import {clamp, short} from "../shared/numbers.js";
 import {
   coordinates,
+  describe,
   otherMotion,
   quantities,
   quantityOf,
   regimeColour,
   regimes,
+  startNames,
   untouched,
   verdictColour,
   verdicts,
 } from "../shared/quantities.js";
 import {inSeconds} from "../shared/units.js";
-import {phaseLabels} from "./axis_labels.js";
+import {Viewport} from "../shared/viewport.js";
+import * as labels from "./axis_labels.js";
 import {stretches} from "./layers.js";
-import {SweepPlot} from "./sweep_view.js";
+import {missingPoint, SweepPlot, SweepView} from "./sweep_view.js";
 
 const startColours = ["c1", "before", "c2", "c4", "c3"];
 const startColour = (s) => startColours[s % startColours.length];
@@ -114,11 +118,18 @@ class Diagram extends SweepPlot {
   }
 }
 
+const turns = ["0", "π/2", "π", "3π/2", "2π"];
+/** Labels of a phase axis at quarter turns. */
+const phaseLabels = (min, max) =>
+  turns
+    .map((text, i) => ({at: (i * Math.PI) / 2, text}))
+    .filter(({at}) => at >= min - 1e-9 && at <= max + 1e-9);
+
 /** A column of a point's section, from SweepData. */
 const section = (p, column) => p.section?.[column] ?? [];
 
 /** Density of the section: periodic orbits are a few opaque dots, chaos is a cloud. */
-export class SectionDiagram extends Diagram {
+class SectionDiagram extends Diagram {
   /** The coordinate drawn and its column; velocities can be in mm/s. */
   shown() {
     const {data, choice} = this.view;
@@ -129,10 +140,10 @@ export class SectionDiagram extends Diagram {
   }
 
   y() {
-    const {column, range, log, least = -Infinity, turns, label} = this.shown();
+    const {column, range, log, least = -Infinity, turns: phase, label} = this.shown();
     const large = (p) => section(p, column).filter((v) => !(v <= least));
     const held = range ?? rangeOf(this.values(large), {log}) ?? (log ? [0.1, 10] : [-1, 1]);
-    return {range: held, log, label, labels: turns && phaseLabels};
+    return {range: held, log, label, labels: phase && phaseLabels};
   }
 
   marks() {
@@ -169,7 +180,7 @@ export class SectionDiagram extends Diagram {
 const lambda = (i) => (p) => p.lambda?.[i] ?? null;
 const errorOf = (p) => p.standard_error?.[0] ?? null;
 
-export class LambdaDiagram extends Diagram {
+class LambdaDiagram extends Diagram {
   drawn({p}) {
     return untouched(p) ? 0 : quantities.lambda1.of(p);
   }
@@ -221,9 +232,9 @@ export class LambdaDiagram extends Diagram {
   }
 }
 
-export class QuantityDiagram extends Diagram {
+class QuantityDiagram extends Diagram {
   quantity() {
-    return quantityOf(this.view.choice.quantity, this.view.data);
+    return quantityOf(this.view.choice.beside, this.view.data);
   }
 
   drawn({p}) {
@@ -276,8 +287,93 @@ export class QuantityDiagram extends Diagram {
 }
 
 /** Legend entry of a start: its symbol and state. */
-export const startKey = (state, s, labels) => ({
+export const startKey = (state, s) => ({
   className: `key start start${s % startColours.length}`,
   style: `color: var(--${startColour(s)})`,
   textContent: `${s + 1}: ${labels.fields(state)}`,
 });
+
+/** Steps of the keys along the axis. */
+const steps = {
+  ArrowLeft: -1,
+  ArrowRight: 1,
+  PageUp: -10,
+  PageDown: 10,
+  Home: -Infinity,
+  End: Infinity,
+};
+
+/** The first place with the smallest distance away(place). */
+const closest = (places, away) =>
+  places.reduce((best, place) => (away(place) < away(best) ? place : best), places[0]);
+
+export class DiagramView extends SweepView {
+  constructor(root, ...rest) {
+    super(root, [new Viewport()], ...rest);
+    this.plots = [
+      new SectionDiagram(this, "section"),
+      new LambdaDiagram(this, "lambda"),
+      new QuantityDiagram(this, "other"),
+    ];
+  }
+
+  refresh(choice) {
+    this.byStart = this.starts().map((s) => this.layers.places(s));
+    super.refresh(choice);
+  }
+
+  starts() {
+    return Array.from({length: this.data.starts}, (_, s) => s);
+  }
+
+  get several() {
+    return this.data.starts > 1;
+  }
+
+  places() {
+    return this.byStart.flat().filter(({p}) => !p.error);
+  }
+
+  /** The points of all starts at a place; undefined where one is missing. */
+  placesAt({at: [at]}) {
+    return this.byStart.map((list) => list.find((place) => place.at[0] === at));
+  }
+
+  /**
+   * The nearest point of the first start or, given a height in px, of the start drawn nearest to
+   * it.
+   */
+  nearest({plot, at, top}) {
+    const place = closest(this.byStart[0], (other) => Math.abs(other.at[0] - at[0]));
+    if (!place || top === undefined) return place;
+    const away = (other) => {
+      const v = other.p.error ? null : plot.drawn(other);
+      return v == null ? Infinity : Math.abs(plot.frame.py(v) - plot.frame.box.top - top);
+    };
+    return closest(this.placesAt(place).filter(Boolean), away);
+  }
+
+  /** Tooltip rows of each start; at most five each when there are several. */
+  rowsOf(place) {
+    const {data, several} = this;
+    const rows = this.placesAt(place).map((found, s) => {
+      const own = found ? describe(found.p, labels.where(data)) : missingPoint;
+      return several ? [[`start ${s + 1}`, ""], ...own.slice(0, 5)] : own;
+    });
+    return [labels.place(data.axes[0], place.value), ...rows.flat()];
+  }
+
+  startOf({p, data}) {
+    const {start} = data.defaultSet ? p : {};
+    return start ? `, from its start: ${startNames[start]}` : super.startOf({data});
+  }
+
+  move(key) {
+    if (!(key in steps)) return false;
+    const [list] = this.byStart;
+    const i = this.current ? list.indexOf(this.nearest(this.current)) : -1;
+    const next = Math.max(0, Math.min(list.length - 1, i + steps[key]));
+    if (list.length) this.goTo(...list[next].at);
+    return true;
+  }
+}

@@ -8,8 +8,8 @@ import {bestMotion, describe, quantityOf, regimeColour} from "../shared/quantiti
 import {pixel} from "../shared/raster.js";
 import {lastUpTo} from "../shared/search.js";
 import {Viewport} from "../shared/viewport.js";
+import * as labels from "./axis_labels.js";
 import {bar, barWidth, endsOf, scaleOf} from "./colour_scale.js";
-import {ascending} from "./data.js";
 import {missingPoint, SweepPlot, SweepView} from "./sweep_view.js";
 
 /** Steps of the keys over the cells. */
@@ -75,8 +75,8 @@ export class MapView extends SweepView {
 
   rowsOf({p, data, value, height}) {
     const [first, second] = data.axes;
-    const places = [this.labels.place(first, value), this.labels.place(second, height)];
-    return [...places, ...(p ? describe(p, this.labels.where(data)) : missingPoint)];
+    const places = [labels.place(first, value), labels.place(second, height)];
+    return [...places, ...(p ? describe(p, labels.where(data)) : missingPoint)];
   }
 
   /** Moves the tooltip to the neighbouring cell; it starts in the middle. */
@@ -85,12 +85,8 @@ export class MapView extends SweepView {
     if (!way) return false;
     const middle = ({range: [from, to]}) => (from + to) / 2;
     const from = this.nearest({at: this.current?.at ?? this.viewports.map(middle)});
-    const beyond = (at, i) => {
-      const {borders} = from.data.axes[i];
-      const [first, last] = this.viewports[i].full;
-      const border = borders[lastUpTo(borders, at) + (way[i] > 0 ? 1 : 0)];
-      return way[i] ? border + way[i] * 1e-9 * (last - first) : at;
-    };
+    const halfCell = ({borders, at}) => (borders.at(-1) - borders[0]) / at.length / 2;
+    const beyond = (at, i) => at + way[i] * 1.001 * halfCell(from.data.axes[i]);
     const next = this.current && this.nearest({at: from.at.map(beyond)});
     this.goTo(...(next ?? from).at);
     return true;
@@ -116,13 +112,6 @@ class MapPlot extends SweepPlot {
     return p.error ? null : (this.quantity().of(this.motion(p)) ?? null);
   }
 
-  /** All values of the base layer. */
-  values() {
-    return [...this.view.cells(this.view.data)]
-      .map(({p}) => this.valueOf(p))
-      .filter((v) => v !== null);
-  }
-
   /**
    * The colour scale; null for categories. It is fixed for each quantity once a coarse picture of
    * the whole map exists, and holds for all slices and starts.
@@ -133,7 +122,8 @@ class MapPlot extends SweepPlot {
     const {layers, data, choice} = this.view;
     const chosen = layers.ends[choice.map];
     if (chosen) return scaleOf(quantity, chosen);
-    const values = this.values();
+    const drawn = [...this.view.cells(data)].map(({p}) => this.valueOf(p));
+    const values = drawn.filter((v) => v !== null);
     const ends = endsOf(quantity, values);
     const seen = data.complete || data.received > Math.max(firstPass * data.total, 50);
     if (seen && values.length) layers.ends[choice.map] = ends;
@@ -198,7 +188,7 @@ class MapPlot extends SweepPlot {
     const {axes, defaultSet, starts} = this.view.data;
     const third = axes[2];
     const of = [
-      third && this.view.labels.fields({[third.parameter]: third.values[slice]}),
+      third && labels.fields({[third.parameter]: third.values[slice]}),
       defaultSet && `${best ? "best" : "worst"} start`,
       starts > 1 && `start ${start + 1}`,
     ];
@@ -212,7 +202,7 @@ class MapPlot extends SweepPlot {
     const {title} = this.quantity();
     const scale = this.scale();
     const of = this.shown();
-    const [first, second] = this.view.data.axes.map((a) => this.view.labels.label(a.parameter));
+    const [first, second] = this.view.data.axes.map((a) => labels.label(a.parameter));
     const colours = scale ? `, colours from ${scale.ends.map(short).join(" to ")}` : "";
     return {
       title: `Map of ${title}${of}`,
@@ -238,18 +228,17 @@ const coarsest = (n) => 2 ** Math.floor(Math.log2(Math.max(Math.floor(n / 8), 1)
 
 /**
  * Gives missing cells the colour of the preceding point on a coarser grid, in the order in which
- * the service computes. columns, rows: index of each position in the requested axis.
+ * the service computes. columns, rows: index of each position in the requested axis, ascending or
+ * descending, which makes them their own inverses.
  */
 function fill(cells, columns, rows) {
   const n = columns.length;
-  const [column, row] = [ascending(columns), ascending(rows)]; // position of each entry
   const [widest, highest] = [coarsest(n), coarsest(rows.length)];
-  const known = cells.slice();
   for (let l = 0; l < rows.length; ++l)
     for (let k = 0; k < n; ++k)
       for (let step = 2; !cells[l * n + k] && step <= Math.max(widest, highest); step *= 2) {
         const [across, up] = [Math.min(step, widest), Math.min(step, highest)];
-        const from = row[rows[l] - (rows[l] % up)] * n + column[columns[k] - (columns[k] % across)];
-        cells[l * n + k] = known[from];
+        const row = rows[rows[l] - (rows[l] % up)];
+        cells[l * n + k] = cells[row * n + columns[columns[k] - (columns[k] % across)]];
       }
 }

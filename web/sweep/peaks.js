@@ -3,6 +3,7 @@
 import {$, reveal} from "../shared/dom.js";
 import {regimeText, startNames, symbolOf, verdicts} from "../shared/quantities.js";
 import {tableOf} from "../shared/tables.js";
+import * as labels from "./axis_labels.js";
 
 const names = {...startNames, free: "without the absorber"};
 
@@ -25,16 +26,8 @@ function ofStarts(data) {
   return [...own, ...motionsOf(points[0])];
 }
 
-const cellsOf = (m, numberOf) => [
-  names[m.start] ?? m.start,
-  m.x_max == null ? "–" : (m.x_max * 1000).toFixed(1),
-  m.where == null ? "–" : numberOf(m.where),
-  m.regime ? regimeText(m.regime) : "–",
-  verdicts[m.verdict] ?? "–",
-];
-
-/** Shows the table if the sweep has peaks; `labels` gives the texts. */
-export function showPeaks(data, labels) {
+/** Shows the table if the sweep has peaks. */
+export function showPeaks(data) {
   const {reduced, axes, defaultSet, request} = data;
   const bare = reduced && !axes.length;
   const shown = bare || (defaultSet && axes.length === 1 && !reduced);
@@ -48,6 +41,12 @@ export function showPeaks(data, labels) {
   for (const m of motions.sort((a, b) => (b.x_max ?? -1) - (a.x_max ?? -1)))
     if (!peaks.has(m.start)) peaks.set(m.start, m);
   const head = ["start", "largest |x| (mm)", `at ${labels.label(parameter)}`, "regime", "verdict"];
-  const rows = [...peaks.values()].map((m) => cellsOf(m, (v) => labels.text(parameter, v)));
+  const rows = [...peaks.values()].map((m) => [
+    names[m.start] ?? m.start,
+    m.x_max == null ? "–" : (m.x_max * 1000).toFixed(1),
+    m.where == null ? "–" : labels.text(parameter, m.where),
+    m.regime ? regimeText(m.regime) : "–",
+    verdicts[m.verdict] ?? "–",
+  ]);
   $("sweep-peaks").replaceChildren(...tableOf(head, rows));
 }

@@ -7,45 +7,38 @@ import {coordinates, menuOf, otherMotion, regimes, symbolOf} from "../shared/qua
 import {RequestTab} from "../shared/request_tab.js";
 import {showRemarks} from "../shared/tables.js";
 import {onUnits, unitsSwitch} from "../shared/units.js";
-import {AxisLabels} from "./axis_labels.js";
+import * as labels from "./axis_labels.js";
 import {receive, SweepData} from "./data.js";
-import {countRegimes, startKey} from "./diagram.js";
-import {DiagramView} from "./diagram_view.js";
+import {countRegimes, DiagramView, startKey} from "./diagram.js";
 import {Layers} from "./layers.js";
 import {MapView} from "./map_view.js";
 import {showPeaks} from "./peaks.js";
 import {Refiner} from "./refine.js";
-import {examples, grouped, SweepForm} from "./sweep_form.js";
+import {grouped, SweepForm} from "./sweep_form.js";
 
 const cyclesOfPoint = 272; // for the simulation of a point; tau = 1709 as in the paper
 
 // Menus by their name in the query. The first entry is the default and not mentioned there.
-const menus = {
+const ofQuery = {
   coordinate: $("sweep-coordinate"),
   beside: $("sweep-quantity"),
   map: $("sweep-mapped"),
 };
-const startMenu = $("sweep-start");
-const sliceMenu = $("sweep-slice");
-const choice = () => ({
-  coordinate: menus.coordinate.value,
-  quantity: menus.beside.value,
-  map: menus.map.value,
-  start: Number(startMenu.value) || 0,
-  best: startMenu.value === "best",
-  slice: Number(sliceMenu.value),
-});
+const menus = {...ofQuery, start: $("sweep-start"), slice: $("sweep-slice")};
 
 /** The part of a query that is the request, in canonical order. */
 function requestOf(query) {
   const request = new URLSearchParams(query);
-  for (const name of [...Object.keys(menus), "view"]) request.delete(name);
+  for (const name of [...Object.keys(ofQuery), "view"]) request.delete(name);
   request.sort();
   return String(request);
 }
 
+const exampleMenu = $("sweep-example");
+const [custom, ...examples] = exampleMenu.options;
+/** The entry of the examples that has the request of a query. */
 const exampleOf = (query) =>
-  examples.findIndex(([, example]) => requestOf(example) === requestOf(query));
+  examples.find(({dataset}) => requestOf(dataset.query) === requestOf(query)) ?? custom;
 
 function time(seconds) {
   if (seconds < 1) return "less than a second";
@@ -65,36 +58,29 @@ function remarksOn({points}) {
   return [...found].map(([what, n]) => `${grouped(n)} points ${what}`).join("; ");
 }
 
-/** Shows the parts that a sweep has, and their texts. */
+/** Shows the elements whose data-if names something that holds for the sweep. */
 function showParts({axes, section, defaultSet, starts, parameters, reduced, points}) {
-  const third = axes[2];
-  const overOne = axes.length === 1;
   const several = starts > 1;
-  const apart = defaultSet || (!several && points.some(otherMotion));
-  reveal({
-    "sweep-download": true,
-    "sweep-keys": true,
-    "sweep-stack": overOne,
-    "sweep-map": axes.length > 1,
-    "figure-sweep-section": section !== "none",
-    "figure-sweep-lambda": reduced === null,
-    "sweep-units": parameters.si,
-    "sweep-free": menus.beside.value === "x_max",
-    "sweep-start-of": several || defaultSet, // of a map
-    "sweep-slice-of": third,
-    "sweep-starts": several,
-    "sweep-verdicts": !several, // the colours then distinguish the starts
-    "sweep-motions": overOne && apart,
-    "sweep-worst": defaultSet,
-  });
-  setTexts({
-    "sweep-where": section === "impact" ? "at impact:" : "once a cycle:",
-    "sweep-start-word": defaultSet ? "start:" : "from start",
-    "sweep-slice-word": third ? `where ${symbolOf(third.parameter)} =` : "",
-    "sweep-other": defaultSet
-      ? "best start, where the motions differ"
-      : "from a second start, where the motion differs",
-  });
+  const holds = {
+    begun: true,
+    diagrams: axes.length === 1,
+    map: axes.length > 1,
+    third: axes.length > 2,
+    section: section !== "none",
+    impact: section === "impact",
+    stroboscopic: section === "stroboscopic",
+    lambda: reduced === null,
+    si: parameters.si,
+    free: menus.beside.value === "x_max",
+    several,
+    verdicts: !several, // the colours otherwise distinguish the starts
+    startMenu: several || defaultSet,
+    motions: axes.length === 1 && (defaultSet || (!several && points.some(otherMotion))),
+    defaultSet,
+    second: !defaultSet,
+  };
+  for (const node of document.querySelectorAll("#sweep-results [data-if]"))
+    node.hidden = !holds[node.dataset.if];
 }
 
 /** Shows the number of points of each regime. */
@@ -131,20 +117,17 @@ export class SweepTab extends RequestTab {
   constructor(tables, changed, {simulate}) {
     super("sweep-", changed);
     this.form = new SweepForm($("sweep-fields"), tables, () => this.markStale());
-    this.labels = new AxisLabels((parameter) => this.form.parameters.get(parameter)?.unit);
+    labels.useFields(tables.fields);
     const openPoint = ({data, index, best}) =>
       simulate({...data.fields(index, best), cycles: cyclesOfPoint});
-    const diagrams = new DiagramView($("sweep-stack"), this.labels, openPoint);
-    const map = new MapView($("sweep-map"), this.labels, openPoint);
+    const diagrams = new DiagramView($("sweep-stack"), openPoint);
+    const map = new MapView($("sweep-map"), openPoint);
     this.views = [null, diagrams, map, map]; // by the number of axes
     for (const viewport of [...diagrams.viewports, ...map.viewports])
       viewport.onZoom(() => {
         changed({soon: true});
         this.refiner.schedule();
       });
-    reveal({"sweep-keys": false});
-    const titles = examples.map(([title], i) => [i, title]);
-    fillMenu($("sweep-example"), [["-1", "custom sweep"], ...titles]);
     unitsSwitch($("sweep-units"));
     onUnits(() => this.redraw());
     this.listen();
@@ -152,9 +135,10 @@ export class SweepTab extends RequestTab {
 
   listen() {
     this.results.onchange = () => this.menuChanged();
-    $("sweep-example").onchange = ({target}) => {
-      if (!examples[target.value]) return;
-      this.openSweep(new URLSearchParams(examples[target.value][1]));
+    exampleMenu.onchange = () => {
+      const [{dataset}] = exampleMenu.selectedOptions;
+      if (!dataset.query) return;
+      this.openSweep(new URLSearchParams(dataset.query));
       this.scrollToResults();
     };
     $("sweep-resume").onclick = () => this.complete(this.data);
@@ -174,7 +158,7 @@ export class SweepTab extends RequestTab {
 
   query() {
     if (!this.data) return null;
-    const menu = Object.entries(menus)
+    const menu = Object.entries(ofQuery)
       .filter(([, {selectedIndex}]) => selectedIndex > 0)
       .map(([name, {value}]) => `${name}=${value}`);
     const ends = this.view?.ends().join(",");
@@ -186,7 +170,7 @@ export class SweepTab extends RequestTab {
     const ends = numbers.every(Number.isFinite) ? numbers : [];
     if (this.data && requestOf(given) === requestOf(this.shown())) {
       // The same sweep with other menus: Back or Forward.
-      for (const [name, menu] of Object.entries(menus)) choose(menu, given.get(name));
+      for (const [name, menu] of Object.entries(ofQuery)) choose(menu, given.get(name));
       this.view?.zoomTo(ends);
       this.menuChanged();
     } else this.openSweep(given, ends);
@@ -194,10 +178,10 @@ export class SweepTab extends RequestTab {
 
   /** Runs the sweep of a query, or the first example if it names none. */
   openSweep(given, ends) {
-    const request = requestOf(given) || requestOf(examples[0][1]);
-    const standard = Object.keys(menus).map((name) => [name, ""]); // the first entry
-    this.wanted = Object.fromEntries([...standard, ...given]);
-    this.form.setQuery(new URLSearchParams(request), exampleOf(request) >= 0);
+    const request = requestOf(given) || requestOf(examples[0].dataset.query);
+    const standard = {coordinate: "", beside: "", map: ""}; // the first entry
+    this.wanted = {...standard, ...Object.fromEntries(given)};
+    this.form.setQuery(new URLSearchParams(request), exampleOf(request) !== custom);
     this.run(ends);
   }
 
@@ -257,7 +241,7 @@ export class SweepTab extends RequestTab {
 
   /** Marks the results if the form differs, and selects the example that the form shows. */
   markStale() {
-    $("sweep-example").value = exampleOf(SweepForm.toQuery(this.form.request()));
+    exampleOf(SweepForm.toQuery(this.form.request())).selected = true;
     super.markStale();
   }
 
@@ -268,13 +252,12 @@ export class SweepTab extends RequestTab {
   /** Shows the empty diagrams of a new sweep. */
   present(data) {
     const edit = this.data && !data.ends;
-    const {labels} = this;
     this.data = data;
     data.folded = data.reduced && labels.of(data.reduced);
     this.view = this.views[data.axes.length];
-    this.form.base.showOrigins(data.parameters);
+    this.form.showOrigins(data.parameters);
     this.fillMenus();
-    const key = (state, s) => element("li", {}, element("span", startKey(state, s, labels)));
+    const key = (state, s) => element("li", {}, element("span", startKey(state, s)));
     $("sweep-starts").replaceChildren(...data.states.map(key));
     this.view?.show(new Layers(data));
     this.refiner.follow(this.view);
@@ -287,20 +270,20 @@ export class SweepTab extends RequestTab {
   /** Fills the menus for a new sweep; unused ones are empty. */
   fillMenus() {
     const {section, defaultSet, axes, states} = this.data;
-    const titles = Object.entries(coordinates[section] ?? {}).map(([name, {title}]) => [
-      name,
-      title,
-    ]);
-    const entries = {coordinate: titles, [axes.length > 1 ? "map" : "beside"]: menuOf(this.data)};
+    const {parameter = "", values = []} = axes[2] ?? {};
+    setTexts({"sweep-slice-word": `where ${symbolOf(parameter)} =`});
+    const entries = {
+      coordinate: Object.entries(coordinates[section] ?? {}).map(([name, {title}]) => [
+        name,
+        title,
+      ]),
+      [axes.length > 1 ? "map" : "beside"]: menuOf(this.data),
+      start: defaultSet ? [[0, "worst"], ["best"]] : states.map((_, s) => [s, s + 1]),
+      slice: values.map((v, m) => [m, labels.valueText(parameter, v)]),
+    };
     for (const [name, menu] of Object.entries(menus))
       fillMenu(menu, entries[name] ?? [], this.wanted[name]);
     this.wanted = {};
-    const numbered = states.map((_, s) => [s, s + 1]);
-    const ofDefaultSet = [[0, "worst"], ["best"]];
-    fillMenu(startMenu, defaultSet ? ofDefaultSet : numbered);
-    const {parameter, values} = axes[2] ?? {values: []};
-    const slices = values.map((v, m) => [m, this.labels.value(parameter, v)]);
-    fillMenu(sliceMenu, slices);
   }
 
   menuChanged() {
@@ -330,8 +313,9 @@ export class SweepTab extends RequestTab {
     clearTimeout(this.redrawing);
     this.redrawing = 0;
     const began = performance.now();
-    this.view?.refresh(choice());
-    showPeaks(this.data, this.labels);
+    const values = Object.entries(menus).map(([name, {value}]) => [name, value]);
+    this.view?.refresh(Object.fromEntries(values));
+    showPeaks(this.data);
     showParts(this.data);
     showRegimes(this.data);
     this.cost = performance.now() - began;

@@ -1,70 +1,42 @@
 // The form of a sweep: axes, run of each point, shared fields; and its conversion to and from a
-// query.
-import {element, fillMenu, setTexts} from "../shared/dom.js";
+// query. The fields of an axis have its name in front: axis1_from.
+import {$, element, fillMenu, setTexts} from "../shared/dom.js";
 import {defaultSet, Form, groups, isOfSystem, textOf, unknownText} from "../shared/form.js";
 import {unitShown} from "../shared/units.js";
 
 const none = "none";
 const axisNames = ["axis1", "axis2", "axis3"];
-const ends = ["from", "to"];
+const axisParts = ["parameter", "from", "to", "count", "scale"];
 
-// Examples: title and query. The first is shown by default.
-export const examples = [
-  [
-    "Regimes over b, the range of Table 3",
-    "axis1=b,0.003,0.04,400&cycles=1000&section=impact&damping=closed_form",
-  ],
-  [
-    "Frequency response, with and without the absorber",
-    "axis1=Omega,0.94,1.06,241&cycles=300&b=0.015&damping=closed_form&beside=x_max",
-  ],
-  [
-    "Map over b and R",
-    "axis1=b,0.003,0.04,120&axis2=R,0.3,0.9,80&cycles=200&transient_cycles=100&damping=closed_form",
-  ],
-  [
-    "Map over Ω and G",
-    "axis1=Omega,0.94,1.06,120&axis2=G,0.005,0.04,80&cycles=200&transient_cycles=100" +
-      "&b=0.015&damping=closed_form",
-  ],
-  [
-    "Resonance, from two initial states",
-    "axis1=Omega,0.92,1.08,240&cycles=300&section=stroboscopic&starts=x0=0; y_dot0=0.03" +
-      "&b=0.015&damping=closed_form",
-  ],
-  [
-    "Resonance, followed upwards",
-    "axis1=Omega,0.92,1.08,320&cycles=300&section=impact&carry_state=up" +
-      "&b=0.015&damping=closed_form",
-  ],
-  [
-    "A platform's resonance, worst of several starts",
-    "axis1=f,13,15,81&starts=default set" +
-      "&m1=12&f0=14&damping_ratio=0.006&mass_ratio=0.01&F=0.0004&R=0.4&b=0.03&beside=x_max",
-  ],
-];
+const defaultSetBox = $("sweep-default-set");
+const parameterOf = (axis) => `${axis}_parameter`;
+const endsOf = (axis) => [`${axis}_from`, `${axis}_to`];
 
 /**
  * Fields of an axis, from the service's table, with a menu of the parameters. An optional axis
  * starts without a parameter.
  */
-function axisFields(fields, parameters, optional) {
+function axisFields(axis, fields, parameters, optional) {
   const choices = [...(optional ? [none] : []), ...parameters];
   const menu = {choices, default: optional ? none : undefined};
-  const text = (f) => ({default_note: f.name === "count" ? "" : " ", narrow: true});
+  const text = (name) => ({default_note: name === "count" ? "" : " ", narrow: true});
   return fields
-    .filter((f) => f.name !== "values")
-    .map((f) => ({...f, ...(f.name === "parameter" ? menu : text(f))}));
+    .filter(({name}) => axisParts.includes(name))
+    .map((f) => ({...f, ...(f.name === "parameter" ? menu : text(f.name))}))
+    .map((f) => ({...f, name: `${axis}_${f.name}`, label: f.name, group: axis, part: axis}));
 }
 
 /** Fields for the run of a point. The choices of `reduce` depend on the axes. */
 function runFields(fields, base) {
   const own = fields.filter((f) => ["integer", "choice"].includes(f.type));
   const reduce = {choices: [none], default: none};
+  const of = (part) => (f) => ({...f, part, group: "sweep"});
   return [
-    ...own.map((f) => ({...f, ...(f.name === "reduce" ? reduce : {}), narrow: true})),
-    ...base.filter((f) => f.name === "max_impacts").map((f) => ({...f, group: "sweep"})),
-    ...fields.filter((f) => f.name === "starts").map((f) => ({...f, type: "states"})),
+    ...own
+      .map((f) => ({...f, ...(f.name === "reduce" ? reduce : {}), narrow: true}))
+      .map(of("run")),
+    ...base.filter((f) => f.name === "max_impacts").map(of("base")),
+    ...fields.filter((f) => f.name === "starts").map((f) => ({...of("run")(f), type: "states"})),
   ];
 }
 
@@ -76,71 +48,49 @@ function noteOf({description, unit: own}) {
 /** A count with its digits in groups of three. */
 export const grouped = (n) => String(n).replace(/\B(?=(\d{3})+$)/g, " ");
 
-const standardOf = (form, name) => form.fields.find((f) => f.name === name).default;
-
-/**
- * The field to blame for an error of a whole axis: the end with the value at fault, or the
- * parameter.
- */
-function faultOf(axis, value) {
-  const values = axis.values();
-  return ends.find((name) => values[name] === value) ?? "parameter";
-}
-
-export class SweepForm {
+export class SweepForm extends Form {
   /** tables: the answer of /v1/parameters; changed: called after each change. */
   constructor(container, tables, changed) {
     const {start, system, reduced, SI} = groups;
-    const grouped = {system, reduced, SI, start};
-    const shared = tables.fields.filter((f) => f.group in grouped);
-    const swept = shared.filter((f) => f.type === "number");
-    this.parameters = new Map(swept.map((f) => [f.name, f]));
-    this.axes = ["First axis", "Second axis", "Third axis"].map((title, i) => {
-      const fields = axisFields(tables.axis_fields, [...this.parameters.keys()], i > 0);
-      const prefix = `sweep-${axisNames[i]}-`;
-      return new Form(container, fields, {prefix, grouped: {axis: [title, i < 2]}});
-    });
-    this.run = new Form(container, runFields(tables.sweep_fields, tables.fields), {
-      prefix: "sweep-",
-      grouped: {sweep: ["Each point", true]},
-    });
-    this.base = new Form(container, shared, {prefix: "sweep-base-", grouped});
-    this.notes = this.axes.map((axis) =>
-      axis.parts.get("axis").appendChild(element("p", {className: "note"})),
+    const shared = tables.fields.filter((f) => f.group in {system, reduced, SI, start});
+    const swept = new Map(shared.filter((f) => f.type === "number").map((f) => [f.name, f]));
+    const fields = [
+      ...axisNames.flatMap((axis, i) => axisFields(axis, tables.axis_fields, swept.keys(), i > 0)),
+      ...runFields(tables.sweep_fields, tables.fields),
+      ...shared.map((f) => ({...f, part: "base"})),
+    ];
+    const grouped = {
+      axis1: ["First axis", true],
+      axis2: ["Second axis", true],
+      axis3: ["Third axis", false],
+      sweep: ["Each point", true],
+      ...{system, reduced, SI, start},
+    };
+    super(container, fields, {prefix: "sweep-", grouped});
+    this.parameters = swept;
+    this.notes = axisNames.map((axis) =>
+      this.parts.get(axis).appendChild(element("p", {className: "note"})),
     );
-    this.defaultSet = this.offerDefaultSet();
-    this.listen();
-    container.addEventListener("input", () => {
+    this.errors.get("starts").before($("sweep-default"));
+    container.addEventListener("input", ({target}) => {
+      for (const [name, input] of this.inputs) if (input === target) this.edited(name, input.value);
+      if (target === defaultSetBox)
+        this.inputs.get("starts").value = target.checked ? defaultSet : "";
       this.adapt();
       changed();
     });
   }
 
-  /** These handlers run before the listener of the container, which calls adapt(). */
-  listen() {
-    for (const [i, axis] of this.axes.entries())
-      axis.inputs.get("parameter").oninput = () => this.chooseParameter(i);
-    for (const [name, input] of this.base.inputs)
-      input.oninput = () => {
-        if (name === "damping") this.dampingChosen = true;
-        else if (isOfSystem(name) && this.base.filled(name)) this.resetDamping();
-      };
-  }
-
-  /** A check box that fills in the default set of starts. */
-  offerDefaultSet() {
-    const input = this.run.inputs.get("starts");
-    const box = element("input", {type: "checkbox", id: "sweep-default-set"});
-    const title =
-      "from the middle, a wall, moving, and both neighbours' final states; " +
-      "the worst and the best motion are shown";
-    const text = `${defaultSet}: worst and best of several`;
-    const label = element("label", {className: "check", title}, box, text);
-    this.run.errors.get("starts").before(label);
-    box.oninput = () => {
-      input.value = box.checked ? defaultSet : "";
-    };
-    return box;
+  /**
+   * Another parameter of an axis clears the ends, which belong to the previous one. A map does not
+   * show a section, which would be most of the answer, so it is turned off.
+   */
+  edited(name, value) {
+    const axis = axisNames.find((each) => name === parameterOf(each));
+    if (axis) for (const end of endsOf(axis)) this.replace(end, "");
+    if (axis && axis !== axisNames[0] && value !== none) this.inputs.get("section").value = none;
+    if (name === "damping") this.dampingChosen = true;
+    if (isOfSystem(axis ? value : name) && this.filled(name)) this.resetDamping();
   }
 
   /**
@@ -148,26 +98,20 @@ export class SweepForm {
    * the user chose it.
    */
   resetDamping() {
-    const standard = standardOf(this.base, "damping");
-    if (this.dampingChosen || this.base.inputs.get("damping").value === standard) return;
-    this.base.replace("damping", standard);
+    const standard = this.standard("damping");
+    if (this.dampingChosen || this.inputs.get("damping").value === standard) return;
+    this.replace("damping", standard);
     setTexts({"sweep-note": `User-defined system: damping is ${standard}`});
+  }
+
+  /** The default of a field. */
+  standard(name) {
+    return this.fields.find((f) => f.name === name).default;
   }
 
   /** Parameters of the axes; "none" for a missing axis. */
   swept() {
-    return this.axes.map((axis) => axis.inputs.get("parameter").value);
-  }
-
-  /**
-   * Clears the ends, which belong to the previous parameter. A map does not show a section, which
-   * would be most of the answer, so it is turned off.
-   */
-  chooseParameter(i) {
-    const parameter = this.swept()[i];
-    for (const name of ends) this.axes[i].replace(name, "");
-    if (i > 0 && parameter !== none) this.run.inputs.get("section").value = none;
-    if (isOfSystem(parameter)) this.resetDamping();
+    return axisNames.map((axis) => this.inputs.get(parameterOf(axis)).value);
   }
 
   /**
@@ -176,49 +120,57 @@ export class SweepForm {
    */
   adapt(reduce) {
     const swept = this.swept();
-    for (const [i, axis] of this.axes.entries()) {
+    for (const [i, axis] of axisNames.entries()) {
       const field = this.parameters.get(swept[i]);
-      for (const [name, row] of axis.rows) row.hidden = !field && name !== "parameter";
+      for (const part of axisParts)
+        this.rows.get(`${axis}_${part}`).hidden = !field && part !== "parameter";
       this.notes[i].textContent = field ? noteOf(field) : "";
-      this.scale(i, swept[i]);
-      const range = {from: field?.minimum, to: field?.maximum};
-      for (const name of ends)
-        axis.inputs.get(name).placeholder = `${name} ${axis.shown(name, range[name])}`;
+      this.scale(axis, swept[i]);
+      const [from, to] = endsOf(axis);
+      this.inputs.get(from).placeholder = `from ${this.shown(from, field?.minimum)}`;
+      this.inputs.get(to).placeholder = `to ${this.shown(to, field?.maximum)}`;
     }
-    this.base.disable(swept);
     this.adaptRun(swept, reduce);
     this.showSize();
   }
 
   /**
-   * Adapts the reductions, and disables fields that cannot be combined with the default set of
-   * starts or with a reduction, both of which report several motions.
+   * Adapts the reductions, and disables fields that are swept, or that cannot be combined with the
+   * default set of starts or with a reduction, both of which report several motions.
    */
   adaptRun(swept, reduce) {
-    const {inputs} = this.run;
+    const {inputs} = this;
     const axes = swept.filter((name) => name !== none);
     const reductions = axes.flatMap((name) => [[`max over ${name}`], [`min over ${name}`]]);
     fillMenu(inputs.get("reduce"), [[none], ...reductions], reduce);
     const several = inputs.get("starts").value.trim() === defaultSet;
-    this.defaultSet.checked = several;
+    defaultSetBox.checked = several;
     const off = [];
     if (several) off.push("carry_state");
     if (several || inputs.get("reduce").value !== none) off.push("section");
     for (const name of off) inputs.get(name).value = none;
-    this.run.disable(off);
+    this.disable([...off, ...axes]);
   }
 
   /** The ends of an axis are typed in the unit of its parameter. */
-  scale(i, parameter) {
+  scale(axis, parameter) {
     const {factor} = unitShown(this.parameters.get(parameter)?.unit);
-    for (const name of ends) this.axes[i].factors.set(name, factor);
+    for (const name of endsOf(axis)) this.factors.set(name, factor);
+  }
+
+  /** Shows the origins of the values, and the ranges of the axes. */
+  showOrigins(parameters) {
+    super.showOrigins(parameters);
+    this.adapt();
   }
 
   request() {
-    const {max_impacts, ...run} = this.run.values();
-    const limit = max_impacts === undefined ? {} : {max_impacts};
-    const axes = this.axes.map((axis) => axis.values()).filter((axis) => axis.parameter);
-    return {base: {...this.base.values(), ...limit}, axes, ...run};
+    const values = this.values();
+    const parts = {axis1: {}, axis2: {}, axis3: {}, base: {}, run: {}};
+    for (const {name, label = name, part} of this.fields)
+      if (name in values) parts[part][label] = values[name];
+    const {base, run, ...axes} = parts;
+    return {base, axes: Object.values(axes).filter(({parameter}) => parameter), ...run};
   }
 
   /**
@@ -242,43 +194,33 @@ export class SweepForm {
   setQuery(query, example) {
     this.dampingChosen = !example && query.has("damping");
     const fields = Object.fromEntries(query);
-    const isKnown = (name) =>
-      axisNames.includes(name) || [this.base, this.run].some((form) => form.inputs.has(name));
-    const unknown = Object.keys(fields).filter((name) => !isKnown(name));
-    setTexts({"sweep-note": unknownText(unknown)});
-    this.base.set(fields);
-    this.run.set(fields);
+    const isKnown = (name) => axisNames.includes(name) || this.inputs.has(name);
+    setTexts({"sweep-note": unknownText(Object.keys(fields).filter((name) => !isKnown(name)))});
     const given = axisNames.filter((name) => fields[name]).map((name) => fields[name].split(","));
-    for (const [i, axis] of this.axes.entries()) {
-      const [parameter = i ? undefined : "b", from, to, count, scale] = given[i] ?? [];
-      this.scale(i, parameter);
-      axis.set({parameter, from, to, count, scale});
+    for (const [i, axis] of axisNames.entries()) {
+      const parts = given[i] ?? (i ? [] : ["b"]);
+      this.scale(axis, parts[0]);
+      for (const [k, text] of parts.entries()) fields[`${axis}_${axisParts[k]}`] = text;
     }
+    this.set(fields);
     this.adapt(fields.reduce);
   }
 
-  /** Shows errors of a problem document at their fields; returns those without a field. */
-  showErrors(errors) {
-    const placed = errors.map((error) => [error, ...this.placeOf(error)]);
-    // The last form focuses its first invalid field.
-    return [this.base, this.run, ...this.axes.toReversed()].flatMap((form) =>
-      form.showErrors(
-        placed
-          .filter(([, own]) => own === form)
-          .map(([error, , name]) => ({...error, pointer: `/${name}`})),
-      ),
-    );
+  showErrors(errors, lead) {
+    const placed = errors.map((error) => ({...error, pointer: `/${this.nameOf(error)}`}));
+    return super.showErrors(placed, lead);
   }
 
-  /** The form and the field of an error. */
-  placeOf({pointer, value}) {
+  /** The field of an error; for one of a whole axis the end with the value at fault. */
+  nameOf({pointer, value}) {
     const [, part, name, field] = pointer.split("/");
-    if (part === "axes") {
-      const axis = this.axes[name ?? 0];
-      return [axis, field ?? (name ? faultOf(axis, value) : "count")];
-    }
-    if (part !== "base") return [this.run, part];
-    return name === "max_impacts" ? [this.run, name] : [this.base, name];
+    if (part === "base") return name;
+    if (part !== "axes") return part;
+    const axis = axisNames[name ?? 0];
+    if (field) return `${axis}_${field}`;
+    if (!name) return `${axis}_count`;
+    const values = this.values();
+    return endsOf(axis).find((end) => values[end] === value) ?? parameterOf(axis);
   }
 
   /** Shows the number of points and cycles, if the fields are filled. */
@@ -288,7 +230,7 @@ export class SweepForm {
     const starts = several ? 1 : given?.length || 1;
     const counts = axes.map(({count}) => count ?? NaN);
     const points = counts.reduce((a, n) => a * n, starts);
-    const cyclesOf = (name) => run[name] ?? standardOf(this.run, name);
+    const cyclesOf = (name) => run[name] ?? this.standard(name);
     const each = (several ? 5 : 1) * (cyclesOf("transient_cycles") + cyclesOf("cycles"));
     const factors = [...counts, ...(starts > 1 ? [`${starts} starts`] : [])];
     const product = factors.length > 1 ? `${factors.join(" × ")} = ` : "";

@@ -3,47 +3,12 @@
 import {$, button, element} from "../shared/dom.js";
 import {addExportButton} from "../shared/export_dialog.js";
 import {Frame} from "../shared/frame.js";
+import {makeAccessible} from "../shared/gestures.js";
 import {roundedRange} from "../shared/numbers.js";
 import {ZoomablePlot} from "../shared/plot.js";
-import {sameAxis, startNote} from "./axis_labels.js";
+import * as labels from "./axis_labels.js";
 
-/** Pressing the button must not move the focus, which would hide the tooltip before the click. */
-const buttonFor = ({label, run}) =>
-  button(label, run, {onmousedown: (event) => event.preventDefault()});
-
-/** Tooltip in a container. */
-export class Tip {
-  constructor(container) {
-    this.container = container;
-    this.node = element("div", {className: "tip", hidden: true, ariaLive: "polite"});
-    container.append(this.node);
-  }
-
-  /**
-   * rows: [term, value]; left, top: px in the container; note: the last line; action: {label, run},
-   * a button for keyboard and touch in place of the note.
-   */
-  show(left, top, rows, note, action) {
-    const entry = ([term, value]) => [element("dt", {}, term), element("dd", {}, value)];
-    const list = element("dl", {}, ...rows.flatMap(entry));
-    const last = action ? buttonFor(action) : element("p", {}, note);
-    this.node.replaceChildren(list, last);
-    this.node.hidden = false;
-    this.node.classList.toggle("pinned", Boolean(action));
-    const {offsetWidth: width, offsetHeight: height} = this.node;
-    const gap = 14;
-    const available = this.container.clientWidth;
-    const x = left + gap + width <= available ? left + gap : left - gap - width;
-    const lowest = this.container.clientHeight - height;
-    this.node.style.left = `${Math.max(0, Math.min(x, available - width))}px`;
-    this.node.style.top = `${Math.max(0, Math.min(top - height / 2, lowest))}px`;
-  }
-
-  hide() {
-    this.node.hidden = true;
-  }
-}
-
+const gap = 14; // px between a place and its tooltip
 const zooms = {"+": 1.5, "=": 1.5, "-": 1 / 1.5};
 
 /** Tooltip of a missing point. */
@@ -74,8 +39,11 @@ export class SweepPlot extends ZoomablePlot {
 
   /** beside: px reserved at the right, for example for a colour bar. */
   frameOf(width, height, beside) {
-    const {labels, data, viewports} = this.view;
-    const [x, y = this.y()] = viewports.map(({range}, i) => labels.frameAxis(data.axes[i], range));
+    const [x, y = this.y()] = this.view.viewports.map(({range}, i) => {
+      const {parameter, log, from} = this.view.data.axes[i];
+      const {factor} = labels.of(parameter);
+      return {range: range.map(from), log, label: labels.label(parameter), factor};
+    });
     return new Frame(width, height, x, y, beside);
   }
 
@@ -103,7 +71,7 @@ export class SweepPlot extends ZoomablePlot {
 
   /** {names, columns} of the visible points. */
   numbers() {
-    const {labels, data, viewports, several} = this.view;
+    const {data, viewports, several} = this.view;
     const shown = data.axes.slice(0, viewports.length).map(({parameter}) => parameter);
     const names = shown.map((parameter) => labels.label(parameter));
     if (several) names.push("start");
@@ -132,12 +100,13 @@ export class SweepPlot extends ZoomablePlot {
  */
 export class SweepView {
   /**
-   * root: contains the plots and receives the keys; labels: texts of the axes; open({data, index,
-   * best}): called for a chosen point.
+   * root: contains the plots and receives the keys; open({data, index, best}): called for a chosen
+   * point.
    */
-  constructor(root, viewports, labels, open) {
-    Object.assign(this, {root, viewports, labels, open, layers: null, current: null});
-    this.tip = new Tip(root);
+  constructor(root, viewports, open) {
+    Object.assign(this, {root, viewports, open, layers: null, current: null});
+    this.tip = element("div", {className: "tip", hidden: true, ariaLive: "polite"});
+    root.append(this.tip);
     root.onpointerleave = (event) => {
       if (event.pointerType === "mouse") this.hideTip();
     };
@@ -155,7 +124,8 @@ export class SweepView {
 
   /** Shows another sweep, given as Layers. The zoom is kept if the axes are the same. */
   show(layers) {
-    const fresh = this.viewports.some((_, i) => !sameAxis(layers.base.axes[i], this.data?.axes[i]));
+    const isSame = (one, other) => one.parameter === other?.parameter && one.log === other.log;
+    const fresh = this.viewports.some((_, i) => !isSame(layers.base.axes[i], this.data?.axes[i]));
     this.layers = layers;
     this.hideTip();
     for (const [i, viewport] of this.viewports.entries()) {
@@ -165,40 +135,37 @@ export class SweepView {
   }
 
   /**
-   * Draws the received points. choice:
+   * Draws the received points. choice: texts of the menus,
    * coordinate: of the section;
-   * quantity: of the lowest plot;
+   * beside: quantity of the lowest plot;
    * map: quantity of a map;
-   * start: index of the start that a map shows;
-   * best: true for the best motion in place of the worst;
+   * start: index of the start that a map shows, or "best" for the best motion in place of the worst;
    * slice: position on the third axis.
    */
-  refresh(choice) {
-    this.choice = choice;
+  refresh({start, slice, ...choice}) {
+    const best = start === "best";
+    this.choice = {...choice, best, start: best ? 0 : Number(start), slice: Number(slice)};
     for (const plot of this.plots) plot.refresh();
   }
 
   /** The visible places. */
   visiblePlaces() {
-    const inside = ({range: [from, to]}, at) => at >= from && at <= to;
-    return this.places().filter(({at}) =>
-      this.viewports.every((viewport, i) => inside(viewport, at[i])),
-    );
+    const {viewports} = this;
+    return this.places().filter(({at}) => viewports.every((each, i) => each.holds(at[i])));
   }
 
   /** Describes the plots for screen readers. */
   describe() {
     for (const plot of this.plots) {
       const {title, summary} = plot.about();
-      plot.container.setAttribute("role", "img");
-      plot.container.setAttribute("aria-label", `${title}: ${summary}`);
+      makeAccessible(plot, `${title}: ${summary}`);
     }
   }
 
   /** Subtitle of an exported picture: the shared fields. */
   caption() {
     const {base, axes, ...run} = this.data.request;
-    return this.labels.fields({...base, ...run});
+    return labels.fields({...base, ...run});
   }
 
   /** Ends of the visible ranges as rounded values; empty for the full range. */
@@ -232,9 +199,9 @@ export class SweepView {
     this.showTip({plot: this.plots.find(({size}) => size.width), at, act: true});
   }
 
-  /** Text that describes the initial state of the simulation of a place. */
+  /** Text about the initial state of the simulation of a place, where it differs from the sweep's. */
   startOf({data}) {
-    return startNote(data);
+    return data.carried ? ", not from its neighbour's final state" : "";
   }
 
   choose(current) {
@@ -242,30 +209,43 @@ export class SweepView {
     if (place) this.open(place);
   }
 
+  /** Shows the tooltip of the place nearest to `current`, with a button or a note as its last line. */
   showTip(current) {
     const {plot, act} = current;
     const place = this.nearest(current);
     if (!place || !plot.frame) return;
     this.current = current;
     for (const each of this.plots) each.light(place.value, each.drawn(place));
-    const {frame} = plot;
-    const box = this.root.getBoundingClientRect();
-    const over = plot.over.getBoundingClientRect();
-    const down =
-      place.height === undefined ? frame.height / 2 : frame.py(place.height) - frame.box.top;
-    this.tip.show(
-      over.left - box.left + frame.px(place.value) - frame.box.left,
-      over.top - box.top + down,
-      this.rowsOf(place),
-      `Click to simulate this point${this.startOf(place)}`,
-      act && {label: "Simulate this point", run: () => this.open(place)},
-    );
+    const entry = ([term, value]) => [element("dt", {}, term), element("dd", {}, value)];
+    // Pressing the button must not move the focus, which would hide the tooltip before the click.
+    const onmousedown = (event) => event.preventDefault();
+    const last = act
+      ? button("Simulate this point", () => this.open(place), {onmousedown})
+      : element("p", {}, `Click to simulate this point${this.startOf(place)}`);
+    this.tip.replaceChildren(element("dl", {}, ...this.rowsOf(place).flatMap(entry)), last);
+    this.tip.classList.toggle("pinned", Boolean(act));
+    this.tip.hidden = false;
+    this.moveTip(plot, place);
+  }
+
+  /** Moves the tooltip to the right of a place or, without space there, to the left. */
+  moveTip({frame, over}, {value, height}) {
+    const {style, offsetWidth, offsetHeight} = this.tip;
+    const [box, plot] = [this.root, over].map((node) => node.getBoundingClientRect());
+    const x = plot.left - box.left + frame.px(value) - frame.box.left;
+    const down = height === undefined ? frame.height / 2 : frame.py(height) - frame.box.top;
+    const space = this.root.clientWidth - offsetWidth;
+    const left = x + gap <= space ? x + gap : x - gap - offsetWidth;
+    const top = plot.top - box.top + down - offsetHeight / 2;
+    const lowest = this.root.clientHeight - offsetHeight;
+    style.left = `${Math.max(0, Math.min(left, space))}px`;
+    style.top = `${Math.max(0, Math.min(top, lowest))}px`;
   }
 
   /** Hides tooltip, rings and cursor. */
   hideTip() {
     this.current = null;
-    this.tip.hide();
+    this.tip.hidden = true;
     for (const plot of this.plots) plot.light();
     for (const viewport of this.viewports) if (viewport.cursor !== null) viewport.point(null);
   }
