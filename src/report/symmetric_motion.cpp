@@ -72,9 +72,11 @@ SymmetricMotion motion_at(const Parameters& p, const HalfCycle& h, const Flow& f
     return motion;
 }
 
+}  // namespace
+
 /// Solves for V. The amplitude of the forced part is epsilon A / sqrt(D), which is a quadratic
-/// equation for V; `sign` selects its root.
-std::optional<SymmetricMotion> symmetric_motion(const Parameters& p, int sign) {
+/// equation for V.
+std::optional<SymmetricMotion> fast_symmetric_motion(const Parameters& p) {
     const HalfCycle h(p);
     const Flow flow = Flow::free(p);
     const Transfer J = flow.transfer(h.duration);
@@ -87,18 +89,9 @@ std::optional<SymmetricMotion> symmetric_motion(const Parameters& p, int sign) {
                  c = constant.squaredNorm() - force * force / D;
     const double discriminant = half_b * half_b - a * c;
     if (discriminant < 0) return std::nullopt;
-    const double V = (-half_b + sign * std::sqrt(discriminant)) / a;
+    const double V = (-half_b + std::sqrt(discriminant)) / a;
     if (V <= 0) return std::nullopt;
     return motion_at(p, h, flow, V);
-}
-
-}  // namespace
-
-std::optional<SymmetricMotion> fast_symmetric_motion(const Parameters& p) {
-    return symmetric_motion(p, 1);
-}
-std::optional<SymmetricMotion> slow_symmetric_motion(const Parameters& p) {
-    return symmetric_motion(p, -1);
 }
 
 }  // namespace vines::report

@@ -16,7 +16,7 @@
 #include "core/motion/elementary.hpp"
 #include "core/sweep/parallel.hpp"
 #include "program/process.hpp"
-#include "report/exponent_claims.hpp"
+#include "report/claims.hpp"
 #include "report/plots.hpp"
 #include "report/report.hpp"
 #include "report/runs.hpp"
@@ -56,23 +56,14 @@ void describe_setup(Report& report) {
 
 void parameters_of_table_4(Report& report) {
     report.add(
-        {.where = "Table 4",
-         .what = "epsilon = m2/m1",
-         .paper = ".76 %",
-         .here = fmt::format("{:.4f} %", 100 * table_4.epsilon()),
-         .number = 100 * table_4.epsilon(),
-         .band = {0.755, 0.765},
-         .because = "rounds to .76; in part: truncated to two digits it is",
-         .partly = Band{0.76, 0.77},
-         .expected = ClaimVerdict::partly});
+        {"Table 4", "epsilon = m2/m1", ".76 %"},
+        {100 * table_4.epsilon(), fmt::format("{:.4f} %", 100 * table_4.epsilon())},
+        {{0.755, 0.765}, "rounds to .76; in part: truncated to two digits it is", Band{0.76, 0.77}},
+        ClaimVerdict::partly);
     report.add(
-        {.where = "Table 4",
-         .what = "lambda = c1/(m2 omega0)",
-         .paper = "1.80",
-         .here = fmt::format("{:.4f}", table_4.lambda()),
-         .number = table_4.lambda(),
-         .band = {1.795, 1.805},
-         .because = "rounds to 1.80"});
+        {"Table 4", "lambda = c1/(m2 omega0)", "1.80"},
+        {table_4.lambda(), fmt::format("{:.4f}", table_4.lambda())},
+        {{1.795, 1.805}, "rounds to 1.80"});
 }
 
 /// Clearance b (m), time left out before the record, and length of the record (s).
@@ -151,20 +142,18 @@ double largest_error(const Identification& a, const Identification& b) {
 void restitution(Report& report, const Experiment& regular, const Experiment& irregular) {
     const Identification &at_9 = regular.result.direct->found,
                          &at_15 = irregular.result.direct->found;
-    report.add(
-        {.where = "Eq. (4)",
-         .what = "R from the direct estimate, (42) and (43): its largest error over both walls of "
-                 "both records",
-         .paper = "R can be calculated by (4)",
-         .here = fmt::format(
+    report.add_of_record(
+        {"Eq. (4)",
+         "R from the direct estimate, (42) and (43): its largest error over both walls of "
+         "both records",
+         "R can be calculated by (4)"},
+        {largest_error(at_9, at_15),
+         fmt::format(
              "{:.4f}, {:.4f} at 9 mm, {:.4f}, {:.4f} at 15 mm, true value {:g}; from the fitted "
              "motion the largest error is {:.0e}",
              at_9.plus.R, at_9.minus.R, at_15.plus.R, at_15.minus.R, true_R,
-             largest_error(regular.result.found, irregular.result.found)),
-         .number = largest_error(at_9, at_15),
-         .band = {0, 0.005},
-         .because = "the paper's R has two digits",
-         .computed_record = true});
+             largest_error(regular.result.found, irregular.result.found))},
+        {{0, 0.005}, "the paper's R has two digits"});
 }
 
 /// Eqs. (4) and (41), tested on both records.
@@ -174,16 +163,11 @@ void check_impact_law(Report& report, const Experiment& regular, const Experimen
     for (std::size_t i = 1; i < found.impacts.size(); ++i)
         turned += found.impacts[i].side != found.impacts[i - 1].side;
     const double share = turned / static_cast<double>(found.impacts.size() - 1);
-    report.add(
-        {.where = "Eq. (41)",
-         .what = "b = 15 mm: fraction of impacts at the opposite wall from the previous one",
-         .paper = "almost all",
-         .here = fmt::format("{:.3f}", share),
-         .number = share,
-         .band = {0.95, 1},
-         .because = "nineteen in twenty; in part: nine in ten",
-         .partly = Band{0.9, 1},
-         .computed_record = true});
+    report.add_of_record(
+        {"Eq. (41)", "b = 15 mm: fraction of impacts at the opposite wall from the previous one",
+         "almost all"},
+        {share, fmt::format("{:.3f}", share)},
+        {{0.95, 1}, "nineteen in twenty; in part: nine in ten", Band{0.9, 1}});
     restitution(report, regular, irregular);
 }
 
@@ -238,17 +222,14 @@ void figure_17(Report& report, const Experiment& e) {
         jump = std::max(jump, std::abs(i.x_dot_after - i.x_dot_before));
     for (const OscillatorMotion& m : motion_at(e.result.refined->fit, e.record.tau))
         fastest = std::max(fastest, std::abs(m.x_dot));
-    report.add(
-        {.where = "Fig. 17",
-         .what = "largest jump of x' at an impact over the largest x'",
-         .paper = "before and after \"are so close that they cannot be clearly distinguished\"",
-         .here = fmt::format("{:.2f}", jump / fastest),
-         .number = jump / fastest,
-         .band = {0, 0.02},
-         .because = "less than a marker's size; in part: a tenth of the picture's half height",
-         .partly = Band{0, 0.1},
-         .computed_record = true,
-         .expected = ClaimVerdict::partly});
+    report.add_of_record(
+        {"Fig. 17", "largest jump of x' at an impact over the largest x'",
+         "before and after \"are so close that they cannot be clearly distinguished\""},
+        {jump / fastest, fmt::format("{:.2f}", jump / fastest)},
+        {{0, 0.02},
+         "less than a marker's size; in part: a tenth of the picture's half height",
+         Band{0, 0.1}},
+        ClaimVerdict::partly);
 }
 
 /// States (x, x') after the impacts of one wall, in the section |x - y| = b.
@@ -274,24 +255,15 @@ double scatter(const Experiment& e) {
 void compare_sections(Report& report, const Experiment& regular, const Experiment& irregular) {
     constexpr double apart = 0.1;
     const double of_regular = scatter(regular), of_irregular = scatter(irregular);
-    report.add(
-        {.where = "Fig. 18",
-         .what = "b = 9 mm: scatter of each group of states after impacts, over their distance",
-         .paper = "two groups",
-         .here = fmt::format("{:.3f}", of_regular),
-         .number = of_regular,
-         .band = {0, apart},
-         .because = "groups, as against a band: a tenth of their distance",
-         .computed_record = true});
-    report.add(
-        {.where = "Fig. 23",
-         .what = "b = 15 mm: the same",
-         .paper = "scattered compared to Fig. 18",
-         .here = fmt::format("{:.3f}", of_irregular),
-         .number = of_irregular,
-         .band = {apart, infinity},
-         .because = "more than what counts as two groups in Fig. 18",
-         .computed_record = true});
+    report.add_of_record(
+        {"Fig. 18", "b = 9 mm: scatter of each group of states after impacts, over their distance",
+         "two groups"},
+        {of_regular, fmt::format("{:.3f}", of_regular)},
+        {{0, apart}, "groups, as against a band: a tenth of their distance"});
+    report.add_of_record(
+        {"Fig. 23", "b = 15 mm: the same", "scattered compared to Fig. 18"},
+        {of_irregular, fmt::format("{:.3f}", of_irregular)},
+        {{apart, infinity}, "more than what counts as two groups in Fig. 18"});
 }
 
 void section(Report& report, const Experiment& e, int figure) {

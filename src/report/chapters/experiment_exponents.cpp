@@ -8,7 +8,7 @@
 
 #include "core/motion/elementary.hpp"
 #include "report/chapters/experiment.hpp"
-#include "report/exponent_claims.hpp"
+#include "report/claims.hpp"
 #include "report/plots.hpp"
 
 namespace vines::report {
@@ -67,69 +67,58 @@ double rising_share(const ExponentHistory& h) {
 void from_rest_on(Report& report, const Experiment& from_rest) {
     const ExponentHistory &found = from_rest.history_by_eq_33(),
                           &exact = from_rest.truth.exponents.eigenvalues_history();
-    report.add(
-        {.where = "Fig. 19",
-         .what = "b = 9 mm, from rest on: fraction of the record's length over which lambda1 by "
-                 "(33) is positive",
-         .paper = "positive in this short period",
-         .here = fmt::format(
+    report.add_of_record(
+        {"Fig. 19",
+         "b = 9 mm, from rest on: fraction of the record's length over which lambda1 by "
+         "(33) is positive",
+         "positive in this short period"},
+        {positive_share(found),
+         fmt::format(
              "{:.2f} of tau = {:.0f}, from {:.4f} after a tenth of it to {:.4f}; with the first, "
              "weak impact, which the record does not show, {:.4f} to {:.4f}",
              positive_share(found), found.tau.back() - found.tau.front(), early(found), last(found),
-             early(exact), last(exact)),
-         .number = positive_share(found),
-         .band = exactly(1),
-         .because = "all of it; in part: half. It depends on the record's length and on where it "
-                    "begins",
-         .partly = Band{0.5, 1},
-         .computed_record = true,
-         .expected = ClaimVerdict::partly});
-    report.add(
-        {.where = "Fig. 19",
-         .what = "the same: fraction of the impacts at which lambda1 by (33) rises",
-         .paper = "decreasing continuously",
-         .here = fmt::format("{:.2f}", rising_share(found)),
-         .number = rising_share(found),
-         .band = exactly(0),
-         .because = "none; in part: fewer than those at which it falls",
-         .partly = Band{0, 0.5},
-         .computed_record = true,
-         .expected = ClaimVerdict::partly});
+             early(exact), last(exact))},
+        {exactly(1),
+         "all of it; in part: half. It depends on the record's length and on where it "
+         "begins",
+         Band{0.5, 1}},
+        ClaimVerdict::partly);
+    report.add_of_record(
+        {"Fig. 19", "the same: fraction of the impacts at which lambda1 by (33) rises",
+         "decreasing continuously"},
+        {rising_share(found), fmt::format("{:.2f}", rising_share(found))},
+        {exactly(0), "none; in part: fewer than those at which it falls", Band{0, 0.5}},
+        ClaimVerdict::partly);
 }
 
 /// Fig. 19 for a settled motion, also from the direct estimate: noise causes no decay.
 void settled_motion(Report& report, const Experiment& settled, double of_figure_11) {
     const auto& direct = settled.result.direct->exponents.longest().eigenvalues_history();
-    report.add(
-        {.where = "Fig. 19",
-         .what =
-             "b = 9 mm, a motion that has settled for 20 s: lambda1 by (33) at the record's end",
-         .paper = "positive",
-         .here = fmt::format(
+    report.add_of_record(
+        {"Fig. 19",
+         "b = 9 mm, a motion that has settled for 20 s: lambda1 by (33) at the record's end",
+         "positive"},
+        {last(settled.history_by_eq_33()),
+         fmt::format(
              "{:.4f} (from {:.4f} after a tenth of it); from the direct estimate {:.4f} (from "
              "{:.4f})",
              last(settled.history_by_eq_33()), early(settled.history_by_eq_33()), last(direct),
-             early(direct)),
-         .number = last(settled.history_by_eq_33()),
-         .band = {0, infinity},
-         .because = "positive",
-         .computed_record = true,
-         .expected = ClaimVerdict::not_reproduced});
+             early(direct))},
+        {{0, infinity}, "positive"}, ClaimVerdict::not_reproduced);
     const IdentifiedExponents& judged = settled.result.judged;
-    report.add(
-        {.where = "Fig. 19",
-         .what = "the same: upper end of the 90 % interval of the limit of lambda1 (slope of "
-                 "lambda1 tau)",
-         .paper = "it will approach zero",
-         .here = fmt::format(
+    report.add_of_record(
+        {"Fig. 19",
+         "the same: upper end of the 90 % interval of the limit of lambda1 (slope of "
+         "lambda1 tau)",
+         "it will approach zero"},
+        {judged.slope.high,
+         fmt::format(
              "{:.4f} to {:.4f}, slope {:.4f}; the true motion's {:.4f}", judged.slope.low,
-             judged.slope.high, judged.slope.value, settled.truth.exponents.qr()[0]),
-         .number = judged.slope.high,
-         .band = {0, infinity},
-         .because = "zero is in the interval; in part: as small as Fig. 11's exponent by eq. (1)",
-         .partly = Band{of_figure_11, infinity},
-         .computed_record = true,
-         .expected = ClaimVerdict::partly});
+             judged.slope.high, judged.slope.value, settled.truth.exponents.qr()[0])},
+        {{0, infinity},
+         "zero is in the interval; in part: as small as Fig. 11's exponent by eq. (1)",
+         Band{of_figure_11, infinity}},
+        ClaimVerdict::partly);
 }
 
 /// Exponents of a record with transfer matrices of given parameters.
@@ -181,47 +170,40 @@ void exponents_of_regular_response(
 void exponents_of_irregular_response(Report& report, const Experiment& e) {
     histories(report, e, 24);
     const IdentifiedExponents& judged = e.result.judged;
-    report.add(
-        {.where = "Fig. 24",
-         .what = "b = 15 mm: lower end of the 90 % interval of lambda1, from the fitted motion",
-         .paper = "the transient exponents are positive",
-         .here = fmt::format(
+    report.add_of_record(
+        {"Fig. 24", "b = 15 mm: lower end of the 90 % interval of lambda1, from the fitted motion",
+         "the transient exponents are positive"},
+        {judged.slope.low,
+         fmt::format(
              "{:.4f} to {:.4f}, slope {:.4f}; from the direct estimate {:.4f}; with the damping of "
              "(19) to (21) {:.4f}; the true motion's {:.4f}",
              judged.slope.low, judged.slope.high, judged.slope.value,
              e.result.direct->exponents.all().qr()[0], by_closed_form(e).slope.value,
-             e.truth.exponents.qr()[0]),
-         .number = judged.slope.low,
-         .band = {0, infinity},
-         .because = "positive",
-         .computed_record = true});
+             e.truth.exponents.qr()[0])},
+        {{0, infinity}, "positive"});
     const Exponents lambda = e.result.exponents.all().qr();
-    report.add(
-        {.where = "Fig. 24",
-         .what = "b = 15 mm: positive exponents (qr), from the fitted motion",
-         .paper = "the transient exponents are positive",
-         .here = fmt::format("{}: {}", positive(lambda), in_words(lambda)),
-         .number = static_cast<double>(positive(lambda)),
-         .band = exactly(4),
-         .because = "all four, as in Fig. 5, with which the paper calls it consistent",
-         .computed_record = true,
-         .expected = ClaimVerdict::not_reproduced});
+    report.add_of_record(
+        {"Fig. 24", "b = 15 mm: positive exponents (qr), from the fitted motion",
+         "the transient exponents are positive"},
+        {static_cast<double>(positive(lambda)),
+         fmt::format("{}: {}", positive(lambda), in_words(lambda))},
+        {exactly(4), "all four, as in Fig. 5, with which the paper calls it consistent"},
+        ClaimVerdict::not_reproduced);
     const double change = late_change(e.history_by_eq_33(), 0),
                  typical_change = median(late_changes_after(e));
-    report.add(
-        {.where = "Fig. 24",
-         .what = "b = 15 mm: lambda1 by (33), second half of the record: its range without spikes "
-                 "over its last value",
-         .paper = "almost already stable",
-         .here = fmt::format(
+    report.add_of_record(
+        {"Fig. 24",
+         "b = 15 mm: lambda1 by (33), second half of the record: its range without spikes "
+         "over its last value",
+         "almost already stable"},
+        {typical_change,
+         fmt::format(
              "{:.2f}; true motion, over the {} following stretches of that length: median {:.2f}",
-             change, following, typical_change),
-         .number = typical_change,
-         .band = {0, small_change},
-         .because = std::string(why_small_change) + ". It depends on the record's length",
-         .partly = Band{0, some_change},
-         .computed_record = true,
-         .expected = ClaimVerdict::not_reproduced});
+             change, following, typical_change)},
+        {{0, small_change},
+         std::string(why_small_change) + ". It depends on the record's length",
+         Band{0, some_change}},
+        ClaimVerdict::not_reproduced);
 }
 
 namespace {
@@ -263,16 +245,11 @@ void assumed_restitution(Report& report, const Experiment& regular, const Experi
     const int same = same_conclusion(regular, other_walls, table) +
                      same_conclusion(irregular, other_walls, table);
     const int all = 2 * static_cast<int>(other_walls.size());
-    report.add(
-        {.where = "Section 5.2",
-         .what = "verdicts on the two records that stay the same with another assumed R",
-         .paper = "the same conclusion",
-         .here = fmt::format("{} of {}", same, all),
-         .number = static_cast<double>(same),
-         .band = exactly(all),
-         .because = "all; in part: half or more",
-         .partly = Band{all / 2.0, static_cast<double>(all)},
-         .computed_record = true});
+    report.add_of_record(
+        {"Section 5.2", "verdicts on the two records that stay the same with another assumed R",
+         "the same conclusion"},
+        {static_cast<double>(same), fmt::format("{} of {}", same, all)},
+        {exactly(all), "all; in part: half or more", Band{all / 2.0, static_cast<double>(all)}});
     report.table(table);
 }
 

@@ -7,9 +7,6 @@
 
 #include "report/plots.hpp"
 #include "report/report.hpp"
-#include "report/runs.hpp"
-
-#include "core/motion/elementary.hpp"
 
 namespace vines::report {
 
@@ -17,21 +14,11 @@ namespace {
 
 void parameters_of_table_1(Report& report, const Parameters& p) {
     report.add(
-        {.where = "Table 1",
-         .what = "epsilon = m2/m1",
-         .paper = ".84 %",
-         .here = fmt::format("{:.4f} %", 100 * p.epsilon),
-         .number = 100 * p.epsilon,
-         .band = {0.835, 0.845},
-         .because = "rounds to .84"});
+        {"Table 1", "epsilon = m2/m1", ".84 %"}, result("{:.4f} %", 100 * p.epsilon),
+        {{0.835, 0.845}, "rounds to .84"});
     report.add(
-        {.where = "Table 1",
-         .what = "lambda = c1/(m2 omega0)",
-         .paper = "1.43",
-         .here = fmt::format("{:.4f}", p.lambda),
-         .number = p.lambda,
-         .band = {1.425, 1.435},
-         .because = "rounds to 1.43"});
+        {"Table 1", "lambda = c1/(m2 omega0)", "1.43"}, result("{:.4f}", p.lambda),
+        {{1.425, 1.435}, "rounds to 1.43"});
 }
 
 /// x(tau) by (8) to (11) exactly as printed, with tau_0 = 0. x20 = x(0) and x10 = x'(0), in the
@@ -80,15 +67,13 @@ void closed_form(Report& report, const Parameters& p) {
         least = std::min(least, k), most = std::max(most, k);
     }
     report.add(
-        {.where = "Eqs. (8) to (11)",
-         .what =
-             "factor k of the damping in x'' + k epsilon lambda x' + x = ..., which they satisfy",
-         .paper = "1, eq. (1)",
-         .here = fmt::format("{:.5f} to {:.5f} at six times", least, most),
-         .number = std::abs(least - 1) > std::abs(most - 1) ? least : most,
-         .band = {0.999, 1.001},
-         .because = "the finite differences give x' and x'' to 1e-4",
-         .expected = ClaimVerdict::not_reproduced});
+        {"Eqs. (8) to (11)",
+         "factor k of the damping in x'' + k epsilon lambda x' + x = ..., which they satisfy",
+         "1, eq. (1)"},
+        {std::abs(least - 1) > std::abs(most - 1) ? least : most,
+         fmt::format("{:.5f} to {:.5f} at six times", least, most)},
+        {{0.999, 1.001}, "the finite differences give x' and x'' to 1e-4"},
+        ClaimVerdict::not_reproduced);
     report.paragraph(fmt::format(
         "The equation of motion (1) has 2 zeta = epsilon lambda; the closed form (8)-(11), "
         "inserted into it as printed, has {:.4f} times that, and so has the transfer matrix (19), "
@@ -124,19 +109,17 @@ void trajectory_difference(Report& report) {
               .curves = {distance, tangent},
               .logarithmic = true}}});
     report.add(
-        {.where = "Fig. 2, eqs. (26) to (32)",
-         .what = fmt::format(
+        {"Fig. 2, eqs. (26) to (32)",
+         fmt::format(
              "two runs, {:g} m apart, to tau = {:g}: largest relative error of the distance "
              "predicted by M J",
              size, wanted.tau_end),
-         .paper = "the transfer matrix",
-         .here = fmt::format(
-             "{:.0e} through {} impacts, while the distance grows {:.0f}-fold", largest,
-             run.outcome.impacts, second.distance.back() / size),
-         .number = largest,
-         .band = {0, 1e-3},
-         .because =
-             "exact to first order: the error is of the size of the distance, plus rounding"});
+         "the transfer matrix"},
+        {largest, fmt::format(
+                      "{:.0e} through {} impacts, while the distance grows {:.0f}-fold", largest,
+                      run.outcome.impacts, second.distance.back() / size)},
+        {{0, 1e-3},
+         "exact to first order: the error is of the size of the distance, plus rounding"});
 }
 
 }  // namespace
