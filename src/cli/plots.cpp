@@ -186,14 +186,13 @@ void add(Curve& curve, double x, double y, std::optional<double> error = {}) {
 }
 
 /// States in the section: at impacts (where |x - y| = b) or at whole forcing cycles.
-std::optional<Plot> section(const std::vector<Json>& points, const Abscissa& at) {
+Plot section(const std::vector<Json>& points, const Abscissa& at) {
     const Json::json_pointer states("/section/x");
     Plot p{.y_label = "x in the section (mm)", .curves = {{.dots = true}}};
     for (const Json& point : points) {
         if (!point.contains(states)) continue;
         for (const double x : numbers_of(point[states], mm)) add(p.curves[0], at.of(point), x);
     }
-    if (p.curves[0].x.empty()) return std::nullopt;
     return p;
 }
 
@@ -261,13 +260,12 @@ std::string fields_except_axes(const Json& request) {
 std::vector<Plot> sweep_plots(const Json& start, const std::vector<Json>& points) {
     if (points.empty()) return {};
     const Abscissa at = abscissa_of(start, points);
-    std::vector<Plot> plots;
-    if (std::optional<Plot> states = section(points, at)) plots.push_back(std::move(*states));
-    plots.push_back(lambda1(points, at));
-    plots.push_back(response(points, at, "rms ratio of x", "x_rms_ratio", 1));
-    plots.push_back(response(points, at, "max |x| (mm)", "x_max", mm));
-    plots.push_back(response(points, at, "peak of |x| (mm)", "x_peak", mm));
-    std::erase_if(plots, [](const Plot& p) { return p.curves.empty(); });
+    std::vector<Plot> plots = {
+        section(points, at), lambda1(points, at),
+        response(points, at, "rms ratio of x", "x_rms_ratio", 1),
+        response(points, at, "max |x| (mm)", "x_max", mm),
+        response(points, at, "peak of |x| (mm)", "x_peak", mm)};
+    std::erase_if(plots, [](const Plot& p) { return p.curves.empty() || p.curves[0].x.empty(); });
     for (Plot& p : plots) p.x_label = at.label();
     if (!plots.empty()) plots[0].title = fields_except_axes(start.value("request", Json::object()));
     return plots;
@@ -355,15 +353,10 @@ void draw(const std::vector<Plot>& plots, const std::string& path) {
 Command add_plot(CLI::App& app) {
     const auto files = std::make_shared<Files>();
     CLI::App* command = app.add_subcommand("plot", "draw an answer in the terminal or as SVG");
-    command
-        ->add_option(
-            "answer", files->input,
-            "file with a run's answer or a sweep's lines; - or nothing: stdin")
-        ->type_name("FILE");
-    command
-        ->add_option(
-            "--output,-o", files->output, "SVG file, FILE.svg; nothing: draw in the terminal")
-        ->type_name("FILE");
+    add_file(
+        *command, "answer", files->input,
+        "file with a run's answer or a sweep's lines; - or nothing: stdin");
+    add_output(*command, files->output, "SVG file, FILE.svg; nothing: draw in the terminal");
     return with_exit_codes(
         command,
         [files] {

@@ -250,11 +250,9 @@ Command add_verify(CLI::App& app) {
     const auto options = std::make_shared<VerifyOptions>();
     CLI::App* command =
         app.add_subcommand("verify", "recompute an answer and compare byte for byte");
-    command->add_option("answer", options->answer, "file with the answer; - or nothing: stdin")
-        ->type_name("FILE");
-    command
-        ->add_option("--record", options->record, "for an identification: the file that was sent")
-        ->type_name("FILE");
+    add_file(*command, "answer", options->answer, "file with the answer; - or nothing: stdin");
+    add_file(
+        *command, "--record", options->record, "for an identification: the file that was sent");
     return with_exit_codes(
         command, [options] { return verify(*options); },
         "vines simulate -p preset=fig11 -o answer.json; vines verify answer.json\n"

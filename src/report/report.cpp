@@ -177,9 +177,11 @@ void Report::table(const DataTable& table) {
     body += "\n";
 }
 
-void Report::picture(Picture picture) {
-    body += fmt::format("![{0}]({1}.svg)\n*{0}*\n\n", picture.caption, picture.name);
-    pictures.push_back(std::move(picture));
+void Report::picture(
+    const std::string& name, const std::string& caption, std::vector<plot::Plot> plots,
+    int height) {
+    body += fmt::format("![{0}]({1}.svg)\n*{0}*\n\n", caption, name);
+    pictures.push_back({name, std::move(plots), height});
 }
 
 void write_markdown(const Report& report, const std::string& folder) {

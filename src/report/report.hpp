@@ -88,10 +88,9 @@ struct DataTable {
     std::vector<std::vector<std::string>> rows{};
 };
 struct Picture {
-    std::string name;  ///< file name without ".svg"
-    std::string caption;
+    std::string name;               ///< file name without ".svg"
     std::vector<plot::Plot> plots;  ///< drawn above each other with a common abscissa
-    int height = 210;               ///< height of each plot, pixels
+    int height;                     ///< height of each plot, pixels
 };
 
 struct Report {
@@ -107,7 +106,9 @@ struct Report {
     void heading(const std::string& text) { body += "\n## " + text + "\n\n"; }
     void paragraph(const std::string& text) { body += text + "\n\n"; }
     void table(const DataTable& table);
-    void picture(Picture picture);
+    void picture(
+        const std::string& name, const std::string& caption, std::vector<plot::Plot> plots,
+        int height = 210);
 
     bool as_expected() const { return std::ranges::all_of(findings, &Finding::as_expected); }
 };

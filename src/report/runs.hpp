@@ -29,10 +29,12 @@ struct PaperRun {
     const TransferProduct& product() const { return run.exponents->product; }
     std::string type() const { return std::string("Type ") + name_of(regime().type); }
 };
-/// With the damping of the closed form, and with that of eq. (1).
-struct BothRuns {
-    const PaperRun &here, &by_equation;
+/// Results with the damping of the closed form, and with that of eq. (1).
+template <class Results>
+struct Both {
+    const Results &here, &by_equation;
 };
+using BothRuns = Both<PaperRun>;
 
 /// A run with the damping of the closed form, for parts that need more data than one window; `b` in
 /// m.
@@ -70,10 +72,7 @@ struct Ensemble {
     Moments duration() const;
 };
 
-/// With the damping of the closed form, and with that of eq. (1).
-struct BothEnsembles {
-    const Ensemble &here, &by_equation;
-};
+using BothEnsembles = Both<Ensemble>;
 
 /// Regimes reached from random starts (the same ones in every call): |x'|, |x| <= .008 and |y'| <=
 /// .01 (m, and m per unit of tau), y anywhere in the cavity. Judged from tau = 1500 to 3000.

@@ -171,10 +171,8 @@ TEST_CASE("the report is one text in the order of its parts, with pictures in se
     report.heading("Fig. 5");
     report.paragraph("In words.");
     report.picture(
-        {.name = "fig5",
-         .caption = "Exponents",
-         .plots = {
-             {.x_label = "tau", .y_label = "a < b", .curves = {{.x = {0, 1}, .y = {2, 3}}}}}});
+        "fig5", "Exponents",
+        {{.x_label = "tau", .y_label = "a < b", .curves = {{.x = {0, 1}, .y = {2, 3}}}}});
     write_markdown(report, folder.string());
     const std::string text = contents(folder / "report.md"),
                       picture = contents(folder / "fig5.svg");

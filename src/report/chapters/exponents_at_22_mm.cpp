@@ -104,8 +104,7 @@ void spikes(Report& report, const PaperRun& r) {
          "\"u_i is equal or close to zero\""},
         {largest, fmt::format("{:.0e} to {:.0e}", smallest, largest)},
         {{0, 0.1},
-         "a tenth or less: close to zero compared with its neighbours, since the "
-         "product grows"});
+         "a tenth or less: close to zero compared with its neighbours, since the product grows"});
     report.paragraph(fmt::format(
         "The paper says that the impacts of these spikes \"are probably related to the grazing "
         "bifurcation but cannot be justified with evidence here\". Here a fraction of {:.2f} of "
@@ -132,11 +131,8 @@ void transient_exponents(Report& report, RunCache& runs) {
     const TransferProduct &product = both.here.product(), &other = both.by_equation.product();
     report.heading("Fig. 5: transient Lyapunov exponents, b = 22 mm");
     report.picture(
-        {.name = "fig5",
-         .caption = "Fig. 5: above, eq. (33) from the unscaled product as in the paper; below, by "
-                    "QR",
-         .plots = exponent_histories(product),
-         .height = 230});
+        "fig5", "Fig. 5: above, eq. (33) from the unscaled product as in the paper; below, by QR",
+        exponent_histories(product), 230);
     positive_exponents(report, {"Fig. 5", "chaotic", "four exponents, positive"}, both);
     report.add(
         {"Fig. 5", "sum of the exponents (qr)", "positive, if all four are"},
@@ -225,7 +221,7 @@ void lambda3(Report& report, const Ensemble& e) {
          Band{0, 16.3}},
         ClaimVerdict::partly);
     DataTable table{
-        {"window", "printed lambda3", "printed (lambda1 - lambda3) T", "raw_product", "qr"}, {}};
+        {"window", "printed lambda3", "printed (lambda1 - lambda3) T", "raw_product", "qr"}};
     for (const Table2Row& row : printed_table_2) {
         table.rows.push_back(
             {fmt::format("[{:g}, {:g}]", row.from, row.to), fmt::format("{:g}", row.lambda3),

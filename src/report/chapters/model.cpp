@@ -100,14 +100,13 @@ void trajectory_difference(Report& report) {
     distance.x = tangent.x = second.series.tau;
     distance.y = second.distance, tangent.y = second.tangent;
     report.picture(
-        {.name = "fig2",
-         .caption = "Fig. 2: distance of two trajectories through their impacts, and its "
-                    "prediction by (26) to (32)",
-         .plots = {
-             {.x_label = "tau",
-              .y_label = "distance (m)",
-              .curves = {distance, tangent},
-              .logarithmic = true}}});
+        "fig2",
+        "Fig. 2: distance of two trajectories through their impacts, and its "
+        "prediction by (26) to (32)",
+        {{.x_label = "tau",
+          .y_label = "distance (m)",
+          .curves = {distance, tangent},
+          .logarithmic = true}});
     report.add(
         {"Fig. 2, eqs. (26) to (32)",
          fmt::format(

@@ -24,13 +24,10 @@ void show(Report& report, const PaperRun& r, int figure, double from) {
     const std::string name = fmt::format("fig{}", figure),
                       at = fmt::format("Fig. {}, b = {:g} mm: ", figure, 1000 * r.parameters.b);
     report.picture(
-        {.name = name + "a",
-         .caption = at + "relative displacement",
-         .plots = {relative_displacement(r, from, window_end)}});
+        name + "a", at + "relative displacement", {relative_displacement(r, from, window_end)});
     report.picture(
-        {.name = name + "b",
-         .caption = at + "above, eq. (33) from the unscaled product as in the paper; below, by QR",
-         .plots = exponent_histories(r.product())});
+        name + "b", at + "above, eq. (33) from the unscaled product as in the paper; below, by QR",
+        exponent_histories(r.product()));
 }
 
 /// The type and z of a run, with the damping of the closed form and of eq. (1).

@@ -80,10 +80,10 @@ void figure_3(Report& report, const BothRuns& runs) {
     Plot x = displacement(*run_until(0.022, 5521.3, {.series = true}).run.series);
     x.marked_times = {18.13, 1708.9};
     report.picture(
-        {.name = "fig3",
-         .caption = "Fig. 3: displacement of the linear oscillator; the window of Fig. 5 between "
-                    "the dashed lines",
-         .plots = {x}});
+        "fig3",
+        "Fig. 3: displacement of the linear oscillator; the window of Fig. 5 between "
+        "the dashed lines",
+        {x});
     same_regime(
         report, "Fig. 3", RegimeType::II, runs,
         fmt::format(
@@ -95,9 +95,8 @@ void figure_3(Report& report, const BothRuns& runs) {
 void figure_4(Report& report, const BothRuns& runs) {
     const PaperRun& r = runs.here;
     report.picture(
-        {.name = "fig4",
-         .caption = "Fig. 4: displacement and relative displacement, enlarged",
-         .plots = {displacement(*r.run.series, 600), relative_displacement(r, 0, 600)}});
+        "fig4", "Fig. 4: displacement and relative displacement, enlarged",
+        {displacement(*r.run.series, 600), relative_displacement(r, 0, 600)});
     const ImpactsPerCycle here = impacts_per_cycle(r), other = impacts_per_cycle(runs.by_equation);
     report.add(
         {"Fig. 4", "impacts per cycle while x falls", "2"},

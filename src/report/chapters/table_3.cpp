@@ -70,8 +70,7 @@ void lambda1(Report& report, const Rows& rows) {
                  other_sum = sum_of_squares(other);
     report.add(
         {"Table 3",
-         "the ten lambda1 together: sum of squared deviations in sd, of windows of 400 "
-         "contacts",
+         "the ten lambda1 together: sum of squared deviations in sd, of windows of 400 contacts",
          "ten values"},
         {sum, other_sum,
          fmt::format(
@@ -256,11 +255,10 @@ void table_3(Report& report, RunCache& runs) {
     order(report, rows);
     durations(report, runs);
     report.picture(
-        {.name = "table3",
-         .caption = "Table 3: lambda1 of the paper, and mean and standard deviation over windows "
-                    "of 400 contacts",
-         .plots = {comparison(rows)},
-         .height = 330});
+        "table3",
+        "Table 3: lambda1 of the paper, and mean and standard deviation over windows "
+        "of 400 contacts",
+        {comparison(rows)}, 330);
 }
 
 }  // namespace vines::report

@@ -74,10 +74,8 @@ void figures_6_to_8(Report& report, const PaperRun& r) {
     Plot T = moduli(r, "|eig T|", r.run.moduli->T);
     T.logarithmic = true;
     report.picture(
-        {.name = "fig6-8",
-         .caption = "Figs. 6, 7, 8: moduli of the eigenvalues of J, M and T",
-         .plots = {moduli(r, "|eig J|", r.run.moduli->J), moduli(r, "|eig M|", r.run.moduli->M), T},
-         .height = 170});
+        "fig6-8", "Figs. 6, 7, 8: moduli of the eigenvalues of J, M and T",
+        {moduli(r, "|eig J|", r.run.moduli->J), moduli(r, "|eig M|", r.run.moduli->M), T}, 170);
     report.add(
         {"Fig. 6", "moduli of J: their distance from e^(-zeta Delta tau) twice and 1 twice",
          "two below 1, two 1"},
@@ -281,8 +279,7 @@ void area_3(Report& report, const std::vector<PaperRun>& neighbours) {
         {"Fig. 9, area 3",
          "number of the window's modulations with a higher amplitude than the one with the "
          "largest value of T",
-         "in area3, the largest value is observed; \"a close relation to the maximal "
-         "amplitude\""},
+         "in area3, the largest value is observed; \"a close relation to the maximal amplitude\""},
         {higher.median, higher.in_words(0)}, {exactly(0), "area3 is at the maximal amplitude"});
     const PaperRun r =
         run_until(0.022, 10 * window_end, {.series = true, .moduli = true, .regime = true});
@@ -309,9 +306,7 @@ void figure_9(Report& report, RunCache& runs) {
     T.logarithmic = true;
     x.bands = T.bands = synchronised_stretches(r);
     report.picture(
-        {.name = "fig9",
-         .caption = "Fig. 9: x and the largest modulus of T; synchronised stretches shaded",
-         .plots = {x, T}});
+        "fig9", "Fig. 9: x and the largest modulus of T; synchronised stretches shaded", {x, T});
     areas_1_and_2(report, runs);
     example_of_area_2(report, r);
     area_3(report, runs.neighbours(0.022));
