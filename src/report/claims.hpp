@@ -26,9 +26,8 @@ void positive_exponents(Report& report, const PositiveExponents& paper, const Bo
 /// Range of the k-th exponent (0 to 3) over the second half of a window, without spikes (one value
 /// in twenty at either end), over its last value.
 double late_change(const ExponentHistory& history, int k);
-/// Limits of late_change() for "almost constant", and for holding in part.
-inline constexpr double small_change = 0.1, some_change = 0.2;
-inline const char* const why_small_change = "a tenth; in part: a fifth";
+/// late_change() of what the paper calls almost constant.
+inline const Criterion almost_constant = {{0, 0.1}, "a tenth; in part: a fifth", Band{0, 0.2}};
 
 /// Table 2: exponents at b = 22 mm over three windows of one run.
 struct Table2Row {

@@ -87,22 +87,20 @@ std::string text_of(const Result& r) {
 }
 
 std::string text_of(ClaimVerdict verdict, bool computed_record) {
+    using enum ClaimVerdict;
     if (computed_record) switch (verdict) {
-            case ClaimVerdict::reproduced: return "holds for the computed record";
-            case ClaimVerdict::partly: return "holds in part for the computed record";
+            case reproduced: return "holds for the computed record";
+            case partly: return "holds in part for the computed record";
             default: return "**does not hold for the computed record**";
         }
     switch (verdict) {
-        case ClaimVerdict::reproduced: return "reproduced";
-        case ClaimVerdict::by_closed_form: return "reproduced, with the closed-form damping alone";
-        case ClaimVerdict::by_equation_of_motion:
-            return "reproduced, with the damping of eq. (1) alone";
-        case ClaimVerdict::partly: return "in part";
-        case ClaimVerdict::partly_by_closed_form:
-            return "in part, with the closed-form damping alone";
-        case ClaimVerdict::partly_by_equation_of_motion:
-            return "in part, with the damping of eq. (1) alone";
-        case ClaimVerdict::not_reproduced: return "**not reproduced**";
+        case reproduced: return "reproduced";
+        case by_closed_form: return "reproduced, with the closed-form damping alone";
+        case by_equation_of_motion: return "reproduced, with the damping of eq. (1) alone";
+        case partly: return "in part";
+        case partly_by_closed_form: return "in part, with the closed-form damping alone";
+        case partly_by_equation_of_motion: return "in part, with the damping of eq. (1) alone";
+        case not_reproduced: return "**not reproduced**";
     }
     return "";
 }

@@ -195,9 +195,8 @@ void exponents_of_irregular_response(Report& report, const Experiment& e) {
          fmt::format(
              "{:.2f}; true motion, over the {} following stretches of that length: median {:.2f}",
              change, following, typical_change)},
-        {{0, small_change},
-         std::string(why_small_change) + ". It depends on the record's length",
-         Band{0, some_change}},
+        {almost_constant.band, almost_constant.because + ". It depends on the record's length",
+         almost_constant.partly},
         ClaimVerdict::not_reproduced);
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "report/plots.hpp"
 #include "report/report.hpp"
@@ -23,35 +24,27 @@ void parameters_of_table_1(Report& report, const Parameters& p) {
 
 /// x(tau) by (8) to (11) exactly as printed, with tau_0 = 0. x20 = x(0) and x10 = x'(0), in the
 /// paper's names, like f1, f2, p1 and q1.
-class PrintedClosedForm {
-public:
-    PrintedClosedForm(const Parameters& p, double x20, double x10) : decay_(p.epsilon * p.lambda) {
-        using elementary::cos, elementary::sin;
-        const double O = p.Omega, e = p.epsilon, l = p.lambda, A = p.A(), phi = p.phi(),
-                     D = O * O * O * O + (4 * e * e * l * l - 2) * O * O + 1;
-        f1_ = -e * A * ((O * O - 1) * cos(phi) - 2 * l * e * O * sin(phi)) / D;
-        f2_ = -e * A * ((O * O - 1) * sin(phi) + 2 * l * e * cos(phi) * O) / D;
-        omega_d_ = std::sqrt(1 - e * e * l * l);
-        q1_ = x20 - f2_;
-        p1_ = -(-x10 - e * l * x20 + e * l * f2_ + f1_ * O) / omega_d_;
-        Omega_ = O;
-    }
-    double x(double tau) const {
-        using elementary::cos, elementary::exp, elementary::sin;
-        return exp(-decay_ * tau) * (p1_ * sin(omega_d_ * tau) + q1_ * cos(omega_d_ * tau)) +
-               f1_ * sin(Omega_ * tau) + f2_ * cos(Omega_ * tau);
-    }
-
-private:
-    double decay_, Omega_, omega_d_, f1_, f2_, q1_, p1_;
-};
+std::function<double(double tau)> printed_closed_form(const Parameters& p, double x20, double x10) {
+    using elementary::cos, elementary::exp, elementary::sin;
+    const double O = p.Omega, e = p.epsilon, l = p.lambda, A = p.A(), phi = p.phi(),
+                 D = O * O * O * O + (4 * e * e * l * l - 2) * O * O + 1,
+                 f1 = -e * A * ((O * O - 1) * cos(phi) - 2 * l * e * O * sin(phi)) / D,
+                 f2 = -e * A * ((O * O - 1) * sin(phi) + 2 * l * e * cos(phi) * O) / D,
+                 omega_d = std::sqrt(1 - e * e * l * l), q1 = x20 - f2,
+                 p1 = -(-x10 - e * l * x20 + e * l * f2 + f1 * O) / omega_d;
+    return [=](double tau) {
+        return exp(-e * l * tau) * (p1 * sin(omega_d * tau) + q1 * cos(omega_d * tau)) +
+               f1 * sin(O * tau) + f2 * cos(O * tau);
+    };
+}
 
 /// The k for which a motion satisfies x'' + k epsilon lambda x' + x = epsilon A sin(Omega tau +
 /// phi) at tau; derivatives by central differences of the fourth order.
-double damping_factor_of(const Parameters& p, const PrintedClosedForm& motion, double tau) {
+double damping_factor_of(
+    const Parameters& p, const std::function<double(double)>& motion, double tau) {
     // The error of x' is h^4/30 times its fourth derivative, far above rounding.
     constexpr double h = 0.01;
-    const auto x = [&](int k) { return motion.x(tau + k * h); };
+    const auto x = [&](int k) { return motion(tau + k * h); };
     const double x_dot = (x(-2) - 8 * x(-1) + 8 * x(1) - x(2)) / (12 * h),
                  x_ddot = (-x(-2) + 16 * x(-1) - 30 * x(0) + 16 * x(1) - x(2)) / (12 * h * h);
     return (p.epsilon * p.A() * elementary::sin(p.Omega * tau + p.phi()) - x_ddot - x(0)) /
@@ -59,7 +52,7 @@ double damping_factor_of(const Parameters& p, const PrintedClosedForm& motion, d
 }
 
 void closed_form(Report& report, const Parameters& p) {
-    const PrintedClosedForm motion(p, 0.01, 0.003);  // any start
+    const auto motion = printed_closed_form(p, 0.01, 0.003);  // any start
     double least = infinity, most = -infinity;
     // Times at which x' is not small; the motion has an amplitude of about 10 mm.
     for (double tau : {1.0, 2.5, 4.0, 5.5, 7.0, 30.0}) {

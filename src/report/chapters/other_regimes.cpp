@@ -8,10 +8,6 @@
 
 #include "report/claims.hpp"
 #include "report/plots.hpp"
-#include "report/report.hpp"
-#include "report/runs.hpp"
-
-#include "core/motion/elementary.hpp"
 
 namespace vines::report {
 
