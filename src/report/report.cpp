@@ -136,12 +136,11 @@ std::string summary(const std::vector<Finding>& findings) {
 
 ClaimVerdict Finding::verdict() const {
     using enum ClaimVerdict;
-    const auto [number, by_equation, words] = result;
     // `both`, or the verdict of the damping with which alone the number is in the band.
     const auto within = [&](const Band& band, ClaimVerdict both, ClaimVerdict by_form,
                             ClaimVerdict by_motion) {
-        const bool here = band.contains(number),
-                   other = by_equation ? band.contains(*by_equation) : here;
+        const bool here = band.contains(result.number),
+                   other = band.contains(result.by_equation.value_or(result.number));
         return here && other ? both : here ? by_form : other ? by_motion : not_reproduced;
     };
     const ClaimVerdict whole =
