@@ -3,7 +3,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdlib>
 #include <functional>
+#include <set>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -44,27 +46,17 @@ std::string first_argument_error(const CLI::App& app, const std::string& first) 
            (nearest.empty() ? "" : "; did you mean " + nearest + "?");
 }
 
-/// During its lifetime the environment variables of all other subcommands are ignored: they can be
-/// meant for another run and be invalid here.
-class ScopedVariableFilter {
-public:
-    ScopedVariableFilter(const std::vector<vines::Command>& commands, const std::string& selected) {
-        for (const vines::Command& command : commands)
-            if (command.app->get_name() != selected)
-                for (CLI::Option* option : command.app->get_options()) {
-                    variables_.emplace_back(option, option->get_envname());
-                    option->envname("");
-                }
-    }
-    ~ScopedVariableFilter() {
-        for (const auto& [option, name] : variables_) option->envname(name);
-    }
-    ScopedVariableFilter(const ScopedVariableFilter&) = delete;
-    ScopedVariableFilter& operator=(const ScopedVariableFilter&) = delete;
-
-private:
-    std::vector<std::pair<CLI::Option*, std::string>> variables_;
-};
+/// Removes the environment variables of all other subcommands: they can be meant for another run
+/// and be invalid here.
+void ignore_variables_of_others(
+    const std::vector<vines::Command>& commands, const std::string& selected) {
+    std::set<std::string> kept, others;
+    for (const vines::Command& command : commands)
+        for (const CLI::Option* option : command.app->get_options())
+            (command.app->get_name() == selected ? kept : others).insert(option->get_envname());
+    for (const std::string& name : others)
+        if (!kept.contains(name)) ::unsetenv(name.c_str());
+}
 
 /// Reports a usage error. Returns the exit code 2.
 int usage_error(const std::string& message, const std::string& command) {
@@ -122,9 +114,8 @@ int main(int argc, char** argv) {
     const std::string first = argc > 1 ? argv[1] : "";
     const std::string error = first_argument_error(app, first);
     if (!error.empty()) return usage_error(error, "vines");
+    ignore_variables_of_others(commands, first);
     try {
-        // The variables are restored before --help is printed, which lists all of them.
-        const ScopedVariableFilter filter(commands, first);
         app.parse(argc, argv);
     } catch (const CLI::Success& request) {
         return run_with_exit_code([&] { return print_text(app, request); });

@@ -89,21 +89,19 @@ int identify(const AnswerOptions& o) {
     api::AnswerRequest asked = read_identification(text, o.fields);
     std::string().swap(text);  // frees the record, which can be large
     const api::Format format = asked.form.format.value_or(api::Format::json);
-    std::optional<StageLine> line(std::in_place);
     api::Answer answer;
     try {
+        StageLine line;
         answer = api::compute_answer(
             std::move(asked), {.stop = {.requested = stopped},
                                .reached = [&line](IdentificationStage stage, int round) {
-                                   line->show(api::words_of(stage, round) + " ...");
+                                   line.show(api::words_of(stage, round) + " ...");
                                }});
     } catch (const api::Problem& problem) {
-        line.reset();
         if (!stopped()) throw;
         print_message(problem.what());
         return stopped_code();
     }
-    line.reset();
     stoppable.reset();
     write(o.files.output, std::move(answer), format);
     return complete;
@@ -145,9 +143,8 @@ Command add_identify(CLI::App& app) {
     const auto options = std::make_shared<AnswerOptions>();
     CLI::App* command =
         app.add_subcommand("identify", "impacts, exponents of a record: POST /v1/identify");
-    command->add_option("record", options->files.input, "CSV or JSON file; - or nothing: stdin")
-        ->type_name("FILE");
-    add_output(*command, options->files);
+    add_file(*command, "record", options->files.input, "CSV or JSON file; - or nothing: stdin");
+    add_output(*command, options->files.output);
     add_flags(*command, *options);
     return with_exit_codes(
         command, [options] { return identify(*options); },

@@ -185,8 +185,7 @@ Command add_openapi(CLI::App& app) {
 
 Command add_example(CLI::App& app) {
     struct Options {
-        std::string what;
-        Files files;
+        std::string what, output;
     };
     const auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("example", "an example record for identify");
@@ -197,11 +196,11 @@ Command add_example(CLI::App& app) {
             "sensors, as CSV")
         ->required()
         ->check(CLI::IsMember({"record"}));
-    add_output(*command, options->files);
+    add_output(*command, options->output);
     return with_exit_codes(
         command,
         [options] {
-            write_all(options->files.output, api::example_record());
+            write_all(options->output, api::example_record());
             return complete;
         },
         "vines example record > record.csv");

@@ -7,16 +7,13 @@
 
 namespace vines::cli {
 
-void add_files(CLI::App& command, Files& files) {
-    command
-        .add_option("request", files.input, "file with the request as JSON; - or nothing: stdin")
-        ->type_name("FILE");
-    add_output(command, files);
+void add_output(CLI::App& command, std::string& path, const std::string& about) {
+    add_file(command, "--output,-o", path, about);
 }
 
-void add_output(CLI::App& command, Files& files) {
-    command.add_option("--output,-o", files.output, "file for the answer; - or nothing: stdout")
-        ->type_name("FILE");
+void add_files(CLI::App& command, Files& files) {
+    add_file(command, "request", files.input, "file with the request as JSON; - or nothing: stdin");
+    add_output(command, files.output);
 }
 
 void add_plot_flag(CLI::App& command, bool& plot) {

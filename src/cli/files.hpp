@@ -10,8 +10,18 @@ namespace vines::cli {
 struct Files {
     std::string input, output;
 };
+
+/// Adds an option or a positional for a path or several ones, which shells complete.
+template <class Paths>
+CLI::Option* add_file(
+    CLI::App& command, const std::string& names, Paths& paths, const std::string& about) {
+    return command.add_option(names, paths, about)->type_name("FILE");
+}
+void add_output(
+    CLI::App& command, std::string& path,
+    const std::string& about = "file for the answer; - or nothing: stdout");
+/// Adds the file with the request, and that for the answer.
 void add_files(CLI::App& command, Files& files);
-void add_output(CLI::App& command, Files& files);
 /// Adds --plot, which excludes --format. Call add_files() and add_format() before.
 void add_plot_flag(CLI::App& command, bool& plot);
 

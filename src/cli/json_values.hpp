@@ -13,14 +13,16 @@ namespace vines::cli {
 
 inline constexpr double mm = 1e-3;  ///< m; unit of lengths in plots
 
-inline double number_of(const api::Json& value) {
-    return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
+/// Value at a JSON pointer such as "/exponents/qr/final/0"; null if missing.
+inline const api::Json& part(const api::Json& answer, const std::string& path) {
+    static const api::Json none;
+    const api::Json::json_pointer at(path);
+    return answer.contains(at) ? answer[at] : none;
 }
 
-/// NaN for null and for a missing name.
-inline double number_at(const api::Json& object, const std::string& name) {
-    const auto found = object.find(name);
-    return number_of(found != object.end() ? *found : api::Json());
+/// NaN if it is no number.
+inline double number_of(const api::Json& value) {
+    return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
 }
 
 inline std::vector<double> numbers_of(const api::Json& list, double unit = 1) {
@@ -29,18 +31,9 @@ inline std::vector<double> numbers_of(const api::Json& list, double unit = 1) {
     return numbers;
 }
 
-/// First entry of a list, NaN like number_at().
-inline double first_at(const api::Json& object, const std::string& name) {
-    const auto list = object.find(name);
-    return list != object.end() && list->is_array() && !list->empty()
-               ? number_of((*list)[0])
-               : std::numeric_limits<double>::quiet_NaN();
-}
-
-/// Empty if missing.
-inline std::string word_at(const api::Json& object, const std::string& name) {
-    const auto found = object.find(name);
-    return found != object.end() && found->is_string() ? found->get<std::string>() : "";
+/// Empty if it is no string.
+inline std::string word_of(const api::Json& value) {
+    return value.is_string() ? value.get<std::string>() : "";
 }
 
 /// An answer or a line of a sweep; a discarded value (is_discarded()) for a text that is no object.

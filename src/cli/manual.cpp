@@ -64,24 +64,12 @@ std::string flag_meaning(const FlagUsage& flag) {
     return lines_kept(text) + "\n";
 }
 
-/// Placeholder for an option's value; empty if it takes none.
-std::string value_word(const FlagUsage& flag) {
-    switch (flag.value) {
-        case ValueKind::none: return "";
-        case ValueKind::file: return "file";
-        case ValueKind::folder: return "folder";
-        case ValueKind::choice:
-        case ValueKind::text: break;
-    }
-    return "value";
-}
-
 /// Entry in the option list of a command.
 std::string flag_entry(const FlagUsage& flag, bool positional) {
     std::vector<std::string> names;
     for (const std::string& name : flag.names)
         names.push_back(positional ? italic(name) : bold(name));
-    const std::string value = positional ? "" : value_word(flag);
+    const std::string value = positional ? "" : flag.value_word();
     return fmt::format(
         ".TP\n{}{}\n{}", fmt::join(names, ", "), value.empty() ? "" : " " + italic(value),
         flag_meaning(flag));

@@ -68,13 +68,8 @@ int merge(const MergeOptions& o) {
 Command add_merge(CLI::App& app) {
     const auto options = std::make_shared<MergeOptions>();
     CLI::App* command = app.add_subcommand("merge", "combine the files of a sweep's shards");
-    command->add_option("files", options->inputs, "the shards' files")
-        ->required()
-        ->type_name("FILE");
-    command
-        ->add_option(
-            "--output,-o", options->output, "file for the whole sweep; - or nothing: stdout")
-        ->type_name("FILE");
+    add_file(*command, "files", options->inputs, "the shards' files")->required();
+    add_output(*command, options->output, "file for the whole sweep; - or nothing: stdout");
     return with_exit_codes(
         command, [options] { return merge(*options); },
         "vines merge 0.ndjson 1.ndjson 2.ndjson 3.ndjson -o sweep.ndjson");

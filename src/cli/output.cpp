@@ -88,19 +88,6 @@ Destination open_descriptor(const std::string& name, int number) {
     return {name, std::move(copy), ""};
 }
 
-/// Target of a symbolic link, one step.
-std::string link_target(const std::string& link) {
-    const std::filesystem::path to = std::filesystem::read_symlink(link);
-    return to.is_absolute() ? to.string()
-                            : (std::filesystem::path(link).parent_path() / to).string();
-}
-
-Destination open_stream(const std::string& name, const std::string& path) {
-    Descriptor stream(::open(path.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC));
-    if (!stream) fail_at("write", name);
-    return {name, std::move(stream), ""};
-}
-
 void lock(int descriptor, const std::string& name) {
     if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
     throw std::runtime_error(
@@ -135,24 +122,25 @@ Destination destination_of(const std::string& path) {
     if (is_standard(path)) return open_descriptor("to stdout", STDOUT_FILENO);
     // Follows links one at a time: a link can lead to /dev/fd/N, which realpath() would resolve
     // further, and a missing target can be created.
-    std::string at = path;
+    std::filesystem::path at = path;
+    std::error_code error;
     for (int links = 0;; ++links) {
-        if (const auto number = descriptor_number(at))
+        if (const auto number = descriptor_number(at.string()))
             return open_descriptor(path, static_cast<int>(*number));
-        struct stat entry{};
-        const bool is_link = ::lstat(at.c_str(), &entry) == 0 && S_ISLNK(entry.st_mode);
-        if (!is_link) break;
+        if (!std::filesystem::is_symlink(at, error)) break;
         if (links == max_links) fail_at("write", path, ELOOP);
-        at = link_target(at);
+        at = at.parent_path() / std::filesystem::read_symlink(at);
     }
-    struct stat entry{};
-    if (::stat(at.c_str(), &entry) != 0) {
-        if (errno != ENOENT) fail_at("write", path);
-        return {path, Descriptor(), at};
+    switch (std::filesystem::status(at, error).type()) {
+        case std::filesystem::file_type::none: fail_at("write", path, error.value());
+        case std::filesystem::file_type::directory: fail_at("write", path, EISDIR);
+        case std::filesystem::file_type::not_found:
+        case std::filesystem::file_type::regular: return {path, Descriptor(), at.string()};
+        default: break;
     }
-    if (S_ISDIR(entry.st_mode)) fail_at("write", path, EISDIR);
-    if (S_ISREG(entry.st_mode)) return {path, Descriptor(), at};
-    return open_stream(path, at);
+    Descriptor stream(::open(at.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC));
+    if (!stream) fail_at("write", path);
+    return {path, std::move(stream), ""};
 }
 
 TemporaryFile::TemporaryFile(std::string target, std::string name)

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
@@ -36,13 +35,6 @@ using api::Json;
 using plot::Curve;
 using plot::Plot;
 
-/// Value at a JSON pointer such as "/exponents/qr"; null if missing.
-const Json& part(const Json& answer, const std::string& path) {
-    static const Json none;
-    const Json::json_pointer at(path);
-    return answer.contains(at) ? answer[at] : none;
-}
-
 /// Returns whether the object has these lists with equal lengths and the first has no gaps.
 bool has(const Json& object, const std::vector<const char*>& names) {
     const auto is_list = [&](const char* name) {
@@ -57,7 +49,8 @@ bool has(const Json& object, const std::vector<const char*>& names) {
 
 /// lambda1 with its standard error, if known; empty if lambda1 is missing.
 std::string lambda1_of(const Json& qr) {
-    const double lambda1 = first_at(qr, "final"), error = first_at(qr, "standard_error");
+    const double lambda1 = number_of(part(qr, "/final/0")),
+                 error = number_of(part(qr, "/standard_error/0"));
     if (!std::isfinite(lambda1)) return "";
     return fmt::format("lambda1 = {:.3g}", lambda1) +
            (std::isfinite(error) ? fmt::format(" +- {:.2g}", error) : "");
@@ -65,10 +58,10 @@ std::string lambda1_of(const Json& qr) {
 
 /// Result of the run in one line.
 std::string title_of(const Json& answer) {
-    const double b = number_at(part(answer, "/parameters"), "b") / mm;
-    const std::string regime = word_at(part(answer, "/regime"), "type");
+    const double b = number_of(part(answer, "/parameters/b")) / mm;
+    const std::string regime = word_of(part(answer, "/regime/type"));
     std::vector<std::string> parts = {
-        regime.empty() ? "" : "regime " + regime, word_at(part(answer, "/exponents"), "verdict"),
+        regime.empty() ? "" : "regime " + regime, word_of(part(answer, "/exponents/verdict")),
         lambda1_of(part(answer, "/exponents/qr"))};
     std::erase(parts, "");
     if (!std::isfinite(b)) return api::joined(parts);
@@ -85,7 +78,7 @@ Plot displacement(const Json& series) {
 /// Includes the contacts between the samples, where |y - x| = b.
 Plot relative_displacement(const Json& answer) {
     const Json &series = answer["series"], &impacts = part(answer, "/impacts");
-    const double b = number_at(part(answer, "/parameters"), "b") / mm;
+    const double b = number_of(part(answer, "/parameters/b")) / mm;
     const bool has_walls = std::isfinite(b);
     std::vector<std::pair<double, double>> points;
     const std::vector<double> tau = numbers_of(series["tau"]), x = numbers_of(series["x"], mm),
@@ -157,7 +150,7 @@ struct Abscissa {
     double unit;
 
     std::string label() const { return parameter + (unit == mm ? " (mm)" : ""); }
-    double of(const Json& point) const { return number_at(point, parameter) / unit; }
+    double of(const Json& point) const { return number_of(point.value(parameter, Json())) / unit; }
 };
 
 /// The axis with more than one value, or the first one if all have one. Throws std::runtime_error
@@ -165,8 +158,8 @@ struct Abscissa {
 Abscissa abscissa_of(const Json& start, const std::vector<Json>& points) {
     std::optional<std::string> first, found;
     for (const Json& axis : start["axes"]) {
-        const std::string parameter = word_at(axis, "parameter");
-        if (word_at(points[0], "reduce").ends_with(" " + parameter)) continue;
+        const std::string parameter = word_of(part(axis, "/parameter"));
+        if (word_of(part(points[0], "/reduce")).ends_with(" " + parameter)) continue;
         if (!first) first = parameter;
         if (!axis.contains("values") || axis["values"].size() < 2) continue;
         if (found)
@@ -186,14 +179,13 @@ void add(Curve& curve, double x, double y, std::optional<double> error = {}) {
 }
 
 /// States in the section: at impacts (where |x - y| = b) or at whole forcing cycles.
-std::optional<Plot> section(const std::vector<Json>& points, const Abscissa& at) {
+Plot section(const std::vector<Json>& points, const Abscissa& at) {
     const Json::json_pointer states("/section/x");
     Plot p{.y_label = "x in the section (mm)", .curves = {{.dots = true}}};
     for (const Json& point : points) {
         if (!point.contains(states)) continue;
         for (const double x : numbers_of(point[states], mm)) add(p.curves[0], at.of(point), x);
     }
-    if (p.curves[0].x.empty()) return std::nullopt;
     return p;
 }
 
@@ -206,8 +198,9 @@ std::vector<Curve> by_word(
     for (const auto& [word, colour] : colours) {
         Curve curve{.colour = colour, .label = word, .dots = true};
         for (const Json& point : points) {
+            if (word_of(part(point, field)) != word) continue;
             const auto [value, error] = value_and_error(point);
-            if (word_at(point, field) == word) add(curve, at.of(point), value, error);
+            add(curve, at.of(point), value, error);
         }
         if (!curve.x.empty()) curves.push_back(std::move(curve));
     }
@@ -218,10 +211,11 @@ Plot lambda1(const std::vector<Json>& points, const Abscissa& at) {
     return {
         .y_label = "lambda1, by verdict",
         .curves = by_word(
-            points, at, "verdict",
+            points, at, "/verdict",
             {{"chaotic", plot::red}, {"regular", plot::colours[0]}, {"not_decided", plot::grey}},
             [](const Json& p) {
-                return std::pair(first_at(p, "lambda"), first_at(p, "standard_error"));
+                return std::pair(
+                    number_of(part(p, "/lambda/0")), number_of(part(p, "/standard_error/0")));
             }),
         .levels = {0}};
 }
@@ -232,7 +226,7 @@ Plot response(
     return {
         .y_label = label + ", by regime",
         .curves = by_word(
-            points, at, "regime",
+            points, at, "/regime",
             {{"I", "#b8780b"},
              {"II", plot::red},
              {"III", plot::colours[0]},
@@ -240,7 +234,9 @@ Plot response(
              {"V", plot::colours[3]},
              {"VI", "#39424a"},
              {"none", plot::grey}},
-            [field, unit](const Json& p) { return std::pair(number_at(p, field) / unit, 0.); })};
+            [field, unit](const Json& p) {
+                return std::pair(number_of(part(p, field)) / unit, 0.);
+            })};
 }
 
 /// Request fields except axes, as "name = value, ...", including those of the base.
@@ -261,13 +257,12 @@ std::string fields_except_axes(const Json& request) {
 std::vector<Plot> sweep_plots(const Json& start, const std::vector<Json>& points) {
     if (points.empty()) return {};
     const Abscissa at = abscissa_of(start, points);
-    std::vector<Plot> plots;
-    if (std::optional<Plot> states = section(points, at)) plots.push_back(std::move(*states));
-    plots.push_back(lambda1(points, at));
-    plots.push_back(response(points, at, "rms ratio of x", "x_rms_ratio", 1));
-    plots.push_back(response(points, at, "max |x| (mm)", "x_max", mm));
-    plots.push_back(response(points, at, "peak of |x| (mm)", "x_peak", mm));
-    std::erase_if(plots, [](const Plot& p) { return p.curves.empty(); });
+    std::vector<Plot> plots = {
+        section(points, at), lambda1(points, at),
+        response(points, at, "rms ratio of x", "/x_rms_ratio", 1),
+        response(points, at, "max |x| (mm)", "/x_max", mm),
+        response(points, at, "peak of |x| (mm)", "/x_peak", mm)};
+    std::erase_if(plots, [](const Plot& p) { return p.curves.empty() || p.curves[0].x.empty(); });
     for (Plot& p : plots) p.x_label = at.label();
     if (!plots.empty()) plots[0].title = fields_except_axes(start.value("request", Json::object()));
     return plots;
@@ -286,8 +281,9 @@ std::vector<Plot> plots_of_lines(const std::string& text) {
         // The last line of a killed run can be incomplete.
         if (lines.eof() && !api::Json::accept(line)) break;
         api::Json read = api::parse_object(line);
-        if (word_at(read, "type") == "start") start = std::move(read);
-        else if (word_at(read, "type") == "point") points.push_back(std::move(read));
+        const std::string type = word_of(part(read, "/type"));
+        if (type == "start") start = std::move(read);
+        else if (type == "point") points.push_back(std::move(read));
     }
     if (!start.contains("axes") || !start["axes"].is_array())
         throw std::runtime_error("the first line of the sweep is missing");
@@ -302,10 +298,7 @@ bool has_ascii_alone() {
     for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
         const char* const value = std::getenv(name);
         if (!value || !*value) continue;
-        std::string locale = value;
-        std::transform(locale.begin(), locale.end(), locale.begin(), [](unsigned char c) {
-            return static_cast<char>(std::tolower(c));
-        });
+        const std::string locale = CLI::detail::to_lower(value);
         return locale.find("utf-8") == std::string::npos &&
                locale.find("utf8") == std::string::npos;
     }
@@ -355,15 +348,10 @@ void draw(const std::vector<Plot>& plots, const std::string& path) {
 Command add_plot(CLI::App& app) {
     const auto files = std::make_shared<Files>();
     CLI::App* command = app.add_subcommand("plot", "draw an answer in the terminal or as SVG");
-    command
-        ->add_option(
-            "answer", files->input,
-            "file with a run's answer or a sweep's lines; - or nothing: stdin")
-        ->type_name("FILE");
-    command
-        ->add_option(
-            "--output,-o", files->output, "SVG file, FILE.svg; nothing: draw in the terminal")
-        ->type_name("FILE");
+    add_file(
+        *command, "answer", files->input,
+        "file with a run's answer or a sweep's lines; - or nothing: stdin");
+    add_output(*command, files->output, "SVG file, FILE.svg; nothing: draw in the terminal");
     return with_exit_codes(
         command,
         [files] {

@@ -3,7 +3,6 @@
 #include <array>
 #include <utility>
 
-#include "api/format/encode.hpp"
 #include "api/parse.hpp"
 #include "api/problem.hpp"
 #include "api/schema/field.hpp"
@@ -15,12 +14,6 @@ namespace {
 using api::FieldTable;
 using api::FieldType;
 using api::Json;
-
-std::vector<std::string> format_words() {
-    std::vector<std::string> words;
-    for (const api::FormatName& name : api::format_names) words.emplace_back(name.word);
-    return words;
-}
 
 std::pair<std::string, std::string> split_at_equals(
     const std::string& text, const std::string& flag, const std::string& example) {
@@ -133,7 +126,7 @@ void add_format(CLI::App& command, RequestFields& given) {
     command
         .add_option(
             "--format", given.format, "format of the answer; default: the request's, or json")
-        ->check(CLI::IsMember(format_words()));
+        ->check(CLI::IsMember(api::find(api::form_fields(), "format")->choices));
 }
 
 void add_axes(CLI::App& command, RequestFields& given) {

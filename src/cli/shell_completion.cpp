@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
-#include <map>
 #include <memory>
 
 #include "cli/exit.hpp"
@@ -15,13 +13,6 @@
 namespace vines::cli {
 
 namespace {
-
-std::vector<std::string> all_names(const std::vector<FlagUsage>& flags) {
-    std::vector<std::string> names;
-    for (const FlagUsage& flag : flags)
-        names.insert(names.end(), flag.names.begin(), flag.names.end());
-    return names;
-}
 
 /// Escapes these characters and backslashes by a backslash.
 std::string escaped(const std::string& text, const std::string& special) {
@@ -70,9 +61,12 @@ std::string branches_of_values(const CommandUsage& command) {
 
 /// Branch for the other words of a subcommand.
 std::string branch_of_words(const CommandUsage& command) {
+    std::vector<std::string> names;
+    for (const FlagUsage& flag : command.flags)
+        names.insert(names.end(), flag.names.begin(), flag.names.end());
     std::string text = fmt::format(
         "        {}' '*) flags={}", command.name,
-        shell_quoted(fmt::format("{}", fmt::join(all_names(command.flags), " "))));
+        shell_quoted(fmt::format("{}", fmt::join(names, " "))));
     if (!command.positionals.empty())
         if (const std::string known = bash_assignment(command.positionals[0]); !known.empty())
             text += " " + known;
@@ -127,44 +121,42 @@ std::string bash_completion(const ProgramUsage& usage) {
     return text + fmt::format(fmt::runtime(after_branches), program);
 }
 
-/// Action of _arguments for a value.
-std::string zsh_action(const FlagUsage& flag) {
+/// Value of an option or a positional in a specification of _arguments.
+std::string zsh_value(const FlagUsage& flag, const std::string& word) {
     switch (flag.value) {
         case ValueKind::none: return "";
-        case ValueKind::text: return ":value: ";
-        case ValueKind::file: return ":file:_files";
-        case ValueKind::folder: return ":folder:_files -/";
+        case ValueKind::text: return ":" + word + ": ";
+        case ValueKind::file: return ":" + word + ":_files";
+        case ValueKind::folder: return ":" + word + ":_files -/";
         case ValueKind::choice: break;
     }
-    return fmt::format(":value:({})", fmt::join(flag.choices, " "));
+    return fmt::format(":{}:({})", word, fmt::join(flag.choices, " "));
+}
+
+std::string zsh_argument(const std::string& specification) {
+    return " \\\n                " + shell_quoted(specification);
 }
 
 /// A specification for each name of an option: after one of them the others are not offered.
-std::string specifications(const FlagUsage& flag) {
+std::string zsh_flag(const FlagUsage& flag) {
     const std::string others = flag.repeats ? "*" : fmt::format("({})", fmt::join(flag.names, " "));
     std::string text;
     for (const std::string& name : flag.names) {
         const bool is_long = name.starts_with("--");
         const char* follows = flag.value == ValueKind::none ? "" : is_long ? "=" : "+";
-        text += " \\\n                " + shell_quoted(fmt::format(
-                                              "{}{}{}[{}]{}", others, name, follows,
-                                              escaped(flag.description, "[]"), zsh_action(flag)));
+        text += zsh_argument(fmt::format(
+            "{}{}{}[{}]{}", others, name, follows, escaped(flag.description, "[]"),
+            zsh_value(flag, flag.value_word())));
     }
     return text;
 }
 
-std::string specification_of_positional(const FlagUsage& flag) {
-    const std::string what = flag.value == ValueKind::text ? ": " : zsh_action(flag).substr(1);
-    const std::string kind = what.substr(what.find(':'));
-    return " \\\n                " +
-           shell_quoted(
-               fmt::format("{}:{}{}", flag.repeats ? "*" : "", escaped(flag.names[0], ":"), kind));
-}
-
 std::string zsh_arguments(const CommandUsage& command) {
     std::string text = "            _arguments -s";
-    for (const FlagUsage& flag : command.flags) text += specifications(flag);
-    for (const FlagUsage& flag : command.positionals) text += specification_of_positional(flag);
+    for (const FlagUsage& flag : command.flags) text += zsh_flag(flag);
+    for (const FlagUsage& flag : command.positionals)
+        text +=
+            zsh_argument((flag.repeats ? "*" : "") + zsh_value(flag, escaped(flag.names[0], ":")));
     return text + "\n";
 }
 
@@ -265,9 +257,6 @@ std::string fish_completion(const ProgramUsage& usage) {
     return text;
 }
 
-const std::map<std::string, std::function<std::string(const ProgramUsage&)>> makers = {
-    {"bash", bash_completion}, {"fish", fish_completion}, {"zsh", zsh_completion}};
-
 }  // namespace
 
 Command add_completion(CLI::App& app) {
@@ -282,7 +271,11 @@ Command add_completion(CLI::App& app) {
         "vines completion fish | source",
         "The Debian package installs completion for all three shells.");
     return ended_by_signals({command, [&app, shell] {
-                                 print(makers.at(*shell)(usage_of(app)));
+                                 const ProgramUsage usage = usage_of(app);
+                                 print(
+                                     *shell == "bash"  ? bash_completion(usage)
+                                     : *shell == "zsh" ? zsh_completion(usage)
+                                                       : fish_completion(usage));
                                  return 0;
                              }});
 }

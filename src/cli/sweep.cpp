@@ -5,13 +5,13 @@
 // - or collected in memory, for plots and CSV, which need all of them.
 // After a signal the points computed so far are kept.
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -184,15 +184,19 @@ void print_stopped(std::size_t done, std::size_t total, const std::string& hint 
     print_message(fmt::format("stopped after {} of {} points{}", done, total, hint));
 }
 
+/// Prints a warning, and how many points are missing. Returns the exit code.
+int conclude(
+    const std::string& warning, std::size_t done, std::size_t total, const std::string& hint = "") {
+    if (!warning.empty()) print_message(warning);
+    if (done == total) return complete;
+    print_stopped(done, total, hint);
+    return stopped_code();
+}
+
 constexpr const char* resume_hint = "; --resume completes the file";
 
 void refuse_to_overwrite(const std::string& name) {
     throw std::runtime_error(name + " exists already; --resume completes it");
-}
-
-bool exists(const std::string& path) {
-    struct stat entry{};
-    return ::stat(path.c_str(), &entry) == 0;
 }
 
 /// Parses the file of an earlier run. Throws std::runtime_error if it belongs to another sweep or
@@ -281,7 +285,8 @@ private:
 /// code. Throws std::runtime_error if the file exists and is not to be resumed, cannot be resumed,
 /// is being written by another run, or a line cannot be written; existing lines are kept.
 int sweep_to_file(SweepRun run, const Destination& to, bool resume) {
-    if (!resume && exists(to.file)) refuse_to_overwrite(to.name);
+    std::error_code not_found;
+    if (!resume && std::filesystem::exists(to.file, not_found)) refuse_to_overwrite(to.name);
     std::vector<std::size_t>& left = run.request.plan.lines;
     ResumableFile file(to, resume, api::json_text(api::sweep_start(run.request)), left);
     std::erase_if(left, [&](std::size_t i) { return file.contents().points.contains(i); });
@@ -290,15 +295,11 @@ int sweep_to_file(SweepRun run, const Destination& to, bool resume) {
         const std::string warning = compute(
             run, [&file](std::size_t index, const std::string& line) { file.add(index, line); });
         if (!warning.empty()) print_message(warning);
-        if (file.done() == run.total) {
-            file.complete();
-            return complete;
-        }
+        if (file.done() == run.total) file.complete();
     } catch (const std::runtime_error& reason) {
         fail(reason, file.done(), run.total);
     }
-    print_stopped(file.done(), run.total, resume_hint);
-    return stopped_code();
+    return conclude("", file.done(), run.total, resume_hint);
 }
 
 /// Writes lines in the order of their index.
@@ -348,10 +349,7 @@ int sweep_to_stream(SweepRun run, Destination to) {
         run, [&lines](std::size_t index, const std::string& line) { lines.take(index, line); });
     lines.write_rest();
     if (lines.written() == run.total) out.write(api::done_line(run.total));
-    if (!warning.empty()) print_message(warning);
-    if (lines.written() == run.total) return complete;
-    print_stopped(lines.written(), run.total);
-    return stopped_code();
+    return conclude(warning, lines.written(), run.total);
 }
 
 /// Computes all points, or those up to a signal, and draws them or writes a table. Returns the exit
@@ -372,10 +370,7 @@ int sweep_collected(const SweepRun& run, const SweepOptions& o) {
             plots_of(api::Json::parse(api::json_text(api::sweep_start(run.request))), points),
             path);
     else if (!points.empty()) write_all(path, api::csv_text(api::sweep_table(points)));
-    if (!warning.empty()) print_message(warning);
-    if (points.size() == run.total) return complete;
-    print_stopped(points.size(), run.total);
-    return stopped_code();
+    return conclude(warning, points.size(), run.total);
 }
 
 int sweep(const SweepOptions& o) {

@@ -28,7 +28,7 @@ public:
         ++number_;
         file_.complete_bytes += line.size() + 1;
         const api::Json json = parse_answer(line);
-        const std::string type = word_at(json, "type");
+        const std::string type = word_of(part(json, "/type"));
         if (number_ == 1 && type == "start") return take_start(std::move(line));
         if (number_ == 1 || (type != "point" && !is_between_points(type)))
             fail_in_line(name_, number_, "not a line of a sweep");
@@ -97,11 +97,10 @@ SweepFile parse_sweep_file(const std::string& text, const std::string& name, Lin
 
 api::SweepRequest request_of(const SweepFile& file, const std::string& name) {
     const api::Json start = parse_answer(file.start);
-    const auto request = start.find("request");
-    if (request == start.end() || !request->is_object())
-        fail_in_line(name, 1, "the request is missing");
+    const api::Json& request = part(start, "/request");
+    if (!request.is_object()) fail_in_line(name, 1, "the request is missing");
     try {
-        return api::read_sweep_request(*request, max_points);
+        return api::read_sweep_request(request, max_points);
     } catch (const api::Problem& problem) {
         fail_in_line(name, 1, std::string("its request is invalid: ") + problem.what());
     }

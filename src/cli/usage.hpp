@@ -20,6 +20,18 @@ struct FlagUsage {
     std::vector<std::string> choices;  ///< for ValueKind::choice
     ValueKind value = ValueKind::text;
     bool required = false, repeats = false;
+
+    /// Placeholder for the value of an option; empty if it takes none.
+    const char* value_word() const {
+        switch (value) {
+            case ValueKind::none: return "";
+            case ValueKind::file: return "file";
+            case ValueKind::folder: return "folder";
+            case ValueKind::choice:
+            case ValueKind::text: break;
+        }
+        return "value";
+    }
 };
 
 /// A subcommand, or the program itself.

@@ -94,7 +94,7 @@ bool same_text(const std::string& stored, const std::string& computed) {
 /// which differs between builds.
 bool same_provenance(const Json& stored, const api::Provenance& provenance) {
     Json computed = api::describe(provenance, stored["sha256"]);
-    if (!word_at(stored, "commit").empty()) computed["commit"] = stored["commit"];
+    if (!word_of(part(stored, "/commit")).empty()) computed["commit"] = stored["commit"];
     if (stored.dump() == computed.dump()) return true;
     const std::string where = difference(stored, computed, "");
     print_line("provenance: " + (where.empty() ? "the same, formatted differently" : where));
@@ -135,8 +135,7 @@ std::optional<Recomputed> recomputed(const api::Provenance& p, const std::string
 
 /// Returns whether the run ended early, so that another attempt can get further.
 bool ended_early(const Json& answer) {
-    const auto status = answer.find("status");
-    const std::string reason = status != answer.end() ? word_at(*status, "reason") : "";
+    const std::string reason = word_of(part(answer, "/status/reason"));
     return reason == "deadline" || reason == "interrupted";
 }
 
@@ -146,7 +145,8 @@ std::string build_of(const std::string& version, const std::string& commit) {
 
 /// Prints the program versions of an answer and of its recomputation.
 void print_builds(const Json& answer, const Json& provenance) {
-    const std::string version = word_at(answer, "version"), commit = word_at(provenance, "commit");
+    const std::string version = word_of(part(answer, "/version")),
+                      commit = word_of(part(provenance, "/commit"));
     print_line(fmt::format(
         "answered by {}, recomputed by {}",
         build_of(api::shortened(version), api::shortened(commit)),
@@ -171,9 +171,8 @@ std::string record_of(const Json& provenance, const VerifyOptions& o) {
 
 api::Provenance read_provenance(const Json& stored) {
     api::Provenance read{.route = stored["route"], .request = stored["request"]};
-    const auto limit = stored.find("answer_limit");
-    if (limit != stored.end() && limit->is_number_unsigned())
-        read.answer_limit = limit->get<std::size_t>();
+    const Json& limit = part(stored, "/answer_limit");
+    if (limit.is_number_unsigned()) read.answer_limit = limit.get<std::size_t>();
     return read;
 }
 
@@ -250,11 +249,9 @@ Command add_verify(CLI::App& app) {
     const auto options = std::make_shared<VerifyOptions>();
     CLI::App* command =
         app.add_subcommand("verify", "recompute an answer and compare byte for byte");
-    command->add_option("answer", options->answer, "file with the answer; - or nothing: stdin")
-        ->type_name("FILE");
-    command
-        ->add_option("--record", options->record, "for an identification: the file that was sent")
-        ->type_name("FILE");
+    add_file(*command, "answer", options->answer, "file with the answer; - or nothing: stdin");
+    add_file(
+        *command, "--record", options->record, "for an identification: the file that was sent");
     return with_exit_codes(
         command, [options] { return verify(*options); },
         "vines simulate -p preset=fig11 -o answer.json; vines verify answer.json\n"

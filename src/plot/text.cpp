@@ -86,7 +86,7 @@ public:
         for (const Curve& c : plot.curves) c.dots ? draw_points(c) : draw_line(c);
     }
 
-    std::string draw() const {
+    std::string draw() {
         std::string out;
         if (!plot_.title.empty()) out += plot_.title + "\n";
         out += plot_.y_label + "\n";
@@ -116,9 +116,6 @@ private:
     };
 
     Cell& cell(int column, int row) {
-        return cells_[static_cast<std::size_t>(row * width_ + column)];
-    }
-    const Cell& cell(int column, int row) const {
         return cells_[static_cast<std::size_t>(row * width_ + column)];
     }
 

@@ -74,16 +74,35 @@ std::string text_of(const Band& b) {
     return fmt::format("{:.8g} to {:.8g}", b.low, b.high);
 }
 
-std::string band_of(const Finding& f) {
-    return text_of(f.band) + (f.partly ? " (in part: " + text_of(*f.partly) + ")" : "");
+std::string text_of(const Criterion& c) {
+    return text_of(c.band) + (c.partly ? " (in part: " + text_of(*c.partly) + ")" : "");
 }
 
-std::string shown(double number) {
+std::string text_of(double number) {
     return std::isnan(number) ? "none" : fmt::format("{:.4g}", number);
 }
 
-std::string shown_number(const Finding& f) {
-    return shown(f.number) + (f.by_equation ? "; eq. (1): " + shown(*f.by_equation) : "");
+std::string text_of(const Result& r) {
+    return text_of(r.number) + (r.by_equation ? "; eq. (1): " + text_of(*r.by_equation) : "");
+}
+
+std::string text_of(ClaimVerdict verdict, bool computed_record) {
+    using enum ClaimVerdict;
+    if (computed_record) switch (verdict) {
+            case reproduced: return "holds for the computed record";
+            case partly: return "holds in part for the computed record";
+            default: return "**does not hold for the computed record**";
+        }
+    switch (verdict) {
+        case reproduced: return "reproduced";
+        case by_closed_form: return "reproduced, with the closed-form damping alone";
+        case by_equation_of_motion: return "reproduced, with the damping of eq. (1) alone";
+        case partly: return "in part";
+        case partly_by_closed_form: return "in part, with the closed-form damping alone";
+        case partly_by_equation_of_motion: return "in part, with the damping of eq. (1) alone";
+        case not_reproduced: return "**not reproduced**";
+    }
+    return "";
 }
 
 /// Places in the paper with verdict `a` or `b`, each once, in order.
@@ -91,8 +110,8 @@ std::string places_of(const std::vector<Finding>& findings, ClaimVerdict a, Clai
     std::vector<std::string> places;
     for (const Finding& f : findings)
         if ((f.verdict() == a || f.verdict() == b) &&
-            std::ranges::find(places, f.where) == places.end())
-            places.push_back(f.where);
+            std::ranges::find(places, f.statement.where) == places.end())
+            places.push_back(f.statement.where);
     return fmt::format("{}", fmt::join(places, "; "));
 }
 
@@ -115,16 +134,38 @@ std::string summary(const std::vector<Finding>& findings) {
 
 }  // namespace
 
+ClaimVerdict Finding::verdict() const {
+    using enum ClaimVerdict;
+    // `both`, or the verdict of the damping with which alone the number is in the band.
+    const auto within = [&](const Band& band, ClaimVerdict both, ClaimVerdict by_form,
+                            ClaimVerdict by_motion) {
+        const bool here = band.contains(result.number),
+                   other = band.contains(result.by_equation.value_or(result.number));
+        return here && other ? both : here ? by_form : other ? by_motion : not_reproduced;
+    };
+    const ClaimVerdict whole =
+        within(criterion.band, reproduced, by_closed_form, by_equation_of_motion);
+    if (whole != not_reproduced || !criterion.partly) return whole;
+    return within(*criterion.partly, partly, partly_by_closed_form, partly_by_equation_of_motion);
+}
+
 std::string markdown_table(const std::vector<Finding>& findings) {
     std::string text =
         head({"place", "quantity", "paper", "here", "verdict", "number", "band", "because"});
     for (const Finding& f : findings)
         text += row(
-            {f.where, f.what, f.paper, f.here,
-             std::string(text_of(f.verdict(), f.computed_record)) +
-                 (f.as_expected() ? "" : " **(CHANGED)**"),
-             shown_number(f), band_of(f), f.because});
+            {f.statement.where, f.statement.what, f.statement.paper, f.result.words,
+             text_of(f.verdict(), f.computed_record) + (f.as_expected() ? "" : " **(CHANGED)**"),
+             text_of(f.result), text_of(f.criterion), f.criterion.because});
     return text;
+}
+
+void Report::add(Statement s, Result r, Criterion c, ClaimVerdict expected) {
+    findings.push_back({std::move(s), std::move(r), std::move(c), expected});
+}
+
+void Report::add_of_record(Statement s, Result r, Criterion c, ClaimVerdict expected) {
+    findings.push_back({std::move(s), std::move(r), std::move(c), expected, true});
 }
 
 void Report::table(const DataTable& table) {
@@ -133,9 +174,11 @@ void Report::table(const DataTable& table) {
     body += "\n";
 }
 
-void Report::picture(Picture picture) {
-    body += fmt::format("![{0}]({1}.svg)\n*{0}*\n\n", picture.caption, picture.name);
-    pictures.push_back(std::move(picture));
+void Report::picture(
+    const std::string& name, const std::string& caption, std::vector<plot::Plot> plots,
+    int height) {
+    body += fmt::format("![{0}]({1}.svg)\n*{0}*\n\n", caption, name);
+    pictures.push_back({name, std::move(plots), height});
 }
 
 void write_markdown(const Report& report, const std::string& folder) {

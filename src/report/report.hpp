@@ -2,6 +2,8 @@
 // go with them. The chapters fill it; report.cpp writes it as Markdown with SVG pictures.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -29,73 +31,66 @@ enum class ClaimVerdict {
     not_reproduced
 };
 
-/// A statement of the paper is reduced to one number and to the band that contains it if the
-/// statement holds; the verdict follows from the two. The texts are one line of Markdown without a
-/// vertical bar.
-struct Finding {
+/// A statement of the paper, reduced to a quantity. All texts of a finding are one line of Markdown
+/// without a vertical bar.
+struct Statement {
     std::string where;  ///< place in the paper, "Fig. 5"
     std::string what;   ///< the quantity, or the statement
     std::string paper;  ///< what the paper says
-    std::string here;   ///< the computed result, in words
-    double number;      ///< the number that decides
+};
+
+/// The computed result.
+struct Result {
+    double number;  ///< the number that decides
     /// The number with the damping of eq. (1), if the two differ.
-    std::optional<double> by_equation = {};
-    Band band;            ///< holds the number if the statement is true
+    std::optional<double> by_equation;
+    std::string words;
+
+    Result(double here, std::string in_words) : number(here), words(std::move(in_words)) {}
+    Result(double here, double other, std::string in_words)
+        : number(here),
+          by_equation(other),
+          words(std::move(in_words)) {}
+};
+/// A result whose words are only its numbers.
+inline Result result(fmt::format_string<double&> form, double here) {
+    return {here, fmt::format(form, here)};
+}
+inline Result result(fmt::format_string<double&> form, double here, double other) {
+    return {here, other, fmt::format(form, here) + "; by eq. (1) " + fmt::format(form, other)};
+}
+
+/// Bands that contain the number if the statement holds.
+struct Criterion {
+    Band band;
     std::string because;  ///< reason for the band
     /// Wider band, in which the statement holds in part.
     std::optional<Band> partly = {};
+};
+
+/// The verdict on a statement follows from the result and the criterion.
+struct Finding {
+    Statement statement;
+    Result result;
+    Criterion criterion;
+    /// Verdict found so far. Another verdict is an error: `vines reproduce` fails.
+    ClaimVerdict expected = ClaimVerdict::reproduced;
     /// The number comes from a computed record in place of one of the paper's, which are not
     /// published; the verdict applies to that record.
     bool computed_record = false;
-    /// Verdict found so far. Another verdict is an error: `vines reproduce` fails.
-    ClaimVerdict expected = ClaimVerdict::reproduced;
 
-    ClaimVerdict verdict() const {
-        const bool here = band.contains(number), other = by_equation && band.contains(*by_equation);
-        if (here)
-            return other || !by_equation ? ClaimVerdict::reproduced : ClaimVerdict::by_closed_form;
-        if (other) return ClaimVerdict::by_equation_of_motion;
-        if (!partly) return ClaimVerdict::not_reproduced;
-        const bool partly_other = by_equation && partly->contains(*by_equation);
-        if (partly->contains(number))
-            return partly_other || !by_equation ? ClaimVerdict::partly
-                                                : ClaimVerdict::partly_by_closed_form;
-        return partly_other ? ClaimVerdict::partly_by_equation_of_motion
-                            : ClaimVerdict::not_reproduced;
-    }
+    ClaimVerdict verdict() const;
     bool as_expected() const { return verdict() == expected; }
 };
-
-inline const char* text_of(ClaimVerdict verdict, bool computed_record = false) {
-    if (computed_record) switch (verdict) {
-            case ClaimVerdict::reproduced: return "holds for the computed record";
-            case ClaimVerdict::partly: return "holds in part for the computed record";
-            default: return "**does not hold for the computed record**";
-        }
-    switch (verdict) {
-        case ClaimVerdict::reproduced: return "reproduced";
-        case ClaimVerdict::by_closed_form: return "reproduced, with the closed-form damping alone";
-        case ClaimVerdict::by_equation_of_motion:
-            return "reproduced, with the damping of eq. (1) alone";
-        case ClaimVerdict::partly: return "in part";
-        case ClaimVerdict::partly_by_closed_form:
-            return "in part, with the closed-form damping alone";
-        case ClaimVerdict::partly_by_equation_of_motion:
-            return "in part, with the damping of eq. (1) alone";
-        case ClaimVerdict::not_reproduced: return "**not reproduced**";
-    }
-    return "";
-}
 
 struct DataTable {
     std::vector<std::string> columns;
     std::vector<std::vector<std::string>> rows{};
 };
 struct Picture {
-    std::string name;  ///< file name without ".svg"
-    std::string caption;
+    std::string name;               ///< file name without ".svg"
     std::vector<plot::Plot> plots;  ///< drawn above each other with a common abscissa
-    int height = 210;               ///< height of each plot, pixels
+    int height;                     ///< height of each plot, pixels
 };
 
 struct Report {
@@ -103,12 +98,17 @@ struct Report {
     std::string body;  ///< Markdown
     std::vector<Picture> pictures;
 
-    void add(Finding finding) { findings.push_back(std::move(finding)); }
+    void add(Statement, Result, Criterion, ClaimVerdict expected = ClaimVerdict::reproduced);
+    /// The same for a number that comes from a computed record.
+    void add_of_record(
+        Statement, Result, Criterion, ClaimVerdict expected = ClaimVerdict::reproduced);
     // These are added to the body.
     void heading(const std::string& text) { body += "\n## " + text + "\n\n"; }
     void paragraph(const std::string& text) { body += text + "\n\n"; }
     void table(const DataTable& table);
-    void picture(Picture picture);
+    void picture(
+        const std::string& name, const std::string& caption, std::vector<plot::Plot> plots,
+        int height = 210);
 
     bool as_expected() const { return std::ranges::all_of(findings, &Finding::as_expected); }
 };

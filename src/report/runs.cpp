@@ -19,14 +19,16 @@ namespace {
 constexpr long max_impacts = 10000000;
 constexpr ExponentOptions qr_and_raw_product = {.qr = true, .raw_product = true, .history = 0};
 
-/// Run from tau = 0; the caller sets the parts.
-AnalysisRequest run_to(const Parameters& p, const State& start, double tau_end) {
+AnalysisRequest run_to(
+    const Parameters& p, const State& start, double tau_end, const Parts& parts,
+    const ExponentOptions& estimators = qr_alone) {
     return {
         .parameters = p,
         .start = start,
         .tau_end = tau_end,
         .max_impacts = max_impacts,
-        .window = {0, tau_end}};
+        .parts = parts,
+        .estimators = estimators};
 }
 
 /// Consecutive windows of one size in a run up to `until`.
@@ -66,10 +68,9 @@ Ensemble::Window concluded(const TransferProduct& product) {
 }
 
 Ensemble one_run(const Parameters& p, const State& start, WindowsOf size) {
-    AnalysisRequest wanted = run_to(p, start, Ensemble::tau_end);
-    wanted.parts = {.regime = true, .before_capture = true};
-    wanted.estimators = qr_alone;
-    const Regime regime = *analyse(wanted).regime;
+    const Regime regime =
+        *analyse(run_to(p, start, Ensemble::tau_end, {.regime = true, .before_capture = true}))
+             .regime;
 
     Ensemble e;
     const bool captured = regime.capture && regime.capture->chaotic_before == true;
@@ -81,8 +82,7 @@ Ensemble one_run(const Parameters& p, const State& start, WindowsOf size) {
     const double until =
         captured ? regime.capture->tau.value_or(Ensemble::tau_end) : Ensemble::tau_end;
     if (captured) e.capture_tau = {until};
-    AnalysisRequest exponents = run_to(p, start, until);
-    exponents.estimators = qr_and_raw_product;
+    AnalysisRequest exponents = run_to(p, start, until, {}, qr_and_raw_product);
     exponents.windows = windows_of(size, p, start, until);
     for (const WindowExponents& w : analyse(exponents).windows)
         if (!std::isnan(w.product.qr()[0])) e.windows.push_back(concluded(w.product));
@@ -96,10 +96,9 @@ struct Case {
 std::vector<Regime> regimes_of(const std::vector<Case>& cases, const Interval& window) {
     std::vector<Regime> regimes(cases.size());
     parallel(cases.size(), cores(), [&](std::size_t i) {
-        AnalysisRequest wanted = run_to(cases[i].parameters, cases[i].start, window.to);
+        AnalysisRequest wanted =
+            run_to(cases[i].parameters, cases[i].start, window.to, {.regime = true});
         wanted.window.from = window.from;
-        wanted.parts = {.regime = true};
-        wanted.estimators = qr_alone;
         regimes[i] = *analyse(wanted).regime;
     });
     return regimes;
@@ -137,17 +136,13 @@ Parameters table1(double b, Damping damping) {
     return p;
 }
 
-long positive(const Exponents& lambda) {
-    return std::ranges::count_if(lambda, [](double v) { return v > 0; });
+double positive(const Exponents& lambda) {
+    return static_cast<double>(std::ranges::count_if(lambda, [](double v) { return v > 0; }));
 }
 
-std::string PaperRun::type() const { return std::string("Type ") + name_of(run.regime->type); }
-
-Series series_until(double b, double tau_end) {
+PaperRun run_until(double b, double tau_end, const Parts& parts) {
     const Parameters p = table1(b, Damping::closed_form);
-    AnalysisRequest wanted = run_to(p, default_state(p), tau_end);
-    wanted.parts = {.series = true};
-    return std::move(*analyse(wanted).series);
+    return {p, analyse(run_to(p, default_state(p), tau_end, parts))};
 }
 
 Moments Ensemble::lambda(int k) const {
@@ -181,14 +176,6 @@ std::vector<Regime> regimes_of_random_starts(const Parameters& p, int starts) {
     return regimes_of(cases, {1500, 3000});
 }
 
-PaperRun long_response(double b) {
-    const Parameters p = table1(b, Damping::closed_form);
-    AnalysisRequest wanted = run_to(p, default_state(p), 10 * window_end);
-    wanted.parts = {.series = true, .moduli = true, .regime = true};
-    wanted.estimators = qr_alone;
-    return {p, analyse(wanted)};
-}
-
 std::string Typical::in_words(int decimals) const {
     return fmt::format(
         "{:.{}f}; {} neighbouring starts: median {:.{}f}, quartiles {:.{}f} and {:.{}f}", first,
@@ -210,8 +197,7 @@ typename Map::mapped_type& cached(Map& map, const typename Map::key_type& key, a
 const PaperRun& RunCache::paper_run(double b, Damping damping) {
     return cached(responses_, {b, damping}, [&] {
         const Parameters p = table1(b, damping);
-        AnalysisRequest wanted = run_to(p, default_state(p), window_end);
-        wanted.parts = {
+        constexpr Parts all = {
             .series = true,
             .impacts = true,
             .exponents = true,
@@ -220,8 +206,7 @@ const PaperRun& RunCache::paper_run(double b, Damping damping) {
             .regime = true,
             .before_capture = true,
             .manifold = true};
-        wanted.estimators = all_estimators;
-        return PaperRun{p, analyse(wanted)};
+        return PaperRun{p, analyse(run_to(p, default_state(p), window_end, all, all_estimators))};
     });
 }
 
@@ -230,10 +215,10 @@ const std::vector<PaperRun>& RunCache::neighbours(double b, Damping damping) {
         const Parameters p = table1(b, damping);
         std::vector<std::optional<Analysis>> runs(neighbour_runs);
         parallel(neighbour_runs, cores(), [&](std::size_t k) {
-            AnalysisRequest wanted = run_to(p, start_beside(p, k), window_end);
-            wanted.parts = {.series = true, .exponents = true, .moduli = true, .regime = true};
-            wanted.estimators = {.qr = true, .raw_product = true};
-            runs[k].emplace(analyse(wanted));
+            runs[k].emplace(analyse(run_to(
+                p, start_beside(p, k), window_end,
+                {.series = true, .exponents = true, .moduli = true, .regime = true},
+                {.qr = true, .raw_product = true})));
         });
         std::vector<PaperRun> responses;
         for (auto& run : runs) responses.push_back({p, std::move(*run)});

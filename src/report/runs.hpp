@@ -18,21 +18,27 @@ inline constexpr double window_end = 1708.9;
 
 Parameters table1(double b, Damping damping);  ///< Table 1 with the clearance b, m
 
-/// Number that stands for a regime in findings: I is 1, VI is 6.
-inline double number_of(RegimeType type) { return static_cast<double>(type); }
+double positive(const Exponents& lambda);  ///< number of exponents above zero
 
-long positive(const Exponents& lambda);  ///< number of exponents above zero
-
-/// One run from the paper's initial state to window_end, with all parts.
+/// One run from the paper's initial state, or slightly beside it.
 struct PaperRun {
     Parameters parameters;
-    Analysis run;  ///< 32 samples per cycle; exponents from the first impact on, by all estimators
+    Analysis run;  ///< 32 samples per cycle; exponents from the first impact on
 
-    std::string type() const;  ///< "Type II"
+    const Regime& regime() const { return *run.regime; }
+    const TransferProduct& product() const { return run.exponents->product; }
+    std::string type() const { return std::string("Type ") + name_of(regime().type); }
 };
+/// Results with the damping of the closed form, and with that of eq. (1).
+template <class Results>
+struct Both {
+    const Results &here, &by_equation;
+};
+using BothRuns = Both<PaperRun>;
 
-/// Series from the paper's initial state to tau_end; `b` in m.
-Series series_until(double b, double tau_end);
+/// A run with the damping of the closed form, for parts that need more data than one window; `b` in
+/// m.
+PaperRun run_until(double b, double tau_end, const Parts& parts);
 
 /// Common property of an ensemble's windows.
 enum class WindowsOf {
@@ -66,16 +72,14 @@ struct Ensemble {
     Moments duration() const;
 };
 
+using BothEnsembles = Both<Ensemble>;
+
 /// Regimes reached from random starts (the same ones in every call): |x'|, |x| <= .008 and |y'| <=
 /// .01 (m, and m per unit of tau), y anywhere in the cavity. Judged from tau = 1500 to 3000.
 std::vector<Regime> regimes_of_random_starts(const Parameters& parameters, int starts);
 
 /// Regimes at several b (m) from the paper's initial state, from tau = 1709 to ten times that.
 std::vector<Regime> long_regimes(const std::vector<double>& b, Damping damping);
-
-/// A run ten times as long with the damping of the closed form, for quantities that need more data
-/// than one window: series, moduli and regime only. `b` in m.
-PaperRun long_response(double b);
 
 /// A quantity of each of several chaotic runs, which sample one motion: its value for the paper's
 /// start, median and quartiles.
@@ -97,12 +101,17 @@ Typical typical(const std::vector<PaperRun>& runs, Number number) {
 /// Runs that several chapters use; each is computed at its first use. `b` in m.
 class RunCache {
 public:
+    /// The run to window_end, with all parts, exponents by all estimators.
     const PaperRun& paper_run(double b, Damping damping = Damping::closed_form);
+    BothRuns both(double b) { return {paper_run(b), paper_run(b, Damping::equation_of_motion)}; }
     /// That run, and runs from slightly different starts: in chaos each soon differs from the
     /// others, like a run on another computer. Only series, moduli, regime, and the exponents by qr
     /// and raw_product.
     const std::vector<PaperRun>& neighbours(double b, Damping damping = Damping::closed_form);
     const Ensemble& ensemble(double b, WindowsOf size, Damping damping = Damping::closed_form);
+    BothEnsembles both_ensembles(double b, WindowsOf size) {
+        return {ensemble(b, size), ensemble(b, size, Damping::equation_of_motion)};
+    }
 
 private:
     std::map<std::pair<double, Damping>, PaperRun> responses_;

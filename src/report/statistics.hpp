@@ -1,9 +1,13 @@
 // Elementary statistics of a few numbers.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
+#include <string>
 #include <vector>
 
 #include "core/motion/elementary.hpp"
@@ -15,6 +19,9 @@ struct Moments {
 
     double deviations_of(double value) const { return (value - mean) / deviation; }
     double scatter() const { return deviation / mean; }
+    std::string in_words(int decimals) const {
+        return fmt::format("{:.{}f} +- {:.{}f}", mean, decimals, deviation, decimals);
+    }
 };
 /// NaN without values; the deviation of one value is NaN.
 inline Moments moments(const std::vector<double>& values) {
@@ -24,6 +31,17 @@ inline Moments moments(const std::vector<double>& values) {
     const double mean = sum / n;
     for (double v : values) squares += (v - mean) * (v - mean);
     return {mean, std::sqrt(squares / (n - 1))};
+}
+
+inline double sum_of_squares(const std::vector<double>& values) {
+    return std::inner_product(values.begin(), values.end(), values.begin(), 0.);
+}
+
+/// Fraction of the values for which `is_so` is true.
+template <class Values>
+double fraction(const Values& values, auto&& is_so) {
+    return static_cast<double>(std::ranges::count_if(values, is_so)) /
+           static_cast<double>(std::ranges::size(values));
 }
 
 /// Spearman's rank correlation, -1 to 1, of two lists of equal length without ties.

@@ -18,9 +18,7 @@ struct SymmetricMotion {
     bool stable() const { return elementary::modulus(multipliers[0]) < 1; }
 };
 
-/// The faster and the slower of up to two motions; empty beyond the fold where they meet. Requires
-/// equal walls.
+/// The faster of up to two motions; empty beyond the fold where they meet. Requires equal walls.
 std::optional<SymmetricMotion> fast_symmetric_motion(const Parameters& parameters);
-std::optional<SymmetricMotion> slow_symmetric_motion(const Parameters& parameters);
 
 }  // namespace vines::report

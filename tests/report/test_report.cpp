@@ -20,14 +20,7 @@ using namespace vines::report;
 namespace {
 
 Finding finding(double number, Band band) {
-    return {
-        .where = "Fig. 5",
-        .what = "lambda1",
-        .paper = "0.1093",
-        .here = "0.1",
-        .number = number,
-        .band = band,
-        .because = "two digits"};
+    return {{"Fig. 5", "lambda1", "0.1093"}, {number, "0.1"}, {band, "two digits"}};
 }
 
 std::size_t occurrences(const std::string& text, const std::string& part) {
@@ -50,32 +43,32 @@ TEST_CASE("a verdict follows from the number and the band, ends included") {
     CHECK(finding(4, exactly(4)).verdict() == ClaimVerdict::reproduced);
     Finding f = finding(std::nextafter(2, 3), {1, 2});
     CHECK(f.verdict() == ClaimVerdict::not_reproduced);
-    f.partly = Band{0, 3};
+    f.criterion.partly = Band{0, 3};
     CHECK(f.verdict() == ClaimVerdict::partly);
 }
 
 TEST_CASE("a verdict names the damping with which a statement holds") {
     Finding f = finding(1.5, {1, 2});
-    f.by_equation = 1.6;
+    f.result.by_equation = 1.6;
     CHECK(f.verdict() == ClaimVerdict::reproduced);
-    f.by_equation = 2.1;
+    f.result.by_equation = 2.1;
     CHECK(f.verdict() == ClaimVerdict::by_closed_form);
-    f.number = 2.2;
+    f.result.number = 2.2;
     CHECK(f.verdict() == ClaimVerdict::not_reproduced);
-    f.by_equation = 1.6;
+    f.result.by_equation = 1.6;
     CHECK(f.verdict() == ClaimVerdict::by_equation_of_motion);
 }
 
 TEST_CASE("a statement that holds in part with one damping only is marked so") {
     Finding f = finding(2.5, {1, 2});
-    f.partly = Band{0, 3};
-    f.by_equation = 0.5;
+    f.criterion.partly = Band{0, 3};
+    f.result.by_equation = 0.5;
     CHECK(f.verdict() == ClaimVerdict::partly);
-    f.by_equation = 4;
+    f.result.by_equation = 4;
     CHECK(f.verdict() == ClaimVerdict::partly_by_closed_form);
-    std::swap(f.number, *f.by_equation);
+    std::swap(f.result.number, *f.result.by_equation);
     CHECK(f.verdict() == ClaimVerdict::partly_by_equation_of_motion);
-    f.by_equation = 5;
+    f.result.by_equation = 5;
     CHECK(f.verdict() == ClaimVerdict::not_reproduced);
 }
 
@@ -86,12 +79,12 @@ TEST_CASE("NaN is not reproduced") {
 TEST_CASE("a report is as expected if every verdict is the expected one, reproduced or not") {
     Report report;
     CHECK(report.as_expected());
-    report.add(finding(1, {1, 2}));
+    report.findings.push_back(finding(1, {1, 2}));
     Finding bad = finding(3, {1, 2});
     bad.expected = ClaimVerdict::not_reproduced;
-    report.add(bad);
+    report.findings.push_back(bad);
     CHECK(report.as_expected());
-    report.add(finding(3, {1, 2}));
+    report.findings.push_back(finding(3, {1, 2}));
     CHECK_FALSE(report.as_expected());
 }
 
@@ -111,7 +104,7 @@ TEST_CASE("a verdict on a computed record mentions that record") {
         finding(1.5, {1, 2}), finding(2.5, {1, 2}), finding(3.5, {1, 2})};
     for (Finding& f : findings) {
         f.computed_record = true;
-        f.partly = Band{1, 3};
+        f.criterion.partly = Band{1, 3};
     }
     const std::string table = markdown_table(findings);
     CHECK(occurrences(table, "| holds for the computed record") == 1);
@@ -124,7 +117,7 @@ TEST_CASE("verdicts on computed records are counted separately") {
     const auto folder = std::filesystem::temp_directory_path() / "vines-test-report-counts";
     std::filesystem::create_directories(folder);
     Report report;
-    for (int i = 0; i < 3; ++i) report.add(finding(1, {1, 2}));
+    for (int i = 0; i < 3; ++i) report.findings.push_back(finding(1, {1, 2}));
     report.findings[2].computed_record = true;
     write_markdown(report, folder.string());
     const std::string text = contents(folder / "report.md");
@@ -174,14 +167,12 @@ TEST_CASE("the report is one text in the order of its parts, with pictures in se
     const auto folder = std::filesystem::temp_directory_path() / "vines-test-report";
     std::filesystem::create_directories(folder);
     Report report;
-    report.add(finding(1, {1, 2}));
+    report.findings.push_back(finding(1, {1, 2}));
     report.heading("Fig. 5");
     report.paragraph("In words.");
     report.picture(
-        {.name = "fig5",
-         .caption = "Exponents",
-         .plots = {
-             {.x_label = "tau", .y_label = "a < b", .curves = {{.x = {0, 1}, .y = {2, 3}}}}}});
+        "fig5", "Exponents",
+        {{.x_label = "tau", .y_label = "a < b", .curves = {{.x = {0, 1}, .y = {2, 3}}}}});
     write_markdown(report, folder.string());
     const std::string text = contents(folder / "report.md"),
                       picture = contents(folder / "fig5.svg");

@@ -13,13 +13,10 @@
 #include <cmath>
 #include <optional>
 
-#include "core/motion/elementary.hpp"
 #include "core/sweep/parallel.hpp"
 #include "program/process.hpp"
-#include "report/exponent_claims.hpp"
+#include "report/claims.hpp"
 #include "report/plots.hpp"
-#include "report/report.hpp"
-#include "report/runs.hpp"
 
 namespace vines::report {
 
@@ -56,23 +53,12 @@ void describe_setup(Report& report) {
 
 void parameters_of_table_4(Report& report) {
     report.add(
-        {.where = "Table 4",
-         .what = "epsilon = m2/m1",
-         .paper = ".76 %",
-         .here = fmt::format("{:.4f} %", 100 * table_4.epsilon()),
-         .number = 100 * table_4.epsilon(),
-         .band = {0.755, 0.765},
-         .because = "rounds to .76; in part: truncated to two digits it is",
-         .partly = Band{0.76, 0.77},
-         .expected = ClaimVerdict::partly});
+        {"Table 4", "epsilon = m2/m1", ".76 %"}, result("{:.4f} %", 100 * table_4.epsilon()),
+        {{0.755, 0.765}, "rounds to .76; in part: truncated to two digits it is", Band{0.76, 0.77}},
+        ClaimVerdict::partly);
     report.add(
-        {.where = "Table 4",
-         .what = "lambda = c1/(m2 omega0)",
-         .paper = "1.80",
-         .here = fmt::format("{:.4f}", table_4.lambda()),
-         .number = table_4.lambda(),
-         .band = {1.795, 1.805},
-         .because = "rounds to 1.80"});
+        {"Table 4", "lambda = c1/(m2 omega0)", "1.80"}, result("{:.4f}", table_4.lambda()),
+        {{1.795, 1.805}, "rounds to 1.80"});
 }
 
 /// Clearance b (m), time left out before the record, and length of the record (s).
@@ -80,24 +66,18 @@ struct RecordPlan {
     double b, settling, seconds;
 };
 
-TrueMotion let_vibrate(const Parameters& p, const RecordPlan& plan) {
-    return true_motion(p, table_4.omega0(), plan.settling, plan.seconds, all_estimators);
-}
-
-MeasurementResult identify(const Parameters& p, const MeasuredRecord& record) {
-    return evaluate_measurement(Measurement{
-        .parameters = p,
-        .record = record,
-        .estimators = all_estimators,
-        .direct_estimators = all_estimators});
-}
-
 Experiment measure(const RecordPlan& plan) {
     const Parameters p = experimental_oscillator(plan.b);
-    TrueMotion truth = let_vibrate(p, plan);
+    TrueMotion truth =
+        true_motion(p, table_4.omega0(), plan.settling, plan.seconds, all_estimators);
     const MeasuredRecord record = synthetic_record(truth, {});
-    MeasurementResult result = identify(p, record);
-    return {std::move(truth), record, std::move(result)};
+    return {
+        std::move(truth), record,
+        evaluate_measurement(
+            {.parameters = p,
+             .record = record,
+             .estimators = all_estimators,
+             .direct_estimators = all_estimators})};
 }
 
 MeasuredResponses measure_responses() {
@@ -148,43 +128,31 @@ double largest_error(const Identification& a, const Identification& b) {
     return error;
 }
 
-void restitution(Report& report, const Experiment& regular, const Experiment& irregular) {
-    const Identification &at_9 = regular.result.direct->found,
-                         &at_15 = irregular.result.direct->found;
-    report.add(
-        {.where = "Eq. (4)",
-         .what = "R from the direct estimate, (42) and (43): its largest error over both walls of "
-                 "both records",
-         .paper = "R can be calculated by (4)",
-         .here = fmt::format(
-             "{:.4f}, {:.4f} at 9 mm, {:.4f}, {:.4f} at 15 mm, true value {:g}; from the fitted "
-             "motion the largest error is {:.0e}",
-             at_9.plus.R, at_9.minus.R, at_15.plus.R, at_15.minus.R, true_R,
-             largest_error(regular.result.found, irregular.result.found)),
-         .number = largest_error(at_9, at_15),
-         .band = {0, 0.005},
-         .because = "the paper's R has two digits",
-         .computed_record = true});
-}
-
-/// Eqs. (4) and (41), tested on both records.
+/// Eqs. (41) and (4), tested on both records.
 void check_impact_law(Report& report, const Experiment& regular, const Experiment& irregular) {
     const auto& found = irregular.result.found;
     double turned = 0;
     for (std::size_t i = 1; i < found.impacts.size(); ++i)
         turned += found.impacts[i].side != found.impacts[i - 1].side;
-    const double share = turned / static_cast<double>(found.impacts.size() - 1);
-    report.add(
-        {.where = "Eq. (41)",
-         .what = "b = 15 mm: fraction of impacts at the opposite wall from the previous one",
-         .paper = "almost all",
-         .here = fmt::format("{:.3f}", share),
-         .number = share,
-         .band = {0.95, 1},
-         .because = "nineteen in twenty; in part: nine in ten",
-         .partly = Band{0.9, 1},
-         .computed_record = true});
-    restitution(report, regular, irregular);
+    report.add_of_record(
+        {"Eq. (41)", "b = 15 mm: fraction of impacts at the opposite wall from the previous one",
+         "almost all"},
+        result("{:.3f}", turned / static_cast<double>(found.impacts.size() - 1)),
+        {{0.95, 1}, "nineteen in twenty; in part: nine in ten", Band{0.9, 1}});
+    const Identification &at_9 = regular.result.direct->found,
+                         &at_15 = irregular.result.direct->found;
+    report.add_of_record(
+        {"Eq. (4)",
+         "R from the direct estimate, (42) and (43): its largest error over both walls of "
+         "both records",
+         "R can be calculated by (4)"},
+        {largest_error(at_9, at_15),
+         fmt::format(
+             "{:.4f}, {:.4f} at 9 mm, {:.4f}, {:.4f} at 15 mm, true value {:g}; from the fitted "
+             "motion the largest error is {:.0e}",
+             at_9.plus.R, at_9.minus.R, at_15.plus.R, at_15.minus.R, true_R,
+             largest_error(regular.result.found, found))},
+        {{0, 0.005}, "the paper's R has two digits"});
 }
 
 Plot over_time(
@@ -202,15 +170,13 @@ Plot over_time(
 void signals(Report& report, const Experiment& e, const std::string& figures, double to) {
     const double per_second_squared = e.truth.omega0 * e.truth.omega0;
     report.picture(
-        {.name = "fig" + figures.substr(0, 2) + "-" + figures.substr(4),
-         .caption = "Figs. " + figures + ": acceleration and displacement, impacts as identified",
-         .plots = {
-             over_time(
-                 e, "x'' (m/s^2)", e.record.x_ddot, per_second_squared, to,
-                 [](const IdentifiedImpact& i) { return i.x_ddot_before; }),
-             over_time(e, "x (mm)", e.record.x, 1000, to, [](const IdentifiedImpact& i) {
-                 return i.x;
-             })}});
+        "fig" + figures.substr(0, 2) + "-" + figures.substr(4),
+        "Figs. " + figures + ": acceleration and displacement, impacts as identified",
+        {over_time(
+             e, "x'' (m/s^2)", e.record.x_ddot, per_second_squared, to,
+             [](const IdentifiedImpact& i) { return i.x_ddot_before; }),
+         over_time(
+             e, "x (mm)", e.record.x, 1000, to, [](const IdentifiedImpact& i) { return i.x; })});
 }
 
 /// Figs. 17 and 22: the fitted motion as a curve, with the states before and after the impacts.
@@ -226,10 +192,9 @@ void phase_portrait(Report& report, const Experiment& e, int figure) {
         after.add(1000 * i.x, mm_per_second * i.x_dot_after);
     }
     report.picture(
-        {.name = fmt::format("fig{}", figure),
-         .caption = fmt::format("Fig. {}: phase portrait of the oscillator", figure),
-         .plots = {{.x_label = "x (mm)", .y_label = "x' (mm/s)", .curves = {curve, before, after}}},
-         .height = 420});
+        fmt::format("fig{}", figure),
+        fmt::format("Fig. {}: phase portrait of the oscillator", figure),
+        {{.x_label = "x (mm)", .y_label = "x' (mm/s)", .curves = {curve, before, after}}}, 420);
 }
 
 void figure_17(Report& report, const Experiment& e) {
@@ -238,17 +203,14 @@ void figure_17(Report& report, const Experiment& e) {
         jump = std::max(jump, std::abs(i.x_dot_after - i.x_dot_before));
     for (const OscillatorMotion& m : motion_at(e.result.refined->fit, e.record.tau))
         fastest = std::max(fastest, std::abs(m.x_dot));
-    report.add(
-        {.where = "Fig. 17",
-         .what = "largest jump of x' at an impact over the largest x'",
-         .paper = "before and after \"are so close that they cannot be clearly distinguished\"",
-         .here = fmt::format("{:.2f}", jump / fastest),
-         .number = jump / fastest,
-         .band = {0, 0.02},
-         .because = "less than a marker's size; in part: a tenth of the picture's half height",
-         .partly = Band{0, 0.1},
-         .computed_record = true,
-         .expected = ClaimVerdict::partly});
+    report.add_of_record(
+        {"Fig. 17", "largest jump of x' at an impact over the largest x'",
+         "before and after \"are so close that they cannot be clearly distinguished\""},
+        result("{:.2f}", jump / fastest),
+        {{0, 0.02},
+         "less than a marker's size; in part: a tenth of the picture's half height",
+         Band{0, 0.1}},
+        ClaimVerdict::partly);
 }
 
 /// States (x, x') after the impacts of one wall, in the section |x - y| = b.
@@ -273,25 +235,15 @@ double scatter(const Experiment& e) {
 
 void compare_sections(Report& report, const Experiment& regular, const Experiment& irregular) {
     constexpr double apart = 0.1;
-    const double of_regular = scatter(regular), of_irregular = scatter(irregular);
-    report.add(
-        {.where = "Fig. 18",
-         .what = "b = 9 mm: scatter of each group of states after impacts, over their distance",
-         .paper = "two groups",
-         .here = fmt::format("{:.3f}", of_regular),
-         .number = of_regular,
-         .band = {0, apart},
-         .because = "groups, as against a band: a tenth of their distance",
-         .computed_record = true});
-    report.add(
-        {.where = "Fig. 23",
-         .what = "b = 15 mm: the same",
-         .paper = "scattered compared to Fig. 18",
-         .here = fmt::format("{:.3f}", of_irregular),
-         .number = of_irregular,
-         .band = {apart, infinity},
-         .because = "more than what counts as two groups in Fig. 18",
-         .computed_record = true});
+    report.add_of_record(
+        {"Fig. 18", "b = 9 mm: scatter of each group of states after impacts, over their distance",
+         "two groups"},
+        result("{:.3f}", scatter(regular)),
+        {{0, apart}, "groups, as against a band: a tenth of their distance"});
+    report.add_of_record(
+        {"Fig. 23", "b = 15 mm: the same", "scattered compared to Fig. 18"},
+        result("{:.3f}", scatter(irregular)),
+        {{apart, infinity}, "more than what counts as two groups in Fig. 18"});
 }
 
 void section(Report& report, const Experiment& e, int figure) {
@@ -307,27 +259,8 @@ void section(Report& report, const Experiment& e, int figure) {
         plot.curves.push_back(std::move(c));
     }
     report.picture(
-        {.name = fmt::format("fig{}", figure),
-         .caption = fmt::format("Fig. {}: Poincare section at the impacts", figure),
-         .plots = {plot},
-         .height = 330});
-}
-
-/// Figs. 15 to 18, and Fig. 23 in comparison with Fig. 18.
-void regular_response(Report& report, const MeasuredResponses& responses) {
-    const Experiment& regular = responses.regular;
-    signals(report, regular, "15, 16", 0.5);
-    phase_portrait(report, regular, 17);
-    figure_17(report, regular);
-    compare_sections(report, regular, responses.irregular);
-    section(report, regular, 18);
-}
-
-/// Figs. 20 to 23.
-void irregular_response(Report& report, const Experiment& irregular) {
-    signals(report, irregular, "20, 21", 5);
-    phase_portrait(report, irregular, 22);
-    section(report, irregular, 23);
+        fmt::format("fig{}", figure),
+        fmt::format("Fig. {}: Poincare section at the impacts", figure), {plot}, 330);
 }
 
 }  // namespace
@@ -337,13 +270,20 @@ void experiment(Report& report, RunCache& runs) {
     describe_setup(report);
     parameters_of_table_4(report);
     const MeasuredResponses responses = measure_responses();
+    const auto& [irregular, regular, from_rest] = responses;
     describe_responses(report, responses);
-    check_impact_law(report, responses.regular, responses.irregular);
-    regular_response(report, responses);
+    check_impact_law(report, regular, irregular);
+    signals(report, regular, "15, 16", 0.5);
+    phase_portrait(report, regular, 17);
+    figure_17(report, regular);
+    compare_sections(report, regular, irregular);
+    section(report, regular, 18);
     const PaperRun& figure_11 = runs.paper_run(0.015, Damping::equation_of_motion);
     exponents_of_regular_response(report, responses, exponents_of(figure_11)[0]);
-    irregular_response(report, responses.irregular);
-    exponents_of_irregular_response(report, responses.irregular);
+    signals(report, irregular, "20, 21", 5);
+    phase_portrait(report, irregular, 22);
+    section(report, irregular, 23);
+    exponents_of_irregular_response(report, irregular);
     vary_restitution(report, responses);
 }
 

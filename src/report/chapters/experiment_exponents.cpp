@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <list>
 
-#include "core/motion/elementary.hpp"
 #include "report/chapters/experiment.hpp"
-#include "report/exponent_claims.hpp"
+#include "report/claims.hpp"
 #include "report/plots.hpp"
 
 namespace vines::report {
@@ -26,22 +26,21 @@ void histories(Report& report, const Experiment& e, int figure, const std::strin
     };
     const DirectEstimate& direct = *e.result.direct;
     report.picture(
-        {.name = fmt::format("fig{}", figure),
-         .caption = fmt::format(
-             "Fig. {}: lambda1 over the length of the record, by eq. (33) and by QR, from the "
-             "fitted motion and from the paper's direct estimate{}",
-             figure, which),
-         .plots =
-             {{.x_label = "tau",
-               .y_label = "lambda1",
-               .curves =
-                   {curve(e.history_by_eq_33(), colours[0], "(33)"),
-                    curve(e.result.exponents.all().qr_history(), colours[1], "qr"),
-                    curve(direct.exponents.longest().eigenvalues_history(), red, "(33), direct"),
-                    curve(direct.exponents.all().qr_history(), colours[2], "qr, direct")},
-               .y_range = std::pair{-0.1, 0.25},
-               .levels = {0}}},
-         .height = 330});
+        fmt::format("fig{}", figure),
+        fmt::format(
+            "Fig. {}: lambda1 over the length of the record, by eq. (33) and by QR, from the "
+            "fitted motion and from the paper's direct estimate{}",
+            figure, which),
+        {{.x_label = "tau",
+          .y_label = "lambda1",
+          .curves =
+              {curve(e.history_by_eq_33(), colours[0], "(33)"),
+               curve(e.result.exponents.all().qr_history(), colours[1], "qr"),
+               curve(direct.exponents.longest().eigenvalues_history(), red, "(33), direct"),
+               curve(direct.exponents.all().qr_history(), colours[2], "qr, direct")},
+          .y_range = std::pair{-0.1, 0.25},
+          .levels = {0}}},
+        330);
 }
 
 double last(const ExponentHistory& h) { return h.lambda.back()[0]; }
@@ -67,69 +66,56 @@ double rising_share(const ExponentHistory& h) {
 void from_rest_on(Report& report, const Experiment& from_rest) {
     const ExponentHistory &found = from_rest.history_by_eq_33(),
                           &exact = from_rest.truth.exponents.eigenvalues_history();
-    report.add(
-        {.where = "Fig. 19",
-         .what = "b = 9 mm, from rest on: fraction of the record's length over which lambda1 by "
-                 "(33) is positive",
-         .paper = "positive in this short period",
-         .here = fmt::format(
+    report.add_of_record(
+        {"Fig. 19",
+         "b = 9 mm, from rest on: fraction of the record's length over which lambda1 by "
+         "(33) is positive",
+         "positive in this short period"},
+        {positive_share(found),
+         fmt::format(
              "{:.2f} of tau = {:.0f}, from {:.4f} after a tenth of it to {:.4f}; with the first, "
              "weak impact, which the record does not show, {:.4f} to {:.4f}",
              positive_share(found), found.tau.back() - found.tau.front(), early(found), last(found),
-             early(exact), last(exact)),
-         .number = positive_share(found),
-         .band = exactly(1),
-         .because = "all of it; in part: half. It depends on the record's length and on where it "
-                    "begins",
-         .partly = Band{0.5, 1},
-         .computed_record = true,
-         .expected = ClaimVerdict::partly});
-    report.add(
-        {.where = "Fig. 19",
-         .what = "the same: fraction of the impacts at which lambda1 by (33) rises",
-         .paper = "decreasing continuously",
-         .here = fmt::format("{:.2f}", rising_share(found)),
-         .number = rising_share(found),
-         .band = exactly(0),
-         .because = "none; in part: fewer than those at which it falls",
-         .partly = Band{0, 0.5},
-         .computed_record = true,
-         .expected = ClaimVerdict::partly});
+             early(exact), last(exact))},
+        {exactly(1),
+         "all of it; in part: half. It depends on the record's length and on where it begins",
+         Band{0.5, 1}},
+        ClaimVerdict::partly);
+    report.add_of_record(
+        {"Fig. 19", "the same: fraction of the impacts at which lambda1 by (33) rises",
+         "decreasing continuously"},
+        result("{:.2f}", rising_share(found)),
+        {exactly(0), "none; in part: fewer than those at which it falls", Band{0, 0.5}},
+        ClaimVerdict::partly);
 }
 
 /// Fig. 19 for a settled motion, also from the direct estimate: noise causes no decay.
 void settled_motion(Report& report, const Experiment& settled, double of_figure_11) {
     const auto& direct = settled.result.direct->exponents.longest().eigenvalues_history();
-    report.add(
-        {.where = "Fig. 19",
-         .what =
-             "b = 9 mm, a motion that has settled for 20 s: lambda1 by (33) at the record's end",
-         .paper = "positive",
-         .here = fmt::format(
+    report.add_of_record(
+        {"Fig. 19",
+         "b = 9 mm, a motion that has settled for 20 s: lambda1 by (33) at the record's end",
+         "positive"},
+        {last(settled.history_by_eq_33()),
+         fmt::format(
              "{:.4f} (from {:.4f} after a tenth of it); from the direct estimate {:.4f} (from "
              "{:.4f})",
              last(settled.history_by_eq_33()), early(settled.history_by_eq_33()), last(direct),
-             early(direct)),
-         .number = last(settled.history_by_eq_33()),
-         .band = {0, infinity},
-         .because = "positive",
-         .computed_record = true,
-         .expected = ClaimVerdict::not_reproduced});
+             early(direct))},
+        {{0, infinity}, "positive"}, ClaimVerdict::not_reproduced);
     const IdentifiedExponents& judged = settled.result.judged;
-    report.add(
-        {.where = "Fig. 19",
-         .what = "the same: upper end of the 90 % interval of the limit of lambda1 (slope of "
-                 "lambda1 tau)",
-         .paper = "it will approach zero",
-         .here = fmt::format(
+    report.add_of_record(
+        {"Fig. 19",
+         "the same: upper end of the 90 % interval of the limit of lambda1 (slope of lambda1 tau)",
+         "it will approach zero"},
+        {judged.slope.high,
+         fmt::format(
              "{:.4f} to {:.4f}, slope {:.4f}; the true motion's {:.4f}", judged.slope.low,
-             judged.slope.high, judged.slope.value, settled.truth.exponents.qr()[0]),
-         .number = judged.slope.high,
-         .band = {0, infinity},
-         .because = "zero is in the interval; in part: as small as Fig. 11's exponent by eq. (1)",
-         .partly = Band{of_figure_11, infinity},
-         .computed_record = true,
-         .expected = ClaimVerdict::partly});
+             judged.slope.high, judged.slope.value, settled.truth.exponents.qr()[0])},
+        {{0, infinity},
+         "zero is in the interval; in part: as small as Fig. 11's exponent by eq. (1)",
+         Band{of_figure_11, infinity}},
+        ClaimVerdict::partly);
 }
 
 /// Exponents of a record with transfer matrices of given parameters.
@@ -145,17 +131,16 @@ IdentifiedExponents by_closed_form(const Experiment& e) {
     return judged_by(e, p);
 }
 
-constexpr std::size_t following = 40;
+constexpr int following = 40;
 
 /// late_change() of the true motion's lambda1 by (33), over following stretches of equal length.
 std::vector<double> late_changes_after(const Experiment& e) {
     const Parameters& p = e.truth.parameters;
     const double T = e.truth.seconds * e.truth.omega0;
-    std::vector<Lyapunov> stretches;
-    stretches.reserve(following);
+    std::list<Lyapunov> stretches;
     std::vector<Observer*> observers;
     double tau = e.truth.begin;
-    for (std::size_t k = 0; k < following; ++k) {
+    for (int k = 0; k < following; ++k) {
         tau += T;
         observers.push_back(
             &stretches.emplace_back(p, tau, tau + T, ExponentOptions{.eigenvalues = true}));
@@ -181,47 +166,38 @@ void exponents_of_regular_response(
 void exponents_of_irregular_response(Report& report, const Experiment& e) {
     histories(report, e, 24);
     const IdentifiedExponents& judged = e.result.judged;
-    report.add(
-        {.where = "Fig. 24",
-         .what = "b = 15 mm: lower end of the 90 % interval of lambda1, from the fitted motion",
-         .paper = "the transient exponents are positive",
-         .here = fmt::format(
+    report.add_of_record(
+        {"Fig. 24", "b = 15 mm: lower end of the 90 % interval of lambda1, from the fitted motion",
+         "the transient exponents are positive"},
+        {judged.slope.low,
+         fmt::format(
              "{:.4f} to {:.4f}, slope {:.4f}; from the direct estimate {:.4f}; with the damping of "
              "(19) to (21) {:.4f}; the true motion's {:.4f}",
              judged.slope.low, judged.slope.high, judged.slope.value,
              e.result.direct->exponents.all().qr()[0], by_closed_form(e).slope.value,
-             e.truth.exponents.qr()[0]),
-         .number = judged.slope.low,
-         .band = {0, infinity},
-         .because = "positive",
-         .computed_record = true});
+             e.truth.exponents.qr()[0])},
+        {{0, infinity}, "positive"});
     const Exponents lambda = e.result.exponents.all().qr();
-    report.add(
-        {.where = "Fig. 24",
-         .what = "b = 15 mm: positive exponents (qr), from the fitted motion",
-         .paper = "the transient exponents are positive",
-         .here = fmt::format("{}: {}", positive(lambda), in_words(lambda)),
-         .number = static_cast<double>(positive(lambda)),
-         .band = exactly(4),
-         .because = "all four, as in Fig. 5, with which the paper calls it consistent",
-         .computed_record = true,
-         .expected = ClaimVerdict::not_reproduced});
+    report.add_of_record(
+        {"Fig. 24", "b = 15 mm: positive exponents (qr), from the fitted motion",
+         "the transient exponents are positive"},
+        {positive(lambda), fmt::format("{}: {}", positive(lambda), in_words(lambda))},
+        {exactly(4), "all four, as in Fig. 5, with which the paper calls it consistent"},
+        ClaimVerdict::not_reproduced);
     const double change = late_change(e.history_by_eq_33(), 0),
                  typical_change = median(late_changes_after(e));
-    report.add(
-        {.where = "Fig. 24",
-         .what = "b = 15 mm: lambda1 by (33), second half of the record: its range without spikes "
-                 "over its last value",
-         .paper = "almost already stable",
-         .here = fmt::format(
+    report.add_of_record(
+        {"Fig. 24",
+         "b = 15 mm: lambda1 by (33), second half of the record: its range without spikes "
+         "over its last value",
+         "almost already stable"},
+        {typical_change,
+         fmt::format(
              "{:.2f}; true motion, over the {} following stretches of that length: median {:.2f}",
-             change, following, typical_change),
-         .number = typical_change,
-         .band = {0, small_change},
-         .because = std::string(why_small_change) + ". It depends on the record's length",
-         .partly = Band{0, some_change},
-         .computed_record = true,
-         .expected = ClaimVerdict::not_reproduced});
+             change, following, typical_change)},
+        {almost_constant.band, almost_constant.because + ". It depends on the record's length",
+         almost_constant.partly},
+        ClaimVerdict::not_reproduced);
 }
 
 namespace {
@@ -236,53 +212,33 @@ const char* word_of(vines::Verdict verdict) {
     return "";
 }
 
-/// Counts the unchanged verdicts on one record for assumed restitution coefficients.
-int same_conclusion(
-    const Experiment& e, const std::vector<std::pair<double, double>>& walls, DataTable& table) {
-    int same = 0;
-    for (const auto& [R_plus, R_minus] : walls) {
-        Parameters p = e.result.parameters;
-        p.R_plus = R_plus, p.R_minus = R_minus;
-        const IdentifiedExponents judged = judged_by(e, p);
-        same += judged.verdict == e.result.judged.verdict;
-        table.rows.push_back(
-            {fmt::format("{:g}", 1000 * p.b), fmt::format("{:g}, {:g}", R_plus, R_minus),
-             fmt::format("{:.4f}", judged.slope.value),
-             fmt::format("{:.4f} to {:.4f}", judged.slope.low, judged.slope.high),
-             word_of(judged.verdict)});
-    }
-    return same;
-}
-
 const std::vector<std::pair<double, double>> other_walls = {{0.6, 0.6}, {0.7, 0.7},   {0.8, 0.8},
                                                             {0.9, 0.9}, {0.95, 0.95}, {0.8, 0.9},
                                                             {0.9, 0.8}, {0.7, 0.95},  {0.95, 0.7}};
 
+/// Counts the verdicts that stay the same for assumed restitution coefficients.
 void assumed_restitution(Report& report, const Experiment& regular, const Experiment& irregular) {
-    DataTable table{{"b (mm)", "assumed R", "slope", "90 % interval", "verdict"}, {}};
-    const int same = same_conclusion(regular, other_walls, table) +
-                     same_conclusion(irregular, other_walls, table);
-    const int all = 2 * static_cast<int>(other_walls.size());
-    report.add(
-        {.where = "Section 5.2",
-         .what = "verdicts on the two records that stay the same with another assumed R",
-         .paper = "the same conclusion",
-         .here = fmt::format("{} of {}", same, all),
-         .number = static_cast<double>(same),
-         .band = exactly(all),
-         .because = "all; in part: half or more",
-         .partly = Band{all / 2.0, static_cast<double>(all)},
-         .computed_record = true});
+    DataTable table{{"b (mm)", "assumed R", "slope", "90 % interval", "verdict"}};
+    double same = 0;
+    for (const Experiment* const e : {&regular, &irregular})
+        for (const auto& [R_plus, R_minus] : other_walls) {
+            Parameters p = e->result.parameters;
+            p.R_plus = R_plus, p.R_minus = R_minus;
+            const IdentifiedExponents judged = judged_by(*e, p);
+            same += judged.verdict == e->result.judged.verdict;
+            table.rows.push_back(
+                {fmt::format("{:g}", 1000 * p.b), fmt::format("{:g}, {:g}", R_plus, R_minus),
+                 fmt::format("{:.4f}", judged.slope.value),
+                 fmt::format("{:.4f} to {:.4f}", judged.slope.low, judged.slope.high),
+                 word_of(judged.verdict)});
+        }
+    const auto all = static_cast<double>(table.rows.size());
+    report.add_of_record(
+        {"Section 5.2", "verdicts on the two records that stay the same with another assumed R",
+         "the same conclusion"},
+        {same, fmt::format("{} of {}", same, all)},
+        {exactly(all), "all; in part: half or more", Band{all / 2, all}});
     report.table(table);
-}
-
-vines::Verdict verdict_on_run(Parameters p, double b, double R_plus, double R_minus) {
-    p.b = b, p.R_plus = R_plus, p.R_minus = R_minus;
-    AnalysisRequest wanted{.parameters = p, .start = default_state(p), .tau_end = 6000};
-    wanted.window.from = 1000;
-    wanted.parts = {.exponents = true};
-    wanted.estimators = qr_alone;
-    return analyse(wanted).exponents->judgement.verdict;
 }
 
 /// Not asked by the paper: the motions of systems whose walls have these R.
@@ -290,11 +246,19 @@ void true_restitution(Report& report) {
     const Parameters measured = experimental_oscillator(0.009),
                      simulated = table1(0.015, Damping::closed_form);
     DataTable table{
-        {"R of the system itself", "section 5, b = 9 mm", "15 mm", "section 4, b = 15 mm", "22 mm"},
-        {}};
+        {"R of the system itself", "section 5, b = 9 mm", "15 mm", "section 4, b = 15 mm",
+         "22 mm"}};
     for (const auto& walls : other_walls) {
-        const auto verdict = [&](const Parameters& p, double b) {
-            return word_of(verdict_on_run(p, b, walls.first, walls.second));
+        const auto verdict = [&](Parameters p, double b) {
+            p.b = b, p.R_plus = walls.first, p.R_minus = walls.second;
+            const Analysis run = analyse(
+                {.parameters = p,
+                 .start = default_state(p),
+                 .tau_end = 6000,
+                 .window = {1000, 6000},
+                 .parts = {.exponents = true},
+                 .estimators = qr_alone});
+            return word_of(run.exponents->judgement.verdict);
         };
         table.rows.push_back(
             {fmt::format("{:g}, {:g}", walls.first, walls.second), verdict(measured, 0.009),

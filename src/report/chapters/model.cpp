@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "report/plots.hpp"
 #include "report/report.hpp"
-#include "report/runs.hpp"
-
-#include "core/motion/elementary.hpp"
 
 namespace vines::report {
 
@@ -17,54 +15,36 @@ namespace {
 
 void parameters_of_table_1(Report& report, const Parameters& p) {
     report.add(
-        {.where = "Table 1",
-         .what = "epsilon = m2/m1",
-         .paper = ".84 %",
-         .here = fmt::format("{:.4f} %", 100 * p.epsilon),
-         .number = 100 * p.epsilon,
-         .band = {0.835, 0.845},
-         .because = "rounds to .84"});
+        {"Table 1", "epsilon = m2/m1", ".84 %"}, result("{:.4f} %", 100 * p.epsilon),
+        {{0.835, 0.845}, "rounds to .84"});
     report.add(
-        {.where = "Table 1",
-         .what = "lambda = c1/(m2 omega0)",
-         .paper = "1.43",
-         .here = fmt::format("{:.4f}", p.lambda),
-         .number = p.lambda,
-         .band = {1.425, 1.435},
-         .because = "rounds to 1.43"});
+        {"Table 1", "lambda = c1/(m2 omega0)", "1.43"}, result("{:.4f}", p.lambda),
+        {{1.425, 1.435}, "rounds to 1.43"});
 }
 
 /// x(tau) by (8) to (11) exactly as printed, with tau_0 = 0. x20 = x(0) and x10 = x'(0), in the
 /// paper's names, like f1, f2, p1 and q1.
-class PrintedClosedForm {
-public:
-    PrintedClosedForm(const Parameters& p, double x20, double x10) : decay_(p.epsilon * p.lambda) {
-        using elementary::cos, elementary::sin;
-        const double O = p.Omega, e = p.epsilon, l = p.lambda, A = p.A(), phi = p.phi(),
-                     D = O * O * O * O + (4 * e * e * l * l - 2) * O * O + 1;
-        f1_ = -e * A * ((O * O - 1) * cos(phi) - 2 * l * e * O * sin(phi)) / D;
-        f2_ = -e * A * ((O * O - 1) * sin(phi) + 2 * l * e * cos(phi) * O) / D;
-        omega_d_ = std::sqrt(1 - e * e * l * l);
-        q1_ = x20 - f2_;
-        p1_ = -(-x10 - e * l * x20 + e * l * f2_ + f1_ * O) / omega_d_;
-        Omega_ = O;
-    }
-    double x(double tau) const {
-        using elementary::cos, elementary::exp, elementary::sin;
-        return exp(-decay_ * tau) * (p1_ * sin(omega_d_ * tau) + q1_ * cos(omega_d_ * tau)) +
-               f1_ * sin(Omega_ * tau) + f2_ * cos(Omega_ * tau);
-    }
-
-private:
-    double decay_, Omega_, omega_d_, f1_, f2_, q1_, p1_;
-};
+std::function<double(double tau)> printed_closed_form(const Parameters& p, double x20, double x10) {
+    using elementary::cos, elementary::exp, elementary::sin;
+    const double O = p.Omega, e = p.epsilon, l = p.lambda, A = p.A(), phi = p.phi(),
+                 D = O * O * O * O + (4 * e * e * l * l - 2) * O * O + 1,
+                 f1 = -e * A * ((O * O - 1) * cos(phi) - 2 * l * e * O * sin(phi)) / D,
+                 f2 = -e * A * ((O * O - 1) * sin(phi) + 2 * l * e * cos(phi) * O) / D,
+                 omega_d = std::sqrt(1 - e * e * l * l), q1 = x20 - f2,
+                 p1 = -(-x10 - e * l * x20 + e * l * f2 + f1 * O) / omega_d;
+    return [=](double tau) {
+        return exp(-e * l * tau) * (p1 * sin(omega_d * tau) + q1 * cos(omega_d * tau)) +
+               f1 * sin(O * tau) + f2 * cos(O * tau);
+    };
+}
 
 /// The k for which a motion satisfies x'' + k epsilon lambda x' + x = epsilon A sin(Omega tau +
 /// phi) at tau; derivatives by central differences of the fourth order.
-double damping_factor_of(const Parameters& p, const PrintedClosedForm& motion, double tau) {
+double damping_factor_of(
+    const Parameters& p, const std::function<double(double)>& motion, double tau) {
     // The error of x' is h^4/30 times its fourth derivative, far above rounding.
     constexpr double h = 0.01;
-    const auto x = [&](int k) { return motion.x(tau + k * h); };
+    const auto x = [&](int k) { return motion(tau + k * h); };
     const double x_dot = (x(-2) - 8 * x(-1) + 8 * x(1) - x(2)) / (12 * h),
                  x_ddot = (-x(-2) + 16 * x(-1) - 30 * x(0) + 16 * x(1) - x(2)) / (12 * h * h);
     return (p.epsilon * p.A() * elementary::sin(p.Omega * tau + p.phi()) - x_ddot - x(0)) /
@@ -72,7 +52,7 @@ double damping_factor_of(const Parameters& p, const PrintedClosedForm& motion, d
 }
 
 void closed_form(Report& report, const Parameters& p) {
-    const PrintedClosedForm motion(p, 0.01, 0.003);  // any start
+    const auto motion = printed_closed_form(p, 0.01, 0.003);  // any start
     double least = infinity, most = -infinity;
     // Times at which x' is not small; the motion has an amplitude of about 10 mm.
     for (double tau : {1.0, 2.5, 4.0, 5.5, 7.0, 30.0}) {
@@ -80,15 +60,13 @@ void closed_form(Report& report, const Parameters& p) {
         least = std::min(least, k), most = std::max(most, k);
     }
     report.add(
-        {.where = "Eqs. (8) to (11)",
-         .what =
-             "factor k of the damping in x'' + k epsilon lambda x' + x = ..., which they satisfy",
-         .paper = "1, eq. (1)",
-         .here = fmt::format("{:.5f} to {:.5f} at six times", least, most),
-         .number = std::abs(least - 1) > std::abs(most - 1) ? least : most,
-         .band = {0.999, 1.001},
-         .because = "the finite differences give x' and x'' to 1e-4",
-         .expected = ClaimVerdict::not_reproduced});
+        {"Eqs. (8) to (11)",
+         "factor k of the damping in x'' + k epsilon lambda x' + x = ..., which they satisfy",
+         "1, eq. (1)"},
+        {std::abs(least - 1) > std::abs(most - 1) ? least : most,
+         fmt::format("{:.5f} to {:.5f} at six times", least, most)},
+        {{0.999, 1.001}, "the finite differences give x' and x'' to 1e-4"},
+        ClaimVerdict::not_reproduced);
     report.paragraph(fmt::format(
         "The equation of motion (1) has 2 zeta = epsilon lambda; the closed form (8)-(11), "
         "inserted into it as printed, has {:.4f} times that, and so has the transfer matrix (19), "
@@ -115,28 +93,25 @@ void trajectory_difference(Report& report) {
     distance.x = tangent.x = second.series.tau;
     distance.y = second.distance, tangent.y = second.tangent;
     report.picture(
-        {.name = "fig2",
-         .caption = "Fig. 2: distance of two trajectories through their impacts, and its "
-                    "prediction by (26) to (32)",
-         .plots = {
-             {.x_label = "tau",
-              .y_label = "distance (m)",
-              .curves = {distance, tangent},
-              .logarithmic = true}}});
+        "fig2",
+        "Fig. 2: distance of two trajectories through their impacts, and its "
+        "prediction by (26) to (32)",
+        {{.x_label = "tau",
+          .y_label = "distance (m)",
+          .curves = {distance, tangent},
+          .logarithmic = true}});
     report.add(
-        {.where = "Fig. 2, eqs. (26) to (32)",
-         .what = fmt::format(
+        {"Fig. 2, eqs. (26) to (32)",
+         fmt::format(
              "two runs, {:g} m apart, to tau = {:g}: largest relative error of the distance "
              "predicted by M J",
              size, wanted.tau_end),
-         .paper = "the transfer matrix",
-         .here = fmt::format(
-             "{:.0e} through {} impacts, while the distance grows {:.0f}-fold", largest,
-             run.outcome.impacts, second.distance.back() / size),
-         .number = largest,
-         .band = {0, 1e-3},
-         .because =
-             "exact to first order: the error is of the size of the distance, plus rounding"});
+         "the transfer matrix"},
+        {largest, fmt::format(
+                      "{:.0e} through {} impacts, while the distance grows {:.0f}-fold", largest,
+                      run.outcome.impacts, second.distance.back() / size)},
+        {{0, 1e-3},
+         "exact to first order: the error is of the size of the distance, plus rounding"});
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // Questions left open by the paper: the borders of the regimes; the steady state at 22 mm.
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,6 @@
 #include "report/report.hpp"
 #include "report/runs.hpp"
 #include "report/symmetric_motion.hpp"
-
-#include "core/motion/elementary.hpp"
 
 namespace vines::report {
 
@@ -23,21 +21,9 @@ double border(double where_it_holds, double where_not, const auto& holds) {
     return where_it_holds;
 }
 
-bool is_stable(double b, Damping damping) {
-    const auto motion = fast_symmetric_motion(table1(b, damping));
-    return motion && motion->stable();
-}
-
-/// The multiplier of the half cycle at which stability is lost, and the resulting motion.
-std::string crossing(double b, Damping damping) {
-    const std::complex<double> m = fast_symmetric_motion(table1(b, damping))->multipliers[0];
-    if (std::abs(m.imag()) > 1e-6)
-        return fmt::format(
-            "a pair {:.4f} +- {:.4f}i leaves the unit circle, as at a torus bifurcation", m.real(),
-            std::abs(m.imag()));
-    return fmt::format(
-        "a multiplier of the half cycle is {:+.4f}, {}", m.real(),
-        m.real() < 0 ? "the symmetry breaks" : "a fold");
+/// The multiplier of the half cycle with the largest modulus.
+std::complex<double> largest_multiplier(double b, Damping damping) {
+    return fast_symmetric_motion(table1(b, damping))->multipliers[0];
 }
 
 /// b (m) at which two symmetric impacts per cycle attract with either damping (Fig. 11).
@@ -48,7 +34,10 @@ struct Borders {
     double breaking, end;  ///< m
 };
 Borders borders(Damping damping) {
-    const auto stable = [damping](double b) { return is_stable(b, damping); };
+    const auto stable = [damping](double b) {
+        const auto motion = fast_symmetric_motion(table1(b, damping));
+        return motion && motion->stable();
+    };
     return {border(symmetric, 0.004, stable), border(symmetric, 0.030, stable)};
 }
 
@@ -63,86 +52,68 @@ std::string compared_with_runs(double b) {
 void symmetric_impacts(Report& report) {
     const Borders here = borders(Damping::closed_form),
                   other = borders(Damping::equation_of_motion);
+    const std::complex<double> m = largest_multiplier(here.end, Damping::closed_form);
     report.add(
-        {.where = "Fig. 11, Table 3",
-         .what =
-             "b at which two symmetric impacts per cycle cease to attract (end of Type III), mm",
-         .paper = "III at 15, II at 16.5",
-         .here = fmt::format(
-             "{:.6f}: {}; {}; by eq. (1) {:.6f}", 1000 * here.end,
-             crossing(here.end, Damping::closed_form), compared_with_runs(here.end),
-             1000 * other.end),
-         .number = 1000 * here.end,
-         .by_equation = 1000 * other.end,
-         .band = {15, 16.5},
-         .because = "between the two",
-         .expected = ClaimVerdict::by_closed_form});
+        {"Fig. 11, Table 3",
+         "b at which two symmetric impacts per cycle cease to attract (end of Type III), mm",
+         "III at 15, II at 16.5"},
+        {1000 * here.end, 1000 * other.end,
+         fmt::format(
+             "{:.6f}: a pair {:.4f} +- {:.4f}i leaves the unit circle, as at a torus bifurcation; "
+             "{}; by eq. (1) {:.6f}",
+             1000 * here.end, m.real(), std::abs(m.imag()), compared_with_runs(here.end),
+             1000 * other.end)},
+        {{15, 16.5}, "between the two"}, ClaimVerdict::by_closed_form);
     const double fold = border(symmetric, 0.030, [](double b) {
         return fast_symmetric_motion(table1(b, Damping::closed_form)).has_value();
     });
     report.paragraph(fmt::format(
         "Where two symmetric impacts per cycle (Fig. 11) become asymmetric (Fig. 12): at b = "
-        "{:.6f} mm {}; by eq. (1) at {:.6f} mm {}. By the closed form the motion exists up to b = "
-        "{:.6f} mm, where it meets a slower one in a fold.",
-        1000 * here.breaking, crossing(here.breaking, Damping::closed_form), 1000 * other.breaking,
-        crossing(other.breaking, Damping::equation_of_motion), 1000 * fold));
+        "{:.6f} mm a multiplier of the half cycle is {:+.4f}, the symmetry breaks; by eq. (1) at "
+        "{:.6f} mm a multiplier of the half cycle is {:+.4f}, the symmetry breaks. By the closed "
+        "form the motion exists up to b = {:.6f} mm, where it meets a slower one in a fold.",
+        1000 * here.breaking, largest_multiplier(here.breaking, Damping::closed_form).real(),
+        1000 * other.breaking,
+        largest_multiplier(other.breaking, Damping::equation_of_motion).real(), 1000 * fold));
 }
 
-/// Regimes of long runs at equidistant b, mm.
-struct LongRuns {
-    std::vector<double> mm;
-    std::vector<Regime> regimes;
-
-    LongRuns(double from, double to, int steps, Damping damping) {
-        std::vector<double> b;
-        for (int i = 0; i <= steps; ++i) {
-            mm.push_back(from + (to - from) * i / steps);
-            b.push_back(mm.back() / 1000);
-        }
-        regimes = long_regimes(b, damping);
-    }
-    std::vector<double> where(auto&& is_so) const {
-        std::vector<double> found;
-        for (std::size_t i = 0; i < mm.size(); ++i)
-            if (is_so(regimes[i])) found.push_back(mm[i]);
-        return found;
-    }
-};
+/// The equidistant b, mm, at which the regime of a long run is so.
+std::vector<double> mm_where(double from, double to, int steps, Damping damping, auto&& is_so) {
+    std::vector<double> b, found;
+    const auto mm = [&](int i) { return from + (to - from) * i / steps; };
+    for (int i = 0; i <= steps; ++i) b.push_back(mm(i) / 1000);
+    const std::vector<Regime> regimes = long_regimes(b, damping);
+    for (int i = 0; i <= steps; ++i)
+        if (is_so(regimes[static_cast<std::size_t>(i)])) found.push_back(mm(i));
+    return found;
+}
 
 std::string listed(const std::vector<double>& numbers) {
-    std::string text;
-    for (double n : numbers) text += fmt::format("{}{:g}", text.empty() ? "" : ", ", n);
-    return text.empty() ? "none" : text;
+    return numbers.empty() ? "none" : fmt::format("{:g}", fmt::join(numbers, ", "));
 }
 
 void sparse_and_modulated(Report& report) {
-    const auto of_type = [](RegimeType type, Damping damping) {
-        return LongRuns(31, 34, 12, damping).where([type](const Regime& r) {
-            return r.type == type;
-        });
+    const auto of_type_I = [](Damping damping) {
+        return mm_where(
+            31, 34, 12, damping, [](const Regime& r) { return r.type == RegimeType::I; });
     };
     const auto lowest = [](const std::vector<double>& mm) { return mm.empty() ? nan : mm.front(); };
-    const std::vector<double> here = of_type(RegimeType::I, Damping::closed_form),
-                              other = of_type(RegimeType::I, Damping::equation_of_motion);
+    const std::vector<double> here = of_type_I(Damping::closed_form),
+                              other = of_type_I(Damping::equation_of_motion);
     report.add(
-        {.where = "Table 3",
-         .what = "31 to 34 mm in steps of .25, runs of 17,000: lowest b of Type I",
-         .paper = "II at 31, I at 34",
-         .here = fmt::format("at {}; by eq. (1) {}", listed(here), listed(other)),
-         .number = lowest(here),
-         .by_equation = lowest(other),
-         .band = {31.25, 34},
-         .because = "between the two",
-         .expected = ClaimVerdict::by_closed_form});
+        {"Table 3", "31 to 34 mm in steps of .25, runs of 17,000: lowest b of Type I",
+         "II at 31, I at 34"},
+        {lowest(here), lowest(other),
+         fmt::format("at {}; by eq. (1) {}", listed(here), listed(other))},
+        {{31.25, 34}, "between the two"}, ClaimVerdict::by_closed_form);
 }
 
 /// "Then b is decreased to 0.004 m, three impacts per cycle is obtained": the b at which it is.
 void three_impacts(Report& report) {
-    const auto of_three = [](const Regime& r) {
-        return r.type == RegimeType::V && r.orbit->contacts == 3L * r.orbit->cycles;
-    };
-    const auto where = [&](Damping damping) {
-        return listed(LongRuns(3, 9, 60, damping).where(of_three));
+    const auto where = [](Damping damping) {
+        return listed(mm_where(3, 9, 60, damping, [](const Regime& r) {
+            return r.type == RegimeType::V && r.orbit->contacts == 3L * r.orbit->cycles;
+        }));
     };
     report.paragraph(fmt::format(
         "Three impacts per cycle, periodic (Type V, Fig. 13), for b from 3 to 9 mm in steps of .1, "
@@ -154,15 +125,12 @@ void three_impacts(Report& report) {
 void captures(Report& report, RunCache& runs) {
     const Ensemble& e = runs.ensemble(0.022, WindowsOf::tau_1690);
     const auto captured = std::ssize(e.capture_tau);
-    std::string when;
-    for (const double tau : e.capture_tau)
-        when += fmt::format("{} {:.0f}", when.empty() ? ", at tau =" : ",", tau);
     report.paragraph(fmt::format(
         "\"In this period, the transient response has disappeared\" (of Fig. 5): of {} runs at b = "
-        "22 mm to tau = {:g} a periodic orbit captures {}{}, which {} chaotic until then by "
-        "lambda1 and its standard error; the other {} are chaotic to their ends. Runs of this "
-        "length do not decide whether their chaos persists.",
-        Ensemble::runs, Ensemble::tau_end, captured, when, captured == 1 ? "was" : "were",
+        "22 mm to tau = {:g} a periodic orbit captures {}, at tau = {:.0f}, which were chaotic "
+        "until then by lambda1 and its standard error; the other {} are chaotic to their ends. "
+        "Runs of this length do not decide whether their chaos persists.",
+        Ensemble::runs, Ensemble::tau_end, captured, fmt::join(e.capture_tau, ", "),
         Ensemble::runs - captured));
 }
 

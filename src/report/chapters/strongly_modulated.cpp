@@ -4,9 +4,8 @@
 
 #include "core/motion/elementary.hpp"
 #include "core/motion/flow.hpp"
+#include "report/claims.hpp"
 #include "report/plots.hpp"
-#include "report/report.hpp"
-#include "report/runs.hpp"
 
 namespace vines::report {
 
@@ -18,19 +17,16 @@ struct ImpactsPerCycle {
 };
 
 ImpactsPerCycle impacts_per_cycle(const PaperRun& r) {
-    double falling = 0, rising = 0;
-    long falling_cycles = 0, rising_cycles = 0;
+    double falling = 0, rising = 0, falling_cycles = 0, rising_cycles = 0;
     auto impact = r.run.impacts.begin();
     const ManifoldResult& half_cycles = *r.run.manifold;
     for (std::size_t k = 3; k < half_cycles.points.size(); k += 2) {
-        long n = 0;
-        for (; impact != r.run.impacts.end() && impact->tau <= half_cycles.tau[k]; ++impact) ++n;
         const bool falls = half_cycles.points[k].C < half_cycles.points[k - 2].C;
-        (falls ? falling : rising) += static_cast<double>(n);
+        for (; impact != r.run.impacts.end() && impact->tau <= half_cycles.tau[k]; ++impact)
+            ++(falls ? falling : rising);
         ++(falls ? falling_cycles : rising_cycles);
     }
-    return {
-        falling / static_cast<double>(falling_cycles), rising / static_cast<double>(rising_cycles)};
+    return {falling / falling_cycles, rising / rising_cycles};
 }
 
 /// Time at which the first flight first comes within `tolerance` (m) of the wall that it will meet.
@@ -57,24 +53,22 @@ double first_impact_of(const Parameters& p) {
     return analyse(wanted).impacts.front().tau;
 }
 
-void first_impact(Report& report, const PaperRun& r, const PaperRun& by_equation) {
+void first_impact(Report& report, const BothRuns& runs) {
+    const PaperRun& r = runs.here;
     Parameters rounded = r.parameters;
     rounded.epsilon = 0.0084;
     rounded.lambda = 1.43;
-    const double tau = r.run.impacts.front().tau, other = by_equation.run.impacts.front().tau;
+    const double tau = r.run.impacts.front().tau, other = runs.by_equation.run.impacts.front().tau;
     report.add(
-        {.where = "Table 2",
-         .what = "first impact, tau_s (Fig. 3)",
-         .paper = "18.1300",
-         .here = fmt::format(
+        {"Table 2", "first impact, tau_s (Fig. 3)", "18.1300"},
+        {tau, other,
+         fmt::format(
              "{:.4f}; {:.4f} with epsilon and lambda as printed; by eq. (1) {:.4f}", tau,
-             first_impact_of(rounded), other),
-         .number = tau,
-         .by_equation = other,
-         .band = {18.12995, 18.13005},
-         .because = "the printed digits; in part: a tenth of a per cent",
-         .partly = Band{18.1119, 18.1481},
-         .expected = ClaimVerdict::partly_by_closed_form});
+             first_impact_of(rounded), other)},
+        {{18.12995, 18.13005},
+         "the printed digits; in part: a tenth of a per cent",
+         Band{18.1119, 18.1481}},
+        ClaimVerdict::partly_by_closed_form);
     // A program that ends a step at this distance from the wall would report the impact too early.
     constexpr double tolerance = 1e-5;
     report.paragraph(fmt::format(
@@ -82,62 +76,43 @@ void first_impact(Report& report, const PaperRun& r, const PaperRun& by_equation
         tau, tolerance, first_within(r, tolerance)));
 }
 
-void figure_3(Report& report, const PaperRun& r, const PaperRun& by_equation) {
-    Plot x = displacement(series_until(0.022, 5521.3));
+void figure_3(Report& report, const BothRuns& runs) {
+    Plot x = displacement(*run_until(0.022, 5521.3, {.series = true}).run.series);
     x.marked_times = {18.13, 1708.9};
     report.picture(
-        {.name = "fig3",
-         .caption = "Fig. 3: displacement of the linear oscillator; the window of Fig. 5 between "
-                    "the dashed lines",
-         .plots = {x}});
-    report.add(
-        {.where = "Fig. 3",
-         .what = "regime",
-         .paper = "Type II",
-         .here = fmt::format(
-             "{}, {} synchronised half cycles; by eq. (1) {}", r.type(),
-             r.run.regime->longest_synchronised, by_equation.type()),
-         .number = number_of(r.run.regime->type),
-         .by_equation = number_of(by_equation.run.regime->type),
-         .band = exactly(number_of(RegimeType::II)),
-         .because = "the same type as in the paper"});
-    first_impact(report, r, by_equation);
+        "fig3",
+        "Fig. 3: displacement of the linear oscillator; the window of Fig. 5 between "
+        "the dashed lines",
+        {x});
+    same_regime(
+        report, "Fig. 3", RegimeType::II, runs,
+        fmt::format(
+            "{}, {} synchronised half cycles; by eq. (1) {}", runs.here.type(),
+            runs.here.regime().longest_synchronised, runs.by_equation.type()));
+    first_impact(report, runs);
 }
 
-void figure_4(Report& report, const PaperRun& r, const PaperRun& by_equation) {
+void figure_4(Report& report, const BothRuns& runs) {
+    const PaperRun& r = runs.here;
     report.picture(
-        {.name = "fig4",
-         .caption = "Fig. 4: displacement and relative displacement, enlarged",
-         .plots = {displacement(*r.run.series, 600), relative_displacement(r, 0, 600)}});
-    const ImpactsPerCycle here = impacts_per_cycle(r), other = impacts_per_cycle(by_equation);
+        "fig4", "Fig. 4: displacement and relative displacement, enlarged",
+        {displacement(*r.run.series, 600), relative_displacement(r, 0, 600)});
+    const ImpactsPerCycle here = impacts_per_cycle(r), other = impacts_per_cycle(runs.by_equation);
     report.add(
-        {.where = "Fig. 4",
-         .what = "impacts per cycle while x falls",
-         .paper = "2",
-         .here = fmt::format("{:.2f}; by eq. (1) {:.2f}", here.falling, other.falling),
-         .number = here.falling,
-         .by_equation = other.falling,
-         .band = {1.9, 2.1},
-         .because = "cycles in which x turns are counted with either side"});
+        {"Fig. 4", "impacts per cycle while x falls", "2"},
+        result("{:.2f}", here.falling, other.falling),
+        {{1.9, 2.1}, "cycles in which x turns are counted with either side"});
     report.add(
-        {.where = "Fig. 4",
-         .what = "impacts per cycle while x rises",
-         .paper = "below 2",
-         .here = fmt::format("{:.2f}; by eq. (1) {:.2f}", here.rising, other.rising),
-         .number = here.rising,
-         .by_equation = other.rising,
-         .band = {0, 1.9},
-         .because = "as the row above"});
+        {"Fig. 4", "impacts per cycle while x rises", "below 2"},
+        result("{:.2f}", here.rising, other.rising), {{0, 1.9}, "as the row above"});
 }
 
 }  // namespace
 
 void strongly_modulated(Report& report, RunCache& runs) {
     report.heading("Figs. 3 and 4: strongly modulated response, b = 22 mm (Type II)");
-    const PaperRun &r = runs.paper_run(0.022),
-                   &by_equation = runs.paper_run(0.022, Damping::equation_of_motion);
-    figure_3(report, r, by_equation);
-    figure_4(report, r, by_equation);
+    figure_3(report, runs.both(0.022));
+    figure_4(report, runs.both(0.022));
 }
 
 }  // namespace vines::report

@@ -5,12 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "report/plots.hpp"
 #include "report/report.hpp"
-#include "report/runs.hpp"
-
-#include "core/motion/elementary.hpp"
 
 namespace vines::report {
 
@@ -64,26 +62,6 @@ double maximum_of_T(const PaperRun& r, int k) {
     return largest;
 }
 
-void figures_6_and_7(Report& report, const PaperRun& r) {
-    const double J_error = error_of_J(r), M_error = error_of_M(r);
-    report.add(
-        {.where = "Fig. 6",
-         .what = "moduli of J: their distance from e^(-zeta Delta tau) twice and 1 twice",
-         .paper = "two below 1, two 1",
-         .here = fmt::format("{:.0e}", J_error),
-         .number = J_error,
-         .band = {0, 1e-12},
-         .because = "an identity: only rounding is left"});
-    report.add(
-        {.where = "Fig. 7",
-         .what = "moduli of M: their distance from 1, 1, R, R (median of the impacts)",
-         .paper = "two 1, two R",
-         .here = fmt::format("{:.0e}", M_error),
-         .number = M_error,
-         .band = {0, 1e-12},
-         .because = "an identity: only rounding is left, which is larger near grazing"});
-}
-
 /// Factor by which M multiplies a deviation of x - y alone, median over the impacts.
 double factor_of_displacement(const PaperRun& r) {
     std::vector<double> factors;
@@ -92,62 +70,44 @@ double factor_of_displacement(const PaperRun& r) {
     return median(factors);
 }
 
-/// "The initial difference of displacement will not be changed during the impact", and that of
-/// velocity is "decreased by impact with a reduction coefficient R".
-void what_M_does(Report& report, const PaperRun& r) {
-    const double factor = factor_of_displacement(r);
-    report.add(
-        {.where = "Fig. 7",
-         .what = "factor of a difference of x - y at an impact",
-         .paper =
-             "\"the initial difference of displacement will not be changed ... by themselves\"",
-         .here = fmt::format("{:.4f}: R, as that of x' - y'", factor),
-         .number = factor,
-         .band = {0.999, 1.001},
-         .because = "1 if unchanged; the factor of each impact is exact except for rounding",
-         .expected = ClaimVerdict::not_reproduced});
-}
-
-void figure_8(Report& report, const PaperRun& r) {
-    const double first = maximum_of_T(r, 0), second = maximum_of_T(r, 1);
-    report.add(
-        {.where = "Fig. 8",
-         .what = "largest modulus of T, at its largest",
-         .paper = "very large",
-         .here = fmt::format("{:.1f}", first),
-         .number = first,
-         .band = {10, infinity},
-         .because = "an order above 1"});
-    report.add(
-        {.where = "Fig. 8",
-         .what = "second modulus of T, at its largest",
-         .paper = "very large",
-         .here = fmt::format("{:.2f}", second),
-         .number = second,
-         .band = {10, infinity},
-         .because = "an order above 1; in part: above 1",
-         .partly = Band{1, infinity},
-         .expected = ClaimVerdict::partly});
-}
-
 void figures_6_to_8(Report& report, const PaperRun& r) {
     Plot T = moduli(r, "|eig T|", r.run.moduli->T);
     T.logarithmic = true;
     report.picture(
-        {.name = "fig6-8",
-         .caption = "Figs. 6, 7, 8: moduli of the eigenvalues of J, M and T",
-         .plots = {moduli(r, "|eig J|", r.run.moduli->J), moduli(r, "|eig M|", r.run.moduli->M), T},
-         .height = 170});
-    figures_6_and_7(report, r);
-    what_M_does(report, r);
-    figure_8(report, r);
+        "fig6-8", "Figs. 6, 7, 8: moduli of the eigenvalues of J, M and T",
+        {moduli(r, "|eig J|", r.run.moduli->J), moduli(r, "|eig M|", r.run.moduli->M), T}, 170);
+    report.add(
+        {"Fig. 6", "moduli of J: their distance from e^(-zeta Delta tau) twice and 1 twice",
+         "two below 1, two 1"},
+        result("{:.0e}", error_of_J(r)), {{0, 1e-12}, "an identity: only rounding is left"});
+    report.add(
+        {"Fig. 7", "moduli of M: their distance from 1, 1, R, R (median of the impacts)",
+         "two 1, two R"},
+        result("{:.0e}", error_of_M(r)),
+        {{0, 1e-12}, "an identity: only rounding is left, which is larger near grazing"});
+    // The paper continues: the difference of velocity is "decreased by impact with a reduction
+    // coefficient R".
+    report.add(
+        {"Fig. 7", "factor of a difference of x - y at an impact",
+         "\"the initial difference of displacement will not be changed ... by themselves\""},
+        result("{:.4f}: R, as that of x' - y'", factor_of_displacement(r)),
+        {{0.999, 1.001}, "1 if unchanged; the factor of each impact is exact except for rounding"},
+        ClaimVerdict::not_reproduced);
+    report.add(
+        {"Fig. 8", "largest modulus of T, at its largest", "very large"},
+        result("{:.1f}", maximum_of_T(r, 0)), {{10, infinity}, "an order above 1"});
+    report.add(
+        {"Fig. 8", "second modulus of T, at its largest", "very large"},
+        result("{:.2f}", maximum_of_T(r, 1)),
+        {{10, infinity}, "an order above 1; in part: above 1", Band{1, infinity}},
+        ClaimVerdict::partly);
 }
 
 using Intervals = std::vector<std::pair<double, double>>;
 
-Intervals synchronised_stretches(const Regime& regime) {
+Intervals synchronised_stretches(const PaperRun& r) {
     Intervals stretches;
-    for (const SynchronyStretch& s : regime.stretches)
+    for (const SynchronyStretch& s : r.regime().stretches)
         if (s.synchronised) stretches.emplace_back(s.tau_start, s.tau_end);
     return stretches;
 }
@@ -163,19 +123,20 @@ struct LargestOfT {
     std::vector<double> synchronised, desynchronised;
 };
 
-LargestOfT largest_of_T(const PaperRun& r, const Intervals& stretches) {
+LargestOfT largest_of_T(const PaperRun& r) {
+    const Intervals stretches = synchronised_stretches(r);
+    const TransferModuli& moduli = *r.run.moduli;
     LargestOfT found;
-    for (std::size_t i = 0; i < r.run.moduli->tau.size(); ++i) {
-        if (std::isnan(r.run.moduli->T[i][0])) continue;
-        const bool synchronised = is_inside(stretches, r.run.moduli->tau[i]);
-        (synchronised ? found.synchronised : found.desynchronised).push_back(r.run.moduli->T[i][0]);
+    for (std::size_t i = 0; i < moduli.tau.size(); ++i) {
+        if (std::isnan(moduli.T[i][0])) continue;
+        const bool synchronised = is_inside(stretches, moduli.tau[i]);
+        (synchronised ? found.synchronised : found.desynchronised).push_back(moduli.T[i][0]);
     }
     return found;
 }
 
 double above_one(const std::vector<double>& v) {
-    return static_cast<double>(std::ranges::count_if(v, [](double x) { return x > 1; })) /
-           static_cast<double>(v.size());
+    return fraction(v, [](double x) { return x > 1; });
 }
 
 /// Interquartile range of the logarithms.
@@ -184,69 +145,50 @@ double log_spread(std::vector<double> v) {
     return quantile(v, 0.75) - quantile(v, 0.25);
 }
 
-/// Statistics of a number computed from the largest moduli of each run.
-template <class Number>
-Typical typical_largest_of_T(const std::vector<PaperRun>& runs, Number number) {
-    return typical(runs, [&](const PaperRun& r) {
-        return number(largest_of_T(r, synchronised_stretches(*r.run.regime)));
-    });
-}
-
 /// "Greater than one in area1 and less than one in area2."
 void areas_1_and_2(Report& report, RunCache& runs) {
     const auto of = [&](auto number) {
-        return std::pair{
-            typical_largest_of_T(runs.neighbours(0.022), number),
-            typical_largest_of_T(runs.neighbours(0.022, Damping::equation_of_motion), number)};
+        const auto with = [&](Damping damping) {
+            return typical(runs.neighbours(0.022, damping), [&](const PaperRun& r) {
+                return number(largest_of_T(r));
+            });
+        };
+        return std::pair{with(Damping::closed_form), with(Damping::equation_of_motion)};
     };
     const auto out = of([](const LargestOfT& T) { return above_one(T.desynchronised); });
     const auto in = of([](const LargestOfT& T) { return 1 - above_one(T.synchronised); });
     const auto spread = of([](const LargestOfT& T) {
         return log_spread(T.desynchronised) / log_spread(T.synchronised);
     });
-    constexpr Band nearly_all = {0.9, 1}, most_of_them = {0.5, 1};
-    const std::string nine_in_ten = "nine in ten; in part: more than half";
+    const Criterion nine_in_ten = {{0.9, 1}, "nine in ten; in part: more than half", Band{0.5, 1}};
     report.add(
-        {.where = "Fig. 9, area 1",
-         .what = "not synchronised: fraction of impacts where T's largest modulus is above 1",
-         .paper = "greater than one (a typical example)",
-         .here = out.first.in_words(2),
-         .number = out.first.median,
-         .by_equation = out.second.median,
-         .band = nearly_all,
-         .because = nine_in_ten,
-         .partly = most_of_them,
-         .expected = ClaimVerdict::partly});
+        {"Fig. 9, area 1",
+         "not synchronised: fraction of impacts where T's largest modulus is above 1",
+         "greater than one (a typical example)"},
+        {out.first.median, out.second.median, out.first.in_words(2)}, nine_in_ten,
+        ClaimVerdict::partly);
     report.add(
-        {.where = "Fig. 9, area 2",
-         .what = "synchronised: fraction of impacts where it is below 1",
-         .paper = "less than one (a typical example)",
-         .here = fmt::format("{}; by eq. (1) {}", in.first.in_words(2), in.second.in_words(2)),
-         .number = in.first.median,
-         .by_equation = in.second.median,
-         .band = nearly_all,
-         .because = nine_in_ten,
-         .partly = most_of_them,
-         .expected = ClaimVerdict::partly_by_equation_of_motion});
+        {"Fig. 9, area 2", "synchronised: fraction of impacts where it is below 1",
+         "less than one (a typical example)"},
+        {in.first.median, in.second.median,
+         fmt::format("{}; by eq. (1) {}", in.first.in_words(2), in.second.in_words(2))},
+        nine_in_ten, ClaimVerdict::partly_by_equation_of_motion);
     report.add(
-        {.where = "Fig. 9",
-         .what =
-             "its spread (quartiles of ln) while not synchronised, over that while synchronised",
-         .paper = "changes a lot / almost the same value",
-         .here = spread.first.in_words(1),
-         .number = spread.first.median,
-         .by_equation = spread.second.median,
-         .band = {4, infinity},
-         .because = "several times as much"});
+        {"Fig. 9",
+         "its spread (quartiles of ln) while not synchronised, over that while synchronised",
+         "changes a lot / almost the same value"},
+        {spread.first.median, spread.second.median, spread.first.in_words(1)},
+        {{4, infinity}, "several times as much"});
 }
 
 /// Growth rate of ln of the largest deviation (qr) in and outside synchronised stretches.
 struct GrowthRates {
     double synchronised, desynchronised;  ///< per unit of tau
 };
-GrowthRates growth_rates(const PaperRun& r, const Intervals& stretches) {
-    const ExponentHistory& qr = r.run.exponents->product.qr_history();
-    const double start = r.run.exponents->product.start_tau();
+GrowthRates growth_rates(const PaperRun& r) {
+    const Intervals stretches = synchronised_stretches(r);
+    const ExponentHistory& qr = r.product().qr_history();
+    const double start = r.product().start_tau();
     double grown[2] = {0, 0}, lasted[2] = {0, 0};
     for (std::size_t i = 1; i < qr.tau.size(); ++i) {
         const double from = qr.tau[i - 1], to = qr.tau[i];
@@ -260,42 +202,44 @@ GrowthRates growth_rates(const PaperRun& r, const Intervals& stretches) {
 
 /// "The essence of chaotic is the irregular and desynchronized impacts."
 void where_chaos_comes_from(Report& report, RunCache& runs) {
-    const auto of = [&](Damping damping) {
-        const PaperRun& r = runs.paper_run(0.022, damping);
-        return growth_rates(r, synchronised_stretches(*r.run.regime));
-    };
-    const GrowthRates here = of(Damping::closed_form), other = of(Damping::equation_of_motion);
+    const BothRuns both = runs.both(0.022);
+    const GrowthRates here = growth_rates(both.here), other = growth_rates(both.by_equation);
     report.add(
-        {.where = "Section 4.1",
-         .what = "b = 22 mm: growth of ln of the largest deviation (qr) while synchronised, over "
-                 "that while not",
-         .paper = "chaos results from desynchronised impacts",
-         .here = fmt::format(
+        {"Section 4.1",
+         "b = 22 mm: growth of ln of the largest deviation (qr) while synchronised, over "
+         "that while not",
+         "chaos results from desynchronised impacts"},
+        {here.synchronised / here.desynchronised, other.synchronised / other.desynchronised,
+         fmt::format(
              "{:.4f} / {:.4f} per unit of tau; by eq. (1) {:.4f} / {:.4f}", here.synchronised,
-             here.desynchronised, other.synchronised, other.desynchronised),
-         .number = here.synchronised / here.desynchronised,
-         .by_equation = other.synchronised / other.desynchronised,
-         .band = {-infinity, 0.1},
-         .because = "nearly all growth occurs while not synchronised"});
+             here.desynchronised, other.synchronised, other.desynchronised)},
+        {{-infinity, 0.1}, "nearly all growth occurs while not synchronised"});
+}
+
+/// The values at the times in (from, to].
+template <class Value>
+std::span<const Value> between(
+    const std::vector<double>& tau, const std::vector<Value>& values, double from, double to) {
+    return {
+        values.begin() + (std::ranges::upper_bound(tau, from) - tau.begin()),
+        values.begin() + (std::ranges::upper_bound(tau, to) - tau.begin())};
 }
 
 /// Largest modulus of T and largest |x| between the ends of consecutive synchronised stretches.
 struct Modulation {
-    double T, x;
+    double T = 0, x = 0;
 };
 
-std::vector<Modulation> modulations(const PaperRun& r, const Intervals& stretches) {
+std::vector<Modulation> modulations(const PaperRun& r) {
+    const Intervals stretches = synchronised_stretches(r);
     std::vector<Modulation> found;
     for (std::size_t k = 1; k < stretches.size(); ++k) {
         const double from = stretches[k - 1].second, to = stretches[k].second;
-        Modulation m{0, 0};
-        const TransferModuli& moduli = *r.run.moduli;
-        for (std::size_t i = 0; i < moduli.tau.size(); ++i)
-            if (moduli.tau[i] > from && moduli.tau[i] <= to) m.T = std::max(m.T, moduli.T[i][0]);
-        const Series& series = *r.run.series;
-        for (std::size_t i = 0; i < series.tau.size(); ++i)
-            if (series.tau[i] > from && series.tau[i] <= to)
-                m.x = std::max(m.x, std::abs(series.x[i]));
+        Modulation m;
+        for (const Moduli& T : between(r.run.moduli->tau, r.run.moduli->T, from, to))
+            m.T = std::max(m.T, T[0]);
+        for (const double x : between(r.run.series->tau, r.run.series->x, from, to))
+            m.x = std::max(m.x, std::abs(x));
         found.push_back(m);
     }
     return found;
@@ -303,81 +247,68 @@ std::vector<Modulation> modulations(const PaperRun& r, const Intervals& stretche
 
 /// "Area1 and area2 are two typical examples": counts the synchronised stretches that begin with
 /// such an area 2.
-void example_of_area_2(Report& report, const PaperRun& r, const Intervals& stretches) {
-    const TransferModuli& moduli = *r.run.moduli;
-    double examples = 0;
-    for (const auto& [from, to] : stretches) {
-        bool below = true;
-        for (std::size_t i = 0; i < moduli.tau.size(); ++i)
-            if (moduli.tau[i] > from && moduli.tau[i] <= (from + to) / 2)
-                below = below && moduli.T[i][0] < 1;
-        examples += below;
+void example_of_area_2(Report& report, const PaperRun& r) {
+    double examples = 0, stretches = 0;
+    for (const auto& [from, to] : synchronised_stretches(r)) {
+        const auto first_half = between(r.run.moduli->tau, r.run.moduli->T, from, (from + to) / 2);
+        examples += std::ranges::all_of(first_half, [](const Moduli& T) { return T[0] < 1; });
+        ++stretches;
     }
     report.add(
-        {.where = "Fig. 9, area 2",
-         .what = "synchronised stretches in whose first half it is always below 1",
-         .paper = "less than one (a typical example)",
-         .here = fmt::format("{} of {}", examples, stretches.size()),
-         .number = examples / static_cast<double>(stretches.size()),
-         .band = {0.9, 1},
-         .because = "nine in ten, if typical; in part: one. The half stands for \"area 2\", whose "
-                    "extent the paper does not state",
-         .partly = Band{1 / static_cast<double>(stretches.size()), 1},
-         .expected = ClaimVerdict::partly});
+        {"Fig. 9, area 2", "synchronised stretches in whose first half it is always below 1",
+         "less than one (a typical example)"},
+        {examples / stretches, fmt::format("{} of {}", examples, stretches)},
+        {{0.9, 1},
+         "nine in ten, if typical; in part: one. The half stands for \"area 2\", whose "
+         "extent the paper does not state",
+         Band{1 / stretches, 1}},
+        ClaimVerdict::partly);
 }
 
 /// "In area3, the largest value is observed and it has a close relation to the maximal amplitude of
 /// modulated displacement."
 void area_3(Report& report, const std::vector<PaperRun>& neighbours) {
     const Typical higher = typical(neighbours, [](const PaperRun& r) {
-        const std::vector<Modulation> shown = modulations(r, synchronised_stretches(*r.run.regime));
+        const std::vector<Modulation> shown = modulations(r);
         if (shown.empty()) return nan;
         const double at_largest_T = std::ranges::max_element(shown, {}, &Modulation::T)->x;
         return static_cast<double>(
             std::ranges::count_if(shown, [&](const Modulation& m) { return m.x > at_largest_T; }));
     });
     report.add(
-        {.where = "Fig. 9, area 3",
-         .what = "number of the window's modulations with a higher amplitude than the one with the "
-                 "largest value of T",
-         .paper = "in area3, the largest value is observed; \"a close relation to the maximal "
-                  "amplitude\"",
-         .here = higher.in_words(0),
-         .number = higher.median,
-         .band = exactly(0),
-         .because = "area3 is at the maximal amplitude"});
-    const PaperRun r = long_response(0.022);
+        {"Fig. 9, area 3",
+         "number of the window's modulations with a higher amplitude than the one with the "
+         "largest value of T",
+         "in area3, the largest value is observed; \"a close relation to the maximal amplitude\""},
+        {higher.median, higher.in_words(0)}, {exactly(0), "area3 is at the maximal amplitude"});
+    const PaperRun r =
+        run_until(0.022, 10 * window_end, {.series = true, .moduli = true, .regime = true});
     std::vector<double> T, x;
-    for (const Modulation& m : modulations(r, synchronised_stretches(*r.run.regime)))
-        T.push_back(m.T), x.push_back(m.x);
+    for (const Modulation& m : modulations(r)) T.push_back(m.T), x.push_back(m.x);
     const double correlation = rank_correlation(T, x);
     report.add(
-        {.where = "Fig. 9, area 3",
-         .what = "rank correlation of T's largest modulus and the amplitude, over the modulations",
-         .paper = "a close relation",
-         .here = fmt::format(
-             "{:.2f} over the {} modulations up to tau = {:g}", correlation, T.size(),
-             r.run.outcome.tau),
-         .number = correlation,
-         .band = {0.8, 1},
-         .because = "close; in part: more than chance gives once in 100 times, 2.58 over the root "
-                    "of their number less one",
-         .partly = Band{2.58 / std::sqrt(static_cast<double>(T.size()) - 1), 1},
-         .expected = ClaimVerdict::partly});
+        {"Fig. 9, area 3",
+         "rank correlation of T's largest modulus and the amplitude, over the modulations",
+         "a close relation"},
+        {correlation, fmt::format(
+                          "{:.2f} over the {} modulations up to tau = {:g}", correlation, T.size(),
+                          r.run.outcome.tau)},
+        {{0.8, 1},
+         "close; in part: more than chance gives once in 100 times, 2.58 over the root "
+         "of their number less one",
+         Band{2.58 / std::sqrt(static_cast<double>(T.size()) - 1), 1}},
+        ClaimVerdict::partly);
 }
 
 void figure_9(Report& report, RunCache& runs) {
     const PaperRun& r = runs.paper_run(0.022);
-    const Intervals stretches = synchronised_stretches(*r.run.regime);
     Plot x = displacement(*r.run.series), T = moduli(r, "|eig T|, largest", r.run.moduli->T, {0});
     T.logarithmic = true;
-    x.bands = T.bands = stretches;
+    x.bands = T.bands = synchronised_stretches(r);
     report.picture(
-        {.name = "fig9",
-         .caption = "Fig. 9: x and the largest modulus of T; synchronised stretches shaded",
-         .plots = {x, T}});
+        "fig9", "Fig. 9: x and the largest modulus of T; synchronised stretches shaded", {x, T});
     areas_1_and_2(report, runs);
-    example_of_area_2(report, r, stretches);
+    example_of_area_2(report, r);
     area_3(report, runs.neighbours(0.022));
     where_chaos_comes_from(report, runs);
 }

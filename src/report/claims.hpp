@@ -1,4 +1,4 @@
-// Statements on exponents that several chapters use, and the numbers of Tables 2 and 3.
+// Statements on regimes and exponents that several chapters use, and the numbers of Tables 2 and 3.
 #pragma once
 
 #include "report/report.hpp"
@@ -11,20 +11,23 @@ std::string in_words(const Exponents& lambda);
 /// Exponents of the orbit that the run approaches, else of the window.
 Exponents exponents_of(const PaperRun& response);
 
+/// Adds the finding on the regime of a figure. `words`: both results.
+void same_regime(
+    Report& report, const std::string& where, RegimeType type, const BothRuns& runs,
+    const std::string& words, ClaimVerdict expected = ClaimVerdict::reproduced);
+
 /// Quotations: the place, that the motion is chaotic, and that its four exponents are positive.
 struct PositiveExponents {
     std::string where, chaotic, positive;
 };
-/// Adds the findings on chaos and positive exponents. `other`: with the damping of eq. (1).
-void positive_exponents(
-    Report& report, const PositiveExponents& paper, const PaperRun& here, const PaperRun& other);
+/// Adds the findings on chaos and positive exponents.
+void positive_exponents(Report& report, const PositiveExponents& paper, const BothRuns& runs);
 
 /// Range of the k-th exponent (0 to 3) over the second half of a window, without spikes (one value
 /// in twenty at either end), over its last value.
 double late_change(const ExponentHistory& history, int k);
-/// Limits of late_change() for "almost constant", and for holding in part.
-inline constexpr double small_change = 0.1, some_change = 0.2;
-inline const char* const why_small_change = "a tenth; in part: a fifth";
+/// late_change() of what the paper calls almost constant.
+inline const Criterion almost_constant = {{0, 0.1}, "a tenth; in part: a fifth", Band{0, 0.2}};
 
 /// Table 2: exponents at b = 22 mm over three windows of one run.
 struct Table2Row {

@@ -1,0 +1,104 @@
+#include "report/claims.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "core/motion/elementary.hpp"
+#include "report/statistics.hpp"
+
+namespace vines::report {
+
+std::string in_words(const Exponents& lambda) {
+    return fmt::format(
+        "{:.4f}, {:.4f}, {:.4f}, {:.4f}", lambda[0], lambda[1], lambda[2], lambda[3]);
+}
+
+Exponents exponents_of(const PaperRun& r) {
+    const auto& orbit = r.regime().orbit;
+    return orbit ? orbit->exponents(r.parameters) : r.product().qr();
+}
+
+namespace {
+
+std::span<const Exponents> late(const ExponentHistory& h) {
+    const double half = (h.tau.front() + h.tau.back()) / 2;
+    const auto first = std::ranges::lower_bound(h.tau, half) - h.tau.begin();
+    return std::span(h.lambda).subspan(static_cast<std::size_t>(first));
+}
+
+/// Fractions of the impacts in the second half of a window. `share`: of the impacts without a zero
+/// eigenvalue, those at which all four exponents are positive. `spikes`: of all impacts, those with
+/// a zero eigenvalue (the paper: "transient spikes", "at these non-smooth points u_i is equal or
+/// close to zero").
+struct Positive {
+    double share, spikes;
+};
+Positive all_positive(const ExponentHistory& h) {
+    double all = 0, finite = 0;
+    for (const Exponents& lambda : late(h)) {
+        if (!std::ranges::all_of(lambda, [](double l) { return std::isfinite(l); })) continue;
+        ++finite;
+        all += positive(lambda) == 4;
+    }
+    return {all / finite, 1 - finite / static_cast<double>(late(h).size())};
+}
+
+/// lambda1 over its standard error.
+double over_error(const WindowExponents& e) {
+    return e.product.qr()[0] / e.growth.standard_error[0];
+}
+
+std::string with_error(const WindowExponents& e) {
+    return fmt::format("{:.4f} +- {:.4f}", e.product.qr()[0], e.growth.standard_error[0]);
+}
+
+}  // namespace
+
+void positive_exponents(Report& report, const PositiveExponents& paper, const BothRuns& runs) {
+    const auto &here = *runs.here.run.exponents, &other = *runs.by_equation.run.exponents;
+    report.add(
+        {paper.where, "lambda1 (qr) over its standard error", paper.chaotic},
+        {over_error(here), over_error(other),
+         with_error(here) + "; by eq. (1) " + with_error(other)},
+        {{3, infinity}, "positive by three standard errors"});
+    const Positive found = all_positive(here.product.raw_product_history());
+    report.add(
+        {paper.where,
+         "raw_product, second half of the window without its spikes: fraction of impacts "
+         "up to which all four are positive",
+         paper.positive},
+        {found.share, all_positive(other.product.raw_product_history()).share,
+         fmt::format(
+             "{:.2f}; at the last {}. At {:.2f} of all impacts an eigenvalue is zero: a spike",
+             found.share, in_words(here.product.raw_product()), found.spikes)},
+        {{0.9, 1}, "nine in ten; spikes, which the paper mentions too, are left out"});
+    const Exponents lambda = here.product.qr();
+    report.add(
+        {paper.where, "positive exponents (qr)", paper.positive},
+        {positive(lambda), positive(other.product.qr()),
+         fmt::format("{}: {}", positive(lambda), in_words(lambda))},
+        {exactly(4), "all four"}, ClaimVerdict::not_reproduced);
+}
+
+void same_regime(
+    Report& report, const std::string& where, RegimeType type, const BothRuns& runs,
+    const std::string& words, ClaimVerdict expected) {
+    const auto number = [](RegimeType t) { return static_cast<double>(t); };
+    report.add(
+        {where, "regime", std::string("Type ") + name_of(type)},
+        {number(runs.here.regime().type), number(runs.by_equation.regime().type), words},
+        {exactly(number(type)), "the same type as in the paper"}, expected);
+}
+
+double late_change(const ExponentHistory& h, int k) {
+    std::vector<double> values;
+    for (const Exponents& lambda : late(h))
+        if (std::isfinite(lambda[k])) values.push_back(lambda[k]);
+    const double last = values.back();
+    return (quantile(values, 0.95) - quantile(values, 0.05)) / std::abs(last);
+}
+
+}  // namespace vines::report
