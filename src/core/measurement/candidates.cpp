@@ -110,13 +110,11 @@ PulseExtent unknown_extent(const RecordStatistics& statistics) {
 }
 
 FirstCandidates first_candidates(const ImpactSearchInput& in) {
-    FirstCandidates first{{}, unknown_extent(in.statistics), 0};
-    std::vector<Candidate> events;
-    if (!in.record.x_ddot.empty()) {
-        PulseEvents found = pulse_events(in, pulse_signal(in), in.bad.a_without_clipped());
-        first.extent = found.extent;
-        events = std::move(found.events);
-    }
+    PulseEvents seen{{}, unknown_extent(in.statistics)};
+    if (!in.record.x_ddot.empty())
+        seen = pulse_events(in, pulse_signal(in), in.bad.a_without_clipped());
+    std::vector<Candidate>& events = seen.events;
+    FirstCandidates first{{}, seen.extent, 0};
     add_kinks(in, first.candidates);
     if (events.empty()) return first;
     if (are_sharp(first.candidates)) {

@@ -61,24 +61,17 @@ std::vector<double> without_median(const ImpactSearchInput& in, double reach) {
 
 /// Least-squares parabola through samples, as normal equations N z = g.
 struct ParabolaEquations {
-    double count = 0, s = 0, s_squared = 0, s_cubed = 0, s_fourth = 0;
+    Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
     Eigen::Vector3d g = Eigen::Vector3d::Zero();
 
     void add(double at, double value) {
-        const double squared = at * at;
-        count += 1;
-        s += at;
-        s_squared += squared;
-        s_cubed += at * squared;
-        s_fourth += squared * squared;
-        g += Eigen::Vector3d(value, at * value, squared * value);
+        const Eigen::Vector3d row(1, at, at * at);
+        N += row * row.transpose();
+        g += value * row;
     }
+    double count() const { return N(0, 0); }
     /// Value at 0.
-    double solve() const {
-        Eigen::Matrix3d N;
-        N << count, s, s_squared, s, s_squared, s_cubed, s_squared, s_cubed, s_fourth;
-        return N.ldlt().solve(g)(0);
-    }
+    double solve() const { return N.ldlt().solve(g)(0); }
 };
 
 /// Residual of the acceleration: each sample minus the parabola through its unmasked neighbours.
@@ -116,7 +109,7 @@ private:
         ParabolaEquations equations;
         for (std::size_t j = near.from; j < near.to; ++j)
             if (!masked_[j]) equations.add((r_.tau[j] - r_.tau[k]) / reach_, r_.x_ddot[j]);
-        return equations.count >= parabola_samples ? r_.x_ddot[k] - equations.solve() : 0;
+        return equations.count() >= parabola_samples ? r_.x_ddot[k] - equations.solve() : 0;
     }
 
     const MeasuredRecord& r_;
