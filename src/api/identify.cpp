@@ -118,26 +118,23 @@ std::string sampling_advice(const FoundImpacts& refined, double step, double ome
 
 /// Exponents in the form of a simulation's, with times of the record.
 Json describe_measured(
-    const MeasuredExponents& e, const ExponentOptions& estimators,
-    const std::vector<KnownStretch>& stretches, const std::vector<IdentifiedImpact>& impacts,
-    Warnings& warnings) {
-    const ExponentOptions of_all = of_all_stretches(estimators),
-                          of_longest = of_longest_stretch(estimators);
+    const MeasuredExponents& e, const std::vector<KnownStretch>& stretches,
+    const std::vector<IdentifiedImpact>& impacts, Warnings& warnings) {
     Json j = describe_window(e.all());
-    add_estimators(j, e.all(), growth_of(e.all()), of_all, true);
+    add_estimators(j, e.all(), growth_of(e.all()), e.all().options(), true);
     change_numbers(j["qr"]["history"][quantity.tau.name].get_binary(), [&e](double tau) {
         return e.moment(tau);
     });
     std::vector<Warning> odd;
-    add_warnings(e.all(), of_all, true, odd);
-    add_warnings(e.longest(), of_longest, true, odd);
+    add_warnings(e.all(), true, odd);
+    add_warnings(e.longest(), true, odd);
     for (const Warning& w : odd) {
         const std::string text = text_of(w, any_size);
         if (std::find(warnings.begin(), warnings.end(), text) == warnings.end())
             warnings.push_back(text);
     }
     Json longest = describe_window(e.longest());
-    add_estimators(longest, e.longest(), growth_of(e.longest()), of_longest, true);
+    add_estimators(longest, e.longest(), growth_of(e.longest()), e.longest().options(), true);
     for (const char* name : {"eigenvalues", "raw_product"})
         if (longest.contains(name)) {
             j[name] = longest[name];
@@ -165,8 +162,7 @@ Json describe_direct(
         {"lambda", column(direct->lambda)}};
     if (!r.includes("direct_exponents")) return j;
     Warnings odd;
-    j["exponents"] = describe_measured(
-        direct->exponents, r.measurement.direct_estimators, direct->stretches, found.impacts, odd);
+    j["exponents"] = describe_measured(direct->exponents, direct->stretches, found.impacts, odd);
     for (const std::string& text : odd) warnings.push_back("direct: " + text);
     return j;
 }
@@ -211,7 +207,8 @@ void add_fit_warnings(
         warnings.push_back(
             std::string("no b is fitted to the impacts' momentum: ") + text_of(found.b_fault));
     // Which pulses are seen is advice only where the impacts are right.
-    if (!result.doubts.empty() || result.is_incomplete() || r.measurement.record.x_ddot.empty())
+    if (!result.doubts.empty() || result.continuity.is_incomplete() ||
+        r.measurement.record.x_ddot.empty())
         return;
     const std::string advice = sampling_advice(refined, r.measurement.step(), omega0);
     if (!advice.empty()) warnings.push_back(advice);
@@ -253,7 +250,7 @@ void add_continuity_warnings(const MeasurementResult& result, Warnings& warnings
 std::vector<std::string> all_doubts(const MeasurementResult& result) {
     std::vector<std::string> doubts;
     for (const Doubt doubt : result.doubts) doubts.push_back(text_of(doubt));
-    if (result.is_incomplete())
+    if (result.continuity.is_incomplete())
         doubts.insert(
             doubts.begin(),
             fmt::format(
@@ -350,8 +347,8 @@ Json identify_answer(const IdentifyRequest& r, const IdentificationWatch& watch)
     answer["restitution"] = describe_walls(found);
     answer["b_fitted"] = {
         {"b", finite_or_null(found.b_fitted)}, {"standard_error", finite_or_null(found.b_error)}};
-    answer["exponents"] = describe_measured(
-        result.exponents, m.estimators, result.continuity.stretches, found.impacts, warnings);
+    answer["exponents"] =
+        describe_measured(result.exponents, result.continuity.stretches, found.impacts, warnings);
     answer["slope"] = {
         {"lambda1", finite_or_null(judged.slope.value)},
         {"low", finite_or_null(judged.slope.low)},

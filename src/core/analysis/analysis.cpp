@@ -22,10 +22,8 @@ WindowExponents window_exponents(
     return {window, std::move(product), growth, slopes, judgement};
 }
 
-void add_warnings(
-    const TransferProduct& product, const ExponentOptions& requested, bool histories,
-    std::vector<Warning>& warnings) {
-    if (histories && requested.raw_product && product.impacts() > 1 &&
+void add_warnings(const TransferProduct& product, bool histories, std::vector<Warning>& warnings) {
+    if (histories && product.options().raw_product && product.impacts() > 1 &&
         std::isnan(product.raw_product()[0]))
         warnings.push_back(warning::RawProductOverflows{});
     if (product.sum_rule_residual() > most_residual)
@@ -144,48 +142,45 @@ struct AnalysisRun::Observers {
 };
 
 /// Turns the observers' records into the result; one function per part, in its order.
-class AnalysisRun::Conclusion {
-public:
-    Conclusion(const AnalysisRequest& w, const Interrupt& interrupt, Observers& o, Analysis& a)
-        : w_(w),
-          interrupt_(interrupt),
-          o_(o),
-          a_(a) {}
+struct AnalysisRun::Conclusion {
+    const AnalysisRequest& w;
+    const Interrupt& interrupt;
+    Observers& o;
+    Analysis& a;
 
     void conclude() {
-        if (a_.outcome.tau <= w_.window.from) warn(warning::WindowNotReached{w_.window.from});
-        if (w_.parts.series) series();
-        if (w_.parts.series || w_.perturbation) thinning();
+        if (a.outcome.tau <= w.window.from) warn(warning::WindowNotReached{w.window.from});
+        if (w.parts.series) series();
+        if (w.parts.series || w.perturbation) thinning();
         lists();
-        if (needs_verdict(w_)) judge_motion();
-        if (w_.parts.impacts || w_.parts.section) nearly_grazing();
+        if (needs_verdict(w)) judge_motion();
+        if (w.parts.impacts || w.parts.section) nearly_grazing();
         transfers();
-        if (w_.parts.section) sections();
-        if (w_.parts.energy) energy();
-        if (w_.parts.regime) regime();
-        if (w_.parts.manifold) manifold();
-        if (w_.perturbation) perturbation();
+        if (w.parts.section) sections();
+        if (w.parts.energy) energy();
+        if (w.parts.regime) regime();
+        if (w.parts.manifold) manifold();
+        if (w.perturbation) perturbation();
     }
 
-private:
-    void warn(const Warning& warning) { a_.warnings.push_back(warning); }
+    void warn(const Warning& warning) { a.warnings.push_back(warning); }
 
     void series() {
-        o_.series.finish(a_.outcome);
-        a_.series = std::move(o_.series.series);
+        o.series.finish(a.outcome);
+        a.series = std::move(o.series.series);
     }
 
     /// Warns if the series (and a perturbed one) is coarser than requested.
     void thinning() {
-        const double step = series_step(w_), cycle = w_.parameters.cycle();
-        if (step > cycle / w_.samples_per_cycle)
-            warn(warning::SeriesThinned{cycle / step, w_.samples_per_cycle, w_.most_points});
+        const double step = series_step(w), cycle = w.parameters.cycle();
+        if (step > cycle / w.samples_per_cycle)
+            warn(warning::SeriesThinned{cycle / step, w.samples_per_cycle, w.most_points});
     }
 
     /// Last entries of a list; warns if it had more.
     template <class Entry>
     std::vector<Entry> last_of(LastOf<Entry>& list, const char* name) {
-        trim_to_last(list.entries, w_.most_listed);
+        trim_to_last(list.entries, w.most_listed);
         if (list.seen > static_cast<long>(list.entries.size()))
             warn(warning::ListCut{name, list.seen, list.entries.size()});
         return std::move(list.entries);
@@ -193,54 +188,53 @@ private:
 
     void lists() {
         impacts();
-        if (w_.parts.impacts) a_.touches = last_of(o_.grazing, "touches");
-        a_.stick_count = o_.sticks.seen;
-        a_.sticks = last_of(o_.sticks, "sticks");
-        if (!a_.touches.empty()) warn(warning::GrazingContact{});
+        if (w.parts.impacts) a.touches = last_of(o.grazing, "touches");
+        a.stick_count = o.sticks.seen;
+        a.sticks = last_of(o.sticks, "sticks");
+        if (!a.touches.empty()) warn(warning::GrazingContact{});
     }
 
     void impacts() {
-        ImpactCollector& list = o_.impacts;
+        ImpactCollector& list = o.impacts;
         list.finish();
         const ImpactRange listed = list.listed();
-        if (w_.parts.impacts && listed.first > 0)
+        if (w.parts.impacts && listed.first > 0)
             warn(warning::ListCut{
                 "impacts", listed.first + listed.count, static_cast<std::size_t>(listed.count)});
-        if (!list.kept()) a_.unkept_impacts = listed;
-        a_.impacts = std::move(list.entries);
-        a_.typical_speed = list.typical_speed;
+        if (!list.kept()) a.unkept_impacts = listed;
+        a.impacts = std::move(list.entries);
+        a.typical_speed = list.typical_speed;
     }
 
     /// Finds the regime, which needs the growth of the deviations; then the exponents of all
     /// windows, whose verdicts need the regime.
     void judge_motion() {
-        const Growth growth = growth_of(o_.lyapunov.product());
+        const Growth growth = growth_of(o.lyapunov.product());
         find_regime(growth);
-        a_.exponents.emplace(window_exponents(w_.window, o_.lyapunov.take(), growth, *a_.regime));
-        if (w_.parts.exponents)
-            add_warnings(a_.exponents->product, w_.estimators, true, a_.warnings);
+        a.exponents.emplace(window_exponents(w.window, o.lyapunov.take(), growth, *a.regime));
+        if (w.parts.exponents) add_warnings(a.exponents->product, true, a.warnings);
         further_windows();
     }
 
     void find_regime(const Growth& growth) {
-        a_.regime = regime_of(
-            w_.parameters, w_.start,
-            {.rhythm = o_.rhythm,
-             .stroboscopic = o_.at_phase_zero,
-             .tau_start = a_.reached.from,
-             .tau_end = a_.reached.to,
+        a.regime = regime_of(
+            w.parameters, w.start,
+            {.rhythm = o.rhythm,
+             .stroboscopic = o.at_phase_zero,
+             .tau_start = a.reached.from,
+             .tau_end = a.reached.to,
              .by_exponents = verdict_by_exponents(growth),
-             .stop = interrupt_.run},
-            w_.parts.before_capture);
+             .stop = interrupt.run},
+            w.parts.before_capture);
     }
 
     void further_windows() {
-        a_.windows.reserve(w_.windows.size());
-        for (std::size_t i = 0; i < w_.windows.size(); ++i) {
-            const Growth of_window = growth_of(o_.windows.product(i));
-            a_.windows.push_back(
-                window_exponents(w_.windows[i], o_.windows.take(i), of_window, *a_.regime));
-            add_warnings(a_.windows[i].product, w_.estimators, false, a_.warnings);
+        a.windows.reserve(w.windows.size());
+        for (std::size_t i = 0; i < w.windows.size(); ++i) {
+            const Growth of_window = growth_of(o.windows.product(i));
+            a.windows.push_back(
+                window_exponents(w.windows[i], o.windows.take(i), of_window, *a.regime));
+            add_warnings(a.windows[i].product, false, a.warnings);
         }
     }
 
@@ -249,23 +243,23 @@ private:
     void nearly_grazing() {
         long count = 0;
         const ImpactCollector::NearlyTangent* nearest = nullptr;
-        for (const auto& i : o_.impacts.nearly_tangent) {
-            if (i.tau < w_.window.from || i.tau > w_.window.to) continue;
+        for (const auto& i : o.impacts.nearly_tangent) {
+            if (i.tau < w.window.from || i.tau > w.window.to) continue;
             ++count;
             if (!nearest || i.speed < nearest->speed) nearest = &i;
         }
         if (count > 0)
-            warn(warning::NearlyTangent{count, nearest->tau, nearest->speed / a_.typical_speed});
+            warn(warning::NearlyTangent{count, nearest->tau, nearest->speed / a.typical_speed});
     }
 
     void transfers() {
-        auto& transfers = o_.transfers.entries;
-        trim_to_last(transfers, w_.most_points);
-        if (o_.transfers.seen > static_cast<long>(transfers.size()))
-            warn(warning::TransfersCut{w_.most_points, o_.transfers.seen});
-        if (w_.parts.moduli) moduli(transfers);
-        if (!w_.parts.matrices) return;
-        TransferMatrices& m = a_.matrices.emplace();
+        auto& transfers = o.transfers.entries;
+        trim_to_last(transfers, w.most_points);
+        if (o.transfers.seen > static_cast<long>(transfers.size()))
+            warn(warning::TransfersCut{w.most_points, o.transfers.seen});
+        if (w.parts.moduli) moduli(transfers);
+        if (!w.parts.matrices) return;
+        TransferMatrices& m = a.matrices.emplace();
         for (const ImpactTransfer& t : transfers) {
             m.tau.push_back(t.tau);
             m.J.push_back(t.J());
@@ -274,18 +268,18 @@ private:
         }
     }
 
-    /// Moduli of the eigenvalues of J, M and T. Those of T are expensive: when interrupt_.late
+    /// Moduli of the eigenvalues of J, M and T. Those of T are expensive: when interrupt.late
     /// returns true, the result is limited to the last impacts, whose moduli are complete.
     void moduli(std::span<const ImpactTransfer> transfers) {
         constexpr std::size_t per_look = 256;
-        TransferModuli& m = a_.moduli.emplace();
+        TransferModuli& m = a.moduli.emplace();
         auto late = [&] {
-            return m.T.size() % per_look == 0 && interrupt_.late && interrupt_.late();
+            return m.T.size() % per_look == 0 && interrupt.late && interrupt.late();
         };
         for (std::size_t i = transfers.size(); i > 0 && !late(); --i)
             m.T.push_back(transfers[i - 1].T_moduli());
         if (m.T.size() < transfers.size()) warn(warning::ModuliCut{m.T.size()});
-        std::reverse(m.T.begin(), m.T.end());
+        std::ranges::reverse(m.T);
         for (const ImpactTransfer& t : transfers.last(m.T.size())) {
             m.tau.push_back(t.tau);
             m.J.push_back(t.J_moduli());
@@ -295,17 +289,17 @@ private:
     }
 
     void sections() {
-        const StroboscopicRecord& record = o_.at_section_phase;
+        const StroboscopicRecord& record = o.at_section_phase;
         std::size_t first = 0, end = record.states.size();
-        while (first < end && record.tau(first) < w_.window.from) ++first;
-        while (end > first && record.tau(end - 1) > w_.window.to) --end;
-        const std::size_t cycles = end - first, most = w_.most_points;
-        if (o_.section.seen > static_cast<long>(most) || cycles > most)
-            warn(warning::SectionsCut{most, o_.section.seen, cycles});
+        while (first < end && record.tau(first) < w.window.from) ++first;
+        while (end > first && record.tau(end - 1) > w.window.to) --end;
+        const std::size_t cycles = end - first, most = w.most_points;
+        if (o.section.seen > static_cast<long>(most) || cycles > most)
+            warn(warning::SectionsCut{most, o.section.seen, cycles});
         if (cycles > most) first = end - most;
-        trim_to_last(o_.section.entries, most);
-        Sections& s = a_.sections.emplace();
-        s.impact = std::move(o_.section.entries);
+        trim_to_last(o.section.entries, most);
+        Sections& s = a.sections.emplace();
+        s.impact = std::move(o.section.entries);
         for (std::size_t k = first; k < end; ++k) {
             s.tau.push_back(record.tau(k));
             s.states.push_back(record.states[k]);
@@ -313,23 +307,23 @@ private:
     }
 
     void energy() {
-        const Parameters& p = w_.parameters;
-        EnergyResult& e = a_.energy.emplace();
-        e.balance = balance_of(p, *o_.energy, a_.reached);
-        if (!w_.parts.unattached) return;
-        e.unattached = unattached(p, w_.start, a_.reached.from, a_.reached.to);
+        const Parameters& p = w.parameters;
+        EnergyResult& e = a.energy.emplace();
+        e.balance = o.energy->balance(a.reached);
+        if (!w.parts.unattached) return;
+        e.unattached = unattached(p, w.start, a.reached.from, a.reached.to);
         e.rms_ratio = ratio(e.balance.rms, e.unattached->rms);
         e.peak_ratio = ratio(e.balance.peak, e.unattached->peak);
         if (p.G != 0) return;
-        const auto alone = unattached_decay(p, w_.start, a_.reached.from, decay_fractions);
+        const auto alone = unattached_decay(p, w.start, a.reached.from, decay_fractions);
         e.decay = {
-            .with_absorber = {o_.decay.tau[0], o_.decay.tau[1]}, .without = {alone[0], alone[1]}};
+            .with_absorber = {o.decay.tau[0], o.decay.tau[1]}, .without = {alone[0], alone[1]}};
     }
 
     void regime() {
-        const Regime& r = *a_.regime;
+        const Regime& r = *a.regime;
         if (r.stretch_count > static_cast<long>(r.stretches.size()))
-            warn(warning::StretchesCut{static_cast<std::size_t>(r.stretch_count), w_.most_points});
+            warn(warning::StretchesCut{static_cast<std::size_t>(r.stretch_count), w.most_points});
         if (r.search_stopped) warn(warning::OrbitSearchStopped{});
         if (r.capture && r.capture->chaotic_before == true)
             warn(warning::CapturedTransient{
@@ -337,34 +331,29 @@ private:
     }
 
     void manifold() {
-        ManifoldResult& m = a_.manifold.emplace();
-        if (w_.parameters.R_plus == w_.parameters.R_minus)
-            m.manifold = manifold_of(w_.parameters, 0, manifold_points);
+        ManifoldResult& m = a.manifold.emplace();
+        if (w.parameters.R_plus == w.parameters.R_minus)
+            m.manifold = manifold_of(w.parameters, 0, manifold_points);
         else warn(warning::NoManifold{});
-        trim_to_last(o_.half_cycles.tau, w_.most_points);
-        trim_to_last(o_.half_cycles.points, w_.most_points);
-        m.tau = std::move(o_.half_cycles.tau);
-        m.points = std::move(o_.half_cycles.points);
+        trim_to_last(o.half_cycles.tau, w.most_points);
+        trim_to_last(o.half_cycles.points, w.most_points);
+        m.tau = std::move(o.half_cycles.tau);
+        m.points = std::move(o.half_cycles.points);
     }
 
     void perturbation() {
-        o_.compared->finish(a_.outcome);
-        Perturbation& p = a_.perturbation.emplace(perturbation_of(
-            w_.parameters, w_.start, *w_.perturbation, *o_.compared, a_.outcome,
-            {.max_impacts = w_.max_impacts, .stop = interrupt_.run}, series_step(w_)));
-        if (p.outcome.tau < a_.outcome.tau)
+        o.compared->finish(a.outcome);
+        Perturbation& p = a.perturbation.emplace(perturbation_of(
+            w.parameters, w.start, *w.perturbation, *o.compared, a.outcome,
+            {.max_impacts = w.max_impacts, .stop = interrupt.run}, series_step(w)));
+        if (p.outcome.tau < a.outcome.tau)
             warn(warning::PerturbedRunCut{p.outcome.tau, p.outcome.reason == End::stopped});
         if (!p.linear) warn(warning::NoDistanceSlope{p.linear_until, p.linear_impacts});
         const auto seen = static_cast<long>(p.impacts.size());
-        trim_to_last(p.impacts, w_.most_listed);
+        trim_to_last(p.impacts, w.most_listed);
         if (seen > static_cast<long>(p.impacts.size()))
             warn(warning::ListCut{"perturbed impacts", seen, p.impacts.size()});
     }
-
-    const AnalysisRequest& w_;
-    const Interrupt& interrupt_;
-    Observers& o_;
-    Analysis& a_;
 };
 
 AnalysisRun::AnalysisRun(const AnalysisRequest& w, const Interrupt& interrupt)
@@ -388,7 +377,7 @@ Analysis AnalysisRun::conclude(const Outcome& outcome) {
     a.outcome = outcome;
     a.reached = {
         std::min(wanted_.window.from, outcome.tau), std::min(wanted_.window.to, outcome.tau)};
-    Conclusion(wanted_, interrupt_, *observers_, a).conclude();
+    Conclusion{wanted_, interrupt_, *observers_, a}.conclude();
     return a;
 }
 

@@ -217,9 +217,7 @@ using Warning = std::variant<
 
 /// Appends the warnings about a product. If `histories` are requested: all; otherwise only the
 /// violation of the sum rule.
-void add_warnings(
-    const TransferProduct& product, const ExponentOptions& requested, bool histories,
-    std::vector<Warning>& warnings);
+void add_warnings(const TransferProduct& product, bool histories, std::vector<Warning>& warnings);
 
 /// Result of analyse(). Parts that were not requested are empty, with these exceptions: regime and
 /// exponents always come together, also with windows; a section comes with the impacts, but without
@@ -261,7 +259,7 @@ public:
 
 private:
     struct Observers;
-    class Conclusion;
+    struct Conclusion;
     const AnalysisRequest wanted_;
     const Interrupt interrupt_;
     const std::unique_ptr<Observers> observers_;

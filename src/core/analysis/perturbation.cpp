@@ -37,39 +37,26 @@ State random_difference(std::uint64_t seed, double size) {
     }
 }
 
-State displaced(const State& s, const State& d) {
-    return {s.x_dot + d.x_dot, s.x + d.x, s.y_dot + d.y_dot, s.y + d.y};
-}
+State displaced(const State& s, const State& d) { return state_of(vector_of(s) + vector_of(d)); }
 State difference_of(const State& to, const State& from) {
-    return {to.x_dot - from.x_dot, to.x - from.x, to.y_dot - from.y_dot, to.y - from.y};
+    return state_of(vector_of(to) - vector_of(from));
 }
 double length_of(const State& d) {
     return std::sqrt(d.x_dot * d.x_dot + d.x * d.x + d.y_dot * d.y_dot + d.y * d.y);
 }
 
-ComparedContacts::ComparedContacts(const Parameters& p, const State& deviation)
-    : parameters_(p),
-      deviation_(vector_of(deviation)) {}
-
-void ComparedContacts::on_stretch(const Stretch& stretch) {
-    deviation_ = carried_over(
-        stretch.flow, stretch.sticking_side != 0, stretch.duration, parameters_.epsilon,
-        deviation_);
-}
-
 void ComparedRun::on_stretch(const Stretch& stretch) {
-    series_.on_stretch(stretch);
-    for (std::size_t i = tangent.size(); i < series().tau.size(); ++i) {
-        const double s = std::max(0.0, series().tau[i] - stretch.tau);
-        tangent.push_back(
-            carried_over(
-                stretch.flow, stretch.sticking_side != 0, s, parameters_.epsilon, deviation_)
-                .norm());
-    }
-    ComparedContacts::on_stretch(stretch);
+    const auto deviation_after = [&](double s) {
+        return carried_over(
+            stretch.flow, stretch.sticking_side != 0, s, parameters_.epsilon, deviation_);
+    };
+    if (step_ > 0) series_.on_stretch(stretch);
+    for (std::size_t i = tangent.size(); i < series().tau.size(); ++i)
+        tangent.push_back(deviation_after(std::max(0.0, series().tau[i] - stretch.tau)).norm());
+    deviation_ = deviation_after(stretch.duration);
 }
 
-void ComparedContacts::on_impact(const Impact& i) {
+void ComparedRun::on_impact(const Impact& i) {
     contacts.push_back(
         {.tau = i.tau,
          .side = i.side,
@@ -82,16 +69,13 @@ void ComparedContacts::on_impact(const Impact& i) {
     deviation_ = saltation(parameters_, i).times(deviation_);  // (26)
 }
 
-void ComparedContacts::on_stick(const StickStart& start) {
+void ComparedRun::on_stick(const StickStart& start) {
     contacts.push_back(
         {.tau = start.tau,
          .side = start.side,
          .stick = true,
          .pressed = true,
-         .release = start.tau,
-         .before = {},
-         .y_dot_before = 0,
-         .deviation = {}});
+         .release = start.tau});
 }
 
 void ComparedRun::finish(const Outcome& outcome) {
@@ -100,7 +84,7 @@ void ComparedRun::finish(const Outcome& outcome) {
 }
 
 void ComparedRun::look_ahead(const Outcome& outcome) {
-    ComparedContacts ahead(parameters_, {});
+    ComparedRun ahead(parameters_, 0, {});
     Observer* const observers[] = {&ahead};
     simulate(
         parameters_, outcome.state,
@@ -281,7 +265,7 @@ void find_linear_stretch(
     for (; end < tau.size() && !parted(tau[end]); ++end) {
         if (!comparable[end]) continue;
         const double off = std::abs(r.distance[end] - r.tangent[end]);
-        if (!(r.distance[end] > 0 && off <= vines::linear_share * r.tangent[end])) break;
+        if (!(r.distance[end] > 0 && off <= linear_share * r.tangent[end])) break;
         r.linear_until = tau[end];
     }
     double first_impact = nan;

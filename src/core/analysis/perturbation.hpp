@@ -40,39 +40,28 @@ struct ComparedContact {
     double tau;
     int side;
     bool stick;
-    bool pressed;         ///< impact: the wall presses the ball (side x'' > 0)
-    double release;       ///< sticking phase: its end
-    Oscillation before;   ///< impact: the oscillator before it
-    double y_dot_before;  ///< impact: the ball before it
-    State deviation;      ///< impact: the tangent vector before it, if carried
+    bool pressed;             ///< impact: the wall presses the ball (side x'' > 0)
+    double release;           ///< sticking phase: its end
+    Oscillation before = {};  ///< impact: the oscillator before it
+    double y_dot_before = 0;  ///< impact: the ball before it
+    State deviation = {};     ///< impact: the tangent vector before it, if carried
 };
 
 /// Records the contacts of a run and carries a tangent vector along it, by J (18), (19), by M (26),
-/// (27), or by the projection of a sticking phase.
-class ComparedContacts : public Observer {
+/// (27), or by the projection of a sticking phase. Samples the motion and the tangent vector's
+/// length at tau = 0, step, 2 step, ... and at the end of the run.
+class ComparedRun : public Observer {
 public:
-    /// `deviation`: the tangent vector at the start; zero if not needed.
-    ComparedContacts(const Parameters& parameters, const State& deviation);
+    /// `deviation`: the tangent vector at the start; zero if not needed. `step`: 0 for no samples.
+    ComparedRun(const Parameters& parameters, double step, const State& deviation)
+        : parameters_(parameters),
+          deviation_(vector_of(deviation)),
+          step_(step),
+          series_(step) {}
     void on_stretch(const Stretch&) override;
     void on_impact(const Impact&) override;
     void on_stick(const StickStart&) override;
     void on_release(double tau) override { contacts.back().release = tau; }
-
-    std::vector<ComparedContact> contacts;
-
-protected:
-    const Parameters parameters_;
-    Eigen::Vector4d deviation_;
-};
-
-/// ComparedContacts that also samples the motion and the tangent vector's length at tau = 0, step,
-/// 2 step, ... and at the end of the run.
-class ComparedRun : public ComparedContacts {
-public:
-    ComparedRun(const Parameters& parameters, double step, const State& deviation)
-        : ComparedContacts(parameters, deviation),
-          series_(step) {}
-    void on_stretch(const Stretch&) override;
     void finish(const Outcome& outcome);
     /// Records the contacts of one more cycle: an impact of the other run just before the end can
     /// have its counterpart just after it.
@@ -80,9 +69,13 @@ public:
 
     const Series& series() const { return series_.series; }
     Series take_series() { return std::move(series_.series); }
+    std::vector<ComparedContact> contacts;
     std::vector<double> tangent;  ///< lengths, at the times of the series
 
 private:
+    const Parameters parameters_;
+    Eigen::Vector4d deviation_;
+    const double step_;
     SeriesRecord series_;
 };
 

@@ -19,12 +19,6 @@ double jump_to_height(const std::vector<Candidate>& candidates) {
     return ratios.empty() ? 0 : median(std::move(ratios));
 }
 
-void sort_by_time(std::vector<Candidate>& candidates) {
-    std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-        return a.tau < b.tau;
-    });
-}
-
 namespace {
 
 // Initial estimate of a pulse's extent on either side, in steps.
@@ -40,29 +34,21 @@ constexpr double attach_steps = 2.5, far_from_kinks = 0.5;
 // other impacts.
 constexpr double most_events_without_kink = 0.1;
 
-PulseEvents events_of(const ImpactSearchInput& in) {
-    const PulseSignal signal = pulse_signal(in.record, in.bad, in.parameters.Omega, in.progress);
-    return pulse_events(
-        in.record.tau, in.statistics.step, signal, in.bad.a_without_clipped(), in.options.sigmas,
-        in.progress);
-}
-
 bool are_sharp(const std::vector<Candidate>& kinks) {
     std::vector<double> improvements;
     for (const Candidate& c : kinks) improvements.push_back(c.improvement);
     return kinks.size() >= 2 && median(std::move(improvements)) > sharp_improvement;
 }
 
-std::vector<PulseEvent>::const_iterator nearest(const std::vector<PulseEvent>& events, double tau) {
-    const auto after = std::lower_bound(
-        events.begin(), events.end(), tau, [](const PulseEvent& e, double t) { return e.tau < t; });
+std::vector<Candidate>::const_iterator nearest(const std::vector<Candidate>& events, double tau) {
+    const auto after = std::ranges::lower_bound(events, tau, {}, &Candidate::tau);
     const bool before = after == events.end() ||
                         (after != events.begin() && tau - (after - 1)->tau < after->tau - tau);
     return before ? after - 1 : after;
 }
 
 /// Delay of the kinks relative to the events; 0 if few events match.
-double typical_delay(const std::vector<Candidate>& kinks, const std::vector<PulseEvent>& events) {
+double typical_delay(const std::vector<Candidate>& kinks, const std::vector<Candidate>& events) {
     std::vector<double> late;
     for (const Candidate& c : kinks) {
         const double by = c.tau - nearest(events, c.tau)->tau;
@@ -76,7 +62,7 @@ double typical_delay(const std::vector<Candidate>& kinks, const std::vector<Puls
 /// Assigns each kink the event next to it, with one delay for all. Returns which events were
 /// assigned.
 std::vector<char> attach(
-    const std::vector<PulseEvent>& events, double step, FirstCandidates& first) {
+    const std::vector<Candidate>& events, double step, FirstCandidates& first) {
     std::vector<char> is_given(events.size(), 0);
     first.x_delay = typical_delay(first.candidates, events);
     for (Candidate& c : first.candidates) {
@@ -95,23 +81,23 @@ std::vector<char> attach(
 /// nearby kink can be a compromise between two impacts. Otherwise the rest are artefacts of ringing
 /// or clipping, except those far from all kinks.
 void add_others(
-    const std::vector<PulseEvent>& events, const std::vector<char>& is_given,
+    const std::vector<Candidate>& events, const std::vector<char>& is_given,
     std::vector<Candidate>& candidates) {
-    const auto others = std::count(is_given.begin(), is_given.end(), 0);
+    const auto others = std::ranges::count(is_given, 0);
     const bool clean =
         static_cast<double>(others) < most_events_without_kink * static_cast<double>(events.size());
     const std::vector<Candidate> kinks = candidates;
     std::vector<double> added;
     for (std::size_t k = 0; k < events.size(); ++k) {
-        const bool near_kink = std::any_of(kinks.begin(), kinks.end(), [&](const Candidate& c) {
+        const bool near_kink = std::ranges::any_of(kinks, [&](const Candidate& c) {
             return std::abs(c.tau - events[k].tau) < far_from_kinks;
         });
         if (is_given[k] || (!clean && near_kink)) continue;
-        candidates.push_back(candidate_of(events[k]));
+        candidates.push_back(events[k]);
         added.push_back(events[k].tau);
     }
     std::erase_if(candidates, [&](const Candidate& c) {
-        return c.height == 0 && std::any_of(added.begin(), added.end(), [&](double tau) {
+        return c.height == 0 && std::ranges::any_of(added, [&](double tau) {
                    return std::abs(tau - c.tau) < far_from_kinks;
                });
     });
@@ -119,25 +105,17 @@ void add_others(
 
 }  // namespace
 
-Candidate candidate_of(const PulseEvent& e) {
-    return {.tau = e.tau, .height = e.height, .event = e.tau};
-}
-
 PulseExtent unknown_extent(const RecordStatistics& statistics) {
     return {first_spoiled_steps * statistics.step, first_spoiled_steps * statistics.step};
 }
 
 FirstCandidates first_candidates(const ImpactSearchInput& in) {
-    FirstCandidates first{{}, unknown_extent(in.statistics), 0};
-    std::vector<PulseEvent> events;
-    if (!in.record.x_ddot.empty()) {
-        PulseEvents found = events_of(in);
-        first.extent = {found.before, found.after};
-        events = std::move(found.events);
-    }
-    const KinkSearch kinks{
-        in.record, in.bad.x, in.statistics.x.noise, given_unknowns(in.parameters)};
-    if (!in.record.x.empty()) kinks.add_to(first.candidates, in.progress);
+    PulseEvents seen{{}, unknown_extent(in.statistics)};
+    if (!in.record.x_ddot.empty())
+        seen = pulse_events(in, pulse_signal(in), in.bad.a_without_clipped());
+    std::vector<Candidate>& events = seen.events;
+    FirstCandidates first{{}, seen.extent, 0};
+    add_kinks(in, first.candidates);
     if (events.empty()) return first;
     if (are_sharp(first.candidates)) {
         const bool by_chance = static_cast<double>(events.size()) >
@@ -147,11 +125,10 @@ FirstCandidates first_candidates(const ImpactSearchInput& in) {
             add_others(events, given, first.candidates);
         }
     } else {
-        first.candidates.clear();
-        for (const PulseEvent& e : events) first.candidates.push_back(candidate_of(e));
-        if (!in.record.x.empty()) kinks.add_to(first.candidates, in.progress);
+        first.candidates = std::move(events);
+        add_kinks(in, first.candidates);
     }
-    sort_by_time(first.candidates);
+    std::ranges::sort(first.candidates, {}, &Candidate::tau);
     return first;
 }
 

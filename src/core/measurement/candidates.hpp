@@ -19,30 +19,6 @@ struct PulseSignal {
     double noise;               ///< standard deviation outside pulses
 };
 
-/// Needs an acceleration. A displacement with a wrong scale, delay, offset or slow drift does no
-/// harm: the relation between x'' and x is fitted to each stretch of several cycles.
-PulseSignal pulse_signal(
-    const MeasuredRecord& record, const BadSamples& bad, double Omega,
-    IdentificationProgress& progress);
-
-/// A cluster of spikes.
-struct PulseEvent {
-    double tau;     ///< centre of its highest spike
-    double height;  ///< with sign
-};
-
-struct PulseEvents {
-    std::vector<PulseEvent> events;  ///< in order of time
-    /// Time for which a typical event exceeds the noise before and after its highest spike, in tau.
-    double before, after;
-};
-
-/// Events that exceed the noise by `sigmas` standard deviations and are not part of a higher event
-/// nearby; the decay of an event is measured on the highest ones. `step`: median sampling interval.
-PulseEvents pulse_events(
-    const std::vector<double>& tau, double step, const PulseSignal& signal,
-    const std::vector<char>& bad, double sigmas, IdentificationProgress& progress);
-
 /// A possible impact, or another border between two intervals of motion.
 struct Candidate {
     double tau = 0;
@@ -67,8 +43,6 @@ double typical_jump(const std::vector<Candidate>& candidates);
 /// Median ratio of the jump of x' to the height of its event; 0 without events.
 double jump_to_height(const std::vector<Candidate>& candidates);
 
-void sort_by_time(std::vector<Candidate>& candidates);
-
 /// No second impact is visible closer to an impact than this, in tau: the mass would have to
 /// reverse in that time.
 inline constexpr double closest_impacts = 0.25;
@@ -82,7 +56,7 @@ struct Kink {
 
 /// Samples of x, or of its residual, between two impacts.
 struct IntervalSamples {
-    const std::vector<double>& tau;
+    const MeasuredRecord& record;
     const std::vector<double>& value;
     const std::vector<char>& bad;
     double noise;     ///< standard deviation
@@ -95,40 +69,40 @@ struct IntervalSamples {
 /// other knowledge is needed. `flow`: of the oscillator with a forcing of 1.
 std::optional<Kink> find_kink(const IntervalSamples& samples, const Flow& flow, bool own_forcing);
 
-/// Search for impacts in the displacement, without acceleration, forcing or other impacts.
-struct KinkSearch {
-    const MeasuredRecord& record;
-    const std::vector<char>& bad_x;
-    double noise;  ///< standard deviation of the noise of x
-    UnknownValues oscillator;
-
-    /// Adds the kinks between candidates. Each interval is fitted separately, since a common fit is
-    /// wrong while many impacts are missing. Long intervals are searched in windows.
-    void add_to(std::vector<Candidate>& candidates, IdentificationProgress& progress) const;
-};
-
 /// The record under search, and everything that stays the same during the search.
 struct ImpactSearchInput {
-    ImpactSearchInput(
-        const Parameters& p, const MeasuredRecord& r, const ImpactSearchOptions& o,
-        IdentificationProgress& progress_)
-        : parameters(p),
-          record(r),
-          options(o),
-          progress(progress_),
-          bad(bad_samples(r)),
-          statistics(r, bad) {}
+    const Measurement& measurement;
+    IdentificationProgress& progress;
+    const Parameters& parameters = measurement.parameters;
+    const MeasuredRecord& record = measurement.record;
+    const BadSamples bad = bad_samples(record);
+    const RecordStatistics statistics{record, bad};
 
     /// False if the times of the impacts are given.
-    bool searches() const { return options.times.empty(); }
-
-    const Parameters& parameters;
-    const MeasuredRecord& record;
-    const ImpactSearchOptions& options;
-    IdentificationProgress& progress;
-    const BadSamples bad;
-    const RecordStatistics statistics;
+    bool searches() const { return measurement.impact_times.empty(); }
 };
+
+/// Needs an acceleration. A displacement with a wrong scale, delay, offset or slow drift does no
+/// harm: the relation between x'' and x is fitted to each stretch of several cycles.
+PulseSignal pulse_signal(const ImpactSearchInput& in);
+
+/// Clusters of spikes, with the centre and the height of the highest spike of each.
+struct PulseEvents {
+    std::vector<Candidate> events;  ///< in order of time
+    /// Time for which a typical event exceeds the noise before and after its highest spike.
+    PulseExtent extent;
+};
+
+/// Events that exceed the noise by Measurement::threshold standard deviations and are not part of a
+/// higher event nearby; the decay of an event is measured on the highest ones. `bad`: samples to
+/// ignore.
+PulseEvents pulse_events(
+    const ImpactSearchInput& in, const PulseSignal& signal, const std::vector<char>& bad);
+
+/// Adds the kinks of the displacement between candidates; needs no acceleration, forcing or other
+/// impacts. Each interval is fitted separately, since a common fit is wrong while many impacts are
+/// missing. Long intervals are searched in windows.
+void add_kinks(const ImpactSearchInput& in, std::vector<Candidate>& candidates);
 
 struct FirstCandidates {
     std::vector<Candidate> candidates;  ///< in order of time
@@ -140,8 +114,6 @@ struct FirstCandidates {
 /// candidates, each with its nearest event. Otherwise all events are candidates, and the kinks
 /// between them.
 FirstCandidates first_candidates(const ImpactSearchInput& in);
-
-Candidate candidate_of(const PulseEvent& event);
 
 /// Initial estimate of the pulses' extent.
 PulseExtent unknown_extent(const RecordStatistics& statistics);

@@ -69,7 +69,7 @@ std::vector<double> pieces_of(
 }
 
 std::vector<PieceEquations> equations_of(
-    const JointFitInput& in, const std::vector<double>& starts, IdentificationProgress& progress) {
+    const JointFitInput& in, const std::vector<double>& starts) {
     const MeasuredRecord& r = in.record;
     const Parameters& p = in.parameters;
     const Flow flow(1, 2 * p.zeta(), 1, p.Omega);
@@ -80,7 +80,7 @@ std::vector<PieceEquations> equations_of(
     std::vector<PieceEquations> all;
     std::size_t k = 0;
     for (std::size_t i = 0; i < starts.size(); ++i) {
-        progress.look();
+        in.progress.look();
         const double end = i + 1 < starts.size() ? starts[i + 1] : infinity;
         const double angle = p.Omega * (starts[i] - middle), sin = elementary::sin(angle),
                      cos = elementary::cos(angle);
@@ -89,7 +89,7 @@ std::vector<PieceEquations> equations_of(
         StartAndForce equations;
         for (; k < r.tau.size() && r.tau[k] < end; ++k) {
             const auto m = parts.at(std::max(0.0, r.tau[k] - starts[i]), r.x.empty());
-            if (!r.x.empty() && !in.bad_x[k])
+            if (!r.x.empty() && !in.bad.x[k])
                 equations.add(
                     {m[0].x, m[1].x, m[2].x, m[3].x}, r.x[k] - x_offset, in.statistics.x.noise);
             // With a displacement the acceleration adds almost nothing. Without one it is used with
@@ -124,20 +124,19 @@ double explained(const std::vector<PieceEquations>& pieces, double faster, doubl
 
 }  // namespace
 
-double scanned_frequency(
-    const JointFitInput& in, const std::vector<double>& times, IdentificationProgress& progress) {
+double scanned_frequency(const JointFitInput& in, const std::vector<double>& times) {
     const MeasuredRecord& r = in.record;
     const Parameters& p = in.parameters;
     const double middle = 0.5 * (r.tau.front() + r.tau.back()),
                  length = r.tau.back() - r.tau.front();
     const std::vector<PieceEquations> pieces =
-        equations_of(in, pieces_of(r, times, longest_piece_cycles * p.cycle()), progress);
+        equations_of(in, pieces_of(r, times, longest_piece_cycles * p.cycle()));
     const double step = slip / (0.5 * length);
     const int steps = static_cast<int>(widest * p.Omega / step) + 1;
     const double given = explained(pieces, 0, middle);
     double best = given, faster = 0;
     for (int k = -steps; k <= steps; ++k) {
-        progress.tick();
+        in.progress.tick();
         const double value = explained(pieces, k * step, middle);
         if (value > best && value > (1 + least_gain) * given) best = value, faster = k * step;
     }

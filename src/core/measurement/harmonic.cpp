@@ -103,7 +103,7 @@ std::optional<Harmonic> harmonic_of(
     const double duration = time.back() - time.front();
     double piece = cycles_of_piece * 2 * std::numbers::pi / omega;
     for (int k = 0; k < refinements; ++k) {
-        if (look) look();
+        look();
         omega += omega_off(time, about, omega, piece);
         if (piece * longer < duration / longer) piece *= longer;
     }

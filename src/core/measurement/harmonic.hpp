@@ -19,6 +19,6 @@ struct Harmonic {
 /// exception it throws passes through.
 std::optional<Harmonic> harmonic_of(
     const std::vector<double>& time, const std::vector<double>& values,
-    const std::function<void()>& look = {});
+    const std::function<void()>& look = [] {});
 
 }  // namespace vines

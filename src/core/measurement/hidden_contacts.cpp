@@ -63,6 +63,8 @@ constexpr double artefact_range = 0.5;
 constexpr double strong = 6;
 // The impacts at the end of a chatter below this many tolerances are reported as one.
 constexpr double weakest_reported = 0.4;
+// Longest run over hidden contacts, in typical flights: anything longer is a gap.
+constexpr double longest_flights = 40;
 // Limit for one run: a chatter has about fifty impacts.
 constexpr long most_impacts = 120;
 // The search ends when this many more runs have failed than succeeded: the system is not the
@@ -91,26 +93,22 @@ private:
     std::optional<Release> stuck_;
 };
 
-class HiddenContactSearch {
-public:
-    HiddenContactSearch(
-        const IdentifiedSystem& system, const HiddenContactLimits& limits,
-        const std::vector<IdentifiedImpact>& impacts, const std::vector<char>& doubtful)
-        : system_(system),
-          limits_(limits),
-          impacts_(impacts),
-          doubtful_(doubtful) {}
+struct HiddenContactSearch {
+    const IdentifiedSystem& system;
+    const HiddenContactLimits& limits;
+    const std::vector<IdentifiedImpact>& impacts;
+    const std::vector<char>& doubtful;
 
     std::vector<HiddenContacts> find(const std::function<void()>& look) const {
         std::vector<HiddenContacts> all;
         // y' before the impact according to the run that reached it; more precise than the flight.
         double y_dot_before = nan;
         int led = 0, failed = 0;
-        for (std::size_t i = 0; i + 1 < impacts_.size() && failed < many_runs + led;) {
-            if (look) look();
+        for (std::size_t i = 0; i + 1 < impacts.size() && failed < many_runs + led;) {
+            look();
             std::size_t next = i + 1;
             if (std::isnan(y_dot_before) && i > 0)
-                y_dot_before = flight_velocity(system_.own().b, impacts_[i - 1], impacts_[i]);
+                y_dot_before = flight_velocity(system.own().b, impacts[i - 1], impacts[i]);
             const std::vector<Velocities> possible = velocities_after(i, y_dot_before);
             y_dot_before = nan;
             for (const Velocities& after : possible) {
@@ -131,14 +129,13 @@ public:
         return all;
     }
 
-private:
     /// Marks the last impacts of each chatter that ends in a sticking phase.
     void find_ends(HiddenContacts& h) const {
         bool rests = false;
         for (std::size_t k = h.impacts.size(); k-- > 0;) {
             RunImpact& r = h.impacts[k];
             rests = r.release || (rests && r.impact.side == h.impacts[k + 1].impact.side);
-            rests = rests && !r.shown && strength(r.impact) < weakest_reported * limits_.tolerance;
+            rests = rests && !r.shown && strength(r.impact) < weakest_reported * limits.tolerance;
             r.comes_to_rest = rests;
         }
     }
@@ -146,21 +143,20 @@ private:
     /// Whether the run has contacts that are not measured, or lacks measured ones.
     static bool hides(const HiddenContacts& h) {
         return h.release || h.to - h.from != h.impacts.size() + 1 ||
-               std::any_of(h.impacts.begin(), h.impacts.end(), [](const RunImpact& r) {
-                   return r.release || !r.shown;
-               });
+               std::ranges::any_of(
+                   h.impacts, [](const RunImpact& r) { return r.release || !r.shown; });
     }
 
-    bool is_firm(std::size_t i) const { return doubtful_.empty() || !doubtful_[i]; }
+    bool is_firm(std::size_t i) const { return doubtful.empty() || !doubtful[i]; }
     /// Whether measured impact i can be an artefact of hidden contacts nearby.
     bool stands_for(std::size_t i, const HiddenContacts& hidden) const {
         if (is_firm(i)) return false;
-        const double tau = impacts_[i].tau;
+        const double tau = impacts[i].tau;
         const auto near = [&](double from, const std::optional<Release>& r) {
             return tau > from - artefact_range && tau < (r ? r->tau : from) + artefact_range;
         };
-        return near(impacts_[hidden.from].tau, hidden.release) ||
-               std::any_of(hidden.impacts.begin(), hidden.impacts.end(), [&](const RunImpact& h) {
+        return near(impacts[hidden.from].tau, hidden.release) ||
+               std::ranges::any_of(hidden.impacts, [&](const RunImpact& h) {
                    return near(h.impact.tau, h.release);
                });
     }
@@ -172,8 +168,8 @@ private:
     /// reliable first. The motion and the flight before the impact are not affected by contacts
     /// hidden soon after it; its jump can be.
     std::vector<Velocities> velocities_after(std::size_t i, double y_dot_before) const {
-        const IdentifiedImpact& m = impacts_[i];
-        const Parameters& p = system_.own();
+        const IdentifiedImpact& m = impacts[i];
+        const Parameters& p = system.own();
         const double R = p.restitution(m.side), share = p.epsilon * (1 + R) / (1 + p.epsilon),
                      meets = (m.x_dot_before - m.x_dot_after) / share;
         std::vector<Velocities> all;
@@ -185,19 +181,18 @@ private:
 
     /// Latest end of a run from `tau`.
     double end_after(double tau) const {
-        const double end = std::min(tau + limits_.longest, impacts_.back().tau + same_moment);
-        const auto gap = std::upper_bound(
-            limits_.gaps.begin(), limits_.gaps.end(), tau,
-            [](double t, const TimeGap& g) { return t < g.to; });
-        return gap == limits_.gaps.end() ? end : std::min(end, gap->from);
+        const double end = std::min(
+            tau + longest_flights * limits.typical_flight, impacts.back().tau + same_moment);
+        const auto gap = std::ranges::upper_bound(limits.gaps, tau, {}, &TimeGap::to);
+        return gap == limits.gaps.end() ? end : std::min(end, gap->from);
     }
 
     /// Contacts between an impact and the next measured one that the run reaches; prefers a
     /// strong one.
     std::optional<HiddenContacts> between(std::size_t from, const Velocities& after) const {
-        const double tau = impacts_[from].tau, end = end_after(tau),
+        const double tau = impacts[from].tau, end = end_after(tau),
                      next = std::min(
-                         end, may_be_apart(tau, impacts_[from + 1].tau) + impacts_[from + 1].tau);
+                         end, may_be_apart(tau, impacts[from + 1].tau) + impacts[from + 1].tau);
         // Most runs reach the very next impact.
         auto near = between(from, after, next);
         if (end <= next || (near && is_strong(near->to))) return near;
@@ -206,28 +201,27 @@ private:
     }
     std::optional<HiddenContacts> between(
         std::size_t from, const Velocities& after, double end) const {
-        const IdentifiedImpact& m = impacts_[from];
+        const IdentifiedImpact& m = impacts[from];
         if (!(end > m.tau)) return std::nullopt;
         RunContacts run;
         Observer* const observers[] = {&run};
-        system_.run(
-            m.tau, {after.x_dot, m.x, after.y_dot, m.x - m.side * system_.own().b},
+        system.run(
+            m.tau, {after.x_dot, m.x, after.y_dot, m.x - m.side * system.own().b},
             {.tau_end = end, .max_impacts = most_impacts}, observers);
         HiddenContacts hidden{from, from, after.y_dot, nan, measured(run.release, m.tau)};
         std::optional<HiddenContacts> found;
         std::size_t shown = from + 1;
         int unseen = 0;
         for (const RunImpact& of_run : run.impacts) {
-            RunImpact next{system_.measured(of_run.impact, m.tau), measured(of_run.release, m.tau)};
+            RunImpact next{system.measured(of_run.impact, m.tau), measured(of_run.release, m.tau)};
             const double apart = may_be_apart(m.tau, next.impact.tau);
-            for (; shown < impacts_.size() && impacts_[shown].tau < next.impact.tau - apart;
-                 ++shown)
+            for (; shown < impacts.size() && impacts[shown].tau < next.impact.tau - apart; ++shown)
                 // The run has no impact where one is measured.
                 if (!stands_for(shown, hidden)) return found;
-            if (shown == impacts_.size()) return found;
-            const bool is_there = impacts_[shown].tau < next.impact.tau + apart &&
-                                  impacts_[shown].side == next.impact.side;
-            if (is_there && leads_to(hidden, after.x_dot, impacts_[shown], next.impact)) {
+            if (shown == impacts.size()) return found;
+            const bool is_there = impacts[shown].tau < next.impact.tau + apart &&
+                                  impacts[shown].side == next.impact.side;
+            if (is_there && leads_to(hidden, after.x_dot, impacts[shown], next.impact)) {
                 if (is_strong(shown) || !found) {
                     found = hidden;
                     found->to = shown, found->y_dot_before = next.impact.y_dot_before;
@@ -235,7 +229,7 @@ private:
                 if (is_strong(shown)) return found;
             }
             if (is_there) next.shown = shown++;
-            else if (strength(next.impact) > limits_.tolerance && ++unseen > limits_.most_seen)
+            else if (strength(next.impact) > limits.tolerance && ++unseen > limits.most_seen)
                 return found;
             hidden.impacts.push_back(next);
         }
@@ -243,8 +237,8 @@ private:
     }
 
     bool is_strong(std::size_t i) const {
-        return std::abs(impacts_[i].x_dot_after - impacts_[i].x_dot_before) >
-               strong * limits_.tolerance;
+        return std::abs(impacts[i].x_dot_after - impacts[i].x_dot_before) >
+               strong * limits.tolerance;
     }
     /// Largest distance between an impact of the run and the measured one.
     static double may_be_apart(double from, double to) {
@@ -254,7 +248,7 @@ private:
 
     std::optional<Release> measured(const std::optional<Release>& r, double tau) const {
         if (!r) return r;
-        return Release{system_.measured_time(r->tau, tau), r->x, r->x_dot * system_.faster()};
+        return Release{system.measured_time(r->tau, tau), r->x, r->x_dot * system.faster()};
     }
 
     /// Whether the next impact of the run agrees with the measured one, and the free motion from
@@ -264,9 +258,9 @@ private:
         const Impact& next) const {
         const double jump = shown.x_dot_after - shown.x_dot_before;
         if (std::abs(next.x_dot_after - next.x_dot_before - jump) >
-            limits_.tolerance + same_jump * std::abs(jump))
+            limits.tolerance + same_jump * std::abs(jump))
             return false;
-        const IdentifiedImpact& from = impacts_[hidden.from];
+        const IdentifiedImpact& from = impacts[hidden.from];
         Release last{from.tau, from.x, x_dot};
         if (hidden.release) last = *hidden.release;
         if (!hidden.impacts.empty()) {
@@ -274,15 +268,10 @@ private:
             last = h.release ? *h.release : Release{h.impact.tau, h.impact.x, h.impact.x_dot_after};
         }
         if (!(last.tau < shown.tau)) return false;
-        const OscillatorMotion end = system_.free_motion(last, shown.tau);
-        return std::abs(end.x - shown.x) < limits_.tolerance &&
-               std::abs(end.x_dot - shown.x_dot_before) < limits_.tolerance;
+        const OscillatorMotion end = system.free_motion(last, shown.tau);
+        return std::abs(end.x - shown.x) < limits.tolerance &&
+               std::abs(end.x_dot - shown.x_dot_before) < limits.tolerance;
     }
-
-    const IdentifiedSystem& system_;
-    const HiddenContactLimits& limits_;
-    const std::vector<IdentifiedImpact>& impacts_;
-    const std::vector<char>& doubtful_;
 };
 
 IdentifiedImpact as_identified(const RunImpact& r) {
@@ -303,7 +292,7 @@ std::vector<HiddenContacts> hidden_contacts(
     const IdentifiedSystem& system, const HiddenContactLimits& limits,
     const std::vector<IdentifiedImpact>& impacts, const std::vector<char>& doubtful,
     const std::function<void()>& look) {
-    return HiddenContactSearch(system, limits, impacts, doubtful).find(look);
+    return HiddenContactSearch{system, limits, impacts, doubtful}.find(look);
 }
 
 long insert_hidden(

@@ -69,7 +69,7 @@ struct HiddenContacts {
 struct HiddenContactLimits {
     /// Tolerance in x and x' for reaching an impact.
     double tolerance = 0;
-    double longest = 0;  ///< longest run from one measured impact to the next, in tau
+    double typical_flight = 0;  ///< tau; no run lasts longer than 40 of them
     /// Most consecutive hidden impacts that are strong enough to be visible: a list or a search can
     /// miss some.
     int most_seen = 6;
@@ -82,7 +82,7 @@ struct HiddenContactLimits {
 std::vector<HiddenContacts> hidden_contacts(
     const IdentifiedSystem& system, const HiddenContactLimits& limits,
     const std::vector<IdentifiedImpact>& impacts, const std::vector<char>& doubtful = {},
-    const std::function<void()>& look = {});
+    const std::function<void()>& look = [] {});
 
 /// Inserts the hidden contacts (found without doubtful impacts) and takes the velocities of the
 /// mass there from the run. Returns the number of impacts added.

@@ -96,7 +96,10 @@ Restitution restitution_of(const std::vector<IdentifiedImpact>& impacts, int sid
             R.push_back(i.R);
     const double centre = median(R);
     for (double r : R) off.push_back(r - centre);
-    return {centre, error_of_median(off), static_cast<long>(R.size())};
+    // Normally distributed values have a median that scatters sqrt(pi/2) times as much as their
+    // mean.
+    const double error = 1.25 * robust_deviation(off) / std::sqrt(static_cast<double>(off.size()));
+    return {centre, error, static_cast<long>(R.size())};
 }
 
 void take_restitution(const Restitution& plus, const Restitution& minus, Parameters& p) {
@@ -113,8 +116,6 @@ constexpr double counted_in_full = 1.5, ignored = 6;
 // A motion between two impacts hides another one if it deviates by this fraction of the median jump
 // of x' and by this many times the typical deviation.
 constexpr double hidden_share = 0.05, hidden_sigmas = 10;
-// Longest time a run may take, in typical flights: anything longer is a gap in the list.
-constexpr double longest_flights = 40;
 
 /// Equation for the forcing from x or x' at the end of a flight.
 struct Row {
@@ -156,8 +157,7 @@ void set_flight_velocities(const Parameters& p, std::vector<IdentifiedImpact>& i
 
 ListedForcing fit_forcing(
     const Parameters& p, std::vector<IdentifiedImpact>& impacts,
-    const std::function<void()>& asked) {
-    const std::function<void()> look = asked ? asked : [] {};
+    const std::function<void()>& look) {
     const std::vector<Row> rows = rows_of(p, impacts, look);
     Eigen::Vector2d f = Eigen::Vector2d::Zero();
     std::vector<double> off(rows.size(), 0);
@@ -214,7 +214,7 @@ HiddenContactLimits hidden_contact_limits(
         .tolerance = std::max(
             hidden_share * median(std::move(jumps)),
             hidden_sigmas * forcing.misfit * median(std::move(speeds))),
-        .longest = longest_flights * median(std::move(flights))};
+        .typical_flight = median(std::move(flights))};
 }
 
 }  // namespace

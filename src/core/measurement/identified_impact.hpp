@@ -94,12 +94,12 @@ struct ListedForcing {
 /// several times for each impact; an exception it throws passes through.
 ListedForcing fit_forcing(
     const Parameters& parameters, std::vector<IdentifiedImpact>& impacts,
-    const std::function<void()>& look = {});
+    const std::function<void()>& look = [] {});
 
 /// Inserts impacts missing from the list (hidden_contacts.hpp), with the R of each wall that the
 /// listed impacts have. Returns the number of impacts added. look() as above.
 long insert_missing_impacts(
     const Parameters& parameters, const ListedForcing& forcing,
-    std::vector<IdentifiedImpact>& impacts, const std::function<void()>& look = {});
+    std::vector<IdentifiedImpact>& impacts, const std::function<void()>& look = [] {});
 
 }  // namespace vines

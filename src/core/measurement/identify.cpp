@@ -54,10 +54,9 @@ std::vector<WeightedB> b_of_impacts(
 double weighted_median(std::vector<WeightedB> values) {
     double total = 0, sum = 0;
     for (const WeightedB& v : values) total += v.weight;
-    std::sort(values.begin(), values.end());
-    const auto middle = std::find_if(values.begin(), values.end(), [&](const WeightedB& v) {
-        return (sum += v.weight) >= 0.5 * total;
-    });
+    std::ranges::sort(values);
+    const auto middle = std::ranges::find_if(
+        values, [&](const WeightedB& v) { return (sum += v.weight) >= 0.5 * total; });
     return middle == values.end() ? nan : middle->b;
 }
 
@@ -85,8 +84,8 @@ std::vector<Flight> flights_of(
     std::vector<Flight> flights;
     for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
         const double from = m[i].tau, to = m[i + 1].tau, duration = to - from;
-        const bool over_gap = std::any_of(
-            gaps.begin(), gaps.end(), [&](const TimeGap& g) { return g.overlaps(from, to); });
+        const bool over_gap =
+            std::ranges::any_of(gaps, [&](const TimeGap& g) { return g.overlaps(from, to); });
         if (over_gap) flights.push_back({nan, nan});
         else
             flights.push_back(
@@ -206,7 +205,7 @@ std::vector<FittedImpact> direct_motion(
     const MeasuredRecord& r, const std::vector<double>& impacts, double pulse) {
     std::vector<FittedImpact> motions;
     const auto sample = [&](double tau) {
-        return std::lower_bound(r.tau.begin(), r.tau.end(), tau) - r.tau.begin();
+        return static_cast<std::ptrdiff_t>(first_index(r, tau));
     };
     for (std::size_t i = 0; i < impacts.size(); ++i) {
         // Excludes the pulses of neighbouring impacts.

@@ -51,15 +51,6 @@ double b_of(
 /// if no b is fitted.
 bool b_agrees(const Parameters& parameters, const Identification& identification);
 
-/// Why a record permits no verdict.
-enum class Doubt {
-    not_settled,      ///< the search for impacts did not converge: FoundImpacts::settled
-    unexplained,      ///< the fitted motion does not explain the record
-    pulses_disagree,  ///< many pulses without an impact, and many impacts without a pulse
-    impacts_differ,   ///< R or the momentum error scatters between impacts
-    b_disagrees,      ///< the momentum balance contradicts the given b
-    no_forcing        ///< for a list: no forcing leads from each impact to the next
-};
 /// Empty if a verdict is possible.
 std::vector<Doubt> doubts_of(
     const Parameters& parameters, const FoundImpacts& refined,

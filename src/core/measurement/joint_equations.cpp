@@ -76,21 +76,20 @@ void JointEquations::gather() {
         triplets_.emplace_back(k, k, k < 2 * intervals_ ? ridge_ : ridge_of_others * ridge_);
 }
 
-JointEquations::Solution JointEquations::solve() {
+bool JointEquations::solve() {
     gather();
     Eigen::SparseMatrix<double> all(size_, size_);
     all.setFromTriplets(triplets_.begin(), triplets_.end());
     triplets_ = {};
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(all);
-    // Without a factorisation solve() leaves its result unset.
-    Solution s{Eigen::VectorXd::Zero(size_), GlobalMatrix::Zero(), false};
-    if (solver.info() != Eigen::Success) return s;
-    Eigen::VectorXd step = solver.solve(right_);
+    if (solver.info() != Eigen::Success) return false;
+    step = solver.solve(right_);
     Eigen::MatrixXd units = Eigen::MatrixXd::Zero(size_, globals);
     units.bottomRows<globals>().setIdentity();
     const Eigen::MatrixXd columns = solver.solve(units);
-    if (!step.allFinite() || !columns.allFinite()) return s;
-    return {std::move(step), columns.bottomRows<globals>(), true};
+    for (std::size_t k = 0; k < unknowns; ++k)
+        errors[k] = std::sqrt(columns(unknown_at(k), static_cast<Eigen::Index>(k)));
+    return step.allFinite() && columns.allFinite();
 }
 
 namespace {
@@ -107,7 +106,7 @@ public:
     MassFlight(const JointFitState& state, const Borders& impacts, std::size_t p)
         : p_(p),
           duration_(impacts[p + 1].tau - impacts[p].tau),
-          walls_((*state.input.sides)[p + 1] - (*state.input.sides)[p]),
+          walls_((*state.sides)[p + 1] - (*state.sides)[p]),
           y_dot_(
               (impacts[p + 1].x - impacts[p].x - state.fit.values[Unknown::b] * walls_) /
               duration_),
@@ -118,13 +117,13 @@ public:
     double y_dot() const { return y_dot_; }
     /// Appends the derivatives of y', multiplied by `times`.
     void add_to(
-        std::vector<JointEquations::Term>& row, const JointEquations& e, double times,
-        bool b_is_fixed) const {
+        std::vector<JointEquations::Term>& row, const JointFitState& state, double times) const {
+        const JointEquations& e = state.equations;
         row.push_back({e.start_of(p_ + 1), -times / duration_});
         row.push_back({e.start_of(p_ + 2), times / duration_});
         row.push_back({e.time_of(p_), times * by_first_});
         row.push_back({e.time_of(p_ + 1), times * by_last_});
-        if (walls_ != 0 && !b_is_fixed)
+        if (walls_ != 0 && !state.fit.fixed[Unknown::b])
             row.push_back({e.unknown_at(Unknown::b), -times * walls_ / duration_});
     }
 
@@ -142,7 +141,7 @@ struct MassResidual {
 
 /// Residuals of the impacts whose flights on both sides are known.
 std::vector<MassResidual> mass_residuals(const JointFitState& state, const Borders& impacts) {
-    const Sides& sides = *state.input.sides;
+    const Sides& sides = *state.sides;
     std::vector<MassResidual> residuals;
     for (std::size_t i = 1; i + 1 < impacts.size(); ++i) {
         const FittedBorder& m = impacts[i];
@@ -160,12 +159,12 @@ std::vector<MassResidual> mass_residuals(const JointFitState& state, const Borde
 
 /// Adds the equations of one impact. Weights are inverse variances.
 void add_mass_rows(
-    const JointFitState& state, const Borders& impacts, const MassResidual& r,
-    double momentum_weight, double restitution_weight, JointEquations& e) {
+    JointFitState& state, const Borders& impacts, const MassResidual& r, double momentum_weight,
+    double restitution_weight) {
+    JointEquations& e = state.equations;
     const std::size_t i = r.impact;
     const FittedBorder& m = impacts[i];
-    const Unknown wall = restitution_at((*state.input.sides)[i]);
-    const bool b_is_fixed = state.fit.fixed[Unknown::b];
+    const Unknown wall = restitution_at((*state.sides)[i]);
     const MassFlight first(state, impacts, i - 1), second(state, impacts, i);
     const auto add = [&](double by_after, double by_before, double by_first, double by_second,
                          double by_R, double residual, double weight) {
@@ -175,8 +174,8 @@ void add_mass_rows(
             {e.start_of(i) + 1, by_before * m.before_by_start(1)},
             {e.time_of(i), by_after * m.x_ddot_after + by_before * m.x_ddot_before}};
         e.append(m.before_by_unknowns, by_before, row);
-        first.add_to(row, e, by_first, b_is_fixed);
-        second.add_to(row, e, by_second, b_is_fixed);
+        first.add_to(row, state, by_first);
+        second.add_to(row, state, by_second);
         if (by_R != 0 && !state.fit.fixed[wall]) row.push_back({e.unknown_at(wall), by_R});
         e.add(row, -residual, weight);
     };
@@ -187,8 +186,7 @@ void add_mass_rows(
 
 }  // namespace
 
-void add_mass_flights(
-    const JointFitState& state, const Borders& borders, JointEquations& equations) {
+void add_mass_flights(JointFitState& state, const Borders& borders) {
     const std::vector<MassResidual> residuals = mass_residuals(state, borders);
     std::vector<double> momentum, restitution, jump, approach;
     for (const MassResidual& r : residuals) {
@@ -205,7 +203,7 @@ void add_mass_flights(
     for (const MassResidual& r : residuals)
         add_mass_rows(
             state, borders, r, state.weight(r.momentum, of_momentum, of_momentum),
-            state.weight(r.restitution, of_restitution, of_restitution), equations);
+            state.weight(r.restitution, of_restitution, of_restitution));
 }
 
 }  // namespace vines

@@ -15,8 +15,6 @@ namespace vines {
 
 class JointEquations {
 public:
-    using GlobalMatrix = Eigen::Matrix<double, unknowns, unknowns>;
-
     /// Samples of one interval: its own block, and its coupling with the record's unknowns.
     struct OfInterval {
         Eigen::Matrix2d N = Eigen::Matrix2d::Zero();
@@ -28,12 +26,6 @@ public:
         Eigen::Index at;
         double by;
     };
-    struct Solution {
-        Eigen::VectorXd step;
-        GlobalMatrix covariance;  ///< of the record's unknowns
-        bool solved;
-    };
-
     /// `ridge`: added to the diagonal of the intervals, so that undetermined unknowns do not move.
     JointEquations(std::size_t intervals, double ridge);
 
@@ -62,14 +54,17 @@ public:
     }
     std::vector<OfInterval>& own() { return own_; }
 
-    /// Call once. The step is zero if the matrix has no factorisation.
-    Solution solve();
+    /// Sets step and errors. Call once; false if the matrix has no factorisation.
+    bool solve();
+
+    Eigen::VectorXd step;    ///< of all unknowns
+    UnknownValues errors{};  ///< standard errors of the record's unknowns
 
 private:
     void gather();
 
-    const double ridge_;
-    const Eigen::Index intervals_, size_;
+    double ridge_;
+    Eigen::Index intervals_, size_;
     std::vector<OfInterval> own_;
     // Contribution of the samples to the record's unknowns alone.
     Eigen::Matrix<double, sensed_unknowns, sensed_unknowns> N_ =
@@ -80,23 +75,23 @@ private:
     Eigen::VectorXd right_;
 };
 
-struct JointFitState {
-    const JointFitInput& input;
-    const MeasuredRecord& record;
+struct JointFitState : JointFitInput {
     const std::vector<ImpactTime>& borders;  ///< between the intervals of `fit`
-    IdentificationProgress& progress;
-    UnknownValues prior_mean, prior;                ///< prior: standard deviations
-    std::vector<char> in_pulse;                     ///< samples of the acceleration in pulses
+    UnknownValues prior_mean = given_unknowns(parameters);
+    UnknownValues prior = priors(parameters);       ///< standard deviations
+    std::vector<char> in_pulse = {};                ///< samples of the acceleration in pulses
     double ridge = 0;                               ///< one over the largest step squared, 1/m^2
     double scale_x = infinity, scale_a = infinity;  ///< of the residuals, for their weights
     int scales_taken = 0;
     bool weights_trusted = false;  ///< large residuals are ignored
-    std::vector<JointEquations::OfInterval> interval_equations = {};  ///< of the last step
+    /// The motion is still zero, so only unknowns that are linear in it are fitted.
+    bool is_first_step = false;
+    JointEquations equations{0, 0};  ///< of the current step
+    std::vector<JointEquations::OfInterval> interval_equations =
+        {};  ///< of the last step that was solved
     JointFit fit = {};
 
-    IntervalMotion motion_in(const IntervalFlows& flows, const FittedInterval& i) const {
-        return {flows.of(i), fit.values, fit.tau_middle, i};
-    }
+    IntervalFlows flows() const { return {fit.values, !fit.fixed.oscillator(), fit.epsilon}; }
     /// Moving mass in an interval, divided by m1.
     double moving_mass(const FittedInterval& i) const { return i.sticks ? 1 + fit.epsilon : 1; }
     /// x'' at the start of an interval.
@@ -105,7 +100,7 @@ struct JointFitState {
     MotionRow end_of(const IntervalFlows& flows, std::size_t k) const;
     FittedImpact motion_at_border(std::size_t k, const MotionRow& end) const;
     /// Inverse variance, reduced for outliers (Huber); `scale`: standard deviation of the
-    /// residuals.
+    /// residuals. In the first step the residuals are those of a motion of zero, and count in full.
     double weight(double left, double noise, double scale) const;
 };
 
@@ -117,17 +112,34 @@ struct FittedBorder : FittedImpact {
     UnknownRow before_by_unknowns;
 };
 
-/// The equations of the next step, with all samples, borders, priors and given forcing. `first`:
-/// the motion is still zero, so only unknowns that are linear in it are fitted. Updates the
-/// residuals.
-JointEquations equations_of(JointFitState& state, bool first);
+/// Calls visit(k, i, motion) for each of ascending times, with the MotionRow of interval i at
+/// times[k] - late; at an impact, of the motion after it.
+template <class Visit>
+void each_motion(
+    const JointFit& fit, const IntervalFlows& flows, const std::vector<double>& times, double late,
+    bool with_acceleration, const Visit& visit) {
+    std::size_t i = 0;
+    for (std::size_t k = 0; k < times.size();) {
+        const auto here = [&] { return times[k] - late; };
+        const auto next = [&] {
+            return i + 1 < fit.intervals.size() ? fit.intervals[i + 1].tau : infinity;
+        };
+        while (here() >= next()) ++i;
+        const FittedInterval& interval = fit.intervals[i];
+        IntervalMotion motion(flows.of(interval), fit.values, fit.tau_middle, interval);
+        for (; k < times.size() && here() < next(); ++k)
+            visit(k, i, motion.at(std::max(0.0, here() - interval.tau), with_acceleration));
+    }
+}
+
+/// Sets the equations of the next step, with all samples, borders, priors and given forcing.
+/// Updates the residuals.
+void set_equations(JointFitState& state);
 
 /// Adds the equations of the free mass: it flies with constant velocity from contact to contact,
 /// where y = x - side b (43); each impact conserves x' + epsilon y' (36) and has the R of its wall
 /// (4). They couple the times of neighbouring impacts.
-void add_mass_flights(
-    const JointFitState& state, const std::vector<FittedBorder>& borders,
-    JointEquations& equations);
+void add_mass_flights(JointFitState& state, const std::vector<FittedBorder>& borders);
 
 /// Sets JointFit::impacts: the motion on both sides of each border.
 void evaluate_impacts(JointFitState& state);

@@ -40,8 +40,8 @@ std::vector<char> in_pulses(
     const MeasuredRecord& r, const std::vector<ImpactTime>& impacts, double margin) {
     std::vector<char> spoiled(r.tau.size(), 0);
     for (const ImpactTime& i : impacts)
-        for (std::size_t k = first_index(r, i.tau - i.spoiled_before - margin);
-             k < r.tau.size() && r.tau[k] < i.tau + i.spoiled_after + margin; ++k)
+        for (std::size_t k = first_index(r, i.tau - i.spoiled.before - margin);
+             k < r.tau.size() && r.tau[k] < i.tau + i.spoiled.after + margin; ++k)
             spoiled[k] = 1;
     return spoiled;
 }
@@ -54,31 +54,23 @@ void fix_undetermined(JointFitState& state) {
     if (state.record.x.empty()) fix({Unknown::x_offset, Unknown::x_drift});
     if (state.record.x_ddot.empty()) fix({Unknown::a_offset, Unknown::a_drift});
     if (state.record.x.empty() || state.record.x_ddot.empty()) fix({Unknown::x_gain});
-    const bool any_pulse = std::any_of(
-        state.borders.begin(), state.borders.end(),
-        [](const auto& m) { return std::isfinite(m.pulse_error); });
+    const bool any_pulse = std::ranges::any_of(
+        state.borders, [](const auto& m) { return std::isfinite(m.pulse_error); });
     if (state.record.x.empty() || (state.record.x_ddot.empty() && !any_pulse))
         fix({Unknown::x_delay});
     if (state.record.x_ddot.empty() || !any_pulse) fix({Unknown::pulse_lag});
-    if (!state.input.sides) fix({Unknown::b});
+    if (!state.sides) fix({Unknown::b});
     for (const int side : {1, -1})
-        if (!state.input.sides ||
-            std::count(state.input.sides->begin(), state.input.sides->end(), side) == 0)
+        if (!state.sides || std::count(state.sides->begin(), state.sides->end(), side) == 0)
             fix({restitution_at(side)});
 }
 
 JointFitState initial_state(
     const JointFitInput& input, const std::vector<ImpactTime>& borders, const UnknownValues& values,
-    const JointFit* before, IdentificationProgress& progress) {
+    const JointFit* before) {
     const MeasuredRecord& r = input.record;
-    JointFitState state{
-        .input = input,
-        .record = r,
-        .borders = borders,
-        .progress = progress,
-        .prior_mean = given_unknowns(input.parameters),
-        .prior = priors(input.parameters),
-        .in_pulse = in_pulses(r, borders, pulse_margin * input.statistics.step)};
+    JointFitState state{input, borders};
+    state.in_pulse = in_pulses(r, borders, pulse_margin * input.statistics.step);
     JointFit& fit = state.fit;
     fit.tau_middle = 0.5 * (r.tau.front() + r.tau.back());
     fit.length = r.tau.back() - r.tau.front();
@@ -105,29 +97,24 @@ JointFitState initial_state(
 }
 
 /// Whether a step moves each value by a small fraction of its error, and few impacts.
-bool has_converged(
-    const JointFitState& state, const JointEquations& equations,
-    const JointEquations::Solution& s) {
-    for (std::size_t k = 0; k < unknowns; ++k) {
-        const auto at = static_cast<Eigen::Index>(k);
-        if (!state.fit.fixed[k] && std::abs(s.step(equations.unknown_at(k))) >
-                                       converged_share * std::sqrt(s.covariance(at, at)))
+bool has_converged(const JointFitState& state) {
+    const JointEquations& e = state.equations;
+    for (std::size_t k = 0; k < unknowns; ++k)
+        if (!state.fit.fixed[k] &&
+            std::abs(e.step(e.unknown_at(k))) > converged_share * e.errors[k])
             return false;
-    }
     std::size_t moved = 0;
     for (std::size_t k = 0; k < state.borders.size(); ++k)
-        moved += std::abs(s.step(equations.time_of(k))) >
-                 converged_move_steps * state.input.statistics.step;
+        moved += std::abs(e.step(e.time_of(k))) > converged_move_steps * state.statistics.step;
     return static_cast<double>(moved) <= few_moved * static_cast<double>(state.borders.size());
 }
 
 /// Whether a step leads to a plausible oscillator. Gross outliers can lead to any, and some
 /// flows take very long to compute.
-bool leads_to_plausible_oscillator(
-    const JointFitState& state, const JointEquations& equations,
-    const JointEquations::Solution& s) {
+bool leads_to_plausible_oscillator(const JointFitState& state) {
+    const JointEquations& e = state.equations;
     const auto after = [&](Unknown u) {
-        return state.fit.values[u] + (state.fit.fixed[u] ? 0 : s.step(equations.unknown_at(u)));
+        return state.fit.values[u] + (state.fit.fixed[u] ? 0 : e.step(e.unknown_at(u)));
     };
     const auto is_near = [&](Unknown u) {
         return std::abs(after(u) - state.prior_mean[u]) <= most_priors * state.prior[u];
@@ -138,7 +125,7 @@ bool leads_to_plausible_oscillator(
 
 /// Moves an impact together with the start of its interval.
 void move_border(JointFitState& state, std::size_t impact, double by) {
-    const double most = most_move_steps * state.input.statistics.step;
+    const double most = most_move_steps * state.statistics.step;
     FittedInterval& i = state.fit.intervals[impact + 1];
     const double last = impact + 2 < state.fit.intervals.size()
                             ? state.fit.intervals[impact + 2].tau
@@ -155,45 +142,41 @@ void move_border(JointFitState& state, std::size_t impact, double by) {
 }
 
 /// Applies a step to values, states and, except in the first step, border times.
-void apply_step(
-    JointFitState& state, const JointEquations& equations, const JointEquations::Solution& s,
-    bool first) {
+void apply_step(JointFitState& state) {
+    const JointEquations& e = state.equations;
     for (std::size_t k = 0; k < unknowns; ++k)
-        if (!state.fit.fixed[k]) state.fit.values[k] += s.step(equations.unknown_at(k));
+        if (!state.fit.fixed[k]) state.fit.values[k] += e.step(e.unknown_at(k));
     state.fit.values[Unknown::x_delay] =
         std::clamp(state.fit.values[Unknown::x_delay], -largest_delay, largest_delay);
     for (std::size_t i = 0; i < state.fit.intervals.size(); ++i) {
         FittedInterval& interval = state.fit.intervals[i];
-        interval.x += s.step(equations.start_of(i));
-        interval.x_dot += s.step(equations.start_of(i) + 1);
+        interval.x += e.step(e.start_of(i));
+        interval.x_dot += e.step(e.start_of(i) + 1);
     }
-    if (first) return;
+    if (state.is_first_step) return;
     for (std::size_t k = 0; k < state.borders.size(); ++k)
-        move_border(state, k, s.step(equations.time_of(k)));
+        move_border(state, k, e.step(e.time_of(k)));
 }
 
 /// Updates the scale of the residuals for the weights of the next step.
 void update_scales(JointFitState& state) {
     std::vector<double> x, a;
     for (std::size_t k = 0; k < state.fit.x_residual.size(); ++k)
-        if (!state.input.bad_x[k]) x.push_back(state.fit.x_residual[k]);
+        if (!state.bad.x[k]) x.push_back(state.fit.x_residual[k]);
     for (std::size_t k = 0; k < state.fit.a_residual.size(); ++k)
-        if (!state.input.bad_a[k] && !state.in_pulse[k]) a.push_back(state.fit.a_residual[k]);
-    state.scale_x = std::max(robust_deviation(std::move(x)), state.input.statistics.x.noise);
-    state.scale_a = std::max(robust_deviation(std::move(a)), state.input.statistics.x_ddot.noise);
+        if (!state.bad.a[k] && !state.in_pulse[k]) a.push_back(state.fit.a_residual[k]);
+    state.scale_x = std::max(robust_deviation(std::move(x)), state.statistics.x.noise);
+    state.scale_a = std::max(robust_deviation(std::move(a)), state.statistics.x_ddot.noise);
     ++state.scales_taken;
     // The first scales belong to a motion of zero.
     state.weights_trusted = state.scales_taken > 2;
 }
 
 /// Keeps standard errors and the equations of single intervals.
-void keep_errors(
-    JointFitState& state, const JointEquations::Solution& s, JointEquations& equations) {
-    for (std::size_t k = 0; k < unknowns; ++k) {
-        const auto at = static_cast<Eigen::Index>(k);
-        state.fit.errors[k] = state.fit.fixed[k] ? 0 : std::sqrt(s.covariance(at, at));
-    }
-    state.interval_equations = std::move(equations.own());
+void keep_errors(JointFitState& state) {
+    for (std::size_t k = 0; k < unknowns; ++k)
+        state.fit.errors[k] = state.fit.fixed[k] ? 0 : state.equations.errors[k];
+    state.interval_equations = std::move(state.equations.own());
 }
 
 }  // namespace
@@ -209,7 +192,8 @@ double JointFitState::acceleration_at(const FittedInterval& i) const {
 
 MotionRow JointFitState::end_of(const IntervalFlows& flows, std::size_t k) const {
     const FittedInterval& i = fit.intervals[k];
-    return motion_in(flows, i).at(fit.intervals[k + 1].tau - i.tau, true);
+    return IntervalMotion(flows.of(i), fit.values, fit.tau_middle, i)
+        .at(fit.intervals[k + 1].tau - i.tau, true);
 }
 
 FittedImpact JointFitState::motion_at_border(std::size_t k, const MotionRow& end) const {
@@ -229,19 +213,18 @@ FittedImpact JointFitState::motion_at_border(std::size_t k, const MotionRow& end
 
 JointFit fit_jointly(
     const JointFitInput& input, const std::vector<ImpactTime>& impacts, const UnknownValues& values,
-    const JointFit* before, IdentificationProgress& progress) {
-    JointFitState state = initial_state(input, impacts, values, before, progress);
+    const JointFit* before) {
+    JointFitState state = initial_state(input, impacts, values, before);
     for (int step = 0; step < most_steps; ++step) {
-        progress.look();
-        const bool first = !before && step == 0;
-        JointEquations equations = equations_of(state, first);
-        JointEquations::Solution s = equations.solve();
-        if (!s.solved || !leads_to_plausible_oscillator(state, equations, s)) break;
-        if (step >= first_half_step) s.step *= 0.5;
-        state.fit.converged = !first && has_converged(state, equations, s);
-        if (!first) keep_errors(state, s, equations);
+        input.progress.look();
+        state.is_first_step = !before && step == 0;
+        set_equations(state);
+        if (!state.equations.solve() || !leads_to_plausible_oscillator(state)) break;
+        if (step >= first_half_step) state.equations.step *= 0.5;
+        state.fit.converged = !state.is_first_step && has_converged(state);
+        if (!state.is_first_step) keep_errors(state);
         if (state.fit.converged) break;
-        apply_step(state, equations, s, first);
+        apply_step(state);
         if (input.one_step) break;
         update_scales(state);
     }
@@ -258,17 +241,9 @@ std::vector<OscillatorMotion> motion_at(const JointFit& fit, const std::vector<d
     const IntervalFlows flows(fit.values, false, fit.epsilon);
     std::vector<OscillatorMotion> motions;
     motions.reserve(times.size());
-    std::size_t i = 0;
-    for (std::size_t k = 0; k < times.size();) {
-        const auto next = [&] {
-            return i + 1 < fit.intervals.size() ? fit.intervals[i + 1].tau : infinity;
-        };
-        while (times[k] >= next()) ++i;
-        const FittedInterval& interval = fit.intervals[i];
-        IntervalMotion motion(flows.of(interval), fit.values, fit.tau_middle, interval);
-        for (; k < times.size() && times[k] < next(); ++k)
-            motions.push_back(motion.at(std::max(0.0, times[k] - interval.tau), true).value);
-    }
+    each_motion(fit, flows, times, 0, true, [&](std::size_t, std::size_t, const MotionRow& row) {
+        motions.push_back(row.value);
+    });
     return motions;
 }
 

@@ -8,6 +8,7 @@
 #include "core/measurement/measured_record.hpp"
 #include "core/measurement/progress.hpp"
 #include "core/measurement/unknowns.hpp"
+#include "core/motion/elementary.hpp"
 
 namespace vines {
 
@@ -18,15 +19,19 @@ enum class Border {
     release  ///< the mass leaves the wall
 };
 
+/// Time before and after an impact, in tau, both >= 0.
+struct PulseExtent {
+    double before, after;
+};
+
 /// An impact, or another border between intervals, as input of the fit.
 struct ImpactTime {
     double tau;
     Border border;
     bool sticks;  ///< the mass sticks to the wall until the next border, a release
     /// Time according to its pulse, and its standard error; infinite without a usable pulse.
-    double pulse_tau, pulse_error;
-    /// Time before and after tau in which the pulse spoils the acceleration.
-    double spoiled_before, spoiled_after;
+    double pulse_tau = 0, pulse_error = infinity;
+    PulseExtent spoiled = {0, 0};  ///< where the pulse spoils the acceleration
 };
 
 /// Motion at an impact, before and after it.
@@ -74,10 +79,8 @@ struct JointFitInput {
     const Parameters& parameters;
     const MeasuredRecord& record;
     const RecordStatistics& statistics;
-    /// Unusable samples: clipped, dropped out, outliers. One entry for each sample of an existing
-    /// channel.
-    const std::vector<char>& bad_x;
-    const std::vector<char>& bad_a;
+    const BadSamples& bad;
+    IdentificationProgress& progress;
     /// Time before and after an impact in which the displacement is spoiled.
     double x_spoiled = 0;
     FixedUnknowns fixed{};
@@ -91,12 +94,11 @@ struct JointFitInput {
 /// at rest.
 JointFit fit_jointly(
     const JointFitInput& input, const std::vector<ImpactTime>& impacts, const UnknownValues& values,
-    const JointFit* before, IdentificationProgress& progress);
+    const JointFit* before);
 
 /// The Omega within 1 % of the given one at which a forcing of constant amplitude and phase
 /// explains the record best. `times`: of the impacts.
-double scanned_frequency(
-    const JointFitInput& input, const std::vector<double>& times, IdentificationProgress& progress);
+double scanned_frequency(const JointFitInput& input, const std::vector<double>& times);
 
 /// Whether the residuals are no larger than the sensors' noise.
 bool explains(const JointFit& fit);

@@ -24,20 +24,15 @@ constexpr double release_error = 1e-4;
 constexpr double known_to = 1e-7;
 
 /// Whether an unknown keeps its value: fixed, or nonlinear in the motion in the first step.
-bool is_held(const JointFitState& state, std::size_t unknown, bool first) {
+bool is_held(const JointFitState& state, std::size_t unknown) {
     return state.fit.fixed[unknown] ||
-           (first && unknown >= static_cast<std::size_t>(Unknown::x_gain));
+           (state.is_first_step && unknown >= static_cast<std::size_t>(Unknown::x_gain));
 }
 
 /// Zeroes the derivatives by unknowns that keep their values.
-void clear_held(const JointFitState& state, UnknownRow& by_unknowns, bool first) {
+void clear_held(const JointFitState& state, UnknownRow& by_unknowns) {
     for (std::size_t k = 0; k < sensed_unknowns; ++k)
-        if (is_held(state, k, first)) by_unknowns(static_cast<Eigen::Index>(k)) = 0;
-}
-
-/// In the first step the residuals are those of a motion of zero.
-double weight_of(const JointFitState& state, double left, double noise, double scale, bool first) {
-    return first ? 1 / (noise * noise) : state.weight(left, noise, scale);
+        if (is_held(state, k)) by_unknowns(static_cast<Eigen::Index>(k)) = 0;
 }
 
 double relative_time(const JointFitState& state, std::size_t k) {
@@ -47,45 +42,25 @@ double relative_time(const JointFitState& state, std::size_t k) {
 /// Whether the displacement at `tau` is spoiled by the kink of an impact.
 bool is_at_kink(const JointFitState& state, std::size_t interval, double tau) {
     const auto& i = state.fit.intervals;
-    return (interval > 0 && tau - i[interval].tau < state.input.x_spoiled) ||
-           (interval + 1 < i.size() && i[interval + 1].tau - tau < state.input.x_spoiled);
+    return (interval > 0 && tau - i[interval].tau < state.x_spoiled) ||
+           (interval + 1 < i.size() && i[interval + 1].tau - tau < state.x_spoiled);
 }
 
-/// Calls `visit` with the motion at each sample of a channel delayed by `late`.
-template <class Visit>
-void each_sample(
-    const JointFitState& state, const IntervalFlows& flows, double late, bool accelerate,
-    const Visit& visit) {
-    std::size_t i = 0;
-    for (std::size_t k = 0; k < state.record.tau.size();) {
-        const auto here = [&] { return state.record.tau[k] - late; };
-        const auto next = [&] {
-            return i + 1 < state.fit.intervals.size() ? state.fit.intervals[i + 1].tau : infinity;
-        };
-        while (here() >= next()) ++i;
-        IntervalMotion motion = state.motion_in(flows, state.fit.intervals[i]);
-        for (; k < state.record.tau.size() && here() < next(); ++k) {
-            state.progress.tick();
-            visit(k, i, motion.at(std::max(0.0, here() - state.fit.intervals[i].tau), accelerate));
-        }
-    }
-}
-
-void add_displacement(
-    JointFitState& state, const IntervalFlows& flows, bool first, JointEquations& equations) {
+void add_displacement(JointFitState& state, const IntervalFlows& flows) {
     Eigen::RowVector2d by_start;
     UnknownRow by_unknowns;
     const MeasuredRecord& r = state.record;
     const UnknownValues& v = state.fit.values;
-    each_sample(
-        state, flows, v[Unknown::x_delay], false,
+    const double gain = v[Unknown::x_gain], late = v[Unknown::x_delay];
+    each_motion(
+        state.fit, flows, r.tau, late, false,
         [&](std::size_t k, std::size_t i, const MotionRow& row) {
-            const double gain = v[Unknown::x_gain], u = relative_time(state, k);
+            state.progress.tick();
+            const double u = relative_time(state, k);
             const double left =
                 r.x[k] - gain * row.value.x - v[Unknown::x_offset] - v[Unknown::x_drift] * u;
             state.fit.x_residual[k] = left;
-            if (state.input.bad_x[k] || is_at_kink(state, i, r.tau[k] - v[Unknown::x_delay]))
-                return;
+            if (state.bad.x[k] || is_at_kink(state, i, r.tau[k] - late)) return;
             take_derivatives(row, &OscillatorMotion::x, by_start, by_unknowns);
             by_start *= gain;
             by_unknowns *= gain;
@@ -93,32 +68,34 @@ void add_displacement(
             element(by_unknowns, Unknown::x_drift) = u;
             element(by_unknowns, Unknown::x_gain) = row.value.x;
             element(by_unknowns, Unknown::x_delay) = -gain * row.value.x_dot;
-            clear_held(state, by_unknowns, first);
-            equations.add(
+            clear_held(state, by_unknowns);
+            state.equations.add(
                 i, by_start, by_unknowns, left,
-                weight_of(state, left, state.input.statistics.x.noise, state.scale_x, first));
+                state.weight(left, state.statistics.x.noise, state.scale_x));
         });
 }
 
-void add_acceleration(
-    JointFitState& state, const IntervalFlows& flows, bool first, JointEquations& equations) {
+void add_acceleration(JointFitState& state, const IntervalFlows& flows) {
     Eigen::RowVector2d by_start;
     UnknownRow by_unknowns;
+    const MeasuredRecord& r = state.record;
     const UnknownValues& v = state.fit.values;
-    each_sample(state, flows, 0, true, [&](std::size_t k, std::size_t i, const MotionRow& row) {
-        const double u = relative_time(state, k);
-        const double left = state.record.x_ddot[k] - row.value.x_ddot - v[Unknown::a_offset] -
-                            v[Unknown::a_drift] * u;
-        state.fit.a_residual[k] = left;
-        if (state.in_pulse[k] || state.input.bad_a[k]) return;
-        take_derivatives(row, &OscillatorMotion::x_ddot, by_start, by_unknowns);
-        element(by_unknowns, Unknown::a_offset) = 1;
-        element(by_unknowns, Unknown::a_drift) = u;
-        clear_held(state, by_unknowns, first);
-        equations.add(
-            i, by_start, by_unknowns, left,
-            weight_of(state, left, state.input.statistics.x_ddot.noise, state.scale_a, first));
-    });
+    each_motion(
+        state.fit, flows, r.tau, 0, true, [&](std::size_t k, std::size_t i, const MotionRow& row) {
+            state.progress.tick();
+            const double u = relative_time(state, k);
+            const double left =
+                r.x_ddot[k] - row.value.x_ddot - v[Unknown::a_offset] - v[Unknown::a_drift] * u;
+            state.fit.a_residual[k] = left;
+            if (state.in_pulse[k] || state.bad.a[k]) return;
+            take_derivatives(row, &OscillatorMotion::x_ddot, by_start, by_unknowns);
+            element(by_unknowns, Unknown::a_offset) = 1;
+            element(by_unknowns, Unknown::a_drift) = u;
+            clear_held(state, by_unknowns);
+            state.equations.add(
+                i, by_start, by_unknowns, left,
+                state.weight(left, state.statistics.x_ddot.noise, state.scale_a));
+        });
 }
 
 /// Border k, at the end `row` of its first interval.
@@ -127,20 +104,20 @@ FittedBorder fitted_border(const JointFitState& state, std::size_t k, const Moti
     FittedBorder m{
         state.motion_at_border(k, row), border.border == Border::impact && !border.sticks, {}, {}};
     take_derivatives(row, &OscillatorMotion::x_dot, m.before_by_start, m.before_by_unknowns);
-    clear_held(state, m.before_by_unknowns, false);
+    clear_held(state, m.before_by_unknowns);
     return m;
 }
 
 /// Adds a condition on x, x' or x'' at the end of interval k; `by_moment`: its derivative by
 /// the border's time; `meets`: it equals the value at the start of the next interval.
 void add_border_condition(
-    const JointFitState& state, std::size_t k, const MotionRow& row,
-    double OscillatorMotion::* member, double by_moment, bool meets, double left, double weight,
-    JointEquations& equations) {
+    JointFitState& state, std::size_t k, const MotionRow& row, double OscillatorMotion::* member,
+    double by_moment, bool meets, double left, double weight) {
+    JointEquations& equations = state.equations;
     Eigen::RowVector2d by_start;
     UnknownRow by_unknowns;
     take_derivatives(row, member, by_start, by_unknowns);
-    clear_held(state, by_unknowns, false);
+    clear_held(state, by_unknowns);
     std::vector<JointEquations::Term> terms = {
         {equations.start_of(k), by_start(0)},
         {equations.start_of(k) + 1, by_start(1)},
@@ -164,61 +141,60 @@ double jerk_at(
 
 /// At each impact x is continuous, and its pulse gives its time. At a release x' is continuous
 /// too, and its time follows from the vanishing acceleration.
-void add_impacts(
-    const JointFitState& state, const IntervalFlows& flows, JointEquations& equations) {
+void add_impacts(JointFitState& state, const IntervalFlows& flows) {
+    JointEquations& equations = state.equations;
     std::vector<FittedBorder> borders;
-    const double noise = state.record.x.empty() ? state.input.statistics.x_ddot.noise
-                                                : state.input.statistics.x.noise;
+    const RecordStatistics& statistics = state.statistics;
+    const double noise = state.record.x.empty() ? statistics.x_ddot.noise : statistics.x.noise;
     const double weight = 1 / (continuity_share * continuity_share * noise * noise);
     for (std::size_t k = 0; k < state.borders.size(); ++k) {
         const FittedInterval &from = state.fit.intervals[k], &to = state.fit.intervals[k + 1];
         const MotionRow row = state.end_of(flows, k);
         const ImpactTime& m = state.borders[k];
-        if (state.input.sides) borders.push_back(fitted_border(state, k, row));
+        if (state.sides) borders.push_back(fitted_border(state, k, row));
         if (m.border == Border::gap) continue;
         add_border_condition(
             state, k, row, &OscillatorMotion::x, row.value.x_dot - to.x_dot, true,
-            to.x - row.value.x, weight, equations);
+            to.x - row.value.x, weight);
         if (m.border == Border::release) {
             add_border_condition(
                 state, k, row, &OscillatorMotion::x_dot,
                 row.value.x_ddot - state.acceleration_at(to), true, to.x_dot - row.value.x_dot,
-                weight, equations);
+                weight);
             const double jerk = jerk_at(state, from, row.value, to.tau),
                          sigma = release_error * std::abs(jerk);
             add_border_condition(
                 state, k, row, &OscillatorMotion::x_ddot, jerk, false, -row.value.x_ddot,
-                1 / (sigma * sigma), equations);
+                1 / (sigma * sigma));
             continue;
         }
-        const double error = std::min(m.pulse_error, state.input.statistics.step);
-        if (!std::isfinite(m.pulse_error)) {
-            equations.add({{equations.time_of(k), 1}}, 0, 1 / (error * error));
-            continue;
-        }
+        const double error = std::min(m.pulse_error, statistics.step);
         std::vector<JointEquations::Term> terms = {{equations.time_of(k), 1}};
-        if (!state.fit.fixed[Unknown::pulse_lag])
-            terms.push_back({equations.unknown_at(Unknown::pulse_lag), 1});
-        equations.add(
-            terms, m.pulse_tau - to.tau - state.fit.values[Unknown::pulse_lag],
-            1 / (error * error));
+        double left = 0;
+        if (std::isfinite(m.pulse_error)) {
+            left = m.pulse_tau - to.tau - state.fit.values[Unknown::pulse_lag];
+            if (!state.fit.fixed[Unknown::pulse_lag])
+                terms.push_back({equations.unknown_at(Unknown::pulse_lag), 1});
+        }
+        equations.add(terms, left, 1 / (error * error));
     }
-    if (state.input.sides) add_mass_flights(state, borders, equations);
+    if (state.sides) add_mass_flights(state, borders);
 }
 
 /// Priors; unknowns that keep their values get one that holds them.
-void add_priors(const JointFitState& state, JointEquations& equations, bool first) {
+void add_priors(JointFitState& state) {
     for (std::size_t k = 0; k < unknowns; ++k) {
-        if (is_held(state, k, first)) equations.add_prior(k, 0, 1);
+        if (is_held(state, k)) state.equations.add_prior(k, 0, 1);
         else if (std::isfinite(state.prior[k]))
-            equations.add_prior(
+            state.equations.add_prior(
                 k, state.prior_mean[k] - state.fit.values[k],
                 1 / (state.prior[k] * state.prior[k]));
     }
 }
 
 /// Keeps a given amplitude and a given phase at tau = 0.
-void add_known_forcing(const JointFitState& state, JointEquations& equations) {
+void add_known_forcing(JointFitState& state) {
+    JointEquations& equations = state.equations;
     const UnknownValues& v = state.fit.values;
     const double sin = v[Unknown::force_sin], cos = v[Unknown::force_cos],
                  amplitude = elementary::hypot(sin, cos),
@@ -226,10 +202,10 @@ void add_known_forcing(const JointFitState& state, JointEquations& equations) {
     if (!(amplitude > 0)) return;
     const Eigen::Index of_sin = equations.unknown_at(Unknown::force_sin),
                        of_cos = equations.unknown_at(Unknown::force_cos);
-    if (const auto& known = state.input.forcing.amplitude)
+    if (const auto& known = state.forcing.amplitude)
         equations.add(
             {{of_sin, sin / amplitude}, {of_cos, cos / amplitude}}, *known - amplitude, weight);
-    if (const auto& known = state.input.forcing.phase) {
+    if (const auto& known = state.forcing.phase) {
         // The phase in the middle depends on the frequency.
         const double phase = *known + v[Unknown::Omega] * state.fit.tau_middle,
                      along_sin = elementary::cos(phase), along_cos = elementary::sin(phase);
@@ -246,19 +222,19 @@ void add_known_forcing(const JointFitState& state, JointEquations& equations) {
 
 double JointFitState::weight(double left, double noise, double scale) const {
     const double plain = 1 / (noise * noise), off = std::abs(left) / scale;
+    if (is_first_step) return plain;
     if (off > ignored_sigmas && weights_trusted) return 0;
     return off > huber_sigmas ? plain * huber_sigmas / off : plain;
 }
 
-JointEquations equations_of(JointFitState& state, bool first) {
-    JointEquations equations(state.fit.intervals.size(), state.ridge);
-    const IntervalFlows flows(state.fit.values, !state.fit.fixed.oscillator(), state.fit.epsilon);
-    if (!state.record.x.empty()) add_displacement(state, flows, first, equations);
-    if (!state.record.x_ddot.empty()) add_acceleration(state, flows, first, equations);
-    if (!first) add_impacts(state, flows, equations);
-    add_priors(state, equations, first);
-    if (!first) add_known_forcing(state, equations);
-    return equations;
+void set_equations(JointFitState& state) {
+    state.equations = {state.fit.intervals.size(), state.ridge};
+    const IntervalFlows flows = state.flows();
+    if (!state.record.x.empty()) add_displacement(state, flows);
+    if (!state.record.x_ddot.empty()) add_acceleration(state, flows);
+    if (!state.is_first_step) add_impacts(state, flows);
+    add_priors(state);
+    if (!state.is_first_step) add_known_forcing(state);
 }
 
 }  // namespace vines

@@ -71,16 +71,19 @@ double deviation_of(const std::vector<double>& values) {
 
 double squared(double x) { return x * x; }
 
-/// `residual`: at `tau`; `ignored`: samples to ignore; `step`: sampling interval.
+/// Statistics of one sensor's residual; bad samples and samples in pulses are ignored.
 ResidualStatistics statistics_of(
-    const std::vector<double>& tau, const std::vector<double>& residual,
-    const std::vector<char>& ignored, double step, const SignalStatistics& signal) {
+    const JointFitState& state, const std::vector<double>& residual, const SignalStatistics& signal,
+    const std::vector<char>& bad) {
+    std::vector<char> ignored(state.in_pulse);
     std::vector<double> clean;
-    for (std::size_t k = 0; k < residual.size(); ++k)
+    for (std::size_t k = 0; k < residual.size(); ++k) {
+        if (bad[k]) ignored[k] = 1;
         if (!ignored[k]) clean.push_back(residual[k]);
-    const Blocks blocks = blocks_of(tau, residual, ignored, step);
+    }
+    const Blocks blocks = blocks_of(state.record.tau, residual, ignored, state.statistics.step);
     const double all = squared(deviation_of(clean)), slow = squared(deviation_of(blocks.mean)),
-                 differing = squared(ThirdDifferences(blocks.tau, blocks.mean).noise());
+                 differing = squared(third_difference_noise(blocks.tau, blocks.mean));
     // NaN, from too few blocks, counts as no misfit.
     const double missed = slow > differing ? slow - differing : 0;
     return {
@@ -91,21 +94,11 @@ ResidualStatistics statistics_of(
             slow > 0 ? std::sqrt(slow * static_cast<double>(blocks.samples)) / signal.noise : 1};
 }
 
-/// Statistics of one sensor's residual; bad samples and samples in pulses are ignored.
-ResidualStatistics statistics_of(
-    const JointFitState& state, const std::vector<double>& residual, const SignalStatistics& signal,
-    const std::vector<char>& bad) {
-    std::vector<char> ignored(state.in_pulse);
-    for (std::size_t k = 0; k < residual.size(); ++k)
-        if (bad[k]) ignored[k] = 1;
-    return statistics_of(state.record.tau, residual, ignored, state.input.statistics.step, signal);
-}
-
 }  // namespace
 
 /// Appends the fitted states at each border to fit.impacts.
 void evaluate_impacts(JointFitState& state) {
-    const IntervalFlows flows(state.fit.values, !state.fit.fixed.oscillator(), state.fit.epsilon);
+    const IntervalFlows flows = state.flows();
     // Initial state of each interval fitted to its own samples alone, with the global parameters
     // fixed: s + N^-1 g, with covariance N^-1.
     std::vector<Eigen::Matrix2d> covariance;
@@ -141,22 +134,19 @@ void evaluate_impacts(JointFitState& state) {
 
 void evaluate_residual(JointFitState& state) {
     double error_factor = 1;
-    const auto store = [&](const ResidualStatistics& statistics, double& noise, double& misfit) {
+    const auto evaluate = [&](const std::vector<double>& residual, const SignalStatistics& signal,
+                              const std::vector<char>& bad, double& noise, double& misfit) {
+        noise = misfit = nan;
+        if (residual.empty()) return;
+        const ResidualStatistics statistics = statistics_of(state, residual, signal, bad);
         noise = statistics.noise, misfit = statistics.misfit;
         error_factor = std::max(error_factor, statistics.uncertainty);
     };
-    state.fit.noise_x = state.fit.noise_a = state.fit.misfit_x = state.fit.misfit_a = nan;
-    if (!state.record.x.empty())
-        store(
-            statistics_of(state, state.fit.x_residual, state.input.statistics.x, state.input.bad_x),
-            state.fit.noise_x, state.fit.misfit_x);
-    if (!state.record.x_ddot.empty())
-        store(
-            statistics_of(
-                state, state.fit.a_residual, state.input.statistics.x_ddot, state.input.bad_a),
-            state.fit.noise_a, state.fit.misfit_a);
+    JointFit& fit = state.fit;
+    evaluate(fit.x_residual, state.statistics.x, state.bad.x, fit.noise_x, fit.misfit_x);
+    evaluate(fit.a_residual, state.statistics.x_ddot, state.bad.a, fit.noise_a, fit.misfit_a);
     // The larger factor of both sensors, at least 1, applies to all errors.
-    for (double& e : state.fit.errors) e *= error_factor;
+    for (double& e : fit.errors) e *= error_factor;
 }
 
 }  // namespace vines

@@ -35,12 +35,8 @@ struct KinkPoint {
 
 std::vector<KinkPoint> points_of(const IntervalSamples& in) {
     std::vector<KinkPoint> all;
-    const auto sample = [&](double tau) {
-        return static_cast<std::size_t>(
-            std::lower_bound(in.tau.begin(), in.tau.end(), tau + in.late) - in.tau.begin());
-    };
-    std::size_t k = sample(in.from);
-    const std::size_t end = sample(in.to);
+    std::size_t k = first_index(in.record, in.from + in.late);
+    const std::size_t end = first_index(in.record, in.to + in.late);
     if (end <= k) return all;
     const std::size_t together = 1 + (end - k) / most_kink_points;
     KinkPoint sum{0, 0, 0};
@@ -52,7 +48,7 @@ std::vector<KinkPoint> points_of(const IntervalSamples& in) {
     };
     for (; k < end; ++k) {
         if (in.bad[k]) continue;
-        sum.tau += in.tau[k] - in.late, sum.value += in.value[k], sum.weight += 1;
+        sum.tau += in.record.tau[k] - in.late, sum.value += in.value[k], sum.weight += 1;
         if (sum.weight >= static_cast<double>(together)) close();
     }
     close();
@@ -61,38 +57,31 @@ std::vector<KinkPoint> points_of(const IntervalSamples& in) {
 
 /// Basis of a motion without a kink: the two free motions from the start of the interval and, with
 /// `own_forcing`, the response to sine and cosine and an offset.
-class SmoothMotionBasis {
-public:
+struct SmoothMotionBasis {
+    const Flow& flow;
+    const double start;
+    const bool own_forcing;
+
     static constexpr Eigen::Index most = 5;
     using Row = Eigen::Matrix<double, most, 1>;
 
-    SmoothMotionBasis(const Flow& flow, double start, bool own_forcing)
-        : flow_(flow),
-          start_(start),
-          own_forcing_(own_forcing) {}
-
     Row at(double tau) const {
-        const double s = std::max(0.0, tau - start_);
-        const Transfer t = flow_.transfer(s);
+        const double s = std::max(0.0, tau - start);
+        const Transfer t = flow.transfer(s);
         Row row = Row::Zero();
         row(0) = t.a22, row(1) = t.a21;
-        if (!own_forcing_) return row;
-        row(2) = flow_.after({0, 0, 0, 1}, s).x, row(3) = flow_.after({0, 0, 1, 0}, s).x;
+        if (!own_forcing) return row;
+        row(2) = flow.after({0, 0, 0, 1}, s).x, row(3) = flow.after({0, 0, 1, 0}, s).x;
         row(4) = 1;
         return row;
     }
     /// Free motion with x = 0 and x' = 1 at tau, as a combination of the first two; divided by
     /// their Wronskian.
     Eigen::Vector2d kink(double tau) const {
-        const Transfer t = flow_.transfer(std::max(0.0, tau - start_));
+        const Transfer t = flow.transfer(std::max(0.0, tau - start));
         return Eigen::Vector2d(-t.a21, t.a22) / (t.a22 * t.a11 - t.a12 * t.a21);
     }
-    Eigen::Index columns() const { return own_forcing_ ? most : 2; }
-
-private:
-    const Flow& flow_;
-    const double start_;
-    const bool own_forcing_;
+    Eigen::Index columns() const { return own_forcing ? most : 2; }
 };
 
 /// Sums over all later points: products of the basis with its first two functions, and with x.
@@ -108,7 +97,7 @@ std::optional<Kink> find_kink(const IntervalSamples& in, const Flow& flow, bool 
     const std::vector<KinkPoint> points = points_of(in);
     if (points.size() < fewest_kink_points + (own_forcing ? 2 * points_beside_kink : 0))
         return std::nullopt;
-    const SmoothMotionBasis basis(flow, in.from, own_forcing);
+    const SmoothMotionBasis basis{flow, in.from, own_forcing};
     const Eigen::Index columns = basis.columns();
     Eigen::MatrixXd N = Eigen::MatrixXd::Zero(columns, columns);
     Eigen::VectorXd g = Eigen::VectorXd::Zero(columns);
@@ -159,14 +148,14 @@ constexpr int most_rounds_of_kinks = 10;
 using TimeSpan = std::pair<double, double>;
 
 void see_in_windows(
-    const KinkSearch& in, const Flow& flow, const TimeSpan& interval,
-    IdentificationProgress& progress, std::vector<Kink>& seen) {
+    const ImpactSearchInput& in, const Flow& flow, const TimeSpan& interval,
+    std::vector<Kink>& seen) {
     const auto [from, to] = interval;
     for (double begin = from; begin < to; begin += window_hop) {
-        progress.look();
+        in.progress.look();
         const double end = std::min(to, begin + window);
-        const auto missed =
-            find_kink({in.record.tau, in.record.x, in.bad_x, in.noise, 0, begin, end}, flow, true);
+        const auto missed = find_kink(
+            {in.record, in.record.x, in.bad.x, in.statistics.x.noise, 0, begin, end}, flow, true);
         if (missed) seen.push_back(*missed);
         if (end == to) return;
     }
@@ -174,12 +163,10 @@ void see_in_windows(
 
 /// Adds the best of kinks near each other; false if there is none.
 bool add_best(std::vector<Kink> seen, std::vector<Candidate>& candidates) {
-    std::sort(seen.begin(), seen.end(), [](const Kink& a, const Kink& b) {
-        return a.improvement > b.improvement;
-    });
+    std::ranges::sort(seen, std::greater(), &Kink::improvement);
     std::vector<double> added;  // in order of time
     for (const Kink& m : seen) {
-        const auto after = std::lower_bound(added.begin(), added.end(), m.tau);
+        const auto after = std::ranges::lower_bound(added, m.tau);
         if ((after != added.end() && *after - m.tau < 0.5 * window) ||
             (after != added.begin() && m.tau - *(after - 1) < 0.5 * window))
             continue;
@@ -204,23 +191,20 @@ std::vector<TimeSpan> intervals_of(
 
 }  // namespace
 
-void KinkSearch::add_to(
-    std::vector<Candidate>& candidates, IdentificationProgress& progress) const {
-    const Flow flow(
-        oscillator[Unknown::stiffness], oscillator[Unknown::damping], 1,
-        oscillator[Unknown::Omega]);
+void add_kinks(const ImpactSearchInput& in, std::vector<Candidate>& candidates) {
+    if (in.record.x.empty()) return;
+    const Flow flow(1, 2 * in.parameters.zeta(), 1, in.parameters.Omega);
     std::vector<TimeSpan> looked_at;
     for (int round = 0; round < most_rounds_of_kinks; ++round) {
-        sort_by_time(candidates);
-        std::vector<TimeSpan> intervals = intervals_of(candidates, record);
+        std::ranges::sort(candidates, {}, &Candidate::tau);
+        std::vector<TimeSpan> intervals = intervals_of(candidates, in.record);
         std::vector<Kink> seen;
         for (const TimeSpan& i : intervals)
-            if (!std::binary_search(looked_at.begin(), looked_at.end(), i))
-                see_in_windows(*this, flow, i, progress, seen);
+            if (!std::ranges::binary_search(looked_at, i)) see_in_windows(in, flow, i, seen);
         looked_at = std::move(intervals);
         if (!add_best(std::move(seen), candidates)) return;
     }
-    sort_by_time(candidates);
+    std::ranges::sort(candidates, {}, &Candidate::tau);
 }
 
 }  // namespace vines

@@ -32,20 +32,12 @@ constexpr double student = 1.717;
 // twice as wide for a record of this length, and the excess falls with the cube of the length.
 constexpr double short_tau = 250;
 
+using SlowState = Eigen::Vector2d;
+
 struct GrowthWithStates {
     GrowthSteps steps;
     std::vector<SlowState> change;  ///< change of the slow state in each step
 };
-
-GrowthWithStates growth_with_states(
-    const ExponentHistory& h, double tau_start, const std::vector<SlowState>& states) {
-    const std::size_t stride = h.coarse_stride();
-    GrowthWithStates g{growth_steps(h, tau_start, stride), {}};
-    const std::size_t entries = (h.tau.size() + stride - 1) / stride;
-    for (std::size_t k = entries - g.steps.log.size(); k < entries; ++k)
-        g.change.push_back(states[k * stride] - states[(k - 1) * stride]);
-    return g;
-}
 
 std::size_t steps_of_difference(const GrowthSteps& steps) {
     const auto n = static_cast<double>(steps.duration.size());
@@ -87,37 +79,6 @@ double variance_with_fit(const std::vector<double>& off, std::size_t fitted) {
     return variance_of_sum(off, lag_weights(lags)) / (1 - 0.75 * dependent) /
            (1 - static_cast<double>(fitted) / n);
 }
-
-}  // namespace
-
-SlowState slow_state(double x, double x_dot, double angle) {
-    const double sin = elementary::sin(angle), cos = elementary::cos(angle);
-    return {x * cos - x_dot * sin, x * sin + x_dot * cos};
-}
-
-MeasuredSlope measured_slope(
-    const ExponentHistory& h, double tau_start, const std::vector<SlowState>& states) {
-    GrowthWithStates g = growth_with_states(h, tau_start, states);
-    const double plain = slope_of(g.steps);
-    if (std::isnan(plain)) return {nan, nan, nan};
-    const std::size_t n = g.change.size();
-    const std::size_t apart = steps_of_difference(g.steps);
-    const SlowState by = part_of_state(g, apart, plain);
-    for (std::size_t i = 0; i < n; ++i) g.steps.log[i] -= by.dot(g.change[i]);
-    const double slope = slope_of(g.steps);
-    double duration = 0;
-    std::vector<double> off;
-    for (std::size_t i = 0; i < n; ++i) {
-        duration += g.steps.duration[i];
-        off.push_back(g.steps.log[i] - slope * g.steps.duration[i]);
-    }
-    const double brief = short_tau / duration, half = (1 + brief * brief * brief) * student *
-                                                      std::sqrt(variance_with_fit(off, apart)) /
-                                                      duration;
-    return {slope, slope - half, slope + half};
-}
-
-namespace {
 
 constexpr double hiding_gap = 0.1;  // fraction of a typical flight
 
@@ -164,7 +125,8 @@ std::vector<SlowState> slow_states(
     std::vector<double> amplitudes;
     std::vector<SlowState> states;
     for (const IdentifiedImpact& i : impacts) {
-        states.push_back(slow_state(i.x, i.x_dot_after, p.Omega * i.tau));
+        const double sin = elementary::sin(p.Omega * i.tau), cos = elementary::cos(p.Omega * i.tau);
+        states.emplace_back(i.x * cos - i.x_dot_after * sin, i.x * sin + i.x_dot_after * cos);
         amplitudes.push_back(states.back().norm());
     }
     const double typical = median(std::move(amplitudes));
@@ -186,7 +148,7 @@ Continuity continuity_of(
     }
     const double typical_flight = median(flights), typical_speed = median(speeds);
     const auto over_gap = [&](double from, double to) {
-        return std::any_of(gaps.begin(), gaps.end(), [&](const TimeGap& g) {
+        return std::ranges::any_of(gaps, [&](const TimeGap& g) {
             return g.to - g.from > hiding_gap * typical_flight && g.overlaps(from, to);
         });
     };
@@ -203,31 +165,22 @@ Continuity continuity_of(
         else if (known) c.stretches.push_back({i - 1, i});
         else if (follows) ++c.missing;
     }
-    const long seen = std::count_if(
-        impacts.begin(), impacts.end(), [](const IdentifiedImpact& i) { return !i.is_hidden; });
+    const long seen =
+        std::ranges::count_if(impacts, [](const IdentifiedImpact& i) { return !i.is_hidden; });
     if (seen > 0)
         c.share =
             static_cast<double>(c.left_out + c.missing) / static_cast<double>(seen + c.missing);
     return c;
 }
 
-ExponentOptions of_all_stretches(const ExponentOptions& asked) {
-    return {.qr = true, .history = asked.history};
-}
-
-ExponentOptions of_longest_stretch(const ExponentOptions& asked) {
-    return {
-        .eigenvalues = asked.eigenvalues,
-        .raw_product = asked.raw_product,
-        .history = asked.history};
-}
-
 MeasuredExponents::MeasuredExponents(
     const Parameters& p, const MeasuredOscillator& oscillator,
     const std::vector<IdentifiedImpact>& impacts, const std::vector<KnownStretch>& stretches,
     const ExponentOptions& o)
-    : all_(p.epsilon, of_all_stretches(o)),
-      longest_(p.epsilon, of_longest_stretch(o)) {
+    : all_(p.epsilon, {.qr = true, .history = o.history}),
+      longest_(
+          p.epsilon,
+          {.eigenvalues = o.eigenvalues, .raw_product = o.raw_product, .history = o.history}) {
     // The growth of deviations does not depend on the forcing.
     const double mass = 1 + p.epsilon;
     const DeviationFlows flows{
@@ -253,31 +206,44 @@ MeasuredExponents::MeasuredExponents(
             {starts_.empty() ? impacts[s.first].tau : all_.end_tau(), impacts[s.first].tau});
         feed(s, all_, follow);
     }
-    const auto longest = std::max_element(
-        stretches.begin(), stretches.end(),
-        [&](const auto& a, const auto& b) { return length(a) < length(b); });
+    const auto longest = std::ranges::max_element(stretches, {}, length);
     if (longest != stretches.end()) feed(*longest, longest_, [](std::size_t) {});
 }
 
 double MeasuredExponents::moment(double clock) const {
     // Where one stretch ends and the next starts, the clock shows the same time: the end's is
     // returned.
-    auto after = std::lower_bound(
-        starts_.begin(), starts_.end(), clock,
-        [](const StretchStart& s, double c) { return s.clock < c; });
+    auto after = std::ranges::lower_bound(starts_, clock, {}, &StretchStart::clock);
     if (after != starts_.begin()) --after;
     return after == starts_.end() ? nan : after->tau + (clock - after->clock);
 }
 
 MeasuredSlope MeasuredExponents::slope() const {
     const ExponentHistory& h = all_.qr_history();
-    std::vector<SlowState> states;
-    auto at = slow_.begin();
-    for (const double clock : h.tau) {
-        while (at != slow_.end() && at->clock < clock) ++at;
-        states.push_back(at == slow_.end() ? SlowState::Zero() : at->state);
+    const std::size_t stride = h.coarse_stride(), entries = (h.tau.size() + stride - 1) / stride;
+    GrowthWithStates g{growth_steps(h, all_.start_tau(), stride), {}};
+    const double plain = slope_of(g.steps);
+    if (std::isnan(plain)) return {nan, nan, nan};
+    const auto state_at = [&](std::size_t entry) -> SlowState {
+        const auto at = std::ranges::lower_bound(slow_, h.tau[entry], {}, &SlowAt::clock);
+        return at == slow_.end() ? SlowState::Zero() : at->state;
+    };
+    for (std::size_t k = entries - g.steps.log.size(); k < entries; ++k)
+        g.change.push_back(state_at(k * stride) - state_at((k - 1) * stride));
+    const std::size_t n = g.change.size(), apart = steps_of_difference(g.steps);
+    const SlowState by = part_of_state(g, apart, plain);
+    for (std::size_t i = 0; i < n; ++i) g.steps.log[i] -= by.dot(g.change[i]);
+    const double slope = slope_of(g.steps);
+    double duration = 0;
+    std::vector<double> off;
+    for (std::size_t i = 0; i < n; ++i) {
+        duration += g.steps.duration[i];
+        off.push_back(g.steps.log[i] - slope * g.steps.duration[i]);
     }
-    return measured_slope(h, all_.start_tau(), states);
+    const double brief = short_tau / duration, half = (1 + brief * brief * brief) * student *
+                                                      std::sqrt(variance_with_fit(off, apart)) /
+                                                      duration;
+    return {slope, slope - half, slope + half};
 }
 
 bool is_representative(const std::vector<IdentifiedImpact>& impacts) {

@@ -18,11 +18,6 @@
 
 namespace vines {
 
-/// Slow state of the oscillator: (x, x') rotated back by the forcing's angle, divided by a
-/// typical amplitude. It hardly changes during a cycle.
-using SlowState = Eigen::Vector2d;
-SlowState slow_state(double x, double x_dot, double forcing_angle);
-
 /// Growth rate of a measured sum of logarithms in the long run, with a confidence interval.
 ///
 /// The growth follows the amplitude modulation of the oscillator, so a short record shows more or
@@ -34,12 +29,6 @@ struct MeasuredSlope {
     double value;      ///< per unit of tau
     double low, high;  ///< 90 % interval; NaN with too few steps
 };
-
-/// Slope of the first exponent of a history from `tau_start` on, without its first tenth. `states`:
-/// one for each entry; only their differences count. The result does not depend on the requested
-/// length of the history.
-MeasuredSlope measured_slope(
-    const ExponentHistory& history, double tau_start, const std::vector<SlowState>& states);
 
 /// From one impact to another (indices), with all flights between them known.
 struct KnownStretch {
@@ -55,15 +44,13 @@ struct Continuity {
 
     /// Above this fraction the rest is not representative of the motion.
     static constexpr double most = 0.05;
+    /// Whether too many impacts are excluded or missing for a verdict.
+    bool is_incomplete() const { return share > most; }
 };
 /// Only gaps longer than a tenth of a typical flight count: an impact could hide in them.
 Continuity continuity_of(
     const Parameters& parameters, const std::vector<IdentifiedImpact>& impacts,
     const std::vector<TimeGap>& gaps);
-
-/// Splits requested estimators into those for all stretches and those for the longest one.
-ExponentOptions of_all_stretches(const ExponentOptions& asked);
-ExponentOptions of_longest_stretch(const ExponentOptions& asked);
 
 /// The oscillator between impacts, in tau of the given omega0: x'' + damping x' + stiffness x =
 /// forcing.
@@ -88,10 +75,14 @@ public:
     const TransferProduct& longest() const { return longest_; }
     /// Record time at which the clock of all() showed `clock`.
     double moment(double clock) const;
-    /// Slope of the sum of logarithms of qr's first exponent.
+    /// Slope of the sum of logarithms of qr's first exponent, without its first tenth. The result
+    /// does not depend on the requested length of the history.
     MeasuredSlope slope() const;
 
 private:
+    /// Slow state of the oscillator: (x, x') rotated back by the forcing's angle, divided by a
+    /// typical amplitude. It hardly changes during a cycle.
+    using SlowState = Eigen::Vector2d;
     struct StretchStart {
         double clock, tau;
     };

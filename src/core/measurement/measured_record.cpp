@@ -15,8 +15,7 @@ double sample_interval(const MeasuredRecord& r) {
 }
 
 std::size_t first_index(const MeasuredRecord& r, double tau) {
-    return static_cast<std::size_t>(
-        std::lower_bound(r.tau.begin(), r.tau.end(), tau) - r.tau.begin());
+    return static_cast<std::size_t>(std::ranges::lower_bound(r.tau, tau) - r.tau.begin());
 }
 
 std::vector<TimeGap> time_gaps(const MeasuredRecord& r) {
@@ -44,9 +43,9 @@ constexpr double longest_span_steps = 6;
 
 void mark_clipped(const std::vector<double>& v, std::vector<char>& bad) {
     if (v.empty()) return;
-    const auto [low, high] = std::minmax_element(v.begin(), v.end());
+    const auto [low, high] = std::ranges::minmax_element(v);
     for (const double end : {*low, *high}) {
-        if (*low == *high || std::count(v.begin(), v.end(), end) < clipped_times) continue;
+        if (*low == *high || std::ranges::count(v, end) < clipped_times) continue;
         for (std::size_t k = 0; k < v.size(); ++k)
             if (v[k] == end) bad[k] = clipped;
     }
@@ -117,6 +116,9 @@ namespace {
 // The parabola's error, as a fraction of the signal: smaller spikes cannot be seen.
 constexpr double background_share = 1e-3;
 
+// Lower bound in m: zero noise would mean infinite weight.
+constexpr double least_sensor_noise = 1e-12;
+
 }  // namespace
 
 double least_noise_of(const std::vector<double>& signal) {
@@ -126,17 +128,11 @@ double least_noise_of(const std::vector<double>& signal) {
     return background_share * robust_deviation(std::move(off));
 }
 
-namespace {
-
-// Lower bound in m: zero noise would mean infinite weight.
-constexpr double least_sensor_noise = 1e-12;
-
-}  // namespace
-
 SignalStatistics::SignalStatistics(
     const std::vector<double>& tau, const std::vector<double>& signal, const std::vector<char>& bad)
-    : differences(tau, signal),
-      noise(signal.empty() ? nan : std::max(differences.noise(bad), least_sensor_noise)),
+    : noise(
+          signal.empty() ? nan
+                         : std::max(third_difference_noise(tau, signal, bad), least_sensor_noise)),
       least_noise(least_noise_of(signal)) {}
 
 RecordStatistics::RecordStatistics(const MeasuredRecord& r, const BadSamples& bad)

@@ -55,7 +55,6 @@ struct SignalStatistics {
         const std::vector<double>& tau, const std::vector<double>& signal,
         const std::vector<char>& bad);
 
-    ThirdDifferences differences;
     double noise;        ///< standard deviation, at least least_sensor_noise; NaN without a signal
     double least_noise;  ///< least_noise_of() the signal
 };

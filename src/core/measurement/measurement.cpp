@@ -55,9 +55,9 @@ std::optional<DirectEstimate> direct_estimate(
 std::optional<ForwardRun> forward_run(
     const IdentifiedSystem& system, const Identification& found, double tau_end,
     const IdentificationProgress& progress) {
-    const auto known = std::find_if(
-        found.impacts.begin(), found.impacts.end(),
-        [](const IdentifiedImpact& i) { return !i.is_left_out() && !std::isnan(i.y_dot_after); });
+    const auto known = std::ranges::find_if(found.impacts, [](const IdentifiedImpact& i) {
+        return !i.is_left_out() && !std::isnan(i.y_dot_after);
+    });
     if (known == found.impacts.end()) return std::nullopt;
     const IdentifiedImpact& first = *known;
     ImpactRecord impacts;
@@ -118,13 +118,7 @@ MeasurementResult evaluate_measurement(const Measurement& m, const Identificatio
     Identification found;
     std::vector<Doubt> doubts = m.doubts;
     if (m.is_record()) {
-        refined = find_impacts(
-            p, m.record,
-            {.sigmas = m.threshold,
-             .times = m.impact_times,
-             .fixed = m.fixed,
-             .forcing = m.forcing},
-            progress);
+        refined = find_impacts(m, progress);
         const JointFit& fit = refined->fit;
         if (fit.impacts.size() < 2) throw TooFewImpacts{static_cast<long>(fit.impacts.size())};
         oscillator = {fit.values[Unknown::stiffness], fit.values[Unknown::damping]};
@@ -147,7 +141,7 @@ MeasurementResult evaluate_measurement(const Measurement& m, const Identificatio
     progress.reach(IdentificationStage::exponents);
     Continuity continuity = continuity_of(p, found.impacts, time_gaps(m.record));
     MeasuredExponents exponents(p, oscillator, found.impacts, continuity.stretches, m.estimators);
-    const bool is_sound = doubts.empty() && continuity.share <= Continuity::most;
+    const bool is_sound = doubts.empty() && !continuity.is_incomplete();
     const IdentifiedExponents judged =
         judged_exponents(p, oscillator, exponents, found.impacts, is_sound);
     progress.look();

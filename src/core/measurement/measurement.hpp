@@ -11,23 +11,6 @@
 
 namespace vines {
 
-struct Measurement {
-    Parameters parameters;  ///< R is used only if R_given; for a record G is fitted
-    bool R_given = false;
-    MeasuredRecord record = {};             ///< empty if the impacts are given with their states
-    std::vector<double> impact_times = {};  ///< known times of impacts, in tau; empty: detect them
-    std::vector<IdentifiedImpact> impacts = {};  ///< with complete_impacts(); replaces a record
-    std::vector<Doubt> doubts = {};              ///< known doubts about these impacts
-    double threshold = 6;      ///< of a spike, in standard deviations of the noise
-    FixedUnknowns fixed = {};  ///< unknowns of the fit that keep their given values
-    KnownForcing forcing = {};
-    ExponentOptions estimators = {};
-    ExponentOptions direct_estimators = qr_alone;  ///< for the paper's direct estimate
-
-    bool is_record() const { return impacts.empty(); }
-    double step() const;  ///< mean sampling interval of the record, in tau
-};
-
 /// Thrown for a record with fewer than two visible impacts.
 struct TooFewImpacts {
     long seen;
@@ -64,9 +47,6 @@ struct MeasurementResult {
     std::vector<Doubt> doubts;  ///< reasons why no verdict is possible
     std::optional<DirectEstimate> direct;
     std::optional<ForwardRun> forward;
-
-    /// Whether too many impacts are excluded or missing for a verdict.
-    bool is_incomplete() const { return continuity.share > Continuity::most; }
 };
 
 /// Needs at least two `impacts` or a record. Throws TooFewImpacts, and IdentificationStopped if the

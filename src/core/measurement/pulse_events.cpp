@@ -27,17 +27,19 @@ constexpr double most_bins = 4096;
 /// Decay of events, relative to their highest sample, in bins of one step before and after it.
 class Fading {
 public:
-    explicit Fading(double step)
-        : step_(std::max(step, looked_after / most_bins)),
+    explicit Fading(const ImpactSearchInput& in)
+        : in_(in),
+          step_(std::max(in.statistics.step, looked_after / most_bins)),
           before_(static_cast<std::size_t>(looked_before / step_) + 2),
           after_(static_cast<std::size_t>(looked_after / step_) + 2) {}
 
     void learn(
-        const std::vector<double>& tau, const PulseSignal& signal, const std::vector<char>& bad,
-        const std::vector<std::size_t>& peaks, IdentificationProgress& progress) {
+        const PulseSignal& signal, const std::vector<char>& bad,
+        const std::vector<std::size_t>& peaks) {
+        const std::vector<double>& tau = in_.record.tau;
         std::vector<std::vector<double>> before(before_.size()), after(after_.size());
         for (const std::size_t p : peaks) {
-            progress.look();
+            in_.progress.look();
             const double height = std::abs(signal.value[p]);
             // Subtracts noise, which would make all of a low event visible.
             const auto share = [&](std::size_t k) {
@@ -83,6 +85,7 @@ private:
         for (std::size_t b = 0; b < std::min<std::size_t>(2, fading.size()); ++b) fading[b] = 1;
     }
 
+    const ImpactSearchInput& in_;
     const double step_;
     std::vector<double> before_, after_;
 };
@@ -93,7 +96,7 @@ std::vector<std::size_t> standing_out(
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < signal.value.size(); ++k)
         if (!bad[k] && std::abs(signal.value[k]) > sigmas * signal.noise) order.push_back(k);
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
         return std::abs(signal.value[a]) > std::abs(signal.value[b]);
     });
     return order;
@@ -103,12 +106,13 @@ std::vector<std::size_t> standing_out(
 /// an event at p explains sample k.
 template <class Explained>
 std::vector<std::size_t> unexplained(
-    const std::vector<double>& tau, const std::vector<std::size_t>& order,
-    const Explained& explained, IdentificationProgress& progress) {
+    const ImpactSearchInput& in, const std::vector<std::size_t>& order,
+    const Explained& explained) {
+    const std::vector<double>& tau = in.record.tau;
     std::vector<std::size_t> peaks;  // in order of time
     for (const std::size_t k : order) {
-        progress.tick();
-        const auto after = std::lower_bound(peaks.begin(), peaks.end(), k);
+        in.progress.tick();
+        const auto after = std::ranges::lower_bound(peaks, k);
         bool known = false;
         for (auto p = after; !known && p != peaks.begin() && tau[k] - tau[*(p - 1)] < looked_after;
              --p)
@@ -136,32 +140,30 @@ double middle_of(const std::vector<double>& tau, const PulseSignal& signal, std:
 }  // namespace
 
 PulseEvents pulse_events(
-    const std::vector<double>& tau, double step, const PulseSignal& signal,
-    const std::vector<char>& bad, double sigmas, IdentificationProgress& progress) {
+    const ImpactSearchInput& in, const PulseSignal& signal, const std::vector<char>& bad) {
+    const std::vector<double>& tau = in.record.tau;
+    const double step = in.statistics.step, sigmas = in.measurement.threshold;
     const std::vector<std::size_t> order = standing_out(signal, bad, sigmas);
-    // The highest samples within the range of an event.
-    const std::vector<std::size_t> highest =
-        unexplained(tau, order, [](std::size_t, std::size_t) { return true; }, progress);
-    Fading fading(step);
-    fading.learn(tau, signal, bad, highest, progress);
-    const std::vector<std::size_t> peaks = unexplained(
-        tau, order,
-        [&](std::size_t p, std::size_t k) {
+    Fading fading(in);
+    // Learns from the highest samples within the range of an event.
+    fading.learn(
+        signal, bad, unexplained(in, order, [](std::size_t, std::size_t) { return true; }));
+    const std::vector<std::size_t> peaks =
+        unexplained(in, order, [&](std::size_t p, std::size_t k) {
             return std::abs(signal.value[k]) <
                    sigmas * signal.noise +
                        separate_factor * std::abs(signal.value[p]) * fading.at(tau[k] - tau[p]);
-        },
-        progress);
-    PulseEvents found{{}, step, step};
+        });
+    PulseEvents found{{}, {step, step}};
     std::vector<double> heights;
     for (const std::size_t p : peaks) {
-        found.events.push_back({middle_of(tau, signal, p), signal.value[p]});
+        const double middle = middle_of(tau, signal, p);
+        found.events.push_back({.tau = middle, .height = signal.value[p], .event = middle});
         heights.push_back(std::abs(signal.value[p]));
     }
     if (heights.empty()) return found;
     const double share = signal.noise / quantile_of_moduli(heights, quantile_of_fading);
-    found.before = fading.reach(false, share) + step;
-    found.after = fading.reach(true, share) + step;
+    found.extent = {fading.reach(false, share) + step, fading.reach(true, share) + step};
     return found;
 }
 

@@ -19,11 +19,6 @@ namespace vines {
 
 namespace {
 
-struct SmoothBackground {
-    std::vector<double> residual;  ///< the acceleration minus its smooth part, one for each sample
-    double noise;                  ///< standard deviation of the residual outside pulses
-};
-
 // The background is nearly a sine of frequency 1 (in tau): over +-.25 a parabola fits it to 2e-4.
 // The neighbourhood holds at least 9 samples on each side, because pulses may cover half of them.
 constexpr double background_least = 0.25;
@@ -46,84 +41,47 @@ struct Neighbourhood {
     }
 };
 
-/// Sorted values without NaN.
-class OrderedValues {
-public:
-    void add(double value) {
-        if (!std::isnan(value)) values_.insert(place_of(value), value);
-    }
-    void remove(double value) {
-        if (!std::isnan(value)) values_.erase(place_of(value));
-    }
-    /// NaN without values.
-    double median() const {
-        if (values_.empty()) return nan;
-        const std::size_t middle = values_.size() / 2;
-        return values_.size() % 2 ? values_[middle] : 0.5 * (values_[middle] + values_[middle - 1]);
-    }
-
-private:
-    std::vector<double>::iterator place_of(double value) {
-        return std::lower_bound(values_.begin(), values_.end(), value);
-    }
-    std::vector<double> values_;
-};
-
 /// Work of one pass through a neighbourhood, for IdentificationProgress::tick.
 std::size_t work_of(const Neighbourhood& near) { return 1 + (near.to - near.from) / 64; }
 
 /// Deviation from the median of the neighbourhood: the first approximation.
-std::vector<double> without_median(
-    const MeasuredRecord& r, double reach, IdentificationProgress& progress) {
-    std::vector<double> residual(r.tau.size());
-    OrderedValues values;
+std::vector<double> without_median(const ImpactSearchInput& in, double reach) {
+    const auto at = [&](std::size_t k) {
+        return in.record.x_ddot.begin() + static_cast<std::ptrdiff_t>(k);
+    };
+    std::vector<double> residual(in.record.tau.size());
     Neighbourhood near;
-    for (std::size_t k = 0; k < r.tau.size(); ++k) {
-        const Neighbourhood before = near;
-        near.move_to(k, r.tau, reach);
-        for (std::size_t j = before.from; j < std::min(before.to, near.from); ++j) {
-            progress.tick(work_of(near));
-            values.remove(r.x_ddot[j]);
-        }
-        for (std::size_t j = std::max(before.to, near.from); j < near.to; ++j) {
-            progress.tick(work_of(near));
-            values.add(r.x_ddot[j]);
-        }
-        residual[k] = r.x_ddot[k] - values.median();
+    for (std::size_t k = 0; k < residual.size(); ++k) {
+        near.move_to(k, in.record.tau, reach);
+        in.progress.tick(work_of(near));
+        residual[k] = in.record.x_ddot[k] - median({at(near.from), at(near.to)});
     }
     return residual;
 }
 
 /// Least-squares parabola through samples, as normal equations N z = g.
 struct ParabolaEquations {
-    double count = 0, s = 0, s_squared = 0, s_cubed = 0, s_fourth = 0;
+    Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
     Eigen::Vector3d g = Eigen::Vector3d::Zero();
 
     void add(double at, double value) {
-        const double squared = at * at;
-        count += 1;
-        s += at;
-        s_squared += squared;
-        s_cubed += at * squared;
-        s_fourth += squared * squared;
-        g += Eigen::Vector3d(value, at * value, squared * value);
+        const Eigen::Vector3d row(1, at, at * at);
+        N += row * row.transpose();
+        g += value * row;
     }
+    double count() const { return N(0, 0); }
     /// Value at 0.
-    double solve() const {
-        Eigen::Matrix3d N;
-        N << count, s, s_squared, s, s_squared, s_cubed, s_squared, s_cubed, s_fourth;
-        return N.ldlt().solve(g)(0);
-    }
+    double solve() const { return N.ldlt().solve(g)(0); }
 };
 
 /// Residual of the acceleration: each sample minus the parabola through its unmasked neighbours.
 class BackgroundFit {
 public:
-    BackgroundFit(const MeasuredRecord& r, double reach, IdentificationProgress& progress)
-        : r_(r),
+    BackgroundFit(const ImpactSearchInput& in, double reach)
+        : r_(in.record),
           reach_(reach),
-          progress_(progress),
-          residual_(r.tau.size(), 0) {}
+          progress_(in.progress),
+          residual_(r_.tau.size(), 0) {}
 
     const std::vector<double>& residual() const { return residual_; }
 
@@ -151,7 +109,7 @@ private:
         ParabolaEquations equations;
         for (std::size_t j = near.from; j < near.to; ++j)
             if (!masked_[j]) equations.add((r_.tau[j] - r_.tau[k]) / reach_, r_.x_ddot[j]);
-        return equations.count >= parabola_samples ? r_.x_ddot[k] - equations.solve() : 0;
+        return equations.count() >= parabola_samples ? r_.x_ddot[k] - equations.solve() : 0;
     }
 
     const MeasuredRecord& r_;
@@ -179,24 +137,25 @@ std::vector<char> mask_of(const std::vector<double>& residual, double noise) {
 }
 
 /// Subtracts a parabola through the neighbours of each sample outside pulses. Needs x_ddot.
-SmoothBackground smooth_background(const MeasuredRecord& r, IdentificationProgress& progress) {
+PulseSignal smooth_background(const ImpactSearchInput& in) {
+    const MeasuredRecord& r = in.record;
     const std::size_t n = r.tau.size();
-    const double reach = std::max(background_least, background_samples * sample_interval(r));
-    SmoothBackground found{{}, ThirdDifferences(r.tau, r.x_ddot).noise()};
-    std::vector<double> residual = without_median(r, reach, progress);
+    const double reach = std::max(background_least, background_samples * in.statistics.step);
+    PulseSignal found{{}, third_difference_noise(r.tau, r.x_ddot)};
+    std::vector<double> residual = without_median(in, reach);
     const double coarse = std::max(found.noise, robust_deviation(residual));
     std::vector<char> masked(n, 0);
     for (std::size_t k = 0; k < n; ++k) masked[k] = std::abs(residual[k]) > masking_sigmas * coarse;
     residual = {};
-    BackgroundFit background(r, reach, progress);
+    BackgroundFit background(in, reach);
     for (int round = 0; round < masking_rounds; ++round) {
         background.mask(std::move(masked));
         found.noise = noise_outside(background.masked(), background.residual());
         masked = mask_of(background.residual(), found.noise);
         if (masked == background.masked()) break;
     }
-    found.noise = std::max(found.noise, least_noise_of(r.x_ddot));
-    found.residual = background.residual();
+    found.noise = std::max(found.noise, in.statistics.x_ddot.least_noise);
+    found.value = background.residual();
     return found;
 }
 
@@ -215,13 +174,13 @@ constexpr std::size_t fewest_samples_of_stretch = 40;
 /// Samples [from, to) of a record with the measured motion.
 class SampledStretch {
 public:
-    SampledStretch(
-        const MeasuredRecord& r, const BadSamples& bad, double Omega, std::size_t from,
-        std::size_t to)
+    SampledStretch(const ImpactSearchInput& in, std::size_t from, std::size_t to)
         : rows_(static_cast<Eigen::Index>(to - from), columns),
           a_(static_cast<Eigen::Index>(to - from)),
           known_(to - from),
           usable_(to - from) {
+        const MeasuredRecord& r = in.record;
+        const BadSamples& bad = in.bad;
         const double middle = 0.5 * (r.tau[from] + r.tau[to - 1]),
                      length = r.tau[to - 1] - r.tau[from];
         std::size_t before = from, after = from;
@@ -231,7 +190,7 @@ public:
                 ++after;
             const std::size_t left = before < k ? before : std::max<std::size_t>(k, 1) - 1,
                               right = after > k ? after : std::min(k + 1, r.tau.size() - 1);
-            const double angle = Omega * (r.tau[k] - middle);
+            const double angle = in.parameters.Omega * (r.tau[k] - middle);
             const auto row = static_cast<Eigen::Index>(k - from);
             rows_.row(row) << r.x[k], (r.x[right] - r.x[left]) / (r.tau[right] - r.tau[left]), 1,
                 (r.tau[k] - middle) / length, elementary::sin(angle), elementary::cos(angle);
@@ -288,14 +247,11 @@ private:
 
 }  // namespace
 
-PulseSignal pulse_signal(
-    const MeasuredRecord& r, const BadSamples& bad, double Omega,
-    IdentificationProgress& progress) {
+PulseSignal pulse_signal(const ImpactSearchInput& in) {
+    const MeasuredRecord& r = in.record;
+    const BadSamples& bad = in.bad;
     const std::size_t n = r.tau.size();
-    if (r.x.empty()) {
-        SmoothBackground background = smooth_background(r, progress);
-        return {std::move(background.residual), background.noise};
-    }
+    if (r.x.empty()) return smooth_background(in);
     PulseSignal signal{std::vector<double>(n), nan};
     std::vector<char> unknown(n, 0);
     const double longest = 2 * std::numbers::pi * stretch_cycles;
@@ -305,12 +261,12 @@ PulseSignal pulse_signal(
                n / fewest_samples_of_stretch));
     std::size_t from = 0;
     for (std::size_t i = 1; i <= stretches; ++i) {
-        progress.look();
+        in.progress.look();
         const double end = r.tau.front() + (r.tau.back() - r.tau.front()) * static_cast<double>(i) /
                                                static_cast<double>(stretches);
         const std::size_t to = i == stretches ? n : first_index(r, end);
         if (i < stretches && to - from < fewest_samples_of_stretch) continue;
-        const SampledStretch stretch(r, bad, Omega, from, to);
+        const SampledStretch stretch(in, from, to);
         const Eigen::VectorXd left = stretch.left();
         for (std::size_t k = from; k < to; ++k) {
             signal.value[k] = left(static_cast<Eigen::Index>(k - from));
@@ -319,15 +275,15 @@ PulseSignal pulse_signal(
         from = to;
     }
     // Where the displacement is unusable, the smooth part of the acceleration replaces it.
-    if (std::count(unknown.begin(), unknown.end(), 1) > 0) {
-        const SmoothBackground background = smooth_background(r, progress);
+    if (std::ranges::count(unknown, 1) > 0) {
+        const PulseSignal background = smooth_background(in);
         for (std::size_t k = 0; k < n; ++k)
-            if (unknown[k]) signal.value[k] = background.residual[k];
+            if (unknown[k]) signal.value[k] = background.value[k];
     }
     std::vector<double> quiet;
     for (std::size_t k = 0; k < n; ++k)
         if (!bad.a[k]) quiet.push_back(signal.value[k]);
-    signal.noise = std::max(robust_deviation(std::move(quiet)), least_noise_of(r.x_ddot));
+    signal.noise = std::max(robust_deviation(std::move(quiet)), in.statistics.x_ddot.least_noise);
     return signal;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/measurement/candidates.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines {
@@ -30,8 +31,9 @@ constexpr double half_within = 0.6745, kink_stands_out = 1.5;
 /// Absolute residuals, binned by the time since the impact, from -before on.
 class ResidualBins {
 public:
-    ResidualBins(const JointFit& fit, const MeasuredRecord& r, double step)
-        : width_(std::max(step, farthest_after / most_extent_bins)) {
+    ResidualBins(const ImpactSearchInput& in, const JointFit& fit)
+        : width_(std::max(in.statistics.step, farthest_after / most_extent_bins)) {
+        const MeasuredRecord& r = in.record;
         for (std::size_t i = 0; i < fit.impacts.size(); ++i) {
             if (!fit.impacts[i].is_impact()) continue;
             const double tau = fit.impacts[i].tau;
@@ -64,11 +66,11 @@ private:
 
 }  // namespace
 
-PulseExtent pulse_extent(const JointFit& fit, const MeasuredRecord& r, double step) {
-    const ResidualBins bins(fit, r, step);
+PulseExtent pulse_extent(const ImpactSearchInput& in, const JointFit& fit) {
+    const ResidualBins bins(in, fit);
     // Noise of the background outside pulses: the quieter half of the record.
     const double noise = robust_deviation(fit.a_residual);
-    PulseExtent extent{step, step};
+    PulseExtent extent{in.statistics.step, in.statistics.step};
     double silent_since = 0;
     for (std::size_t b = 0; b < bins.size(); ++b) {
         const double begin = bins.begin(b);
@@ -81,9 +83,9 @@ PulseExtent pulse_extent(const JointFit& fit, const MeasuredRecord& r, double st
     return extent;
 }
 
-double kink_extent(
-    const JointFit& fit, const MeasuredRecord& r, const std::vector<char>& bad_x, double step) {
-    const double bin = 0.5 * step, late = fit.values[Unknown::x_delay],
+double kink_extent(const ImpactSearchInput& in, const JointFit& fit) {
+    const MeasuredRecord& r = in.record;
+    const double bin = 0.5 * in.statistics.step, late = fit.values[Unknown::x_delay],
                  reach = static_cast<double>(kink_bins) * bin;
     std::vector<std::vector<double>> left(kink_bins);
     for (const FittedImpact& i : fit.impacts) {
@@ -92,7 +94,7 @@ double kink_extent(
         for (std::size_t k = first_index(r, tau - reach);
              k < r.tau.size() && r.tau[k] < tau + reach; ++k) {
             const auto b = static_cast<std::size_t>(std::abs(r.tau[k] - tau) / bin);
-            if (b < left.size() && !bad_x[k]) left[b].push_back(std::abs(fit.x_residual[k]));
+            if (b < left.size() && !in.bad.x[k]) left[b].push_back(std::abs(fit.x_residual[k]));
         }
     }
     const double noise = robust_deviation(fit.x_residual);
@@ -128,8 +130,9 @@ struct PulseSample {
 };
 
 std::vector<PulseSample> samples_of(
-    const JointFit& fit, const MeasuredRecord& r, const std::vector<char>& bad_a, double begin,
-    double length, const PulseExtent& extent) {
+    const ImpactSearchInput& in, const JointFit& fit, double begin, double length,
+    const PulseExtent& extent) {
+    const MeasuredRecord& r = in.record;
     std::vector<PulseSample> samples;
     double total = 0;
     for (std::size_t i = 0; i < fit.impacts.size(); ++i) {
@@ -141,7 +144,7 @@ std::vector<PulseSample> samples_of(
                                                       : infinity;
         for (std::size_t k = first_index(r, std::max(start, tau + begin));
              k < r.tau.size() && r.tau[k] < std::min(end, tau + begin + length); ++k) {
-            if (bad_a[k]) continue;
+            if (in.bad.a[k]) continue;
             samples.push_back({r.tau[k] - tau - begin, fit.a_residual[k] / jump, jump * jump});
             total += jump * jump;
         }
@@ -226,18 +229,18 @@ class TrialTimes {
 public:
     /// `other`: the centre of the alternative; both use the same samples.
     TrialTimes(
-        const PulseTemplate& pulse, const JointFit& fit, const FittedImpact& i, double centre,
-        double other, double reach, const MeasuredRecord& r, const std::vector<char>& bad_a,
-        double step)
+        const ImpactSearchInput& in, const PulseTemplate& pulse, const JointFit& fit,
+        const FittedImpact& i, double centre, double other)
         : impact_(i),
           centre_(centre),
-          reach_(reach),
+          step_(in.statistics.step),
           // The displacement gives the time too: where its two intervals meet.
           kink_rate_(i.jump() / i.x_jump_error) {
+        const MeasuredRecord& r = in.record;
         const double jump = i.jump(),
                      // The scatter of single pulses adds to the noise.
             noise = elementary::hypot(fit.noise_a, jump * pulse.scatter()),
-                     around = 4 * step + 1.5 * pulse.length();
+                     around = 4 * step_ + 1.5 * pulse.length();
         const std::size_t first = first_index(r, std::min(centre, other) - around);
         const double last = std::max(centre, other) + around;
         for (int k = -trial_times; k <= trial_times; ++k) {
@@ -246,19 +249,19 @@ public:
             const double x_jump = i.x_jump / i.x_jump_error - kink_rate_ * (tau - i.tau);
             double sum = std::isfinite(x_jump) ? x_jump * x_jump : 0;
             for (std::size_t s = first; s < r.tau.size() && r.tau[s] < last; ++s) {
-                if (bad_a[s]) continue;
+                if (in.bad.a[s]) continue;
                 const double off = (fit.a_residual[s] - jump * pulse.at(r.tau[s] - tau)) / noise;
                 // Limits the weight of an outlier.
                 sum += std::min(off * off, 25.0);
             }
             misfits_[static_cast<std::size_t>(k + trial_times)] = sum;
         }
-        least_ = *std::min_element(misfits_.begin(), misfits_.end());
+        least_ = *std::ranges::min_element(misfits_);
     }
 
     double least() const { return least_; }
 
-    PulseTime time(double step) const {
+    PulseTime time() const {
         double weight = 0, first = 0, second = 0;
         for (int k = -trial_times; k <= trial_times; ++k) {
             const double likelihood = elementary::exp(
@@ -272,7 +275,7 @@ public:
         // The joint fit uses x itself, so its information is subtracted here.
         const double of_x = std::isfinite(kink_rate_) ? kink_rate_ * kink_rate_ : 0;
         const double added = 1 / variance - of_x;
-        if (!std::isfinite(mean) || !(added > least_information / (step * step)))
+        if (!std::isfinite(mean) || !(added > least_information / (step_ * step_)))
             return {impact_.tau, infinity};
         const double from = centre_ - impact_.tau,
                      x_mean = of_x > 0 ? impact_.x_jump / impact_.jump() : 0;
@@ -284,7 +287,7 @@ private:
     double time_of(int k) const { return centre_ + reach_ * k / trial_times; }
 
     const FittedImpact& impact_;
-    const double centre_, reach_, kink_rate_;
+    const double centre_, step_, reach_ = reach_steps * step_, kink_rate_;
     std::array<double, 2 * trial_times + 1> misfits_{};
     double least_;
 };
@@ -292,15 +295,15 @@ private:
 }  // namespace
 
 PulseTemplate::PulseTemplate(
-    const JointFit& fit, const MeasuredRecord& r, const std::vector<char>& bad_a, double step,
-    const PulseExtent& extent) {
+    const ImpactSearchInput& in, const JointFit& fit, const PulseExtent& extent) {
+    const double step = in.statistics.step;
     if (fit.impacts.size() < fewest_impacts) return;
     begin_ = -extent.before - step;
     const double length = extent.after + step - begin_;
     const auto points =
         std::min(most_points, static_cast<std::size_t>(points_per_step * length / step) + 2);
     spacing_ = length / static_cast<double>(points - 1);
-    const std::vector<PulseSample> samples = samples_of(fit, r, bad_a, begin_, length, extent);
+    const std::vector<PulseSample> samples = samples_of(in, fit, begin_, length, extent);
     if (samples.empty()) return;
     TemplateCurve curve(points, spacing_);
     scatter_ = infinity;
@@ -321,7 +324,7 @@ double PulseTemplate::at(double s) const {
 
 double PulseTemplate::length() const {
     if (value_.empty()) return 0;
-    const auto top = std::max_element(value_.begin(), value_.end());
+    const auto top = std::ranges::max_element(value_);
     auto first = top, last = top;
     while (first != value_.begin() && *(first - 1) > 0.5 * *top) --first;
     while (last + 1 != value_.end() && *(last + 1) > 0.5 * *top) ++last;
@@ -330,21 +333,19 @@ double PulseTemplate::length() const {
 }
 
 double PulseTemplate::delay() const {
-    const auto top = std::max_element(value_.begin(), value_.end());
+    const auto top = std::ranges::max_element(value_);
     return begin_ + spacing_ * static_cast<double>(top - value_.begin());
 }
 
 PulseTime pulse_time(
-    const PulseTemplate& pulse, const JointFit& fit, std::size_t impact, double other,
-    const MeasuredRecord& r, const std::vector<char>& bad_a, double step) {
+    const ImpactSearchInput& in, const PulseTemplate& pulse, const JointFit& fit,
+    std::size_t impact, double other) {
     const FittedImpact& i = fit.impacts[impact];
     if (pulse.empty()) return {i.tau, infinity};
-    const double reach = reach_steps * step;
-    const TrialTimes about_fit(pulse, fit, i, i.tau, other, reach, r, bad_a, step);
-    const PulseTime by_fit = about_fit.time(step);
-    if (std::abs(other - i.tau) < reach) return by_fit;
-    const TrialTimes about_other(pulse, fit, i, other, i.tau, reach, r, bad_a, step);
-    return about_other.least() < about_fit.least() ? about_other.time(step) : by_fit;
+    const TrialTimes about_fit(in, pulse, fit, i, i.tau, other);
+    if (std::abs(other - i.tau) < reach_steps * in.statistics.step) return about_fit.time();
+    const TrialTimes about_other(in, pulse, fit, i, other, i.tau);
+    return (about_other.least() < about_fit.least() ? about_other : about_fit).time();
 }
 
 }  // namespace vines

@@ -9,27 +9,21 @@
 
 namespace vines {
 
-/// Time before and after an impact, in tau, both >= 0.
-struct PulseExtent {
-    double before, after;
-};
+struct ImpactSearchInput;
 
 /// Extent of the pulses in the acceleration.
-PulseExtent pulse_extent(const JointFit& fit, const MeasuredRecord& record, double step);
+PulseExtent pulse_extent(const ImpactSearchInput& in, const JointFit& fit);
 
 /// Extent of the kinks in the displacement, on either side: the sensor's filter rounds the kink, or
 /// the contact lasts.
-double kink_extent(
-    const JointFit& fit, const MeasuredRecord& record, const std::vector<char>& bad_x, double step);
+double kink_extent(const ImpactSearchInput& in, const JointFit& fit);
 
 /// Pulse acceleration per unit jump of x', as a function of the time since the impact.
 class PulseTemplate {
 public:
     /// Empty template.
     PulseTemplate() = default;
-    PulseTemplate(
-        const JointFit& fit, const MeasuredRecord& record, const std::vector<char>& bad_a,
-        double step, const PulseExtent& extent);
+    PulseTemplate(const ImpactSearchInput& in, const JointFit& fit, const PulseExtent& extent);
 
     bool empty() const { return value_.empty(); }
     double at(double s) const;
@@ -51,7 +45,7 @@ struct PulseTime {
     double tau, error;
 };
 PulseTime pulse_time(
-    const PulseTemplate& pulse, const JointFit& fit, std::size_t impact, double other,
-    const MeasuredRecord& record, const std::vector<char>& bad_a, double step);
+    const ImpactSearchInput& in, const PulseTemplate& pulse, const JointFit& fit,
+    std::size_t impact, double other);
 
 }  // namespace vines

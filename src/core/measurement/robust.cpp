@@ -32,21 +32,18 @@ double robust_deviation(std::vector<double> v) {
     return 1.4826 * median(std::move(v));
 }
 
-double error_of_median(const std::vector<double>& off) {
-    // sqrt(pi/2)
-    return 1.25 * robust_deviation(off) / std::sqrt(static_cast<double>(off.size()));
-}
-
-ThirdDifferences::ThirdDifferences(const std::vector<double>& tau, const std::vector<double>& v) {
-    if (v.size() < 4) return;
+double third_difference_noise(
+    const std::vector<double>& tau, const std::vector<double>& v,
+    const std::vector<char>& spoiled) {
+    if (v.size() < 4) return nan;
     const double step = (tau.back() - tau.front()) / static_cast<double>(tau.size() - 1);
-    scaled_.reserve(v.size() - 3);
+    std::vector<double> scaled;  // to the variance of the noise
     for (std::size_t i = 0; i + 3 < v.size(); ++i) {
+        const auto is_spoiled = [&](std::size_t k) { return !spoiled.empty() && spoiled[k]; };
         // Allows one missing sample among the four.
-        if (tau[i + 3] - tau[i] > 4.5 * step) {
-            scaled_.push_back(nan);
+        if (tau[i + 3] - tau[i] > 4.5 * step || is_spoiled(i) || is_spoiled(i + 1) ||
+            is_spoiled(i + 2) || is_spoiled(i + 3))
             continue;
-        }
         double difference = 0, variance = 0;
         for (std::size_t j = i; j <= i + 3; ++j) {
             double product = 1;
@@ -55,17 +52,9 @@ ThirdDifferences::ThirdDifferences(const std::vector<double>& tau, const std::ve
             difference += v[j] / product;
             variance += 1 / (product * product);
         }
-        scaled_.push_back(difference / std::sqrt(variance));
+        scaled.push_back(difference / std::sqrt(variance));
     }
-}
-
-double ThirdDifferences::noise(const std::vector<char>& spoiled) const {
-    std::vector<double> clean;
-    clean.reserve(scaled_.size());
-    for (std::size_t i = 0; i < scaled_.size(); ++i)
-        if (!spoiled[i] && !spoiled[i + 1] && !spoiled[i + 2] && !spoiled[i + 3])
-            clean.push_back(scaled_[i]);
-    return robust_deviation(std::move(clean));
+    return robust_deviation(std::move(scaled));
 }
 
 }  // namespace vines

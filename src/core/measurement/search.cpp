@@ -28,106 +28,94 @@ std::vector<TimeGap> hiding_gaps(const MeasuredRecord& r) {
 }
 
 /// Candidates from the record, or from given times, and the gaps of the record as borders.
-ImpactSearchState first_state(const ImpactSearchInput& in) {
-    ImpactSearchState state{.fixed = in.options.fixed, .values = given_unknowns(in.parameters)};
-    state.fixed[Unknown::stiffness] = state.fixed[Unknown::damping] = true;
-    state.found.gaps = hiding_gaps(in.record);
-    if (in.searches()) {
-        FirstCandidates first = first_candidates(in);
-        state.candidates = std::move(first.candidates);
-        state.spoiled.a = first.extent;
-        state.values[Unknown::x_delay] = first.x_delay;
+void find_candidates(ImpactSearch& s) {
+    s.fixed[Unknown::stiffness] = s.fixed[Unknown::damping] = true;
+    s.found.gaps = hiding_gaps(s.record);
+    if (s.searches()) {
+        FirstCandidates first = first_candidates(s);
+        s.candidates = std::move(first.candidates);
+        s.spoiled.a = first.extent;
+        s.values[Unknown::x_delay] = first.x_delay;
     } else {
-        state.spoiled.a = unknown_extent(in.statistics);
-        for (const double tau : in.options.times) state.candidates.push_back({.tau = tau});
+        s.spoiled.a = unknown_extent(s.statistics);
+        for (const double tau : s.measurement.impact_times) s.candidates.push_back({.tau = tau});
     }
-    std::erase_if(state.candidates, [&](const Candidate& c) { return is_in_gap(state, c.tau); });
-    for (const TimeGap& g : state.found.gaps)
-        state.candidates.push_back({.tau = 0.5 * (g.from + g.to), .border = Border::gap});
-    sort_by_time(state.candidates);
-    return state;
+    std::erase_if(s.candidates, [&](const Candidate& c) { return is_in_gap(s, c.tau); });
+    for (const TimeGap& g : s.found.gaps)
+        s.candidates.push_back({.tau = 0.5 * (g.from + g.to), .border = Border::gap});
+    std::ranges::sort(s.candidates, {}, &Candidate::tau);
 }
 
-void find_frequency(const ImpactSearchInput& in, ImpactSearchState& state) {
+void find_frequency(ImpactSearch& s) {
     std::vector<double> times;
-    for (const Candidate& c : state.candidates) times.push_back(c.tau);
-    state.values[Unknown::Omega] =
-        scanned_frequency(fit_input(in, state, in.record), times, in.progress);
+    for (const Candidate& c : s.candidates) times.push_back(c.tau);
+    s.values[Unknown::Omega] = scanned_frequency(fit_input(s), times);
 }
 
 /// Number of impacts without an event in the acceleration.
-std::ptrdiff_t unseen_count(const ImpactSearchState& state) {
-    return std::count_if(state.candidates.begin(), state.candidates.end(), [](const Candidate& c) {
+std::ptrdiff_t unseen_count(const ImpactSearch& s) {
+    return std::ranges::count_if(s.candidates, [](const Candidate& c) {
         return c.height == 0 && c.is_impact() && !c.is_predicted();
     });
 }
 
 /// Fits the displacement alone, with the impact times of the events: this does not depend on other
 /// errors of the acceleration.
-void fit_displacement_first(const ImpactSearchInput& in, ImpactSearchState& state) {
-    const MeasuredRecord by_x{in.record.tau, in.record.x, {}};
-    const auto refit = [&] {
-        fit_motion(in, state, by_x, event_times(in, state));
-        state.spoiled.x = kink_extent(state.found.fit, in.record, in.bad.x, in.statistics.step);
-    };
-    refit();
-    free_oscillator(in, state, by_x, event_times(in, state));
+void fit_displacement_first(ImpactSearch& s) {
+    s.displacement = {s.record.tau, s.record.x, {}};
+    fit_motion_and_pulses(s);
+    free_oscillator(s);
     // If nearly all impacts have a pulse, none needs to be found.
-    fit_until_settled(in, state, refit, 20 * unseen_count(state) > impact_count(state) ? 2 : 1);
-    if (restore_given_oscillator(in, state)) fit_until_settled(in, state, refit, 1);
+    fit_until_settled(s, 20 * unseen_count(s) > impact_count(s) ? 2 : 1);
+    if (restore_given_oscillator(s)) fit_until_settled(s, 1);
+    s.displacement.reset();
 }
 
 /// The result: the visible impacts, and the times without one.
-void report_impacts(const ImpactSearchInput& in, ImpactSearchState& state) {
-    for (const RejectedCandidate& d : state.rejected)
-        if (d.is_shown &&
-            std::none_of(state.candidates.begin(), state.candidates.end(), [&](const Candidate& c) {
+void report_impacts(ImpactSearch& s) {
+    for (const RejectedCandidate& d : s.rejected)
+        if (d.is_shown && std::ranges::none_of(s.candidates, [&](const Candidate& c) {
                 return std::abs(c.tau - d.tau) < closest_impacts;
             }))
-            state.found.dropped.push_back(d.tau);
-    std::sort(state.found.dropped.begin(), state.found.dropped.end());
+            s.found.dropped.push_back(d.tau);
+    std::ranges::sort(s.found.dropped);
     // Given times are not checked for pulses.
-    state.found.unseen = in.searches() ? unseen_count(state) : 0;
+    s.found.unseen = s.searches() ? unseen_count(s) : 0;
     std::vector<FittedImpact> impacts;
-    for (std::size_t i = 0; i < state.candidates.size(); ++i) {
-        if (!state.candidates[i].is_impact() || state.candidates[i].is_predicted()) continue;
-        impacts.push_back(state.found.fit.impacts[i]);
-        state.found.side.push_back(state.sides[i]);
+    for (std::size_t i = 0; i < s.candidates.size(); ++i) {
+        if (!s.candidates[i].is_impact() || s.candidates[i].is_predicted()) continue;
+        impacts.push_back(s.found.fit.impacts[i]);
+        s.found.side.push_back(s.sides[i]);
     }
-    state.found.fit.impacts = std::move(impacts);
-    state.found.extent = state.spoiled.a;
+    s.found.fit.impacts = std::move(impacts);
+    s.found.extent = s.spoiled.a;
 }
 
 }  // namespace
 
-FoundImpacts find_impacts(
-    const Parameters& p, const MeasuredRecord& r, const ImpactSearchOptions& o,
-    IdentificationProgress& progress) {
-    const ImpactSearchInput in(p, r, o, progress);
+FoundImpacts find_impacts(const Measurement& m, IdentificationProgress& progress) {
+    ImpactSearch s{{m, progress}};
     progress.reach(IdentificationStage::spikes);
-    ImpactSearchState state = first_state(in);
+    find_candidates(s);
     progress.reach(IdentificationStage::impacts);
-    if (impact_count(state) < 2) return std::move(state.found);
+    if (impact_count(s) < 2) return std::move(s.found);
 
-    if (!state.fixed[Unknown::Omega]) find_frequency(in, state);
+    if (!s.fixed[Unknown::Omega]) find_frequency(s);
     // The acceleration can determine the sensors' errors only once the impacts are known.
-    if (!r.x.empty() && !r.x_ddot.empty()) fit_displacement_first(in, state);
-    limit_pulse_extent(state);
-    const auto refit = [&] { fit_motion_and_pulses(in, state); };
-    fit_until_settled(in, state, refit, rounds_with_pulses);
-    if (free_oscillator(in, state, r, pulse_times(state)))
-        fit_until_settled(in, state, refit, rounds_with_pulses);
-    if (restore_given_oscillator(in, state))
-        fit_until_settled(in, state, refit, rounds_with_pulses);
-    assign_walls(state);
-    if (impact_count(state) >= fewest_with_mass) fit_with_mass(in, state);
-    for (int round = 0; round < most_hidden_rounds && add_hidden_contacts(in, state); ++round) {
-        fit_until_settled(in, state, refit, 1);
-        assign_walls(state);
-        fit_with_mass(in, state);
+    if (!m.record.x.empty() && !m.record.x_ddot.empty()) fit_displacement_first(s);
+    limit_pulse_extent(s);
+    fit_until_settled(s, rounds_with_pulses);
+    if (free_oscillator(s)) fit_until_settled(s, rounds_with_pulses);
+    if (restore_given_oscillator(s)) fit_until_settled(s, rounds_with_pulses);
+    assign_walls(s);
+    if (impact_count(s) >= fewest_with_mass) fit_with_mass(s);
+    for (int round = 0; round < most_hidden_rounds && add_hidden_contacts(s); ++round) {
+        fit_until_settled(s, 1);
+        assign_walls(s);
+        fit_with_mass(s);
     }
-    report_impacts(in, state);
-    return std::move(state.found);
+    report_impacts(s);
+    return std::move(s.found);
 }
 
 }  // namespace vines

@@ -5,6 +5,7 @@
 #include "core/measurement/hidden_contacts.hpp"
 #include "core/measurement/joint_fit.hpp"
 #include "core/measurement/pulse_template.hpp"
+#include "core/stability/lyapunov.hpp"
 
 namespace vines {
 
@@ -32,17 +33,36 @@ struct FoundImpacts {
     bool settled = false;  ///< the last round neither dropped nor added an impact
 };
 
-struct ImpactSearchOptions {
-    /// Threshold of a spike in the acceleration, in standard deviations of the noise.
-    double sigmas = 6;
-    std::vector<double> times = {};  ///< known times of impacts, in tau: no others are searched
-    FixedUnknowns fixed = {};
-    KnownForcing forcing = {};
+/// Why a record permits no verdict.
+enum class Doubt {
+    not_settled,      ///< the search for impacts did not converge: FoundImpacts::settled
+    unexplained,      ///< the fitted motion does not explain the record
+    pulses_disagree,  ///< many pulses without an impact, and many impacts without a pulse
+    impacts_differ,   ///< R or the momentum error scatters between impacts
+    b_disagrees,      ///< the momentum balance contradicts the given b
+    no_forcing        ///< for a list: no forcing leads from each impact to the next
 };
 
-/// Fewer than two impacts if nothing resembles one. Throws IdentificationStopped.
-FoundImpacts find_impacts(
-    const Parameters& parameters, const MeasuredRecord& record, const ImpactSearchOptions& options,
-    IdentificationProgress& progress);
+/// A record of the oscillator, or a list of impacts, with what is known about the system.
+struct Measurement {
+    Parameters parameters;  ///< R is used only if R_given; for a record G is fitted
+    bool R_given = false;
+    MeasuredRecord record = {};             ///< empty if the impacts are given with their states
+    std::vector<double> impact_times = {};  ///< known times of impacts, in tau; empty: detect them
+    std::vector<IdentifiedImpact> impacts = {};  ///< with complete_impacts(); replaces a record
+    std::vector<Doubt> doubts = {};              ///< known doubts about these impacts
+    double threshold = 6;      ///< of a spike, in standard deviations of the noise
+    FixedUnknowns fixed = {};  ///< unknowns of the fit that keep their given values
+    KnownForcing forcing = {};
+    ExponentOptions estimators = {};
+    ExponentOptions direct_estimators = qr_alone;  ///< for the paper's direct estimate
+
+    bool is_record() const { return impacts.empty(); }
+    double step() const;  ///< mean sampling interval of the record, in tau
+};
+
+/// The impacts of a record. Fewer than two impacts if nothing resembles one. Throws
+/// IdentificationStopped.
+FoundImpacts find_impacts(const Measurement& measurement, IdentificationProgress& progress);
 
 }  // namespace vines

@@ -24,16 +24,16 @@ constexpr double side_sigmas = 3;
 constexpr int most_runs_with_mass = 3;
 
 /// Median delay of events relative to their impacts.
-double event_delay(const ImpactSearchState& state) {
+double event_delay(const ImpactSearch& s) {
     std::vector<double> late;
-    for (const Candidate& c : state.candidates)
+    for (const Candidate& c : s.candidates)
         if (c.height != 0) late.push_back(c.event - c.tau);
     return late.empty() ? 0 : median(std::move(late));
 }
 
 /// Whether stiffness and damping are near the given ones.
-bool is_plausible(const ImpactSearchInput& in, const UnknownValues& v) {
-    const UnknownValues given = given_unknowns(in.parameters);
+bool is_plausible(const ImpactSearch& s, const UnknownValues& v) {
+    const UnknownValues given = given_unknowns(s.parameters);
     const double c = v[Unknown::damping], given_c = given[Unknown::damping];
     return std::abs(v[Unknown::stiffness] - given[Unknown::stiffness]) < most_of_stiffness &&
            c < most_of_damping * given_c + slack_of_damping &&
@@ -41,96 +41,91 @@ bool is_plausible(const ImpactSearchInput& in, const UnknownValues& v) {
 }
 
 /// The wall pushes x back, so the jump of x' shows its side; if it is uncertain, the pulse does.
-int wall_of(const ImpactSearchState& state, std::size_t impact) {
-    const Candidate& c = state.candidates[impact];
+int wall_of(const ImpactSearch& s, std::size_t impact) {
+    const Candidate& c = s.candidates[impact];
     if (c.is_predicted()) return c.predicted_side;
-    const double error = state.found.fit.impacts[impact].x_dot_jump_error;
+    const double error = s.found.fit.impacts[impact].x_dot_jump_error;
     const bool by_pulse = c.height != 0 && !(std::abs(c.jump) > side_sigmas * error);
     return (by_pulse ? c.height : c.jump) > 0 ? -1 : 1;
 }
 
-}  // namespace
-
-JointFitInput fit_input(
-    const ImpactSearchInput& in, const ImpactSearchState& state, const MeasuredRecord& record) {
-    return {in.parameters, record,          in.statistics, in.bad.x,
-            in.bad.a,      state.spoiled.x, state.fixed,   in.options.forcing};
-}
-
-std::vector<ImpactTime> event_times(const ImpactSearchInput& in, const ImpactSearchState& state) {
-    const double error = event_steps * in.statistics.step;
-    std::vector<ImpactTime> all;
-    for (const Candidate& c : state.candidates)
-        all.push_back({c.tau, c.border, c.sticks, c.event, c.height != 0 ? error : infinity, 0, 0});
-    return all;
-}
-
-std::vector<ImpactTime> pulse_times(const ImpactSearchState& state) {
-    std::vector<ImpactTime> all;
-    for (const Candidate& c : state.candidates)
-        all.push_back(
-            {c.tau, c.border, c.sticks, c.pulse_tau, c.pulse_error,
-             c.is_impact() ? state.spoiled.a.before : 0,
-             c.is_impact() ? state.spoiled.a.after : 0});
-    return all;
-}
-
-void fit_motion(
-    const ImpactSearchInput& in, ImpactSearchState& state, const MeasuredRecord& record,
-    const std::vector<ImpactTime>& times) {
-    JointFit& last = state.found.fit;
+void fit_motion(ImpactSearch& s) {
+    JointFit& last = s.found.fit;
     last.x_residual = {}, last.a_residual = {};  // as long as the record
     last = fit_jointly(
-        fit_input(in, state, record), times, state.values,
-        state.candidates_changed ? nullptr : &last, in.progress);
-    state.candidates_changed = false;
-    state.values = last.values;
-    for (std::size_t i = 0; i < state.candidates.size(); ++i) {
-        state.candidates[i].tau = last.impacts[i].tau;
-        state.candidates[i].jump = last.impacts[i].jump();
+        fit_input(s), impact_times(s), s.values, s.candidates_changed ? nullptr : &last);
+    s.candidates_changed = false;
+    s.values = last.values;
+    for (std::size_t i = 0; i < s.candidates.size(); ++i) {
+        s.candidates[i].tau = last.impacts[i].tau;
+        s.candidates[i].jump = last.impacts[i].jump();
     }
 }
 
-void fit_motion_and_pulses(const ImpactSearchInput& in, ImpactSearchState& state) {
-    fit_motion(in, state, in.record, pulse_times(state));
-    if (!in.record.x.empty())
-        state.spoiled.x = kink_extent(state.found.fit, in.record, in.bad.x, in.statistics.step);
-    if (in.record.x_ddot.empty()) return;
-    state.spoiled.a = pulse_extent(state.found.fit, in.record, in.statistics.step);
-    limit_pulse_extent(state);
-    state.found.pulse =
-        PulseTemplate(state.found.fit, in.record, in.bad.a, in.statistics.step, state.spoiled.a);
-    const double late = event_delay(state);
-    for (std::size_t i = 0; i < state.candidates.size(); ++i) {
-        Candidate& c = state.candidates[i];
+}  // namespace
+
+JointFitInput fit_input(const ImpactSearch& s) {
+    return {
+        .parameters = s.parameters,
+        .record = s.displacement ? *s.displacement : s.record,
+        .statistics = s.statistics,
+        .bad = s.bad,
+        .progress = s.progress,
+        .x_spoiled = s.spoiled.x,
+        .fixed = s.fixed,
+        .forcing = s.measurement.forcing};
+}
+
+std::vector<ImpactTime> impact_times(const ImpactSearch& s) {
+    const double error = event_steps * s.statistics.step;
+    std::vector<ImpactTime> all;
+    for (const Candidate& c : s.candidates) {
+        ImpactTime& time = all.emplace_back(ImpactTime{c.tau, c.border, c.sticks});
+        if (s.displacement) {
+            time.pulse_tau = c.event, time.pulse_error = c.height != 0 ? error : infinity;
+        } else {
+            time.pulse_tau = c.pulse_tau, time.pulse_error = c.pulse_error;
+            if (c.is_impact()) time.spoiled = s.spoiled.a;
+        }
+    }
+    return all;
+}
+
+void fit_motion_and_pulses(ImpactSearch& s) {
+    fit_motion(s);
+    const JointFit& fit = s.found.fit;
+    if (!s.record.x.empty()) s.spoiled.x = kink_extent(s, fit);
+    if (s.record.x_ddot.empty() || s.displacement) return;
+    s.spoiled.a = pulse_extent(s, fit);
+    limit_pulse_extent(s);
+    s.found.pulse = PulseTemplate(s, fit, s.spoiled.a);
+    const double late = event_delay(s);
+    for (std::size_t i = 0; i < s.candidates.size(); ++i) {
+        Candidate& c = s.candidates[i];
         if (!c.is_impact()) continue;
-        const double other = c.height != 0 ? c.event - late : state.found.fit.impacts[i].tau;
-        const PulseTime m = pulse_time(
-            state.found.pulse, state.found.fit, i, other, in.record, in.bad.a, in.statistics.step);
+        const double other = c.height != 0 ? c.event - late : fit.impacts[i].tau;
+        const PulseTime m = pulse_time(s, s.found.pulse, fit, i, other);
         c.pulse_tau = m.tau, c.pulse_error = m.error;
     }
-    state.values[Unknown::pulse_lag] = 0;
+    s.values[Unknown::pulse_lag] = 0;
 }
 
-void limit_pulse_extent(ImpactSearchState& state) {
+void limit_pulse_extent(ImpactSearch& s) {
     std::vector<double> flights;
-    for (std::size_t i = 1; i < state.candidates.size(); ++i)
-        flights.push_back(state.candidates[i].tau - state.candidates[i - 1].tau);
+    for (std::size_t i = 1; i < s.candidates.size(); ++i)
+        flights.push_back(s.candidates[i].tau - s.candidates[i - 1].tau);
     const double most = most_spoiled * median(std::move(flights));
-    state.spoiled.a = {
-        std::min(state.spoiled.a.before, most), std::min(state.spoiled.a.after, most)};
+    s.spoiled.a = {std::min(s.spoiled.a.before, most), std::min(s.spoiled.a.after, most)};
 }
 
-bool free_oscillator(
-    const ImpactSearchInput& in, ImpactSearchState& state, const MeasuredRecord& record,
-    const std::vector<ImpactTime>& times) {
-    if (!state.may_free_oscillator || !state.fixed.oscillator() || in.options.fixed.oscillator())
+bool free_oscillator(ImpactSearch& s) {
+    if (!s.may_free_oscillator || !s.fixed.oscillator() || s.measurement.fixed.oscillator())
         return false;
-    JointFitInput free = fit_input(in, state, record);
-    free.fixed = in.options.fixed;
+    JointFitInput free = fit_input(s);
+    free.fixed = s.measurement.fixed;
     free.one_step = true;
-    const JointFit trial = fit_jointly(free, times, state.values, &state.found.fit, in.progress);
-    const UnknownValues given = given_unknowns(in.parameters);
+    const JointFit trial = fit_jointly(free, impact_times(s), s.values, &s.found.fit);
+    const UnknownValues given = given_unknowns(s.parameters);
     const auto contradicts = [&](Unknown u, double least) {
         return std::abs(trial.values[u] - given[u]) >
                std::max(contradiction * trial.errors[u], least * given[u]);
@@ -138,38 +133,38 @@ bool free_oscillator(
     if (!contradicts(Unknown::stiffness, least_of_stiffness) &&
         !contradicts(Unknown::damping, least_of_damping))
         return false;
-    if (!is_plausible(in, trial.values)) return false;
-    state.fixed = in.options.fixed;
-    state.values = trial.values;
+    if (!is_plausible(s, trial.values)) return false;
+    s.fixed = s.measurement.fixed;
+    s.values = trial.values;
     return true;
 }
 
-bool restore_given_oscillator(const ImpactSearchInput& in, ImpactSearchState& state) {
-    if (state.fixed.oscillator() || is_plausible(in, state.values)) return false;
-    const UnknownValues given = given_unknowns(in.parameters);
-    state.may_free_oscillator = false;
-    state.fixed[Unknown::stiffness] = state.fixed[Unknown::damping] = true;
-    state.values[Unknown::stiffness] = given[Unknown::stiffness];
-    state.values[Unknown::damping] = given[Unknown::damping];
-    state.candidates_changed = true;
+bool restore_given_oscillator(ImpactSearch& s) {
+    if (s.fixed.oscillator() || is_plausible(s, s.values)) return false;
+    const UnknownValues given = given_unknowns(s.parameters);
+    s.may_free_oscillator = false;
+    s.fixed[Unknown::stiffness] = s.fixed[Unknown::damping] = true;
+    s.values[Unknown::stiffness] = given[Unknown::stiffness];
+    s.values[Unknown::damping] = given[Unknown::damping];
+    s.candidates_changed = true;
     return true;
 }
 
-void assign_walls(ImpactSearchState& state) {
-    state.sides.clear();
-    for (std::size_t i = 0; i < state.candidates.size(); ++i)
-        state.sides.push_back(state.candidates[i].border == Border::gap ? 0 : wall_of(state, i));
+void assign_walls(ImpactSearch& s) {
+    s.sides.clear();
+    for (std::size_t i = 0; i < s.candidates.size(); ++i)
+        s.sides.push_back(s.candidates[i].border == Border::gap ? 0 : wall_of(s, i));
 }
 
-void fit_with_mass(const ImpactSearchInput& in, ImpactSearchState& state) {
-    JointFitInput with_mass = fit_input(in, state, in.record);
-    with_mass.sides = &state.sides;
-    JointFit fit = state.found.fit;
+void fit_with_mass(ImpactSearch& s) {
+    JointFitInput with_mass = fit_input(s);
+    with_mass.sides = &s.sides;
+    JointFit fit = s.found.fit;
     for (int run = 0; run < most_runs_with_mass && !(run > 0 && fit.converged); ++run)
-        fit = fit_jointly(with_mass, pulse_times(state), fit.values, &fit, in.progress);
-    state.mass_values = fit.values;
-    state.found.with_mass = fit.converged;
-    if (fit.converged) state.found.fit = std::move(fit);
+        fit = fit_jointly(with_mass, impact_times(s), fit.values, &fit);
+    s.mass_values = fit.values;
+    s.found.with_mass = fit.converged;
+    if (fit.converged) s.found.fit = std::move(fit);
 }
 
 }  // namespace vines

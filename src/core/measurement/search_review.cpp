@@ -28,14 +28,13 @@ constexpr double fastest_flight = 20;
 
 class CandidateJudge {
 public:
-    CandidateJudge(
-        const Parameters& p, const std::vector<Candidate>& candidates, const JointFit& fit)
-        : p_(p),
-          candidates_(candidates),
-          fit_(fit),
-          typical_(typical_jump(candidates)),
-          ratio_(jump_to_height(candidates)) {
-        for (const FittedImpact& i : fit.impacts)
+    explicit CandidateJudge(const ImpactSearch& s)
+        : p_(s.parameters),
+          candidates_(s.candidates),
+          fit_(s.found.fit),
+          typical_(typical_jump(candidates_)),
+          ratio_(jump_to_height(candidates_)) {
+        for (const FittedImpact& i : fit_.impacts)
             if (i.is_impact())
                 largest_acceleration_ = std::max(
                     {largest_acceleration_, std::abs(i.x_ddot_before), std::abs(i.x_ddot_after)});
@@ -89,24 +88,21 @@ private:
     double largest_acceleration_ = 0;
 };
 
-/// One entry for each candidate, nonzero if x' does not jump although its error is small, or, with
-/// `pairs`, for the weaker of two that no mass could make in succession. Only one of two neighbours
-/// is marked at a time, because a false one distorts the other. `fit`: of these candidates.
-std::vector<char> false_candidates(
-    const Parameters& p, const std::vector<Candidate>& candidates, const JointFit& fit,
-    bool pairs) {
-    const CandidateJudge judge(p, candidates, fit);
-    const std::size_t n = candidates.size();
+/// One entry for each candidate, nonzero if x' does not jump although its error is small, or, in a
+/// search, for the weaker of two that no mass could make in succession. Only one of two neighbours
+/// is marked at a time, because a false one distorts the other.
+std::vector<char> false_candidates(const ImpactSearch& s) {
+    const CandidateJudge judge(s);
+    const std::size_t n = s.candidates.size();
     std::vector<double> weakness(n);
     for (std::size_t i = 0; i < n; ++i) weakness[i] = judge.weakness(i);
-    for (std::size_t i = 0; pairs && i + 1 < n; ++i)
+    for (std::size_t i = 0; s.searches() && i + 1 < n; ++i)
         if (judge.follow_too_soon(i)) weakness[judge.weaker_of(i)] = infinity;
     std::vector<std::size_t> weakest_first;
     for (std::size_t i = 0; i < n; ++i)
         if (weakness[i] > 0) weakest_first.push_back(i);
-    std::stable_sort(weakest_first.begin(), weakest_first.end(), [&](std::size_t a, std::size_t b) {
-        return weakness[a] > weakness[b];
-    });
+    std::ranges::stable_sort(
+        weakest_first, [&](std::size_t a, std::size_t b) { return weakness[a] > weakness[b]; });
     std::vector<char> none(n, 0);
     for (const std::size_t i : weakest_first)
         none[i] = !(i > 0 && none[i - 1]) && !(i + 1 < n && none[i + 1]);
@@ -117,41 +113,37 @@ std::vector<char> false_candidates(
 constexpr double most_overlooked = 0.1;
 
 /// Pulses away from the known impacts.
-std::vector<Candidate> overlooked_pulses(
-    const ImpactSearchInput& in, const JointFit& fit, const PulseExtent& extent) {
-    const MeasuredRecord& r = in.record;
-    PulseSignal signal{fit.a_residual, fit.noise_a};
-    std::vector<char> passed_over = in.bad.a_without_clipped();
+std::vector<Candidate> overlooked_pulses(const ImpactSearch& s) {
+    const JointFit& fit = s.found.fit;
+    const PulseExtent& extent = s.spoiled.a;
+    const MeasuredRecord& r = s.record;
+    std::vector<char> passed_over = s.bad.a_without_clipped();
     for (const FittedImpact& i : fit.impacts) {
         const double from = i.tau - std::max(extent.before, closest_impacts),
                      to = i.tau + std::max(extent.after, closest_impacts);
         for (std::size_t k = first_index(r, from); k < r.tau.size() && r.tau[k] < to; ++k)
             passed_over[k] = 1;
     }
-    std::vector<Candidate> found;
-    const PulseEvents seen = pulse_events(
-        r.tau, in.statistics.step, signal, passed_over, in.options.sigmas, in.progress);
-    for (const PulseEvent& e : seen.events) found.push_back(candidate_of(e));
-    if (static_cast<double>(found.size()) >
-        most_overlooked * static_cast<double>(fit.impacts.size()))
-        return {};
+    std::vector<Candidate> found =
+        pulse_events(s, {fit.a_residual, fit.noise_a}, passed_over).events;
+    const auto impacts = static_cast<double>(fit.impacts.size());
+    if (static_cast<double>(found.size()) > most_overlooked * impacts) found.clear();
     return found;
 }
 
-void add_overlooked_kinks(
-    const ImpactSearchInput& in, const JointFit& fit, double x_spoiled,
-    std::vector<Candidate>& found) {
+void add_overlooked_kinks(const ImpactSearch& s, std::vector<Candidate>& found) {
+    const JointFit& fit = s.found.fit;
     const UnknownValues& v = fit.values;
     const IntervalFlows flows(v, false, fit.epsilon);
-    const double noise = std::max(fit.noise_x, in.statistics.x.noise);
+    const double noise = std::max(fit.noise_x, s.statistics.x.noise);
     for (std::size_t i = 0; i < fit.intervals.size(); ++i) {
-        in.progress.look();
-        const double from = fit.intervals[i].tau + x_spoiled,
+        s.progress.look();
+        const double from = fit.intervals[i].tau + s.spoiled.x,
                      to = (i + 1 < fit.intervals.size() ? fit.intervals[i + 1].tau
-                                                        : in.record.tau.back()) -
-                          x_spoiled;
+                                                        : s.record.tau.back()) -
+                          s.spoiled.x;
         const auto missed = find_kink(
-            {in.record.tau, fit.x_residual, in.bad.x, noise, v[Unknown::x_delay], from, to},
+            {s.record, fit.x_residual, s.bad.x, noise, v[Unknown::x_delay], from, to},
             flows.of(fit.intervals[i]).parts, false);
         if (missed)
             found.push_back({.tau = missed->tau, .jump = missed->jump / v[Unknown::x_gain]});
@@ -159,71 +151,61 @@ void add_overlooked_kinks(
 }
 
 /// Drops false impacts; returns whether there were any.
-bool drop_false_impacts(const ImpactSearchInput& in, ImpactSearchState& state) {
-    const bool searched = in.searches();
-    const std::vector<char> none =
-        false_candidates(in.parameters, state.candidates, state.found.fit, searched);
+bool drop_false_impacts(ImpactSearch& s) {
+    const std::vector<char> none = false_candidates(s);
     std::vector<Candidate> kept;
-    for (std::size_t i = 0; i < state.candidates.size(); ++i) {
-        const Candidate& c = state.candidates[i];
-        if (none[i]) state.rejected.push_back({c.tau, c.height != 0 || !searched});
+    for (std::size_t i = 0; i < s.candidates.size(); ++i) {
+        const Candidate& c = s.candidates[i];
+        if (none[i]) s.rejected.push_back({c.tau, c.height != 0 || !s.searches()});
         else kept.push_back(c);
     }
-    const bool any = kept.size() < state.candidates.size();
-    state.candidates = std::move(kept);
+    const bool any = kept.size() < s.candidates.size();
+    s.candidates = std::move(kept);
     return any;
 }
 
 /// Adds overlooked impacts that were not dropped before: pulses in the residual of the
 /// acceleration, and kinks in intervals that one motion does not fit. Returns whether there are
 /// any.
-bool add_overlooked_impacts(const ImpactSearchInput& in, ImpactSearchState& state) {
-    const JointFit& fit = state.found.fit;
+bool add_overlooked_impacts(ImpactSearch& s) {
     std::vector<Candidate> overlooked;
-    if (!fit.a_residual.empty()) overlooked = overlooked_pulses(in, fit, state.spoiled.a);
-    if (!in.record.x.empty()) add_overlooked_kinks(in, fit, state.spoiled.x, overlooked);
+    if (!s.found.fit.a_residual.empty()) overlooked = overlooked_pulses(s);
+    if (!s.record.x.empty()) add_overlooked_kinks(s, overlooked);
     bool any = false;
     for (const Candidate& c : overlooked) {
-        const auto times = std::count_if(
-            state.rejected.begin(), state.rejected.end(), [&](const RejectedCandidate& d) {
-                return std::abs(d.tau - c.tau) < same_steps * in.statistics.step;
-            });
-        if (times >= most_rejections || is_in_gap(state, c.tau)) continue;
-        state.candidates.push_back(c);
+        const auto times = std::ranges::count_if(s.rejected, [&](const RejectedCandidate& d) {
+            return std::abs(d.tau - c.tau) < same_steps * s.statistics.step;
+        });
+        if (times >= most_rejections || is_in_gap(s, c.tau)) continue;
+        s.candidates.push_back(c);
         any = true;
     }
-    sort_by_time(state.candidates);
+    std::ranges::sort(s.candidates, {}, &Candidate::tau);
     return any;
 }
 
 }  // namespace
 
-std::ptrdiff_t impact_count(const ImpactSearchState& state) {
-    return std::count_if(state.candidates.begin(), state.candidates.end(), [](const Candidate& c) {
-        return c.is_impact();
-    });
+std::ptrdiff_t impact_count(const ImpactSearch& s) {
+    return std::ranges::count_if(s.candidates, [](const Candidate& c) { return c.is_impact(); });
 }
 
-bool is_in_gap(const ImpactSearchState& state, double tau) {
-    return std::any_of(state.found.gaps.begin(), state.found.gaps.end(), [tau](const TimeGap& g) {
-        return g.from < tau && tau < g.to;
-    });
+bool is_in_gap(const ImpactSearch& s, double tau) {
+    return std::ranges::any_of(
+        s.found.gaps, [tau](const TimeGap& g) { return g.overlaps(tau, tau); });
 }
 
-void fit_until_settled(
-    const ImpactSearchInput& in, ImpactSearchState& state, const std::function<void()>& refit,
-    int least_rounds) {
-    for (int round = 1; round <= most_rounds && impact_count(state) > 1; ++round) {
-        in.progress.reach(IdentificationStage::impacts, ++state.rounds);
-        refit();
-        const bool dropped = drop_false_impacts(in, state),
-                   added =
-                       in.searches() && round < most_rounds && add_overlooked_impacts(in, state);
-        state.found.settled = !dropped && !added;
-        state.candidates_changed = !state.found.settled;
-        if (state.found.settled && round >= least_rounds) return;
+void fit_until_settled(ImpactSearch& s, int least_rounds) {
+    for (int round = 1; round <= most_rounds && impact_count(s) > 1; ++round) {
+        s.progress.reach(IdentificationStage::impacts, ++s.rounds);
+        fit_motion_and_pulses(s);
+        const bool dropped = drop_false_impacts(s),
+                   added = s.searches() && round < most_rounds && add_overlooked_impacts(s);
+        s.found.settled = !dropped && !added;
+        s.candidates_changed = !s.found.settled;
+        if (s.found.settled && round >= least_rounds) return;
     }
-    if (!state.found.settled) refit();
+    if (!s.found.settled) fit_motion_and_pulses(s);
 }
 
 }  // namespace vines

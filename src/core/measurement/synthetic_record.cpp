@@ -27,9 +27,8 @@ double TrueOscillator::acceleration(double tau) const {
 }
 
 const TrueStretch& TrueOscillator::stretch(double tau) const {
-    const auto after = std::upper_bound(
-        motion_.stretches.begin() + 1, motion_.stretches.end(), tau,
-        [](double t, const TrueStretch& s) { return t < s.tau; });
+    const auto after = std::ranges::upper_bound(
+        motion_.stretches.begin() + 1, motion_.stretches.end(), tau, {}, &TrueStretch::tau);
     return *(after - 1);
 }
 

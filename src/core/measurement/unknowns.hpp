@@ -59,20 +59,17 @@ inline constexpr std::size_t sensed_unknowns = 11;
 
 inline Unknown restitution_at(int side) { return side > 0 ? Unknown::R_plus : Unknown::R_minus; }
 
-/// One value, or one error, for each unknown.
-class UnknownValues : public std::array<double, unknowns> {
-public:
-    using std::array<double, unknowns>::operator[];
-    double& operator[](Unknown u) { return (*this)[static_cast<std::size_t>(u)]; }
-    double operator[](Unknown u) const { return (*this)[static_cast<std::size_t>(u)]; }
+/// An entry for each unknown.
+template <class T>
+struct ForUnknowns : std::array<T, unknowns> {
+    using std::array<T, unknowns>::operator[];
+    T& operator[](Unknown u) { return (*this)[static_cast<std::size_t>(u)]; }
+    T operator[](Unknown u) const { return (*this)[static_cast<std::size_t>(u)]; }
 };
+using UnknownValues = ForUnknowns<double>;  ///< values, or errors
 
 /// Marks the unknowns that keep their values.
-class FixedUnknowns : public std::array<bool, unknowns> {
-public:
-    using std::array<bool, unknowns>::operator[];
-    bool& operator[](Unknown u) { return (*this)[static_cast<std::size_t>(u)]; }
-    bool operator[](Unknown u) const { return (*this)[static_cast<std::size_t>(u)]; }
+struct FixedUnknowns : ForUnknowns<bool> {
     /// Whether k and c both keep their values.
     bool oscillator() const { return (*this)[Unknown::stiffness] && (*this)[Unknown::damping]; }
 };

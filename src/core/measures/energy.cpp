@@ -85,32 +85,26 @@ double Energy::energy_of(const Oscillation& o, double y_dot) const {
     return vines::energy_of(parameters_, {o.x_dot, o.x, y_dot, 0});
 }
 
-double Energy::at_end() const {
+EnergyBalance Energy::balance(const Interval& window) const {
+    const Parameters& p = parameters_;
+    const Integrals sum = integrals();
     const Oscillation o = end();
-    return energy_of(o, last_.is_stuck ? o.x_dot : last_.y_dot);
-}
-double Energy::input() const {
-    return parameters_.epsilon * parameters_.A() * integrals()(x_dot_sin);
-}
-double Energy::damper() const { return 2 * parameters_.zeta() * integrals()(x_dot_squared); }
-double Energy::rms() const {
-    return duration_ > 0 ? std::sqrt(integrals()(x_squared) / duration_) : 0;
-}
-
-EnergyBalance balance_of(const Parameters& p, const Energy& e, const Interval& window) {
-    const double dissipated = e.impacts() + e.damper();
+    const double input = p.epsilon * p.A() * sum(x_dot_sin),
+                 damper = 2 * p.zeta() * sum(x_dot_squared),
+                 at_end = energy_of(o, last_.is_stuck ? o.x_dot : last_.y_dot),
+                 stored = at_end - start_;
     return {
         .window = window,
-        .input = p.G == 0 ? 0 : e.input(),
-        .damper = e.damper(),
-        .impacts = e.impacts(),
-        .stored = e.stored(),
-        .residual = e.residual(),
-        .at_start = e.at_start(),
-        .at_end = e.at_end(),
-        .share_impacts = ratio(e.impacts(), dissipated),
-        .rms = e.rms(),
-        .peak = e.peak()};
+        .input = p.G == 0 ? 0 : input,
+        .damper = damper,
+        .impacts = impacts_,
+        .stored = stored,
+        .residual = input - damper - impacts_ - stored,
+        .at_start = start_,
+        .at_end = at_end,
+        .share_impacts = ratio(impacts_, impacts_ + damper),
+        .rms = duration_ > 0 ? std::sqrt(sum(x_squared) / duration_) : 0,
+        .peak = peak_};
 }
 
 std::optional<double> ratio(double numerator, double denominator) {
@@ -122,15 +116,6 @@ std::optional<double> free_amplitude(const Parameters& p) {
                  D = detuning * detuning + 4 * p.zeta() * p.zeta() * p.Omega * p.Omega;
     if (D == 0) return std::nullopt;
     return p.epsilon * p.A() / std::sqrt(D);
-}
-
-double unattached_rms(const Parameters& p, const State& start, double duration) {
-    const Integrals sum =
-        Quadrature::shared(*Flow::shared_free(p))
-            ->over(
-                {start.x, start.x_dot, elementary::sin(p.phi()), elementary::cos(p.phi())},
-                duration);
-    return std::sqrt(sum(x_squared) / duration);
 }
 
 Unattached unattached(const Parameters& p, const State& start, double tau_start, double tau_end) {

@@ -13,6 +13,22 @@
 
 namespace vines {
 
+/// Energy balance of a window and amplitudes of x in it. Energies divided by m1 omega0^2, in m^2.
+struct EnergyBalance {
+    Interval window;  ///< the part that the run reached
+    double input;     ///< integral of epsilon A sin(theta) x' dtau
+    double damper;    ///< integral of 2 zeta x'^2 dtau
+    /// Dissipated by impacts: epsilon (1 - R^2) v^2/(2 (1 + epsilon)) each, with v = x' - y' before
+    /// the impact and R of its wall.
+    double impacts;
+    double stored;    ///< at the end minus at the start
+    double residual;  ///< error of the balance: zero up to rounding
+    double at_start, at_end;
+    /// Fraction of the dissipation that is due to impacts; empty without dissipation.
+    std::optional<double> share_impacts;
+    double rms, peak;  ///< of x, of |x|, m
+};
+
 /// Observer of the energy balance and the amplitude of x over [tau_start, tau_end].
 class Energy : public Observer {
 public:
@@ -22,18 +38,7 @@ public:
     void on_impact(const Impact&) override;
 
     double duration() const { return duration_; }
-    double input() const;   ///< integral of epsilon A sin(theta) x' dtau
-    double damper() const;  ///< integral of 2 zeta x'^2 dtau
-    /// Dissipated by impacts: epsilon (1 - R^2) v^2/(2 (1 + epsilon)) each, with v = x' - y' before
-    /// the impact and R of its wall.
-    double impacts() const { return impacts_; }
-    double stored() const { return at_end() - at_start(); }
-    double at_start() const { return start_; }
-    double at_end() const;
-    /// Error of the balance: zero up to rounding.
-    double residual() const { return input() - damper() - impacts() - stored(); }
-    double rms() const;                    ///< of x, m
-    double peak() const { return peak_; }  ///< of |x|, m
+    EnergyBalance balance(const Interval& window) const;
 
 private:
     const Parameters parameters_;
@@ -65,17 +70,6 @@ private:
     double energy_of(const Oscillation& o, double y_dot) const;
 };
 
-/// Energy balance of a window and amplitudes of x in it. Energies divided by m1 omega0^2, in m^2.
-struct EnergyBalance {
-    Interval window;  ///< the part that the run reached
-    double input, damper, impacts, stored, residual, at_start, at_end;
-    /// Fraction of the dissipation that is due to impacts; empty without dissipation.
-    std::optional<double> share_impacts;
-    double rms, peak;  ///< of x, m
-};
-EnergyBalance balance_of(
-    const Parameters& parameters, const Energy& energy, const Interval& window);
-
 /// Empty unless the denominator is positive.
 std::optional<double> ratio(double numerator, double denominator);
 
@@ -91,8 +85,6 @@ struct Unattached {
 };
 Unattached unattached(
     const Parameters& parameters, const State& start, double tau_start, double tau_end);
-/// Only the rms, from tau = 0 on, m: the cheaper part.
-double unattached_rms(const Parameters& parameters, const State& start, double duration);
 /// Unattached::amplitude for these parameters.
 std::optional<double> free_amplitude(const Parameters& parameters);
 

@@ -50,14 +50,13 @@ std::span<const State> states_before(const StroboscopicRecord& record, double ta
     return std::span(record.states).first(end);
 }
 
-/// Possible periods, in cycles: the closest returns first; among about equally close ones, such as
-/// all multiples of a period, the shortest first.
-std::vector<std::size_t> returns(std::span<const State> states, const State& scale, double near) {
+/// A possible period: the power of ten of its miss, and its cycles.
+using Return = std::pair<int, std::size_t>;
+
+/// Possible periods: the closest returns first; among about equally close ones, such as all
+/// multiples of a period, the shortest first.
+std::vector<Return> returns(std::span<const State> states, const State& scale, double near) {
     constexpr double rounding = 1e-10;  // closer returns all count as equally close
-    struct Return {
-        int decade;
-        std::size_t cycles;
-    };
     std::vector<Return> found;
     const std::size_t last = states.size() - 1;
     for (std::size_t cycles = 1; cycles <= std::min(longest_period, last); ++cycles) {
@@ -68,14 +67,10 @@ std::vector<std::size_t> returns(std::span<const State> states, const State& sca
             continue;
         int decade = 0;
         for (double next = 10 * rounding; miss >= next; next *= 10) ++decade;
-        found.push_back({decade, cycles});
+        found.emplace_back(decade, cycles);
     }
-    std::stable_sort(found.begin(), found.end(), [](const Return& a, const Return& b) {
-        return a.decade < b.decade;
-    });
-    std::vector<std::size_t> cycles;
-    for (const Return& r : found) cycles.push_back(r.cycles);
-    return cycles;
+    std::ranges::sort(found);
+    return found;
 }
 
 /// Attracting periodic orbit near the last state. `tried` is set if a return came close, so that an
@@ -85,7 +80,7 @@ std::optional<PeriodicOrbit> orbit_at_end(
     const std::function<bool()>& stop, bool& tried) {
     int attempts = 0;
     std::size_t attempted = 0;
-    for (const std::size_t cycles : returns(states, scale, near)) {
+    for (const auto& [decade, cycles] : returns(states, scale, near)) {
         if (attempts > 0 &&
             (attempts == most_attempts || attempted + cycles > most_attempted_cycles))
             break;
@@ -102,10 +97,8 @@ std::optional<PeriodicOrbit> orbit_at_end(
 
 /// Index of the orbit's state at a whole cycle that is closest to s.
 std::size_t phase_of(const State& s, std::span<const State> along, const State& scale) {
-    std::size_t best = 0;
-    for (std::size_t k = 1; k < along.size(); ++k)
-        if (distance(s, along[k], scale) < distance(s, along[best], scale)) best = k;
-    return best;
+    const auto miss = [&](const State& on_orbit) { return distance(s, on_orbit, scale); };
+    return static_cast<std::size_t>(std::ranges::min_element(along, {}, miss) - along.begin());
 }
 
 /// Attracting periodic orbit at the end of a run. A run can end while it slowly leaves an unstable

@@ -21,7 +21,7 @@ int quiet_position(const CyclePositions& positions) {
     std::array<long, bins> count{};
     positions.each([&](std::int64_t at) { ++count[at % CyclePositions::parts / 2]; });
     // Middle of the longest run of bins with the fewest contacts (cyclic).
-    const long fewest = *std::min_element(count.begin(), count.end());
+    const long fewest = *std::ranges::min_element(count);
     int best = 0, best_length = 0;
     for (int from = 0; from < bins; ++from) {
         int length = 0;

@@ -65,6 +65,12 @@ Matrix4 transfer_of(const Leg& leg, double epsilon) {
     return J;
 }
 
+Matrix4 transfer_of(std::span<const Leg> legs, double epsilon) {
+    Matrix4 J = Matrix4::Identity();
+    for (const Leg& leg : legs) J = transfer_of(leg, epsilon) * J;
+    return J;
+}
+
 namespace {
 
 /// Determinant over one part; the contraction is too small for the difference to lose digits.

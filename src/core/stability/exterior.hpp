@@ -9,6 +9,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "core/motion/simulate.hpp"
 
@@ -36,6 +37,8 @@ void carry(Frame& deviations, const Leg& leg, double epsilon);
 void carry(Eigen::Vector4d& deviation, const Leg& leg, double epsilon);
 /// J over all parts.
 Matrix4 transfer_of(const Leg& leg, double epsilon);
+/// The same over legs that follow each other.
+Matrix4 transfer_of(std::span<const Leg> legs, double epsilon);
 
 /// Area spanned by two deviations: components 01, 02, 03, 12, 13, 23 in the order (x', x, y', y).
 using Area = Eigen::Matrix<double, 6, 1>;

@@ -43,18 +43,20 @@ public:
     explicit ThinnedHistory(std::size_t capacity)
         : capacity_(capacity > 0 ? std::max(capacity, shortest_history) : 0) {}
 
-    bool wants_next() const { return capacity_ > 0 && seen_ % stride_ == 0; }
-    void skip() { ++seen_; }
-    void push(double tau, const Exponents& lambda) {
-        if (history_.tau.size() == capacity_) thin();
-        if (!wants_next()) return skip();
-        skip();
-        history_.tau.push_back(tau);
-        history_.lambda.push_back(lambda);
+    /// Calls exponents() if its result is to be kept.
+    template <class Compute>
+    void add(double tau, const Compute& exponents) {
+        if (wants_next() && history_.tau.size() == capacity_) thin();
+        if (wants_next()) {
+            history_.tau.push_back(tau);
+            history_.lambda.push_back(exponents());
+        }
+        ++seen_;
     }
     const ExponentHistory& history() const { return history_; }
 
 private:
+    bool wants_next() const { return capacity_ > 0 && seen_ % stride_ == 0; }
     void thin() {
         std::size_t kept = 0;
         for (std::size_t i = 0; i < history_.tau.size(); i += 2, ++kept) {
@@ -242,9 +244,7 @@ struct TransferProduct::Raw {
     ThinnedHistory thinned;
 
     void multiply(std::span<const Leg> legs, const Saltation& M, double epsilon) {
-        Matrix4 J = Matrix4::Identity();
-        for (const Leg& leg : legs) J = transfer_of(leg, epsilon) * J;
-        product = M.matrix() * J * product;  // T_n ... T_1, eq. (30)
+        product = M.matrix() * transfer_of(legs, epsilon) * product;  // T_n ... T_1, eq. (30)
     }
 
     Exponents exponents(double T) const {
@@ -254,12 +254,14 @@ struct TransferProduct::Raw {
         Exponents lambda;
         for (int k = 0; k < 4; ++k)
             lambda[k] = elementary::log(elementary::modulus(eigenvalues(k))) / T;  // (33)
-        std::sort(lambda.begin(), lambda.end(), std::greater<>());
+        std::ranges::sort(lambda, std::greater<>());
         return lambda;
     }
 };
 
-TransferProduct::TransferProduct(double epsilon, const ExponentOptions& o) : epsilon_(epsilon) {
+TransferProduct::TransferProduct(double epsilon, const ExponentOptions& o)
+    : epsilon_(epsilon),
+      options_(o) {
     if (o.qr) qr_ = std::make_unique<Qr>(std::max(o.history, shortest_history));
     if (o.eigenvalues) powers_ = std::make_unique<Powers>(epsilon, o.history);
     if (o.raw_product) raw_ = std::make_unique<Raw>(o.history);
@@ -275,10 +277,6 @@ void TransferProduct::start(double tau) {
 void TransferProduct::append(std::span<const Leg> legs, const Saltation& M, double tau) {
     end_ = tau;
     ++impacts_;
-    auto record = [&](auto& estimator, auto exponents) {
-        if (!estimator.thinned.wants_next()) return estimator.thinned.skip();
-        estimator.thinned.push(tau, exponents());
-    };
     for (const Leg& leg : legs) {
         if (leg.sticking) rank_ = 2;  // only the two deviations of the centre of mass remain
         if (qr_) qr_->pass(leg, epsilon_);
@@ -287,15 +285,15 @@ void TransferProduct::append(std::span<const Leg> legs, const Saltation& M, doub
     if (M.R == 0) rank_ = std::min(rank_, 3);  // x' - y' = 0 after the impact
     if (qr_) {
         qr_->strike(M);
-        record(*qr_, [&] { return descending(qr_->logs(rank_), rank_, tau - start_); });
+        qr_->thinned.add(tau, [&] { return descending(qr_->logs(rank_), rank_, tau - start_); });
     }
     if (powers_) {
         powers_->product.strike(M);
-        record(*powers_, [&] { return eigenvalues(); });
+        powers_->thinned.add(tau, [&] { return eigenvalues(); });
     }
     if (raw_) {
         raw_->multiply(legs, M, epsilon_);
-        record(*raw_, [&] { return raw_product(); });
+        raw_->thinned.add(tau, [&] { return raw_product(); });
     }
 }
 
@@ -332,7 +330,7 @@ const ExponentHistory& TransferProduct::raw_product_history() const {
 double TransferProduct::sum_rule_residual() const {
     if (!qr_ || impacts_ < 2) return nan;
     const auto errors = qr_->errors(rank_, most_residual * (end_ - start_));
-    return *std::max_element(errors.begin(), errors.end()) / (end_ - start_);
+    return *std::ranges::max_element(errors) / (end_ - start_);
 }
 
 Lyapunov::Lyapunov(
@@ -364,9 +362,8 @@ void WindowedExponents::on_stretch(const Stretch& stretch) {
 void WindowedExponents::on_impact(const Impact& impact) {
     if (!begun_) {
         for (Window& w : windows_) waiting_.push_back(&w);
-        std::sort(waiting_.begin(), waiting_.end(), [](const Window* a, const Window* b) {
-            return a->tau_start > b->tau_start;
-        });
+        std::ranges::sort(
+            waiting_, [](const Window* a, const Window* b) { return a->tau_start > b->tau_start; });
         begun_ = true;
     }
     for (; !waiting_.empty() && waiting_.back()->tau_start <= impact.tau; waiting_.pop_back())

@@ -77,6 +77,7 @@ public:
     /// Appends the legs from the previous impact to the one at tau, and its M.
     void append(std::span<const Leg> legs, const Saltation& M, double tau);
 
+    const ExponentOptions& options() const { return options_; }
     double start_tau() const { return start_; }
     double end_tau() const { return end_; }
     long impacts() const { return impacts_; }  ///< in the window, including the first
@@ -99,6 +100,7 @@ private:
     struct Powers;
     struct Raw;
     const double epsilon_;
+    const ExponentOptions options_;
     double start_ = 0, end_ = 0;
     long impacts_ = 0;
     int rank_ = 4;

@@ -76,9 +76,8 @@ std::array<std::complex<double>, 4> multipliers_of(
     const Eigen::Vector4cd eigenvalues = eigenvalues_of(monodromy);
     std::array<std::complex<double>, 4> values;
     for (int k = 0; k < 4; ++k) values[k] = eigenvalues(k);
-    std::stable_sort(values.begin(), values.end(), [](auto a, auto b) {
-        return elementary::modulus(a) > elementary::modulus(b);
-    });
+    std::ranges::stable_sort(
+        values, [](auto a, auto b) { return elementary::modulus(a) > elementary::modulus(b); });
     const auto logs = powers.log_moduli();
     for (int k = 0; k < 4; ++k) {
         const double modulus = elementary::modulus(values[k]);
@@ -238,15 +237,12 @@ bool count_period(const Parameters& p, const Stop& stop, PeriodicOrbit& orbit) {
         }
     const double to = from + period * (1 - contact_rounding);
     const auto within = [&](double t) { return t >= from && t < to; };
-    orbit.contacts = std::count_if(
-        contacts.contacts.begin(), contacts.contacts.end(),
-        [&](const CountedContact& c) { return within(c.tau); });
-    orbit.impacts = std::count_if(
-        impacts.entries.begin(), impacts.entries.end(),
-        [&](const Impact& i) { return within(i.tau); });
-    orbit.sticks = std::count_if(
-        contacts.sticks.begin(), contacts.sticks.end(),
-        [&](const auto& s) { return within(s.tau_start); });
+    orbit.contacts = std::ranges::count_if(
+        contacts.contacts, [&](const CountedContact& c) { return within(c.tau); });
+    orbit.impacts =
+        std::ranges::count_if(impacts.entries, [&](const Impact& i) { return within(i.tau); });
+    orbit.sticks =
+        std::ranges::count_if(contacts.sticks, [&](const auto& s) { return within(s.tau_start); });
     return true;
 }
 

@@ -23,20 +23,26 @@ Moduli eigenvalue_moduli(const Matrix4& m) {
     const Eigen::Vector4cd eigenvalues = eigenvalues_of(m);
     Moduli moduli;
     for (int k = 0; k < 4; ++k) moduli[k] = elementary::modulus(eigenvalues(k));
-    std::sort(moduli.begin(), moduli.end(), std::greater<>());
+    std::ranges::sort(moduli, std::greater<>());
     return moduli;
 }
 
-// J_i, eq. (19), leg by leg.
-Matrix4 ImpactTransfer::J() const {
-    Matrix4 J = Matrix4::Identity();
-    for (const Leg& leg : legs) J = transfer_of(leg, epsilon) * J;
-    return J;
+namespace {
+
+/// Moduli of J_i, or of T_i = M_i J_i, eq. (30), from the exterior powers.
+Moduli moduli_of(const ImpactTransfer& transfer, bool with_impact) {
+    PowerProduct product(transfer.epsilon);
+    for (const Leg& leg : transfer.legs) product.pass(leg);
+    if (with_impact) product.strike(transfer.M);
+    Moduli moduli = product.log_moduli();
+    for (double& m : moduli) m = elementary::exp(m);
+    return moduli;
 }
 
+}  // namespace
+
 int ImpactTransfer::rank() const {
-    return std::any_of(legs.begin(), legs.end(), [](const Leg& leg) { return leg.sticking; }) ? 2
-                                                                                              : 4;
+    return std::ranges::any_of(legs, [](const Leg& leg) { return leg.sticking; }) ? 2 : 4;
 }
 
 Moduli ImpactTransfer::J_moduli() const {
@@ -55,22 +61,10 @@ Moduli ImpactTransfer::J_moduli() const {
         }
         return moduli;
     }
-    PowerProduct product(epsilon);
-    for (const Leg& leg : legs) product.pass(leg);
-    moduli = product.log_moduli();
-    for (double& m : moduli) m = elementary::exp(m);
-    return moduli;
+    return moduli_of(*this, false);
 }
 
-// T_i = M_i J_i, eq. (30).
-Moduli ImpactTransfer::T_moduli() const {
-    PowerProduct product(epsilon);
-    for (const Leg& leg : legs) product.pass(leg);
-    product.strike(M);
-    Moduli moduli = product.log_moduli();
-    for (double& m : moduli) m = elementary::exp(m);
-    return moduli;
-}
+Moduli ImpactTransfer::T_moduli() const { return moduli_of(*this, true); }
 
 void TransferRecord::on_impact(const Impact& impact) {
     if (impact.tau < tau_start_ || impact.tau > tau_end_) return;

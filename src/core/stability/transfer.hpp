@@ -30,7 +30,7 @@ struct ImpactTransfer {
     Saltation M;
     std::vector<Leg> legs;  ///< from the previous impact
 
-    Matrix4 J() const;
+    Matrix4 J() const { return transfer_of(legs, epsilon); }
     int rank() const;  ///< of J: 4, or 2 after sticking
     Matrix4 T() const { return M.times(J()); }
     Moduli J_moduli() const;

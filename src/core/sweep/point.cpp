@@ -60,7 +60,7 @@ Verdict final_verdict(Verdict verdict, const Regime& regime) {
 double reference_rms(
     const Parameters& p, const State& begin, std::optional<double> amplitude, double duration) {
     return amplitude && *amplitude > 0 ? *amplitude / std::numbers::sqrt2
-                                       : unattached_rms(p, begin, duration);
+                                       : unattached(p, begin, 0, duration).rms;
 }
 
 /// Last state at a whole cycle: a run that ended within a cycle continues to its end.
@@ -174,9 +174,9 @@ namespace {
 double peak_of(const Motion& m) { return m.result.x_max; }
 
 const Motion* from_start(const SweepPoint& point, const std::string& name) {
-    const auto m = std::find_if(
-        point.motions.begin(), point.motions.end(),
-        [&](const Motion& motion) { return motion.start == name && motion.result.measured; });
+    const auto m = std::ranges::find_if(point.motions, [&](const Motion& motion) {
+        return motion.start == name && motion.result.measured;
+    });
     return m == point.motions.end() ? nullptr : &*m;
 }
 
@@ -184,8 +184,7 @@ std::vector<std::string> start_names(std::span<const SweepPoint> row) {
     std::vector<std::string> names;
     for (const SweepPoint& point : row)
         for (const Motion& m : point.motions)
-            if (std::find(names.begin(), names.end(), m.start) == names.end())
-                names.push_back(m.start);
+            if (std::ranges::find(names, m.start) == names.end()) names.push_back(m.start);
     return names;
 }
 
@@ -195,14 +194,13 @@ std::vector<const Motion*> ranked(const SweepPoint& point) {
     std::vector<const Motion*> motions;
     for (const Motion& m : point.motions)
         if (m.result.measured) motions.push_back(&m);
-    std::stable_sort(motions.begin(), motions.end(), [](const Motion* a, const Motion* b) {
-        return peak_of(*a) < peak_of(*b);
-    });
+    std::ranges::stable_sort(
+        motions, [](const Motion* a, const Motion* b) { return peak_of(*a) < peak_of(*b); });
     return motions;
 }
 
 bool depends_on_start(const std::vector<const Motion*>& motions) {
-    return std::any_of(motions.begin(), motions.end(), [&](const Motion* m) {
+    return std::ranges::any_of(motions, [&](const Motion* m) {
         return differs_in_steady_state(motions.back()->result, m->result);
     });
 }

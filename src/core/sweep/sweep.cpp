@@ -72,28 +72,24 @@ struct Row {
     std::vector<SweepPoint> points;
 };
 
-class Sweep {
-public:
-    Sweep(const SweepPlan& plan, int threads, RunControl& control, SweepSink& sink)
-        : plan_(plan),
-          threads_(threads),
-          control_(control),
-          sink_(sink) {}
+struct Sweep {
+    const SweepPlan& plan;
+    const int threads;
+    RunControl& control;
+    SweepSink& sink;
+    std::atomic<std::size_t> tried = 0, elsewhere = 0;
 
     void run() {
-        if (plan_.by_rows()) return run_rows();
-        const std::vector<std::size_t> lines = plan_.in_order ? plan_.lines : coarse_to_fine();
-        run_points(lines.size(), threads_, plan_.options, control_, [&](std::size_t i) {
+        if (plan.by_rows()) return run_rows();
+        const std::vector<std::size_t> lines = plan.in_order ? plan.lines : coarse_to_fine();
+        run_points(lines.size(), threads, plan.options, control, [&](std::size_t i) {
             return single(lines[i]);
         });
     }
 
-    StartTrial trial() const { return {tried_, elsewhere_}; }
-
-private:
     SweepPoint begun(const Place& place) const {
         SweepPoint point;
-        point.system = plan_.system_at(place);
+        point.system = plan.system_at(place);
         return point;
     }
 
@@ -103,12 +99,12 @@ private:
     std::vector<std::size_t> coarse_to_fine() const {
         const bool across = first_axis_changes_flow();
         std::vector<std::array<std::size_t, 3>> keys;
-        keys.reserve(plan_.lines.size());
-        for (const std::size_t line : plan_.lines) {
-            const Place place = plan_.grid.place_of(line);
-            keys.push_back({plan_.grid.level(place), across ? place.at[0] : 0, line});
+        keys.reserve(plan.lines.size());
+        for (const std::size_t line : plan.lines) {
+            const Place place = plan.grid.place_of(line);
+            keys.push_back({plan.grid.level(place), across ? place.at[0] : 0, line});
         }
-        std::sort(keys.begin(), keys.end());
+        std::ranges::sort(keys);
         std::vector<std::size_t> lines;
         lines.reserve(keys.size());
         for (const auto& key : keys) lines.push_back(key[2]);
@@ -116,23 +112,23 @@ private:
     }
 
     bool first_axis_changes_flow() const {
-        if (plan_.grid.steps[0] < 2) return false;
-        Place place = plan_.grid.place_of(0);
-        const auto one = plan_.system_at(place);
+        if (plan.grid.steps[0] < 2) return false;
+        Place place = plan.grid.place_of(0);
+        const auto one = plan.system_at(place);
         place.at[0] = 1;
-        const auto next = plan_.system_at(place);
+        const auto next = plan.system_at(place);
         return one && next &&
                Flow::free_coefficients(one->parameters) !=
                    Flow::free_coefficients(next->parameters);
     }
 
     PointResult run_from(const PointSystem& system, const State& start) {
-        return run_point(system, start, plan_.options, control_);
+        return run_point(system, start, plan.options, control);
     }
 
     /// Task of a line; handed out at once if there is nothing to run.
     std::optional<PointTask> single(std::size_t line) {
-        SweepPoint point = begun(plan_.grid.place_of(line));
+        SweepPoint point = begun(plan.grid.place_of(line));
         if (!point.system) {
             hand_out(line, point);
             return std::nullopt;
@@ -150,7 +146,7 @@ private:
     std::vector<NamedStart> starts_of(const PointSystem& system, std::size_t count) const {
         const State& first = system.start;
         std::vector<NamedStart> starts = {{"", first}};
-        if (!plan_.tries_second_start(count)) return starts;
+        if (!plan.tries_second_start(count)) return starts;
         const bool from_middle =
             first.x == 0 && first.x_dot == 0 && first.y == 0 && first.y_dot == 0;
         starts.push_back(default_starts(system.parameters)[from_middle ? 1 : 0]);
@@ -165,16 +161,16 @@ private:
     void run_rows() {
         std::vector<Row> rows = wanted_rows();
         // Rows stay in memory while they are computed: only enough to keep the threads busy.
-        const std::size_t at_once = static_cast<std::size_t>(std::max(threads_, 1));
+        const std::size_t at_once = static_cast<std::size_t>(std::max(threads, 1));
         for (std::size_t from = 0; from < rows.size(); from += at_once) {
             const std::span<Row> block =
                 std::span(rows).subspan(from, std::min(at_once, rows.size() - from));
             run_fresh(block);
-            if (plan_.default_set) follow_neighbours(block);
-            else if (plan_.carry != Carry::none)
-                parallel(block.size(), threads_, [&](std::size_t i) { carry_along(block[i]); });
+            if (plan.default_set) follow_neighbours(block);
+            else if (plan.carry != Carry::none)
+                parallel(block.size(), threads, [&](std::size_t i) { carry_along(block[i]); });
             for (Row& row : block) {
-                if (plan_.grid.reduced) hand_out(row);
+                if (plan.grid.reduced) hand_out(row);
                 row = {};
             }
         }
@@ -182,27 +178,27 @@ private:
 
     std::vector<Row> wanted_rows() const {
         std::vector<Row> rows;
-        const std::size_t chain = plan_.chain();
-        for (std::size_t i = 0; i < plan_.lines.size(); ++i) {
-            const std::size_t line = plan_.lines[i];
-            if (i == 0 || line / chain != plan_.lines[i - 1] / chain) {
-                rows.push_back({plan_.grid.place_of(line), {}, {}});
-                rows.back().place.at[plan_.grid.inner()] = 0;
+        const std::size_t chain = plan.chain();
+        for (std::size_t i = 0; i < plan.lines.size(); ++i) {
+            const std::size_t line = plan.lines[i];
+            if (i == 0 || line / chain != plan.lines[i - 1] / chain) {
+                rows.push_back({plan.grid.place_of(line), {}, {}});
+                rows.back().place.at[plan.grid.inner()] = 0;
             }
             rows.back().wanted.push_back(line);
         }
-        if (plan_.in_order) return rows;
-        std::stable_sort(rows.begin(), rows.end(), [this](const Row& one, const Row& other) {
-            return plan_.grid.level(one.place) < plan_.grid.level(other.place);
+        if (plan.in_order) return rows;
+        std::ranges::stable_sort(rows, [this](const Row& one, const Row& other) {
+            return plan.grid.level(one.place) < plan.grid.level(other.place);
         });
         return rows;
     }
 
     /// Sets up the points' systems and runs the starts that do not depend on a neighbour.
     void run_fresh(std::span<Row> rows) {
-        const std::size_t n = plan_.grid.row();
+        const std::size_t n = plan.grid.row();
         for (Row& row : rows) row.points.resize(n);
-        run_points(rows.size() * n, threads_, plan_.options, control_, [&](std::size_t task) {
+        run_points(rows.size() * n, threads, plan.options, control, [&](std::size_t task) {
             return fresh(rows[task / n], task % n);
         });
     }
@@ -210,12 +206,12 @@ private:
     /// Task of the k-th point of a row.
     std::optional<PointTask> fresh(Row& row, std::size_t k) {
         Place place = row.place;
-        place.at[plan_.grid.inner()] = k;
+        place.at[plan.grid.inner()] = k;
         SweepPoint& point = row.points[k] = begun(place);
-        if (!point.system || plan_.carry != Carry::none) return std::nullopt;
-        if (!plan_.default_set)
+        if (!point.system || plan.carry != Carry::none) return std::nullopt;
+        if (!plan.default_set)
             return PointTask{
-                *point.system, starts_of(*point.system, row.wanted[0] * plan_.grid.row() + k),
+                *point.system, starts_of(*point.system, row.wanted[0] * plan.grid.row() + k),
                 [&point](std::vector<Motion> motions) { take_single(point, std::move(motions)); }};
         return PointTask{
             *point.system, default_starts(point.system->parameters),
@@ -225,7 +221,7 @@ private:
     /// Passes up and down are independent of each other and run at the same time.
     void follow_neighbours(std::span<Row> rows) {
         std::vector<std::vector<std::optional<Motion>>> found(2 * rows.size());
-        parallel(found.size(), threads_, [&](std::size_t task) {
+        parallel(found.size(), threads, [&](std::size_t task) {
             found[task] = follow(rows[task / 2].points, task % 2 == 0);
         });
         for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -233,7 +229,7 @@ private:
             for (std::size_t k = 0; k < row.points.size(); ++k)
                 for (auto* pass : {&found[2 * i], &found[2 * i + 1]})
                     if ((*pass)[k]) row.points[k].motions.push_back(std::move(*(*pass)[k]));
-            if (plan_.grid.reduced) continue;
+            if (plan.grid.reduced) continue;
             for (const std::size_t line : row.wanted)
                 hand_out(line, row.points[line % row.points.size()]);
         }
@@ -251,7 +247,7 @@ private:
         std::optional<Carried> before;
         std::size_t left = row.wanted.size();
         for (std::size_t step = 0; step < n && left > 0; ++step) {
-            const std::size_t k = plan_.carry == Carry::up ? step : n - 1 - step;
+            const std::size_t k = plan.carry == Carry::up ? step : n - 1 - step;
             SweepPoint& point = row.points[k];
             if (point.system) {
                 const Parameters& p = point.system->parameters;
@@ -262,9 +258,9 @@ private:
                 const auto& end = point.motions[0].result.at_end;
                 before = end ? std::optional(Carried{p, *end}) : std::nullopt;
             }
-            if (plan_.grid.reduced) continue;
+            if (plan.grid.reduced) continue;
             const std::size_t line = row.wanted[0] / n * n + k;
-            if (!std::binary_search(row.wanted.begin(), row.wanted.end(), line)) continue;
+            if (!std::ranges::binary_search(row.wanted, line)) continue;
             hand_out(line, point);
             point = {};
             --left;
@@ -294,26 +290,20 @@ private:
     }
 
     void hand_out(std::size_t line, const SweepPoint& point) {
-        if (point.system && !plan_.default_set) count(depends_on_start(point, false));
-        sink_.point(line, point);
+        if (point.system && !plan.default_set) count(depends_on_start(point, false));
+        sink.point(line, point);
     }
 
     void hand_out(const Row& row) {
-        const RowSummary summary = summary_of(row.points, plan_.largest, plan_.default_set);
-        if (!plan_.default_set) count(summary.depends_on_start);
-        sink_.row(row.wanted[0], summary);
+        const RowSummary summary = summary_of(row.points, plan.largest, plan.default_set);
+        if (!plan.default_set) count(summary.depends_on_start);
+        sink.row(row.wanted[0], summary);
     }
 
-    void count(std::optional<bool> elsewhere) {
-        tried_ += elsewhere.has_value();
-        elsewhere_ += elsewhere == true;
+    void count(std::optional<bool> depends) {
+        tried += depends.has_value();
+        elsewhere += depends == true;
     }
-
-    const SweepPlan& plan_;
-    const int threads_;
-    RunControl& control_;
-    SweepSink& sink_;
-    std::atomic<std::size_t> tried_ = 0, elsewhere_ = 0;
 };
 
 }  // namespace
@@ -333,11 +323,11 @@ bool SweepPlan::tries_second_start(std::size_t point) const {
 }
 
 StartTrial run_sweep(const SweepPlan& plan, int threads, RunControl& control, SweepSink& sink) {
-    Sweep sweep(plan, threads, control, sink);
+    Sweep sweep{plan, threads, control, sink};
     try {
         sweep.run();
     } catch (const Stopped&) {}
-    return sweep.trial();
+    return {sweep.tried, sweep.elsewhere};
 }
 
 }  // namespace vines

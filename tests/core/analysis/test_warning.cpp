@@ -122,7 +122,7 @@ TEST_CASE("exponents that violate the sum rule give a warning") {
     }
     for (const bool histories : {false, true}) {
         std::vector<Warning> warnings;
-        add_warnings(product, {}, histories, warnings);
+        add_warnings(product, histories, warnings);
         const auto* warning = only<warning::SumRuleMissed>(warnings);
         REQUIRE(warning);
         CHECK(warning->tau_start == run.impacts[0].tau);
