@@ -48,9 +48,9 @@ Json describe_derived(const System& system) {
 
 Json describe_sections(const Sections& s) {
     Json stroboscopic = object({{quantity.tau.name, column(s.tau)}});
-    stroboscopic.update(describe(state_columns(), s.states));
+    stroboscopic.update(describe(state_columns, s.states));
     return object(
-        {{"impact", describe(impact_section_columns(), s.impact)},
+        {{"impact", describe(impact_section_columns, s.impact)},
          {"stroboscopic", std::move(stroboscopic)}});
 }
 
@@ -95,9 +95,9 @@ Json describe_manifold(const Manifold& m) {
          {"symmetry_breaking", breaks ? point(*m.symmetry_breaking) : Json(nullptr)},
          {"second_contact", point(m.second_contact)},
          {"stable_ends_by", breaks ? "symmetry_breaking" : "second_contact"},
-         {"stable", describe(branch_columns(), m.stable)},
-         {"unstable", describe(branch_columns(), m.unstable)},
-         {"asymmetric", describe(branch_columns(), m.asymmetric)},
+         {"stable", describe(branch_columns, m.stable)},
+         {"unstable", describe(branch_columns, m.unstable)},
+         {"asymmetric", describe(branch_columns, m.asymmetric)},
          {"free_amplitude", or_null(m.free_amplitude)},
          {"b_at_free_amplitude", or_null(m.b_at_free_amplitude)}});
 }
@@ -105,7 +105,7 @@ Json describe_manifold(const Manifold& m) {
 Json describe_manifold(const ManifoldResult& m) {
     Json j = m.manifold ? describe_manifold(*m.manifold) : Json::object();
     j["points"] = {{quantity.tau.name, column(m.tau)}};
-    j["points"].update(describe(branch_columns(), m.points));
+    j["points"].update(describe(branch_columns, m.points));
     return j;
 }
 
@@ -193,10 +193,10 @@ Json describe_regime(const Regime& r) {
         j, {{"capture", r.capture ? describe_capture(*r.capture) : Json(nullptr)},
             {"cycles_with", column(r.cycles_with)},
             {"share_two_impacts", r.cycles_with.size() > 2 ? r.cycles_with[2] : 0},
-            {"z_moving", describe(moving_z_columns(), r)},
+            {"z_moving", describe(moving_z_columns, r)},
             {"synchronised",
              object({{"share", r.synchronised}, {"longest_half_cycles", r.longest_synchronised}})},
-            {"stretches", describe(stretch_columns(), r.stretches)}});
+            {"stretches", describe(stretch_columns, r.stretches)}});
     return j;
 }
 

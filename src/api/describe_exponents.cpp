@@ -83,14 +83,14 @@ void add_estimators(
     if (shown.qr) {
         Json qr = describe_final(product.qr());
         qr["standard_error"] = column(growth.standard_error);
-        if (histories) qr["history"] = describe(history_columns(), product.qr_history());
+        if (histories) qr["history"] = describe(history_columns, product.qr_history());
         j["qr"] = std::move(qr);
     }
     if (shown.eigenvalues) {
         j["eigenvalues"] = describe_final(product.eigenvalues());
         if (histories)
             j["eigenvalues"]["history"] =
-                describe(history_columns(), product.eigenvalues_history());
+                describe(history_columns, product.eigenvalues_history());
     }
     if (!shown.raw_product) return;
     const double start = product.start_tau();
@@ -100,7 +100,7 @@ void add_estimators(
         finite_or_null(rounding_floor(final[0], product.end_tau() - start));
     if (histories) {
         const ExponentHistory& history = product.raw_product_history();
-        raw["history"] = describe(history_columns(), history);
+        raw["history"] = describe(history_columns, history);
         std::vector<double> floor;
         for (std::size_t i = 0; i < history.tau.size(); ++i)
             floor.push_back(rounding_floor(history.lambda[i][0], history.tau[i] - start));

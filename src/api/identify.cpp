@@ -33,8 +33,8 @@ std::vector<IdentifiedImpact> listed(std::vector<IdentifiedImpact> impacts) {
 
 Json describe_identified(const std::vector<IdentifiedImpact>& impacts) {
     const std::vector<IdentifiedImpact> shown = listed(impacts);
-    Json j = describe(identified_wall_columns(), shown);
-    j.update(describe(identified_columns(), shown));
+    Json j = describe(identified_wall_columns, shown);
+    j.update(describe(identified_columns, shown));
     return j;
 }
 
@@ -75,7 +75,7 @@ Json describe_forward(const std::optional<ForwardRun>& run) {
     if (!run) return nullptr;
     return {
         {"start", run->start},
-        {"impacts", describe(forward_impact_columns(), run->impacts)},
+        {"impacts", describe(forward_impact_columns, run->impacts)},
         {"lambda", column(run->lambda)}};
 }
 
@@ -160,7 +160,7 @@ Json describe_direct(
     if (!direct) return nullptr;
     const Identification& found = direct->found;
     Json j = {
-        {"impacts", describe(identified_columns(), listed(found.impacts))},
+        {"impacts", describe(identified_columns, listed(found.impacts))},
         {"restitution", describe_walls(found)},
         {"lambda", column(direct->lambda)}};
     if (!r.includes("direct_exponents")) return j;
@@ -184,7 +184,7 @@ Json describe_motion(
             every, r.most_points));
     const std::vector<OscillatorMotion> motion = motion_at(result.refined->fit, moments);
     Json j = {{quantity.tau.name, column(moments)}};
-    j.update(describe(fitted_motion_columns(), motion));
+    j.update(describe(fitted_motion_columns, motion));
     return j;
 }
 
@@ -346,7 +346,7 @@ Json identify_answer(const IdentifyRequest& r, const IdentificationWatch& watch)
             describe_fitted(result.refined->fit, result.parameters, r.system.si->omega0());
     }
     answer["impacts"] = describe_identified(found.impacts);
-    answer["sticking"] = describe(sticking_columns(), sticking_phases(found.impacts));
+    answer["sticking"] = describe(sticking_columns, sticking_phases(found.impacts));
     answer["restitution"] = describe_walls(found);
     answer["b_fitted"] = {
         {"b", finite_or_null(found.b_fitted)}, {"standard_error", finite_or_null(found.b_error)}};

@@ -10,28 +10,6 @@
 
 namespace vines::api {
 
-const Channel time_channel{
-    "time", "time_s", {"time", "t"}, {{"s", 1, {"s", "sec"}}, {"ms", 1e-3, {"ms", "msec"}}}};
-const Channel displacement_channel{
-    "displacement",
-    "displacement_m",
-    {"displacement", "x"},
-    {{"m", 1, {"m"}}, {"mm", 1e-3, {"mm"}}, {"um", 1e-6, {"um"}}}};
-
-namespace {
-
-// g is the standard gravity.
-const std::vector<Unit> acceleration_units = {
-    {"m/s2", 1, {"m/s2", "m_s2", "ms-2", "m/s/s"}}, {"g", 9.80665, {"g"}}};
-
-}  // namespace
-
-const Channel acceleration_channel{
-    "acceleration", "acceleration_m_s2", {"acceleration", "a"}, acceleration_units};
-const Channel base_channel{
-    "base_acceleration", "base_acceleration_m_s2", {"base_acceleration"}, acceleration_units};
-const Channel force_channel{"force", "force_n", {"force"}, {{"N", 1, {"n"}}, {"kN", 1e3, {"kn"}}}};
-
 namespace {
 
 bool is_same_letter(unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); }

@@ -40,8 +40,8 @@ constexpr const char* measured_quantities[] = {
 /// A section as in a bifurcation diagram, without its times.
 Json describe_section(const SweepRequest& r, const Sections& sections, const Place& place) {
     Json j = r.plan.options.section == SectionKind::impact
-                 ? describe(impact_section_columns(), sections.impact)
-                 : describe(state_columns(), sections.states);
+                 ? describe(impact_section_columns, sections.impact)
+                 : describe(state_columns, sections.states);
     j.erase("tau");
     if (const auto si = r.systems->si_at(place)) add_si(j, *si);
     return j;

@@ -69,7 +69,7 @@ Json fitted() {
 }
 
 Json identified_impacts() {
-    return object_of(columns_of(identified_wall_columns()) + columns_of(identified_columns()));
+    return object_of(columns_of(identified_wall_columns) + columns_of(identified_columns));
 }
 
 Json restitution() {
@@ -81,12 +81,12 @@ Json restitution() {
 }
 
 Json fitted_motion() {
-    return object_of(Keys{column_of(quantity.tau)} + columns_of(fitted_motion_columns()));
+    return object_of(Keys{column_of(quantity.tau)} + columns_of(fitted_motion_columns));
 }
 
 Json direct() {
     return object_of(
-        {{"impacts", table_of(identified_columns()), "the same impacts, in the same order"},
+        {{"impacts", table_of(identified_columns), "the same impacts, in the same order"},
          {"restitution", reference("Restitution"), "restitution coefficients"},
          {"lambda", four_exponents(),
           "four exponents by qr, without the impacts that status excludes here"},
@@ -99,7 +99,7 @@ Json direct() {
 Json forward_run() {
     return object_of(
         {{"start", number(), "tau at the start of the run"},
-         {"impacts", table_of(forward_impact_columns()), "impacts of the run"},
+         {"impacts", table_of(forward_impact_columns), "impacts of the run"},
          {"lambda", four_exponents(), "four exponents by qr"}});
 }
 

@@ -50,9 +50,8 @@ Json map_of(Json values);
 /// The names of an enumeration; nullable if one of its values is null in JSON.
 template <class Enum>
 Json enum_schema() {
-    const auto table = enum_names<Enum>();
     const bool has_null =
-        std::any_of(table.begin(), table.end(), [](const auto& entry) { return !entry.name; });
+        std::ranges::any_of(enum_names<Enum>, [](const auto& entry) { return !entry.name; });
     const Json schema = one_of(enum_choices<Enum>());
     return has_null ? or_null(schema) : schema;
 }

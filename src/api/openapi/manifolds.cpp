@@ -23,9 +23,9 @@ Keys manifold_keys() {
          "the point at which the ball meets the same wall a second time: this motion ends there"},
         {"stable_ends_by", one_of({"symmetry_breaking", "second_contact"}),
          "the point that comes first"},
-        {"stable", table_of(branch_columns()), "branch from the fold to the end of stability"},
-        {"unstable", table_of(branch_columns()), "branch below the fold"},
-        {"asymmetric", table_of(branch_columns()), "branch beyond the symmetry breaking"},
+        {"stable", table_of(branch_columns), "branch from the fold to the end of stability"},
+        {"unstable", table_of(branch_columns), "branch below the fold"},
+        {"asymmetric", table_of(branch_columns), "branch beyond the symmetry breaking"},
         {"free_amplitude", or_null(number()),
          "steady amplitude without the absorber, m; null if undamped at resonance"},
         {"b_at_free_amplitude", or_null(number()),
@@ -49,7 +49,7 @@ Keys run_keys() {
     for (const Key& key : manifold_keys()) keys.push_back(optional(key));
     const Keys points = {column_of(quantity.tau.with("end of each half cycle"))};
     keys.push_back(
-        {"points", object_of(points + columns_of(branch_columns())),
+        {"points", object_of(points + columns_of(branch_columns)),
          "the run: maximum of |x| and mean of |y'| in each half cycle"});
     return keys;
 }

@@ -5,12 +5,12 @@
 namespace vines::api::document {
 
 Keys impact_section_keys() {
-    Keys keys = columns_of(impact_section_columns());
+    Keys keys = columns_of(impact_section_columns);
     keys.erase(keys.begin());
     return keys;
 }
 
-Keys stroboscopic_keys() { return columns_of(state_columns()); }
+Keys stroboscopic_keys() { return columns_of(state_columns); }
 
 namespace {
 
@@ -25,7 +25,7 @@ Json run_status() {
 
 Json section() {
     return object_of(
-        {{"impact", table_of(impact_section_columns()), "Poincare section at impact"},
+        {{"impact", table_of(impact_section_columns), "Poincare section at impact"},
          {"stroboscopic",
           object_of(
               Keys{column_of(
@@ -113,13 +113,13 @@ Keys rhythm_keys() {
     return {
         {"cycles_with", numbers(), "fractions of cycles with 0, 1, 2, ... contacts"},
         {"share_two_impacts", number(), "fraction of cycles with two contacts"},
-        {"z_moving", table_of(moving_z_columns()), "moving average of z"},
+        {"z_moving", table_of(moving_z_columns), "moving average of z"},
         {"synchronised",
          object_of(
              {{"share", number(), "fraction of the contacts that lie in synchronised stretches"},
               {"longest_half_cycles", whole(), "length of the longest such stretch"}}),
          "synchronisation of the contacts with the forcing (1:1 resonance)"},
-        {"stretches", table_of(stretch_columns()),
+        {"stretches", table_of(stretch_columns),
          "synchronised and other stretches, in order of time"}};
 }
 
@@ -153,9 +153,9 @@ Json perturbation() {
         value_of(quantity.tau_end.with("end of the stretch").or_null())};
     return object_of(
         Keys{{"start", object_of(start), "perturbation of the start"}} +
-        columns_of(perturbation_columns()) +
+        columns_of(perturbation_columns) +
         Keys{
-            {"impacts", table_of(touch_columns()), "impacts of the second run"},
+            {"impacts", table_of(touch_columns), "impacts of the second run"},
             column_of(quantity.distance),
             {"predicted", object_of(predicted), "prediction of the linear theory"},
             {"slope", object_of(slope),
@@ -205,12 +205,12 @@ Json simulation() {
 void add_simulation(Json& schemas) {
     schemas["Simulation"] = simulation();
     schemas["RunStatus"] = run_status();
-    schemas["Series"] = with_si(table_of(series_columns()));
-    schemas["Impacts"] = with_si(table_of(impact_columns()));
-    schemas["Sticking"] = with_si(table_of(sticking_columns()));
-    schemas["Touches"] = with_si(table_of(touch_columns()));
-    schemas["Eigenvalues"] = with_si(table_of(moduli_columns()));
-    schemas["Matrices"] = with_si(table_of(matrix_columns()));
+    schemas["Series"] = with_si(table_of(series_columns));
+    schemas["Impacts"] = with_si(table_of(impact_columns));
+    schemas["Sticking"] = with_si(table_of(sticking_columns));
+    schemas["Touches"] = with_si(table_of(touch_columns));
+    schemas["Eigenvalues"] = with_si(table_of(moduli_columns));
+    schemas["Matrices"] = with_si(table_of(matrix_columns));
     schemas["Section"] = with_si(section());
     schemas["Energy"] = with_si(energy());
     schemas["Regime"] = with_si(regime());
