@@ -13,20 +13,25 @@
 
 namespace vines::api {
 
-/// A column of a list: `values` returns its list for a source.
+/// A key of an object: `value` returns its value, or its list, for a source.
 template <class Source>
-struct Column {
+struct Property {
     Quantity quantity;
-    Json (*values)(const Source& source);
+    Json (*value)(const Source& source);
 };
 
-/// The columns as an object of lists.
+/// An object with these properties, all null if the source is null.
 template <class Source, std::size_t count>
-Json describe(const Column<Source> (&columns)[count], const Source& source) {
-    Json lists = Json::object();
-    make_room(lists, count);
-    for (const Column<Source>& c : columns) append(lists, {{c.quantity.name, c.values(source)}});
-    return lists;
+Json describe(const Property<Source> (&properties)[count], const Source* source) {
+    Json object = Json::object();
+    make_room(object, count);
+    for (const Property<Source>& p : properties)
+        append(object, {{p.quantity.name, source ? p.value(*source) : Json(nullptr)}});
+    return object;
+}
+template <class Source, std::size_t count>
+Json describe(const Property<Source> (&properties)[count], const Source& source) {
+    return describe(properties, &source);
 }
 
 /// Upper bound of a value as JSON text with a comma, in bytes; `si`: and of its SI counterpart.
@@ -74,7 +79,7 @@ inline constexpr const char* since_start = "exponent from the window's start to 
 
 // Parts of a simulation. x and y in m, derivatives with respect to tau.
 
-inline constexpr Column<Series> series_columns[] = {
+inline constexpr Property<Series> series_columns[] = {
     {quantity.tau.with("equal steps, then the end of the run"), of_result<&Series::tau>},
     {quantity.x, of_result<&Series::x>},
     {quantity.x_dot, of_result<&Series::x_dot>},
@@ -83,7 +88,7 @@ inline constexpr Column<Series> series_columns[] = {
     {quantity.x_ddot, of_result<&Series::x_ddot>},
 };
 
-inline constexpr Column<std::vector<StickingPhase>> sticking_columns[] = {
+inline constexpr Property<std::vector<StickingPhase>> sticking_columns[] = {
     {quantity.side.with("side of the wall"),
      [](const auto& sticks) { return column(sticks, [](auto& s) { return s.start.side; }); }},
     {quantity.tau_start.with("start: the end of the chatter"),
@@ -96,13 +101,13 @@ inline constexpr Column<std::vector<StickingPhase>> sticking_columns[] = {
      [](const auto& sticks) { return column(sticks, [](auto& s) { return s.start.impacts; }); }},
 };
 
-inline constexpr Column<std::vector<GrazingEvent>> touch_columns[] = {
+inline constexpr Property<std::vector<GrazingEvent>> touch_columns[] = {
     {quantity.tau, of_each<&GrazingEvent::tau>},
     {quantity.side, of_each<&GrazingEvent::side>},
 };
 
 /// Moduli of the eigenvalues of J, M, T at each impact.
-inline constexpr Column<TransferModuli> moduli_columns[] = {
+inline constexpr Property<TransferModuli> moduli_columns[] = {
     {quantity.tau, of_result<&TransferModuli::tau>},
     {{"J", "transfer matrix of the flight before the impact: four moduli, descending",
       ValueType::moduli},
@@ -116,7 +121,7 @@ inline constexpr Column<TransferModuli> moduli_columns[] = {
      of_result<&TransferModuli::M_condition>},
 };
 
-inline constexpr Column<TransferMatrices> matrix_columns[] = {
+inline constexpr Property<TransferMatrices> matrix_columns[] = {
     {quantity.tau, of_result<&TransferMatrices::tau>},
     {{"order", "order of rows and columns: x_dot, x, y_dot, y", ValueType::component},
      [](const TransferMatrices&) { return Json{"x_dot", "x", "y_dot", "y"}; }},
@@ -127,7 +132,7 @@ inline constexpr Column<TransferMatrices> matrix_columns[] = {
     {{"T", "T = M J, by rows", ValueType::matrix}, matrices_of<&TransferMatrices::T>},
 };
 
-inline constexpr Column<std::vector<SectionPoint>> impact_section_columns[] = {
+inline constexpr Property<std::vector<SectionPoint>> impact_section_columns[] = {
     {quantity.tau.with("time of each impact in the window"), at_impact<&Impact::tau>},
     {quantity.side, at_impact<&Impact::side>},
     {quantity.phase, at_impact<&Impact::phase>},
@@ -137,20 +142,20 @@ inline constexpr Column<std::vector<SectionPoint>> impact_section_columns[] = {
     {quantity.time_difference, of_each<&SectionPoint::since>},
 };
 
-inline constexpr Column<std::vector<State>> state_columns[] = {
+inline constexpr Property<std::vector<State>> state_columns[] = {
     {quantity.x, of_each<&State::x>},
     {quantity.x_dot, of_each<&State::x_dot>},
     {quantity.y, of_each<&State::y>},
     {quantity.y_dot, of_each<&State::y_dot>},
 };
 
-inline constexpr Column<std::vector<ManifoldPoint>> branch_columns[] = {
+inline constexpr Property<std::vector<ManifoldPoint>> branch_columns[] = {
     {quantity.C.with("amplitudes of the oscillator, m"), of_each<&ManifoldPoint::C>},
     {quantity.V.with("speeds of the ball, m per unit of tau"), of_each<&ManifoldPoint::V>},
 };
 
 /// Exponents as functions of time.
-inline constexpr Column<ExponentHistory> history_columns[] = {
+inline constexpr Property<ExponentHistory> history_columns[] = {
     {quantity.tau.with("every impact, or every second, fourth, ..."),
      of_result<&ExponentHistory::tau>},
     {{"lambda1", since_start, ValueType::number_or_null}, exponent_of<0>},
@@ -159,12 +164,12 @@ inline constexpr Column<ExponentHistory> history_columns[] = {
     {{"lambda4", since_start, ValueType::number_or_null}, exponent_of<3>},
 };
 
-inline constexpr Column<Regime> moving_z_columns[] = {
+inline constexpr Property<Regime> moving_z_columns[] = {
     {quantity.tau.with("middle of ten cycles"), of_result<&Regime::moving_tau>},
     {{"z", "contacts per cycle in these ten"}, of_result<&Regime::moving_z>},
 };
 
-inline constexpr Column<std::vector<SynchronyStretch>> stretch_columns[] = {
+inline constexpr Property<std::vector<SynchronyStretch>> stretch_columns[] = {
     {quantity.tau_start.with("start of each stretch"), of_each<&SynchronyStretch::tau_start>},
     {quantity.tau_end.with("end of each stretch"), of_each<&SynchronyStretch::tau_end>},
     {{"synchronised", "true for a synchronised stretch", ValueType::flag},
@@ -174,7 +179,7 @@ inline constexpr Column<std::vector<SynchronyStretch>> stretch_columns[] = {
 };
 
 /// The motion of the second run.
-inline constexpr Column<Perturbation> perturbation_columns[] = {
+inline constexpr Property<Perturbation> perturbation_columns[] = {
     {quantity.tau.with("times of the series, up to the end of the shorter run"),
      of_second_run<&Series::tau>},
     {quantity.x.with("displacement of the oscillator in the second run, m"),
@@ -188,12 +193,12 @@ inline constexpr Column<Perturbation> perturbation_columns[] = {
 // Parts of an identification.
 
 /// Time and wall of an impact, which the direct estimate shares with the fit; the other columns.
-inline constexpr Column<std::vector<IdentifiedImpact>> identified_wall_columns[] = {
+inline constexpr Property<std::vector<IdentifiedImpact>> identified_wall_columns[] = {
     {quantity.tau, of_each<&IdentifiedImpact::tau>},
     {quantity.side.with("wall"), of_each<&IdentifiedImpact::side>},
 };
 
-inline constexpr Column<std::vector<IdentifiedImpact>> identified_columns[] = {
+inline constexpr Property<std::vector<IdentifiedImpact>> identified_columns[] = {
     {quantity.x.with("displacement, m").or_null(), of_each<&IdentifiedImpact::x>},
     {quantity.x_dot_before.with("estimated velocity of the oscillator").or_null(),
      of_each<&IdentifiedImpact::x_dot_before>},
@@ -219,7 +224,7 @@ inline constexpr Column<std::vector<IdentifiedImpact>> identified_columns[] = {
 };
 
 /// The fitted motion at chosen times, without these.
-inline constexpr Column<std::vector<OscillatorMotion>> fitted_motion_columns[] = {
+inline constexpr Property<std::vector<OscillatorMotion>> fitted_motion_columns[] = {
     {quantity.x, of_each<&OscillatorMotion::x>},
     {quantity.x_dot, of_each<&OscillatorMotion::x_dot>},
     {quantity.x_ddot.with("acceleration of the oscillator, without the pulses of impacts"),
@@ -227,7 +232,7 @@ inline constexpr Column<std::vector<OscillatorMotion>> fitted_motion_columns[] =
 };
 
 /// Impacts of a run of the identified system.
-inline constexpr Column<std::vector<Impact>> forward_impact_columns[] = {
+inline constexpr Property<std::vector<Impact>> forward_impact_columns[] = {
     {quantity.tau, of_each<&Impact::tau>},
     {quantity.side.with("wall"), of_each<&Impact::side>},
     {quantity.x.with("displacement, m"), of_each<&Impact::x>},

@@ -5,8 +5,7 @@
 #include <cmath>
 
 #include "api/answer_json.hpp"
-#include "api/columns.hpp"
-#include "api/schema/enum_names.hpp"
+#include "api/properties.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines::api {
@@ -64,9 +63,7 @@ std::string reason_of(const Judgement& judgement, const Growth& g, const Regime&
 }  // namespace
 
 Json describe_final(const Exponents& values) {
-    return {
-        {"final", column(values)},
-        {"status", column(values, [](double v) { return enum_json(status_of(v)); })}};
+    return {{"final", column(values)}, {"status", statuses_of(values)}};
 }
 
 Json describe_window(const TransferProduct& product) {
@@ -89,8 +86,7 @@ void add_estimators(
     if (shown.eigenvalues) {
         j["eigenvalues"] = describe_final(product.eigenvalues());
         if (histories)
-            j["eigenvalues"]["history"] =
-                describe(history_columns, product.eigenvalues_history());
+            j["eigenvalues"]["history"] = describe(history_columns, product.eigenvalues_history());
     }
     if (!shown.raw_product) return;
     const double start = product.start_tau();

@@ -6,10 +6,9 @@
 #include <cmath>
 
 #include "api/answer_json.hpp"
-#include "api/columns.hpp"
 #include "api/describe.hpp"
 #include "api/fitted_unknowns.hpp"
-#include "api/schema/enum_names.hpp"
+#include "api/properties.hpp"
 #include "api/version.hpp"
 #include "api/warning_text.hpp"
 #include "core/motion/elementary.hpp"
@@ -17,13 +16,6 @@
 namespace vines::api {
 
 namespace {
-
-Json describe_restitution(const Restitution& r) {
-    return {
-        {"R", finite_or_null(r.R)},
-        {"standard_error", finite_or_null(r.error)},
-        {"impacts", r.impacts}};
-}
 
 /// The impacts that an answer lists: without the last ones of a chatter that ends in sticking.
 std::vector<IdentifiedImpact> listed(std::vector<IdentifiedImpact> impacts) {
@@ -40,7 +32,8 @@ Json describe_identified(const std::vector<IdentifiedImpact>& impacts) {
 
 Json describe_walls(const Identification& found) {
     return {
-        {"plus", describe_restitution(found.plus)}, {"minus", describe_restitution(found.minus)}};
+        {"plus", describe(properties::restitution, found.plus)},
+        {"minus", describe(properties::restitution, found.minus)}};
 }
 
 /// Properties of the record, as estimated by the fit.
@@ -348,14 +341,10 @@ Json identify_answer(const IdentifyRequest& r, const IdentificationWatch& watch)
     answer["impacts"] = describe_identified(found.impacts);
     answer["sticking"] = describe(sticking_columns, sticking_phases(found.impacts));
     answer["restitution"] = describe_walls(found);
-    answer["b_fitted"] = {
-        {"b", finite_or_null(found.b_fitted)}, {"standard_error", finite_or_null(found.b_error)}};
+    answer["b_fitted"] = describe(properties::fitted_b, found);
     answer["exponents"] = describe_measured(
         result.exponents, m.estimators, result.continuity.stretches, found.impacts, warnings);
-    answer["slope"] = {
-        {"lambda1", finite_or_null(judged.slope.value)},
-        {"low", finite_or_null(judged.slope.low)},
-        {"high", finite_or_null(judged.slope.high)}};
+    answer["slope"] = describe(properties::slope, judged.slope);
     answer["verdict"] = enum_json(judged.verdict);
     answer["verdict_reason"] = doubts.empty() ? reason_of(judged) : doubts[0];
     if (m.is_record()) {
