@@ -61,12 +61,6 @@ std::optional<Suffix> suffix_of(const Channel& q, const std::string& name) {
     return number ? std::nullopt : std::optional(Suffix{text, false});
 }
 
-std::vector<std::string> unit_names(const Channel& q) {
-    std::vector<std::string> names;
-    for (const Unit& u : q.units) names.push_back(u.name);
-    return names;
-}
-
 std::string pointer_to(const CsvColumn& column) {
     return (Json::json_pointer("/record") / shortened(column.name)).to_string();
 }
@@ -127,6 +121,12 @@ double unit_factor(const Channel& q, const Json& fields, const CsvColumn& column
 
 }  // namespace
 
+std::vector<std::string> names_of(const std::vector<CsvColumn>& columns) {
+    std::vector<std::string> names;
+    for (const CsvColumn& c : columns) names.push_back(shortened(c.name));
+    return names;
+}
+
 RecordColumn find_column(
     const std::vector<CsvColumn>& columns, const Json& fields, const Channel& q) {
     const auto found = [&](auto fits) {
@@ -142,9 +142,7 @@ RecordColumn find_column(
         const RecordColumn column =
             found([&](std::string_view name) { return is_same_name(name, wanted); });
         if (column.column) return column;
-        std::vector<std::string> names;
-        for (const CsvColumn& c : columns) names.push_back(shortened(c.name));
-        refuse({{"/" + field, wanted, names, "the record has no column of this name"}});
+        refuse({{"/" + field, wanted, names_of(columns), "the record has no column of this name"}});
     }
     if (const RecordColumn column =
             found([&](std::string_view name) { return is_same_name(name, q.column); });

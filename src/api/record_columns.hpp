@@ -8,6 +8,9 @@
 
 namespace vines::api {
 
+/// The names of the columns, shortened for a message.
+std::vector<std::string> names_of(const std::vector<CsvColumn>& columns);
+
 struct RecordColumn {
     const CsvColumn* column;  ///< null if missing
     double factor;            ///< to SI

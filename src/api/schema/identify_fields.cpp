@@ -50,6 +50,12 @@ const Channel force_channel{
     .quantity = "the force",
     .forcing = "a force on m1 that drives it instead of the base"};
 
+std::vector<std::string> unit_names(const Channel& channel) {
+    std::vector<std::string> names;
+    for (const Unit& unit : channel.units) names.push_back(unit.name);
+    return names;
+}
+
 namespace {
 
 /// Adapts a field of /v1/simulate to a record: some of the system is measured, not given.
@@ -74,15 +80,13 @@ Field column_row(const Channel& c) {
 }
 
 Field unit_row(const Channel& c) {
-    std::vector<std::string> names;
-    for (const Unit& unit : c.units) names.push_back(unit.name);
     return {
         .name = c.name + "_unit",
         .type = FieldType::choice,
         .description =
             "unit of " + c.quantity + ", unless the column's name or a row of units gives one",
-        .fallback = names[0],
-        .choices = std::move(names)};
+        .fallback = c.units[0].name,
+        .choices = unit_names(c)};
 }
 
 FieldTable impact_rows() {
