@@ -1,7 +1,9 @@
 // The lists of an answer: the columns of each, as quantities and their values for a source.
 #pragma once
 
-#include <span>
+#include <cmath>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "api/answer_json.hpp"
@@ -11,22 +13,25 @@
 
 namespace vines::api {
 
-/// A column of a list: `values` returns its list for a source.
+/// A key of an object: `value` returns its value, or its list, for a source.
 template <class Source>
-struct Column {
+struct Property {
     Quantity quantity;
-    Json (*values)(const Source& source);
+    Json (*value)(const Source& source);
 };
-template <class Source>
-using Columns = std::span<const Column<Source>>;
 
-/// The columns as an object of lists.
-template <class Source>
-Json describe(Columns<Source> columns, const Source& source) {
-    Json lists = Json::object();
-    make_room(lists, columns.size());
-    for (const Column<Source>& c : columns) append(lists, {{c.quantity.name, c.values(source)}});
-    return lists;
+/// An object with these properties, all null if the source is null.
+template <class Source, std::size_t count>
+Json describe(const Property<Source> (&properties)[count], const Source* source) {
+    Json object = Json::object();
+    make_room(object, count);
+    for (const Property<Source>& p : properties)
+        append(object, {{p.quantity.name, source ? p.value(*source) : Json(nullptr)}});
+    return object;
+}
+template <class Source, std::size_t count>
+Json describe(const Property<Source> (&properties)[count], const Source& source) {
+    return describe(properties, &source);
 }
 
 /// Upper bound of a value as JSON text with a comma, in bytes; `si`: and of its SI counterpart.
@@ -38,33 +43,201 @@ double row_bytes(const auto& columns, bool si) {
     return bytes;
 }
 
+MatrixByRows by_rows(const Matrix4& m);
+/// ok, R is not known, hidden, or the reason why the exponents exclude the impact.
+std::string status_word(const IdentifiedImpact& impact);
+
+/// The column `member` of each entry of a list.
+template <auto member>
+inline constexpr auto of_each = [](const auto& entries) {
+    return column(entries, [](const auto& entry) { return std::invoke(member, entry); });
+};
+
+/// The list `member` of a result.
+template <auto member>
+inline constexpr auto of_result = [](const auto& result) { return column(result.*member); };
+
+template <auto member>
+inline constexpr auto matrices_of =
+    [](const TransferMatrices& m) { return column(m.*member, by_rows); };
+
+template <auto member>
+inline constexpr auto at_impact = [](const std::vector<SectionPoint>& points) {
+    return column(points, [](const SectionPoint& p) { return std::invoke(member, p.impact); });
+};
+
+template <std::size_t k>
+inline constexpr auto exponent_of = [](const ExponentHistory& history) {
+    return column(history.lambda, [](const Exponents& lambda) { return lambda[k]; });
+};
+
+template <auto member>
+inline constexpr auto of_second_run =
+    [](const Perturbation& p) { return column(p.series.*member); };
+
+inline constexpr const char* since_start = "exponent from the window's start to tau";
+
 // Parts of a simulation. x and y in m, derivatives with respect to tau.
 
-Columns<Series> series_columns();
-Columns<std::vector<StickingPhase>> sticking_columns();
-Columns<std::vector<GrazingEvent>> touch_columns();
+inline constexpr Property<Series> series_columns[] = {
+    {quantity.tau.with("equal steps, then the end of the run"), of_result<&Series::tau>},
+    {quantity.x, of_result<&Series::x>},
+    {quantity.x_dot, of_result<&Series::x_dot>},
+    {quantity.y, of_result<&Series::y>},
+    {quantity.y_dot, of_result<&Series::y_dot>},
+    {quantity.x_ddot, of_result<&Series::x_ddot>},
+};
+
+inline constexpr Property<std::vector<StickingPhase>> sticking_columns[] = {
+    {quantity.side.with("side of the wall"),
+     [](const auto& sticks) { return column(sticks, [](auto& s) { return s.start.side; }); }},
+    {quantity.tau_start.with("start: the end of the chatter"),
+     [](const auto& sticks) { return column(sticks, [](auto& s) { return s.start.tau; }); }},
+    {quantity.tau_end.with("release, or the end of the run"), of_each<&StickingPhase::tau_end>},
+    {{"impacts",
+      "impacts of the chatter, all on this side; it is followed until the remainder would last "
+      "less than 1e-9 in tau",
+      ValueType::whole},
+     [](const auto& sticks) { return column(sticks, [](auto& s) { return s.start.impacts; }); }},
+};
+
+inline constexpr Property<std::vector<GrazingEvent>> touch_columns[] = {
+    {quantity.tau, of_each<&GrazingEvent::tau>},
+    {quantity.side, of_each<&GrazingEvent::side>},
+};
+
 /// Moduli of the eigenvalues of J, M, T at each impact.
-Columns<TransferModuli> moduli_columns();
-Columns<TransferMatrices> matrix_columns();
-Columns<std::vector<SectionPoint>> impact_section_columns();
-Columns<std::vector<State>> state_columns();
-Columns<std::vector<ManifoldPoint>> branch_columns();
+inline constexpr Property<TransferModuli> moduli_columns[] = {
+    {quantity.tau, of_result<&TransferModuli::tau>},
+    {{"J", "transfer matrix of the flight before the impact: four moduli, descending",
+      ValueType::moduli},
+     of_result<&TransferModuli::J>},
+    {{"M", "transfer matrix of the impact", ValueType::moduli}, of_result<&TransferModuli::M>},
+    {{"T", "T = M J; null if rounding leaves no accurate digit, at the end of a chatter",
+      ValueType::exponents},
+     of_result<&TransferModuli::T>},
+    {{"M_condition", "condition number of M in the Frobenius norm; null if R = 0",
+      ValueType::number_or_null},
+     of_result<&TransferModuli::M_condition>},
+};
+
+inline constexpr Property<TransferMatrices> matrix_columns[] = {
+    {quantity.tau, of_result<&TransferMatrices::tau>},
+    {{"order", "order of rows and columns: x_dot, x, y_dot, y", ValueType::component},
+     [](const TransferMatrices&) { return Json{"x_dot", "x", "y_dot", "y"}; }},
+    {{"J", "transfer matrix of the flight before the impact, by rows", ValueType::matrix},
+     matrices_of<&TransferMatrices::J>},
+    {{"M", "transfer matrix of the impact, by rows", ValueType::matrix},
+     matrices_of<&TransferMatrices::M>},
+    {{"T", "T = M J, by rows", ValueType::matrix}, matrices_of<&TransferMatrices::T>},
+};
+
+inline constexpr Property<std::vector<SectionPoint>> impact_section_columns[] = {
+    {quantity.tau.with("time of each impact in the window"), at_impact<&Impact::tau>},
+    {quantity.side, at_impact<&Impact::side>},
+    {quantity.phase, at_impact<&Impact::phase>},
+    {quantity.x, at_impact<&Impact::x>},
+    {quantity.x_dot_after, at_impact<&Impact::x_dot_after>},
+    {quantity.y_dot_after, at_impact<&Impact::y_dot_after>},
+    {quantity.time_difference, of_each<&SectionPoint::since>},
+};
+
+inline constexpr Property<std::vector<State>> state_columns[] = {
+    {quantity.x, of_each<&State::x>},
+    {quantity.x_dot, of_each<&State::x_dot>},
+    {quantity.y, of_each<&State::y>},
+    {quantity.y_dot, of_each<&State::y_dot>},
+};
+
+inline constexpr Property<std::vector<ManifoldPoint>> branch_columns[] = {
+    {quantity.C.with("amplitudes of the oscillator, m"), of_each<&ManifoldPoint::C>},
+    {quantity.V.with("speeds of the ball, m per unit of tau"), of_each<&ManifoldPoint::V>},
+};
+
 /// Exponents as functions of time.
-Columns<ExponentHistory> history_columns();
-Columns<Regime> moving_z_columns();
-Columns<std::vector<SynchronyStretch>> stretch_columns();
+inline constexpr Property<ExponentHistory> history_columns[] = {
+    {quantity.tau.with("every impact, or every second, fourth, ..."),
+     of_result<&ExponentHistory::tau>},
+    {{"lambda1", since_start, ValueType::number_or_null}, exponent_of<0>},
+    {{"lambda2", since_start, ValueType::number_or_null}, exponent_of<1>},
+    {{"lambda3", since_start, ValueType::number_or_null}, exponent_of<2>},
+    {{"lambda4", since_start, ValueType::number_or_null}, exponent_of<3>},
+};
+
+inline constexpr Property<Regime> moving_z_columns[] = {
+    {quantity.tau.with("middle of ten cycles"), of_result<&Regime::moving_tau>},
+    {{"z", "contacts per cycle in these ten"}, of_result<&Regime::moving_z>},
+};
+
+inline constexpr Property<std::vector<SynchronyStretch>> stretch_columns[] = {
+    {quantity.tau_start.with("start of each stretch"), of_each<&SynchronyStretch::tau_start>},
+    {quantity.tau_end.with("end of each stretch"), of_each<&SynchronyStretch::tau_end>},
+    {{"synchronised", "true for a synchronised stretch", ValueType::flag},
+     of_each<&SynchronyStretch::synchronised>},
+    {{"contacts", "number of contacts in the stretch", ValueType::whole},
+     of_each<&SynchronyStretch::contacts>},
+};
+
 /// The motion of the second run.
-Columns<Perturbation> perturbation_columns();
+inline constexpr Property<Perturbation> perturbation_columns[] = {
+    {quantity.tau.with("times of the series, up to the end of the shorter run"),
+     of_second_run<&Series::tau>},
+    {quantity.x.with("displacement of the oscillator in the second run, m"),
+     of_second_run<&Series::x>},
+    {quantity.x_dot.with("velocity of the oscillator in the second run"),
+     of_second_run<&Series::x_dot>},
+    {quantity.y.with("displacement of the ball in the second run, m"), of_second_run<&Series::y>},
+    {quantity.y_dot.with("velocity of the ball in the second run"), of_second_run<&Series::y_dot>},
+};
 
 // Parts of an identification.
 
 /// Time and wall of an impact, which the direct estimate shares with the fit; the other columns.
-Columns<std::vector<IdentifiedImpact>> identified_wall_columns();
-Columns<std::vector<IdentifiedImpact>> identified_columns();
+inline constexpr Property<std::vector<IdentifiedImpact>> identified_wall_columns[] = {
+    {quantity.tau, of_each<&IdentifiedImpact::tau>},
+    {quantity.side.with("wall"), of_each<&IdentifiedImpact::side>},
+};
+
+inline constexpr Property<std::vector<IdentifiedImpact>> identified_columns[] = {
+    {quantity.x.with("displacement, m").or_null(), of_each<&IdentifiedImpact::x>},
+    {quantity.x_dot_before.with("estimated velocity of the oscillator").or_null(),
+     of_each<&IdentifiedImpact::x_dot_before>},
+    {quantity.x_dot_after.with("estimated velocity of the oscillator").or_null(),
+     of_each<&IdentifiedImpact::x_dot_after>},
+    {quantity.x_ddot_before.with("estimated acceleration of the oscillator").or_null(),
+     of_each<&IdentifiedImpact::x_ddot_before>},
+    {quantity.y_dot_before.with("velocity of the ball, from its flights, eq. (43)").or_null(),
+     of_each<&IdentifiedImpact::y_dot_before>},
+    {quantity.y_dot_after.with("velocity of the ball, from its flights, eq. (43)").or_null(),
+     of_each<&IdentifiedImpact::y_dot_after>},
+    {{"R", "restitution coefficient, eq. (4); null for the first and the last impact",
+      ValueType::number_or_null},
+     of_each<&IdentifiedImpact::R>},
+    {{"momentum_error", "error of x' + epsilon y', over the median jump of x'",
+      ValueType::number_or_null},
+     of_each<&IdentifiedImpact::momentum_error>},
+    {{"status",
+      "ok, R is not known, hidden, or the reason why the exponents exclude the impact: R outside "
+      "[0, 1], momentum not kept, picked twice, ...",
+      ValueType::word},
+     [](const auto& impacts) { return column(impacts, status_word); }},
+};
+
 /// The fitted motion at chosen times, without these.
-Columns<std::vector<OscillatorMotion>> fitted_motion_columns();
+inline constexpr Property<std::vector<OscillatorMotion>> fitted_motion_columns[] = {
+    {quantity.x, of_each<&OscillatorMotion::x>},
+    {quantity.x_dot, of_each<&OscillatorMotion::x_dot>},
+    {quantity.x_ddot.with("acceleration of the oscillator, without the pulses of impacts"),
+     of_each<&OscillatorMotion::x_ddot>},
+};
+
 /// Impacts of a run of the identified system.
-Columns<std::vector<Impact>> forward_impact_columns();
+inline constexpr Property<std::vector<Impact>> forward_impact_columns[] = {
+    {quantity.tau, of_each<&Impact::tau>},
+    {quantity.side.with("wall"), of_each<&Impact::side>},
+    {quantity.x.with("displacement, m"), of_each<&Impact::x>},
+    {quantity.x_dot_after, of_each<&Impact::x_dot_after>},
+};
 
 /// The columns of `impacts` in a request to /v1/identify.
 struct ImpactList {
@@ -100,7 +273,28 @@ struct ImpactColumn {
 
     Packed packing() const;
 };
-std::span<const ImpactColumn> impact_columns();
+inline constexpr ImpactColumn impact_columns[] = {
+    {quantity.tau, [](const Impact& i, const ImpactScales&) { return i.tau; }},
+    {quantity.side,
+     [](const Impact& i, const ImpactScales&) { return static_cast<double>(i.side); }},
+    {quantity.phase, [](const Impact& i, const ImpactScales&) { return i.phase(); }},
+    {quantity.x, [](const Impact& i, const ImpactScales&) { return i.x; }},
+    {quantity.x_dot_before, [](const Impact& i, const ImpactScales&) { return i.x_dot_before; }},
+    {quantity.x_dot_after, [](const Impact& i, const ImpactScales&) { return i.x_dot_after; }},
+    {quantity.y_dot_before, [](const Impact& i, const ImpactScales&) { return i.y_dot_before; }},
+    {quantity.y_dot_after, [](const Impact& i, const ImpactScales&) { return i.y_dot_after; }},
+    {quantity.x_ddot_before, [](const Impact& i, const ImpactScales&) { return i.x_ddot_before; }},
+    {quantity.relative_speed,
+     [](const Impact& i, const ImpactScales&) { return std::abs(i.relative_speed_before); }},
+    {quantity.impulse, [](const Impact& i, const ImpactScales& s) { return i.impulse(s.epsilon); }},
+    {{"relative_speed_ratio", "relative_speed over its median; 0 for a grazing contact",
+      ValueType::number_or_null},
+     [](const Impact& i, const ImpactScales& s) {
+         return std::abs(i.relative_speed_before) / s.typical_speed;
+     }},
+    {{"grazing", "true for a nearly tangent impact", ValueType::flag},
+     [](const Impact& i, const ImpactScales&) { return i.grazing ? 1. : 0.; }},
+};
 
 Json describe_impacts(const std::vector<Impact>& impacts, const ImpactScales& scales);
 

@@ -52,17 +52,12 @@ private:
     std::size_t number_ = 0;
 };
 
-/// The text of a comment; empty for any other line.
-std::string_view comment_of(std::string_view line) {
+/// The text of a comment; nullopt for any other line.
+std::optional<std::string_view> comment_of(std::string_view line) {
     line = trimmed(line);
     for (const std::string_view sign : {"#", "%", "//"})
         if (line.starts_with(sign)) return line.substr(sign.size());
-    return {};
-}
-
-bool is_comment(std::string_view line) {
-    line = trimmed(line);
-    return line.starts_with('#') || line.starts_with('%') || line.starts_with("//");
+    return std::nullopt;
 }
 
 struct Cell {
@@ -185,7 +180,7 @@ class Heading {
 public:
     /// Takes a line that is not data.
     void take(const CsvLine& line) {
-        if (is_comment(line.text)) comment_ = {line.number, comment_of(line.text)};
+        if (const auto comment = comment_of(line.text)) comment_ = {line.number, *comment};
         else before_ = std::exchange(last_, line);
         something_ = true;
     }
@@ -282,14 +277,14 @@ Csv parse_csv(std::string_view bytes, const ReadLimits& limits) {
         if (trimmed(line->text).empty()) continue;
         if (csv.columns.empty()) {
             if (!declared && (declared = declared_separator(line->text))) continue;
-            if (!is_comment(line->text)) separator = separator_of_numbers(line->text, declared);
+            if (!comment_of(line->text)) separator = separator_of_numbers(line->text, declared);
             if (!separator) {
                 heading.take(*line);
                 continue;
             }
             csv.columns =
                 heading.columns(*line, cells_of(line->text, *separator).size(), *separator);
-        } else if (is_comment(line->text)) {
+        } else if (comment_of(line->text)) {
             continue;
         }
         split_cells(line->text, *separator, cells);

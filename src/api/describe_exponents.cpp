@@ -5,8 +5,7 @@
 #include <cmath>
 
 #include "api/answer_json.hpp"
-#include "api/columns.hpp"
-#include "api/schema/enum_names.hpp"
+#include "api/properties.hpp"
 #include "core/motion/elementary.hpp"
 
 namespace vines::api {
@@ -64,9 +63,7 @@ std::string reason_of(const Judgement& judgement, const Growth& g, const Regime&
 }  // namespace
 
 Json describe_final(const Exponents& values) {
-    return {
-        {"final", column(values)},
-        {"status", column(values, [](double v) { return enum_json(status_of(v)); })}};
+    return {{"final", column(values)}, {"status", statuses_of(values)}};
 }
 
 Json describe_window(const TransferProduct& product) {
@@ -83,14 +80,13 @@ void add_estimators(
     if (shown.qr) {
         Json qr = describe_final(product.qr());
         qr["standard_error"] = column(growth.standard_error);
-        if (histories) qr["history"] = describe(history_columns(), product.qr_history());
+        if (histories) qr["history"] = describe(history_columns, product.qr_history());
         j["qr"] = std::move(qr);
     }
     if (shown.eigenvalues) {
         j["eigenvalues"] = describe_final(product.eigenvalues());
         if (histories)
-            j["eigenvalues"]["history"] =
-                describe(history_columns(), product.eigenvalues_history());
+            j["eigenvalues"]["history"] = describe(history_columns, product.eigenvalues_history());
     }
     if (!shown.raw_product) return;
     const double start = product.start_tau();
@@ -100,7 +96,7 @@ void add_estimators(
         finite_or_null(rounding_floor(final[0], product.end_tau() - start));
     if (histories) {
         const ExponentHistory& history = product.raw_product_history();
-        raw["history"] = describe(history_columns(), history);
+        raw["history"] = describe(history_columns, history);
         std::vector<double> floor;
         for (std::size_t i = 0; i < history.tau.size(); ++i)
             floor.push_back(rounding_floor(history.lambda[i][0], history.tau[i] - start));

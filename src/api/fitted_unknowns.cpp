@@ -70,7 +70,7 @@ FixedUnknowns fixed_of(const std::set<std::string>& names) {
 
 Json describe_fitted(const JointFit& fit, const Parameters& parameters, double omega0) {
     Json j = Json::object();
-    for (const EnumName<Unknown>& w : enum_names<Unknown>())
+    for (const EnumName<Unknown>& w : enum_names<Unknown>)
         j[w.name] = described(in_si(fit, w.value, omega0), fit.fixed[w.value]);
     add_forcing(j, fit, parameters);
     return j;

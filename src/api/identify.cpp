@@ -6,10 +6,9 @@
 #include <cmath>
 
 #include "api/answer_json.hpp"
-#include "api/columns.hpp"
 #include "api/describe.hpp"
 #include "api/fitted_unknowns.hpp"
-#include "api/schema/enum_names.hpp"
+#include "api/properties.hpp"
 #include "api/version.hpp"
 #include "api/warning_text.hpp"
 #include "core/motion/elementary.hpp"
@@ -17,13 +16,6 @@
 namespace vines::api {
 
 namespace {
-
-Json describe_restitution(const Restitution& r) {
-    return {
-        {"R", finite_or_null(r.R)},
-        {"standard_error", finite_or_null(r.error)},
-        {"impacts", r.impacts}};
-}
 
 /// The impacts that an answer lists: without the last ones of a chatter that ends in sticking.
 std::vector<IdentifiedImpact> listed(std::vector<IdentifiedImpact> impacts) {
@@ -33,14 +25,15 @@ std::vector<IdentifiedImpact> listed(std::vector<IdentifiedImpact> impacts) {
 
 Json describe_identified(const std::vector<IdentifiedImpact>& impacts) {
     const std::vector<IdentifiedImpact> shown = listed(impacts);
-    Json j = describe(identified_wall_columns(), shown);
-    j.update(describe(identified_columns(), shown));
+    Json j = describe(identified_wall_columns, shown);
+    j.update(describe(identified_columns, shown));
     return j;
 }
 
 Json describe_walls(const Identification& found) {
     return {
-        {"plus", describe_restitution(found.plus)}, {"minus", describe_restitution(found.minus)}};
+        {"plus", describe(properties::restitution, found.plus)},
+        {"minus", describe(properties::restitution, found.minus)}};
 }
 
 /// Properties of the record, as estimated by the fit.
@@ -75,7 +68,7 @@ Json describe_forward(const std::optional<ForwardRun>& run) {
     if (!run) return nullptr;
     return {
         {"start", run->start},
-        {"impacts", describe(forward_impact_columns(), run->impacts)},
+        {"impacts", describe(forward_impact_columns, run->impacts)},
         {"lambda", column(run->lambda)}};
 }
 
@@ -157,7 +150,7 @@ Json describe_direct(
     if (!direct) return nullptr;
     const Identification& found = direct->found;
     Json j = {
-        {"impacts", describe(identified_columns(), listed(found.impacts))},
+        {"impacts", describe(identified_columns, listed(found.impacts))},
         {"restitution", describe_walls(found)},
         {"lambda", column(direct->lambda)}};
     if (!r.includes("direct_exponents")) return j;
@@ -180,7 +173,7 @@ Json describe_motion(
             every, r.most_points));
     const std::vector<OscillatorMotion> motion = motion_at(result.refined->fit, moments);
     Json j = {{quantity.tau.name, column(moments)}};
-    j.update(describe(fitted_motion_columns(), motion));
+    j.update(describe(fitted_motion_columns, motion));
     return j;
 }
 
@@ -343,16 +336,12 @@ Json identify_answer(const IdentifyRequest& r, const IdentificationWatch& watch)
             describe_fitted(result.refined->fit, result.parameters, r.system.si->omega0());
     }
     answer["impacts"] = describe_identified(found.impacts);
-    answer["sticking"] = describe(sticking_columns(), sticking_phases(found.impacts));
+    answer["sticking"] = describe(sticking_columns, sticking_phases(found.impacts));
     answer["restitution"] = describe_walls(found);
-    answer["b_fitted"] = {
-        {"b", finite_or_null(found.b_fitted)}, {"standard_error", finite_or_null(found.b_error)}};
-    answer["exponents"] =
-        describe_measured(result.exponents, result.continuity.stretches, found.impacts, warnings);
-    answer["slope"] = {
-        {"lambda1", finite_or_null(judged.slope.value)},
-        {"low", finite_or_null(judged.slope.low)},
-        {"high", finite_or_null(judged.slope.high)}};
+    answer["b_fitted"] = describe(properties::fitted_b, found);
+    answer["exponents"] = describe_measured(
+        result.exponents, result.continuity.stretches, found.impacts, warnings);
+    answer["slope"] = describe(properties::slope, judged.slope);
     answer["verdict"] = enum_json(judged.verdict);
     answer["verdict_reason"] = doubts.empty() ? reason_of(judged) : doubts[0];
     if (m.is_record()) {

@@ -130,12 +130,6 @@ void read_known_forcing(IdentifyRequest& r, const Json& given) {
     }
 }
 
-std::vector<std::string> names_of(const std::vector<CsvColumn>& columns) {
-    std::vector<std::string> names;
-    for (const CsvColumn& c : columns) names.push_back(shortened(c.name));
-    return names;
-}
-
 /// change(value) for each value.
 template <class Change>
 std::vector<double> changed(

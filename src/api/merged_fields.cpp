@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "api/presets.hpp"
+#include "api/properties.hpp"
 #include "api/schema/check.hpp"
 
 namespace vines::api {
@@ -81,20 +82,12 @@ const Preset& preset_named(const std::string& name) {
         {{"/preset", name, names, "there is no preset of this name; GET /v1/presets lists them"}});
 }
 
-}  // namespace
-
-Json fields_of(const SiParameters& si) {
-    return {{"m1", si.m1}, {"c1", si.c1}, {"k1", si.k1}, {"m2", si.m2}, {"F", si.F}, {"f", si.f}};
-}
-
-namespace {
-
 /// Restates the preset's system in the kind of fields that the request uses, so that each given
 /// field replaces only its own value. A preset is in SI or has the values of Table 1, which are
 /// omitted from it. Reduced fields over SI keep m1 and k1, which set the scale.
 void restate_system(Json& preset, const Json& given) {
     if (!present(given, si_names).empty()) {
-        preset.update(fields_of(si_of(system_fields(preset))));
+        preset.update(describe(properties::si, si_of(system_fields(preset))));
         const SiParameters si = si_of(system_fields(preset));
         const Json others = {{"c1", si.damping_ratio()}, {"k1", si.f0()}, {"m2", si.epsilon()}};
         for (const auto& group : si_groups)

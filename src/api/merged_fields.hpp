@@ -47,7 +47,4 @@ extern const std::vector<std::string> si_names;
 /// The names that an object has.
 std::vector<std::string> present(const Json& object, const std::vector<std::string>& names);
 
-/// m1, c1, k1, m2, F, f.
-Json fields_of(const SiParameters& si);
-
 }  // namespace vines::api

@@ -89,10 +89,10 @@ Json describe_perturbation(Perturbation&& p) {
     const std::optional<LinearStretch>& linear = p.linear;
     Json start = Json::object();
     for (const Component& c : perturbed_components) start[c.name] = p.start.*c.value;
-    Json j = describe(perturbation_columns(), p);
+    Json j = describe(perturbation_columns, p);
     j.update(
         {{"start", std::move(start)},
-         {"impacts", describe(touch_columns(), p.impacts)},
+         {"impacts", describe(touch_columns, p.impacts)},
          {quantity.distance.name, column(p.distance)},
          {"predicted",
           {{"lambda1", linear ? finite_or_null(linear->lambda1) : Json(nullptr)},

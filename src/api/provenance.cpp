@@ -1,5 +1,7 @@
 #include "api/provenance.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <openssl/evp.h>
 
 #include <array>
@@ -42,14 +44,7 @@ public:
         unsigned int size = 0;
         if (EVP_DigestFinal_ex(context_.get(), bytes.data(), &size) != 1)
             throw std::runtime_error("libcrypto: SHA-256");
-        constexpr std::string_view digits = "0123456789abcdef";
-        std::string text;
-        text.reserve(2 * std::size_t{size});
-        for (unsigned int k = 0; k < size; ++k) {
-            text += digits[bytes[k] >> 4];
-            text += digits[bytes[k] & 15];
-        }
-        return text;
+        return fmt::format("{:02x}", fmt::join(bytes.data(), bytes.data() + size, ""));
     }
 
 private:

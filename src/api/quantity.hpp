@@ -26,7 +26,12 @@ enum class ValueType : std::uint8_t {
     component,  ///< a component of the state
     moduli,     ///< four numbers
     exponents,  ///< four numbers or nulls
-    matrix      ///< 4 x 4 numbers, by rows
+    statuses,   ///< of four exponents
+    matrix,     ///< 4 x 4 numbers, by rows
+    interval,   ///< [from, to]
+    damping,
+    regime,
+    verdict
 };
 
 struct Quantity {

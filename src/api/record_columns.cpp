@@ -10,28 +10,6 @@
 
 namespace vines::api {
 
-const Channel time_channel{
-    "time", "time_s", {"time", "t"}, {{"s", 1, {"s", "sec"}}, {"ms", 1e-3, {"ms", "msec"}}}};
-const Channel displacement_channel{
-    "displacement",
-    "displacement_m",
-    {"displacement", "x"},
-    {{"m", 1, {"m"}}, {"mm", 1e-3, {"mm"}}, {"um", 1e-6, {"um"}}}};
-
-namespace {
-
-// g is the standard gravity.
-const std::vector<Unit> acceleration_units = {
-    {"m/s2", 1, {"m/s2", "m_s2", "ms-2", "m/s/s"}}, {"g", 9.80665, {"g"}}};
-
-}  // namespace
-
-const Channel acceleration_channel{
-    "acceleration", "acceleration_m_s2", {"acceleration", "a"}, acceleration_units};
-const Channel base_channel{
-    "base_acceleration", "base_acceleration_m_s2", {"base_acceleration"}, acceleration_units};
-const Channel force_channel{"force", "force_n", {"force"}, {{"N", 1, {"n"}}, {"kN", 1e3, {"kn"}}}};
-
 namespace {
 
 bool is_same_letter(unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); }
@@ -81,12 +59,6 @@ std::optional<Suffix> suffix_of(const Channel& q, const std::string& name) {
     const bool number =
         std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c); });
     return number ? std::nullopt : std::optional(Suffix{text, false});
-}
-
-std::vector<std::string> unit_names(const Channel& q) {
-    std::vector<std::string> names;
-    for (const Unit& u : q.units) names.push_back(u.name);
-    return names;
 }
 
 std::string pointer_to(const CsvColumn& column) {
@@ -149,6 +121,12 @@ double unit_factor(const Channel& q, const Json& fields, const CsvColumn& column
 
 }  // namespace
 
+std::vector<std::string> names_of(const std::vector<CsvColumn>& columns) {
+    std::vector<std::string> names;
+    for (const CsvColumn& c : columns) names.push_back(shortened(c.name));
+    return names;
+}
+
 RecordColumn find_column(
     const std::vector<CsvColumn>& columns, const Json& fields, const Channel& q) {
     const auto found = [&](auto fits) {
@@ -164,9 +142,7 @@ RecordColumn find_column(
         const RecordColumn column =
             found([&](std::string_view name) { return is_same_name(name, wanted); });
         if (column.column) return column;
-        std::vector<std::string> names;
-        for (const CsvColumn& c : columns) names.push_back(shortened(c.name));
-        refuse({{"/" + field, wanted, names, "the record has no column of this name"}});
+        refuse({{"/" + field, wanted, names_of(columns), "the record has no column of this name"}});
     }
     if (const RecordColumn column =
             found([&](std::string_view name) { return is_same_name(name, q.column); });

@@ -1,29 +1,15 @@
 // Finds the column of a record that holds a channel, and its unit.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "api/csv.hpp"
+#include "api/schema/channels.hpp"
 
 namespace vines::api {
 
-/// A unit: its name in the fields, and its unit_spelling()s.
-struct Unit {
-    std::string name;
-    double factor;  ///< to SI
-    std::vector<std::string> spellings;
-};
-
-/// A channel of a record.
-struct Channel {
-    std::string name;                     ///< of the fields <name>_column, <name>_unit
-    std::string column;                   ///< default column name
-    std::vector<std::string> beginnings;  ///< beginnings of other accepted column names
-    std::vector<Unit> units;              ///< the first one is the default
-};
-extern const Channel time_channel, displacement_channel, acceleration_channel, base_channel,
-    force_channel;
+/// The names of the columns, shortened for a message.
+std::vector<std::string> names_of(const std::vector<CsvColumn>& columns);
 
 struct RecordColumn {
     const CsvColumn* column;  ///< null if missing

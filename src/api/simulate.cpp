@@ -28,29 +28,29 @@ struct AnswerSize {
 
 AnswerSize size_of(const SimulateRequest& r) {
     const bool si = r.system.si.has_value();
-    const auto row = [si](auto columns) { return row_bytes(columns, si); };
+    const auto row = [si](const auto& columns) { return row_bytes(columns, si); };
     const auto value = [si](const Quantity& q) { return value_bytes(q, si); };
     AnswerSize size;
     size.fixed += window_bytes * static_cast<double>(r.wanted.windows.size());
-    if (r.includes("series")) size.point += row(series_columns());
+    if (r.includes("series")) size.point += row(series_columns);
     if (r.includes("exponents")) {
-        const double history = row(history_columns());
+        const double history = row(history_columns);
         if (r.wanted.estimators.qr) size.point += history;
         if (r.wanted.estimators.raw_product) size.point += history + value(quantity.rounding_floor);
         if (r.wanted.estimators.eigenvalues)
             size.fixed += static_cast<double>(most_eigenvalue_entries) * history;
     }
-    if (r.includes("eigenvalues")) size.point += row(moduli_columns());
-    if (r.includes("matrices")) size.point += row(matrix_columns());
+    if (r.includes("eigenvalues")) size.point += row(moduli_columns);
+    if (r.includes("matrices")) size.point += row(matrix_columns);
     if (r.includes("section"))
-        size.point += row(impact_section_columns()) + value(quantity.tau) + row(state_columns());
-    if (r.includes("regime")) size.point += row(moving_z_columns()) + row(stretch_columns());
-    if (r.includes("manifold")) size.point += value(quantity.tau) + row(branch_columns());
+        size.point += row(impact_section_columns) + value(quantity.tau) + row(state_columns);
+    if (r.includes("regime")) size.point += row(moving_z_columns) + row(stretch_columns);
+    if (r.includes("manifold")) size.point += value(quantity.tau) + row(branch_columns);
     if (r.wanted.perturbation)
-        size.point += row(perturbation_columns()) + value(quantity.predicted_distance);
-    size.impact = row(sticking_columns());
-    if (r.includes("impacts")) size.impact += row(impact_columns()) + row(touch_columns());
-    if (r.wanted.perturbation) size.impact += row(touch_columns());
+        size.point += row(perturbation_columns) + value(quantity.predicted_distance);
+    size.impact = row(sticking_columns);
+    if (r.includes("impacts")) size.impact += row(impact_columns) + row(touch_columns);
+    if (r.wanted.perturbation) size.impact += row(touch_columns);
     return size;
 }
 
@@ -155,17 +155,17 @@ public:
 
     void describe(Analysis& a) {
         const ExponentOptions& shown = r_.wanted.estimators;
-        part("series", [&] { return api::describe(series_columns(), *taken(a.series)); });
+        part("series", [&] { return api::describe(series_columns, *taken(a.series)); });
         part("impacts", [&] {
             if (a.unkept_impacts) return streamed_impacts(r_.system.si);
             return describe_impacts(taken(a.impacts), scales_of(r_, a));
         });
-        add("sticking", api::describe(sticking_columns(), a.sticks));
-        if (!a.touches.empty()) add("touches", api::describe(touch_columns(), a.touches));
+        add("sticking", api::describe(sticking_columns, a.sticks));
+        if (!a.touches.empty()) add("touches", api::describe(touch_columns, a.touches));
         part("exponents", [&] { return describe_exponents(*a.exponents, shown, *a.regime, true); });
         if (!a.windows.empty()) add("windows", describe_windows(a.windows, shown, *a.regime));
-        part("eigenvalues", [&] { return api::describe(moduli_columns(), *taken(a.moduli)); });
-        part("matrices", [&] { return api::describe(matrix_columns(), *taken(a.matrices)); });
+        part("eigenvalues", [&] { return api::describe(moduli_columns, *taken(a.moduli)); });
+        part("matrices", [&] { return api::describe(matrix_columns, *taken(a.matrices)); });
         part("section", [&] { return describe_sections(*taken(a.sections)); });
         part("energy", [&] { return describe_energy(*a.energy); });
         part("regime", [&] { return describe_regime(*a.regime); });

@@ -10,7 +10,7 @@ namespace vines::api {
 
 namespace {
 
-/// A placeholder: a column of impact_columns(), and the factor of its numbers. It lies in a binary
+/// A placeholder: a column of impact_columns, and the factor of its numbers. It lies in a binary
 /// value whose subtype is no packing of a list in memory.
 struct Placeholder {
     std::size_t column;
@@ -31,7 +31,7 @@ struct Placeholder {
         std::memcpy(&placeholder, value.get_binary().data(), sizeof placeholder);
         return placeholder;
     }
-    const ImpactColumn& source() const { return impact_columns()[column]; }
+    const ImpactColumn& source() const { return impact_columns[column]; }
 };
 
 void find_placeholders(const Json& json, std::vector<Placeholder>& found) {
@@ -131,11 +131,10 @@ private:
 
 Json streamed_impacts(const std::optional<SiParameters>& si) {
     Json columns = Json::object();
-    const auto table = impact_columns();
-    for (std::size_t k = 0; k < table.size(); ++k)
-        columns[table[k].quantity.name] = Placeholder{k, 1}.json();
-    for (std::size_t k = 0; si && k < table.size(); ++k)
-        if (const Quantity& q = table[k].quantity; q.si_name)
+    for (std::size_t k = 0; k < std::size(impact_columns); ++k)
+        columns[impact_columns[k].quantity.name] = Placeholder{k, 1}.json();
+    for (std::size_t k = 0; si && k < std::size(impact_columns); ++k)
+        if (const Quantity& q = impact_columns[k].quantity; q.si_name)
             columns[q.si_name] = Placeholder{k, si_factor(q, *si)}.json();
     return columns;
 }

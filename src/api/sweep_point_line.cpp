@@ -2,117 +2,45 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "api/answer_json.hpp"
-#include "api/columns.hpp"
 #include "api/describe.hpp"
-#include "api/schema/enum_names.hpp"
-#include "core/motion/elementary.hpp"
+#include "api/properties.hpp"
 
 namespace vines::api {
 
 namespace {
 
-// Measured quantities of a point; null if the transient did not end.
-constexpr const char* measured_quantities[] = {
-    "lambda",
-    "status",
-    "standard_error",
-    "verdict",
-    "z",
-    "regime",
-    "periodic",
-    "period_cycles",
-    "impacts_per_period",
-    "symmetric",
-    "capture_cycle",
-    "multiplier",
-    "synchronised",
-    "x_max",
-    "x_rms",
-    "x_rms_ratio",
-    "x_free",
-    "share_impacts",
-    "impacts",
-    "sticks"};
-
 /// A section as in a bifurcation diagram, without its times.
 Json describe_section(const SweepRequest& r, const Sections& sections, const Place& place) {
     Json j = r.plan.options.section == SectionKind::impact
-                 ? describe(impact_section_columns(), sections.impact)
-                 : describe(state_columns(), sections.states);
+                 ? describe(impact_section_columns, sections.impact)
+                 : describe(state_columns, sections.states);
     j.erase("tau");
     if (const auto si = r.systems->si_at(place)) add_si(j, *si);
     return j;
 }
 
-void add_exponents(Json& line, const PointResult& p) {
-    line["lambda"] = column(p.lambda);
-    line["status"] = column(p.lambda, [](double v) { return enum_json(status_of(v)); });
-    line["standard_error"] = column(p.standard_error);
-}
-
-void add_regime(Json& line, const Regime& regime, double cycle) {
-    const auto& orbit = regime.orbit;
-    const auto& capture = regime.capture;
-    auto of_orbit = [&](auto value) { return orbit ? Json(value(*orbit)) : Json(nullptr); };
-    line["z"] = regime.z;
-    line["regime"] = name_of(regime.type);
-    line["periodic"] = orbit.has_value();
-    line["period_cycles"] = of_orbit([](const PeriodicOrbit& o) { return o.cycles; });
-    line["impacts_per_period"] = of_orbit([](const PeriodicOrbit& o) { return o.contacts; });
-    line["symmetric"] = of_orbit([](const PeriodicOrbit& o) { return o.symmetric; });
-    line["capture_cycle"] =
-        capture && capture->tau ? Json(std::round(*capture->tau / cycle)) : Json(nullptr);
-    line["multiplier"] =
-        of_orbit([](const PeriodicOrbit& o) { return elementary::modulus(o.multipliers[0]); });
-    line["synchronised"] = regime.synchronised;
-}
-
 void add_motion(
     Json& line, const SweepRequest& r, const Place& place, const PointSystem& system,
     const PointResult& p) {
-    if (!p.measured) {
-        for (const char* name : measured_quantities) line[name] = nullptr;
-        line["reason"] = "transient_max_impacts";
-        return;
-    }
-    add_exponents(line, p);
-    line["verdict"] = enum_json(p.verdict);
-    add_regime(line, p.regime, system.parameters.cycle());
-    line["x_max"] = p.x_max;
-    line["x_rms"] = p.x_rms;
-    line["x_rms_ratio"] = finite_or_null(p.x_rms_ratio);
-    line["x_free"] = or_null(p.x_free);
-    line["share_impacts"] = or_null(p.share_impacts);
-    line["impacts"] = p.impacts;
-    line["sticks"] = p.sticks;
-    line["reason"] = p.outcome.reason == End::tau_end ? "complete" : "max_impacts";
-    if (r.plan.options.section != SectionKind::none)
+    const properties::MeasuredPoint point{p, system.parameters.cycle()};
+    line.update(describe(properties::point, p.measured ? &point : nullptr));
+    line["reason"] = !p.measured                        ? "transient_max_impacts"
+                     : p.outcome.reason == End::tau_end ? "complete"
+                                                        : "max_impacts";
+    if (p.measured && r.plan.options.section != SectionKind::none)
         line["section"] = describe_section(r, p.sections, place);
-}
-
-/// Fields of /v1/simulate that reproduce the motion.
-Json describe_start(const State& s) {
-    return {{"x0", s.x}, {"x_dot0", s.x_dot}, {"y0", s.y}, {"y_dot0", s.y_dot}};
 }
 
 /// Quantities that distinguish the motions of a point.
 Json describe_motion(const Motion& m) {
     const PointResult& p = m.result;
-    Json j = {{"start", m.start}, {"state", describe_start(m.from)}};
+    Json j = {{"start", m.start}, {"state", describe(properties::start, m.from)}};
     if (!p.measured) {
         j["reason"] = "transient_max_impacts";
         return j;
     }
-    j.update(
-        {{"x_max", p.x_max},
-         {"x_rms", p.x_rms},
-         {"regime", name_of(p.regime.type)},
-         {"verdict", enum_json(p.verdict)},
-         {"z", p.regime.z},
-         {"lambda1", finite_or_null(p.lambda[0])}});
+    j.update(describe(properties::motion, p));
     return j;
 }
 
@@ -121,12 +49,9 @@ Json describe_peak(const Axis& axis, const Peak& peak) {
     const Motion& m = *peak.motion;
     const PointResult& p = m.result;
     Json j = {{"x_peak", p.x_max}, {axis.parameter, axis.values[peak.at]}};
-    if (!m.start.empty()) j.update({{"start", m.start}, {"state", describe_start(m.from)}});
-    j.update(
-        {{"regime", name_of(p.regime.type)},
-         {"verdict", enum_json(p.verdict)},
-         {"z", p.regime.z},
-         {"x_rms", p.x_rms}});
+    if (!m.start.empty())
+        j.update({{"start", m.start}, {"state", describe(properties::start, m.from)}});
+    j.update(describe(properties::peak, p));
     return j;
 }
 
@@ -162,7 +87,7 @@ Json describe_point(const SweepRequest& r, std::size_t index, const SweepPoint& 
     const std::vector<const Motion*> motions = ranked(point);
     const Motion& worst = motions.empty() ? point.motions[0] : *motions.back();
     if (r.plan.default_set)
-        line.update({{"start", worst.start}, {"state", describe_start(worst.from)}});
+        line.update({{"start", worst.start}, {"state", describe(properties::start, worst.from)}});
     add_motion(line, r, place, *point.system, worst.result);
     const std::optional<bool> depends = depends_on_start(point, r.plan.default_set);
     if (r.plan.default_set) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "api/properties.hpp"
 #include "api/schema/field.hpp"
 
 namespace vines::api {
@@ -87,7 +88,7 @@ std::vector<std::string> notes_on(const MergedFields& l, const System& s) {
             l.word("damping") + ", not the preset's " + l.dropped["damping"].get<std::string>());
     if (!s.si || present(l.given, si_names).empty()) return notes;
     std::vector<std::string> taken, assumed;
-    const Json si = fields_of(*s.si);
+    const Json si = describe(properties::si, *s.si);
     for (const auto& group : si_groups)
         if (present(l.given, group).empty() && l.fields.contains(group[0]))
             taken.push_back(group[0] + " = " + si[group[0]].dump());

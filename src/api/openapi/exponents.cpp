@@ -32,7 +32,7 @@ Keys estimator_keys(Of of, const Keys& of_history = {}) {
              "with fewer than 24 impacts, or if lambda1 is not converged"});
     if (of != Of::windows)
         keys.push_back(
-            {"history", object_of(columns_of(history_columns()) + of_history),
+            {"history", object_of(columns_of(history_columns) + of_history),
              "each exponent as a function of time"});
     return keys;
 }

@@ -1,6 +1,6 @@
 // The response of /v1/identify.
-#include "api/columns.hpp"
 #include "api/openapi/parts.hpp"
+#include "api/properties.hpp"
 
 namespace vines::api::document {
 
@@ -69,24 +69,21 @@ Json fitted() {
 }
 
 Json identified_impacts() {
-    return object_of(columns_of(identified_wall_columns()) + columns_of(identified_columns()));
+    return object_of(columns_of(identified_wall_columns) + columns_of(identified_columns));
 }
 
 Json restitution() {
-    const Json wall = object_of(
-        {{"R", or_null(number()), "fitted; for a list of impacts, their median"},
-         {"standard_error", or_null(number()), "standard error of R"},
-         {"impacts", whole(), "number of impacts"}});
+    const Json wall = object_of(values_of(properties::restitution));
     return object_of({{"plus", wall, "the wall at +b"}, {"minus", wall, "the wall at -b"}});
 }
 
 Json fitted_motion() {
-    return object_of(Keys{column_of(quantity.tau)} + columns_of(fitted_motion_columns()));
+    return object_of(Keys{column_of(quantity.tau)} + columns_of(fitted_motion_columns));
 }
 
 Json direct() {
     return object_of(
-        {{"impacts", table_of(identified_columns()), "the same impacts, in the same order"},
+        {{"impacts", table_of(identified_columns), "the same impacts, in the same order"},
          {"restitution", reference("Restitution"), "restitution coefficients"},
          {"lambda", four_exponents(),
           "four exponents by qr, without the impacts that status excludes here"},
@@ -99,7 +96,7 @@ Json direct() {
 Json forward_run() {
     return object_of(
         {{"start", number(), "tau at the start of the run"},
-         {"impacts", table_of(forward_impact_columns()), "impacts of the run"},
+         {"impacts", table_of(forward_impact_columns), "impacts of the run"},
          {"lambda", four_exponents(), "four exponents by qr"}});
 }
 
@@ -132,23 +129,11 @@ Json identification() {
             {"impacts", reference("IdentifiedImpacts"), "every impact, with a status"},
             {"sticking", reference("Sticking"), "every sticking phase"},
             {"restitution", reference("Restitution"), "restitution coefficient of each wall"},
-            {"b_fitted",
-             object_of(
-                 {{"b", or_null(number()),
-                   "clearance, m; null if momentum conservation determines none"},
-                  {"standard_error", or_null(number()),
-                   "m; null if the fit does not include the ball"}}),
+            {"b_fitted", object_of(values_of(properties::fitted_b)),
              "the b that conserves momentum best"},
             {"exponents", reference("MeasuredExponents"),
              "Lyapunov exponents of the sequence of impacts"},
-            {"slope",
-             object_of(
-                 {{"lambda1", or_null(number()),
-                   "long-term slope of lambda1(tau) tau, without the first tenth of the impacts "
-                   "and corrected for the phase of the modulation at both ends"},
-                  {"low", or_null(number()), "lower end of its 90 % interval"},
-                  {"high", or_null(number()), "upper end of its 90 % interval"}}),
-             "growth of lambda1(tau) tau"},
+            {"slope", object_of(values_of(properties::slope)), "growth of lambda1(tau) tau"},
             {"verdict", enum_schema<Verdict>(),
              "chaotic, regular, not_decided; null if the impacts die out because there is no "
              "forcing"},

@@ -29,6 +29,7 @@ Json numbers() { return list_of(number()); }
 Json interval() { return list_of(number(), 2); }
 
 Json or_null(Json schema) {
+    if (schema.contains("type") && schema["type"].is_array()) return schema;
     if (!schema.contains("type"))
         return {{"anyOf", Json::array({std::move(schema), {{"type", "null"}}})}};
     schema["type"] = Json::array({schema["type"], "null"});
@@ -41,6 +42,16 @@ Json reference(const std::string& name) { return {{"$ref", "#/components/schemas
 Key optional(Key key) {
     key.required = false;
     return key;
+}
+
+Keys optional(Keys keys) {
+    for (Key& key : keys) key.required = false;
+    return keys;
+}
+
+Keys or_null(Keys keys) {
+    for (Key& key : keys) key.schema = or_null(std::move(key.schema));
+    return keys;
 }
 
 Keys operator+(Keys keys, const Keys& more) {
@@ -89,7 +100,12 @@ Json schema_of(ValueType type) {
         case ValueType::component: return one_of({"x_dot", "x", "y_dot", "y"});
         case ValueType::moduli: return list_of(number(), 4);
         case ValueType::exponents: return list_of(or_null(number()), 4);
+        case ValueType::statuses: return list_of(enum_schema<Status>(), 4);
         case ValueType::matrix: return list_of(list_of(number(), 4), 4);
+        case ValueType::interval: return interval();
+        case ValueType::damping: return enum_schema<Damping>();
+        case ValueType::regime: return regime_name();
+        case ValueType::verdict: return enum_schema<Verdict>();
     }
     return nullptr;
 }

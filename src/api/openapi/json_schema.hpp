@@ -25,6 +25,7 @@ Json list_of(Json items, int length);
 Json numbers();
 /// [from, to].
 Json interval();
+/// The schema, or null; unchanged if it permits null.
 Json or_null(Json schema);
 /// A reference to a schema of the components.
 Json reference(const std::string& name);
@@ -38,8 +39,11 @@ struct Key {
 };
 using Keys = std::vector<Key>;
 
-/// The same key, not required.
+/// The same key or keys, not required.
 Key optional(Key key);
+Keys optional(Keys keys);
+/// The same keys, whose values can be null.
+Keys or_null(Keys keys);
 Keys operator+(Keys keys, const Keys& more);
 
 /// An object with these keys and no others.
@@ -50,9 +54,8 @@ Json map_of(Json values);
 /// The names of an enumeration; nullable if one of its values is null in JSON.
 template <class Enum>
 Json enum_schema() {
-    const auto table = enum_names<Enum>();
     const bool has_null =
-        std::any_of(table.begin(), table.end(), [](const auto& entry) { return !entry.name; });
+        std::ranges::any_of(enum_names<Enum>, [](const auto& entry) { return !entry.name; });
     const Json schema = one_of(enum_choices<Enum>());
     return has_null ? or_null(schema) : schema;
 }
@@ -65,7 +68,12 @@ Json side();
 /// The key of a quantity: with one value, or with a list, a column of a response.
 Key value_of(const Quantity& quantity);
 Key column_of(const Quantity& quantity);
-/// The keys of a table of columns (columns.hpp), and their object.
+/// The keys of a table of values (properties.hpp) or of columns (columns.hpp), and their object.
+Keys values_of(const auto& table) {
+    Keys keys;
+    for (const auto& property : table) keys.push_back(value_of(property.quantity));
+    return keys;
+}
 Keys columns_of(const auto& table) {
     Keys keys;
     for (const auto& column : table) keys.push_back(column_of(column.quantity));

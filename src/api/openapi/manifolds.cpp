@@ -1,12 +1,12 @@
 // The part `manifold` of a simulation, and the response of /v1/manifold.
-#include "api/columns.hpp"
 #include "api/openapi/parts.hpp"
+#include "api/properties.hpp"
 
 namespace vines::api::document {
 
 namespace {
 
-Json manifold_point() { return object_of({value_of(quantity.C), value_of(quantity.V)}); }
+Json manifold_point() { return object_of(values_of(properties::manifold_point)); }
 
 Keys manifold_keys() {
     return {
@@ -23,9 +23,9 @@ Keys manifold_keys() {
          "the point at which the ball meets the same wall a second time: this motion ends there"},
         {"stable_ends_by", one_of({"symmetry_breaking", "second_contact"}),
          "the point that comes first"},
-        {"stable", table_of(branch_columns()), "branch from the fold to the end of stability"},
-        {"unstable", table_of(branch_columns()), "branch below the fold"},
-        {"asymmetric", table_of(branch_columns()), "branch beyond the symmetry breaking"},
+        {"stable", table_of(branch_columns), "branch from the fold to the end of stability"},
+        {"unstable", table_of(branch_columns), "branch below the fold"},
+        {"asymmetric", table_of(branch_columns), "branch beyond the symmetry breaking"},
         {"free_amplitude", or_null(number()),
          "steady amplitude without the absorber, m; null if undamped at resonance"},
         {"b_at_free_amplitude", or_null(number()),
@@ -33,23 +33,12 @@ Keys manifold_keys() {
          "recommendation"}};
 }
 
-Json recommendation() {
-    return object_of(
-        {{"b", number(), "clearance, m"},
-         {"fold_share", number(), "amplitude at the fold over free_amplitude"},
-         {"x_rms_ratio", number(), "rms of x over that without the absorber, for the worst start"},
-         {"x_max", number(), "maximum of |x|, m, for the worst start"},
-         {"regime", regime_name(), "regime, for the worst start"},
-         {"start", text(), "the worst start of the default set"}});
-}
-
 /// A run whose walls differ has the half cycles only.
 Keys run_keys() {
-    Keys keys;
-    for (const Key& key : manifold_keys()) keys.push_back(optional(key));
+    Keys keys = optional(manifold_keys());
     const Keys points = {column_of(quantity.tau.with("end of each half cycle"))};
     keys.push_back(
-        {"points", object_of(points + columns_of(branch_columns())),
+        {"points", object_of(points + columns_of(branch_columns)),
          "the run: maximum of |x| and mean of |y'| in each half cycle"});
     return keys;
 }
@@ -58,7 +47,7 @@ Keys run_keys() {
 
 void add_manifolds(Json& schemas) {
     const Keys recommended = {
-        {"recommended", or_null(recommendation()),
+        {"recommended", or_null(object_of(values_of(properties::recommendation))),
          "the b whose worst motion has the smallest rms of x; null if no b reduces the motion, or "
          "if the time limit ended the search"}};
     const Key manifold = {

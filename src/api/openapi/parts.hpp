@@ -64,7 +64,7 @@ Json headers_of(const std::vector<std::string>& names);
 /// Examples of an operation, each a valid request: {name: {summary, value}} for its request body,
 /// or the fields of its query.
 Json request_example(const char* operation);
-/// A real response with this schema: that to the first request example. Null where it is too long.
+/// The response with this schema to the first request example. Null where it is too long.
 Json answer_example(const char* schema);
 
 }  // namespace vines::api::document

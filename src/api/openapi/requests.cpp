@@ -48,11 +48,6 @@ Json schema_of(const Field& f) {
     return schema;
 }
 
-FieldTable with_form(FieldTable fields) {
-    fields.insert(fields.end(), form_fields().begin(), form_fields().end());
-    return fields;
-}
-
 Json request_of(const FieldTable& fields, const std::vector<std::string>& required) {
     Json properties = Json::object();
     for (const Field& f : fields) {
@@ -98,7 +93,7 @@ Json impact_list_columns() {
 }
 
 Json identify_request() {
-    Json request = request_of(with_form(identify_fields()));
+    Json request = request_of(identify_fields() + form_fields());
     Json& properties = request["properties"];
     properties["record"] = map_of(numbers());
     properties["record"]["description"] =
@@ -122,13 +117,13 @@ Json sweep_request() {
 
 Json query_of(const FieldTable& fields, const Json& example) {
     Json list = Json::array();
-    add_query(with_form(fields), "", example, list);
+    add_query(fields + form_fields(), "", example, list);
     return list;
 }
 
 void add_requests(Json& schemas) {
-    schemas["SimulateRequest"] = request_of(with_form(simulate_fields()));
-    schemas["ManifoldRequest"] = request_of(with_form(manifold_fields()));
+    schemas["SimulateRequest"] = request_of(simulate_fields() + form_fields());
+    schemas["ManifoldRequest"] = request_of(manifold_fields() + form_fields());
     schemas["IdentifyRequest"] = identify_request();
     schemas["SweepRequest"] = sweep_request();
     schemas["SweepBase"] = request_of(sweep_base_fields());

@@ -1,16 +1,16 @@
 // The response of /v1/simulate: one schema for each part.
-#include "api/columns.hpp"
 #include "api/openapi/parts.hpp"
+#include "api/properties.hpp"
 
 namespace vines::api::document {
 
 Keys impact_section_keys() {
-    Keys keys = columns_of(impact_section_columns());
+    Keys keys = columns_of(impact_section_columns);
     keys.erase(keys.begin());
     return keys;
 }
 
-Keys stroboscopic_keys() { return columns_of(state_columns()); }
+Keys stroboscopic_keys() { return columns_of(state_columns); }
 
 namespace {
 
@@ -25,7 +25,7 @@ Json run_status() {
 
 Json section() {
     return object_of(
-        {{"impact", table_of(impact_section_columns()), "Poincare section at impact"},
+        {{"impact", table_of(impact_section_columns), "Poincare section at impact"},
          {"stroboscopic",
           object_of(
               Keys{column_of(
@@ -34,37 +34,19 @@ Json section() {
           "stroboscopic section, once per cycle"}});
 }
 
-Keys decay_keys() { return {value_of(quantity.tau_half), value_of(quantity.tau_tenth)}; }
-
 Json energy() {
+    const Keys decay = values_of(properties::decay);
     return with_joules(object_of(
-        {{"window", interval(), "interval of the balance"},
-         value_of(energies.input),
-         value_of(energies.damper),
-         value_of(energies.impacts),
-         value_of(energies.stored),
-         value_of(energies.residual),
-         {"share_impacts", or_null(number()),
-          "fraction of the dissipated energy; null if none is dissipated"},
-         value_of(energies.at_start),
-         value_of(energies.at_end),
-         {"rms", number(), "rms of x, m"},
-         {"peak", number(), "maximum of |x|, m"},
-         {"without_absorber",
-          object_of(
-              {{"rms", number(), "rms of x, m"},
-               {"peak", number(), "maximum of |x|, m"},
-               {"amplitude", or_null(number()),
-                "steady amplitude, m; null if undamped at resonance"}}),
-          "the same oscillator, start and window without the ball"},
-         {"rms_ratio", or_null(number()), "rms with over rms without the absorber"},
-         {"peak_ratio", or_null(number()), "peak with over peak without the absorber"},
-         optional(
-             {"decay",
-              object_of(
-                  decay_keys() +
-                  Keys{{"without_absorber", object_of(decay_keys()), "the same without the ball"}}),
-              "decay of the energy; only if G = 0"})}));
+        values_of(properties::balance) +
+        Keys{
+            {"without_absorber", object_of(values_of(properties::unattached)),
+             "the same oscillator, start and window without the ball"}} +
+        values_of(properties::energy_ratio) +
+        Keys{optional(
+            {"decay",
+             object_of(
+                 decay + Keys{{"without_absorber", object_of(decay), "the same without the ball"}}),
+             "decay of the energy; only if G = 0"})}));
 }
 
 Json capture() {
@@ -87,54 +69,30 @@ Keys orbit_keys() {
         {{"re", numbers(), "real part"},
          {"im", numbers(), "imaginary part"},
          {"modulus", numbers(), "modulus, descending"}});
-    const Json orbit = object_of(
-        {value_of(quantity.tau.with("a time on the orbit, during a flight")),
-         {"x_dot", number(), "velocity of the oscillator at that time"},
-         {"x", number(), "displacement of the oscillator at that time, m"},
-         {"y_dot", number(), "velocity of the ball at that time"},
-         {"y", number(), "displacement of the ball at that time, m"}});
-    return {
-        {"period_cycles", or_null(whole()),
-         "period in forcing cycles; null if not periodic, as are all keys up to capture"},
-        {"impacts_per_period", or_null(whole()), "contacts per period"},
-        {"chatter_impacts_per_period", or_null(whole()),
-         "impacts of chatter in addition to the contacts"},
-        {"sticks_per_period", or_null(whole()), "sticking phases per period"},
-        {"symmetric", or_null(flag()), "true if a shift by half a period gives the mirror image"},
-        {"stable", or_null(flag()), "true if all multipliers lie inside the unit circle"},
-        {"closure", or_null(number()),
-         "relative distance between a state of the orbit and its return"},
-        {"multipliers", or_null(multipliers), "Floquet multipliers, by descending modulus"},
-        {"orbit", or_null(orbit), "a state of the orbit"},
-        {"capture", or_null(capture()), "capture of the run by the orbit"}};
+    return or_null(
+        values_of(properties::orbit) +
+        Keys{
+            {"multipliers", multipliers, "Floquet multipliers, by descending modulus"},
+            {"orbit", object_of(values_of(properties::orbit_state)), "a state of the orbit"},
+            {"capture", capture(), "capture of the run by the orbit"}});
 }
 
 Keys rhythm_keys() {
     return {
         {"cycles_with", numbers(), "fractions of cycles with 0, 1, 2, ... contacts"},
         {"share_two_impacts", number(), "fraction of cycles with two contacts"},
-        {"z_moving", table_of(moving_z_columns()), "moving average of z"},
-        {"synchronised",
-         object_of(
-             {{"share", number(), "fraction of the contacts that lie in synchronised stretches"},
-              {"longest_half_cycles", whole(), "length of the longest such stretch"}}),
+        {"z_moving", table_of(moving_z_columns), "moving average of z"},
+        {"synchronised", object_of(values_of(properties::synchrony)),
          "synchronisation of the contacts with the forcing (1:1 resonance)"},
-        {"stretches", table_of(stretch_columns()),
+        {"stretches", table_of(stretch_columns),
          "synchronised and other stretches, in order of time"}};
 }
 
 Json regime() {
     const Keys what = {
         {"type", regime_name(), "I to VI, or none"},
-        {"description", text(), "description of the regime"},
-        {"z", number(),
-         "contacts per cycle: of the orbit if periodic, else from the first contact to the last"},
-        {"z_overall", number(),
-         "contacts per cycle from the first contact to the last, periodic or not"},
-        {"contacts", whole(),
-         "contacts in the window; a chatter that ends in a sticking phase counts as one"},
-        {"periodic", flag(), "true if a stable orbit attracts the motion"}};
-    return object_of(what + orbit_keys() + rhythm_keys());
+        {"description", text(), "description of the regime"}};
+    return object_of(what + values_of(properties::rhythm) + orbit_keys() + rhythm_keys());
 }
 
 Json perturbation() {
@@ -153,9 +111,9 @@ Json perturbation() {
         value_of(quantity.tau_end.with("end of the stretch").or_null())};
     return object_of(
         Keys{{"start", object_of(start), "perturbation of the start"}} +
-        columns_of(perturbation_columns()) +
+        columns_of(perturbation_columns) +
         Keys{
-            {"impacts", table_of(touch_columns()), "impacts of the second run"},
+            {"impacts", table_of(touch_columns), "impacts of the second run"},
             column_of(quantity.distance),
             {"predicted", object_of(predicted), "prediction of the linear theory"},
             {"slope", object_of(slope),
@@ -205,12 +163,12 @@ Json simulation() {
 void add_simulation(Json& schemas) {
     schemas["Simulation"] = simulation();
     schemas["RunStatus"] = run_status();
-    schemas["Series"] = with_si(table_of(series_columns()));
-    schemas["Impacts"] = with_si(table_of(impact_columns()));
-    schemas["Sticking"] = with_si(table_of(sticking_columns()));
-    schemas["Touches"] = with_si(table_of(touch_columns()));
-    schemas["Eigenvalues"] = with_si(table_of(moduli_columns()));
-    schemas["Matrices"] = with_si(table_of(matrix_columns()));
+    schemas["Series"] = with_si(table_of(series_columns));
+    schemas["Impacts"] = with_si(table_of(impact_columns));
+    schemas["Sticking"] = with_si(table_of(sticking_columns));
+    schemas["Touches"] = with_si(table_of(touch_columns));
+    schemas["Eigenvalues"] = with_si(table_of(moduli_columns));
+    schemas["Matrices"] = with_si(table_of(matrix_columns));
     schemas["Section"] = with_si(section());
     schemas["Energy"] = with_si(energy());
     schemas["Regime"] = with_si(regime());

@@ -1,5 +1,6 @@
 // The lines of the response of /v1/sweep.
 #include "api/openapi/parts.hpp"
+#include "api/properties.hpp"
 
 namespace vines::api::document {
 
@@ -21,17 +22,9 @@ Keys index_keys() {
          "axes"}};
 }
 
-Json start_state() {
-    return object_of(
-        {{"x0", number(), "displacement of the oscillator, m"},
-         {"x_dot0", number(), "velocity of the oscillator, m per unit of tau"},
-         {"y0", number(), "displacement of the ball, m"},
-         {"y_dot0", number(), "velocity of the ball, m per unit of tau"}});
-}
-
 /// The initial state in the fields of a simulation.
 Key state_key(const std::string& description) {
-    return optional({"state", start_state(), description});
+    return optional({"state", object_of(values_of(properties::start)), description});
 }
 
 Key start_of_list() {
@@ -50,36 +43,6 @@ Key depends() {
     return optional({"depends_on_start", flag(), "true if the starts end in different motions"});
 }
 
-/// All are null for a point whose transient did not end.
-Keys measured_keys() {
-    const Json count = or_null(whole()), value = or_null(number());
-    return {
-        {"lambda", or_null(four_exponents()), "four exponents by qr"},
-        {"status", or_null(four_statuses()), "status of each exponent"},
-        {"standard_error", or_null(four_exponents()), "standard error of each exponent"},
-        {"verdict", enum_schema<Verdict>(),
-         "verdict on the final motion; null without forcing, or if the ball meets no wall in the "
-         "end"},
-        {"z", value, "contacts per cycle"},
-        {"regime", or_null(regime_name()), "I to VI, or none"},
-        {"periodic", or_null(flag()), "true if a stable orbit attracts the motion"},
-        {"period_cycles", count, "period in forcing cycles"},
-        {"impacts_per_period", count, "contacts per period"},
-        {"symmetric", or_null(flag()), "true if a shift by half a period gives the mirror image"},
-        {"capture_cycle", value,
-         "cycle in which the orbit captured the motion; if it is late, lambda is a mean over a "
-         "transient; null if not periodic or not yet captured"},
-        {"multiplier", value, "largest modulus of the Floquet multipliers"},
-        {"synchronised", value, "fraction of the contacts that lie in synchronised stretches"},
-        {"x_max", value, "maximum of |x|, m"},
-        {"x_rms", value, "rms of x, m"},
-        {"x_rms_ratio", value, "x_rms over that of the steady motion without the absorber"},
-        {"x_free", value, "steady amplitude without the absorber, m"},
-        {"share_impacts", value, "fraction of the energy that impacts dissipate"},
-        {"impacts", count, "number of impacts"},
-        {"sticks", count, "number of sticking phases"}};
-}
-
 Json point_section() {
     return {
         {"oneOf",
@@ -87,7 +50,8 @@ Json point_section() {
 }
 
 Json measured_point() {
-    const Keys own = index_keys() + Keys{start_of_line()} + measured_keys();
+    const Keys own = index_keys() + Keys{start_of_line()} +
+                     or_null(values_of(properties::point));  // null if the transient did not end
     Keys swept;
     for (const Key& key : swept_keys(number(), "value at this point, if swept"))
         // The key lambda holds the exponents; a swept lambda is in `axes` of the line start.
@@ -131,17 +95,14 @@ Json faulty_point() {
 
 Json motion() {
     return object_of(
-        {{"start", text(), "name of the start in the default set"},
-         {"state", start_state(), "initial state, as fields of a simulation"},
-         optional({"x_max", number(), "maximum of |x|, m"}),
-         optional({"x_rms", number(), "rms of x, m"}),
-         optional({"regime", regime_name(), "as for a point"}),
-         optional({"verdict", enum_schema<Verdict>(), "as for a point"}),
-         optional({"z", number(), "as for a point"}),
-         optional({"lambda1", or_null(number()), "largest exponent by qr"}),
-         optional(
-             {"reason", constant("transient_max_impacts"),
-              "instead of the results: the transient did not end"})});
+        Keys{
+            {"start", text(), "name of the start in the default set"},
+            {"state", object_of(values_of(properties::start)),
+             "initial state, as fields of a simulation"}} +
+        optional(values_of(properties::motion)) +
+        Keys{optional(
+            {"reason", constant("transient_max_impacts"),
+             "instead of the results: the transient did not end"})});
 }
 
 Keys peak_keys() {
@@ -151,11 +112,8 @@ Keys peak_keys() {
            Keys{
                {"x_peak", or_null(number()),
                 "largest (or smallest) x_max along the reduced axis, m"},
-               state_key("with the default set: initial state of that motion"),
-               optional({"regime", regime_name(), "regime at x_peak"}),
-               optional({"verdict", enum_schema<Verdict>(), "verdict at x_peak"}),
-               optional({"z", number(), "contacts per cycle at x_peak"}),
-               optional({"x_rms", number(), "rms of x at x_peak, m"})};
+               state_key("with the default set: initial state of that motion")} +
+           optional(values_of(properties::peak));
 }
 
 Json reduced_point() {

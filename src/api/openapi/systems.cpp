@@ -1,31 +1,14 @@
 // `parameters`, the resolved system of a request, and `provenance`.
 #include "api/openapi/parts.hpp"
+#include "api/properties.hpp"
 
 namespace vines::api::document {
 
 namespace {
 
-Keys reduced_keys() {
-    return {
-        {"epsilon", number(), "mass ratio m2/m1"},
-        {"lambda", number(), "damping c1/(m2 omega0)"},
-        {"G", number(), "amplitude of the base over epsilon, m"},
-        {"Omega", number(), "forcing frequency over omega0"},
-        {"R_plus", number(), "restitution coefficient of the wall at x - y = b"},
-        {"R_minus", number(), "restitution coefficient of the wall at x - y = -b"},
-        {"b", number(), "clearance: half-width of the cavity, m"},
-        {"damping", enum_schema<Damping>(), "whether zeta is epsilon lambda/2 or epsilon lambda"},
-        {"origin", map_of(text()), "source of each value"}};
-}
-
-Keys si_keys() {
-    return {
-        {"m1", number(), "mass of the linear oscillator, kg"},
-        {"c1", number(), "damping of the oscillator, N s/m"},
-        {"k1", number(), "stiffness of the oscillator, N/m"},
-        {"m2", number(), "mass of the ball, kg"},
-        {"F", number(), "amplitude of the base, m"},
-        {"f", number(), "forcing frequency, Hz"}};
+Keys system_keys() {
+    return values_of(properties::reduced) +
+           Keys{{"origin", map_of(text()), "source of each value"}};
 }
 
 Key si_system(const Keys& keys) {
@@ -36,19 +19,7 @@ Key si_system(const Keys& keys) {
 Key derived() {
     return {
         "derived",
-        object_of(
-            {{"zeta", number(), "damping ratio of the motion"},
-             {"omega_d", or_null(number()), "sqrt(1 - zeta^2); null if zeta >= 1"},
-             {"A", number(), "amplitude of the forcing over epsilon, m"},
-             {"phi", number(), "phase of the forcing at tau = 0, rad"},
-             {"cycle", number(), "length of a forcing cycle"},
-             optional({"omega0", number(), "natural frequency in rad/s, for a system in SI"}),
-             optional({"f0", number(), "natural frequency in Hz, for a system in SI"}),
-             optional(
-                 {"damping_ratio", number(),
-                  "c1/(2 m1 omega0), for a system in SI; does not depend on `damping`"}),
-             optional({"mass_ratio", number(), "m2/m1, for a system in SI"}),
-             optional({"cycle_s", number(), "cycle in s, for a system in SI"})}),
+        object_of(values_of(properties::derived) + optional(values_of(properties::derived_si))),
         "values derived from these"};
 }
 
@@ -56,9 +27,9 @@ Json simulation_parameters() {
     const Keys start_in_si = {
         {"x_velocity0", number(), "x_dot0 in m/s"}, {"y_velocity0", number(), "y_dot0 in m/s"}};
     return with_si(object_of(
-        reduced_keys() +
+        system_keys() +
         Keys{
-            si_system(si_keys() + start_in_si),
+            si_system(values_of(properties::si) + start_in_si),
             {"x0", number(), "displacement of the oscillator at tau = 0, m"},
             {"x_dot0", number(), "velocity of the oscillator at tau = 0, m per unit of tau"},
             {"y0", number(), "displacement of the ball at tau = 0, m"},
@@ -92,7 +63,8 @@ Json provenance() {
 }  // namespace
 
 void add_systems(Json& schemas) {
-    schemas["System"] = object_of(reduced_keys() + Keys{si_system(si_keys()), derived()});
+    schemas["System"] =
+        object_of(system_keys() + Keys{si_system(values_of(properties::si)), derived()});
     schemas["SimulationParameters"] = simulation_parameters();
     schemas["Provenance"] = provenance();
 }

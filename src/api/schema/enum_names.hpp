@@ -1,7 +1,7 @@
 // Names of the enumerations' values in requests and responses: one table for each enumeration.
 #pragma once
 
-#include <span>
+#include <array>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -21,28 +21,63 @@ struct EnumName {
 
 /// The table of an enumeration.
 template <class Enum>
-std::span<const EnumName<Enum>> enum_names();
+inline constexpr std::array<EnumName<Enum>, 0> enum_names;
 
 template <>
-std::span<const EnumName<FieldType>> enum_names();
+inline constexpr EnumName<FieldType> enum_names<FieldType>[] = {
+    {FieldType::number, "number"},     {FieldType::integer, "integer"},
+    {FieldType::choice, "choice"},     {FieldType::choices, "choices"},
+    {FieldType::interval, "interval"}, {FieldType::intervals, "intervals"},
+    {FieldType::integers, "integers"}, {FieldType::numbers, "numbers"},
+    {FieldType::object, "object"},     {FieldType::objects, "objects"}};
+
 template <>
-std::span<const EnumName<Damping>> enum_names();
+inline constexpr EnumName<Damping> enum_names<Damping>[] = {
+    {Damping::equation_of_motion, "equation_of_motion"}, {Damping::closed_form, "closed_form"}};
+
 template <>
-std::span<const EnumName<Status>> enum_names();
+inline constexpr EnumName<Status> enum_names<Status>[] = {
+    {Status::ok, "ok"},
+    {Status::minus_infinity, "minus_infinity"},
+    {Status::not_converged, "not_converged"}};
+
 template <>
-std::span<const EnumName<Verdict>> enum_names();
+inline constexpr EnumName<Verdict> enum_names<Verdict>[] = {
+    {Verdict::chaotic, "chaotic"},
+    {Verdict::regular, "regular"},
+    {Verdict::not_decided, "not_decided"},
+    {Verdict::none, nullptr}};
+
 template <>
-std::span<const EnumName<SectionKind>> enum_names();
+inline constexpr EnumName<SectionKind> enum_names<SectionKind>[] = {
+    {SectionKind::none, "none"},
+    {SectionKind::impact, "impact"},
+    {SectionKind::stroboscopic, "stroboscopic"}};
+
 template <>
-std::span<const EnumName<Carry>> enum_names();
+inline constexpr EnumName<Carry> enum_names<Carry>[] = {
+    {Carry::none, "none"}, {Carry::up, "up"}, {Carry::down, "down"}};
+
 /// The unknowns of a fit that a request can fix.
 template <>
-std::span<const EnumName<Unknown>> enum_names();
+inline constexpr EnumName<Unknown> enum_names<Unknown>[] = {
+    {Unknown::Omega, "f"},
+    {Unknown::x_offset, "displacement_offset"},
+    {Unknown::x_drift, "displacement_drift"},
+    {Unknown::x_gain, "displacement_gain"},
+    {Unknown::x_delay, "displacement_delay_s"},
+    {Unknown::a_offset, "acceleration_offset"},
+    {Unknown::a_drift, "acceleration_drift"},
+    {Unknown::stiffness, "omega0"},
+    {Unknown::damping, "zeta"},
+    {Unknown::b, "b"},
+    {Unknown::R_plus, "R_plus"},
+    {Unknown::R_minus, "R_minus"}};
 
 /// The name of a value; can be null. Throws std::logic_error if the table lacks the value.
 template <class Enum>
 const char* enum_name(Enum value) {
-    for (const auto& entry : enum_names<Enum>())
+    for (const auto& entry : enum_names<Enum>)
         if (entry.value == value) return entry.name;
     throw std::logic_error("an enumeration's value without a name");
 }
@@ -57,7 +92,7 @@ Json enum_json(Enum value) {
 /// The value of this name, which check() has accepted; throws std::logic_error for another name.
 template <class Enum>
 Enum enum_value(std::string_view name) {
-    for (const auto& entry : enum_names<Enum>())
+    for (const auto& entry : enum_names<Enum>)
         if (entry.name && name == entry.name) return entry.value;
     throw std::logic_error("no enumeration's value of the name " + std::string(name));
 }
@@ -66,7 +101,7 @@ Enum enum_value(std::string_view name) {
 template <class Enum>
 std::vector<std::string> enum_choices() {
     std::vector<std::string> choices;
-    for (const auto& entry : enum_names<Enum>())
+    for (const auto& entry : enum_names<Enum>)
         if (entry.name) choices.push_back(entry.name);
     return choices;
 }

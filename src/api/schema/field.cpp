@@ -11,6 +11,16 @@
 
 namespace vines::api {
 
+FieldTable grouped(const char* group, FieldTable rows) {
+    for (Field& row : rows) row.group = group;
+    return rows;
+}
+
+FieldTable operator+(FieldTable table, const FieldTable& more) {
+    table.insert(table.end(), more.begin(), more.end());
+    return table;
+}
+
 const Field* find(const FieldTable& table, const std::string& name) {
     const auto field =
         std::find_if(table.begin(), table.end(), [&](const Field& f) { return f.name == name; });

@@ -47,6 +47,10 @@ struct Field {
 
 using FieldTable = std::vector<Field>;
 
+/// The rows as one group.
+FieldTable grouped(const char* group, FieldTable rows);
+FieldTable operator+(FieldTable table, const FieldTable& more);
+
 /// The field of this name; null if the table has none.
 const Field* find(const FieldTable& table, const std::string& name);
 

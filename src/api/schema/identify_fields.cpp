@@ -1,5 +1,9 @@
 // The table of /v1/identify: the fields of /v1/simulate that apply to a record, and how to read the
 // columns of the record.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "api/schema/channels.hpp"
 #include "api/schema/enum_names.hpp"
 #include "api/schema/tables.hpp"
 
@@ -7,8 +11,55 @@ namespace vines::api {
 
 namespace {
 
-/// A field of /v1/simulate, adapted to a record: some of the system is measured, not given.
-Field of_record(Field f) {
+// g is the standard gravity.
+const std::vector<Unit> acceleration_units = {
+    {"m/s2", 1, {"m/s2", "m_s2", "ms-2", "m/s/s"}}, {"g", 9.80665, {"g"}}};
+
+}  // namespace
+
+const Channel time_channel{
+    .name = "time",
+    .column = "time_s",
+    .beginnings = {"time", "t"},
+    .units = {{"s", 1, {"s", "sec"}}, {"ms", 1e-3, {"ms", "msec"}}},
+    .quantity = "time"};
+const Channel displacement_channel{
+    .name = "displacement",
+    .column = "displacement_m",
+    .beginnings = {"displacement", "x"},
+    .units = {{"m", 1, {"m"}}, {"mm", 1e-3, {"mm"}}, {"um", 1e-6, {"um"}}},
+    .quantity = "displacement"};
+const Channel acceleration_channel{
+    .name = "acceleration",
+    .column = "acceleration_m_s2",
+    .beginnings = {"acceleration", "a"},
+    .units = acceleration_units,
+    .quantity = "acceleration"};
+const Channel base_channel{
+    .name = "base_acceleration",
+    .column = "base_acceleration_m_s2",
+    .beginnings = {"base_acceleration"},
+    .units = acceleration_units,
+    .quantity = "the base's acceleration",
+    .forcing = "the base's acceleration, which gives the forcing"};
+const Channel force_channel{
+    .name = "force",
+    .column = "force_N",
+    .beginnings = {"force"},
+    .units = {{"N", 1, {"n"}}, {"kN", 1e3, {"kn"}}},
+    .quantity = "the force",
+    .forcing = "a force on m1 that drives it instead of the base"};
+
+std::vector<std::string> unit_names(const Channel& channel) {
+    std::vector<std::string> names;
+    for (const Unit& unit : channel.units) names.push_back(unit.name);
+    return names;
+}
+
+namespace {
+
+/// Adapts a field of /v1/simulate to a record: some of the system is measured, not given.
+void adapt_to_record(Field& f) {
     if (f.name == "F" || f.name == "G") f.description += "; fitted if there is a record";
     if (f.name == "R") {
         f.fallback = nullptr;
@@ -16,91 +67,37 @@ Field of_record(Field f) {
     }
     if (f.name == "m1" || f.name == "k1")
         f.fallback_note = "required for a record, unless a preset gives it: omega0 scales the time";
-    return f;
 }
 
-FieldTable column_rows() {
+Field column_row(const Channel& c) {
     return {
-        {.name = "time_column",
-         .type = FieldType::choice,
-         .group = "record",
-         .description = "name of the column of time",
-         .fallback_note = "time_s, or the first name that begins with time or t"},
-        {.name = "displacement_column",
-         .type = FieldType::choice,
-         .group = "record",
-         .description = "name of the column of displacement",
-         .fallback_note = "displacement_m, or the first name that begins with displacement or x"},
-        {.name = "acceleration_column",
-         .type = FieldType::choice,
-         .group = "record",
-         .description = "name of the column of acceleration",
-         .fallback_note =
-             "acceleration_m_s2, or the first name that begins with acceleration or a"},
-        {.name = "base_acceleration_column",
-         .type = FieldType::choice,
-         .group = "record",
-         .description = "name of the column of the base's acceleration, which gives the forcing",
-         .fallback_note = "base_acceleration_m_s2, or the first name that begins with "
-                          "base_acceleration; optional"},
-        {.name = "force_column",
-         .type = FieldType::choice,
-         .group = "record",
-         .description = "name of the column of a force on m1 that drives it instead of the base",
-         .fallback_note = "force_N, or the first name that begins with force; optional"},
-    };
+        .name = c.name + "_column",
+        .type = FieldType::choice,
+        .description = "name of the column of " + (c.forcing.empty() ? c.quantity : c.forcing),
+        .fallback_note = fmt::format(
+            "{}, or the first name that begins with {}{}", c.column,
+            fmt::join(c.beginnings, " or "), c.forcing.empty() ? "" : "; optional")};
 }
 
-FieldTable unit_rows() {
+Field unit_row(const Channel& c) {
     return {
-        {.name = "time_unit",
-         .type = FieldType::choice,
-         .group = "record",
-         .description = "unit of time, unless the column's name or a row of units gives one",
-         .fallback = "s",
-         .choices = {"s", "ms"}},
-        {.name = "displacement_unit",
-         .type = FieldType::choice,
-         .group = "record",
-         .description =
-             "unit of displacement, unless the column's name or a row of units gives one",
-         .fallback = "m",
-         .choices = {"m", "mm", "um"}},
-        {.name = "acceleration_unit",
-         .type = FieldType::choice,
-         .group = "record",
-         .description =
-             "unit of acceleration, unless the column's name or a row of units gives one",
-         .fallback = "m/s2",
-         .choices = {"m/s2", "g"}},
-        {.name = "base_acceleration_unit",
-         .type = FieldType::choice,
-         .group = "record",
-         .description =
-             "unit of the base's acceleration, unless the column's name or a row of units "
-             "gives one",
-         .fallback = "m/s2",
-         .choices = {"m/s2", "g"}},
-        {.name = "force_unit",
-         .type = FieldType::choice,
-         .group = "record",
-         .description = "unit of the force, unless the column's name or a row of units gives one",
-         .fallback = "N",
-         .choices = {"N", "kN"}},
-    };
+        .name = c.name + "_unit",
+        .type = FieldType::choice,
+        .description =
+            "unit of " + c.quantity + ", unless the column's name or a row of units gives one",
+        .fallback = c.units[0].name,
+        .choices = unit_names(c)};
 }
 
 FieldTable impact_rows() {
     return {
         {.name = "threshold",
-         .group = "record",
          .unit = "standard deviations of the noise",
          .description = "smallest height at which a spike of the acceleration can be an impact",
          .fallback = 6,
          .range = Range{3, 1000}},
         {.name = "impact_times_s",
          .type = FieldType::numbers,
-         .group = "record",
          .unit = "s",
          .description =
              "times of the impacts, for example an edited list; replaces their detection",
@@ -117,7 +114,6 @@ std::vector<std::string> fixable() {
 Field phase_row() {
     return {
         .name = "phase",
-        .group = "record",
         .unit = "rad",
         .description =
             "phase of the base, which moves by F sin(2 pi f t + phase), t as in the record; used "
@@ -130,7 +126,6 @@ Field fixed_row() {
     return {
         .name = "fixed",
         .type = FieldType::choices,
-        .group = "record",
         .description =
             "quantities that are not fitted to the record: f, F, phase, omega0, zeta, b and R keep "
             "the values of the other fields, a sensor counts as free of errors",
@@ -142,7 +137,6 @@ Field include_row() {
     return {
         .name = "include",
         .type = FieldType::choices,
-        .group = "output",
         .description =
             "additional parts of the response for a record: motion, the fitted motion at the "
             "samples; direct_exponents, exponents with histories by the direct method of the paper",
@@ -150,17 +144,21 @@ Field include_row() {
         .choices = {"motion", "direct_exponents"}};
 }
 
+FieldTable record_rows() {
+    FieldTable rows = {fixed_row(), phase_row()};
+    const std::vector<const Channel*> channels = {
+        &time_channel, &displacement_channel, &acceleration_channel, &base_channel, &force_channel};
+    for (const Channel* channel : channels) rows.push_back(column_row(*channel));
+    for (const Channel* channel : channels) rows.push_back(unit_row(*channel));
+    return rows + impact_rows();
+}
+
 FieldTable make_identify_fields() {
-    FieldTable table;
-    for (const Field& f : simulate_fields())
-        if (is_of_system(f) || f.name == "exponents" || f.name == "max_points")
-            table.push_back(of_record(f));
-    table.push_back(include_row());
-    table.push_back(fixed_row());
-    table.push_back(phase_row());
-    for (const auto& rows : {column_rows, unit_rows, impact_rows})
-        for (Field& f : rows()) table.push_back(std::move(f));
-    return table;
+    FieldTable table = simulate_fields_where([](const Field& f) {
+        return is_of_system(f) || f.name == "exponents" || f.name == "max_points";
+    });
+    for (Field& field : table) adapt_to_record(field);
+    return table + grouped("output", {include_row()}) + grouped("record", record_rows());
 }
 
 }  // namespace

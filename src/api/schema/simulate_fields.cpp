@@ -1,7 +1,7 @@
 // The tables of /v1/simulate, of /v1/manifold, and of the response's format.
 //
 // The rows of /v1/simulate are grouped as a form shows them; the other routes select rows from them
-// (is_of_system, sweep_base_fields, identify_fields). Ranges of physical quantities are those of
+// (simulate_fields_where). Ranges of physical quantities are those of
 // the core (parameter_ranges), defaults are Table 1 of the paper.
 #include <algorithm>
 #include <iterator>
@@ -32,6 +32,20 @@ const char* const whole = "none: give all SI fields, or a preset for the rest";
 const char* const from_si = "from the SI fields if any is given";
 const char* const speed = "m per unit of tau";
 
+/// A number; its range is that of the core's parameter or initial state of this name, unless given.
+Field number(
+    const char* name, const char* unit, const char* symbol, const char* description, Json fallback,
+    const char* fallback_note = "", std::optional<Range> range = {}) {
+    return {
+        .name = name,
+        .unit = unit,
+        .symbol = symbol,
+        .description = description,
+        .fallback = std::move(fallback),
+        .fallback_note = fallback_note,
+        .range = range ? range : core_range(name)};
+}
+
 FieldTable system_rows() {
     const Parameters table_1;  // the defaults
     return {
@@ -39,42 +53,24 @@ FieldTable system_rows() {
          // Any string: the reader of the request reports an unknown preset with the list of
          // presets.
          .type = FieldType::choice,
-         .group = "system",
          .description = "figure or table of the paper (GET /v1/presets); each other field that is "
                         "given replaces one value of the preset",
          .fallback_note = "none"},
-        {.name = "b",
-         .group = "system",
-         .unit = "m",
-         .symbol = "b",
-         .description = "clearance: half-width of the cavity in which the ball moves",
-         .fallback = table_1.b,
-         .range = core_range("b")},
-        {.name = "R",
-         .group = "system",
-         .unit = dimensionless,
-         .symbol = "R",
-         .description =
-             "restitution coefficient of both walls; not together with R_plus or R_minus",
-         .fallback = table_1.R_plus,
-         .range = core_range("R_plus")},
-        {.name = "R_plus",
-         .group = "system",
-         .unit = dimensionless,
-         .symbol = "R+",
-         .description = "restitution coefficient of the wall at x - y = +b",
-         .fallback_note = "R",
-         .range = core_range("R_plus")},
-        {.name = "R_minus",
-         .group = "system",
-         .unit = dimensionless,
-         .symbol = "R-",
-         .description = "restitution coefficient of the wall at x - y = -b",
-         .fallback_note = "R",
-         .range = core_range("R_minus")},
+        number(
+            "b", "m", "b", "clearance: half-width of the cavity in which the ball moves",
+            table_1.b),
+        number(
+            "R", dimensionless, "R",
+            "restitution coefficient of both walls; not together with R_plus or R_minus",
+            table_1.R_plus, "", core_range("R_plus")),
+        number(
+            "R_plus", dimensionless, "R+", "restitution coefficient of the wall at x - y = +b",
+            nullptr, "R"),
+        number(
+            "R_minus", dimensionless, "R-", "restitution coefficient of the wall at x - y = -b",
+            nullptr, "R"),
         {.name = "damping",
          .type = FieldType::choice,
-         .group = "system",
          .symbol = "zeta",
          .description = "equation_of_motion: zeta = epsilon lambda/2, eqs. (1), (6), (17), the "
                         "physical damper c1; closed_form: zeta = epsilon lambda, eqs. (8)-(11), "
@@ -87,154 +83,57 @@ FieldTable system_rows() {
 FieldTable reduced_rows() {
     const Parameters table_1;  // the defaults
     return {
-        {.name = "epsilon",
-         .group = "reduced",
-         .unit = dimensionless,
-         .symbol = "epsilon",
-         .description = "mass ratio m2/m1",
-         .fallback = table_1.epsilon,
-         .fallback_note = from_si,
-         .range = core_range("epsilon")},
-        {.name = "lambda",
-         .group = "reduced",
-         .unit = dimensionless,
-         .symbol = "lambda",
-         .description = "damping c1/(m2 omega0)",
-         .fallback = table_1.lambda,
-         .fallback_note = from_si,
-         .range = core_range("lambda")},
-        {.name = "G",
-         .group = "reduced",
-         .unit = "m",
-         .symbol = "G",
-         .description = "amplitude of the base over epsilon",
-         .fallback = table_1.G,
-         .fallback_note = from_si,
-         .range = core_range("G")},
-        {.name = "Omega",
-         .group = "reduced",
-         .unit = dimensionless,
-         .symbol = "Omega",
-         .description = "forcing frequency over omega0",
-         .fallback = table_1.Omega,
-         .fallback_note = from_si,
-         .range = core_range("Omega")},
+        number("epsilon", dimensionless, "epsilon", "mass ratio m2/m1", table_1.epsilon, from_si),
+        number(
+            "lambda", dimensionless, "lambda", "damping c1/(m2 omega0)", table_1.lambda, from_si),
+        number("G", "m", "G", "amplitude of the base over epsilon", table_1.G, from_si),
+        number(
+            "Omega", dimensionless, "Omega", "forcing frequency over omega0", table_1.Omega,
+            from_si),
     };
 }
 
 // NOLINTNEXTLINE(readability-function-size): a table
 FieldTable si_rows() {
     return {
-        {.name = "m1",
-         .group = "SI",
-         .unit = "kg",
-         .symbol = "m1",
-         .description = "mass of the linear oscillator; SI and reduced fields exclude each other",
-         .fallback_note = whole,
-         .range = any_mass},
-        {.name = "f0",
-         .group = "SI",
-         .unit = "Hz",
-         .symbol = "f0",
-         .description = "natural frequency of the oscillator, sqrt(k1/m1)/(2 pi), instead of k1",
-         .fallback_note = "from k1",
-         .range = any_frequency},
-        {.name = "k1",
-         .group = "SI",
-         .unit = "N/m",
-         .symbol = "k1",
-         .description = "stiffness of the oscillator",
-         .fallback_note = whole,
-         .range = any_stiffness},
-        {.name = "damping_ratio",
-         .group = "SI",
-         .unit = dimensionless,
-         .symbol = "c1/(2 m1 omega0)",
-         .description = "damping ratio of the oscillator, instead of c1",
-         .fallback_note = "from c1",
-         .range = Range{0, 10}},
-        {.name = "c1",
-         .group = "SI",
-         .unit = "N s/m",
-         .symbol = "c1",
-         .description = "damping of the oscillator",
-         .fallback_note = whole,
-         .range = any_damping},
-        {.name = "mass_ratio",
-         .group = "SI",
-         .unit = dimensionless,
-         .symbol = "m2/m1",
-         .description = "mass ratio m2/m1, instead of m2",
-         .fallback_note = "from m2",
-         .range = core_range("epsilon")},
-        {.name = "m2",
-         .group = "SI",
-         .unit = "kg",
-         .symbol = "m2",
-         .description = "mass of the ball",
-         .fallback_note = whole,
-         .range = any_absorber_mass},
-        {.name = "F",
-         .group = "SI",
-         .unit = "m",
-         .symbol = "F",
-         .description = "amplitude of the base, which moves by F sin(2 pi f t)",
-         .fallback_note = whole,
-         .range = any_amplitude},
-        {.name = "f",
-         .group = "SI",
-         .unit = "Hz",
-         .symbol = "f",
-         .description = "forcing frequency",
-         .fallback_note = whole,
-         .range = any_frequency},
+        number(
+            "m1", "kg", "m1",
+            "mass of the linear oscillator; SI and reduced fields exclude each other", nullptr,
+            whole, any_mass),
+        number(
+            "f0", "Hz", "f0",
+            "natural frequency of the oscillator, sqrt(k1/m1)/(2 pi), instead of k1", nullptr,
+            "from k1", any_frequency),
+        number("k1", "N/m", "k1", "stiffness of the oscillator", nullptr, whole, any_stiffness),
+        number(
+            "damping_ratio", dimensionless, "c1/(2 m1 omega0)",
+            "damping ratio of the oscillator, instead of c1", nullptr, "from c1", Range{0, 10}),
+        number("c1", "N s/m", "c1", "damping of the oscillator", nullptr, whole, any_damping),
+        number(
+            "mass_ratio", dimensionless, "m2/m1", "mass ratio m2/m1, instead of m2", nullptr,
+            "from m2", core_range("epsilon")),
+        number("m2", "kg", "m2", "mass of the ball", nullptr, whole, any_absorber_mass),
+        number(
+            "F", "m", "F", "amplitude of the base, which moves by F sin(2 pi f t)", nullptr, whole,
+            any_amplitude),
+        number("f", "Hz", "f", "forcing frequency", nullptr, whole, any_frequency),
     };
 }
 
 FieldTable start_rows() {
     return {
-        {.name = "x0",
-         .group = "start",
-         .unit = "m",
-         .symbol = "x(0)",
-         .description = "displacement of the linear oscillator at tau = 0",
-         .fallback = 0,
-         .range = core_range("x0")},
-        {.name = "x_dot0",
-         .group = "start",
-         .unit = speed,
-         .symbol = "x'(0)",
-         .description = "velocity of the linear oscillator at tau = 0",
-         .fallback = 0,
-         .range = core_range("x_dot0")},
-        {.name = "x_velocity0",
-         .group = "start",
-         .unit = "m/s",
-         .symbol = "dx/dt(0)",
-         .description = "x_dot0 in m/s, for a system in SI",
-         .fallback_note = "from x_dot0",
-         .range = any_velocity},
-        {.name = "y0",
-         .group = "start",
-         .unit = "m",
-         .symbol = "y(0)",
-         .description = "displacement of the ball at tau = 0; |x0 - y0| <= b",
-         .fallback_note = "0.95 b",
-         .range = core_range("y0")},
-        {.name = "y_dot0",
-         .group = "start",
-         .unit = speed,
-         .symbol = "y'(0)",
-         .description = "velocity of the ball at tau = 0",
-         .fallback = 0,
-         .range = core_range("y_dot0")},
-        {.name = "y_velocity0",
-         .group = "start",
-         .unit = "m/s",
-         .symbol = "dy/dt(0)",
-         .description = "y_dot0 in m/s, for a system in SI",
-         .fallback_note = "from y_dot0",
-         .range = any_velocity},
+        number("x0", "m", "x(0)", "displacement of the linear oscillator at tau = 0", 0),
+        number("x_dot0", speed, "x'(0)", "velocity of the linear oscillator at tau = 0", 0),
+        number(
+            "x_velocity0", "m/s", "dx/dt(0)", "x_dot0 in m/s, for a system in SI", nullptr,
+            "from x_dot0", any_velocity),
+        number(
+            "y0", "m", "y(0)", "displacement of the ball at tau = 0; |x0 - y0| <= b", nullptr,
+            "0.95 b"),
+        number("y_dot0", speed, "y'(0)", "velocity of the ball at tau = 0", 0),
+        number(
+            "y_velocity0", "m/s", "dy/dt(0)", "y_dot0 in m/s, for a system in SI", nullptr,
+            "from y_dot0", any_velocity),
     };
 }
 
@@ -268,21 +167,18 @@ FieldTable perturbation_rows() {
 FieldTable run_rows() {
     return {
         {.name = "tau_end",
-         .group = "run",
          .unit = dimensionless,
          .symbol = "tau",
          .description = "length of the run; not together with cycles",
          .fallback = 1709,  // beyond the end of the first window of Table 2
          .range = Range{1e-6, longest_run}},
         {.name = "cycles",
-         .group = "run",
          .unit = dimensionless,
          .description = "length of the run in forcing cycles of 2 pi/Omega",
          .fallback_note = "from tau_end",
          .range = Range{1e-6, 1e6}},
         {.name = "window",
          .type = FieldType::interval,
-         .group = "run",
          .unit = dimensionless,
          .symbol = "[tau_s, tau_e]",
          .description =
@@ -291,14 +187,12 @@ FieldTable run_rows() {
          .fallback_note = "the whole run"},
         {.name = "windows",
          .type = FieldType::intervals,
-         .group = "run",
          .unit = dimensionless,
          .symbol = "[[tau_s, tau_e], ...]",
          .description = "additional windows for the exponents, without histories",
          .fallback = Json::array()},
         {.name = "perturbation",
          .type = FieldType::object,
-         .group = "run",
          .description =
              "second run with a slightly different start, and its distance from the first "
              "run; the difference of the starts is {x, x_dot, y, y_dot}, or a random "
@@ -313,7 +207,6 @@ FieldTable output_rows() {
     return {
         {.name = "include",
          .type = FieldType::choices,
-         .group = "output",
          .description = "parts of the response",
          .fallback = Json::array({"series", "impacts", "exponents"}),
          .choices =
@@ -321,19 +214,16 @@ FieldTable output_rows() {
               "regime", "manifold"}},
         {.name = "exponents",
          .type = FieldType::choices,
-         .group = "output",
          .description = "estimators of the Lyapunov exponents: qr (Benettin), eigenvalues (33), "
                         "raw_product ((33) unscaled in double precision, as in the paper)",
          .fallback = estimators,
          .choices = estimators},
         {.name = "samples_per_cycle",
-         .group = "output",
          .unit = dimensionless,
          .description = "samples of the series per forcing cycle",
          .fallback = 32,
          .range = Range{1, 10000}},
         {.name = "section_phase",
-         .group = "output",
          .unit = "rad",
          .description =
              "value of Omega tau, modulo 2 pi, at which the stroboscopic section samples the state",
@@ -341,85 +231,81 @@ FieldTable output_rows() {
          .range = Range{0, 2 * std::numbers::pi}},
         {.name = "max_points",
          .type = FieldType::integer,
-         .group = "output",
          .description = "maximum length of series and histories; longer series get a larger step, "
                         "longer histories are thinned",
          .fallback = 20000,
          .range = Range{256, 1000000}},
         {.name = "max_impacts",
          .type = FieldType::integer,
-         .group = "output",
          .description = "number of impacts after which the run ends",
          .fallback = 100000,
          .range = Range{1, 2000000}},
     };
 }
 
-FieldTable make_manifold_fields() {
-    FieldTable table;
-    std::copy_if(
-        simulate_fields().begin(), simulate_fields().end(), std::back_inserter(table),
-        is_of_system);
-    table.push_back(
+FieldTable manifold_rows() {
+    return {
         {.name = "V_max",
-         .group = "output",
          .unit = speed,
          .symbol = "V",
          .description = "largest speed of the ball on the branch beyond the symmetry breaking; the "
                         "branch ends earlier if the motion does",
          .fallback_note = "twice the speed at the symmetry breaking",
-         .range = Range{1e-12, 1e6}});
-    table.push_back(
+         .range = Range{1e-12, 1e6}},
         {.name = "points",
          .type = FieldType::integer,
-         .group = "output",
          .description = "points on each branch",
          .fallback = 200,
-         .range = Range{2, 100000}});
-    return table;
+         .range = Range{2, 100000}}};
 }
 
-}  // namespace
-
-const FieldTable& simulate_fields() {
-    static const FieldTable table = [] {
-        FieldTable all;
-        for (const auto& rows :
-             {system_rows(), reduced_rows(), si_rows(), start_rows(), run_rows(), output_rows()})
-            all.insert(all.end(), rows.begin(), rows.end());
-        return all;
-    }();
-    return table;
-}
-
-const FieldTable& manifold_fields() {
-    static const FieldTable table = make_manifold_fields();
-    return table;
-}
-
-const FieldTable& form_fields() {
-    static const FieldTable table = {
+FieldTable form_rows() {
+    return {
         {.name = "format",
          .type = FieldType::choice,
-         .group = "answer",
-         .description =
-             "format of the response: json; csv: one table; cbor: with typed arrays (RFC "
-             "8746); npz: arrays for numpy.load",
+         .description = "format of the response: json; csv: one table; cbor: with typed arrays "
+                        "(RFC 8746); npz: arrays for numpy.load",
          .fallback_note = "the format that the header Accept requests, otherwise json",
          .choices = {"json", "csv", "cbor", "npz"}},
         {.name = "fields",
          .type = FieldType::choices,
-         .group = "answer",
          .description =
              "keys to keep in the response: names, or paths with dots as in impacts.tau; "
              "version, status, warnings and provenance are always kept. Other keys are "
              "not computed, unless include requests them",
          .fallback_note = "everything"}};
+}
+
+}  // namespace
+
+const FieldTable& simulate_fields() {
+    static const FieldTable table = grouped("system", system_rows()) +
+                                    grouped("reduced", reduced_rows()) + grouped("SI", si_rows()) +
+                                    grouped("start", start_rows()) + grouped("run", run_rows()) +
+                                    grouped("output", output_rows());
+    return table;
+}
+
+const FieldTable& manifold_fields() {
+    static const FieldTable table =
+        simulate_fields_where(is_of_system) + grouped("output", manifold_rows());
+    return table;
+}
+
+const FieldTable& form_fields() {
+    static const FieldTable table = grouped("answer", form_rows());
     return table;
 }
 
 bool is_of_system(const Field& f) {
     return f.group == "system" || f.group == "reduced" || f.group == "SI";
+}
+
+FieldTable simulate_fields_where(bool (*keep)(const Field&)) {
+    FieldTable table;
+    std::copy_if(
+        simulate_fields().begin(), simulate_fields().end(), std::back_inserter(table), keep);
+    return table;
 }
 
 }  // namespace vines::api

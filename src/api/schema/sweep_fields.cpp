@@ -9,23 +9,20 @@ namespace vines::api {
 namespace {
 
 // NOLINTNEXTLINE(readability-function-size): a table
-FieldTable make_sweep_fields() {
+FieldTable sweep_rows() {
     return {
         {.name = "base",
          .type = FieldType::object,
-         .group = "sweep",
          .description = "fields of /v1/simulate that all points share: system, reduced or SI, "
                         "start, preset, max_impacts",
          .fallback = Json::object()},
         {.name = "axes",
          .type = FieldType::objects,
-         .group = "sweep",
          .description = "one to three axes: {parameter, from, to, count, scale} or {parameter, "
                         "values}; the point index varies fastest along the first axis",
          .fallback_note = "required"},
         {.name = "starts",
          .type = FieldType::objects,
-         .group = "sweep",
          .description =
              "initial states {x0, x_dot0, y0, y_dot0}, each run at every point, to find "
              "coexisting attractors; or \"default set\": at rest in the middle, at a wall, moving, "
@@ -35,21 +32,18 @@ FieldTable make_sweep_fields() {
          .choices = {default_set_of_starts}},
         {.name = "cycles",
          .type = FieldType::integer,
-         .group = "sweep",
          .unit = dimensionless,
          .description = "number of measured forcing cycles at each point",
          .fallback = 1000,
          .range = Range{1, 1e6}},
         {.name = "transient_cycles",
          .type = FieldType::integer,
-         .group = "sweep",
          .unit = dimensionless,
          .description = "number of transient forcing cycles before the measured ones",
          .fallback = 200,
          .range = Range{0, 1e6}},
         {.name = "carry_state",
          .type = FieldType::choice,
-         .group = "sweep",
          .description = "none: each point starts from the initial state of base; up, down: from "
                         "the final state of its predecessor in ascending or descending order of "
                         "the values on the first axis",
@@ -57,20 +51,17 @@ FieldTable make_sweep_fields() {
          .choices = enum_choices<Carry>()},
         {.name = "section",
          .type = FieldType::choice,
-         .group = "sweep",
          .description = "points for a bifurcation diagram: at impact or at whole forcing cycles",
          .fallback = enum_json(SectionKind::none),
          .choices = enum_choices<SectionKind>()},
         {.name = "section_points",
          .type = FieldType::integer,
-         .group = "sweep",
          .unit = dimensionless,
          .description =
              "largest number of section points of each sweep point; the last ones are kept",
          .fallback = 100,
          .range = Range{1, 100000}},
         {.name = "section_phase",
-         .group = "sweep",
          .unit = "rad",
          .description =
              "value of Omega tau, modulo 2 pi, at which the stroboscopic section samples the state",
@@ -80,14 +71,12 @@ FieldTable make_sweep_fields() {
          // A choice without a fixed list: the valid values depend on the axes; the reader of the
          // request checks them.
          .type = FieldType::choice,
-         .group = "sweep",
          .description =
              "\"max over P\" or \"min over P\" for an axis P: one line for all points along P, "
              "with the largest or smallest x_max as x_peak and the value of P there",
          .fallback_note = "none: one line for each point"},
         {.name = "indices",
          .type = FieldType::integers,
-         .group = "sweep",
          .description = "zero-based indices of the points to compute, for example those missing "
                         "from an interrupted stream",
          .fallback_note = "all"},
@@ -98,59 +87,44 @@ FieldTable make_sweep_fields() {
 /// of its parameter.
 constexpr Range any_number{-1e300, 1e300};
 
-FieldTable make_axis_fields() {
+FieldTable axis_rows() {
     return {
         {.name = "parameter",
          // A choice without a fixed list: the reader of the axis checks it and lists the valid
          // ones.
          .type = FieldType::choice,
-         .group = "axis",
          .description = "name of a numeric parameter of the system, dimensionless or SI, or of a "
                         "component of the initial state",
          .fallback_note = "required"},
         {.name = "from",
-         .group = "axis",
          .description = "first value",
          .fallback_note = "required without values",
          .range = any_number},
         {.name = "to",
-         .group = "axis",
          .description = "last value",
          .fallback_note = "required without values",
          .range = any_number},
         {.name = "count",
          .type = FieldType::integer,
-         .group = "axis",
          .description = "number of values",
          .fallback = 2,
          .range = Range{1, 1e6}},
         {.name = "scale",
          .type = FieldType::choice,
-         .group = "axis",
          .description = "spacing",
          .fallback = "linear",
          .choices = {"linear", "log"}},
         {.name = "values",
          .type = FieldType::numbers,
-         .group = "axis",
          .description = "values, instead of from, to, count, scale",
          .fallback_note = "from, to, count"},
     };
 }
 
-/// The fields of /v1/simulate for which keep(field) is true.
-template <class Predicate>
-FieldTable simulate_fields_where(Predicate keep) {
-    FieldTable table;
-    for (const Field& f : simulate_fields())
-        if (keep(f)) table.push_back(f);
-    return table;
-}
-
 }  // namespace
 
 const FieldTable& sweep_fields() {
-    static const FieldTable table = make_sweep_fields();
+    static const FieldTable table = grouped("sweep", sweep_rows());
     return table;
 }
 
@@ -162,7 +136,7 @@ const FieldTable& sweep_base_fields() {
 }
 
 const FieldTable& axis_fields() {
-    static const FieldTable table = make_axis_fields();
+    static const FieldTable table = grouped("axis", axis_rows());
     return table;
 }
 

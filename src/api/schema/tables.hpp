@@ -37,6 +37,9 @@ const FieldTable& form_fields();
 /// True for a field of /v1/simulate that defines the system: group system, reduced or SI.
 bool is_of_system(const Field& field);
 
+/// The fields of /v1/simulate for which keep(field) is true.
+FieldTable simulate_fields_where(bool (*keep)(const Field& field));
+
 /// The response of GET /v1/parameters: the model with its symbols, and all tables.
 Json describe_fields();
 

@@ -1,0 +1,305 @@
+// The objects of an answer: the keys of each that hold a plain value, as quantities and their
+// values for a source. Lists are in columns.hpp.
+#pragma once
+
+#include <concepts>
+#include <optional>
+
+#include "api/columns.hpp"
+#include "api/schema/enum_names.hpp"
+#include "core/motion/elementary.hpp"
+#include "core/sweep/recommend.hpp"
+
+namespace vines::api {
+
+/// The status of each exponent.
+inline Json statuses_of(const Exponents& values) {
+    return column(values, [](double v) { return enum_json(status_of(v)); });
+}
+
+namespace properties {
+
+using enum ValueType;
+
+inline Json json_of(double value) { return finite_or_null(value); }
+inline Json json_of(std::integral auto value) { return value; }
+inline Json json_of(const Interval& interval) { return {interval.from, interval.to}; }
+inline Json json_of(const Exponents& values) { return column(values); }
+inline Json json_of(RegimeType type) { return name_of(type); }
+inline Json json_of(Verdict verdict) { return enum_json(verdict); }
+inline Json json_of(Damping damping) { return enum_json(damping); }
+template <class Value>
+Json json_of(const std::optional<Value>& value) {
+    return value ? json_of(*value) : Json(nullptr);
+}
+
+/// The member of a source, or the value of its member function.
+template <auto member>
+inline constexpr auto at = [](const auto& source) { return json_of(std::invoke(member, source)); };
+
+// Parameters.
+
+inline constexpr Property<Parameters> reduced[] = {
+    {{"epsilon", "mass ratio m2/m1"}, at<&Parameters::epsilon>},
+    {{"lambda", "damping c1/(m2 omega0)"}, at<&Parameters::lambda>},
+    {{"G", "amplitude of the base over epsilon, m"}, at<&Parameters::G>},
+    {{"Omega", "forcing frequency over omega0"}, at<&Parameters::Omega>},
+    {{"R_plus", "restitution coefficient of the wall at x - y = b"}, at<&Parameters::R_plus>},
+    {{"R_minus", "restitution coefficient of the wall at x - y = -b"}, at<&Parameters::R_minus>},
+    {{"b", "clearance: half-width of the cavity, m"}, at<&Parameters::b>},
+    {{"damping", "whether zeta is epsilon lambda/2 or epsilon lambda", damping},
+     at<&Parameters::damping>},
+};
+
+inline constexpr Property<SiParameters> si[] = {
+    {{"m1", "mass of the linear oscillator, kg"}, at<&SiParameters::m1>},
+    {{"c1", "damping of the oscillator, N s/m"}, at<&SiParameters::c1>},
+    {{"k1", "stiffness of the oscillator, N/m"}, at<&SiParameters::k1>},
+    {{"m2", "mass of the ball, kg"}, at<&SiParameters::m2>},
+    {{"F", "amplitude of the base, m"}, at<&SiParameters::F>},
+    {{"f", "forcing frequency, Hz"}, at<&SiParameters::f>},
+};
+
+inline constexpr Property<Parameters> derived[] = {
+    {{"zeta", "damping ratio of the motion"}, at<&Parameters::zeta>},
+    {{"omega_d", "sqrt(1 - zeta^2); null if zeta >= 1", number_or_null},
+     [](const Parameters& p) {
+         return p.zeta() < 1 ? Json(std::sqrt(1 - p.zeta() * p.zeta())) : Json(nullptr);
+     }},
+    {{"A", "amplitude of the forcing over epsilon, m"}, at<&Parameters::A>},
+    {{"phi", "phase of the forcing at tau = 0, rad"}, at<&Parameters::phi>},
+    {{"cycle", "length of a forcing cycle"}, at<&Parameters::cycle>},
+};
+
+inline constexpr Property<SiParameters> derived_si[] = {
+    {{"omega0", "natural frequency in rad/s, for a system in SI"}, at<&SiParameters::omega0>},
+    {{"f0", "natural frequency in Hz, for a system in SI"}, at<&SiParameters::f0>},
+    {{"damping_ratio", "c1/(2 m1 omega0), for a system in SI; does not depend on `damping`"},
+     at<&SiParameters::damping_ratio>},
+    {{"mass_ratio", "m2/m1, for a system in SI"}, at<&SiParameters::epsilon>},
+    {{"cycle_s", "cycle in s, for a system in SI"},
+     [](const SiParameters& si) { return Json(1 / si.f); }},
+};
+
+// Energy.
+
+inline constexpr Property<EnergyBalance> balance[] = {
+    {{"window", "interval of the balance", interval}, at<&EnergyBalance::window>},
+    {energies.input, at<&EnergyBalance::input>},
+    {energies.damper, at<&EnergyBalance::damper>},
+    {energies.impacts, at<&EnergyBalance::impacts>},
+    {energies.stored, at<&EnergyBalance::stored>},
+    {energies.residual, at<&EnergyBalance::residual>},
+    {{"share_impacts", "fraction of the dissipated energy; null if none is dissipated",
+      number_or_null},
+     at<&EnergyBalance::share_impacts>},
+    {energies.at_start, at<&EnergyBalance::at_start>},
+    {energies.at_end, at<&EnergyBalance::at_end>},
+    {{"rms", "rms of x, m"}, at<&EnergyBalance::rms>},
+    {{"peak", "maximum of |x|, m"}, at<&EnergyBalance::peak>},
+};
+
+inline constexpr Property<Unattached> unattached[] = {
+    {{"rms", "rms of x, m"}, at<&Unattached::rms>},
+    {{"peak", "maximum of |x|, m"}, at<&Unattached::peak>},
+    {{"amplitude", "steady amplitude, m; null if undamped at resonance", number_or_null},
+     at<&Unattached::amplitude>},
+};
+
+inline constexpr Property<EnergyResult> energy_ratio[] = {
+    {{"rms_ratio", "rms with over rms without the absorber", number_or_null},
+     at<&EnergyResult::rms_ratio>},
+    {{"peak_ratio", "peak with over peak without the absorber", number_or_null},
+     at<&EnergyResult::peak_ratio>},
+};
+
+inline constexpr Property<DecayTimes> decay[] = {
+    {quantity.tau_half, at<&DecayTimes::half>},
+    {quantity.tau_tenth, at<&DecayTimes::tenth>},
+};
+
+// Manifold.
+
+inline constexpr Property<ManifoldPoint> manifold_point[] = {
+    {quantity.C, at<&ManifoldPoint::C>},
+    {quantity.V, at<&ManifoldPoint::V>},
+};
+
+inline constexpr Property<Recommendation> recommendation[] = {
+    {{"b", "clearance, m"}, at<&Recommendation::b>},
+    {{"fold_share", "amplitude at the fold over free_amplitude"}, at<&Recommendation::fold_share>},
+    {{"x_rms_ratio", "rms of x over that without the absorber, for the worst start"},
+     at<&Recommendation::x_rms_ratio>},
+    {{"x_max", "maximum of |x|, m, for the worst start"}, at<&Recommendation::x_max>},
+    {{"regime", "regime, for the worst start", regime}, at<&Recommendation::regime>},
+    {{"start", "the worst start of the default set", word},
+     [](const Recommendation& r) { return Json(r.start.name); }},
+};
+
+// Regime.
+
+inline constexpr Property<PeriodicOrbit> orbit[] = {
+    {{"period_cycles",
+      "period in forcing cycles; null if not periodic, as are all keys up to capture", whole},
+     at<&PeriodicOrbit::cycles>},
+    {{"impacts_per_period", "contacts per period", whole}, at<&PeriodicOrbit::contacts>},
+    {{"chatter_impacts_per_period", "impacts of chatter in addition to the contacts", whole},
+     [](const PeriodicOrbit& o) { return Json(o.impacts - o.contacts); }},
+    {{"sticks_per_period", "sticking phases per period", whole}, at<&PeriodicOrbit::sticks>},
+    {{"symmetric", "true if a shift by half a period gives the mirror image", flag},
+     at<&PeriodicOrbit::symmetric>},
+    {{"stable", "true if all multipliers lie inside the unit circle", flag},
+     at<&PeriodicOrbit::stable>},
+    {{"closure", "relative distance between a state of the orbit and its return"},
+     at<&PeriodicOrbit::closure>},
+};
+
+inline constexpr Property<PeriodicOrbit> orbit_state[] = {
+    {quantity.tau.with("a time on the orbit, during a flight"), at<&PeriodicOrbit::tau>},
+    {{"x_dot", "velocity of the oscillator at that time"},
+     [](const PeriodicOrbit& o) { return Json(o.state.x_dot); }},
+    {{"x", "displacement of the oscillator at that time, m"},
+     [](const PeriodicOrbit& o) { return Json(o.state.x); }},
+    {{"y_dot", "velocity of the ball at that time"},
+     [](const PeriodicOrbit& o) { return Json(o.state.y_dot); }},
+    {{"y", "displacement of the ball at that time, m"},
+     [](const PeriodicOrbit& o) { return Json(o.state.y); }},
+};
+
+inline constexpr Property<Regime> rhythm[] = {
+    {{"z", "contacts per cycle: of the orbit if periodic, else from the first contact to the last"},
+     at<&Regime::z>},
+    {{"z_overall", "contacts per cycle from the first contact to the last, periodic or not"},
+     at<&Regime::z_overall>},
+    {{"contacts", "contacts in the window; a chatter that ends in a sticking phase counts as one",
+      whole},
+     at<&Regime::contacts>},
+    {{"periodic", "true if a stable orbit attracts the motion", flag},
+     [](const Regime& r) { return Json(r.orbit.has_value()); }},
+};
+
+inline constexpr Property<Regime> synchrony[] = {
+    {{"share", "fraction of the contacts that lie in synchronised stretches"},
+     at<&Regime::synchronised>},
+    {{"longest_half_cycles", "length of the longest such stretch", whole},
+     at<&Regime::longest_synchronised>},
+};
+
+// Parts of an identification.
+
+inline constexpr Property<Restitution> restitution[] = {
+    {{"R", "fitted; for a list of impacts, their median", number_or_null}, at<&Restitution::R>},
+    {{"standard_error", "standard error of R", number_or_null}, at<&Restitution::error>},
+    {{"impacts", "number of impacts", whole}, at<&Restitution::impacts>},
+};
+
+inline constexpr Property<Identification> fitted_b[] = {
+    {{"b", "clearance, m; null if momentum conservation determines none", number_or_null},
+     at<&Identification::b_fitted>},
+    {{"standard_error", "m; null if the fit does not include the ball", number_or_null},
+     at<&Identification::b_error>},
+};
+
+inline constexpr Property<MeasuredSlope> slope[] = {
+    {{"lambda1",
+      "long-term slope of lambda1(tau) tau, without the first tenth of the impacts and corrected "
+      "for the phase of the modulation at both ends",
+      number_or_null},
+     at<&MeasuredSlope::value>},
+    {{"low", "lower end of its 90 % interval", number_or_null}, at<&MeasuredSlope::low>},
+    {{"high", "upper end of its 90 % interval", number_or_null}, at<&MeasuredSlope::high>},
+};
+
+// Points of a sweep.
+
+/// A measured point, and the length of its forcing cycle.
+struct MeasuredPoint {
+    const PointResult& result;
+    double cycle;
+};
+
+template <auto member>
+inline constexpr auto result_at = [](const MeasuredPoint& p) { return json_of(p.result.*member); };
+template <auto member>
+inline constexpr auto regime_at =
+    [](const MeasuredPoint& p) { return json_of(p.result.regime.*member); };
+/// Null without an orbit.
+template <auto member>
+inline constexpr auto orbit_at = [](const MeasuredPoint& p) {
+    const auto& orbit = p.result.regime.orbit;
+    return orbit ? json_of(std::invoke(member, *orbit)) : Json(nullptr);
+};
+
+inline constexpr Property<MeasuredPoint> point[] = {
+    {{"lambda", "four exponents by qr", exponents}, result_at<&PointResult::lambda>},
+    {{"status", "status of each exponent", statuses},
+     [](const MeasuredPoint& p) { return statuses_of(p.result.lambda); }},
+    {{"standard_error", "standard error of each exponent", exponents},
+     result_at<&PointResult::standard_error>},
+    {{"verdict",
+      "verdict on the final motion; null without forcing, or if the ball meets no wall in the end",
+      verdict},
+     result_at<&PointResult::verdict>},
+    {{"z", "contacts per cycle"}, regime_at<&Regime::z>},
+    {{"regime", "I to VI, or none", regime}, regime_at<&Regime::type>},
+    {{"periodic", "true if a stable orbit attracts the motion", flag},
+     [](const MeasuredPoint& p) { return Json(p.result.regime.orbit.has_value()); }},
+    {{"period_cycles", "period in forcing cycles", whole}, orbit_at<&PeriodicOrbit::cycles>},
+    {{"impacts_per_period", "contacts per period", whole}, orbit_at<&PeriodicOrbit::contacts>},
+    {{"symmetric", "true if a shift by half a period gives the mirror image", flag},
+     orbit_at<&PeriodicOrbit::symmetric>},
+    {{"capture_cycle",
+      "cycle in which the orbit captured the motion; if it is late, lambda is a mean over a "
+      "transient; null if not periodic or not yet captured"},
+     [](const MeasuredPoint& p) {
+         const auto& capture = p.result.regime.capture;
+         return capture && capture->tau ? Json(std::round(*capture->tau / p.cycle)) : Json(nullptr);
+     }},
+    {{"multiplier", "largest modulus of the Floquet multipliers"},
+     orbit_at<[](const PeriodicOrbit& o) { return elementary::modulus(o.multipliers[0]); }>},
+    {{"synchronised", "fraction of the contacts that lie in synchronised stretches"},
+     regime_at<&Regime::synchronised>},
+    {{"x_max", "maximum of |x|, m"}, result_at<&PointResult::x_max>},
+    {{"x_rms", "rms of x, m"}, result_at<&PointResult::x_rms>},
+    {{"x_rms_ratio", "x_rms over that of the steady motion without the absorber"},
+     result_at<&PointResult::x_rms_ratio>},
+    {{"x_free", "steady amplitude without the absorber, m"}, result_at<&PointResult::x_free>},
+    {{"share_impacts", "fraction of the energy that impacts dissipate"},
+     result_at<&PointResult::share_impacts>},
+    {{"impacts", "number of impacts", whole}, result_at<&PointResult::impacts>},
+    {{"sticks", "number of sticking phases", whole}, result_at<&PointResult::sticks>},
+};
+
+/// Quantities that distinguish the motions of a point.
+inline constexpr Property<PointResult> motion[] = {
+    {{"x_max", "maximum of |x|, m"}, at<&PointResult::x_max>},
+    {{"x_rms", "rms of x, m"}, at<&PointResult::x_rms>},
+    {{"regime", "as for a point", regime},
+     [](const PointResult& p) { return json_of(p.regime.type); }},
+    {{"verdict", "as for a point", verdict}, at<&PointResult::verdict>},
+    {{"z", "as for a point"}, [](const PointResult& p) { return json_of(p.regime.z); }},
+    {{"lambda1", "largest exponent by qr", number_or_null},
+     [](const PointResult& p) { return json_of(p.lambda[0]); }},
+};
+
+/// Quantities of the motion at the peak of a row.
+inline constexpr Property<PointResult> peak[] = {
+    {{"regime", "regime at x_peak", regime},
+     [](const PointResult& p) { return json_of(p.regime.type); }},
+    {{"verdict", "verdict at x_peak", verdict}, at<&PointResult::verdict>},
+    {{"z", "contacts per cycle at x_peak"},
+     [](const PointResult& p) { return json_of(p.regime.z); }},
+    {{"x_rms", "rms of x at x_peak, m"}, at<&PointResult::x_rms>},
+};
+
+/// The initial state, as fields of /v1/simulate that reproduce the motion.
+inline constexpr Property<State> start[] = {
+    {{"x0", "displacement of the oscillator, m"}, at<&State::x>},
+    {{"x_dot0", "velocity of the oscillator, m per unit of tau"}, at<&State::x_dot>},
+    {{"y0", "displacement of the ball, m"}, at<&State::y>},
+    {{"y_dot0", "velocity of the ball, m per unit of tau"}, at<&State::y_dot>},
+};
+
+}  // namespace properties
+
+}  // namespace vines::api
