@@ -339,8 +339,8 @@ Json identify_answer(const IdentifyRequest& r, const IdentificationWatch& watch)
     answer["sticking"] = describe(sticking_columns, sticking_phases(found.impacts));
     answer["restitution"] = describe_walls(found);
     answer["b_fitted"] = describe(properties::fitted_b, found);
-    answer["exponents"] = describe_measured(
-        result.exponents, result.continuity.stretches, found.impacts, warnings);
+    answer["exponents"] =
+        describe_measured(result.exponents, result.continuity.stretches, found.impacts, warnings);
     answer["slope"] = describe(properties::slope, judged.slope);
     answer["verdict"] = enum_json(judged.verdict);
     answer["verdict_reason"] = doubts.empty() ? reason_of(judged) : doubts[0];

@@ -103,7 +103,8 @@ Command with_exit_codes(CLI::App* app, std::function<int()> run, const std::stri
                                  try {
                                      return run();
                                  } catch (const api::Problem& problem) {
-                                     std::fputs((problem.body() + "\n").c_str(), stderr);
+                                     std::fputs(
+                                         (printable(problem.body(), "\n") + "\n").c_str(), stderr);
                                      return refused;
                                  }
                              }});

@@ -31,7 +31,7 @@ struct VerifyOptions {
     std::string answer, record;
 };
 
-void print_line(const std::string& line) { print(line + "\n"); }
+void print_line(const std::string& line) { print(printable(line) + "\n"); }
 
 void print_early_stop() { print_message("stopped before everything was recomputed"); }
 

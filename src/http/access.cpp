@@ -87,10 +87,10 @@ constexpr std::string_view key_characters = "-._~+/=";  // and letters and digit
 
 }  // namespace
 
-ApiKeys ApiKeys::read(const std::string& path) {
+std::size_t ApiKeys::reload() {
     std::istringstream in(
-        read_regular(Descriptor(::open(path.c_str(), open_regular)), path, max_key_file_size));
-    ApiKeys keys;
+        read_regular(Descriptor(::open(path_.c_str(), open_regular)), path_, max_key_file_size));
+    std::vector<std::string> keys;
     std::size_t number = 0;
     for (std::string line; std::getline(in, line);) {
         ++number;
@@ -98,12 +98,14 @@ ApiKeys ApiKeys::read(const std::string& path) {
         if (line.empty() || line[0] == '#') continue;
         if (line.size() < min_length || !consists_of(line, key_characters))
             throw std::runtime_error(fmt::format(
-                "{}, line {}: a key must have {} or more characters: letters, digits or {}", path,
+                "{}, line {}: a key must have {} or more characters: letters, digits or {}", path_,
                 number, min_length, key_characters));
-        keys.keys_.push_back(line);
+        keys.push_back(line);
     }
-    if (keys.keys_.empty()) throw std::runtime_error(fmt::format("{} contains no key", path));
-    return keys;
+    if (keys.empty()) throw std::runtime_error(fmt::format("{} contains no key", path_));
+    const std::lock_guard lock(mutex_);
+    keys_ = std::make_shared<const std::vector<std::string>>(std::move(keys));
+    return keys_->size();
 }
 
 bool ApiKeys::accepts(std::string_view authorization) const {
@@ -111,7 +113,8 @@ bool ApiKeys::accepts(std::string_view authorization) const {
     const std::string_view shown = trimmed(authorization);
     if (lower_case(scheme) != "bearer") return false;
     bool found = false;
-    for (const std::string& key : keys_)
+    const Keys known = keys();
+    for (const std::string& key : *known)
         found |=
             key.size() == shown.size() && CRYPTO_memcmp(key.data(), shown.data(), key.size()) == 0;
     return found;
@@ -240,8 +243,8 @@ std::optional<Response> access_refusal(
     }
     if (is_cross_origin(head) && !follows_link(head, route) && !is_allowed_origin(head, options))
         return problem_response(403, "pages of other origins may not use this server");
-    if (route && !route->is_public && options.keys.required() &&
-        !options.keys.accepts(head.header("authorization")))
+    if (route && !route->is_public && options.keys &&
+        !options.keys->accepts(head.header("authorization")))
         return key_refusal();
     return std::nullopt;
 }

@@ -4,6 +4,8 @@
 // pages of other sites from reading answers or starting computations.
 #pragma once
 
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,16 +26,17 @@ const Route* find_route(
 std::optional<Response> request_refusal(
     const Head& head, const Route* route, const std::vector<Route>& routes, std::size_t body_limit);
 
+/// The keys of a file, one per line; empty lines and lines that start with # are skipped.
 class ApiKeys {
 public:
-    /// No keys: requests need none.
-    ApiKeys() = default;
-    /// Reads one key per line; empty lines and lines that start with # are skipped. Throws
-    /// std::runtime_error if the file cannot be read, is not a regular file, is larger than 1 MiB,
-    /// contains no key, or a key that is too short or holds characters that a header cannot.
-    static ApiKeys read(const std::string& path);
+    /// Reads the file. Throws std::runtime_error if it cannot be read, is not a regular file, is
+    /// larger than 1 MiB, contains no key, or a key that is too short or holds characters that a
+    /// header cannot.
+    explicit ApiKeys(std::string path) : path_(std::move(path)) { reload(); }
+    /// Reads the file again, from any thread; returns the number of keys. Throws like the
+    /// constructor; the keys are then unchanged.
+    std::size_t reload();
 
-    bool required() const { return !keys_.empty(); }
     /// True if the value of Authorization is "Bearer" and one of the keys (RFC 6750). The time it
     /// takes does not depend on how many characters of a key match.
     bool accepts(std::string_view authorization) const;
@@ -41,7 +44,15 @@ public:
     static constexpr std::size_t min_length = 16;
 
 private:
-    std::vector<std::string> keys_;
+    using Keys = std::shared_ptr<const std::vector<std::string>>;
+    Keys keys() const {
+        const std::lock_guard lock(mutex_);
+        return keys_;
+    }
+
+    const std::string path_;
+    mutable std::mutex mutex_;
+    Keys keys_;
 };
 
 struct AccessOptions {
@@ -50,7 +61,7 @@ struct AccessOptions {
     std::vector<std::string> hosts;
     /// Origins whose pages may use the service, such as https://example.org; "*": all.
     std::vector<std::string> origins;
-    ApiKeys keys;
+    std::shared_ptr<const ApiKeys> keys;  ///< null: requests need none
 };
 
 /// Problem 421 for a request to a host name that is not this server's, as in DNS rebinding; 403 for

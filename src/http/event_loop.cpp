@@ -139,8 +139,13 @@ void EventLoop::accept_all() {
         auto* const peer = reinterpret_cast<sockaddr*>(&address);
         const int socket = ::accept4(listening_, peer, &size, SOCK_NONBLOCK | SOCK_CLOEXEC);
         if (socket < 0 && (errno == EINTR || errno == ECONNABORTED)) continue;
-        if (socket < 0 && errno != EAGAIN)
-            return listen(false);  // out of file descriptors or memory
+        if (socket < 0 && (errno == EMFILE || errno == ENFILE)) {
+            Connection* const idlest = eviction_candidate();
+            if (!idlest) return listen(false);
+            release(idlest->socket());
+            continue;
+        }
+        if (socket < 0 && errno != EAGAIN) return listen(false);  // out of memory
         if (socket < 0) return;
         if (other) release(other->socket());
         const int yes = 1;

@@ -88,15 +88,12 @@ bool list_contains(const Head& head, std::string_view header, std::string_view w
 
 }  // namespace
 
-std::string_view Head::path() const {
-    return std::string_view(target).substr(0, target.find_first_of("?#"));
-}
+std::string_view Head::path() const { return std::string_view(target).substr(0, target.find('?')); }
 
 std::string_view Head::query() const {
     const std::size_t mark = target.find('?');
-    if (mark == std::string::npos) return {};
-    const std::string_view query = std::string_view(target).substr(mark + 1);
-    return query.substr(0, query.find('#'));
+    return mark == std::string::npos ? std::string_view()
+                                     : std::string_view(target).substr(mark + 1);
 }
 
 std::string_view Head::header(std::string_view name) const {
@@ -157,9 +154,12 @@ void HeadReader::take_request_line(std::string_view line) {
         throw Problem(505, "this service supports HTTP/1.1 and HTTP/1.0");
     if (target.empty() || !is_printable(target))
         malformed("its target contains a blank or a control character");
-    if (lower_case(target.substr(0, 7)) == "http://")
+    if (target.find('#') != std::string_view::npos)
+        malformed("its target must not have a fragment (#...)");
+    if (lower_case(target.substr(0, 7)) == "http://") {
         std::tie(head_.host, head_.target) = split_absolute(target);
-    else if (target[0] == '/') head_.target = target;
+        if (head_.host.empty()) malformed("its target names no host");
+    } else if (target[0] == '/') head_.target = target;
     else malformed("its target must begin with /");
 }
 

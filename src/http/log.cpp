@@ -17,6 +17,7 @@
 
 #include "api/json_text.hpp"
 #include "api/problem.hpp"
+#include "program/process.hpp"
 
 namespace vines::http {
 
@@ -42,7 +43,7 @@ public:
         if (api::needs_no_escape(text)) return put(name, text, "\"");
         // A path can contain any bytes: invalid UTF-8 is replaced.
         using Json = nlohmann::json;
-        put(name, Json(text).dump(-1, ' ', false, Json::error_handler_t::replace));
+        put(name, printable(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)));
     }
     void add(std::string_view name, double ms) { put(name, fmt::format("{:.3f}", ms)); }
     void add(std::string_view name, std::size_t number) { put(name, std::to_string(number)); }

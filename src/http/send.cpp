@@ -1,5 +1,6 @@
 #include "http/send.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -9,6 +10,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <ctime>
 #include <memory>
 
 #include "http/encoding.hpp"
@@ -184,6 +186,7 @@ std::string server_timing(const Timing& timing) {
 
 void send(
     const Head& head, const std::string& request_id, httplib::Response& out, Response response) {
+    out.set_header("Date", fmt::format("{:%a, %d %b %Y %T GMT}", fmt::gmtime(std::time(nullptr))));
     out.set_header("X-Request-ID", request_id);
     set_head(out, response);
     if (response.problem) response.body = response.problem->body(request_id);

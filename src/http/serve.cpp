@@ -1,5 +1,6 @@
 // `vines serve`: options, start, and the end by a signal; `vines healthcheck`, which queries a
-// running service, for containers without curl. Shutdown: on SIGTERM or SIGINT sweeps end at once
+// running service, for containers without curl. SIGHUP reloads the API keys; without a key file it
+// stops the service. Shutdown: on SIGTERM or SIGINT sweeps end at once
 // and /readyz answers 503. Requests are still accepted for --drain seconds. Then the server stops:
 // requests in progress have 10 s to finish; after that computations end with the results they have,
 // and 5 s later the process ends, with code 3 if requests are left unanswered. A second signal ends
@@ -9,6 +10,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <memory>
 #include <optional>
@@ -89,7 +91,9 @@ void add_access_flags(CLI::App& c, AccessOptions& o, std::string& key_file) {
         });
     c.add_option(
          "--api-key-file", key_file,
-         "file with one API key per line; requests then need a key, except for health and the page")
+         "file with one API key per line; requests then need a key, except for health and the "
+         "page; "
+         "SIGHUP reloads it")
         ->envname("VINES_API_KEY_FILE")
         ->type_name("FILE");
 }
@@ -172,11 +176,27 @@ std::size_t report_unanswered(Server& server) {
     return number;
 }
 
+void reload(ApiKeys& keys) {
+    try {
+        log_event(fmt::format("API keys reloaded: {}", keys.reload()));
+    } catch (const std::runtime_error& e) {
+        log_warning(fmt::format("API keys unchanged: {}", e.what()));
+    }
+}
+
+/// Waits for a signal to stop; SIGHUP reloads the keys, if there are any.
+int wait_for_stop(ApiKeys* keys) {
+    int signal = wait_for_end_signal();
+    for (; keys && signal == SIGHUP; signal = wait_for_end_signal()) reload(*keys);
+    return signal;
+}
+
 /// Waits for a signal, then shuts down as described above.
-[[noreturn]] void stop_on_signal(double drain, AdmissionControl& admission, Server& server) {
-    wait_for_end_signal();
-    std::thread([&server] {
-        const int signal = wait_for_end_signal();
+[[noreturn]] void stop_on_signal(
+    double drain, ApiKeys* keys, AdmissionControl& admission, Server& server) {
+    wait_for_stop(keys);
+    std::thread([&server, keys] {
+        const int signal = wait_for_stop(keys);
         report_unanswered(server);
         end(128 + signal);
     }).detach();
@@ -214,11 +234,12 @@ void print_greeting(const std::string& greeting) {
     }
 }
 
-ServerOptions server_options(const ServeOptions& options) {
-    ServerOptions server = options.server;
-    server.access.listens_on = server.host;
-    if (!options.key_file.empty()) server.access.keys = ApiKeys::read(options.key_file);
-    return server;
+/// Blocks the signals that end the service, and SIGHUP even under nohup if it reloads keys. Ignores
+/// others that would end it without a shutdown.
+void prepare_signals(bool reloads) {
+    if (reloads) std::signal(SIGHUP, SIG_DFL);
+    block_end_signals();
+    for (const int other : {SIGUSR1, SIGUSR2, SIGALRM}) std::signal(other, SIG_IGN);
 }
 
 int serve(const ServeOptions& options) {
@@ -228,12 +249,16 @@ int serve(const ServeOptions& options) {
     AdmissionControl admission(options.compute);
     Metrics metrics(admission);
     std::optional<Server> server;
+    std::shared_ptr<ApiKeys> keys;
     int port = 0;
     try {
         // Read before signals are blocked: a disk can be slow and a folder large.
-        const ServerOptions chosen = server_options(options);
+        if (!options.key_file.empty()) keys = std::make_shared<ApiKeys>(options.key_file);
+        ServerOptions chosen = options.server;
+        chosen.access.listens_on = chosen.host;
+        chosen.access.keys = keys;
         std::vector<Route> routes = make_routes(options.routes, admission, metrics);
-        block_end_signals();
+        prepare_signals(keys != nullptr);
         start_log(options.log == "text" ? LogFormat::text : LogFormat::json);
         server.emplace(chosen, std::move(routes), metrics);
         port = server->bind();
@@ -245,7 +270,7 @@ int serve(const ServeOptions& options) {
     print_greeting(fmt::format("vines {} listens on http://{}:{}\n", api::version(), host, port));
     log_event(fmt::format("vines {} listens on {}:{}", api::version(), host, port));
 
-    std::thread([&] { stop_on_signal(options.drain, admission, *server); }).detach();
+    std::thread([&] { stop_on_signal(options.drain, keys.get(), admission, *server); }).detach();
     server->run();
     log_event("stopped");
     end(0);

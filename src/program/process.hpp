@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <iterator>
+#include <string>
 #include <string_view>
 #include <thread>
 
@@ -33,10 +35,29 @@ inline void print(std::string_view text) {
     if (const int failed = write_fully(STDOUT_FILENO, text)) fail_at("write", "to stdout", failed);
 }
 
-/// Writes "vines: MESSAGE" to stderr. Ignores errors: a closed terminal does not stop the
-/// computation.
+/// The text with its control characters as in JSON ("\u001b"), those above 127 in UTF-8 included.
+/// A terminal obeys them, so a text quoted from a file or a request could clear it, retitle it, or
+/// forge a line. kept: characters that stay.
+inline std::string printable(std::string_view text, std::string_view kept = {}) {
+    std::string shown;
+    for (std::size_t k = 0; k < text.size(); ++k) {
+        const auto next = [&](std::size_t at) {
+            return at < text.size() ? static_cast<unsigned char>(text[at]) : 0u;
+        };
+        const unsigned c = next(k), second = next(k + 1);
+        if (c == 0xc2 && second >= 0x80 && second < 0xa0)
+            fmt::format_to(std::back_inserter(shown), "\\u{:04x}", second), ++k;
+        else if ((c < ' ' || c == 0x7f) && kept.find(text[k]) == std::string_view::npos)
+            fmt::format_to(std::back_inserter(shown), "\\u{:04x}", c);
+        else shown += text[k];
+    }
+    return shown;
+}
+
+/// Writes "vines: MESSAGE" to stderr, made printable. Ignores errors: a closed terminal does not
+/// stop the computation.
 inline void print_message(std::string_view message) {
-    std::fputs(fmt::format("vines: {}\n", message).c_str(), stderr);
+    std::fputs(fmt::format("vines: {}\n", printable(message)).c_str(), stderr);
 }
 
 /// SIGTERM, SIGINT and SIGHUP end the program. One thread waits for them with sigwait(), outside a

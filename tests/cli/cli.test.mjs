@@ -141,6 +141,27 @@ test("verify reports malformed, repeated and modified answers without an excepti
   }
 });
 
+test("control characters of a file appear as escapes and cannot forge a line", async () => {
+  const forged = "a\nsha256: matches\r\u001b]52;c;aGk=\u0007\u007f\u009b2J";
+  const name = JSON.stringify(forged).slice(1, -1);
+  const inert = (text) => {
+    assert.doesNotMatch(text.replaceAll("\n", ""), /\p{Control}/u);
+    assert.doesNotMatch(text, /^sha256: matches/m);
+  };
+  const answer = await simulated({tau_end: 40, include: ["regime"]});
+  const {out, errors} = await verify(`{"${name}":1,${answer.slice(1)}`);
+  inert(out + errors);
+  assert.ok(out.includes("recomputed: a\\u000asha256: matches"), out);
+  const version = await verify(answer.replace(/"version":"[^"]*"/, `"version":"${name}"`));
+  inert(version.out + version.errors);
+  await writeFile(at(forged), `{"${name}":1}\n{"type":"${name}"}\n`);
+  for (const command of ["merge", "verify", "simulate"]) {
+    const {code, errors} = await run([command, at(forged)]);
+    assert.ok(code === 1 || code === 2, errors);
+    inert(errors);
+  }
+});
+
 test("verify reproduces the service's answers: runs, manifolds, identifications, sweeps", async () => {
   const service = await startService(["--answer-limit", "300000"]);
   const post = async (path, body, type = "application/json") =>

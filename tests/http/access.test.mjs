@@ -6,7 +6,7 @@ import {tmpdir} from "node:os";
 import {join} from "node:path";
 import {after, before, test} from "node:test";
 import {program, startService} from "../service.mjs";
-import {exchange} from "./raw.mjs";
+import {exchange, until} from "./raw.mjs";
 
 let folder;
 before(async () => {
@@ -76,6 +76,24 @@ test("with --api-key-file everything except health and the page requires one of 
   const refused = await fetch(`${service.url}/v1/presets`);
   assert.equal(refused.headers.get("www-authenticate"), 'Bearer realm="vines"');
   assert.match((await refused.json()).detail, /Authorization: Bearer KEY/);
+});
+
+test("SIGHUP reloads the keys, unless the file has none, and does not end the service", async (t) => {
+  const service = await startService(["--api-key-file", await keyFile(keys[0])]);
+  t.after(() => service.stop());
+  const accepts = async (key) =>
+    (await fetch(`${service.url}/metrics`, {headers: {Authorization: `Bearer ${key}`}})).ok;
+  const reload = async (text) => {
+    await keyFile(text);
+    process.kill(service.pid, "SIGHUP");
+  };
+  await reload(keys[1]);
+  await until(() => accepts(keys[1]));
+  assert.equal(await accepts(keys[0]), false);
+  await reload("short");
+  await reload(`${keys[0]}\n${keys[1]}`);
+  await until(() => accepts(keys[0]));
+  assert.equal(await accepts(keys[1]), true);
 });
 
 test("the server does not start with a key file that has no valid key", async () => {

@@ -109,6 +109,10 @@ test("an ambiguous or malformed head is refused", async () => {
     ["GET  / HTTP/1.1\r\nHost: localhost\r\n\r\n", 400],
     ["GET /\tx HTTP/1.1\r\nHost: localhost\r\n\r\n", 400],
     ["GET x HTTP/1.1\r\nHost: localhost\r\n\r\n", 400],
+    [get("/metrics#x"), 400],
+    [get("/v1/simulate?b=0.02#x"), 400],
+    [get("http:///metrics"), 400],
+    [get("http://?b=0.02"), 400],
     ["GET / HTTP/2.0\r\nHost: localhost\r\n\r\n", 505],
     ["GET / HTTP/1.10\r\nHost: localhost\r\n\r\n", 400],
     ["garbage\r\n\r\n", 400],
@@ -146,6 +150,10 @@ test("an ambiguous or malformed head is refused", async () => {
     assert.deepEqual(statuses(text), [status], JSON.stringify(bytes.slice(0, 80)));
     assert.match(text, /^Connection: close\r$/im);
     assert.match(text, /^X-Content-Type-Options: nosniff\r$/im);
+    const date = Date.parse(
+      /^Date: (\w{3}, \d\d \w{3} \d{4} \d\d:\d\d:\d\d GMT)\r$/m.exec(text)[1],
+    );
+    assert.ok(Math.abs(date - Date.now()) < 60000);
     assert.equal(JSON.parse(text.slice(text.indexOf("\r\n\r\n"))).status, status);
   }
 });
@@ -383,6 +391,16 @@ test("beyond the maximum number of connections idle ones are closed", async (t) 
   for (const {socket} of idle) socket.destroy();
 });
 
+test("without free file descriptors idle connections are closed, too", async (t) => {
+  const one = await startService();
+  t.after(() => one.stop());
+  execFileSync("prlimit", [`--pid=${one.pid}`, "--nofile=40:40"]);
+  const idle = await Promise.all(Array.from({length: 100}, () => connect(one.url)));
+  for (let i = 0; i < 5; ++i) await health(one.url);
+  assert.equal((await simulateAt(one.url, small)).status, 200);
+  for (const {socket} of idle) socket.destroy();
+});
+
 test("a flood of connections closes its own, not those of other clients", async (t) => {
   const one = await startService(["--connections", "100"]);
   t.after(() => one.stop());
@@ -547,7 +565,7 @@ test("a client that has closed its sending side gets the same bytes, also after 
     const head = (answer) =>
       answer
         .slice(0, answer.indexOf("\r\n\r\n"))
-        .replace(/^(Server-Timing|Connection|Keep-Alive): .*\r\n/gm, "");
+        .replace(/^(Date|Server-Timing|Connection|Keep-Alive): .*\r\n/gm, "");
     const body = (answer) => answer.slice(answer.indexOf("\r\n\r\n"));
     assert.equal(head(text()), head(whole));
     assert.equal(body(text()), body(whole));

@@ -491,11 +491,12 @@ test("an answer beyond the server's limit is thinned, or refused with both sizes
   await small.stop();
 });
 
-test("SIGTERM ends the service with 0 without waiting for an idle connection", async () => {
+test("SIGTERM ends the service with 0 without waiting for an idle connection; SIGUSR1 and SIGALRM do not end it", async () => {
   const other = await startService();
   const {socket: idle} = await connect(other.url);
   idle.write("GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n");
   await new Promise((resolve) => idle.once("data", resolve));
+  for (const ignored of ["SIGUSR1", "SIGUSR2", "SIGALRM"]) process.kill(other.pid, ignored);
   const started = Date.now();
   assert.equal(await other.stop(), 0);
   assert.ok(Date.now() - started < 30000, "half the time limit of an idle connection");

@@ -41,20 +41,50 @@ struct Neighbourhood {
     }
 };
 
+/// Sorted values without NaN.
+class OrderedValues {
+public:
+    void add(double value) {
+        if (!std::isnan(value)) values_.insert(place_of(value), value);
+    }
+    void remove(double value) {
+        if (!std::isnan(value)) values_.erase(place_of(value));
+    }
+    /// NaN without values.
+    double median() const {
+        if (values_.empty()) return nan;
+        const std::size_t middle = values_.size() / 2;
+        return values_.size() % 2 ? values_[middle] : 0.5 * (values_[middle] + values_[middle - 1]);
+    }
+
+private:
+    std::vector<double>::iterator place_of(double value) {
+        return std::lower_bound(values_.begin(), values_.end(), value);
+    }
+    std::vector<double> values_;
+};
+
 /// Work of one pass through a neighbourhood, for IdentificationProgress::tick.
 std::size_t work_of(const Neighbourhood& near) { return 1 + (near.to - near.from) / 64; }
 
 /// Deviation from the median of the neighbourhood: the first approximation.
 std::vector<double> without_median(const ImpactSearchInput& in, double reach) {
-    const auto at = [&](std::size_t k) {
-        return in.record.x_ddot.begin() + static_cast<std::ptrdiff_t>(k);
-    };
-    std::vector<double> residual(in.record.tau.size());
+    const MeasuredRecord& r = in.record;
+    std::vector<double> residual(r.tau.size());
+    OrderedValues values;
     Neighbourhood near;
-    for (std::size_t k = 0; k < residual.size(); ++k) {
-        near.move_to(k, in.record.tau, reach);
-        in.progress.tick(work_of(near));
-        residual[k] = in.record.x_ddot[k] - median({at(near.from), at(near.to)});
+    for (std::size_t k = 0; k < r.tau.size(); ++k) {
+        const Neighbourhood before = near;
+        near.move_to(k, r.tau, reach);
+        for (std::size_t j = before.from; j < std::min(before.to, near.from); ++j) {
+            in.progress.tick(work_of(near));
+            values.remove(r.x_ddot[j]);
+        }
+        for (std::size_t j = std::max(before.to, near.from); j < near.to; ++j) {
+            in.progress.tick(work_of(near));
+            values.add(r.x_ddot[j]);
+        }
+        residual[k] = r.x_ddot[k] - values.median();
     }
     return residual;
 }
