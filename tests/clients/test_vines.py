@@ -13,6 +13,7 @@ import signal
 import subprocess
 import sys
 import unittest
+import unittest.mock
 import warnings
 
 import vines
@@ -113,6 +114,17 @@ class Answers(WithBothClients):
             self.assertIn("y_dot_after", frame.columns)
             points = client.sweep(axes=[LINE], cycles=50).frame()
             self.assertEqual(list(points.index), list(range(12)))
+
+    def test_without_pandas_a_table_is_a_dict_of_columns(self):
+        with unittest.mock.patch.dict(sys.modules, pandas=None):
+            for client in self.each():
+                run = client.simulate(tau_end=200, include=["impacts"])
+                columns = run.frame("impacts")
+                self.assertEqual(list(columns["side"]), list(run.impacts.side))
+                points = client.sweep(axes=[LINE], cycles=50).frame()
+                self.assertEqual(list(points["index"]), list(range(12)))
+                self.assertTrue(all(v < 1 or math.isnan(v) for v in points["lambda4"]))
+                self.assertEqual({len(column) for column in points.values()}, {12})
 
 
 class Sweeps(WithBothClients):

@@ -89,12 +89,12 @@ class Answer:
         """The answer as dicts and lists for ``json.dump``; NaN is None again."""
         return {name: plain(value) for name, value in self._members.items()}
 
-    def frame(self, path: str = "") -> pandas.DataFrame:
-        """DataFrame with the lists of the object at `path` as columns.
+    def frame(self, path: str = "") -> pandas.DataFrame | dict[str, Any]:
+        """DataFrame with the lists of the object at `path` as columns; without pandas a dict of them.
 
         As in the service's CSV, a list of four numbers per row gives four columns, ``J1`` to
         ``J4``, and a matrix 16, row by row, ``T11`` to ``T44``. Raises ValueError if the object has
-        no lists or lists of different lengths, ImportError without pandas.
+        no lists or lists of different lengths.
         """
         owner = self[path] if path else self
         if not isinstance(owner, Answer):
@@ -107,11 +107,21 @@ class Answer:
         return frame_of({k: c for name, v in lists.items() for k, c in _columns(name, v)})
 
 
-def frame_of(columns: Any) -> pandas.DataFrame:
-    """A pandas DataFrame. Raises ImportError without pandas."""
-    import pandas
-
+def frame_of(columns: dict[str, Any]) -> pandas.DataFrame | dict[str, Any]:
+    """A pandas DataFrame; without pandas the columns: arrays, or lists without NumPy."""
+    try:
+        import pandas
+    except ImportError:
+        return {name: _array(column) for name, column in columns.items()}
     return pandas.DataFrame(columns)
+
+
+def _array(column: Any) -> Any:
+    """A list of numbers as `_numbers`; any other column is kept unchanged."""
+    is_number = isinstance(column, list) and all(
+        v is None or (isinstance(v, (int, float)) and not isinstance(v, bool)) for v in column
+    )
+    return _numbers(column) if is_number else column
 
 
 def plain(value: Any) -> Any:

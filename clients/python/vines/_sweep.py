@@ -77,13 +77,15 @@ class Sweep(Iterator[Answer]):
         """Stops the computation; no more points arrive."""
         self._lines.close()
 
-    def frame(self) -> pandas.DataFrame:
+    def frame(self) -> pandas.DataFrame | dict[str, Any]:
         """Waits for all remaining points and returns them as a pandas DataFrame sorted by index,
         one row per point, with the four exponents as columns ``lambda1`` to ``lambda4``. Objects
-        and other lists are kept unchanged. Raises ImportError without pandas."""
-        rows = [_row(point) for point in self]
-        frame = frame_of(rows)
-        return frame.set_index("index").sort_index() if rows else frame
+        and other lists are kept unchanged. Without pandas a dict of columns, one of them
+        ``index``."""
+        rows = sorted((_row(point) for point in self), key=lambda row: int(row["index"]))
+        names = dict.fromkeys(name for row in rows for name in row)
+        frame = frame_of({name: [row.get(name) for row in rows] for name in names})
+        return frame if isinstance(frame, dict) or not rows else frame.set_index("index")
 
     def __enter__(self) -> Sweep:
         return self
