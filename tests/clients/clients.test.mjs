@@ -50,12 +50,11 @@ test("the Python client has the fields of the service", () => {
   assert.equal(ended.status, 0, outcome(ended));
 });
 
-test("the Python client has the version of the project", () => {
+test("the Python client and the citation have the version of the project", () => {
   const declared = (file, pattern) => readFileSync(join(root, file), "utf8").match(pattern)[1];
-  assert.equal(
-    declared("clients/python/pyproject.toml", /^version = "(.*)"$/m),
-    declared("CMakeLists.txt", /VERSION ([0-9.]+) LANG/),
-  );
+  const version = declared("CMakeLists.txt", /VERSION ([0-9.]+) LANG/);
+  assert.equal(declared("clients/python/pyproject.toml", /^version = "(.*)"$/m), version);
+  assert.equal(declared("CITATION.cff", /^version: (.*)$/m), version);
 });
 
 test("the Python examples in the documents work unchanged", () => {
