@@ -61,6 +61,7 @@ int draw_run(const Files& files, api::Json request) {
 }
 
 int run(const AnswerOptions& o, const char* route, const api::FieldTable& table) {
+    if (o.plot) check_plot_file(o.files.output);
     api::Json request = read_request(o.files, o.fields, table);
     if (o.plot) return draw_run(o.files, std::move(request));
     api::AnswerRequest asked = api::read_answer_request(route, std::move(request));

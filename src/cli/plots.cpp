@@ -5,9 +5,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -17,6 +20,7 @@
 
 #include "api/json_text.hpp"
 #include "api/parse.hpp"
+#include "api/problem.hpp"
 #include "api/schema/field.hpp"
 #include "cli/exit.hpp"
 #include "cli/files.hpp"
@@ -339,6 +343,20 @@ std::vector<Plot> plots_of(const std::string& answer) {
                             : drawable(run_plots(api::parse_object(answer)));
 }
 
+void check_plot_file(const std::string& path) {
+    constexpr std::string_view others[] = {".pdf", ".png", ".jpg",  ".jpeg", ".gif", ".webp",
+                                           ".eps", ".ps",  ".tiff", ".tif",  ".bmp"};
+    std::string ending = std::filesystem::path(path).extension();
+    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (std::ranges::find(others, ending) != std::end(others))
+        throw api::Problem(
+            422,
+            fmt::format(
+                "{}: plots are SVG (FILE.svg) or text; rsvg-convert and Inkscape convert SVG to "
+                "{}",
+                path, ending.substr(1)));
+}
+
 void draw(const std::vector<Plot>& plots, const std::string& path) {
     write_all(
         path, path.ends_with(".svg") ? plot::svg(plots, picture_width, plot_height)
@@ -355,6 +373,7 @@ Command add_plot(CLI::App& app) {
     return with_exit_codes(
         command,
         [files] {
+            check_plot_file(files->output);
             draw(plots_of(read_all(files->input)), files->output);
             return complete;
         },

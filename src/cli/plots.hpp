@@ -14,6 +14,10 @@ namespace vines::cli {
 std::vector<plot::Plot> plots_of(const std::string& answer);
 std::vector<plot::Plot> plots_of(const api::Json& start, const std::vector<api::Json>& points);
 
+/// Throws Problem if the file's name asks for an image format other than SVG. Call before
+/// computing.
+void check_plot_file(const std::string& path);
+
 /// Writes SVG if the file's name ends with .svg, else characters. Throws like write_all().
 void draw(const std::vector<plot::Plot>& plots, const std::string& path);
 

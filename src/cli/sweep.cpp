@@ -125,6 +125,7 @@ bool needs_all_points(const SweepOptions& o) { return o.plot || o.fields.format 
 
 /// Throws Problem 422 for incompatible options, before anything is computed.
 void check(const SweepOptions& o, const api::SweepRequest& request) {
+    if (o.plot) check_plot_file(o.files.output);
     if (needs_all_points(o) && o.resume)
         throw api::Problem(422, "--resume needs --format ndjson and excludes --plot");
     // Axes with several values, except the one that is reduced (if any).

@@ -1,6 +1,6 @@
 // Plots of answers, in the terminal and as SVG.
 import assert from "node:assert/strict";
-import {mkdtempSync, readFileSync, rmSync, writeFileSync} from "node:fs";
+import {existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync} from "node:fs";
 import {tmpdir} from "node:os";
 import {join} from "node:path";
 import {after, test} from "node:test";
@@ -70,6 +70,21 @@ test("a sweep is drawn by verdict and by regime, the same with --plot as with vi
   for (const word of points.flatMap(({verdict, regime}) => [verdict, regime]))
     assert.match(drawn, new RegExp(`  +\\S ${word}$`, "m"));
   assert.match(drawn, / b \(mm\)\n$/);
+});
+
+test("another image format is refused before anything is computed or written", async () => {
+  const commands = [
+    [...orbit, "--plot"],
+    [...sweep, "--plot"],
+    ["plot", "-"],
+  ];
+  for (const name of ["a.pdf", "a.PNG"])
+    for (const command of commands) {
+      const {code, errors} = await run([...command, "-o", at(name)]);
+      assert.equal(code, 2, errors);
+      assert.match(JSON.parse(errors).detail, /a\.(pdf|PNG): plots are SVG/);
+      assert.equal(existsSync(at(name)), false);
+    }
 });
 
 test("a file named .svg receives SVG with every point of a sweep", async () => {
