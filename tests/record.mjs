@@ -51,7 +51,7 @@ export async function measured(url, preset, seconds) {
     preset,
     include: ["series", "impacts"],
     samples_per_cycle: 245,
-    cycles: seconds * 8.35,
+    cycles: seconds * 8.35, // natural frequency of the presets with SI units, Hz
     max_points: 100000,
   };
   const headers = {"Content-Type": "application/json"};

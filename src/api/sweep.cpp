@@ -17,19 +17,20 @@ namespace vines::api {
 namespace {
 
 /// Largest fraction of a free motion's amplitude after the transient.
-constexpr double most_left = 0.01;
+constexpr double max_remaining = 0.01;
 
 /// A warning if the free motion of the oscillator outlasts the transient, which shows where the
 /// ball has no impacts; otherwise empty.
 std::string transient_warning(const Parameters& p, double cycles) {
     const double per_cycle = p.zeta() * p.cycle(), left = elementary::exp(-per_cycle * cycles);
-    if (!(left > most_left)) return "";
-    const double enough = std::ceil(-elementary::log(most_left) / per_cycle);
+    if (!(left > max_remaining)) return "";
+    const double enough = std::ceil(-elementary::log(max_remaining) / per_cycle);
     return fmt::format(
                "after transient_cycles = {:.0f} the oscillator's free motion still has {:.0f} % of "
                "its amplitude",
                cycles, 100 * left) +
-           (std::isfinite(enough) ? fmt::format("; {:.0f} leave 1 %", enough) : ": it is undamped");
+           (std::isfinite(enough) ? fmt::format("; {:.0f} cycles leave 1 %", enough)
+                                  : ": it is undamped");
 }
 
 std::string json_line(Json json) { return json_text(std::move(json)) + "\n"; }

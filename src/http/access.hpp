@@ -21,7 +21,7 @@ namespace vines::http {
 const Route* find_route(
     const std::vector<Route>& routes, std::string_view method, std::string_view path);
 
-/// Refuses what the head shows to be unacceptable for any client; nothing if the request is fine.
+/// The refusal of a head that is unacceptable from any client; nothing if it is acceptable.
 /// route: null if no route matches; body_limit: bytes, for routes without their own limit.
 std::optional<Response> request_refusal(
     const Head& head, const Route* route, const std::vector<Route>& routes, std::size_t body_limit);

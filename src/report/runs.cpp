@@ -58,7 +58,7 @@ State start_beside(const Parameters& p, std::size_t k) {
     return start;
 }
 
-// Determines the median to a fifth of the scatter.
+// Number of neighbouring runs: the standard error of their median is a fifth of the scatter.
 constexpr std::size_t neighbour_runs = 50;
 
 Ensemble::Window concluded(const TransferProduct& product) {

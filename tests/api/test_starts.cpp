@@ -209,7 +209,7 @@ TEST_CASE("too short a transient causes a warning and does not count as another 
     CHECK(warns(
         start,
         "after transient_cycles = 200 the oscillator's free motion still has 53 % of its "
-        "amplitude; 1466 leave 1 %"));
+        "amplitude; 1466 cycles leave 1 %"));
     CHECK(swept(request).warning.empty());
     CHECK(start["parameters"]["origin"]["f"] == "swept: the first of its axis");
     const Json patient =

@@ -133,7 +133,7 @@ test("zsh completes a typed line", needs("zsh"), () => {
   );
 });
 
-test("options for files and folders are completed as such", async () => {
+test("options for files and folders have the type FILE or DIR", async () => {
   for (const name of Object.keys(flags).filter(Boolean)) {
     const help = await written(name, "--help");
     const entries = help.replace(/\n {10,}/g, "  ").split("\n");

@@ -44,7 +44,7 @@ double spectrum(double b) {
 }
 
 /// Eight motions at once, with the vectorised search for any processor.
-double lanes(double b, bool observed) {
+double batch(double b, bool observed) {
     struct Once : RunSource {
         std::optional<RunPlan> next(const std::optional<Outcome>& last) override {
             if (last) return std::nullopt;
@@ -78,9 +78,9 @@ extern "C" {
 [[gnu::noinline]] double part_trajectory_22() { return trajectory(0.022); }
 [[gnu::noinline]] double part_spectrum_15() { return spectrum(0.015); }
 [[gnu::noinline]] double part_spectrum_22() { return spectrum(0.022); }
-[[gnu::noinline]] double part_lanes_15() { return lanes(0.015, false); }
-[[gnu::noinline]] double part_lanes_22() { return lanes(0.022, false); }
-[[gnu::noinline]] double part_spectrum_lanes_22() { return lanes(0.022, true); }
+[[gnu::noinline]] double part_lanes_15() { return batch(0.015, false); }
+[[gnu::noinline]] double part_lanes_22() { return batch(0.022, false); }
+[[gnu::noinline]] double part_spectrum_lanes_22() { return batch(0.022, true); }
 [[gnu::noinline]] double part_point_15() { return point(0.015); }
 [[gnu::noinline]] double part_point_22() { return point(0.022); }
 [[gnu::noinline]] double part_answer() {

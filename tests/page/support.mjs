@@ -142,7 +142,7 @@ export async function findings(page, rules) {
   );
 }
 
-/** Violations in the light colours, and of the contrasts, the only rule that depends on colours, in the dark ones. */
+/** Violations in the light scheme, and contrast violations in the dark one: no other rule depends on colours. */
 export async function findingsInBothSchemes(page) {
   await page.emulateMedia({colorScheme: "light"});
   const light = await findings(page);

@@ -11,7 +11,7 @@ const trail = [0.12, 0.08, 0.04, 0]; // positions of the trail, cycles ago
 
 const anchor = 14; // px
 const top = 30; // px of the cavity
-const ball = 11; // px
+const ballRadius = 11; // px
 const nameWidth = 76; // px of the ball's name, which stays over the cavity
 const rim = 14; // px of the oscillator outside its walls
 
@@ -82,14 +82,14 @@ export function redraw() {
   const c = blank(canvas, size);
   const length = Math.max(width * 0.16, 60); // of the spring
   const room = (width - length - 24) / 2;
-  const scale = Math.max(room - rim - ball, 10) / (motion.b + motion.reach);
+  const scale = Math.max(room - rim - ballRadius, 10) / (motion.b + motion.reach);
   const px = (at) => length + 12 + room + at * scale;
   const {x, y} = motion.at(cursor);
   const wall = (side) => px(x - side * motion.b);
   const floor = height - 16;
   const bottom = floor - 22;
   const level = (top + bottom) / 2;
-  const [left, right] = [wall(1) - ball, wall(-1) + ball];
+  const [left, right] = [wall(1) - ballRadius, wall(-1) + ballRadius];
   ground(c, floor, width);
   spring(c, left - rim, level - 9);
   damper(c, left - rim, level + 13);
@@ -129,7 +129,7 @@ function mass(c, px, x, level) {
     c.globalAlpha = cycles ? 0.1 + 0.08 * k : 1;
     c.beginPath();
     const then = run.motion.at(moment);
-    c.arc(px(x + then.y - then.x), level, ball, 0, 2 * Math.PI);
+    c.arc(px(x + then.y - then.x), level, ballRadius, 0, 2 * Math.PI);
     c.fill();
   });
 }
@@ -139,5 +139,5 @@ function impact(c, wall, level) {
   const i = run.motion.impactBefore(viewport.cursor);
   const side = impacts.side[i];
   const share = (viewport.cursor - impacts.tau[i]) / (flashDuration * cycle);
-  if (share < 1) flash(c, wall(side) - side * (ball + 2), level, side, share);
+  if (share < 1) flash(c, wall(side) - side * (ballRadius + 2), level, side, share);
 }

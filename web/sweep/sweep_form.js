@@ -231,6 +231,7 @@ export class SweepForm extends Form {
     const counts = axes.map(({count}) => count ?? NaN);
     const points = counts.reduce((a, n) => a * n, starts);
     const cyclesOf = (name) => run[name] ?? this.standard(name);
+    // The default set: five motions per point.
     const each = (several ? 5 : 1) * (cyclesOf("transient_cycles") + cyclesOf("cycles"));
     const factors = [...counts, ...(starts > 1 ? [`${starts} starts`] : [])];
     const product = factors.length > 1 ? `${factors.join(" × ")} = ` : "";

@@ -61,10 +61,10 @@ struct AnalysisRequest {
 struct Interrupt {
     /// Ends the run; the result describes the part that was reached.
     std::function<bool()> run = {};
-    std::function<bool()> late = {};  ///< ends the conclusions that take long
+    std::function<bool()> late = {};  ///< ends long computations after the run
 };
 
-/// Matrices J, M and T of each impact, in the state order (x', x, y', y).
+/// Matrices of each impact for (x', x, y', y): J of the flight, M of the impact, T = M J.
 struct TransferMatrices {
     std::vector<double> tau;
     std::vector<Matrix4> J, M, T;
@@ -118,7 +118,8 @@ struct EnergyResult {
     std::optional<Decays> decay;  ///< free decay only
 };
 
-/// Half cycles of a run as points (C, V), to be compared with the slow invariant manifold.
+/// Half cycles as points (C, V) for the slow invariant manifold: peak of |x|, mean speed of the
+/// ball.
 struct ManifoldResult {
     std::optional<Manifold> manifold;  ///< empty if R differs between the walls
     std::vector<double> tau;           ///< end of each half cycle

@@ -64,7 +64,7 @@ std::ptrdiff_t unseen_count(const ImpactSearch& s) {
 void fit_displacement_first(ImpactSearch& s) {
     s.displacement = {s.record.tau, s.record.x, {}};
     fit_motion_and_pulses(s);
-    free_oscillator(s);
+    release_oscillator(s);
     // If nearly all impacts have a pulse, none needs to be found.
     fit_until_settled(s, 20 * unseen_count(s) > impact_count(s) ? 2 : 1);
     if (restore_given_oscillator(s)) fit_until_settled(s, 1);
@@ -105,7 +105,7 @@ FoundImpacts find_impacts(const Measurement& m, IdentificationProgress& progress
     if (!m.record.x.empty() && !m.record.x_ddot.empty()) fit_displacement_first(s);
     limit_pulse_extent(s);
     fit_until_settled(s, rounds_with_pulses);
-    if (free_oscillator(s)) fit_until_settled(s, rounds_with_pulses);
+    if (release_oscillator(s)) fit_until_settled(s, rounds_with_pulses);
     if (restore_given_oscillator(s)) fit_until_settled(s, rounds_with_pulses);
     assign_walls(s);
     if (impact_count(s) >= fewest_with_mass) fit_with_mass(s);

@@ -1,4 +1,4 @@
-// Fits of the search for impacts: motion and pulses, the oscillator's own parameters, and the mass.
+// Fits of the impact search: motion and pulses, stiffness and damping, and the ball.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +8,7 @@ namespace vines {
 
 namespace {
 
-// Standard error of an impact's time according to its event, in steps.
+// Standard error of an impact's time as its pulse shows it, in sampling steps.
 constexpr double event_steps = 0.1;
 // Largest fraction of a typical flight that a pulse can spoil before and after an impact: the rest
 // of the acceleration is needed for the fit.
@@ -16,7 +16,7 @@ constexpr double most_spoiled = 0.35;
 // The record contradicts the given oscillator if a value is off by this many standard errors, and k
 // or c by more than these fractions.
 constexpr double contradiction = 5, least_of_stiffness = 3e-4, least_of_damping = 0.01;
-// Limits of plausible values: masses and springs are known far better, a damping to a factor.
+// Plausible deviations from the given values: stiffness is known far better, damping to a factor.
 constexpr double most_of_stiffness = 0.04, most_of_damping = 2.5, slack_of_damping = 0.005;
 // Standard errors from which on the sign of a jump of x' is certain.
 constexpr double side_sigmas = 3;
@@ -51,7 +51,7 @@ int wall_of(const ImpactSearch& s, std::size_t impact) {
 
 void fit_motion(ImpactSearch& s) {
     JointFit& last = s.found.fit;
-    last.x_residual = {}, last.a_residual = {};  // as long as the record
+    last.x_residual = {}, last.a_residual = {};  // releases a value per sample
     last = fit_jointly(
         fit_input(s), impact_times(s), s.values, s.candidates_changed ? nullptr : &last);
     s.candidates_changed = false;
@@ -118,8 +118,8 @@ void limit_pulse_extent(ImpactSearch& s) {
     s.spoiled.a = {std::min(s.spoiled.a.before, most), std::min(s.spoiled.a.after, most)};
 }
 
-bool free_oscillator(ImpactSearch& s) {
-    if (!s.may_free_oscillator || !s.fixed.oscillator() || s.measurement.fixed.oscillator())
+bool release_oscillator(ImpactSearch& s) {
+    if (!s.may_release_oscillator || !s.fixed.oscillator() || s.measurement.fixed.oscillator())
         return false;
     JointFitInput free = fit_input(s);
     free.fixed = s.measurement.fixed;
@@ -142,7 +142,7 @@ bool free_oscillator(ImpactSearch& s) {
 bool restore_given_oscillator(ImpactSearch& s) {
     if (s.fixed.oscillator() || is_plausible(s, s.values)) return false;
     const UnknownValues given = given_unknowns(s.parameters);
-    s.may_free_oscillator = false;
+    s.may_release_oscillator = false;
     s.fixed[Unknown::stiffness] = s.fixed[Unknown::damping] = true;
     s.values[Unknown::stiffness] = given[Unknown::stiffness];
     s.values[Unknown::damping] = given[Unknown::damping];

@@ -29,7 +29,7 @@ struct ImpactSearch : ImpactSearchInput {
     bool candidates_changed = true;  ///< since the last fit
     std::vector<RejectedCandidate> rejected = {};
     SpoiledExtents spoiled = {};
-    bool may_free_oscillator = true;
+    bool may_release_oscillator = true;
     /// Set while the displacement is fitted alone: a record without the acceleration.
     std::optional<MeasuredRecord> displacement = {};
     Sides sides = {};                ///< walls of the candidates
@@ -53,7 +53,7 @@ void fit_motion_and_pulses(ImpactSearch& s);
 /// Limits the extent of pulses to a fraction of a typical flight.
 void limit_pulse_extent(ImpactSearch& s);
 /// Frees stiffness and damping if the record contradicts the given values; returns whether it does.
-bool free_oscillator(ImpactSearch& s);
+bool release_oscillator(ImpactSearch& s);
 /// Returns to the given oscillator if the fitted one is implausible, which indicates another
 /// problem; returns whether it is.
 bool restore_given_oscillator(ImpactSearch& s);

@@ -36,8 +36,8 @@ void Energy::on_stretch(const Stretch& stretch) {
                  to = std::min(stretch.duration, tau_end_ - stretch.tau);
     if (!(from < to)) return;
     const bool is_stuck = stretch.sticking_side != 0;
-    if (is_stuck && !stuck_) stuck_.emplace(Flow::shared_sticking(parameters_));
-    const Law& law = is_stuck ? *stuck_ : free_;
+    if (is_stuck && !sticking_) sticking_.emplace(Flow::shared_sticking(parameters_));
+    const Law& law = is_stuck ? *sticking_ : free_;
     const Oscillation begin = from > 0 ? stretch.flow.after(stretch.start, from) : stretch.start;
     if (duration_ == 0) start_ = energy_of(begin, is_stuck ? begin.x_dot : stretch.y_dot);
     const bool in_closed_form = law.antiderivative && duration_ >= law.antiderivative->settled();
@@ -72,12 +72,13 @@ void Energy::on_impact(const Impact& i) {
 }
 
 Oscillation Energy::end() const {
-    return (last_.is_stuck ? *stuck_ : free_).flow->after(last_.begin, last_.duration);
+    return (last_.is_stuck ? *sticking_ : free_).flow->after(last_.begin, last_.duration);
 }
 
 Integrals Energy::integrals() const {
     Integrals sum = sum_;
-    if (last_.in_closed_form) sum += (last_.is_stuck ? *stuck_ : free_).antiderivative->at(end());
+    if (last_.in_closed_form)
+        sum += (last_.is_stuck ? *sticking_ : free_).antiderivative->at(end());
     return sum;
 }
 

@@ -53,9 +53,9 @@ private:
         std::optional<Antiderivative> antiderivative;
     };
     const Law free_;
-    std::optional<Law> stuck_;  // set at the first sticking phase
-    /// Integrals so far. While the closed form F is used, F at the end of the last stretch is
-    /// missing; integrals() adds it.
+    std::optional<Law> sticking_;  // set at the first sticking phase
+    /// Integrals so far. While the antiderivative is used, its value at the end of the last stretch
+    /// is missing; integrals() adds it.
     Integrals sum_ = Integrals::Zero();
     struct Last {
         Oscillation begin;

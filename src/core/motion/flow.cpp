@@ -82,7 +82,8 @@ Flow::Flow(double stiffness, double damping, double forcing, double Omega)
         for (int n = 0; n < 2 * short_pairs; ++n)
             part->near.x_dot[n] = (n + 1) * part->series[n + 1];
     }
-    // A block of grid points, or of block ends, may begin at the last cell.
+    // The tables extend past the last cell, where a block of grid points or of block ends can
+    // begin.
     for (int k = 0; k <= cells + block * block; ++k) {
         for (int j = 0; j < 4; ++j) {
             parts[j]->x.push_back((double)state[j].x);
@@ -105,7 +106,7 @@ Flow::Coefficients Flow::free_coefficients(const Parameters& p) {
 
 namespace {
 
-// The same force on both masses.
+// Sticking: one body of mass 1 + epsilon, on which the same force acts.
 Flow::Coefficients sticking_coefficients(const Parameters& p) {
     const double mass = 1 + p.epsilon;
     return {1 / mass, 2 * p.zeta() / mass, p.epsilon * p.A() / mass, p.Omega};

@@ -126,7 +126,7 @@ struct Sweep {
         return run_point(system, start, plan.options, control);
     }
 
-    /// Task of a line; handed out at once if there is nothing to run.
+    /// Task that computes a line; a point without a valid system is reported at once.
     std::optional<PointTask> single(std::size_t line) {
         SweepPoint point = begun(plan.grid.place_of(line));
         if (!point.system) {
@@ -142,11 +142,12 @@ struct Sweep {
             }};
     }
 
-    /// The point's own start and, at regular intervals, a second one: middle, else wall.
-    std::vector<NamedStart> starts_of(const PointSystem& system, std::size_t count) const {
+    /// The point's own start and, at regular intervals, a second one: the middle, or the wall if
+    /// the own start is the middle.
+    std::vector<NamedStart> starts_of(const PointSystem& system, std::size_t point) const {
         const State& first = system.start;
         std::vector<NamedStart> starts = {{"", first}};
-        if (!plan.tries_second_start(count)) return starts;
+        if (!plan.tries_second_start(point)) return starts;
         const bool from_middle =
             first.x == 0 && first.x_dot == 0 && first.y == 0 && first.y_dot == 0;
         starts.push_back(default_starts(system.parameters)[from_middle ? 1 : 0]);

@@ -42,8 +42,8 @@ void describe_setup(Report& report) {
     report.paragraph(
         "The paper's records are not published. Three are computed in their place, from Table 4's "
         "oscillator with eq. (1)'s damping, with G = 10 mm at resonance and R = .85: 20 s at b = "
-        "15 mm and 12 s at 9 mm, both after 20 s that are left out, and the first 12 s at 9 mm, "
-        "from rest on. They are sampled at 2048 Hz with a noise of 2 um and .05 m/s^2 and impact "
+        "15 mm and 12 s at 9 mm, both after a discarded transient of 20 s, and the first 12 s from "
+        "rest at 9 mm. They are sampled at 2048 Hz with a noise of 2 um and .05 m/s^2 and impact "
         "pulses of .8 ms. The identification is given the parameters of Table 4, b and Omega, but "
         "not the impacts, R or the excitation; it fits one motion to the whole record, and also "
         "computes the paper's direct estimate, impact by impact by (42) and (43). Its transfer "
@@ -54,7 +54,7 @@ void describe_setup(Report& report) {
 void parameters_of_table_4(Report& report) {
     report.add(
         {"Table 4", "epsilon = m2/m1", ".76 %"}, result("{:.4f} %", 100 * table_4.epsilon()),
-        {{0.755, 0.765}, "rounds to .76; in part: truncated to two digits it is", Band{0.76, 0.77}},
+        {{0.755, 0.765}, "rounds to .76; in part: equals .76 when truncated", Band{0.76, 0.77}},
         ClaimVerdict::partly);
     report.add(
         {"Table 4", "lambda = c1/(m2 omega0)", "1.80"}, result("{:.4f}", table_4.lambda()),
@@ -168,12 +168,12 @@ Plot over_time(
 
 /// Acceleration and displacement with the impacts: Figs. 15, 16 and 20, 21.
 void signals(Report& report, const Experiment& e, const std::string& figures, double to) {
-    const double per_second_squared = e.truth.omega0 * e.truth.omega0;
+    const double to_m_s2 = e.truth.omega0 * e.truth.omega0;
     report.picture(
         "fig" + figures.substr(0, 2) + "-" + figures.substr(4),
         "Figs. " + figures + ": acceleration and displacement, impacts as identified",
         {over_time(
-             e, "x'' (m/s^2)", e.record.x_ddot, per_second_squared, to,
+             e, "x'' (m/s^2)", e.record.x_ddot, to_m_s2, to,
              [](const IdentifiedImpact& i) { return i.x_ddot_before; }),
          over_time(
              e, "x (mm)", e.record.x, 1000, to, [](const IdentifiedImpact& i) { return i.x; })});
@@ -224,7 +224,7 @@ Group group_of(const Experiment& e, int side) {
     return g;
 }
 
-/// Scatter of the states after impacts of one wall, over the distance between both walls'.
+/// Scatter of the states after impacts of one wall, over the distance between the means of both.
 double scatter(const Experiment& e) {
     const Group plus = group_of(e, 1), minus = group_of(e, -1);
     const Moments x = moments(plus.x), v = moments(plus.x_dot), other_x = moments(minus.x),
@@ -239,7 +239,7 @@ void compare_sections(Report& report, const Experiment& regular, const Experimen
         {"Fig. 18", "b = 9 mm: scatter of each group of states after impacts, over their distance",
          "two groups"},
         result("{:.3f}", scatter(regular)),
-        {{0, apart}, "groups, as against a band: a tenth of their distance"});
+        {{0, apart}, "two groups, not a band: scatter of at most a tenth of their distance"});
     report.add_of_record(
         {"Fig. 23", "b = 15 mm: the same", "scattered compared to Fig. 18"},
         result("{:.3f}", scatter(irregular)),

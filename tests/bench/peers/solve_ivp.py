@@ -22,7 +22,7 @@ def terminal(event):
 
 
 def stalled(contacts):
-    """Same as in job.cpp."""
+    """True if 200 contacts took next to no time: a chatter that does not end. As in job.cpp."""
     return len(contacts) >= 200 and contacts[-1][0] - contacts[-200][0] < 1e-3
 
 
