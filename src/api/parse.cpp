@@ -26,6 +26,9 @@ constexpr std::size_t deepest = 16;
 constexpr std::size_t most_names = 1000;
 // Strings in the whole text; a record holds numbers.
 constexpr std::size_t most_texts = 10000;
+// Characters of one number and of one text. The library collects each before it hands it over, in a
+// buffer that is doubled and copied.
+constexpr std::size_t longest_number = 1000, longest_string = 1000000;
 // Longer lists are built in pieces of this size. serve() makes malloc map and unmap blocks of this
 // size one by one, so that joining the pieces replaces their memory instead of doubling it.
 constexpr std::size_t piece = std::size_t{1} << 18;
@@ -36,7 +39,7 @@ constexpr std::size_t characters_between_polls = 8192;
     throw Problem(400, "the body is not valid JSON: " + what);
 }
 
-/// Input iterator for the library's parser that polls for cancellation.
+/// Input iterator for the library's parser that polls for cancellation and refuses long tokens.
 class Characters {
 public:
     using iterator_category = std::input_iterator_tag;
@@ -48,16 +51,36 @@ public:
     Characters(const char* at, const CancelCheck& cancel) : at_(at), cancel_(&cancel) {}
     reference operator*() const { return *at_; }
     Characters& operator++() {
-        ++at_;
+        limit(*at_++);
         if (++steps_ % characters_between_polls == 0) cancel_->poll();
         return *this;
     }
     bool operator==(const Characters& other) const { return at_ == other.at_; }
 
 private:
+    void limit(char c) {
+        if (in_text_) {
+            if (++length_ > longest_string)
+                throw Problem(
+                    400, fmt::format(
+                             "the JSON text has a string of more than {} bytes", longest_string));
+            if (c == '"' && !escaped_) in_text_ = false, length_ = 0;
+            escaped_ = c == '\\' && !escaped_;
+            return;
+        }
+        const bool is_of_number = (c >= '+' && c <= '9' && c != ',') || c == 'e' || c == 'E';
+        length_ = is_of_number ? length_ + 1 : 0;
+        in_text_ = c == '"';
+        if (length_ > longest_number)
+            throw Problem(
+                400, fmt::format(
+                         "the JSON text has a number of more than {} characters", longest_number));
+    }
+
     const char* at_;
     const CancelCheck* cancel_;
-    std::size_t steps_ = 0;
+    std::size_t steps_ = 0, length_ = 0;  // length of the text or number so far
+    bool in_text_ = false, escaped_ = false;
 };
 
 /// SAX handler that builds the value. (The library's own handler with a check for repeated names

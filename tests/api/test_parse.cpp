@@ -34,6 +34,31 @@ TEST_CASE("invalid, deeply nested or non-object JSON is refused with its positio
     CHECK(refused(std::string("{\"b\":0.01}\0{\"b\":-1}", 19)).status == 400);
 }
 
+TEST_CASE("a number or text too long to be of a request is refused before its end is read") {
+    const auto number = [](std::size_t digits) { return std::string(digits, '7'); };
+    for (const char* begin : {"{\"b\":", "{\"b\":-", "{\"b\":0.", "{\"b\":1e-", "{\"b\":[1,"}) {
+        CAPTURE(begin);
+        int polls = 0;
+        CHECK_THROWS_WITH_AS(
+            parse_object(
+                begin + number(1000000), {.gives_up =
+                                              [&polls] {
+                                                  ++polls;
+                                                  return false;
+                                              }}),
+            "the JSON text has a number of more than 1000 characters", Problem);
+        CHECK(polls == 0);
+    }
+    const Json most = parse_object(
+        "{\"b\":0." + number(998) + ",\"" + number(2000) + "\":\"\\\"" + number(990000) +
+        "\\\\\"}");
+    CHECK(most["b"] == 7.0 / 9);
+    CHECK(most.size() == 2);
+    CHECK(
+        std::string(refused("{\"damping\":\"" + number(1000001) + "\"}").what()) ==
+        "the JSON text has a string of more than 1000000 bytes");
+}
+
 TEST_CASE("a request with thousands of errors gets a short answer quickly") {
     std::string names = "{\"a\":1", ones = "{\"include\":[1";
     for (int k = 0; k < 50000; ++k) names += ",\"a" + std::to_string(k) + "\":1", ones += ",1";
