@@ -128,6 +128,28 @@ function commands(text) {
 /** Lines that call another program; their flags are not checked, except in commands(). */
 const otherPrograms = /sbatch|parallel|kubectl|docker|cmake|systemctl/i;
 
+test("keys come from a Secret at the path of the variable, and only the Ingress's port is open", () => {
+  const of = (wanted) => kubernetes().filter(({kind}) => kind === wanted)[0];
+  const {containers, volumes} = of("Deployment").spec.template.spec;
+  const [{env, ports, volumeMounts}] = containers;
+  const file = env.find(({name}) => name === "VINES_API_KEY_FILE").value;
+  assert.equal(file, join(volumeMounts[0].mountPath, "keys"));
+  assert.equal(
+    volumes.find(({name}) => name === volumeMounts[0].name).secret.secretName,
+    "vines-keys",
+  );
+  const {podSelector, ingress, egress} = of("NetworkPolicy").spec;
+  assert.deepEqual(podSelector, of("Deployment").spec.selector);
+  assert.deepEqual(
+    ingress.flatMap((rule) => rule.ports.map(({port}) => port)),
+    [ports[0].name],
+  );
+  assert.equal(egress, undefined);
+  const [{host, http}] = of("Ingress").spec.rules;
+  assert.equal(host, env.find(({name}) => name === "VINES_ALLOW_HOST").value);
+  assert.equal(http.paths[0].backend.service.port.name, of("Service").spec.ports[0].name);
+});
+
 test("every flag and variable in a file belongs to the program or is defined in the file", async () => {
   const names = await known();
   const all = new Set([...names.values()].flatMap((set) => [...set]));
@@ -182,7 +204,7 @@ test("each container of the compose file is locked down and has limits", async (
     assert.deepEqual(service.cap_drop, ["ALL"], name);
     assert.deepEqual(service.security_opt, ["no-new-privileges:true"], name);
     assert.equal(service.restart, "unless-stopped", name);
-    for (const bound of ["cpus", "mem_limit", "stop_grace_period"])
+    for (const bound of ["cpus", "mem_limit", "pids_limit", "stop_grace_period"])
       assert.ok(service[bound], `${bound} of ${name}`);
     assert.ok(service.build || service.healthcheck, `${name}: no health check`);
     for (const volume of service.volumes ?? [])
