@@ -128,24 +128,23 @@ void EventLoop::listen(bool on) {
     listens_ = on;
 }
 
-/// Accepts pending connections. Beyond the limit another connection is closed for each new one.
+/// Accepts pending connections. Beyond the limit, or without a free file descriptor, another
+/// connection is closed for each new one.
 void EventLoop::accept_all() {
     for (;;) {
         const bool full = count_ + static_cast<std::size_t>(in_flight_) >= max_connections_;
-        Connection* const other = full ? eviction_candidate() : nullptr;
+        Connection* other = full ? eviction_candidate() : nullptr;
         if (full && !other) return listen(false);
         sockaddr_storage address{};
         socklen_t size = sizeof address;
         auto* const peer = reinterpret_cast<sockaddr*>(&address);
         const int socket = ::accept4(listening_, peer, &size, SOCK_NONBLOCK | SOCK_CLOEXEC);
         if (socket < 0 && (errno == EINTR || errno == ECONNABORTED)) continue;
-        if (socket < 0 && (errno == EMFILE || errno == ENFILE)) {
-            Connection* const idlest = eviction_candidate();
-            if (!idlest) return listen(false);
-            release(idlest->socket());
+        if (socket < 0 && (errno == EMFILE || errno == ENFILE) && (other = eviction_candidate())) {
+            release(other->socket());
             continue;
         }
-        if (socket < 0 && errno != EAGAIN) return listen(false);  // out of memory
+        if (socket < 0 && errno != EAGAIN) return listen(false);  // out of memory or descriptors
         if (socket < 0) return;
         if (other) release(other->socket());
         const int yes = 1;

@@ -1,10 +1,9 @@
 // `vines serve`: options, start, and the end by a signal; `vines healthcheck`, which queries a
 // running service, for containers without curl. SIGHUP reloads the API keys; without a key file it
-// stops the service. Shutdown: on SIGTERM or SIGINT sweeps end at once
-// and /readyz answers 503. Requests are still accepted for --drain seconds. Then the server stops:
-// requests in progress have 10 s to finish; after that computations end with the results they have,
-// and 5 s later the process ends, with code 3 if requests are left unanswered. A second signal ends
-// it immediately.
+// stops the service. Shutdown: on SIGTERM or SIGINT sweeps end at once and /readyz answers 503.
+// Requests are still accepted for --drain seconds. Then the server stops: requests in progress have
+// 10 s to finish; after that computations end with the results they have, and 5 s later the process
+// ends, with code 3 if requests are left unanswered. A second signal ends it immediately.
 #include <fmt/format.h>
 #include <malloc.h>
 #include <unistd.h>
@@ -92,8 +91,7 @@ void add_access_flags(CLI::App& c, AccessOptions& o, std::string& key_file) {
     c.add_option(
          "--api-key-file", key_file,
          "file with one API key per line; requests then need a key, except for health and the "
-         "page; "
-         "SIGHUP reloads it")
+         "page; SIGHUP reloads it")
         ->envname("VINES_API_KEY_FILE")
         ->type_name("FILE");
 }

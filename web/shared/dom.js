@@ -63,7 +63,10 @@ export function choose(menu, value) {
   if (menu.selectedIndex < 0) menu.selectedIndex = 0;
 }
 
-/** Replaces the entries, [value, text] or [value]; `wish`: the value to select. */
+/**
+ * Replaces the entries, [value, text] or [value] each. The selected value is kept where possible,
+ * unless `wish` names another.
+ */
 export function fillMenu(menu, entries, wish = menu.value) {
   menu.replaceChildren(...entries.map(([value, text = value]) => new Option(text, value)));
   choose(menu, wish);

@@ -7,7 +7,10 @@ const styles = [{width: 2}, {}, {dash: [7, 3]}, {dash: [2, 3]}];
 
 const absent = (status, ended) => (ended && status === "minus_infinity" ? "−∞" : "");
 
-/** {series, columns} of a history: exponents, and any rounding floor. −∞ has no line. */
+/**
+ * {series, columns} of a history: four exponents and, if present, the rounding floor. An exponent
+ * of minus infinity has no line; its legend shows −∞.
+ */
 export function exponentSeries(history, status = []) {
   const series = styles.map((style, k) => ({
     colour: `c${k + 1}`,

@@ -141,7 +141,7 @@ export function rangeOf(columns, log = false) {
   return [min - more, max + more];
 }
 
-/** The cached size of a node, since reading it forces a layout; draw() follows a change. */
+/** The size of a node, cached since reading it forces a layout; draw() is called when it changes. */
 export class Size {
   constructor(node, draw) {
     const changes = () => {

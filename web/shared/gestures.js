@@ -66,7 +66,10 @@ const ordered = (a, b) => (a < b ? [a, b] : [b, a]);
 const isMouse = (event) => event.pointerType === "mouse";
 const isZoomed = ({directions}) => directions.some((direction) => direction.viewport.zoomed);
 
-/** A drag zooms and ends in no click. A double click, no two clicks, shows the full range. */
+/**
+ * A drag zooms and does not end in a click. A double click shows the full range and does not count
+ * as two clicks.
+ */
 function followMouse(plot, where, click) {
   const {over, directions} = plot;
   const selection = element("div", {className: "selection", hidden: true});

@@ -13,7 +13,7 @@ import {run, viewport} from "./run.js";
 
 const mostSamples = 100000; // samples in an exported table
 const alone = matchMedia("(max-width: 700px)"); // one plot at a time is shown
-// By colour: the side of the impacts, and the name in tables.
+// Side of the impacts of each colour, and their name in tables.
 const walls = {plus: [1, "y − x = −b"], minus: [-1, "y − x = b"]};
 
 let plots;
