@@ -1,6 +1,5 @@
 #include "http/connection.hpp"
 
-#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -61,7 +60,10 @@ Connection::Connection(
       waiting_since_(Clock::now()),
       deadline_(waiting_since_ + head_time) {}
 
-Connection::~Connection() { ::close(socket_); }
+Connection::~Connection() {
+    if (delivery_) delivery_->outbox->cancel();
+    ::close(socket_);
+}
 
 Connection::Progress Connection::advance() {
     try {
@@ -162,6 +164,21 @@ Exchange Connection::take() {
     return exchange;
 }
 
+void Connection::deliver() {
+    const Outbox::State state = delivery_->outbox->send();
+    if (state == Outbox::State::open) return;
+    const Delivery delivery = *std::exchange(delivery_, {});
+    delivery.ended(state);
+    aborted_ = state == Outbox::State::broken;
+    if (delivery.keep_alive && !aborted_) begin_waiting();
+    else begin_closing();
+}
+
+void Connection::break_off() {
+    delivery_->outbox->cancel();
+    deliver();
+}
+
 void Connection::begin_closing() {
     closing_ = true;
     bytes_ = {};
@@ -186,13 +203,6 @@ bool Connection::finish_closing() {
         if (*size == 0 || dropped_ > max_dropped) return true;
     }
     return false;
-}
-
-Connection::PeerState Connection::peer_state() const {
-    pollfd state{socket_, POLLIN | POLLRDHUP, 0};
-    if (::poll(&state, 1, 0) <= 0) return PeerState::connected;
-    if (state.revents & (POLLERR | POLLHUP | POLLNVAL)) return PeerState::reset;
-    return state.revents & POLLRDHUP ? PeerState::half_closed : PeerState::connected;
 }
 
 }  // namespace vines::http

@@ -6,19 +6,16 @@
 
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "http/head.hpp"
 #include "http/memory.hpp"
 #include "http/message.hpp"
+#include "http/outbox.hpp"
 
 namespace vines::http {
-
-struct WriteTimeout {
-    std::chrono::milliseconds time;   ///< total time to wait for the client to read
-    std::function<bool()> contended;  ///< whether other requests wait for this thread
-};
 
 /// A complete request, or the refusal of one; nothing is read after a refused request.
 struct Exchange {
@@ -27,6 +24,13 @@ struct Exchange {
     const Route* route = nullptr;  ///< can be null if refused
     std::optional<Response> refused = {};
     std::chrono::steady_clock::time_point since = {};  ///< time at which the request was complete
+};
+
+/// An answer on its way to its client.
+struct Delivery {
+    std::shared_ptr<Outbox> outbox;
+    bool keep_alive = false;                        ///< the connection can be reused after it
+    std::function<void(Outbox::State)> ended = {};  ///< called once: sent or broken
 };
 
 /// Decision by a request's head, before its body is read: its route, or a refusal.
@@ -68,17 +72,24 @@ public:
     /// Time at which the connection times out unless further bytes arrive.
     Clock::time_point deadline() const { return deadline_; }
     /// True if no byte of a next request has arrived.
-    bool is_idle() const { return bytes_.empty() && !head_ && !is_closing(); }
+    bool is_idle() const { return bytes_.empty() && !head_ && !delivery_ && !is_closing(); }
     /// True if idle after at least one answer.
     bool is_idle_keep_alive() const { return is_idle() && served_; }
     /// Start of the current wait for the client.
     Clock::time_point waiting_since() const { return waiting_since_; }
-    /// To be called after an answer: waits for the next request.
-    void begin_waiting();
 
-    /// To be called if an answer could not be sent completely: the connection will end with a
-    /// reset, so that the client does not take the part for the whole.
-    void abort() { aborted_ = true; }
+    /// To be called with an answer; deliver() then sends it.
+    void begin_delivery(Delivery delivery) { delivery_ = std::move(delivery); }
+    bool is_delivering() const { return delivery_.has_value(); }
+    /// Sends what the socket takes of the answer. At its end the connection waits for the next
+    /// request, or closes: with a reset if the answer is broken off, so that the client does not
+    /// take the part for the whole.
+    void deliver();
+    void break_off();  ///< ends the delivery
+    bool client_is_slow(bool scarce) {
+        return delivery_->outbox->client_is_slow(Clock::now(), scarce);
+    }
+
     /// Starts a lingering close: closes the sending side, and discards what the client still sends
     /// for up to 3 s or 64 MiB. Closing with unread bytes would reset the connection, and the
     /// client could lose its last answer.
@@ -86,13 +97,6 @@ public:
     bool is_closing() const { return closing_; }
     /// Discards received bytes; true once the client has closed too, or sent too much.
     bool finish_closing();
-
-    enum class PeerState {
-        connected,
-        half_closed,  ///< the client has closed its sending side; it can still be reading, or gone
-        reset         ///< the client has reset the connection
-    };
-    PeerState peer_state() const;
 
     int socket() const { return socket_; }
     const std::string& client() const { return client_; }
@@ -107,6 +111,7 @@ private:
     void begin_request();
     void begin_body();
     void expect_more();
+    void begin_waiting();
 
     const int socket_;
     const std::string client_;
@@ -119,6 +124,7 @@ private:
     Clock::time_point complete_since_;
     std::size_t expected_ = 0;  // size of the body that must be reached before the deadline
     std::optional<Response> refused_;
+    std::optional<Delivery> delivery_;
     bool half_closed_ = false;  // the client has closed its sending side
     bool closing_ = false, aborted_ = false, served_ = false;
     std::size_t dropped_ = 0;

@@ -34,17 +34,28 @@ constexpr int next_request_wait = 1;  // ms
 // Answers to one client in a row; then the others get their turn.
 constexpr int max_answers_in_row = 16;
 
-// Time after which a client that does not read its answer is disconnected.
-constexpr auto write_time = 30s;
+// Time for which a resource counts as scarce after a request was refused for lack of it: longer
+// than a client that tries again waits (Retry-After: 1).
+constexpr auto scarce_time = 2s;
+
+// Unsent bytes of one client in the kernel, in addition to those on their way.
+constexpr int unsent_in_kernel = 1 << 17;
 
 // Time after stop() in which requests on idle connections are still answered.
 constexpr auto drain_time = 300ms;
 
 void add(int poll, int socket) {
-    epoll_event event{};
-    event.events = EPOLLIN;
-    event.data.fd = socket;
+    epoll_event event{.events = EPOLLIN, .data = {.fd = socket}};
     ::epoll_ctl(poll, EPOLL_CTL_ADD, socket, &event);
+}
+
+/// Waits for a connection: until it can be read, or until the socket takes more of the answer. The
+/// latter edge-triggered: a stream can have nothing to send.
+void wait_for(int poll, int operation, const Connection& connection) {
+    epoll_event event{
+        .events = connection.is_delivering() ? EPOLLOUT | EPOLLET : EPOLLIN,
+        .data = {.fd = connection.socket()}};
+    ::epoll_ctl(poll, operation, connection.socket(), &event);
 }
 
 /// Raises the limit of open files as far as possible and returns it, less some for other files.
@@ -112,12 +123,13 @@ void EventLoop::wait() {
         poll_, events.data(), events.size(),
         ready_.empty() ? static_cast<int>((stopping_ ? 20ms : expiry_interval).count()) : 0);
     for (int i = 0; i < n; ++i) {
-        const int socket = events[static_cast<std::size_t>(i)].data.fd;
+        const epoll_event& event = events[static_cast<std::size_t>(i)];
+        const int socket = event.data.fd;
         if (socket == listening_) accept_all();
         else if (socket == wake_) {
             std::uint64_t count = 0;
             static_cast<void>(!::read(wake_, &count, sizeof count));
-        } else handle(socket);
+        } else handle(socket, event.events & (EPOLLERR | EPOLLHUP));
     }
     for (const int socket : std::exchange(ready_, {})) handle(socket);
 }
@@ -132,7 +144,7 @@ void EventLoop::listen(bool on) {
 /// connection is closed for each new one.
 void EventLoop::accept_all() {
     for (;;) {
-        const bool full = count_ + static_cast<std::size_t>(in_flight_) >= max_connections_;
+        const bool full = load().open >= max_connections_;
         Connection* other = full ? eviction_candidate() : nullptr;
         if (full && !other) return listen(false);
         sockaddr_storage address{};
@@ -149,6 +161,8 @@ void EventLoop::accept_all() {
         if (other) release(other->socket());
         const int yes = 1;
         ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+        ::setsockopt(
+            socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &unsent_in_kernel, sizeof unsent_in_kernel);
         watch(std::make_unique<Connection>(
             socket, numeric(peer, size), handlers_.check_head, memory_));
     }
@@ -164,7 +178,7 @@ Connection* EventLoop::eviction_candidate() const {
         return a.waiting_since() < b.waiting_since();
     };
     for (const Owned& c : connections_)
-        if (c && (!chosen || before(*c, *chosen))) chosen = c.get();
+        if (c && !c->is_delivering() && (!chosen || before(*c, *chosen))) chosen = c.get();
     return chosen;
 }
 
@@ -173,8 +187,10 @@ void EventLoop::watch(Owned connection) {
     if (connections_.size() <= static_cast<std::size_t>(socket))
         connections_.resize(static_cast<std::size_t>(socket) + 1);
     connections_[static_cast<std::size_t>(socket)] = std::move(connection);
+    Connection& watched = *connections_[static_cast<std::size_t>(socket)];
     ++count_;
-    add(poll_, socket);
+    if (watched.is_delivering()) ++delivering_;
+    wait_for(poll_, EPOLL_CTL_ADD, watched);
 }
 
 EventLoop::Owned EventLoop::release(int socket) {
@@ -183,10 +199,11 @@ EventLoop::Owned EventLoop::release(int socket) {
     return std::move(connections_[static_cast<std::size_t>(socket)]);
 }
 
-void EventLoop::handle(int socket) {
+void EventLoop::handle(int socket, bool failed) {
     const Owned& connection = connections_[static_cast<std::size_t>(socket)];
     if (!connection) return;  // closed after the event
-    if (!connection->is_closing()) read(*connection);
+    if (connection->is_delivering()) deliver(*connection, failed);
+    else if (!connection->is_closing()) read(*connection);
     else if (connection->finish_closing()) release(socket);
 }
 
@@ -199,38 +216,54 @@ void EventLoop::read(Connection& connection) {
         }
         if (!connection.is_answered_on_loop()) return hand_over(release(connection.socket()));
         if (n >= max_answers_in_row) return ready_.push_back(connection.socket());
-        answer_here(connection, connection.take());
-        if (connection.is_closing()) return;
+        if (!answer_here(connection)) return;
     }
 }
 
 void EventLoop::hand_over(Owned connection) {
-    ++in_flight_;
+    ++with_workers_;
     if (workers_.add(connection)) return;
-    --in_flight_;
+    --with_workers_;
     connection->refuse(problem_response(api::Problem::unavailable(
         "threads", "all worker threads are busy and their queue is full")));
-    answer_here(*connection, connection->take());
+    Connection& refused = *connection;
     watch(std::move(connection));
+    answer_here(refused);
 }
 
-/// Sends without waiting: a small answer fits into the socket's buffer of a client that reads.
-void EventLoop::answer_here(Connection& connection, Exchange exchange) {
-    const auto never = [] { return false; };
-    if (handlers_.answer(connection, std::move(exchange), {0ms, never})) connection.begin_waiting();
-    else connection.begin_closing();
+/// True if the connection waits for a next request.
+bool EventLoop::answer_here(Connection& connection) {
+    handlers_.answer(connection, connection.take());
+    ++delivering_;
+    connection.deliver();
+    if (connection.is_delivering()) wait_for(poll_, EPOLL_CTL_MOD, connection);
+    else --delivering_;
+    return !connection.is_delivering() && !connection.is_closing();
+}
+
+/// failed: the client has reset the connection.
+void EventLoop::deliver(Connection& connection, bool failed) {
+    if (failed) connection.break_off();
+    else connection.deliver();
+    if (connection.is_delivering()) return;
+    --delivering_;
+    wait_for(poll_, EPOLL_CTL_MOD, connection);
+    if (!connection.is_closing()) read(connection);
 }
 
 void EventLoop::collect_returned() {
     std::vector<Owned> returned;
+    std::vector<int> ended;
     {
         const std::lock_guard lock(mutex_);
         returned.swap(returned_);
+        ended.swap(ended_);
     }
     for (Owned& connection : returned) {
-        --in_flight_;
         watch(std::move(connection));
+        --with_workers_;
     }
+    for (const int socket : ended) handle(socket);
 }
 
 void EventLoop::expire() {
@@ -242,8 +275,12 @@ void EventLoop::expire() {
         ::shutdown(listening_, SHUT_RDWR);
         idle_until_ = now + drain_time;
     }
+    const bool scarce = is_scarce();
     for (const Owned& c : connections_)
-        if (c && now > (c->is_closing() ? c->deadline() : std::min(c->deadline(), idle_until_)))
+        if (c && c->is_delivering()) {
+            if (c->client_is_slow(scarce)) deliver(*c, true);
+        } else if (
+            c && now > (c->is_closing() ? c->deadline() : std::min(c->deadline(), idle_until_)))
             time_out(*c);
     if (!stopping_) listen(true);
 }
@@ -256,19 +293,22 @@ void EventLoop::time_out(Connection& connection) {
     connection.refuse(
         stopping_ ? stopping_refusal()
                   : problem_response(408, "the request did not arrive completely in time"));
-    answer_here(connection, connection.take());
+    answer_here(connection);
 }
 
-bool EventLoop::is_done() const { return closing_ && count_ == 0 && in_flight_ == 0; }
+bool EventLoop::is_scarce() {
+    return memory_.is_full() || workers_.jobs_wait() ||
+           Clock::now() - scarce_since_.load() < scarce_time;
+}
+
+bool EventLoop::is_done() const { return closing_ && count_ == 0 && with_workers_ == 0; }
 
 void EventLoop::work(Owned connection) {
     for (;;) {
-        const WriteTimeout timeout{write_time, [this] { return workers_.jobs_wait(); }};
-        if (!handlers_.answer(*connection, connection->take(), timeout)) {
-            connection->begin_closing();
-            break;
-        }
-        connection->begin_waiting();
+        const Task rest = handlers_.answer(*connection, connection->take());
+        if (rest) return finish_stream(std::move(connection), rest);
+        connection->deliver();
+        if (connection->is_delivering() || connection->is_closing()) break;
         Connection::Progress progress = connection->advance();
         if (progress == Connection::Progress::waits && next_request_is_near(*connection))
             progress = connection->advance();
@@ -278,6 +318,17 @@ void EventLoop::work(Owned connection) {
         if (workers_.jobs_wait() && workers_.add(connection)) return;
     }
     return_connection(std::move(connection));
+}
+
+void EventLoop::finish_stream(Owned connection, const Task& rest) {
+    const int socket = connection->socket();
+    return_connection(std::move(connection));
+    rest();
+    {
+        const std::lock_guard lock(mutex_);
+        ended_.push_back(socket);
+    }
+    wake();
 }
 
 bool EventLoop::next_request_is_near(Connection& connection) {

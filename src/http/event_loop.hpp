@@ -1,7 +1,8 @@
 // The event loop: all connections of the service.
 // One thread waits with epoll for all clients, whatever their number, reads requests and answers
 // those that need no worker (health, refusals). A complete request goes with its connection to a
-// worker thread, which sends the answer and returns the connection.
+// worker thread, which computes the answer and returns the connection, with what its socket has not
+// taken of the answer; the loop sends that.
 #pragma once
 
 #include <atomic>
@@ -17,11 +18,14 @@
 
 namespace vines::http {
 
+using Task = std::function<void()>;
+
 /// The server's callbacks. They are called from several threads.
 struct Handlers {
     HeadCheck check_head;
-    /// Sends the answer; false if the connection cannot be reused.
-    std::function<bool(Connection&, Exchange, WriteTimeout)> answer;
+    /// Computes the answer and begins its delivery. Returns the rest of the work, which adds to the
+    /// outbox, if the answer is computed while it is sent.
+    std::function<Task(Connection&, Exchange)> answer;
 };
 
 struct ConnectionLimits {
@@ -42,9 +46,14 @@ public:
     void run();
     const MemoryBudget& memory() const { return memory_; }
     ConnectionLoad load() const {
-        const auto in_flight = static_cast<std::size_t>(in_flight_);
-        return {.open = count_ + in_flight, .in_flight = in_flight, .held_bytes = memory_.bytes()};
+        return {
+            .open = count_ + with_workers_,
+            .in_flight = with_workers_ + delivering_,
+            .held_bytes = memory_.bytes()};
     }
+    /// To be called when a request is refused for lack of a resource: for a while, clients that
+    /// read slowly lose theirs sooner.
+    void note_scarcity() { scarce_since_ = Clock::now(); }
     /// From any thread, once: accepts no new connections, answers requests that arrive on open ones
     /// within 300 ms, waits for the answers in progress, and lets run() return.
     void stop();
@@ -60,18 +69,21 @@ private:
     void listen(bool on);
     void watch(Owned connection);
     Owned release(int socket);
-    void handle(int socket);
+    void handle(int socket, bool failed = false);
     void read(Connection& connection);
     void hand_over(Owned connection);
-    void answer_here(Connection& connection, Exchange exchange);
+    bool answer_here(Connection& connection);
+    void deliver(Connection& connection, bool failed);
     void collect_returned();
     void expire();
     void time_out(Connection& connection);
+    bool is_scarce();
     bool is_done() const;
     // Called by workers.
     void work(Owned connection);
     bool next_request_is_near(Connection& connection);
     void return_connection(Owned connection);
+    void finish_stream(Owned connection, const Task& rest);
     void wake() const;
 
     const int listening_;
@@ -79,10 +91,12 @@ private:
     const std::size_t max_connections_;
     const int poll_, wake_;
     MemoryBudget memory_;
-    std::vector<Owned> connections_;      // indexed by socket; used by run() only
-    std::vector<int> ready_;              // sockets with more pipelined requests to read
-    std::atomic<std::size_t> count_ = 0;  // number of connections_
-    std::atomic<int> in_flight_ = 0;      // with a worker, or returned and not yet collected
+    std::vector<Owned> connections_;             // indexed by socket; used by run() only
+    std::vector<int> ready_;                     // sockets with more pipelined requests to read
+    std::atomic<std::size_t> count_ = 0;         // number of connections_
+    std::atomic<std::size_t> delivering_ = 0;    // those of them that take an answer
+    std::atomic<std::size_t> with_workers_ = 0;  // or returned and not yet collected
+    std::atomic<Clock::time_point> scarce_since_{};
     std::atomic<bool> stopping_ = false;
     bool listens_ = false, closing_ = false;
     Clock::time_point checked_ = Clock::now();
@@ -90,6 +104,7 @@ private:
         Clock::time_point::max();  // connections without a complete request end then
     std::mutex mutex_;
     std::vector<Owned> returned_;  // from workers
+    std::vector<int> ended_;       // sockets whose stream has ended
     WorkerPool<Owned> workers_;    // destroyed first
 };
 

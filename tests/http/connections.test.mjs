@@ -429,22 +429,6 @@ test("a flood of connections closes its own, not those of other clients", async 
   }
 });
 
-test("clients that do not read lose their threads when others wait for one", async (t) => {
-  const one = await startService(["--threads", "4"]);
-  t.after(() => one.stop());
-  const held = await Promise.all(
-    Array.from({length: 12}, async () => {
-      const connection = await connect(one.url);
-      connection.socket.pause();
-      connection.socket.write(get("/v1/parameters").repeat(200));
-      return connection;
-    }),
-  );
-  await sleep(1000);
-  await until(async () => (await fetch(`${one.url}/v1/presets`)).status === 200, 12000);
-  for (const {socket} of held) socket.destroy();
-});
-
 test("the idle timeout starts at the end of an answer", {skip: !long}, async () => {
   const {socket, text} = await connect(service.url);
   const body = '{"axes":[{"parameter":"b","from":0.02,"to":0.03,"count":150}],"cycles":1000000}';
@@ -477,30 +461,6 @@ test("an endless head uses no memory", async () => {
   await until(() => statuses(text()).length === 1 || socket.destroyed);
   socket.destroy();
   assert.ok((await memory(service.pid)) - before < 64 + watched);
-});
-
-test("health is answered while clients that do not read hold every thread", async (t) => {
-  const one = await startService(["--threads", "4"]);
-  t.after(() => one.stop());
-  const large = '{"damping": "closed_form", "tau_end": 30000, "max_points": 60000}';
-  const held = await Promise.all(
-    Array.from({length: 8}, async () => {
-      const connection = await connect(one.url);
-      connection.socket.once("data", () => connection.socket.pause());
-      connection.socket.write(post(large));
-      return connection;
-    }),
-  );
-  const begun = () => held.filter(({text}) => text().length > 0).length;
-  await until(() => begun() >= 4);
-  for (let i = 0; i < 5; ++i) await health(one.url);
-  for (const {socket} of held) socket.destroy();
-  const again = async () => {
-    const answer = await fetch(`${one.url}/v1/simulate`, {method: "POST", body: small});
-    await answer.text();
-    return answer.status === 200;
-  };
-  await until(again, 10000);
 });
 
 test("a run ends when its client leaves, whether it is running or queued", async (t) => {

@@ -1,0 +1,124 @@
+// Clients that do not read their answers take nothing from others for longer than a few seconds.
+import assert from "node:assert/strict";
+import {test} from "node:test";
+import {startService} from "../service.mjs";
+import {connect, statuses, until} from "./raw.mjs";
+
+// Time within which others get what such a client holds, ms.
+const soon = 5000;
+
+const post = (path, body) =>
+  `POST ${path} HTTP/1.1\r\nHost: localhost\r\nContent-Length: ${body.length}\r\n\r\n${body}`;
+
+/** A client that sends a request and reads only the begin of its answer. */
+async function unread(url, path, body) {
+  const connection = await connect(url);
+  connection.socket.once("data", () => connection.socket.pause());
+  connection.socket.write(post(path, JSON.stringify(body)));
+  await until(() => connection.text().length > 0);
+  return connection;
+}
+
+const fetched = (url, path, body) =>
+  fetch(url + path, {method: "POST", body: JSON.stringify(body)});
+
+/** True once the answer is 200; reads all of it. */
+async function isAnswered(url, path, body) {
+  const answer = await fetched(url, path, body);
+  await answer.arrayBuffer();
+  return answer.status === 200;
+}
+
+const small = {damping: "closed_form", tau_end: 20};
+// 8 MB.
+const large = {damping: "closed_form", tau_end: 2000, max_points: 1e5, samples_per_cycle: 200};
+// A stream of 50 MB.
+const streamed = {damping: "closed_form", tau_end: 2e5, include: ["impacts"], max_impacts: 2e5};
+const sweep = {
+  axes: [{parameter: "b", from: 0.005, to: 0.03, count: 3000}],
+  section: "impact",
+  cycles: 400,
+  base: {damping: "closed_form"},
+};
+
+/** A service and clients that do not read: {url, accepted: the number of answers 200}. */
+async function serviceWith(t, args, count, path, body) {
+  const one = await startService(args);
+  const sockets = [];
+  t.after(async () => {
+    for (const socket of sockets) socket.destroy();
+    await one.stop();
+  });
+  let accepted = 0;
+  for (let i = 0; i < count; ++i) {
+    const {socket, text} = await unread(one.url, path, body);
+    sockets.push(socket);
+    if (statuses(text())[0] === 200) ++accepted;
+  }
+  return {url: one.url, accepted};
+}
+
+test("streams that are not read give their threads to others", async (t) => {
+  const {url, accepted} = await serviceWith(t, ["--threads", "4"], 4, "/v1/simulate", streamed);
+  assert.equal(accepted, 4);
+  assert.equal((await fetch(`${url}/livez`)).status, 200);
+  await until(() => isAnswered(url, "/v1/simulate", small), soon);
+});
+
+test("finished answers that are not read occupy no thread", async (t) => {
+  const {url, accepted} = await serviceWith(t, ["--threads", "4"], 8, "/v1/simulate", large);
+  assert.equal(accepted, 8);
+  assert.ok(await isAnswered(url, "/v1/simulate", small));
+});
+
+test("neither do pipelined small ones", async (t) => {
+  const one = await startService(["--threads", "4"]);
+  const held = await Promise.all(Array.from({length: 12}, () => connect(one.url)));
+  t.after(async () => {
+    for (const {socket} of held) socket.destroy();
+    await one.stop();
+  });
+  for (const {socket} of held) {
+    socket.pause();
+    socket.write("GET /v1/parameters HTTP/1.1\r\nHost: localhost\r\n\r\n".repeat(200));
+  }
+  await until(() => isAnswered(one.url, "/v1/simulate", small), soon);
+});
+
+test("answers that are not read give their memory to others", async (t) => {
+  const {url, accepted} = await serviceWith(
+    t,
+    ["--memory-limit", "12000000"],
+    6,
+    "/v1/simulate",
+    large,
+  );
+  assert.equal(accepted, 2);
+  await until(() => isAnswered(url, "/v1/simulate", large), soon);
+});
+
+test("sweeps that are not read give their places to others", async (t) => {
+  const {url, accepted} = await serviceWith(t, ["--sweeps", "4"], 4, "/v1/sweep", sweep);
+  assert.equal(accepted, 4);
+  await until(async () => {
+    const answer = await fetched(url, "/v1/sweep", {...sweep, cycles: 40});
+    await answer.body.cancel();
+    return answer.status === 200;
+  }, soon);
+});
+
+test("a client that reads slowly but steadily gets all of its answer", async (t) => {
+  const one = await startService(["--threads", "4"]);
+  t.after(() => one.stop());
+  const {socket, text, ended} = await connect(one.url);
+  socket.write(
+    post("/v1/simulate", JSON.stringify(large)).replace("\r\n", "\r\nConnection: close\r\n"),
+  );
+  socket.on("data", () => {
+    socket.pause();
+    setTimeout(() => socket.resume(), 2);
+  });
+  await ended;
+  const [head, body] = text().split("\r\n\r\n");
+  assert.equal(body.length, Number(/Content-Length: (\d+)/.exec(head)[1]));
+});
